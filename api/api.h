@@ -1,0 +1,102 @@
+/* api.h - requests in, answers out, no sockets.
+ *
+ * The server hands over a request in pieces and sends what comes back. An exchange is one request
+ * with its answer, used by one thread at a time:
+ *
+ *       api_begin --- reads line and headers; may answer at once (404, 413, 415, 412 ...)
+ *           |
+ *       api_body *    once per piece of the body, none after API_READY
+ *           |
+ *       api_end  ---- API_READY: the answer is there
+ *           |         API_WORK:  long; call api_work on a thread that may block, not on a worker
+ *       api_work
+ *           |
+ *       api_answer -- status, headers, and a body as bytes or as a reader to pull from
+ *           |
+ *       api_free
+ *
+ * The server must not send the answer before api_answer's `mesh` is durable up to `revision`.
+ * api_handle does all of it at once on bytes in memory: tests live on that. */
+#ifndef HE_API_API_H
+#define HE_API_API_H
+
+#include "api/store.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct api_exchange api_exchange;
+typedef struct api_service api_service;
+
+/* A request as it came: nothing is decoded. */
+typedef struct api_request {
+    const char *method;
+    const char *path;       /* raw, percent-encoded, begins with '/' */
+    const char *query;      /* raw, without '?', "" when absent */
+    const char *request_id; /* echoed; the server made one where the client sent none */
+    /* The value of a header, NULL when absent. Names are compared without case. Valid until
+     * api_free. */
+    const char *(*header)(void *context, const char *name);
+    void *context;
+    bool has_length; /* Content-Length was given */
+    uint64_t length;
+    bool has_body; /* a body will follow, of known length or chunked */
+} api_request;
+
+typedef enum api_step { API_MORE, API_READY, API_WORK } api_step;
+
+enum { API_ANSWER_HEADERS = 16 };
+
+typedef struct api_header {
+    const char *name, *value;
+} api_header;
+
+typedef struct api_answer {
+    int status;
+    api_header headers[API_ANSWER_HEADERS];
+    size_t header_count;
+    /* Either bytes, or read: fill up to `size` bytes, 0 at the end, -1 on failure (the
+     * connection is then cut, so that the client notices). Never blocks on a lock for long. */
+    const char *bytes;
+    int64_t length; /* -1: unknown, only with read */
+    int64_t (*read)(void *context, char *buffer, size_t size);
+    void *context;
+    bool close; /* the connection must not be used again */
+    /* Hold the answer until this mesh is durable up to this revision; mesh NULL: do not. */
+    api_mesh *mesh;
+    uint64_t revision;
+    const char *route; /* template for logs and metrics, "-" when none matched */
+} api_answer;
+
+/* Limits a server sets; 0 takes the default of limits.h. */
+typedef struct api_options {
+    uint64_t max_upload; /* bytes of a mesh document or file */
+    const char *version; /* "0.1.0" */
+    const char *public_url;
+    /* The page: content of a path ("/", "/assets/...") or false. Bytes live as long as the
+     * service. `type` and `etag` are set; `immutable` for names that carry a hash. */
+    bool (*asset)(void *context, const char *path, const char **bytes, size_t *length,
+                  const char **type, const char **etag, bool *immutable);
+    void *asset_context;
+    bool (*ready)(void *context); /* for /readyz; NULL: always */
+    void *ready_context;
+} api_options;
+
+/* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */
+api_service *api_service_new(const api_store *store, const api_options *options);
+void api_service_free(api_service *service);
+
+/* NULL when memory is out. `request` is copied, but for its header callback. */
+api_exchange *api_begin(api_service *service, const api_request *request, api_step *step);
+api_step api_body(api_exchange *exchange, const char *bytes, size_t length);
+api_step api_end(api_exchange *exchange);
+void api_work(api_exchange *exchange);
+const api_answer *api_answer_of(const api_exchange *exchange);
+void api_free(api_exchange *exchange);
+
+/* All of it at once, the whole body given; NULL when memory is out. The caller frees. */
+api_exchange *api_handle(api_service *service, const api_request *request, const char *body,
+                         size_t length);
+
+#endif

@@ -1,0 +1,106 @@
+/* store.h - what api needs from above: meshes by id, locked, revised, and durable.
+ *
+ * The server fills this struct in (server/store.c). A handle is a counted reference to a stored
+ * mesh; it stays valid after the mesh was removed from the store, reading `removed` true.
+ *
+ * Locks are held for as long as it takes to compute, never while a client is waited for. */
+#ifndef HE_API_STORE_H
+#define HE_API_STORE_H
+
+#include "mesh/delta.h"
+#include "mesh/mesh.h"
+
+typedef struct api_mesh api_mesh;         /* a stored mesh; the server defines it */
+typedef struct api_snapshot api_snapshot; /* an immutable copy at one revision; likewise */
+struct api_entry;                         /* one line of the history, below */
+
+enum { API_MESH_ID = 64, API_MESH_NAME = 256 };
+
+/* Plain facts about a stored mesh, copied out under its lock. */
+typedef struct api_mesh_info {
+    char id[API_MESH_ID + 1];
+    char name[API_MESH_NAME + 1]; /* UTF-8, may be empty */
+    uint64_t incarnation;         /* random, new for each create of an id */
+    uint64_t metadata;            /* counts changes of name and metadata, from 1 */
+    uint64_t revision;            /* of the content, from 1 */
+    double created, modified;     /* seconds since 1970 UTC */
+    uint32_t undo, redo;          /* steps on the stacks */
+    bool removed;
+} api_mesh_info;
+
+/* What a revision did; kept in the log. */
+typedef enum api_action { API_EDIT, API_UNDO, API_REDO, API_REPLACE } api_action;
+
+typedef enum api_store_status {
+    API_STORE_OK,
+    API_STORE_ABSENT,
+    API_STORE_TAKEN, /* the id is in use */
+    API_STORE_NO_MEMORY,
+    API_STORE_BUDGET,   /* the configured memory budget */
+    API_STORE_TOO_MANY, /* meshes */
+    API_STORE_NOTHING   /* to undo or redo */
+} api_store_status;
+
+typedef struct api_store {
+    void *self;
+
+    /* --- the collection --- */
+    api_store_status (*find)(void *self, const char *id, api_mesh **out); /* adds a reference */
+    void (*release)(void *self, api_mesh *mesh);
+    /* Takes `content` on success. `id` NULL lets the store choose. */
+    api_store_status (*create)(void *self, const char *id, const char *name, he_mesh *content,
+                               api_mesh **out);
+    api_store_status (*remove)(void *self, api_mesh *mesh);
+    /* Up to `limit` meshes with ids after `after` ("" from the start), in the order of ids, each
+     * with a reference. */
+    size_t (*list)(void *self, const char *after, api_mesh **out, size_t limit);
+
+    /* --- reading --- shared lock; NULL content is never given. */
+    const he_mesh *(*read_begin)(void *self, api_mesh *mesh, api_mesh_info *info);
+    void (*read_end)(void *self, api_mesh *mesh);
+    /* An immutable copy of the present revision, shared with everybody who asks for the same one.
+     * May copy the mesh: not on a worker thread for large ones. */
+    api_store_status (*snapshot)(void *self, api_mesh *mesh, api_snapshot **out);
+    const he_mesh *(*snapshot_content)(const api_snapshot *snapshot, api_mesh_info *info);
+    void (*snapshot_release)(void *self, api_snapshot *snapshot);
+    /* A value derived from one revision, such as its summary: kept until the revision changes.
+     * get copies it out and is false when there is none; put replaces it. Under the read lock. */
+    bool (*cache_get)(void *self, api_mesh *mesh, void *value, size_t size);
+    void (*cache_put)(void *self, api_mesh *mesh, const void *value, size_t size);
+
+    /* --- writing --- exclusive lock with a recording delta attached, which is lent through
+     * `delta` for he_changes_find. NULL when memory is out. Every begin is ended by exactly one of
+     * write_commit, write_abort and write_end, which give the lock back. */
+    he_mesh *(*write_begin)(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta);
+    /* Make what was recorded a revision with one undo step. `ops` names the operations for the
+     * history. `barrier` ends the undo stack (compact). The new facts go to `info`. Cannot fail
+     * once begin gave the lock: what it needs was reserved there. */
+    void (*write_commit)(void *self, api_mesh *mesh, const char *ops, bool barrier,
+                         api_mesh_info *info);
+    void (*write_abort)(void *self, api_mesh *mesh); /* rolls back */
+    /* Step back or forward, under the write lock: applies the inverse as a new revision, whose
+     * delta is lent until write_end. API_STORE_NOTHING when the stack is empty. */
+    api_store_status (*step)(void *self, api_mesh *mesh, api_action which, he_delta **delta,
+                             api_mesh_info *info);
+    void (*write_end)(void *self, api_mesh *mesh); /* after step, replace, rename or nothing */
+    /* PUT and PATCH, under the write lock. replace takes `content`. */
+    void (*replace)(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
+    void (*rename)(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
+
+    /* --- the history, under the read lock: newest first; false past the end --- */
+    bool (*history)(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
+} api_store;
+
+enum { API_ENTRY_OPS = 256 };
+
+typedef struct api_entry {
+    uint64_t revision;
+    uint64_t inverts; /* revision it undid or did again, 0 for an edit */
+    api_action action;
+    char ops[API_ENTRY_OPS]; /* names joined by ',', cut with "..." */
+    bool undoable;
+    size_t bytes;
+    double time;
+} api_entry;
+
+#endif

@@ -1,0 +1,352 @@
+/* What a delta did to elements, net: he_changes of delta.h. */
+#include "mesh/delta.h"
+
+#include "mesh/walk.h"
+
+#include <string.h>
+
+/* One word record, keyed so that records of the same word come together in the order of writing. */
+typedef struct word_record {
+    uint64_t key; /* column, word, row */
+    uint32_t before, after;
+} word_record;
+
+static uint64_t key_of(const he_record *r)
+{
+    return (uint64_t)r->column << 40 | (uint64_t)r->word << 32 | r->row;
+}
+
+/* Stable sort by key: insertion for the few records of a local edit, else by radix, skipping bytes
+ * that all keys share. */
+static void sort_few(word_record *records, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        word_record r = records[i];
+        size_t k = i;
+        for (; k > 0 && records[k - 1].key > r.key; k--) {
+            records[k] = records[k - 1];
+        }
+        records[k] = r;
+    }
+}
+
+enum { FEW = 96 };
+
+static he_status sort_records(word_record **records, size_t count, he_error *err)
+{
+    if (count <= FEW) {
+        sort_few(*records, count);
+        return HE_OK;
+    }
+    word_record *from = *records, *to = he_mem_array(NULL, count, sizeof *to);
+    if (to == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu changes", count);
+    }
+    uint64_t differs = 0;
+    for (size_t i = 1; i < count; i++) {
+        differs |= from[i].key ^ from[0].key;
+    }
+    for (unsigned shift = 0; shift < 64; shift += 8) {
+        if ((differs >> shift & 255) == 0) {
+            continue;
+        }
+        size_t starts[257] = {0};
+        for (size_t i = 0; i < count; i++) {
+            starts[(from[i].key >> shift & 255) + 1]++;
+        }
+        for (size_t b = 1; b < 257; b++) {
+            starts[b] += starts[b - 1];
+        }
+        for (size_t i = 0; i < count; i++) {
+            to[starts[from[i].key >> shift & 255]++] = from[i];
+        }
+        word_record *swap = from;
+        from = to;
+        to = swap;
+    }
+    he_mem_free(to);
+    *records = from;
+    return HE_OK;
+}
+
+static he_status sort_ids(he_ids *list, he_error *err)
+{
+    if (list->count < 2) {
+        return HE_OK;
+    }
+    uint32_t *from = list->ids;
+    if (list->count <= FEW) {
+        for (size_t i = 1; i < list->count; i++) {
+            uint32_t id = from[i];
+            size_t k = i;
+            for (; k > 0 && from[k - 1] > id; k--) {
+                from[k] = from[k - 1];
+            }
+            from[k] = id;
+        }
+    } else {
+        uint32_t *to = he_mem_array(NULL, list->capacity, sizeof *to);
+        if (to == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu ids", list->count);
+        }
+        for (unsigned shift = 0; shift < 32; shift += 8) {
+            size_t starts[257] = {0};
+            for (size_t i = 0; i < list->count; i++) {
+                starts[(from[i] >> shift & 255) + 1]++;
+            }
+            for (size_t b = 1; b < 257; b++) {
+                starts[b] += starts[b - 1];
+            }
+            for (size_t i = 0; i < list->count; i++) {
+                to[starts[from[i] >> shift & 255]++] = from[i];
+            }
+            uint32_t *swap = from;
+            from = to;
+            to = swap;
+        }
+        he_mem_free(to);
+        list->ids = from;
+    }
+    size_t kept = 1;
+    for (size_t i = 1; i < list->count; i++) {
+        if (list->ids[i] != list->ids[kept - 1]) {
+            list->ids[kept++] = list->ids[i];
+        }
+    }
+    list->count = kept;
+    return HE_OK;
+}
+
+static bool contains(const he_ids *sorted, uint32_t id)
+{
+    size_t low = 0, high = sorted->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (sorted->ids[middle] < id) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low < sorted->count && sorted->ids[low] == id;
+}
+
+static he_status note_face(he_changes *out, uint32_t face, he_error *err)
+{
+    return face == HE_NONE || face == HE_DEAD ? HE_OK
+                                              : he_ids_add(&out->modified[HE_FACE], face, err);
+}
+
+static he_status note_row(he_changes *out, he_kind kind, uint32_t row, uint32_t before,
+                          uint32_t after, he_error *err)
+{
+    if (before == HE_DEAD) {
+        return he_ids_add(&out->created[kind], row, err);
+    }
+    if (after == HE_DEAD) {
+        return he_ids_add(&out->deleted[kind], row, err);
+    }
+    return he_ids_add(&out->modified[kind], row, err);
+}
+
+static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_column *column,
+                                uint32_t row, he_error *err)
+{
+    if (column == NULL || column->domain == HE_MESH_KIND) {
+        return HE_OK;
+    }
+    if (column->domain == HE_HALFEDGE) {
+        return note_face(out, mesh->c.face[row], err);
+    }
+    return he_ids_add(&out->modified[column->domain], row, err);
+}
+
+/* One word went from `before` to `after`, net. Rows that died or were born show among the
+ * modified too; those are dropped at the end. */
+static he_status note_word(const he_mesh *mesh, he_changes *out, uint32_t column, uint32_t row,
+                           uint32_t before, uint32_t after, he_error *err)
+{
+    he_status status = HE_OK;
+    switch ((he_col)column) {
+    case HE_COL_NEXT:
+        if ((row & 1u) == 0 && (before == HE_DEAD || after == HE_DEAD)) {
+            status = note_row(out, HE_EDGE, row >> 1, before, after, err);
+        }
+        return status != HE_OK ? status : note_face(out, mesh->c.face[row], err);
+    case HE_COL_PREV:
+        return HE_OK;
+    case HE_COL_ORIGIN:
+        status = he_ids_add(&out->modified[HE_EDGE], row >> 1, err);
+        return status != HE_OK ? status : note_face(out, mesh->c.face[row], err);
+    case HE_COL_FACE:
+        status = he_ids_add(&out->modified[HE_EDGE], row >> 1, err);
+        if (status == HE_OK) {
+            status = note_face(out, before, err);
+        }
+        return status != HE_OK ? status : note_face(out, after, err);
+    case HE_COL_VERTEX_HALFEDGE:
+        return note_row(out, HE_VERTEX, row, before, after, err);
+    case HE_COL_FACE_HALFEDGE:
+        return note_row(out, HE_FACE, row, before, after, err);
+    case HE_COL_POSITION:
+        return he_ids_add(&out->modified[HE_VERTEX], row, err);
+    case HE_COL_PARENT:
+    case HE_COL_MERGED:
+    case HE_COL_COLUMN_ADDED:
+    case HE_COL_COLUMN_DROPPED:
+    case HE_COL_REPLACED:
+        return HE_OK;
+    case HE_COL_ATTRIBUTE:
+        break;
+    }
+    return note_attribute(mesh, out, mesh->c.columns[column - HE_COL_ATTRIBUTE], row, err);
+}
+
+static bool is_word(const he_record *r)
+{
+    return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
+}
+
+static he_status gather(const he_delta *delta, size_t from, size_t to, bool undone,
+                        word_record **out, size_t *count, bool *replaced, he_error *err)
+{
+    word_record *records = he_mem_array(NULL, to - from, sizeof *records);
+    if (records == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %zu changes", to - from);
+    }
+    size_t n = 0;
+    for (size_t i = from; i < to; i++) {
+        const he_record *r = &delta->records[undone ? to - 1 - (i - from) : i];
+        if (is_word(r)) {
+            records[n++] = (word_record){key_of(r), undone ? r->after : r->before,
+                                         undone ? r->before : r->after};
+        } else if (r->column == HE_COL_REPLACED) {
+            *replaced = true;
+        }
+    }
+    he_status status = sort_records(&records, n, err);
+    if (status != HE_OK) {
+        he_mem_free(records);
+        return status;
+    }
+    *out = records;
+    *count = n;
+    return HE_OK;
+}
+
+static he_status note_all(const he_mesh *mesh, const word_record *records, size_t count,
+                          he_changes *out, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; i < count && status == HE_OK;) {
+        size_t last = i;
+        while (last + 1 < count && records[last + 1].key == records[i].key) {
+            last++;
+        }
+        if (records[i].before != records[last].after) {
+            status =
+                note_word(mesh, out, (uint32_t)(records[i].key >> 40), (uint32_t)records[i].key,
+                          records[i].before, records[last].after, err);
+        }
+        i = last + 1;
+    }
+    return status;
+}
+
+/* Modified means alive on both sides. */
+static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
+{
+    he_ids *list = &out->modified[kind];
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        uint32_t id = list->ids[i];
+        if (he_mesh_is_live(mesh, kind, id) && !contains(&out->created[kind], id)) {
+            list->ids[kept++] = id;
+        }
+    }
+    list->count = kept;
+}
+
+static he_status note_lineage(const he_delta *delta, size_t from, size_t to, he_changes *out,
+                              he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = from; i < to && status == HE_OK; i++) {
+        const he_record *r = &delta->records[i];
+        he_kind kind = (he_kind)r->word;
+        he_ids *pairs = NULL;
+        if (r->column == HE_COL_PARENT && contains(&out->created[kind], r->row)) {
+            pairs = &out->parents[kind];
+        } else if (r->column == HE_COL_MERGED && contains(&out->deleted[kind], r->row)) {
+            pairs = &out->merged[kind];
+        }
+        if (pairs != NULL) {
+            status = he_ids_reserve(pairs, 2, err);
+            if (status == HE_OK) {
+                pairs->ids[pairs->count++] = r->row;
+                pairs->ids[pairs->count++] = r->before;
+            }
+        }
+    }
+    return status;
+}
+
+static const he_kind published[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+
+he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
+                          bool undone, he_changes *out, he_error *err)
+{
+    he_changes found = {0};
+    word_record *records = NULL;
+    size_t count = 0;
+    he_status status = gather(delta, from, to, undone, &records, &count, &found.replaced, err);
+    if (status != HE_OK || found.replaced) {
+        goto out;
+    }
+    status = note_all(mesh, records, count, &found, err);
+    for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
+        he_kind kind = published[i];
+        status = sort_ids(&found.created[kind], err);
+        if (status == HE_OK) {
+            status = sort_ids(&found.deleted[kind], err);
+        }
+        if (status == HE_OK) {
+            status = sort_ids(&found.modified[kind], err);
+        }
+        if (status == HE_OK) {
+            keep_modified(mesh, &found, kind);
+        }
+    }
+    if (status == HE_OK && !undone) {
+        status = note_lineage(delta, from, to, &found, err);
+    }
+out:
+    he_mem_free(records);
+    if (status != HE_OK) {
+        he_changes_clear(&found);
+        return status;
+    }
+    *out = found;
+    return HE_OK;
+}
+
+void he_changes_clear(he_changes *changes)
+{
+    for (size_t kind = 0; kind < HE_KIND_COUNT; kind++) {
+        he_ids_clear(&changes->created[kind]);
+        he_ids_clear(&changes->deleted[kind]);
+        he_ids_clear(&changes->modified[kind]);
+        he_ids_clear(&changes->parents[kind]);
+        he_ids_clear(&changes->merged[kind]);
+    }
+}
+
+bool he_changes_none(const he_changes *changes)
+{
+    size_t total = changes->replaced;
+    for (size_t kind = 0; kind < HE_KIND_COUNT; kind++) {
+        total += changes->created[kind].count + changes->deleted[kind].count +
+                 changes->modified[kind].count;
+    }
+    return total == 0;
+}

@@ -1,0 +1,127 @@
+#include "mesh/column.h"
+
+#include <string.h>
+
+static const struct {
+    const char *name;
+    size_t bytes;
+} types[HE_TYPE_COUNT] = {
+    {"bool", 1}, {"int32", 4}, {"uint32", 4}, {"float", 4}, {"double", 8},
+};
+
+static const char *const rules[HE_RULE_COUNT] = {"copy", "interpolate", "default"};
+
+const char *he_type_name(he_type type)
+{
+    return types[type].name;
+}
+
+size_t he_type_bytes(he_type type)
+{
+    return types[type].bytes;
+}
+
+const char *he_rule_name(he_rule rule)
+{
+    return rules[rule];
+}
+
+he_status he_column_new(const char *name, he_kind domain, he_type type, uint32_t components,
+                        he_rule rule, he_column **out, he_error *err)
+{
+    size_t length = strlen(name);
+    if (length == 0 || length >= HE_COLUMN_NAME) {
+        return he_fail_plain(err, HE_BAD_VALUE, "an attribute's name has 1 to %d bytes, not %zu",
+                             HE_COLUMN_NAME - 1, length);
+    }
+    if (components == 0 || components > HE_COLUMN_COMPONENTS) {
+        return he_fail_plain(err, HE_BAD_VALUE, "an attribute has 1 to %d components, not %u",
+                             HE_COLUMN_COMPONENTS, components);
+    }
+    he_column *column = he_mem_zero(1, sizeof *column);
+    if (column == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for attribute %s", name);
+    }
+    memcpy(column->name, name, length + 1);
+    column->domain = domain;
+    column->type = type;
+    column->rule = rule;
+    column->components = components;
+    column->row_bytes = components * (uint32_t)types[type].bytes;
+    *out = column;
+    return HE_OK;
+}
+
+void he_column_free(he_column *column)
+{
+    if (column != NULL) {
+        he_labels_release(column->labels);
+        he_mem_free(column->data);
+        he_mem_free(column);
+    }
+}
+
+he_status he_column_copy(const he_column *column, he_column **out, he_error *err)
+{
+    he_column *copy = he_mem_alloc(sizeof *copy);
+    if (copy == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to copy attribute %s", column->name);
+    }
+    *copy = *column;
+    copy->data = NULL;
+    copy->capacity = 0;
+    copy->rows = 0;
+    copy->labels = he_labels_retain(column->labels);
+    he_status status = he_column_reserve(copy, column->rows, err);
+    if (status != HE_OK) {
+        he_column_free(copy);
+        return status;
+    }
+    copy->rows = column->rows;
+    if (copy->rows > 0) {
+        memcpy(copy->data, column->data, copy->rows * copy->row_bytes);
+    }
+    *out = copy;
+    return HE_OK;
+}
+
+he_status he_column_reserve(he_column *column, size_t rows, he_error *err)
+{
+    if (rows <= column->capacity) {
+        return HE_OK;
+    }
+    size_t capacity = column->rows == 0 ? rows : he_mem_grown(column->capacity, rows);
+    unsigned char *data = he_mem_array(column->data, capacity, column->row_bytes);
+    if (data == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu rows of attribute %s", rows,
+                             column->name);
+    }
+    column->data = data;
+    column->capacity = capacity;
+    return HE_OK;
+}
+
+he_status he_column_extend(he_column *column, size_t rows, he_error *err)
+{
+    he_status status = he_column_reserve(column, column->rows + rows, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < rows; i++) {
+        memcpy(he_column_row(column, column->rows + i), column->fallback, column->row_bytes);
+    }
+    column->rows += rows;
+    return HE_OK;
+}
+
+size_t he_column_bytes(const he_column *column)
+{
+    return sizeof *column + column->capacity * column->row_bytes;
+}
+
+bool he_column_same_kind(const he_column *a, const he_column *b)
+{
+    return strcmp(a->name, b->name) == 0 && a->domain == b->domain && a->type == b->type &&
+           a->rule == b->rule && a->components == b->components && a->labels == b->labels &&
+           memcmp(a->fallback, b->fallback, a->row_bytes) == 0;
+}

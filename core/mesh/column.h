@@ -1,0 +1,76 @@
+/* column.h - attribute columns: one typed value of 1 to 16 components a row.
+ *
+ * A column belongs to a domain: vertices, half-edges (a corner's values belong to the half-edge
+ * that leaves it inside its face), edges, faces, or the mesh (one row). Values are stored in the
+ * machine's byte order, little-endian wherever hedge runs. A column with labels is categorical:
+ * its values index the labels (groups, materials of a file).
+ *
+ * Its rule says what an edit gives to elements it makes:
+ *   copy         the parent's value (the face that was split, the edge that was cut)
+ *   interpolate  linear between the two ends at a split, the mean at a merge
+ *   default      the column's default */
+#ifndef HE_MESH_COLUMN_H
+#define HE_MESH_COLUMN_H
+
+#include "mesh/mesh.h"
+
+typedef enum he_type { HE_BOOL, HE_INT32, HE_UINT32, HE_FLOAT, HE_DOUBLE, HE_TYPE_COUNT } he_type;
+typedef enum he_rule { HE_COPY, HE_INTERPOLATE, HE_DEFAULT, HE_RULE_COUNT } he_rule;
+
+enum { HE_COLUMN_NAME = 64, HE_COLUMN_COMPONENTS = 16, HE_COLUMN_ROW_BYTES = 128 };
+
+/* Strings of a categorical column, shared by reference count between copies of a mesh. */
+typedef struct he_labels he_labels;
+
+struct he_column {
+    char name[HE_COLUMN_NAME]; /* UTF-8, ends in NUL */
+    he_kind domain;
+    he_type type;
+    he_rule rule;
+    uint32_t components;
+    uint32_t row_bytes;                          /* components * size of type */
+    unsigned char fallback[HE_COLUMN_ROW_BYTES]; /* the default row */
+    he_labels *labels;                           /* NULL unless categorical */
+    unsigned char *data;
+    size_t rows;     /* stored; every row beyond holds the default */
+    size_t capacity; /* rows that fit */
+};
+
+const char *he_type_name(he_type type); /* "bool", "int32", "uint32", "float", "double" */
+size_t he_type_bytes(he_type type);
+const char *he_rule_name(he_rule rule); /* "copy", "interpolate", "default" */
+
+/* A column without rows; its default row is zero. Fails with HE_BAD_VALUE on an empty or too
+ * long name, or components outside 1..16. */
+HE_NODISCARD he_status he_column_new(const char *name, he_kind domain, he_type type,
+                                     uint32_t components, he_rule rule, he_column **out,
+                                     he_error *err);
+void he_column_free(he_column *column);
+HE_NODISCARD he_status he_column_copy(const he_column *column, he_column **out, he_error *err);
+/* Make room for `rows` rows in all. */
+HE_NODISCARD he_status he_column_reserve(he_column *column, size_t rows, he_error *err);
+/* Append rows that hold the default. */
+HE_NODISCARD he_status he_column_extend(he_column *column, size_t rows, he_error *err);
+/* The value of any row, stored or not. */
+static inline const unsigned char *he_column_value(const he_column *column, size_t row)
+{
+    return row < column->rows ? column->data + row * column->row_bytes : column->fallback;
+}
+/* A stored row. */
+static inline unsigned char *he_column_row(const he_column *column, size_t row)
+{
+    return column->data + row * column->row_bytes;
+}
+size_t he_column_bytes(const he_column *column);
+bool he_column_same_kind(const he_column *a, const he_column *b); /* all but the rows */
+
+he_labels *he_labels_new(void); /* one reference; NULL when memory is out */
+he_labels *he_labels_retain(he_labels *labels);
+void he_labels_release(he_labels *labels);
+size_t he_labels_count(const he_labels *labels);
+const char *he_labels_get(const he_labels *labels, size_t i);
+/* The index of a string, added when new. Only while nobody else holds a reference. */
+HE_NODISCARD he_status he_labels_add(he_labels *labels, const char *text, size_t length,
+                                     uint32_t *out, he_error *err);
+
+#endif

@@ -1,0 +1,27 @@
+/* content.h - the life of he_content, for core/mesh only. */
+#ifndef HE_MESH_CONTENT_H
+#define HE_MESH_CONTENT_H
+
+#include "mesh/layout.h"
+
+void he_content_clear(he_content *content); /* frees what it holds */
+/* Fills *out on success only. */
+HE_NODISCARD he_status he_content_copy(const he_content *content, he_content *out, he_error *err);
+size_t he_content_bytes(const he_content *content);
+
+/* Make room in the link and position columns (not in the attributes) for this many rows in all. */
+HE_NODISCARD he_status he_content_reserve_vertices(he_content *c, size_t rows, he_error *err);
+HE_NODISCARD he_status he_content_reserve_edges(he_content *c, size_t rows, he_error *err);
+HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_error *err);
+
+/* The table of a domain's rows, NULL for the mesh. Half-edge rows are twice the edges'. */
+he_rows *he_content_rows(he_content *content, he_kind kind);
+/* Rows issued in an attribute's domain. */
+size_t he_content_issued(const he_content *content, he_kind domain);
+
+/* Write the dead value in a row of a link table: what a row holds when it is issued. */
+void he_content_clear_vertex(he_content *c, uint32_t v);
+void he_content_clear_edge(he_content *c, uint32_t e);
+void he_content_clear_face(he_content *c, uint32_t f);
+
+#endif

@@ -1,0 +1,112 @@
+/* delta.h - what an edit wrote, in the order it wrote it.
+ *
+ * A delta is a list of records of 16 bytes. Most say that one 32-bit word of one row of one column
+ * changed from `before` to `after`: every column, links and doubles alike, is seen as rows of
+ * words. Others say that a column was added or dropped, or that the whole content was replaced;
+ * those point at an object the delta owns and hold the other side of the change. Lineage records
+ * (this element came from that one, this one merged into that one) change nothing.
+ *
+ * Applied backwards a delta undoes its edit, applied forwards it does it again, bit for bit. Rows
+ * it issued stay issued when it is undone: they are dead then, and only redoing it revives them.
+ * he_delta_rollback is the exception, for edits that were never published: it takes the issued
+ * rows back too. None of the three can fail.
+ *
+ * A dead row holds dead values in every column, so a delta carries everything needed to revive a
+ * row. Its size is proportional to the edit. */
+#ifndef HE_MESH_DELTA_H
+#define HE_MESH_DELTA_H
+
+#include "mesh/mesh.h"
+
+/* The columns a record can name. Attribute column i is HE_COL_ATTRIBUTE + i. */
+typedef enum he_col {
+    HE_COL_NEXT,
+    HE_COL_PREV,
+    HE_COL_ORIGIN,
+    HE_COL_FACE,
+    HE_COL_VERTEX_HALFEDGE,
+    HE_COL_FACE_HALFEDGE,
+    HE_COL_POSITION,
+    /* not words of a column */
+    HE_COL_PARENT,       /* row = child, before = parent, word = kind */
+    HE_COL_MERGED,       /* row = the one gone, before = the one it became part of, word = kind */
+    HE_COL_COLUMN_ADDED, /* row = slot, before = object */
+    HE_COL_COLUMN_DROPPED,
+    HE_COL_REPLACED, /* before = object: the content of the other side */
+    HE_COL_ATTRIBUTE
+} he_col;
+
+typedef struct he_record {
+    uint32_t column : 24, word : 8;
+    uint32_t row;
+    uint32_t before, after;
+} he_record;
+
+/* Open for reading; only write.h and delta.c write it. */
+struct he_delta {
+    he_record *records;
+    size_t count, capacity;
+    void **objects; /* he_column or he_content */
+    size_t object_count, object_capacity;
+};
+
+/* A point inside a recording to which he_delta_rollback can return. */
+typedef struct he_savepoint {
+    size_t records, objects;
+    uint32_t issued[HE_KIND_COUNT];
+} he_savepoint;
+
+he_delta *he_delta_new(void); /* empty; NULL when memory is out */
+/* Make room for this many more. */
+HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t objects,
+                                        he_error *err);
+void he_delta_free(he_delta *delta);
+/* Forget the records but keep the memory. */
+void he_delta_empty(he_delta *delta);
+size_t he_delta_bytes(const he_delta *delta);
+/* Give back what capacity holds beyond the records; keeps it when memory is out. */
+void he_delta_trim(he_delta *delta);
+
+/* Record all writes to `mesh` in `delta` from here on; NULL stops. Returns what was there. */
+he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
+
+/* These change `mesh` without recording. `delta` must be the one that leads to (undo) or from
+ * (redo) the present state. */
+void he_delta_undo(he_delta *delta, he_mesh *mesh);
+void he_delta_redo(he_delta *delta, he_mesh *mesh);
+
+/* Bring a copy of the mesh forward: `copy` is equal to the mesh as it was before `delta`, and
+ * `issued` are the mesh's high-water marks now (indexed by kind), up to which the copy is filled
+ * with dead rows first. The delta is only read, so it must hold no objects: HE_UNSUPPORTED
+ * otherwise. On HE_NO_MEMORY the copy may have more dead rows than before, and is otherwise
+ * unchanged. */
+HE_NODISCARD he_status he_delta_replay(const he_delta *delta, he_mesh *copy,
+                                       const uint32_t issued[HE_KIND_COUNT], bool undo,
+                                       he_error *err);
+
+/* Only while recording. */
+he_savepoint he_delta_mark(const he_mesh *mesh);
+void he_delta_rollback(he_mesh *mesh, he_savepoint to);
+
+/* The net effect of records on elements, each list sorted and without repeats. An element is
+ * modified when it lives before and after and a published link or value of it differs: a vertex's
+ * position, attributes or stored half-edge; an edge's ends, faces or attributes; a face's corners,
+ * stored half-edge, corner or own attributes. `parents` holds pairs child, parent and `merged`
+ * pairs gone, into, in the order the edit noted them, less those whose child (or gone one) is not
+ * in created (deleted). */
+typedef struct he_changes {
+    he_ids created[HE_KIND_COUNT], deleted[HE_KIND_COUNT], modified[HE_KIND_COUNT];
+    he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];
+    bool replaced; /* the content as a whole: the sets are empty */
+} he_changes;
+
+/* Records `from`..`to` of `delta`, with `mesh` in the state after `to`, or, when `undone`, before
+ * `from`: then created and deleted are what undoing them did. HE_HALFEDGE lists stay empty:
+ * half-edges follow their edges. */
+HE_NODISCARD he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from,
+                                       size_t to, bool undone, he_changes *out, he_error *err);
+void he_changes_clear(he_changes *changes);
+/* Nothing at all happened? Then no revision is made. */
+bool he_changes_none(const he_changes *changes);
+
+#endif

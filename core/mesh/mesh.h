@@ -1,0 +1,118 @@
+/* mesh.h - the half-edge mesh, and the manual of its structure.
+ *
+ * A mesh is a set of vertices, edges and polygonal faces with one orientation. Each edge is two
+ * half-edges that run in opposite directions:
+ *
+ *                     target(h) = origin(twin(h))
+ *              next(h)   o
+ *                  \    ^|
+ *                   \  h||            face(h) lies to the LEFT of h; a face's half-edges run
+ *        face(h)     \  ||twin(h)     counter-clockwise about it. A half-edge without a face is
+ *                     \ |v            a boundary half-edge: its next and prev walk the hole.
+ *                        o
+ *                     origin(h)
+ *
+ *     twin(h)  = h ^ 1          edge(h) = h >> 1          halfedges of edge e = 2e and 2e + 1
+ *
+ * Turning about a vertex counter-clockwise is h -> twin(prev(h)), clockwise is
+ * h -> next(twin(h)). A maximal run of faces about a vertex that touch along edges is a fan. A
+ * vertex has one closed fan (interior), or any number of open fans (boundary; a bow-tie when there
+ * are two or more), or none (isolated). At a bow-tie the links of the boundary half-edges chain the
+ * open fans, so turning about the vertex visits every fan.
+ *
+ * INVARIANTS. he_check names them by these numbers.
+ *   I1   next, prev, origin of a live half-edge name live elements; its face is live or HE_NONE.
+ *   I2   prev(next(h)) = h and next(prev(h)) = h.
+ *   I3   origin(next(h)) = target(h).
+ *   I4   face(next(h)) = face(h).
+ *   I5   an edge has at least one face.
+ *   I6   face(halfedge(f)) = f, and the loop of halfedge(f) is every half-edge with face f.
+ *   I7   a face has at least three corners, all at different vertices.
+ *   I8   halfedge(v) leaves v, and is a boundary half-edge if any that leaves v is. It is
+ *        HE_NONE exactly when no half-edge leaves v.
+ *   I9   turning about v from halfedge(v) visits every half-edge that leaves v.
+ *   I10  an edge joins two different vertices, and no other edge joins the same two.
+ *   I11  positions are finite.
+ *   I12  a dead row holds HE_DEAD in every link, the origin as its position and defaults as its
+ *        attributes; the live counts are right.
+ *
+ * IDS. A row is issued at the end of its table and its number is the element's id. It never moves
+ * and is never issued again; deleting an element leaves a dead row. Only he_compact renumbers.
+ * An id below `issued` is live or deleted; one at or above it was never issued.
+ *
+ * ATTRIBUTES. Columns of values, one row an element (see column.h). Positions are the built-in
+ * one: three doubles a vertex.
+ *
+ * EDITS check everything, reserve everything, then write and cannot fail. Every write goes through
+ * write.h, where the recording delta sees it (delta.h).
+ *
+ * A mesh has no lock: one writer, or any number of readers. */
+#ifndef HE_MESH_MESH_H
+#define HE_MESH_MESH_H
+
+#include "mesh/mem.h"
+#include "mesh/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Handles: one kind cannot be passed for another. */
+typedef struct he_vertex {
+    uint32_t i;
+} he_vertex;
+typedef struct he_halfedge {
+    uint32_t i;
+} he_halfedge;
+typedef struct he_edge {
+    uint32_t i;
+} he_edge;
+typedef struct he_face {
+    uint32_t i;
+} he_face;
+
+#define HE_NONE     UINT32_MAX             /* absent: the face of a boundary half-edge */
+#define HE_DEAD     (UINT32_MAX - 1u)      /* what every link of a dead row holds */
+#define HE_MAX_ROWS (UINT32_MAX / 2u - 1u) /* of vertices, edges, faces: 2e + 1 must fit */
+
+typedef struct he_vec3 {
+    double x, y, z;
+} he_vec3;
+
+typedef struct he_mesh he_mesh;
+typedef struct he_column he_column;
+typedef struct he_delta he_delta;
+
+/* An empty mesh, or NULL when memory is out. */
+he_mesh *he_mesh_new(void);
+void he_mesh_free(he_mesh *mesh);
+/* An independent copy with the same ids, dead rows and attributes; nothing is recorded in it. */
+HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
+/* Do two meshes hold the same: every issued row of every column, and the high-water marks? */
+bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
+/* The same without the rows only one of them has issued, if those are dead. */
+bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
+
+/* What a mesh costs, counted from the capacities of its columns. */
+size_t he_mesh_bytes(const he_mesh *mesh);
+
+/* Live elements. Half-edges are twice the edges. */
+uint32_t he_mesh_vertices(const he_mesh *mesh);
+uint32_t he_mesh_edges(const he_mesh *mesh);
+uint32_t he_mesh_faces(const he_mesh *mesh);
+uint32_t he_mesh_boundary_halfedges(const he_mesh *mesh);
+uint32_t he_mesh_count(const he_mesh *mesh, he_kind kind);
+/* The high-water mark: how many ids of this kind were ever issued. */
+uint32_t he_mesh_issued(const he_mesh *mesh, he_kind kind);
+bool he_mesh_is_live(const he_mesh *mesh, he_kind kind, uint32_t id);
+/* HE_OK, HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT with the element named. */
+HE_NODISCARD he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id,
+                                       he_error *err);
+
+/* Attribute columns, in the order they were added; NULL where none has that domain and name. */
+size_t he_mesh_columns(const he_mesh *mesh);
+/* The i-th slot, NULL when its column was dropped. */
+const he_column *he_mesh_column(const he_mesh *mesh, size_t i);
+const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const char *name);
+
+#endif

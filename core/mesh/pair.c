@@ -1,0 +1,228 @@
+#include "mesh/pair.h"
+
+#include <string.h>
+
+void he_report_add(he_report *report, uint64_t *total, he_defect defect)
+{
+    if (report != NULL && *total < HE_REPORT_DEFECTS) {
+        report->defects[*total] = defect;
+    }
+    ++*total;
+    if (report != NULL) {
+        report->total = *total;
+    }
+}
+
+static he_defect face_defect(he_status reason, size_t face, uint32_t corner, uint32_t vertex)
+{
+    return (he_defect){reason, HE_FACE, (uint32_t)face, corner, vertex, HE_NONE};
+}
+
+enum { SMALL_FACE = 16 };
+
+/* The first corner of a face that repeats an earlier one, or `count`. A large face marks its
+ * vertices with its own number in `stamp`, so that no face costs more than its corners. */
+static uint32_t find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp, uint32_t mark)
+{
+    if (count <= SMALL_FACE) {
+        for (uint32_t i = 1; i < count; i++) {
+            for (uint32_t k = 0; k < i; k++) {
+                if (corners[i] == corners[k]) {
+                    return i;
+                }
+            }
+        }
+        return count;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (stamp[corners[i]] == mark) {
+            return i;
+        }
+        stamp[corners[i]] = mark;
+    }
+    return count;
+}
+
+he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *total,
+                              he_error *err)
+{
+    uint32_t *stamp = NULL;
+    for (size_t f = 0; f < soup->face_count; f++) {
+        const uint32_t *corners = soup->corners + soup->starts[f];
+        uint32_t count = he_soup_end(soup, f) - soup->starts[f], k = 0;
+        if (count < 3) {
+            he_report_add(report, total, face_defect(HE_TOO_FEW_CORNERS, f, HE_NONE, HE_NONE));
+        }
+        while (k < count && corners[k] < soup->vertex_count) {
+            k++;
+        }
+        if (k < count) {
+            he_report_add(report, total, face_defect(HE_BAD_INDEX, f, k, corners[k]));
+            continue;
+        }
+        if (count > SMALL_FACE && stamp == NULL) {
+            stamp = he_mem_zero(soup->vertex_count, sizeof *stamp);
+            if (stamp == NULL) {
+                return he_fail_plain(err, HE_NO_MEMORY, "no memory to check the faces");
+            }
+        }
+        k = find_repeat(corners, count, stamp, (uint32_t)f + 1);
+        if (k < count) {
+            he_report_add(report, total, face_defect(HE_REPEATED_CORNER, f, k, corners[k]));
+        }
+    }
+    he_mem_free(stamp);
+    return HE_OK;
+}
+
+/* A corner filed under the smaller vertex of its edge. The top bit of `far` says that it runs from
+ * the larger vertex to the smaller. */
+typedef struct filed {
+    uint32_t far, corner;
+} filed;
+
+#define DOWNWARD 0x80000000u
+
+static uint32_t face_of_corner(const he_soup *soup, uint32_t corner)
+{
+    size_t low = 0, high = soup->face_count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (soup->starts[middle] <= corner) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return (uint32_t)low;
+}
+
+/* Bucket sort of all corners by the smaller end of their edge: starts[v]..starts[v + 1] are the
+ * entries of vertex v. */
+static void file_corners(const he_soup *soup, uint32_t *starts, filed *entries)
+{
+    const uint32_t *corners = soup->corners;
+    memset(starts, 0, (soup->vertex_count + 2) * sizeof *starts);
+    uint32_t *counts = starts + 2;
+    for (size_t f = 0; f < soup->face_count; f++) {
+        uint32_t end = he_soup_end(soup, f), a = corners[end - 1];
+        for (uint32_t c = soup->starts[f]; c < end; c++) {
+            uint32_t b = corners[c];
+            counts[(a < b ? a : b)]++;
+            a = b;
+        }
+    }
+    for (size_t v = 2; v < soup->vertex_count + 2; v++) {
+        starts[v] += starts[v - 1];
+    }
+    uint32_t *place = starts + 1;
+    for (size_t f = 0; f < soup->face_count; f++) {
+        uint32_t first = soup->starts[f], end = he_soup_end(soup, f);
+        for (uint32_t c = first; c < end; c++) {
+            uint32_t a = corners[c], b = corners[c + 1 < end ? c + 1 : first];
+            bool up = a < b;
+            entries[place[up ? a : b]++] = (filed){up ? b : a | DOWNWARD, c};
+        }
+    }
+}
+
+typedef struct pairing {
+    const he_soup *soup;
+    uint32_t *mate;
+    size_t edges;
+    he_report *report;
+    uint64_t *total;
+} pairing;
+
+/* Entry `b` runs along the same edge as the earlier entry `a`. */
+static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
+{
+    uint32_t far = b->far & ~DOWNWARD;
+    if (p->mate[a->corner] != HE_NONE) {
+        he_report_add(p->report, p->total,
+                      (he_defect){HE_NONMANIFOLD_EDGE, HE_FACE, face_of_corner(p->soup, b->corner),
+                                  HE_NONE, low, far});
+        return;
+    }
+    p->mate[a->corner] = b->corner;
+    p->mate[b->corner] = a->corner;
+    if (((a->far ^ b->far) & DOWNWARD) == 0) {
+        he_report_add(p->report, p->total,
+                      (he_defect){HE_ORIENTATION, HE_FACE, face_of_corner(p->soup, b->corner),
+                                  HE_NONE, low, far});
+    }
+}
+
+enum { SMALL_BUCKET = 24 };
+
+static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t k = 0;
+        while (k < i && ((entries[k].far ^ entries[i].far) & ~DOWNWARD) != 0) {
+            k++;
+        }
+        if (k < i) {
+            pair_up(p, low, &entries[k], &entries[i]);
+        } else {
+            p->edges++;
+        }
+    }
+}
+
+/* The hub of a fan: `first` remembers, for every far vertex, where it was seen first. Values left
+ * by other buckets do not point into this one, so it needs no clearing. */
+static void pair_large(pairing *p, uint32_t low, const filed *entries, uint32_t begin, uint32_t end,
+                       uint32_t *first)
+{
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t far = entries[i].far & ~DOWNWARD, k = first[far];
+        if (k >= begin && k < i && (entries[k].far & ~DOWNWARD) == far) {
+            pair_up(p, low, &entries[k], &entries[i]);
+        } else {
+            first[far] = i;
+            p->edges++;
+        }
+    }
+}
+
+he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_report *report,
+                       uint64_t *total, he_error *err)
+{
+    he_status status = HE_NO_MEMORY;
+    uint32_t *starts = he_mem_array(NULL, soup->vertex_count + 2, sizeof *starts);
+    filed *entries = he_mem_array(NULL, soup->corner_count, sizeof *entries);
+    uint32_t *first = NULL;
+    if (starts == NULL || entries == NULL) {
+        goto out;
+    }
+    file_corners(soup, starts, entries);
+    for (size_t c = 0; c < soup->corner_count; c++) {
+        mate[c] = HE_NONE;
+    }
+    pairing p = {soup, mate, 0, report, total};
+    for (size_t v = 0; v < soup->vertex_count; v++) {
+        uint32_t begin = starts[v], end = starts[v + 1];
+        if (end - begin <= SMALL_BUCKET) {
+            pair_small(&p, (uint32_t)v, entries + begin, end - begin);
+            continue;
+        }
+        if (first == NULL) {
+            first = he_mem_zero(soup->vertex_count, sizeof *first);
+            if (first == NULL) {
+                goto out;
+            }
+        }
+        pair_large(&p, (uint32_t)v, entries, begin, end, first);
+    }
+    *edges = p.edges;
+    status = HE_OK;
+out:
+    he_mem_free(starts);
+    he_mem_free(entries);
+    he_mem_free(first);
+    if (status != HE_OK) {
+        he_fail_plain(err, status, "no memory to pair %zu corners", soup->corner_count);
+    }
+    return status;
+}

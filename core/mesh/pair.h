@@ -1,0 +1,28 @@
+/* pair.h - which corners of a soup run along the same edge: the first half of he_build. */
+#ifndef HE_MESH_PAIR_H
+#define HE_MESH_PAIR_H
+
+#include "mesh/build.h"
+
+/* Append to a report; `report` may be NULL. */
+void he_report_add(he_report *report, uint64_t *total, he_defect defect);
+
+/* Faces the structure cannot hold by themselves: too few corners, bad indices, repeated corners.
+ * Counts them in *total. */
+HE_NODISCARD he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *total,
+                                           he_error *err);
+
+/* mate[c] = the corner whose edge is the same as the one from corner c to the next of its face, run
+ * the other way, or HE_NONE at a boundary. `mate` has room for every corner. All faces must have
+ * passed he_soup_check_faces. Edges with three faces, or two in one direction, are counted in
+ * *total. *edges is the number of edges. */
+HE_NODISCARD he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges,
+                                    he_report *report, uint64_t *total, he_error *err);
+
+/* The end of face f's corners. */
+static inline uint32_t he_soup_end(const he_soup *soup, size_t f)
+{
+    return f + 1 < soup->face_count ? soup->starts[f + 1] : (uint32_t)soup->corner_count;
+}
+
+#endif

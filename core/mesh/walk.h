@@ -1,0 +1,111 @@
+/* walk.h - reading a mesh, inline. The caller passes live elements of this mesh: these functions
+ * check nothing. Ids that come from outside go through he_mesh_require first. */
+#ifndef HE_MESH_WALK_H
+#define HE_MESH_WALK_H
+
+#include "mesh/layout.h"
+
+static inline he_halfedge he_twin(he_halfedge h)
+{
+    return (he_halfedge){h.i ^ 1u};
+}
+static inline he_edge he_edge_of(he_halfedge h)
+{
+    return (he_edge){h.i >> 1};
+}
+/* Half-edge 2e (side 0) or 2e + 1 (side 1). */
+static inline he_halfedge he_edge_halfedge(he_edge e, unsigned side)
+{
+    return (he_halfedge){2u * e.i + side};
+}
+static inline he_halfedge he_next(const he_mesh *m, he_halfedge h)
+{
+    return (he_halfedge){m->c.next[h.i]};
+}
+static inline he_halfedge he_prev(const he_mesh *m, he_halfedge h)
+{
+    return (he_halfedge){m->c.prev[h.i]};
+}
+static inline he_vertex he_origin(const he_mesh *m, he_halfedge h)
+{
+    return (he_vertex){m->c.origin[h.i]};
+}
+static inline he_vertex he_target(const he_mesh *m, he_halfedge h)
+{
+    return (he_vertex){m->c.origin[h.i ^ 1u]};
+}
+/* HE_NONE on a boundary half-edge. */
+static inline he_face he_face_of(const he_mesh *m, he_halfedge h)
+{
+    return (he_face){m->c.face[h.i]};
+}
+/* HE_NONE at an isolated vertex. */
+static inline he_halfedge he_vertex_halfedge(const he_mesh *m, he_vertex v)
+{
+    return (he_halfedge){m->c.vertex_halfedge[v.i]};
+}
+static inline he_halfedge he_face_halfedge(const he_mesh *m, he_face f)
+{
+    return (he_halfedge){m->c.face_halfedge[f.i]};
+}
+static inline he_vec3 he_position(const he_mesh *m, he_vertex v)
+{
+    return m->c.position[v.i];
+}
+
+/* The next half-edge that leaves the same origin. */
+static inline he_halfedge he_turn_ccw(const he_mesh *m, he_halfedge h)
+{
+    return he_twin(he_prev(m, h));
+}
+static inline he_halfedge he_turn_cw(const he_mesh *m, he_halfedge h)
+{
+    return he_next(m, he_twin(h));
+}
+
+static inline bool he_is_none(uint32_t id)
+{
+    return id == HE_NONE;
+}
+static inline bool he_is_boundary_halfedge(const he_mesh *m, he_halfedge h)
+{
+    return m->c.face[h.i] == HE_NONE;
+}
+static inline bool he_is_boundary_edge(const he_mesh *m, he_edge e)
+{
+    return m->c.face[2u * e.i] == HE_NONE || m->c.face[2u * e.i + 1u] == HE_NONE;
+}
+static inline bool he_is_isolated(const he_mesh *m, he_vertex v)
+{
+    return m->c.vertex_halfedge[v.i] == HE_NONE;
+}
+/* True of an isolated vertex too. */
+static inline bool he_is_boundary_vertex(const he_mesh *m, he_vertex v)
+{
+    uint32_t h = m->c.vertex_halfedge[v.i];
+    return h == HE_NONE || m->c.face[h] == HE_NONE;
+}
+static inline bool he_vertex_is_live(const he_mesh *m, he_vertex v)
+{
+    return v.i < m->c.vertices.issued && m->c.vertex_halfedge[v.i] != HE_DEAD;
+}
+static inline bool he_edge_is_live(const he_mesh *m, he_edge e)
+{
+    return e.i < m->c.edges.issued && m->c.next[2u * e.i] != HE_DEAD;
+}
+static inline bool he_face_is_live(const he_mesh *m, he_face f)
+{
+    return f.i < m->c.faces.issued && m->c.face_halfedge[f.i] != HE_DEAD;
+}
+
+/* Edges at a vertex; linear in the answer. */
+uint32_t he_vertex_degree(const he_mesh *m, he_vertex v);
+/* Corners of a face; linear in the answer. */
+uint32_t he_face_degree(const he_mesh *m, he_face f);
+/* Fans at a vertex: 0 isolated, 1 manifold, more at a bow-tie. */
+uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
+/* The half-edge from a to b, HE_NONE when no edge joins them. Turns about both in step, so it
+ * costs the smaller degree. */
+he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b);
+
+#endif

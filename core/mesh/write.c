@@ -1,0 +1,340 @@
+#include "mesh/write.h"
+
+#include "mesh/content.h"
+
+/* Words of 32 bits in one row of a column; the last may be short. */
+static size_t row_words(const he_column *column)
+{
+    return (column->row_bytes + 3u) / 4u;
+}
+
+enum { POSITION_WORDS = sizeof(he_vec3) / 4 };
+
+static uint32_t word_of(const void *row, size_t row_bytes, size_t word)
+{
+    uint32_t value = 0;
+    size_t rest = row_bytes - 4 * word;
+    memcpy(&value, (const unsigned char *)row + 4 * word, rest < 4 ? rest : 4);
+    return value;
+}
+
+static size_t column_words(const he_mesh *m, he_kind domain)
+{
+    size_t words = 0;
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        if (m->c.columns[i] != NULL && m->c.columns[i]->domain == domain) {
+            words += row_words(m->c.columns[i]);
+        }
+    }
+    return words;
+}
+
+/* Every record COMMIT can make: each link of a new or dying row once more than it has links, since
+ * an edit may write a link twice. */
+static size_t records_needed(const he_mesh *m, const he_need *need)
+{
+    size_t vertex = column_words(m, HE_VERTEX), face = column_words(m, HE_FACE);
+    size_t edge = column_words(m, HE_EDGE) + 2 * column_words(m, HE_HALFEDGE);
+    size_t vertices = need->vertices + need->deleted_vertices;
+    size_t edges = need->edges + need->deleted_edges;
+    size_t faces = need->faces + need->deleted_faces;
+    return vertices * (2 + POSITION_WORDS + vertex) + edges * (16 + edge) + faces * (2 + face) +
+           need->links + need->positions * POSITION_WORDS +
+           need->attributes * (vertex + edge + face) + need->lineage;
+}
+
+static he_status reserve_column(he_column *column, size_t issued, size_t extra, he_error *err)
+{
+    he_status status = he_column_reserve(column, issued + extra, err);
+    return status != HE_OK || column->rows >= issued
+               ? status
+               : he_column_extend(column, issued - column->rows, err);
+}
+
+static he_status reserve_columns(he_mesh *m, const he_need *need, he_error *err)
+{
+    const size_t extra[HE_KIND_COUNT] = {
+        [HE_VERTEX] = need->vertices,
+        [HE_HALFEDGE] = 2 * (size_t)need->edges,
+        [HE_EDGE] = need->edges,
+        [HE_FACE] = need->faces,
+    };
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        he_column *column = m->c.columns[i];
+        if (column != NULL) {
+            he_status status = reserve_column(column, he_content_issued(&m->c, column->domain),
+                                              extra[column->domain], err);
+            if (status != HE_OK) {
+                return status;
+            }
+        }
+    }
+    return HE_OK;
+}
+
+static he_status check_ids(he_kind kind, uint32_t issued, uint32_t extra, he_error *err)
+{
+    if (extra <= HE_MAX_ROWS - issued) {
+        return HE_OK;
+    }
+    return he_fail_plain(err, HE_IDS_EXHAUSTED,
+                         "%u more %s do not fit: %u of %u ids are issued, compact the mesh", extra,
+                         he_kind_plural(kind), issued, HE_MAX_ROWS);
+}
+
+he_status he_reserve(he_mesh *m, he_need need, he_error *err)
+{
+    he_content *c = &m->c;
+    he_status status = check_ids(HE_VERTEX, c->vertices.issued, need.vertices, err);
+    if (status == HE_OK) {
+        status = check_ids(HE_EDGE, c->edges.issued, need.edges, err);
+    }
+    if (status == HE_OK) {
+        status = check_ids(HE_FACE, c->faces.issued, need.faces, err);
+    }
+    if (status == HE_OK) {
+        status = he_content_reserve_vertices(c, (size_t)c->vertices.issued + need.vertices, err);
+    }
+    if (status == HE_OK) {
+        status = he_content_reserve_edges(c, (size_t)c->edges.issued + need.edges, err);
+    }
+    if (status == HE_OK) {
+        status = he_content_reserve_faces(c, (size_t)c->faces.issued + need.faces, err);
+    }
+    if (status == HE_OK && c->column_count > 0) {
+        status = reserve_columns(m, &need, err);
+    }
+    if (status == HE_OK && m->delta != NULL) {
+        status = he_delta_reserve(m->delta, records_needed(m, &need), 0, err);
+    }
+    return status;
+}
+
+/* Overwrite one row, recording the words that differ. */
+static void set_row(he_mesh *m, uint32_t column, uint32_t row, unsigned char *stored,
+                    const void *value, size_t row_bytes)
+{
+    for (size_t w = 0; 4 * w < row_bytes; w++) {
+        uint32_t before = word_of(stored, row_bytes, w), after = word_of(value, row_bytes, w);
+        if (before != after) {
+            he_record_word(m, column, (uint32_t)w, row, before, after);
+        }
+    }
+    memcpy(stored, value, row_bytes);
+}
+
+void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
+{
+    if (m->delta == NULL) {
+        m->c.position[v.i] = position;
+    } else {
+        set_row(m, HE_COL_POSITION, v.i, (unsigned char *)&m->c.position[v.i], &position,
+                sizeof position);
+    }
+}
+
+void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value)
+{
+    he_column *column = m->c.columns[slot];
+    assert(row < column->rows);
+    set_row(m, HE_COL_ATTRIBUTE + (uint32_t)slot, row, he_column_row(column, row), value,
+            column->row_bytes);
+}
+
+/* Issue default rows in every column of a domain; he_reserve made room. */
+static void issue_rows(he_mesh *m, he_kind domain, size_t rows)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        he_column *column = m->c.columns[i];
+        if (column != NULL && column->domain == domain) {
+            assert(rows <= column->capacity);
+            for (; column->rows < rows; column->rows++) {
+                memcpy(he_column_row(column, column->rows), column->fallback, column->row_bytes);
+            }
+        }
+    }
+}
+
+he_vertex he_new_vertex(he_mesh *m)
+{
+    he_content *c = &m->c;
+    assert(c->vertices.issued < c->vertices.capacity);
+    uint32_t v = c->vertices.issued++;
+    c->vertices.live++;
+    he_content_clear_vertex(c, v);
+    if (c->column_count > 0) {
+        issue_rows(m, HE_VERTEX, c->vertices.issued);
+    }
+    return (he_vertex){v};
+}
+
+he_edge he_new_edge(he_mesh *m)
+{
+    he_content *c = &m->c;
+    assert(c->edges.issued < c->edges.capacity);
+    uint32_t e = c->edges.issued++;
+    c->edges.live++;
+    he_content_clear_edge(c, e);
+    if (c->column_count > 0) {
+        issue_rows(m, HE_EDGE, c->edges.issued);
+        issue_rows(m, HE_HALFEDGE, 2 * (size_t)c->edges.issued);
+    }
+    return (he_edge){e};
+}
+
+he_face he_new_face(he_mesh *m)
+{
+    he_content *c = &m->c;
+    assert(c->faces.issued < c->faces.capacity);
+    uint32_t f = c->faces.issued++;
+    c->faces.live++;
+    he_content_clear_face(c, f);
+    if (c->column_count > 0) {
+        issue_rows(m, HE_FACE, c->faces.issued);
+    }
+    return (he_face){f};
+}
+
+static void reset_attributes(he_mesh *m, he_kind domain, uint32_t row)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        const he_column *column = m->c.columns[i];
+        if (column != NULL && column->domain == domain) {
+            he_set_attribute(m, i, row, column->fallback);
+        }
+    }
+}
+
+void he_delete_vertex(he_mesh *m, he_vertex v)
+{
+    he_set_vertex_halfedge(m, v, (he_halfedge){HE_DEAD});
+    he_set_position(m, v, (he_vec3){0, 0, 0});
+    reset_attributes(m, HE_VERTEX, v.i);
+    m->c.vertices.live--;
+}
+
+void he_delete_edge(he_mesh *m, he_edge e)
+{
+    const he_halfedge dead = {HE_DEAD};
+    for (unsigned side = 0; side < 2; side++) {
+        he_halfedge h = he_edge_halfedge(e, side);
+        he_set_next(m, h, dead);
+        he_set_prev(m, h, dead);
+        he_set_origin(m, h, (he_vertex){HE_DEAD});
+        he_set_face(m, h, (he_face){HE_DEAD});
+        reset_attributes(m, HE_HALFEDGE, h.i);
+    }
+    reset_attributes(m, HE_EDGE, e.i);
+    m->c.edges.live--;
+}
+
+void he_delete_face(he_mesh *m, he_face f)
+{
+    he_set_face_halfedge(m, f, (he_halfedge){HE_DEAD});
+    reset_attributes(m, HE_FACE, f.i);
+    m->c.faces.live--;
+}
+
+static he_status slot_for_column(he_mesh *m, he_error *err)
+{
+    he_content *c = &m->c;
+    if (c->column_count == c->column_capacity) {
+        size_t capacity = he_mem_grown(c->column_capacity, c->column_count + 1);
+        he_column **columns = he_mem_array(c->columns, capacity, sizeof(he_column *));
+        if (columns == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for another attribute");
+        }
+        c->columns = columns;
+        c->column_capacity = capacity;
+    }
+    return m->delta == NULL ? HE_OK : he_delta_reserve(m->delta, 1, 1, err);
+}
+
+/* The record's object is what stands on the other side of the change. */
+static void record_object(he_mesh *m, uint32_t column, uint32_t row, void *object)
+{
+    he_delta *d = m->delta;
+    he_record_word(m, column, 0, row, (uint32_t)d->object_count, 0);
+    d->objects[d->object_count++] = object;
+}
+
+he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err)
+{
+    if (he_mesh_find_column(m, takes->domain, takes->name) != NULL) {
+        return he_fail_plain(err, HE_BAD_VALUE, "%s already have an attribute %s",
+                             he_kind_plural(takes->domain), takes->name);
+    }
+    he_status status = slot_for_column(m, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    size_t slot = m->c.column_count++;
+    m->c.columns[slot] = takes;
+    if (m->delta != NULL) {
+        record_object(m, HE_COL_COLUMN_ADDED, (uint32_t)slot, NULL);
+    }
+    return HE_OK;
+}
+
+he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err)
+{
+    if (m->delta == NULL) {
+        he_column_free(m->c.columns[slot]);
+        m->c.columns[slot] = NULL;
+        return HE_OK;
+    }
+    he_status status = he_delta_reserve(m->delta, 1, 1, err);
+    if (status == HE_OK) {
+        record_object(m, HE_COL_COLUMN_DROPPED, (uint32_t)slot, m->c.columns[slot]);
+        m->c.columns[slot] = NULL;
+    }
+    return status;
+}
+
+he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_error *err)
+{
+    if (m->delta == NULL) {
+        he_content_clear(&m->c);
+        m->c = takes->c;
+        he_mem_free(takes);
+        return HE_OK;
+    }
+    he_content *before = he_mem_alloc(sizeof *before);
+    if (before == NULL || he_delta_reserve(m->delta, 1, 1, NULL) != HE_OK) {
+        he_mem_free(before);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to replace the mesh");
+    }
+    *before = m->c;
+    m->c = takes->c;
+    he_mem_free(takes);
+    record_object(m, HE_COL_REPLACED, 0, before);
+    return HE_OK;
+}
+
+he_status he_edit_begin(he_mesh *m, he_bracket *out, he_error *err)
+{
+    he_bracket bracket = {0};
+    if (m->delta == NULL) {
+        bracket.own = he_delta_new();
+        if (bracket.own == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory to record the edit");
+        }
+        he_mesh_record(m, bracket.own);
+    }
+    bracket.mark = he_delta_mark(m);
+    *out = bracket;
+    return HE_OK;
+}
+
+he_status he_edit_end(he_mesh *m, he_bracket *bracket, he_status status)
+{
+    if (status != HE_OK) {
+        he_delta_rollback(m, bracket->mark);
+    }
+    if (bracket->own != NULL) {
+        he_mesh_record(m, NULL);
+        he_delta_free(bracket->own);
+        bracket->own = NULL;
+    }
+    return status;
+}

@@ -1,0 +1,125 @@
+/* op.h - THE operation table: one row an edit, and all there is to know about it.
+ *
+ * The rows drive the decoding of JSON bodies, GET /v1/operations, the OpenAPI schemas, the
+ * viewer's tool panel, fuzzing, and what the tests owe: every row succeeds once, every refusal it
+ * declares is produced and no other, V, E and F move as declared, the checker passes, and a
+ * refusal leaves the mesh bit-identical.
+ *
+ * A row's name is also the C function's (edge_split is he_edge_split) and the tests'. */
+#ifndef HE_OP_OP_H
+#define HE_OP_OP_H
+
+#include "mesh/mesh.h"
+
+/* What a parameter holds. */
+typedef enum he_param_type {
+    HE_PARAM_ELEMENT,  /* one id of the row's kind */
+    HE_PARAM_ELEMENTS, /* one id under `name`, or a list of at least one under `plural` */
+    HE_PARAM_NUMBER,   /* a finite double, within min and max where the row has a range */
+    HE_PARAM_POINT,    /* [x, y, z] */
+    HE_PARAM_POINTS,   /* [x, y, z], or a list of those, one for each element */
+    HE_PARAM_FLAG,     /* true or false */
+    HE_PARAM_CHOICE,   /* one of the strings in `choices` */
+    HE_PARAM_MATRIX,   /* 16 numbers, row-major, last row 0 0 0 1 */
+    HE_PARAM_CYCLE /* a list of element ids whose order matters and where repeats are refusals */
+} he_param_type;
+
+/* Flags of a parameter. */
+enum {
+    HE_REQUIRED = 1,
+    HE_NULLABLE = 2,  /* an element that may be null: HE_NONE */
+    HE_EXCLUSIVE = 4, /* the ends of the range are not in it */
+    HE_RANGE = 8      /* min and max apply */
+};
+
+typedef struct he_param {
+    const char *name;
+    const char *plural; /* of HE_PARAM_ELEMENTS, else NULL */
+    he_param_type type;
+    he_kind kind; /* of elements */
+    unsigned flags;
+    /* Parameters of one letter are alternatives: at most one is given, and exactly one where any
+     * of them is required. 0 stands alone. */
+    char group;
+    double min, max;
+    double fallback;            /* default of a number; 0 or 1 of a flag; index of a choice */
+    const char *const *choices; /* ends in NULL */
+    const char *doc;
+} he_param;
+
+/* A decoded argument, at its parameter's index. Lists are borrowed for the call. */
+typedef struct he_arg {
+    bool given;
+    uint32_t id;         /* ELEMENT; HE_NONE for null */
+    const uint32_t *ids; /* ELEMENTS, CYCLE */
+    size_t count;        /* of ids or points */
+    bool list;           /* ELEMENTS and POINTS: given in its list form */
+    double number;
+    const he_vec3 *points; /* POINT, POINTS */
+    bool flag;
+    int choice;
+    double matrix[16];
+} he_arg;
+
+/* What an operation gives back besides the sets that follow from its delta. */
+typedef enum he_result_type {
+    HE_RESULT_ELEMENT,  /* one id, or null */
+    HE_RESULT_ELEMENTS, /* a list of ids */
+    HE_RESULT_NUMBER,
+    HE_RESULT_MAP /* old id -> new id, null where dead */
+} he_result_type;
+
+typedef struct he_result_row {
+    const char *name;
+    he_result_type type;
+    he_kind kind;
+    const char *doc;
+} he_result_row;
+
+enum { HE_OP_PARAMS = 8, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
+
+/* Values of the results, at the index of their row. he_op_run clears and fills them; the caller
+ * clears them at last. */
+typedef struct he_results {
+    bool present[HE_OP_RESULTS];
+    uint32_t id[HE_OP_RESULTS];
+    he_ids list[HE_OP_RESULTS];
+    double number[HE_OP_RESULTS];
+} he_results;
+
+/* local: costs what it touches. whole: costs the mesh, may run long. */
+typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
+
+/* A change in V, E, F that does not depend on the mesh, or HE_VARIES. */
+enum { HE_VARIES = -1000 };
+
+typedef struct he_op {
+    const char *name;
+    const char *doc; /* one sentence */
+    he_op_size size;
+    he_param params[HE_OP_PARAMS]; /* ends at the first without a name */
+    he_result_row results[HE_OP_RESULTS];
+    /* Every refusal it can give besides HE_NO_MEMORY and HE_IDS_EXHAUSTED; ends in HE_OK. */
+    he_status refusals[HE_OP_REFUSALS];
+    int change[3]; /* V, E, F */
+    /* Call through he_op_run. */
+    he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
+} he_op;
+
+size_t he_op_count(void);
+const he_op *he_op_at(size_t i);
+const he_op *he_op_find(const char *name, size_t length); /* NULL when there is none */
+size_t he_op_params(const he_op *op);
+size_t he_op_results(const he_op *op);
+/* Is this a refusal the row declares (or a resource failure any row may have)? */
+bool he_op_declares(const he_op *op, he_status status);
+
+/* An argument for every parameter with its default and `given` false. */
+void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
+/* Apply one operation. Arguments are those of he_op_defaults with some given; ranges, groups and
+ * finiteness were checked by whoever decoded them (asserted here). A refusal changes nothing. */
+HE_NODISCARD he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
+                                 he_results *out, he_error *err);
+void he_results_clear(he_results *results);
+
+#endif
