@@ -11,7 +11,8 @@ bool he_has_columns(const he_mesh *m, he_kind kind)
     return false;
 }
 
-/* The weighted sum of n rows in the column's own type. Integers and booleans round to nearest. */
+/* The weighted sum of n rows, or their mean without weights, in the column's own type. Integers and
+ * booleans round to nearest. */
 static void blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
                   unsigned char *out)
 {
@@ -49,7 +50,7 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
             case HE_TYPE_COUNT:
                 break;
             }
-            sum += weights[i] * value;
+            sum += (weights == NULL ? 1.0 / (double)n : weights[i]) * value;
         }
         unsigned char *to = out + k * size;
         switch (column->type) {
@@ -127,28 +128,9 @@ void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
     }
 }
 
-enum { MEAN_BLOCK = 64 };
-
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n)
 {
-    if (n == 0 || !he_has_columns(m, kind)) {
-        return;
-    }
-    /* The running mean of blocks: exact enough, and no memory however many rows there are. The
-     * target row itself holds the mean so far. */
-    size_t done = 0;
-    while (done < n) {
-        uint32_t rows[MEAN_BLOCK + 1];
-        double weights[MEAN_BLOCK + 1];
-        size_t take = n - done < MEAN_BLOCK ? n - done : MEAN_BLOCK;
-        double total = (double)(done + take);
-        rows[0] = to;
-        weights[0] = (double)done / total;
-        for (size_t i = 0; i < take; i++) {
-            rows[i + 1] = from[done + i];
-            weights[i + 1] = 1 / total;
-        }
-        carry(m, kind, to, rows, weights, take + 1, from[0]);
-        done += take;
+    if (n > 0) {
+        carry(m, kind, to, from, NULL, n, from[0]);
     }
 }

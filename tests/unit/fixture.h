@@ -1,0 +1,104 @@
+/* fixture.h - small meshes and failing allocators for the unit tests. Included once per program. */
+#ifndef TESTS_UNIT_FIXTURE_H
+#define TESTS_UNIT_FIXTURE_H
+
+#include "mesh/build.h"
+#include "mesh/check.h"
+#include "mesh/delta.h"
+#include "mesh/walk.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* Faces as strings of one-character vertex numbers, separated by blanks or commas: "012,023". */
+static inline void fixture_soup(he_soup *soup, const char *faces)
+{
+    he_soup_init(soup, NULL);
+    uint32_t most = 0;
+    for (const char *p = faces; *p != '\0'; p++) {
+        most = *p >= '0' && *p <= '9' && (uint32_t)(*p - '0') > most ? (uint32_t)(*p - '0') : most;
+    }
+    for (uint32_t v = 0; *faces != '\0' && v <= most; v++) {
+        he_vec3 position = {(double)(v * v % 7), (double)(v * 3 % 5), (double)v};
+        assert_int_equal(he_soup_add_vertex(soup, position, NULL), HE_OK);
+    }
+    for (const char *p = faces; *p != '\0';) {
+        if (*p < '0' || *p > '9') {
+            p++;
+            continue;
+        }
+        assert_int_equal(he_soup_begin_face(soup, NULL), HE_OK);
+        for (; *p >= '0' && *p <= '9'; p++) {
+            assert_int_equal(he_soup_add_corner(soup, (uint32_t)(*p - '0'), NULL), HE_OK);
+        }
+    }
+}
+
+static inline void fixture_check(const he_mesh *mesh)
+{
+    he_problem problem;
+    size_t total = 1;
+    assert_int_equal(he_check(mesh, &problem, 1, &total, NULL), HE_OK);
+    if (total != 0) {
+        fail_msg("I%d: %s", problem.rule, problem.text);
+    }
+}
+
+static inline he_mesh *fixture_mesh(const char *faces)
+{
+    he_soup soup;
+    he_mesh *mesh = NULL;
+    he_error err = {0};
+    fixture_soup(&soup, faces);
+    if (he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, &err) != HE_OK) {
+        fail_msg("%s: %s", faces, err.text);
+    }
+    he_soup_clear(&soup);
+    fixture_check(mesh);
+    return mesh;
+}
+
+static inline void fixture_counts(const he_mesh *mesh, unsigned v, unsigned e, unsigned f)
+{
+    assert_int_equal(he_mesh_vertices(mesh), v);
+    assert_int_equal(he_mesh_edges(mesh), e);
+    assert_int_equal(he_mesh_faces(mesh), f);
+}
+
+/* An allocator that fails the N-th request for memory from fixture_fail_at on, and counts them. */
+typedef struct fixture_allocator {
+    long calls, fail_at;
+} fixture_allocator;
+
+static fixture_allocator fixture_memory;
+
+static inline void *fixture_resize(void *context, void *memory, size_t size)
+{
+    fixture_allocator *a = context;
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    return ++a->calls == a->fail_at ? NULL : realloc(memory, size);
+}
+
+/* 0 never fails. */
+static inline void fixture_fail_at(long n)
+{
+    static const he_mem_hook hook = {fixture_resize, &fixture_memory};
+    fixture_memory = (fixture_allocator){0, n};
+    he_mem_set_hook(&hook);
+}
+
+static inline void fixture_memory_back(void)
+{
+    he_mem_set_hook(NULL);
+}
+
+#endif

@@ -1,0 +1,157 @@
+/* he_check: each invariant is broken in turn, and must be the one that is named. */
+#include "fixture.h"
+
+#include "mesh/write.h"
+
+#include <math.h>
+
+/* Break `rule` in a mesh that holds; the checker may name others too, but must name this one. */
+static void expect_rule(he_mesh *m, int rule)
+{
+    he_problem problems[32];
+    size_t total = 0;
+    assert_int_equal(he_check(m, problems, 32, &total, NULL), HE_OK);
+    bool named = false;
+    for (size_t i = 0; i < total && i < 32; i++) {
+        named |= problems[i].rule == rule;
+        assert_true(strlen(problems[i].text) > 5);
+    }
+    if (!named) {
+        fail_msg("I%d is not among the %zu problems", rule, total);
+    }
+    he_problem first;
+    size_t one = 0;
+    assert_int_equal(he_check(m, &first, 1, &one, NULL), HE_OK);
+    assert_true(one > 0);
+    assert_int_equal(first.rule, problems[0].rule);
+    he_mesh_free(m);
+}
+
+static void test_each_rule(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012,023");
+    m->c.next[0] = 77;
+    expect_rule(m, 1);
+    m = fixture_mesh("012,023");
+    m->c.origin[3] = HE_DEAD;
+    expect_rule(m, 1);
+    m = fixture_mesh("012,023");
+    m->c.prev[0] = 0;
+    expect_rule(m, 2);
+    m = fixture_mesh("012,034");
+    m->c.origin[2] = 4;
+    expect_rule(m, 3);
+    m = fixture_mesh("012,023");
+    m->c.face[2] = 1;
+    expect_rule(m, 4);
+    m = fixture_mesh("012,034");
+    m->c.face[0] = m->c.face[2] = m->c.face[4] = HE_NONE;
+    expect_rule(m, 5);
+    m = fixture_mesh("012,023");
+    m->c.face_halfedge[0] = m->c.face_halfedge[1];
+    expect_rule(m, 6);
+    m = fixture_mesh("012,023");
+    m->c.vertex_halfedge[1] = m->c.vertex_halfedge[0];
+    expect_rule(m, 8);
+    m = fixture_mesh("012,023");
+    m->c.vertex_halfedge[0] = he_turn_ccw(m, (he_halfedge){m->c.vertex_halfedge[0]}).i;
+    expect_rule(m, 8);
+    m = fixture_mesh("012,023");
+    m->c.position[2].y = INFINITY;
+    expect_rule(m, 11);
+    m = fixture_mesh("012,023");
+    m->c.faces.live = 3;
+    expect_rule(m, 12);
+    m = fixture_mesh("012,023");
+    m->c.boundary_halfedges++;
+    expect_rule(m, 12);
+}
+
+/* Two open fans whose boundary links keep to themselves: each turns alone (I9). */
+static void test_unchained_fans(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012,034");
+    he_halfedge a = he_vertex_halfedge(m, (he_vertex){0}), b = a;
+    do {
+        b = he_turn_ccw(m, b);
+    } while (!he_is_boundary_halfedge(m, b));
+    he_halfedge into_a = he_prev(m, a), into_b = he_prev(m, b);
+    he_link(m, into_a, b);
+    he_link(m, into_b, a);
+    expect_rule(m, 9);
+}
+
+/* A triangle glued to a triangle of the same corners, but by other edges: 0-1 exists twice. */
+static void test_doubled_edge(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012,345");
+    he_halfedge h = he_find_halfedge(m, (he_vertex){3}, (he_vertex){4});
+    m->c.origin[h.i] = 0;
+    m->c.origin[he_twin(he_prev(m, h)).i] = 0;
+    h = he_next(m, h);
+    m->c.origin[h.i] = 1;
+    m->c.origin[he_twin(he_prev(m, h)).i] = 1;
+    he_problem problems[32];
+    size_t total = 0;
+    assert_int_equal(he_check(m, problems, 32, &total, NULL), HE_OK);
+    assert_true(total > 0);
+    he_mesh_free(m);
+}
+
+/* A face of two corners, and one that visits a vertex twice. */
+static void test_bad_faces(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("0123");
+    m->c.origin[he_face_halfedge(m, (he_face){0}).i] = 2;
+    expect_rule(m, 7);
+}
+
+/* Whatever the links are, the checker ends and does not read outside. */
+static void test_random_corruption(void **state)
+{
+    (void)state;
+    uint64_t seed = 7;
+    for (int round = 0; round < 20000; round++) {
+        he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267");
+        uint32_t *columns[] = {m->c.next, m->c.prev, m->c.origin, m->c.face};
+        for (int k = 0; k < 3; k++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            uint32_t h = (uint32_t)(seed >> 33) % 24;
+            columns[seed >> 20 & 3][h] = (uint32_t)(seed >> 50) % 26;
+        }
+        size_t total = 0;
+        he_problem problems[4];
+        assert_int_equal(he_check(m, problems, 4, &total, NULL), HE_OK);
+        he_mesh_free(m);
+    }
+}
+
+static void test_every_allocation_may_fail(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012,023");
+    for (long n = 1; n <= 3; n++) {
+        size_t total = 5;
+        he_problem problem;
+        fixture_fail_at(n);
+        assert_int_equal(he_check(m, &problem, 1, &total, NULL), HE_NO_MEMORY);
+        fixture_memory_back();
+        assert_int_equal(total, 5);
+    }
+    fixture_check(m);
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_each_rule),         cmocka_unit_test(test_unchained_fans),
+        cmocka_unit_test(test_doubled_edge),      cmocka_unit_test(test_bad_faces),
+        cmocka_unit_test(test_random_corruption), cmocka_unit_test(test_every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

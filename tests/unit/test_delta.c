@@ -1,0 +1,391 @@
+/* Recording, undo, redo, rollback, replay, changes, columns and compact, on writes made by hand
+ * through write.h. The operations' own deltas are tested with the operations. */
+#include "fixture.h"
+
+#include "mesh/compact.h"
+#include "mesh/write.h"
+
+static he_mesh *copy_of(const he_mesh *m)
+{
+    he_mesh *copy;
+    assert_int_equal(he_mesh_copy(m, &copy, NULL), HE_OK);
+    assert_true(he_mesh_equal(m, copy));
+    return copy;
+}
+
+/* A triangle of its own, by hand. */
+static he_status add_triangle(he_mesh *m, he_error *err)
+{
+    he_status status = he_reserve(m, (he_need){.vertices = 3, .edges = 3, .faces = 1}, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_vertex v[3];
+    he_edge e[3];
+    he_face f = he_new_face(m);
+    for (uint32_t i = 0; i < 3; i++) {
+        v[i] = he_new_vertex(m);
+        he_set_position(m, v[i], (he_vec3){i, 1.5 * i, -2});
+        e[i] = he_new_edge(m);
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        he_halfedge in = he_edge_halfedge(e[i], 0), out = he_edge_halfedge(e[i], 1);
+        he_link(m, in, he_edge_halfedge(e[(i + 1) % 3], 0));
+        he_link(m, out, he_edge_halfedge(e[(i + 2) % 3], 1));
+        he_set_origin(m, in, v[i]);
+        he_set_origin(m, out, v[(i + 1) % 3]);
+        he_set_face(m, in, f);
+        he_set_face(m, out, (he_face){HE_NONE});
+        he_set_vertex_halfedge(m, v[(i + 1) % 3], out);
+    }
+    he_set_face_halfedge(m, f, he_edge_halfedge(e[0], 0));
+    return HE_OK;
+}
+
+/* Remove the lone triangle with this face. */
+static he_status remove_triangle(he_mesh *m, he_face f, he_error *err)
+{
+    he_need need = {.deleted_vertices = 3, .deleted_edges = 3, .deleted_faces = 1};
+    he_status status = he_reserve(m, need, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_halfedge h = he_face_halfedge(m, f);
+    for (int i = 0; i < 3; i++) {
+        he_halfedge next = he_next(m, h);
+        he_delete_vertex(m, he_origin(m, h));
+        he_delete_edge(m, he_edge_of(h));
+        h = next;
+    }
+    he_delete_face(m, f);
+    return HE_OK;
+}
+
+static he_mesh *mesh_with_columns(void)
+{
+    he_mesh *m = fixture_mesh("012,023");
+    he_column *column;
+    assert_int_equal(he_column_new("tag", HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    assert_int_equal(he_column_new("flag", HE_VERTEX, HE_BOOL, 3, HE_COPY, &column, NULL), HE_OK);
+    column->fallback[1] = 1;
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    assert_int_equal(he_column_new("flag", HE_VERTEX, HE_BOOL, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_BAD_VALUE);
+    he_column_free(column);
+    return m;
+}
+
+static void test_undo_and_redo(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_with_columns(), *start = copy_of(m);
+    he_delta *d = he_delta_new();
+    assert_null(he_mesh_record(m, d));
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    assert_int_equal(remove_triangle(m, (he_face){2}, NULL), HE_OK);
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    he_mesh_record(m, NULL);
+    fixture_check(m);
+    fixture_counts(m, 7, 8, 3);
+    he_mesh *end = copy_of(m);
+    for (int round = 0; round < 3; round++) {
+        he_delta_undo(d, m);
+        fixture_check(m);
+        assert_true(he_mesh_equal_live(m, start));
+        assert_false(he_mesh_equal(m, start)); /* ids stay issued */
+        assert_int_equal(he_mesh_issued(m, HE_FACE), 4);
+        he_error err;
+        assert_int_equal(he_mesh_require(m, HE_FACE, 3, &err), HE_DELETED_ELEMENT);
+        assert_int_equal(he_mesh_require(m, HE_FACE, 4, &err), HE_NO_SUCH_ELEMENT);
+        he_delta_redo(d, m);
+        fixture_check(m);
+        assert_true(he_mesh_equal(m, end));
+    }
+    he_delta_free(d);
+    he_mesh_free(m);
+    he_mesh_free(start);
+    he_mesh_free(end);
+}
+
+static void test_rollback_takes_ids_back(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_with_columns(), *start = copy_of(m);
+    he_bracket bracket;
+    assert_int_equal(he_edit_begin(m, &bracket, NULL), HE_OK);
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    he_column *column;
+    assert_int_equal(he_column_new("late", HE_EDGE, HE_DOUBLE, 2, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    assert_int_equal(he_mesh_drop_column(m, 0, NULL), HE_OK);
+    assert_int_equal(he_compact(m, NULL, NULL), HE_OK);
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    assert_int_equal(he_edit_end(m, &bracket, HE_LIMIT), HE_LIMIT);
+    fixture_check(m);
+    assert_true(he_mesh_equal(m, start));
+    assert_null(he_mesh_record(m, NULL));
+    he_mesh_free(m);
+    he_mesh_free(start);
+}
+
+static void test_replay_brings_a_copy_forward(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_with_columns(), *copy = copy_of(m);
+    he_delta *d = he_delta_new();
+    he_mesh_record(m, d);
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    assert_int_equal(remove_triangle(m, (he_face){2}, NULL), HE_OK);
+    he_mesh_record(m, NULL);
+    uint32_t issued[HE_KIND_COUNT];
+    for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
+        issued[kind] = he_mesh_issued(m, (he_kind)kind);
+    }
+    assert_int_equal(he_delta_replay(d, copy, issued, false, NULL), HE_OK);
+    assert_true(he_mesh_equal(m, copy));
+    he_delta_undo(d, m);
+    assert_int_equal(he_delta_replay(d, copy, issued, true, NULL), HE_OK);
+    assert_true(he_mesh_equal(m, copy));
+    fixture_check(copy);
+    he_delta_free(d);
+    he_mesh_free(m);
+    he_mesh_free(copy);
+}
+
+static void expect_ids(const he_ids *list, size_t count, const uint32_t *ids)
+{
+    assert_int_equal(list->count, count);
+    for (size_t i = 0; i < count; i++) {
+        assert_int_equal(list->ids[i], ids[i]);
+    }
+}
+
+static void test_changes_are_net(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_with_columns();
+    he_delta *d = he_delta_new();
+    he_changes changes;
+    he_mesh_record(m, d);
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    assert_int_equal(remove_triangle(m, (he_face){2}, NULL), HE_OK);
+    assert_int_equal(he_changes_find(m, d, 0, d->count, false, &changes, NULL), HE_OK);
+    assert_true(he_changes_none(&changes));
+    he_changes_clear(&changes);
+
+    size_t from = d->count;
+    assert_int_equal(he_reserve(m, (he_need){.positions = 4, .attributes = 1, .lineage = 2}, NULL),
+                     HE_OK);
+    he_vec3 at = he_position(m, (he_vertex){1});
+    he_set_position(m, (he_vertex){1}, (he_vec3){5, 5, 5});
+    he_set_position(m, (he_vertex){3}, (he_vec3){6, 6, 6});
+    he_set_position(m, (he_vertex){1}, at);
+    he_set_attribute(m, 0, 1, &(uint32_t){7});
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    he_note_parent(m, HE_FACE, 3, 0);
+    he_note_parent(m, HE_FACE, 1, 0); /* not created: dropped */
+    he_mesh_record(m, NULL);
+    assert_int_equal(he_changes_find(m, d, from, d->count, false, &changes, NULL), HE_OK);
+    expect_ids(&changes.created[HE_VERTEX], 3, (const uint32_t[]){7, 8, 9});
+    expect_ids(&changes.created[HE_EDGE], 3, (const uint32_t[]){8, 9, 10});
+    expect_ids(&changes.created[HE_FACE], 1, (const uint32_t[]){3});
+    expect_ids(&changes.modified[HE_VERTEX], 1, (const uint32_t[]){3});
+    expect_ids(&changes.modified[HE_FACE], 1, (const uint32_t[]){1});
+    expect_ids(&changes.parents[HE_FACE], 2, (const uint32_t[]){3, 0});
+    assert_int_equal(changes.deleted[HE_FACE].count, 0);
+    he_changes_clear(&changes);
+
+    he_delta_undo(d, m);
+    assert_int_equal(he_changes_find(m, d, 0, d->count, true, &changes, NULL), HE_OK);
+    expect_ids(&changes.deleted[HE_FACE], 1, (const uint32_t[]){3});
+    assert_int_equal(changes.created[HE_FACE].count, 0);
+    expect_ids(&changes.modified[HE_VERTEX], 1, (const uint32_t[]){3});
+    he_changes_clear(&changes);
+    he_delta_free(d);
+    he_mesh_free(m);
+}
+
+static void test_changes_of_many_rows(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012,023");
+    he_delta *d = he_delta_new();
+    he_changes changes;
+    he_mesh_record(m, d);
+    for (int i = 0; i < 700; i++) {
+        assert_int_equal(add_triangle(m, NULL), HE_OK);
+    }
+    assert_int_equal(he_changes_find(m, d, 0, d->count, false, &changes, NULL), HE_OK);
+    assert_int_equal(changes.created[HE_VERTEX].count, 2100);
+    for (uint32_t i = 0; i < 2100; i++) {
+        assert_int_equal(changes.created[HE_VERTEX].ids[i], 4 + i);
+    }
+    assert_int_equal(changes.modified[HE_VERTEX].count, 0);
+    assert_int_equal(changes.modified[HE_FACE].count, 0);
+    he_changes_clear(&changes);
+    he_mesh_record(m, NULL);
+    he_delta_free(d);
+    he_mesh_free(m);
+}
+
+static void test_columns_are_recorded(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_with_columns(), *start = copy_of(m);
+    he_delta *d = he_delta_new();
+    he_mesh_record(m, d);
+    he_column *column;
+    assert_int_equal(he_column_new("weight", HE_VERTEX, HE_DOUBLE, 1, HE_COPY, &column, NULL),
+                     HE_OK);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    assert_int_equal(he_mesh_drop_column(m, 1, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+    he_set_attribute(m, 2, 1, &(double){2.5});
+    he_mesh_record(m, NULL);
+    he_mesh *end = copy_of(m);
+    for (int i = 0; i < 2; i++) {
+        assert_null(he_mesh_find_column(m, HE_VERTEX, "flag"));
+        assert_non_null(he_mesh_find_column(m, HE_VERTEX, "weight"));
+        he_delta_undo(d, m);
+        assert_true(he_mesh_equal(m, start));
+        assert_non_null(he_mesh_find_column(m, HE_VERTEX, "flag"));
+        assert_null(he_mesh_find_column(m, HE_VERTEX, "weight"));
+        he_delta_redo(d, m);
+        assert_true(he_mesh_equal(m, end));
+    }
+    he_delta_free(d);
+    he_mesh_free(m);
+    he_mesh_free(start);
+    he_mesh_free(end);
+}
+
+static void test_compact_renumbers_and_undoes(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_with_columns();
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+    he_set_attribute(m, 0, 1, &(uint32_t){77});
+    assert_int_equal(add_triangle(m, NULL), HE_OK);
+    assert_int_equal(remove_triangle(m, (he_face){2}, NULL), HE_OK);
+    he_mesh *before = copy_of(m);
+    he_delta *d = he_delta_new();
+    he_mesh_record(m, d);
+    he_maps maps;
+    assert_int_equal(he_compact(m, &maps, NULL), HE_OK);
+    fixture_check(m);
+    fixture_counts(m, 7, 8, 3);
+    assert_int_equal(he_mesh_issued(m, HE_VERTEX), 7);
+    assert_int_equal(maps.faces, 4);
+    assert_int_equal(maps.face[2], HE_NONE);
+    assert_int_equal(maps.face[3], 2);
+    assert_memory_equal(he_column_value(he_mesh_find_column(m, HE_FACE, "tag"), 1), &(uint32_t){77},
+                        4);
+    he_vec3 moved = he_position(m, (he_vertex){maps.vertex[8]});
+    assert_true(moved.y == 1.5);
+    he_changes changes;
+    assert_int_equal(he_changes_find(m, d, 0, d->count, false, &changes, NULL), HE_OK);
+    assert_true(changes.replaced && !he_changes_none(&changes));
+    he_changes_clear(&changes);
+    assert_true(he_delta_bytes(d) > he_mesh_bytes(m) / 2);
+    he_mesh_record(m, NULL);
+    he_delta_undo(d, m);
+    assert_true(he_mesh_equal(m, before));
+    he_delta_redo(d, m);
+    fixture_counts(m, 7, 8, 3);
+    he_maps_clear(&maps);
+    he_delta_free(d);
+    he_mesh_free(m);
+    he_mesh_free(before);
+}
+
+static void test_every_allocation_may_fail(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_with_columns(), *start = copy_of(m);
+    long n = 1;
+    for (bool done = false; !done; n++) {
+        he_delta *d = he_delta_new();
+        he_mesh_record(m, d);
+        he_savepoint mark = he_delta_mark(m);
+        fixture_fail_at(n);
+        he_status status = add_triangle(m, NULL);
+        if (status == HE_OK) {
+            status = he_compact(m, NULL, NULL);
+        }
+        fixture_memory_back();
+        done = status == HE_OK && fixture_memory.calls < n;
+        assert_true(done || status == HE_NO_MEMORY);
+        he_delta_rollback(m, mark);
+        he_mesh_record(m, NULL);
+        he_delta_free(d);
+        fixture_check(m);
+        assert_true(he_mesh_equal(m, start));
+        he_mesh *copy = NULL;
+        fixture_fail_at(n);
+        status = he_mesh_copy(m, &copy, NULL);
+        fixture_memory_back();
+        assert_true(status == HE_OK || copy == NULL);
+        he_mesh_free(copy);
+    }
+    print_message("%ld allocations failed in turn\n", n - 2);
+    assert_true(n > 12);
+    he_mesh_free(m);
+    he_mesh_free(start);
+}
+
+static void test_carry_follows_rules(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012,023");
+    static const struct {
+        he_rule rule;
+        double expected;
+    } rows[] = {{HE_COPY, 10}, {HE_INTERPOLATE, 12.5}, {HE_DEFAULT, 3}};
+    for (size_t i = 0; i < 3; i++) {
+        he_column *column;
+        assert_int_equal(he_column_new(he_rule_name(rows[i].rule), HE_VERTEX, HE_DOUBLE, 1,
+                                       rows[i].rule, &column, NULL),
+                         HE_OK);
+        memcpy(column->fallback, &(double){3}, 8);
+        assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    }
+    assert_int_equal(he_reserve(m, (he_need){.attributes = 12}, NULL), HE_OK);
+    for (size_t slot = 0; slot < 3; slot++) {
+        he_set_attribute(m, slot, 0, &(double){10});
+        he_set_attribute(m, slot, 1, &(double){20});
+    }
+    he_carry_between(m, HE_VERTEX, 2, 0, 1, 0.25);
+    uint32_t many[200];
+    for (uint32_t i = 0; i < 200; i++) {
+        many[i] = i % 4 == 0 ? 1 : 0;
+    }
+    he_carry_mean(m, HE_VERTEX, 3, many, 200);
+    for (size_t slot = 0; slot < 3; slot++) {
+        double value;
+        memcpy(&value, he_column_value(m->c.columns[slot], 2), 8);
+        assert_true(value == rows[slot].expected);
+        memcpy(&value, he_column_value(m->c.columns[slot], 3), 8);
+        double mean = slot == 0 ? 20 : rows[slot].expected;
+        assert_true(value > mean - 1e-9 && value < mean + 1e-9);
+    }
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_undo_and_redo),
+        cmocka_unit_test(test_rollback_takes_ids_back),
+        cmocka_unit_test(test_replay_brings_a_copy_forward),
+        cmocka_unit_test(test_changes_are_net),
+        cmocka_unit_test(test_changes_of_many_rows),
+        cmocka_unit_test(test_columns_are_recorded),
+        cmocka_unit_test(test_compact_renumbers_and_undoes),
+        cmocka_unit_test(test_every_allocation_may_fail),
+        cmocka_unit_test(test_carry_follows_rules),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
