@@ -1,0 +1,16 @@
+/* changes.h - the answer to an edit, an undo and a redo: what came, went and changed. */
+#ifndef HE_API_CHANGES_H
+#define HE_API_CHANGES_H
+
+#include "api/json_out.h"
+#include "mesh/delta.h"
+#include "op/op.h"
+
+/* One object of `results`: {"op":"edge_split","vertex":17,"edges":[30,31,32]}. */
+void api_write_results(api_out *out, const he_op *op, const he_results *results);
+
+/* The members created, deleted, modified, parents and merged of an object that is open; and
+ * "replaced":true where the content was changed as a whole and the sets are empty. */
+void api_write_changes(api_out *out, const he_changes *changes);
+
+#endif

@@ -1,0 +1,135 @@
+/* GET .../content: a mesh as a file or document, made as it is pulled from a snapshot. */
+#include "api/handlers.h"
+
+#include "api/document_out.h"
+#include "format/format.h"
+
+#include <string.h>
+
+/* A snapshot with what writes it; freed with the exchange. */
+typedef struct content {
+    const api_store *store;
+    api_snapshot *snapshot;
+    he_writer *writer;
+    api_document_out *document;
+} content;
+
+static void free_content(void *stream)
+{
+    content *c = stream;
+    he_writer_free(c->writer);
+    api_document_out_free(c->document);
+    if (c->snapshot != NULL) {
+        c->store->snapshot_release(c->store->self, c->snapshot);
+    }
+    he_mem_free(c);
+}
+
+static int64_t read_content(void *stream, char *buffer, size_t size)
+{
+    content *c = stream;
+    return c->document != NULL ? api_document_out_read(c->document, buffer, size)
+                               : (int64_t)he_writer_read(c->writer, buffer, size);
+}
+
+/* What is wanted: NULL is the JSON document. False when nothing fits. */
+static bool choose(api_exchange *x, const he_format **format)
+{
+    const char *name = api_param_text(x, "format");
+    if (name == NULL) {
+        int offer = api_media_choose(api_header_of(x, "Accept"), x->route->produces);
+        if (offer < 0) {
+            return api_fail(x, API_NOT_ACCEPTABLE, "none of the formats is acceptable");
+        }
+        name = x->route->produces[offer];
+        *format = he_format_of_media_type(name);
+        return true;
+    }
+    *format = he_format_find(name);
+    if (strcmp(name, "json") != 0 && (*format == NULL || (*format)->writing == NULL)) {
+        return api_fail(x, API_BAD_PARAMETER, "\"%s\" is not a format this server writes", name);
+    }
+    return true;
+}
+
+/* What the file cannot carry, so that nobody finds out by losing it. */
+static void answer_losses(api_exchange *x, const he_notes *notes)
+{
+    char text[HE_ERROR_TEXT];
+    api_text losses = {.maximum = 1024};
+    for (size_t i = 0; i < notes->count && !losses.failed; i++) {
+        he_note_text(&notes->items[i], text, sizeof text);
+        api_text_add_string(&losses, i > 0 ? "; " : "");
+        api_text_add_string(&losses, text);
+    }
+    if (notes->count > 0) {
+        api_answer_header_format(x, "Export-Warnings", "%.*s", (int)losses.length, losses.bytes);
+    }
+    api_text_clear(&losses);
+}
+
+static void answer(api_exchange *x, const he_format *format, content *c, const he_mesh *mesh)
+{
+    const char *name = format == NULL ? "json" : format->name;
+    const char *type = format == NULL ? "application/json" : format->media_types[0];
+    if (api_not_modified(x, name)) {
+        free_content(c);
+        return;
+    }
+    he_error err = {0};
+    if (format == NULL) {
+        c->document = api_document_out_new(mesh, x->info.name);
+        if (c->document == NULL) {
+            api_fail_memory(x);
+        }
+    } else if (he_writer_new(format, mesh, 0, &c->writer, &err) != HE_OK) {
+        api_fail_core(x, &err);
+    }
+    if (x->problem.code != HE_OK) {
+        free_content(c);
+        return;
+    }
+    if (format != NULL) {
+        answer_losses(x, he_writer_notes(c->writer));
+    }
+    api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s.%s\"", x->info.id,
+                             format == NULL ? "json" : format->extensions[0]);
+    api_answer_stream(x, 200, type, -1, read_content, c, free_content);
+}
+
+static void export(api_exchange *x)
+{
+    const he_format *format = NULL;
+    const he_mesh *mesh;
+    if (!choose(x, &format)) {
+        return;
+    }
+    content *c = he_mem_zero(1, sizeof *c);
+    if (c == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    c->store = x->store;
+    c->snapshot = api_snapshot_of(x, &mesh);
+    if (c->snapshot == NULL) {
+        free_content(c);
+        return;
+    }
+    answer(x, format, c, mesh);
+}
+
+void api_content_get(api_exchange *x)
+{
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    uint64_t elements =
+        (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
+    api_read_end(x);
+    if (api_is_costly(x, elements, API_COSTLY_ELEMENTS)) {
+        api_defer(x, export);
+    } else {
+        export(x);
+    }
+}

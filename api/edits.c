@@ -1,0 +1,256 @@
+/* POST .../edits: one operation, or a list that is applied whole or not at all. */
+#include "api/handlers.h"
+
+#include "api/changes.h"
+#include "api/decode_op.h"
+#include "api/names.h"
+
+#include <string.h>
+
+/* A request between decoding and answer. */
+typedef struct edits {
+    api_in list; /* the array of operations; unused when there is one */
+    bool is_list;
+    size_t count;
+    api_in expected;
+    bool has_expected;
+    bool dry_run;
+    bool whole; /* one of the operations costs the mesh */
+    api_names names;
+    api_arena scratch; /* arguments of the operation at hand */
+    api_text results;  /* objects of `results`, comma-separated */
+    api_out out;       /* writes them */
+    char ops[API_ENTRY_OPS];
+} edits;
+
+static const char *const list_members[] = {"expected_revision", "dry_run", "ops", NULL};
+static const char *const beside_op[] = {"expected_revision", "dry_run", NULL};
+
+static void free_edits(void *state)
+{
+    edits *e = state;
+    api_names_clear(&e->names);
+    api_arena_clear(&e->scratch);
+    api_text_clear(&e->results);
+    he_mem_free(e);
+}
+
+/* Append an operation's name to the text of the history, or dots where no more fit. */
+static void note_name(edits *e, const char *name)
+{
+    static const char more[] = ",...";
+    size_t used = strlen(e->ops), length = strlen(name);
+    if (used >= sizeof more - 1 && strcmp(e->ops + used - (sizeof more - 1), more) == 0) {
+        return;
+    }
+    if (used + 1 + length + sizeof more > sizeof e->ops) {
+        memcpy(e->ops + used, more, sizeof more);
+        return;
+    }
+    if (used > 0) {
+        e->ops[used++] = ',';
+    }
+    memcpy(e->ops + used, name, length + 1);
+}
+
+static bool decode(edits *e, const api_in *in, api_call *call)
+{
+    api_arena_empty(&e->scratch);
+    return api_decode_op(in, e->is_list ? NULL : beside_op,
+                         e->is_list ? &e->names.references : NULL, &e->scratch, call);
+}
+
+/* All that is wrong with the document itself is found before the first operation runs. */
+static bool check_ops(edits *e, const api_in *root)
+{
+    api_call call;
+    if (!e->is_list) {
+        if (!decode(e, root, &call)) {
+            return false;
+        }
+        e->whole = call.op->size == HE_OP_WHOLE;
+        note_name(e, call.op->name);
+        return true;
+    }
+    api_in op;
+    for (bool more = api_in_first(&e->list, &op); more; more = api_in_next(&op)) {
+        if (!decode(e, &op, &call) || !api_names_add(&e->names, &op, &call)) {
+            return false;
+        }
+        e->count++;
+        e->whole |= call.op->size == HE_OP_WHOLE;
+        note_name(e, call.op->name);
+    }
+    return true;
+}
+
+static bool read_request(api_exchange *x, edits *e)
+{
+    const api_in *root = &x->root;
+    api_in dry;
+    if (!api_in_object(root)) {
+        return false;
+    }
+    e->is_list = api_in_find(root, "ops", &e->list);
+    if (e->is_list &&
+        (!api_in_only(root, list_members) || !api_in_array(&e->list, 1, API_MAX_OPS))) {
+        return false;
+    }
+    e->has_expected = api_in_find(root, "expected_revision", &e->expected);
+    if (api_in_find(root, "dry_run", &dry) && !api_in_bool(&dry, &e->dry_run)) {
+        return false;
+    }
+    e->count = e->is_list ? 0 : 1;
+    return check_ops(e, root);
+}
+
+/* Run one operation and write its results. The pointer of a refusal is the operation. */
+static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const api_in *in)
+{
+    api_call call;
+    he_results results = {0};
+    he_error err = {0};
+    if (!decode(e, in, &call)) {
+        return false;
+    }
+    if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        if (e->is_list) {
+            api_in_point(in);
+        }
+        return false;
+    }
+    api_write_results(&e->out, call.op, &results);
+    api_names_bind(&e->names, &call, &results);
+    he_results_clear(&results);
+    return true;
+}
+
+static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh)
+{
+    if (!e->is_list) {
+        return run_op(x, e, mesh, &x->root);
+    }
+    api_in op;
+    for (bool more = api_in_first(&e->list, &op); more; more = api_in_next(&op)) {
+        if (!run_op(x, e, mesh, &op)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static uint64_t issued(const he_mesh *mesh)
+{
+    return (uint64_t)he_mesh_issued(mesh, HE_VERTEX) + he_mesh_issued(mesh, HE_EDGE) +
+           he_mesh_issued(mesh, HE_FACE);
+}
+
+/* The whole answer is written before anything is published, so that no failure follows it. */
+static void write_answer(api_exchange *x, const edits *e, const he_changes *changes,
+                         uint64_t revision)
+{
+    api_out *out = &x->out;
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", revision);
+    if (e->dry_run) {
+        api_out_key_bool(out, "dry_run", true);
+    }
+    api_out_key(out, "results");
+    api_out_raw(out, e->results.bytes, e->results.length);
+    api_write_changes(out, changes);
+    api_out_object_end(out);
+}
+
+static void answer(api_exchange *x, const edits *e)
+{
+    if (!e->dry_run) {
+        api_answer_etag(x, "edits");
+    }
+    if (x->minimal) {
+        api_answer_header(x, "Preference-Applied", "return=minimal");
+        api_answer_empty(x, 204);
+    } else {
+        api_answer_json(x, 200);
+    }
+}
+
+static void run(api_exchange *x)
+{
+    edits *e = x->state;
+    he_delta *delta = NULL;
+    he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
+    if (mesh == NULL) {
+        return;
+    }
+    he_changes changes = {0};
+    he_error err = {0};
+    uint64_t ids = issued(mesh);
+    bool publish = false;
+    api_out_array_begin(&e->out);
+    if (!run_ops(x, e, mesh)) {
+        goto out;
+    }
+    api_out_array_end(&e->out);
+    if (e->results.failed) {
+        api_fail_memory(x);
+        goto out;
+    }
+    if (he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        goto out;
+    }
+    /* An edit without effect makes no revision, unless it used up ids that its answer names. */
+    bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
+    write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0));
+    publish = effect && !e->dry_run && !x->text.failed;
+out:
+    if (publish) {
+        x->store->write_commit(x->store->self, x->mesh, e->ops, changes.replaced, &x->info);
+    } else {
+        x->store->write_abort(x->store->self, x->mesh);
+    }
+    he_changes_clear(&changes);
+    if (x->problem.code == HE_OK) {
+        answer(x, e);
+    }
+}
+
+/* A list of many operations, or one that costs the mesh, belongs on a thread that may block. */
+static bool is_long(api_exchange *x, const edits *e)
+{
+    if (api_is_costly(x, e->count, API_COSTLY_EDITS)) {
+        return true;
+    }
+    if (!e->whole) {
+        return false;
+    }
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return false;
+    }
+    uint64_t elements = issued(mesh);
+    api_read_end(x);
+    return api_is_costly(x, elements, API_COSTLY_ELEMENTS);
+}
+
+void api_edits_post(api_exchange *x)
+{
+    edits *e = he_mem_zero(1, sizeof *e);
+    if (e == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    x->state = e;
+    x->free_state = free_edits;
+    api_names_init(&e->names);
+    api_out_init(&e->out, &e->results);
+    if (!read_request(x, e)) {
+        return;
+    }
+    if (is_long(x, e)) {
+        api_defer(x, run);
+    } else if (x->problem.code == HE_OK) {
+        run(x);
+    }
+}

@@ -1,0 +1,72 @@
+#include "api/etag.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static int write_state(const api_mesh_info *info, char *out, size_t size)
+{
+    return snprintf(out, size, "\"%016" PRIx64 "-%" PRIu64 "-%" PRIu64 "-", info->incarnation,
+                    info->metadata, info->revision);
+}
+
+void api_etag_write(const api_mesh_info *info, const char *representation, char out[API_ETAG])
+{
+    int used = write_state(info, out, API_ETAG);
+    snprintf(out + used, (size_t)(API_ETAG - used), "%s\"", representation);
+}
+
+/* Step through a list of entity tags. False at the end or where the list is not well formed. */
+static bool next_tag(const char **at, bool *weak, const char **tag, size_t *length)
+{
+    *at += strspn(*at, " \t,");
+    *weak = strncmp(*at, "W/", 2) == 0;
+    const char *quote = *at + (*weak ? 2 : 0);
+    const char *end = *quote == '"' ? strchr(quote + 1, '"') : NULL;
+    if (end == NULL) {
+        return false;
+    }
+    *tag = quote;
+    *length = (size_t)(end + 1 - quote);
+    *at = end + 1;
+    return true;
+}
+
+static bool is_any(const char *header)
+{
+    size_t blanks = strspn(header, " \t");
+    return header[blanks] == '*' && header[blanks + 1 + strspn(header + blanks + 1, " \t")] == '\0';
+}
+
+bool api_etag_listed(const char *header, const char *etag)
+{
+    if (is_any(header)) {
+        return true;
+    }
+    bool weak;
+    const char *tag;
+    size_t length;
+    while (next_tag(&header, &weak, &tag, &length)) {
+        if (length == strlen(etag) && memcmp(tag, etag, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool api_etag_is_present(const char *header, const api_mesh_info *info)
+{
+    if (is_any(header)) {
+        return true;
+    }
+    char state[API_ETAG];
+    size_t prefix = (size_t)write_state(info, state, sizeof state), length;
+    bool weak;
+    const char *tag;
+    while (next_tag(&header, &weak, &tag, &length)) {
+        if (!weak && length > prefix && memcmp(tag, state, prefix) == 0) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,22 @@
+/* etag.h - entity tags and the preconditions made of them. RFC 9110 section 8.8.3 and 13.
+ *
+ * A tag is "INCARNATION-METADATA-REVISION-REPRESENTATION": the first three are the facts of a mesh
+ * that change with it, the last one word for what was sent ("summary", "obj", "page"). It is
+ * strong: two answers of one URL with equal tags are equal byte for byte. */
+#ifndef HE_API_ETAG_H
+#define HE_API_ETAG_H
+
+#include "api/store.h"
+
+enum { API_ETAG = 96 };
+
+void api_etag_write(const api_mesh_info *info, const char *representation, char out[API_ETAG]);
+
+/* If-None-Match: does the list hold this tag (W/ aside), or is it "*"? */
+bool api_etag_listed(const char *header, const char *etag);
+
+/* If-Match of a write: does the list name the present state in any representation, or is it "*"?
+ * A weak tag never matches. */
+bool api_etag_is_present(const char *header, const api_mesh_info *info);
+
+#endif

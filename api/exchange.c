@@ -1,0 +1,324 @@
+#include "api/exchange.h"
+
+#include "format/number.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- query parameters --- */
+
+static const char *find_value(const api_exchange *x, const char *name)
+{
+    for (size_t i = 0; i < x->query.count; i++) {
+        if (strcmp(x->query.pairs[i].name, name) == 0) {
+            return x->query.pairs[i].value;
+        }
+    }
+    return NULL;
+}
+
+const char *api_param_text(const api_exchange *x, const char *name)
+{
+    return find_value(x, name);
+}
+
+bool api_param_flag(const api_exchange *x, const char *name)
+{
+    const char *value = find_value(x, name);
+    return value != NULL && strcmp(value, "true") == 0;
+}
+
+uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback)
+{
+    const char *value = find_value(x, name);
+    uint64_t number = fallback;
+    size_t used;
+    if (value != NULL && he_u64_parse(value, value + strlen(value), &number, &used) != HE_OK) {
+        assert(!"checked against the route");
+    }
+    return number;
+}
+
+double api_param_number(const api_exchange *x, const char *name, double fallback)
+{
+    const char *value = find_value(x, name);
+    double number = fallback;
+    size_t used;
+    if (value != NULL &&
+        he_double_parse(value, value + strlen(value), HE_JSON_NUMBER, &number, &used) != HE_OK) {
+        assert(!"checked against the route");
+    }
+    return number;
+}
+
+static const api_parameter *find_parameter(const api_exchange *x, const char *name)
+{
+    for (const api_parameter *const *p = x->route->parameters; *p != NULL; p++) {
+        if (strcmp((*p)->name, name) == 0) {
+            return *p;
+        }
+    }
+    return NULL;
+}
+
+int api_param_choice(const api_exchange *x, const char *name)
+{
+    const char *value = find_value(x, name);
+    const api_parameter *parameter = find_parameter(x, name);
+    for (int i = 0; value != NULL && parameter != NULL && parameter->choices[i] != NULL; i++) {
+        if (strcmp(parameter->choices[i], value) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice)
+{
+    const char *value = find_value(x, name);
+    return value != NULL && api_header_has(value, choice);
+}
+
+const char *api_header_of(const api_exchange *x, const char *name)
+{
+    return x->request.header == NULL ? NULL : x->request.header(x->request.context, name);
+}
+
+/* --- refusals --- */
+
+bool api_fail(api_exchange *x, int code, const char *format, ...)
+{
+    char text[API_PROBLEM_DETAIL];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return api_problem_set(&x->problem, code, "%s", text);
+}
+
+bool api_fail_core(api_exchange *x, const he_error *err)
+{
+    return api_problem_set_core(&x->problem, err);
+}
+
+bool api_fail_path(api_exchange *x, const he_error *err)
+{
+    return api_problem_set_path(&x->problem, err);
+}
+
+bool api_fail_store(api_exchange *x, api_store_status status)
+{
+    switch (status) {
+    case API_STORE_OK:
+        break;
+    case API_STORE_ABSENT:
+        return api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"",
+                        x->mesh_id == NULL ? "" : x->mesh_id);
+    case API_STORE_TAKEN:
+        return api_fail(x, API_MESH_EXISTS, "the id is in use");
+    case API_STORE_NO_MEMORY:
+        return api_fail_memory(x);
+    case API_STORE_BUDGET:
+        return api_fail(x, API_MEMORY_BUDGET, "the mesh does not fit the memory budget");
+    case API_STORE_TOO_MANY:
+        return api_fail(x, API_TOO_MANY_MESHES, "the server holds as many meshes as it may");
+    case API_STORE_NOTHING:
+        return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
+    }
+    return api_fail(x, API_INTERNAL, "the store refused without a reason");
+}
+
+bool api_fail_memory(api_exchange *x)
+{
+    return api_fail(x, HE_NO_MEMORY, "no memory for the request");
+}
+
+/* --- locks --- */
+
+const he_mesh *api_read_begin(api_exchange *x)
+{
+    const he_mesh *mesh = x->store->read_begin(x->store->self, x->mesh, &x->info);
+    if (x->info.removed) {
+        x->store->read_end(x->store->self, x->mesh);
+        api_fail_store(x, API_STORE_ABSENT);
+        return NULL;
+    }
+    x->has_info = true;
+    return mesh;
+}
+
+void api_read_end(api_exchange *x)
+{
+    x->store->read_end(x->store->self, x->mesh);
+}
+
+static bool refuse_stale(api_exchange *x, const char *what)
+{
+    api_fail(x, API_STALE, "%s, it is at revision %llu", what,
+             (unsigned long long)x->info.revision);
+    x->problem.has_revision = true;
+    x->problem.revision = x->info.revision;
+    return false;
+}
+
+static bool check_preconditions(api_exchange *x, const uint64_t *expected)
+{
+    const char *match = api_header_of(x, "If-Match");
+    const char *none = api_header_of(x, "If-None-Match");
+    if (match != NULL && !api_etag_is_present(match, &x->info)) {
+        return refuse_stale(x, "If-Match names no present state of the mesh");
+    }
+    if (none != NULL && api_etag_is_present(none, &x->info)) {
+        return api_fail(x, API_PRECONDITION, "the mesh exists in a state If-None-Match names");
+    }
+    if (expected != NULL && *expected != x->info.revision) {
+        return refuse_stale(x, "the mesh is not at the expected revision");
+    }
+    return true;
+}
+
+he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **delta)
+{
+    uint64_t revision = 0;
+    if (expected != NULL && !api_in_u64(expected, 1, (uint64_t)1 << 53, &revision)) {
+        return NULL;
+    }
+    he_mesh *mesh = x->store->write_begin(x->store->self, x->mesh, &x->info, delta);
+    if (mesh == NULL) {
+        api_fail_memory(x);
+        return NULL;
+    }
+    bool good = !x->info.removed || api_fail_store(x, API_STORE_ABSENT);
+    if (good && check_preconditions(x, expected == NULL ? NULL : &revision)) {
+        x->has_info = true;
+        return mesh;
+    }
+    x->store->write_end(x->store->self, x->mesh);
+    return NULL;
+}
+
+api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
+{
+    api_snapshot *snapshot = NULL;
+    api_store_status status = x->store->snapshot(x->store->self, x->mesh, &snapshot);
+    if (status != API_STORE_OK) {
+        api_fail_store(x, status);
+        return NULL;
+    }
+    *content = x->store->snapshot_content(snapshot, &x->info);
+    x->has_info = true;
+    return snapshot;
+}
+
+bool api_precondition_absent(api_exchange *x)
+{
+    return api_header_of(x, "If-Match") == NULL ||
+           api_fail(x, API_PRECONDITION, "If-Match asks for a mesh that does not exist");
+}
+
+/* --- work --- */
+
+void api_defer(api_exchange *x, void (*handler)(api_exchange *x))
+{
+    if (x->phase == API_PHASE_WORK) {
+        handler(x);
+    } else {
+        x->deferred = handler;
+    }
+}
+
+bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold)
+{
+    return x->phase != API_PHASE_WORK && amount > threshold;
+}
+
+/* --- answers --- */
+
+void api_answer_header(api_exchange *x, const char *name, const char *value)
+{
+    const char *copy = api_arena_copy(&x->arena, value, strlen(value));
+    if (copy == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    assert(x->answer.header_count < API_ANSWER_HEADERS);
+    x->answer.headers[x->answer.header_count++] = (api_header){name, copy};
+}
+
+void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
+{
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    assert(length >= 0 && (size_t)length < sizeof text);
+    (void)length;
+    api_answer_header(x, name, text);
+}
+
+void api_answer_bytes(api_exchange *x, int status, const char *type, const char *bytes,
+                      size_t length)
+{
+    assert(!x->answered);
+    x->answered = true;
+    x->answer.status = status;
+    x->answer.bytes = bytes;
+    x->answer.length = (int64_t)length;
+    if (type != NULL) {
+        api_answer_header(x, "Content-Type", type);
+    }
+}
+
+void api_answer_text(api_exchange *x, int status, const char *type)
+{
+    if (x->text.failed) {
+        api_fail_memory(x);
+    } else {
+        api_answer_bytes(x, status, type, x->text.bytes, x->text.length);
+    }
+}
+
+void api_answer_json(api_exchange *x, int status)
+{
+    api_answer_text(x, status, "application/json");
+}
+
+void api_answer_empty(api_exchange *x, int status)
+{
+    api_answer_bytes(x, status, NULL, "", 0);
+}
+
+void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
+                       int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
+                       void (*free_stream)(void *stream))
+{
+    api_answer_bytes(x, status, type, NULL, 0);
+    x->answer.length = length;
+    x->answer.read = read;
+    x->answer.context = stream;
+    x->stream = stream;
+    x->free_stream = free_stream;
+}
+
+void api_answer_etag(api_exchange *x, const char *representation)
+{
+    char etag[API_ETAG];
+    api_etag_write(&x->info, representation, etag);
+    api_answer_header(x, "ETag", etag);
+}
+
+bool api_not_modified(api_exchange *x, const char *representation)
+{
+    char etag[API_ETAG];
+    const char *none = api_header_of(x, "If-None-Match");
+    api_etag_write(&x->info, representation, etag);
+    api_answer_header(x, "ETag", etag);
+    if (none == NULL || !api_etag_listed(none, etag)) {
+        return false;
+    }
+    api_answer_empty(x, 304);
+    return true;
+}

@@ -1,0 +1,152 @@
+/* exchange.h - one request as handlers see it. Internal to api/.
+ *
+ * By the time a row's `run` is called, service.c has found the route, decoded path and query,
+ * checked Content-Type, Accept and the size of the body, parsed a control document, and taken a
+ * reference to the mesh (or answered 404). A handler reads those, and either answers or fills
+ * x->problem and returns: service.c then answers the problem. Answering nothing is a bug and
+ * becomes 500.
+ *
+ *     void api_mesh_get(api_exchange *x)
+ *     {
+ *         const he_mesh *mesh = api_read_begin(x);
+ *         if (mesh == NULL) {
+ *             return;
+ *         }
+ *         if (!api_not_modified(x, "summary")) {
+ *             write_summary(&x->out, mesh, &x->info);
+ *             api_answer_json(x, 200);
+ *         }
+ *         api_read_end(x);
+ *     }
+ *
+ * Everything in the arena, texts and state die with the exchange, after the answer was sent. */
+#ifndef HE_API_EXCHANGE_H
+#define HE_API_EXCHANGE_H
+
+#include "api/api.h"
+#include "api/cursor.h"
+#include "api/etag.h"
+#include "api/json_in.h"
+#include "api/json_out.h"
+#include "api/limits.h"
+#include "api/media.h"
+#include "api/routes.h"
+
+struct api_service {
+    const api_store *store;
+    api_options options;
+};
+
+/* Where an exchange is: begin sets BODY, WORK or DONE; end sets WORK or DONE; work sets DONE. */
+typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_DONE } api_phase;
+
+struct api_exchange {
+    api_service *service;
+    const api_store *store;
+    api_arena arena;
+    api_phase phase;
+
+    /* --- the request --- */
+    api_request request;
+    const api_route *route; /* NULL where none matched */
+    bool head;              /* HEAD: the server sends the headers only */
+    const char *mesh_id;    /* of the path, well formed; NULL: none */
+    he_kind kind;           /* of {kind} */
+    uint32_t id;            /* of {id} */
+    const char *relation;   /* of {relation}, one of api_relations(kind) */
+    const char *code;       /* of {code} */
+    api_query query;
+    const char *media_in;  /* which of route->consumes the body is, NULL without a body */
+    const char *media_out; /* which of route->produces is wanted */
+    bool minimal;          /* Prefer: return=minimal */
+
+    /* --- its body --- */
+    api_text body;
+    uint64_t received; /* bytes */
+    api_document document;
+    bool has_root;
+    api_in root; /* of a control document */
+
+    /* --- the mesh --- */
+    api_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
+    api_mesh_info info; /* filled by read_begin, write_begin and what the handler passes on */
+    bool has_info;
+
+    /* --- the handler's own, freed by `free_state` with the exchange --- */
+    void *state;
+    void (*free_state)(void *state);
+    void (*deferred)(api_exchange *x);
+
+    /* --- the answer --- */
+    api_problem problem;
+    api_text text;
+    api_out out; /* writes x->text */
+    bool answered;
+    api_answer answer;
+    void *stream;
+    void (*free_stream)(void *stream);
+};
+
+/* --- query parameters: checked against the row already, so these cannot fail --- */
+const char *api_param_text(const api_exchange *x, const char *name); /* NULL when absent */
+bool api_param_flag(const api_exchange *x, const char *name);        /* false when absent */
+uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback);
+double api_param_number(const api_exchange *x, const char *name, double fallback);
+int api_param_choice(const api_exchange *x, const char *name); /* index, -1 when absent */
+bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice);
+
+/* A header of the request, NULL when absent. */
+const char *api_header_of(const api_exchange *x, const char *name);
+
+/* --- locks --- */
+/* Under the shared lock, with x->info filled; NULL (and 404) when the mesh was removed. */
+const he_mesh *api_read_begin(api_exchange *x);
+void api_read_end(api_exchange *x);
+/* The same for writing: exclusive, preconditions checked (If-Match, If-None-Match). `expected` is
+ * a cursor at the body's expected_revision or NULL. On NULL the problem is filled and no lock is
+ * held. Ended by the store's write_commit, write_abort or write_end. */
+he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **delta);
+/* An immutable copy of the present revision with x->info filled; 404 or 507 on NULL. Released by
+ * the caller through the store. Not on a worker thread for large meshes: see api_defer. */
+api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content);
+
+/* If-None-Match: * or If-Match while the mesh of a PUT is absent. */
+bool api_precondition_absent(api_exchange *x);
+
+/* --- work --- */
+/* Run `handler` instead of the present one, on a thread that may block. Call and return, before
+ * taking a lock. In api_work it is called at once. */
+void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
+/* Should work on this many elements (or bytes) leave the worker? False in api_work. */
+bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
+
+/* --- answers: one of these, once --- */
+/* What x->out wrote, as application/json, or another type. */
+void api_answer_json(api_exchange *x, int status);
+void api_answer_text(api_exchange *x, int status, const char *type);
+/* Bytes that live as long as the service or the exchange. */
+void api_answer_bytes(api_exchange *x, int status, const char *type, const char *bytes,
+                      size_t length);
+void api_answer_empty(api_exchange *x, int status); /* 204 and the like */
+/* Takes `stream`, freed with the exchange. `length` -1: not known. */
+void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
+                       int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
+                       void (*free_stream)(void *stream));
+/* A header of the answer; `value` is copied. Before or after the answer. */
+void api_answer_header(api_exchange *x, const char *name, const char *value);
+void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* The ETag of x->info in this representation. */
+void api_answer_etag(api_exchange *x, const char *representation);
+/* Puts the ETag; true when If-None-Match names it, and then 304 was answered. */
+bool api_not_modified(api_exchange *x, const char *representation);
+
+/* --- refusals: fill x->problem; always false --- */
+bool api_fail(api_exchange *x, int code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+bool api_fail_core(api_exchange *x, const he_error *err); /* about the body */
+bool api_fail_path(api_exchange *x, const he_error *err); /* about the path */
+bool api_fail_store(api_exchange *x, api_store_status status);
+bool api_fail_memory(api_exchange *x);
+
+#endif

@@ -1,0 +1,143 @@
+/* Undo, redo, and the list of what each revision did. */
+#include "api/handlers.h"
+
+#include "api/changes.h"
+
+#include <string.h>
+
+static const char *const step_members[] = {"expected_revision", NULL};
+
+/* The revision a step makes is one step further in the log, so its changes are those of the delta
+ * it applied, seen in the direction it was applied. */
+static bool write_step(api_exchange *x, const he_mesh *mesh, const he_delta *delta,
+                       api_action which)
+{
+    he_changes changes;
+    he_error err = {0};
+    bool undone = which == API_UNDO;
+    if (he_changes_find(mesh, delta, 0, delta->count, undone, &changes, &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    api_out *out = &x->out;
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", x->info.revision);
+    api_out_key(out, "results");
+    api_out_array_begin(out);
+    api_out_array_end(out);
+    api_write_changes(out, &changes);
+    api_out_key_u64(out, "undo", x->info.undo);
+    api_out_key_u64(out, "redo", x->info.redo);
+    api_out_object_end(out);
+    he_changes_clear(&changes);
+    return !x->text.failed || api_fail_memory(x);
+}
+
+static void step(api_exchange *x, api_action which)
+{
+    const api_store *store = x->store;
+    api_in expected;
+    bool has_expected = false;
+    if (x->has_root) {
+        if (!api_in_only(&x->root, step_members)) {
+            return;
+        }
+        has_expected = api_in_find(&x->root, "expected_revision", &expected);
+    }
+    he_delta *delta = NULL;
+    he_mesh *mesh = api_write_begin(x, has_expected ? &expected : NULL, &delta);
+    if (mesh == NULL) {
+        return;
+    }
+    api_store_status status = store->step(store->self, x->mesh, which, &delta, &x->info);
+    if (status == API_STORE_NOTHING) {
+        api_fail(x, which == API_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
+                 "no edit is left to %s at revision %llu", which == API_UNDO ? "undo" : "do again",
+                 (unsigned long long)x->info.revision);
+    } else if (status != API_STORE_OK) {
+        api_fail_store(x, status);
+    } else if (!write_step(x, mesh, delta, which)) {
+        /* The client is told that nothing happened: make it true. */
+        api_action back = which == API_UNDO ? API_REDO : API_UNDO;
+        if (store->step(store->self, x->mesh, back, &delta, &x->info) != API_STORE_OK) {
+            api_fail(x, API_INTERNAL, "the step could not be taken back");
+        }
+    }
+    store->write_end(store->self, x->mesh);
+    if (x->problem.code != HE_OK) {
+        return;
+    }
+    api_answer_etag(x, "edits");
+    if (x->minimal) {
+        api_answer_header(x, "Preference-Applied", "return=minimal");
+        api_answer_empty(x, 204);
+    } else {
+        api_answer_json(x, 200);
+    }
+}
+
+void api_undo_post(api_exchange *x)
+{
+    step(x, API_UNDO);
+}
+
+void api_redo_post(api_exchange *x)
+{
+    step(x, API_REDO);
+}
+
+static const char *const actions[] = {
+    [API_EDIT] = "edit", [API_UNDO] = "undo", [API_REDO] = "redo", [API_REPLACE] = "replace"};
+
+/* "a,b,..." as ["a","b","..."]. */
+static void write_names(api_out *out, const char *names)
+{
+    api_out_array_begin(out);
+    while (*names != '\0') {
+        size_t length = strcspn(names, ",");
+        api_out_string_length(out, names, length);
+        names += length + (names[length] == ',');
+    }
+    api_out_array_end(out);
+}
+
+static void write_entry(api_out *out, const api_entry *entry)
+{
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", entry->revision);
+    api_out_key_string(out, "action", actions[entry->action]);
+    if (entry->inverts != 0) {
+        api_out_key_u64(out, "inverts", entry->inverts);
+    }
+    api_out_key(out, "ops");
+    write_names(out, entry->ops);
+    api_out_key_bool(out, "undoable", entry->undoable);
+    api_out_key_u64(out, "bytes", entry->bytes);
+    api_out_key_time(out, "time", entry->time);
+    api_out_object_end(out);
+}
+
+void api_edits_list(api_exchange *x)
+{
+    uint64_t limit = api_param_u64(x, "limit", API_DEFAULT_PAGE);
+    if (api_read_begin(x) == NULL) {
+        return;
+    }
+    if (!api_not_modified(x, "history")) {
+        api_out *out = &x->out;
+        api_out_object_begin(out);
+        api_out_key_u64(out, "revision", x->info.revision);
+        api_out_key(out, "entries");
+        api_out_array_begin(out);
+        api_entry entry;
+        for (size_t i = 0; i < limit && x->store->history(x->store->self, x->mesh, i, &entry);
+             i++) {
+            write_entry(out, &entry);
+        }
+        api_out_array_end(out);
+        api_out_key_u64(out, "undo", x->info.undo);
+        api_out_key_u64(out, "redo", x->info.redo);
+        api_out_object_end(out);
+        api_answer_json(x, 200);
+    }
+    api_read_end(x);
+}

@@ -1,0 +1,54 @@
+/* limits.h - every maximum that input from outside meets, in one place.
+ *
+ * Sizes are bytes unless said otherwise. What exceeds one is refused, never cut. */
+#ifndef HE_API_LIMITS_H
+#define HE_API_LIMITS_H
+
+/* Bodies. A parsed control document costs at most API_MAX_*_VALUES * 64 bytes of cJSON nodes beside
+ * its strings. */
+#define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
+#define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
+#define API_MAX_EDITS          ((size_t)8 << 20) /* an edit list */
+#define API_MAX_EDITS_VALUES   ((size_t)1 << 20)
+#define API_DEFAULT_UPLOAD     ((uint64_t)1 << 30) /* a mesh document or file; api_options.max_upload \
+                                                    */
+
+/* JSON */
+enum {
+    API_MAX_DEPTH = 32,    /* nesting of arrays and objects */
+    API_MAX_MEMBERS = 128, /* of one object */
+    API_MAX_NUMBER = 60,   /* characters of a number in a control document: cJSON reads 63 */
+    API_MAX_DOCUMENT_NUMBER = 1024, /* the same in a mesh document */
+    API_MAX_KEY = 256               /* characters of a top-level member's name in a mesh document */
+};
+
+/* The request line */
+enum {
+    API_MAX_URI = 8192,      /* path and query together */
+    API_MAX_SEGMENTS = 16,   /* of a path */
+    API_MAX_SEGMENT = 512,   /* one decoded segment */
+    API_MAX_PARAMETERS = 16, /* of a query */
+    API_MAX_REQUEST_ID = 128
+};
+
+/* What a request may ask for */
+enum {
+    API_DEFAULT_PAGE = 1000, /* items */
+    API_MAX_PAGE = 10000,
+    API_MAX_OPS = 65536,       /* operations of one edit list */
+    API_MAX_AS = 64,           /* characters of an "as" name */
+    API_MAX_QUERIES = 10000,   /* questions of one query */
+    API_MAX_PATH_STEPS = 4096, /* of a traversal's path */
+    API_MAX_WALK = 10000000    /* half-edges a walk may answer with */
+};
+
+/* Above these a costly request leaves the worker for the job pool (API_WORK). */
+enum {
+    API_COSTLY_ELEMENTS = 20000,    /* vertices, half-edges and faces together */
+    API_COSTLY_UPLOAD = 256 * 1024, /* bytes received */
+    API_COSTLY_EDITS = 2000         /* operations of one list */
+};
+
+enum { API_PROBLEM_ELEMENTS = 100 }; /* named one by one in a problem */
+
+#endif

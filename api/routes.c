@@ -1,0 +1,519 @@
+#include "api/routes.h"
+
+#include "api/handlers.h"
+
+#include <string.h>
+
+/* --- media types --- */
+
+static const char *const json[] = {"application/json", NULL};
+static const char *const merge_patch[] = {"application/merge-patch+json", "application/json", NULL};
+static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
+static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
+static const char *const mesh_in[] = {"application/json",
+                                      "model/obj",
+                                      "model/stl",
+                                      "model/gltf-binary",
+                                      "model/ply",
+                                      "application/ply",
+                                      "model/x-off",
+                                      "application/octet-stream",
+                                      NULL};
+static const char *const mesh_out[] = {
+    "application/json", "model/obj",   "model/stl", "model/gltf-binary",
+    "model/ply",        "model/x-off", NULL};
+static const char *const html[] = {"text/html", NULL};
+static const char *const anything[] = {"text/html",
+                                       "text/javascript",
+                                       "text/css",
+                                       "image/svg+xml",
+                                       "image/png",
+                                       "application/json",
+                                       "text/plain",
+                                       "font/woff2",
+                                       "application/octet-stream",
+                                       NULL};
+
+/* --- query parameters --- */
+
+static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "json", NULL};
+static const char *const repairs[] = {
+    "weld", "split", "orient", "drop_degenerate", "drop_duplicates", NULL};
+static const char *const connections[] = {"vertex", "edge", NULL};
+
+static const api_parameter limit = {
+    "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "How many items a page has at most."};
+static const api_parameter cursor = {
+    "cursor", API_PARAM_TEXT, 0, 0, NULL, "Where to go on: `next` of the page before."};
+static const api_parameter turning = {
+    "cw", API_PARAM_FLAG, 0,
+    0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
+static const api_parameter format = {
+    "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
+static const api_parameter repair = {
+    "repair", API_PARAM_CHOICES,
+    0,        0,
+    repairs,  "What may be changed so that the structure can hold the file, separated by commas."};
+static const api_parameter tolerance = {
+    "tolerance", API_PARAM_NUMBER, 0, 1e300, NULL, "Distance within which `weld` joins vertices."};
+static const api_parameter name = {
+    "name", API_PARAM_TEXT, 0, 0, NULL, "Name of the mesh, where the body is a file."};
+static const api_parameter identity = {
+    "id", API_PARAM_TEXT, 0, 0, NULL, "Id of the mesh to be made; the server chooses without."};
+static const api_parameter by = {
+    "by", API_PARAM_CHOICE, 0,
+    0,    connections,      "Faces are connected across edges, or already by a shared vertex."};
+
+/* --- the table --- */
+
+static const api_route routes[] = {
+    /* the collection */
+    {.method = "GET",
+     .path = "/v1/meshes",
+     .name = "meshes_list",
+     .run = api_meshes_list,
+     .produces = json,
+     .parameters = {&limit, &cursor},
+     .statuses = {200},
+     .response = "mesh_page",
+     .summary = "List the meshes",
+     .doc = "A page of ids, names, revisions and counts, in the order of ids."},
+    {.method = "POST",
+     .path = "/v1/meshes",
+     .name = "meshes_create",
+     .begin = api_meshes_create_begin,
+     .body = api_meshes_create_body,
+     .run = api_meshes_create,
+     .flags = API_WRITES | API_COSTLY,
+     .body_kind = API_BODY_UPLOAD,
+     .consumes = mesh_in,
+     .produces = json,
+     .parameters = {&format, &name, &identity, &repair, &tolerance},
+     .statuses = {201, 409, 413, 415, 422},
+     .request = "create",
+     .response = "created",
+     .summary = "Create a mesh",
+     .doc = "From a mesh document, a shape, or a file. What the structure cannot hold is refused "
+            "with each offending element, unless repair is asked for."},
+
+    /* one mesh */
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_get",
+     .run = api_mesh_get,
+     .flags = API_COSTLY,
+     .produces = json,
+     .statuses = {200, 304},
+     .response = "summary",
+     .summary = "Summary of a mesh",
+     .doc = "Counts, topology and measures of the present revision."},
+    {.method = "PATCH",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_patch",
+     .run = api_mesh_patch,
+     .flags = API_WRITES | API_COSTLY,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = merge_patch,
+     .produces = json,
+     .statuses = {200, 204, 412, 413, 415},
+     .request = "mesh_patch",
+     .response = "summary",
+     .summary = "Change the name",
+     .doc = "A JSON merge patch (RFC 7396) of the mesh's own members; the content and its revision "
+            "stay."},
+    {.method = "PUT",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_put",
+     .begin = api_mesh_put_begin,
+     .body = api_mesh_put_body,
+     .run = api_mesh_put,
+     .flags = API_WRITES | API_COSTLY | API_MAY_CREATE,
+     .body_kind = API_BODY_UPLOAD,
+     .consumes = mesh_in,
+     .produces = json,
+     .parameters = {&format, &name, &repair, &tolerance},
+     .statuses = {200, 201, 204, 409, 412, 413, 415, 422},
+     .request = "create",
+     .response = "created",
+     .summary = "Replace a mesh, or create it under this id",
+     .doc = "The body is that of a create. Replacing makes a new revision and ends the undo stack. "
+            "With If-None-Match: * an existing mesh is 412."},
+    {.method = "DELETE",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_delete",
+     .run = api_mesh_delete,
+     .flags = API_WRITES,
+     .produces = json,
+     .statuses = {204, 412},
+     .summary = "Delete a mesh",
+     .doc = "Its id may be used again; entity tags and event ids do not repeat."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/content",
+     .name = "content_get",
+     .run = api_content_get,
+     .flags = API_COSTLY | API_OWN_ACCEPT,
+     .produces = mesh_out,
+     .parameters = {&format},
+     .statuses = {200, 304, 422},
+     .response = "document",
+     .summary = "Export a mesh",
+     .doc = "In the format that `format` or Accept asks for."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/copy",
+     .name = "mesh_copy",
+     .run = api_mesh_copy,
+     .flags = API_WRITES | API_COSTLY,
+     .body_kind = API_BODY_OPTION,
+     .consumes = json,
+     .produces = json,
+     .statuses = {201, 409, 412, 413, 415},
+     .request = "copy",
+     .response = "summary",
+     .summary = "Copy a mesh",
+     .doc = "An independent mesh with the same ids and attributes and a history of its own."},
+
+    /* its elements */
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/{kind}",
+     .name = "elements_list",
+     .run = api_elements_list,
+     .produces = lines_too,
+     .parameters = {&limit, &cursor},
+     .statuses = {200, 304, 410},
+     .response = "element_page",
+     .summary = "List elements of a kind",
+     .doc = "A page in the order of ids, or all of them as lines of JSON that end in "
+            "{\"end\":true,\"count\":n}."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/{kind}/{id}",
+     .name = "element_get",
+     .run = api_element_get,
+     .produces = json,
+     .statuses = {200, 304, 410},
+     .response = "element",
+     .summary = "One element with all its links",
+     .doc = "A deleted element is 410, one that never was is 404."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/{kind}/{id}/{relation}",
+     .name = "relation_get",
+     .run = api_relation_get,
+     .produces = json,
+     .parameters = {&turning},
+     .statuses = {200, 304, 410},
+     .response = "adjacency",
+     .summary = "What is adjacent to an element",
+     .doc = "Counter-clockwise from the stored half-edge. Each element once."},
+
+    /* questions */
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/query",
+     .name = "query_post",
+     .run = api_query_post,
+     .flags = API_COSTLY,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = json,
+     .produces = octets_too,
+     .statuses = {200, 413, 415, 422},
+     .request = "query",
+     .response = "query_results",
+     .summary = "Ask many questions at once",
+     .doc = "Adjacency, walks, elements and half-edges between vertices, all of one revision. One "
+            "dense question may be answered as octets."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/traverse",
+     .name = "traverse_post",
+     .run = api_traverse_post,
+     .flags = API_COSTLY,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 413, 415, 422},
+     .request = "walk",
+     .response = "walked",
+     .summary = "Walk over a mesh",
+     .doc = "Paths of next, prev and twin, loops, rings, breadth-first and shortest paths."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/boundaries",
+     .name = "boundaries_get",
+     .run = api_boundaries_get,
+     .flags = API_COSTLY,
+     .produces = json,
+     .statuses = {200, 304},
+     .response = "boundaries",
+     .summary = "Boundary loops",
+     .doc = "Each boundary half-edge is in one loop."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/components",
+     .name = "components_get",
+     .run = api_components_get,
+     .flags = API_COSTLY,
+     .produces = json,
+     .parameters = {&by},
+     .statuses = {200, 304},
+     .response = "components",
+     .summary = "Connected components",
+     .doc = "Isolated vertices are left out."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/check",
+     .name = "check_get",
+     .run = api_check_get,
+     .flags = API_COSTLY,
+     .produces = json,
+     .statuses = {200, 304},
+     .response = "check",
+     .summary = "Check a mesh",
+     .doc = "Every broken invariant by its number, and every defect a valid mesh may have."},
+
+    /* edits */
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/edits",
+     .name = "edits_post",
+     .run = api_edits_post,
+     .flags = API_WRITES,
+     .body_kind = API_BODY_EDITS,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 204, 409, 412, 413, 415, 422},
+     .request = "edit",
+     .response = "edited",
+     .summary = "Edit a mesh",
+     .doc = "One operation, or a list that is applied as a whole or not at all: one revision and "
+            "one undo step."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/edits",
+     .name = "edits_list",
+     .run = api_edits_list,
+     .produces = json,
+     .parameters = {&limit, &cursor},
+     .statuses = {200, 304, 410},
+     .response = "history",
+     .summary = "History of a mesh",
+     .doc = "Newest first."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/undo",
+     .name = "undo_post",
+     .run = api_undo_post,
+     .flags = API_WRITES,
+     .body_kind = API_BODY_OPTION,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 204, 409, 412, 413, 415},
+     .request = "step",
+     .response = "edited",
+     .summary = "Undo the last edit",
+     .doc = "As a new revision."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/redo",
+     .name = "redo_post",
+     .run = api_redo_post,
+     .flags = API_WRITES,
+     .body_kind = API_BODY_OPTION,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 204, 409, 412, 413, 415},
+     .request = "step",
+     .response = "edited",
+     .summary = "Do again what was undone",
+     .doc = "As a new revision, with the ids it had."},
+
+    /* the tables */
+    {.method = "GET",
+     .path = "/v1/operations",
+     .name = "operations_get",
+     .run = api_operations_get,
+     .produces = json,
+     .statuses = {200},
+     .response = "operations",
+     .summary = "The operation table",
+     .doc = "Every operation with its parameters, results, refusals and its change in V, E and F."},
+    {.method = "GET",
+     .path = "/v1/openapi.json",
+     .name = "openapi_get",
+     .run = api_openapi_get,
+     .produces = json,
+     .statuses = {200},
+     .response = "any_object",
+     .summary = "This document",
+     .doc = "The API as OpenAPI 3.1."},
+
+    /* beside the API */
+    {.method = "GET",
+     .path = "/livez",
+     .name = "live_get",
+     .run = api_live_get,
+     .flags = API_FIXED,
+     .produces = json,
+     .statuses = {200},
+     .summary = "Is the process alive?"},
+    {.method = "GET",
+     .path = "/readyz",
+     .name = "ready_get",
+     .run = api_ready_get,
+     .flags = API_FIXED,
+     .produces = json,
+     .statuses = {200},
+     .summary = "Does the server take requests?"},
+    {.method = "GET",
+     .path = "/version",
+     .name = "version_get",
+     .run = api_version_get,
+     .flags = API_FIXED,
+     .produces = json,
+     .statuses = {200},
+     .summary = "Version of the server"},
+    {.method = "GET",
+     .path = "/problems/{code}",
+     .name = "problem_get",
+     .run = api_problem_get,
+     .flags = API_FIXED,
+     .produces = html,
+     .statuses = {200},
+     .summary = "What a problem means"},
+    {.method = "GET",
+     .path = "/",
+     .name = "page_get",
+     .run = api_page_get,
+     .flags = API_FIXED,
+     .produces = html,
+     .statuses = {200, 304},
+     .summary = "The viewer"},
+    {.method = "GET",
+     .path = "/assets/{asset}",
+     .name = "asset_get",
+     .run = api_page_get,
+     .flags = API_FIXED | API_OWN_ACCEPT,
+     .produces = anything,
+     .statuses = {200, 304},
+     .summary = "Files of the viewer"},
+};
+
+size_t api_route_count(void)
+{
+    return sizeof routes / sizeof routes[0];
+}
+const api_route *api_route_at(size_t i)
+{
+    return &routes[i];
+}
+
+const int *api_route_common(void)
+{
+    static const int common[] = {400, 404, 405, 406, 414, 500, 503, 507, 0};
+    return common;
+}
+
+const char *const *api_relations(he_kind kind)
+{
+    static const char *const of_vertex[] = {"vertices", "outgoing", "incoming",
+                                            "edges",    "faces",    NULL};
+    static const char *const of_halfedge[] = {"loop", "ring", NULL};
+    static const char *const of_edge[] = {"vertices", "halfedges", "faces", NULL};
+    static const char *const of_face[] = {"vertices", "halfedges", "edges", "faces", NULL};
+    static const char *const of_mesh[] = {NULL};
+    switch (kind) {
+    case HE_VERTEX:
+        return of_vertex;
+    case HE_HALFEDGE:
+        return of_halfedge;
+    case HE_EDGE:
+        return of_edge;
+    case HE_FACE:
+        return of_face;
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return of_mesh;
+}
+
+/* --- dispatch --- */
+
+static bool match_variable(const char *variable, size_t length, const char *segment,
+                           api_variables *out)
+{
+    switch (variable[1]) {
+    case 'm':
+        out->mesh = segment;
+        return true;
+    case 'i':
+        out->id = segment;
+        return true;
+    case 'r':
+        out->relation = segment;
+        return true;
+    case 'c':
+        out->code = segment;
+        return true;
+    case 'k':
+        for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
+            if (strcmp(segment, he_kind_plural(kind)) == 0) {
+                out->kind = kind;
+                out->has_kind = true;
+                return true;
+            }
+        }
+        return false;
+    default:
+        return length > 0;
+    }
+}
+
+static bool match(const char *template, const api_path *path, api_variables *out)
+{
+    size_t i = 0;
+    *out = (api_variables){0};
+    while (template[0] == '/' && template[1] != '\0') {
+        template ++;
+        const char *slash = strchr(template, '/');
+        size_t length = slash == NULL ? strlen(template) : (size_t)(slash - template);
+        if (i == path->count) {
+            return false;
+        }
+        const char *segment = path->segments[i++];
+        if (strncmp(template, "{asset}", length) == 0 && length == 7) {
+            return true;
+        }
+        bool same = template[0] == '{'
+                        ? match_variable(template, length, segment, out)
+                        : strncmp(template, segment, length) == 0 && segment[length] == '\0';
+        if (!same) {
+            return false;
+        }
+        template += length;
+    }
+    return i == path->count;
+}
+
+static void add_method(char *allow, const char *method)
+{
+    if (allow[0] != '\0') {
+        strncat(allow, ", ", API_ALLOW - strlen(allow) - 1);
+    }
+    strncat(allow, method, API_ALLOW - strlen(allow) - 1);
+}
+
+const api_route *api_route_find(const char *method, const api_path *path, api_variables *out,
+                                char allow[API_ALLOW])
+{
+    const char *wanted = strcmp(method, "HEAD") == 0 ? "GET" : method;
+    allow[0] = '\0';
+    for (size_t i = 0; i < api_route_count(); i++) {
+        const api_route *route = &routes[i];
+        /* Other methods matter only to a request that finds no row: see below. */
+        if (strcmp(route->method, wanted) == 0 && match(route->path, path, out)) {
+            return route;
+        }
+    }
+    for (size_t i = 0; i < api_route_count(); i++) {
+        if (match(routes[i].path, path, out)) {
+            add_method(allow, routes[i].method);
+            if (strcmp(routes[i].method, "GET") == 0) {
+                add_method(allow, "HEAD");
+            }
+        }
+    }
+    if (allow[0] != '\0') {
+        add_method(allow, "OPTIONS");
+    }
+    return NULL;
+}
