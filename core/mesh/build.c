@@ -161,13 +161,10 @@ static void check_fans(const builder *b, he_report *report, uint64_t *total)
     }
 }
 
-/* Corner rows of a soup column become half-edge rows; the others keep their numbers. */
-static he_status build_column(const he_column *from, const builder *b, he_column **out,
-                              he_error *err)
+/* Corner rows of a soup column become half-edge rows. */
+static he_status build_corners(const he_column *from, const builder *b, he_column **out,
+                               he_error *err)
 {
-    if (from->domain != HE_HALFEDGE) {
-        return he_column_copy(from, out, err);
-    }
     he_column *column;
     he_status status = he_column_new(from->name, from->domain, from->type, from->components,
                                      from->rule, &column, err);
@@ -188,9 +185,10 @@ static he_status build_column(const he_column *from, const builder *b, he_column
     return HE_OK;
 }
 
-static he_status build_columns(const builder *b, he_error *err)
+/* The columns whose rows keep their numbers are moved where they may be, which cannot fail, and so
+ * comes last. */
+static he_status build_columns(const builder *b, he_soup *soup, bool take, he_error *err)
 {
-    const he_soup *soup = b->soup;
     he_content *k = b->c;
     if (soup->column_count == 0) {
         return HE_OK;
@@ -199,13 +197,24 @@ static he_status build_columns(const builder *b, he_error *err)
     if (k->columns == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu attributes", soup->column_count);
     }
-    k->column_capacity = soup->column_count;
+    k->column_count = k->column_capacity = soup->column_count;
     for (size_t i = 0; i < soup->column_count; i++) {
-        he_status status = build_column(soup->columns[i], b, &k->columns[i], err);
+        const he_column *column = soup->columns[i];
+        he_status status = HE_OK;
+        if (column->domain == HE_HALFEDGE) {
+            status = build_corners(column, b, &k->columns[i], err);
+        } else if (!take) {
+            status = he_column_copy(column, &k->columns[i], err);
+        }
         if (status != HE_OK) {
             return status;
         }
-        k->column_count++;
+    }
+    for (size_t i = 0; i < soup->column_count; i++) {
+        if (k->columns[i] == NULL) {
+            k->columns[i] = soup->columns[i];
+            soup->columns[i] = NULL;
+        }
         size_t rows = he_content_issued(k, k->columns[i]->domain);
         if (k->columns[i]->rows > rows) {
             k->columns[i]->rows = rows;
@@ -291,7 +300,7 @@ static he_status build_links(he_soup *soup, unsigned flags, he_content *k, size_
         status = refuse(report, err);
         goto out;
     }
-    status = build_columns(&b, err);
+    status = build_columns(&b, soup, (flags & HE_BUILD_TAKE) != 0, err);
 out:
     he_mem_free(b.assigned);
     he_mem_free(b.degree);

@@ -21,7 +21,8 @@ void he_soup_clear(he_soup *soup)
         he_column_free(soup->columns[i]);
     }
     he_mem_free(soup->columns);
-    he_soup_init(soup, &soup->limits);
+    he_limits limits = soup->limits;
+    he_soup_init(soup, &limits);
 }
 
 static size_t bytes_of(const he_soup *soup)

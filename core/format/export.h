@@ -1,0 +1,36 @@
+/* export.h - what the text writers need of a mesh: vertices without gaps in their numbers, values
+ * of attributes as text, and a list of what is left behind. */
+#ifndef HE_FORMAT_EXPORT_H
+#define HE_FORMAT_EXPORT_H
+
+#include "format/notes.h"
+#include "mesh/walk.h"
+
+/* The number of each vertex among the live ones, NULL when that is its id. HE_NO_MEMORY. */
+HE_NODISCARD he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he_error *err);
+
+/* The attribute when it exists as numbers with `least` to `most` components, else NULL. Values
+ * that are not finite are noted; he_export_value writes them as 0. */
+const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char *name,
+                                uint32_t least, uint32_t most, he_notes *notes);
+/* Note every attribute that is not among the `count` used ones (NULLs are allowed). */
+void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size_t count,
+                         he_notes *notes);
+
+/* One component, at most HE_NUMBER_TEXT bytes. Returns the end. */
+char *he_export_value(const he_column *column, size_t row, uint32_t component, char *text);
+/* A blank and a value for each component. */
+char *he_export_row(const he_column *column, size_t row, char *text);
+
+/* Corner values that are equal bit by bit, told apart and numbered in the order of faces, so that
+ * each is written once. */
+typedef struct he_distinct {
+    uint32_t *number; /* of the value of each half-edge that has a face */
+    he_ids first;     /* for each number, a half-edge that has it */
+} he_distinct;
+
+HE_NODISCARD he_status he_distinct_make(const he_mesh *mesh, const he_column *column,
+                                        he_distinct *out, he_error *err);
+void he_distinct_clear(he_distinct *distinct);
+
+#endif

@@ -1,0 +1,287 @@
+#include "format/format.h"
+
+#include "format/obj.h"
+#include "format/off.h"
+
+#include <string.h>
+
+#define LIST(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static const he_format formats[] = {
+    {
+        .name = "off",
+        .doc = "Object File Format, text: OFF with any of the prefixes ST, C and N",
+        .media_types = LIST("model/x-off", "text/x-off", "application/x-off"),
+        .extensions = LIST("off"),
+        .encodings = LIST("ascii"),
+        .carries = LIST("polygons", "isolated vertices", "vertex color", "vertex normal",
+                        "vertex uv", "face color"),
+        .sniff = he_off_sniff,
+        .reading = &he_off_reading,
+        .writing = &he_off_writing,
+    },
+    {
+        .name = "obj",
+        .doc = "Wavefront OBJ, polygons only; material libraries are named but never opened",
+        .media_types = LIST("model/obj", "text/x-obj"),
+        .extensions = LIST("obj"),
+        .encodings = LIST("ascii"),
+        .carries = LIST("polygons", "isolated vertices", "vertex color", "vertex normal",
+                        "vertex uv", "halfedge normal", "halfedge uv", "face object", "face group",
+                        "face material", "face smoothing"),
+        .sniff = he_obj_sniff,
+        .reading = &he_obj_reading,
+        .writing = &he_obj_writing,
+    },
+};
+
+const he_format *he_format_at(size_t i)
+{
+    return i < sizeof formats / sizeof *formats ? &formats[i] : NULL;
+}
+
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c + ('a' - 'A')) : c;
+}
+
+/* `text` up to its parameters, if it has any. */
+static bool same_word(const char *word, const char *text)
+{
+    while (*word != '\0' && lower(*text) == *word) {
+        word++;
+        text++;
+    }
+    while (*text == ' ' || *text == '\t') {
+        text++;
+    }
+    return *word == '\0' && (*text == '\0' || *text == ';');
+}
+
+static int position(const char *const *list, const char *text)
+{
+    for (int i = 0; list[i] != NULL; i++) {
+        if (same_word(list[i], text)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+const he_format *he_format_find(const char *name)
+{
+    const he_format *format;
+    for (size_t i = 0; (format = he_format_at(i)) != NULL; i++) {
+        if (strcmp(format->name, name) == 0) {
+            return format;
+        }
+    }
+    return NULL;
+}
+
+const he_format *he_format_of_media_type(const char *type)
+{
+    const he_format *format;
+    for (size_t i = 0; (format = he_format_at(i)) != NULL; i++) {
+        if (position(format->media_types, type) >= 0) {
+            return format;
+        }
+    }
+    return NULL;
+}
+
+const he_format *he_format_of_extension(const char *extension)
+{
+    const he_format *format;
+    for (size_t i = 0; (format = he_format_at(i)) != NULL; i++) {
+        if (position(format->extensions, extension) >= 0) {
+            return format;
+        }
+    }
+    return NULL;
+}
+
+const he_format *he_format_sniff(const void *bytes, size_t n)
+{
+    const he_format *format;
+    for (size_t i = 0; (format = he_format_at(i)) != NULL; i++) {
+        if (format->sniff(bytes, n)) {
+            return format;
+        }
+    }
+    return NULL;
+}
+
+int he_format_encoding(const he_format *format, const char *encoding)
+{
+    return position(format->encodings, encoding);
+}
+
+void he_import_clear(he_import *import)
+{
+    he_soup_clear(&import->soup);
+    he_places_clear(&import->vertices);
+    he_places_clear(&import->faces);
+    import->notes = (he_notes){0};
+}
+
+void he_import_locate(const he_import *import, he_error *err)
+{
+    const he_places *places = NULL;
+    if (err->place != HE_PLACE_NONE) {
+        return;
+    }
+    if (err->kind == HE_VERTEX && err->id < import->soup.vertex_count) {
+        places = &import->vertices;
+    } else if (err->kind == HE_FACE && err->id < import->soup.face_count) {
+        places = &import->faces;
+    }
+    if (places != NULL && places->count > 0) {
+        err->place = places->unit;
+        err->at = he_places_find(places, err->id);
+    }
+}
+
+struct he_reader {
+    const he_reading *reading;
+    void *state;
+    he_import import;
+    he_error failure; /* HE_OK until a call has failed */
+};
+
+he_status he_reader_new(const he_format *format, const he_limits *limits, he_reader **out,
+                        he_error *err)
+{
+    if (format->reading == NULL) {
+        return he_fail_plain(err, HE_UNSUPPORTED, "%s files cannot be read", format->name);
+    }
+    he_reader *reader = he_mem_zero(1, sizeof *reader);
+    if (reader == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+    }
+    he_soup_init(&reader->import.soup, limits);
+    reader->reading = format->reading;
+    he_status status = reader->reading->open(&reader->import, &reader->state, err);
+    if (status != HE_OK) {
+        he_mem_free(reader);
+        return status;
+    }
+    *out = reader;
+    return HE_OK;
+}
+
+void he_reader_free(he_reader *reader)
+{
+    if (reader != NULL) {
+        reader->reading->close(reader->state);
+        he_import_clear(&reader->import);
+        he_mem_free(reader);
+    }
+}
+
+/* Keep a failure, pass it on. */
+static he_status settle(he_reader *reader, he_status status, const he_error *failure, he_error *err)
+{
+    if (status != HE_OK) {
+        reader->failure = *failure;
+        if (err != NULL) {
+            *err = *failure;
+        }
+    }
+    return status;
+}
+
+he_status he_reader_feed(he_reader *reader, const void *bytes, size_t n, he_error *err)
+{
+    he_error failure = reader->failure;
+    he_status status = failure.status;
+    if (status == HE_OK && n > 0) {
+        status = reader->reading->feed(reader->state, bytes, n, &failure);
+    }
+    return settle(reader, status, &failure, err);
+}
+
+he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
+{
+    he_error failure = reader->failure;
+    he_status status = failure.status;
+    if (status == HE_OK) {
+        status = reader->reading->finish(reader->state, &failure);
+    }
+    if (status == HE_OK) {
+        *out = reader->import;
+        reader->import = (he_import){0};
+    }
+    return settle(reader, status, &failure, err);
+}
+
+struct he_writer {
+    const he_writing *writing;
+    void *state;
+    he_notes notes;
+    /* What did not fit the caller's last buffer. */
+    size_t spare_from, spare_to;
+    char spare[HE_WRITE_ROOM];
+};
+
+he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
+                        he_writer **out, he_error *err)
+{
+    if (format->writing == NULL) {
+        return he_fail_plain(err, HE_UNSUPPORTED, "%s files cannot be written", format->name);
+    }
+    he_writer *writer = he_mem_zero(1, sizeof *writer);
+    if (writer == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+    }
+    writer->writing = format->writing;
+    he_status status = writer->writing->open(mesh, encoding, &writer->notes, &writer->state, err);
+    if (status != HE_OK) {
+        he_mem_free(writer);
+        return status;
+    }
+    *out = writer;
+    return HE_OK;
+}
+
+void he_writer_free(he_writer *writer)
+{
+    if (writer != NULL) {
+        writer->writing->close(writer->state);
+        he_mem_free(writer);
+    }
+}
+
+size_t he_writer_read(he_writer *writer, void *buffer, size_t size)
+{
+    char *bytes = buffer;
+    size_t done = 0;
+    while (done < size) {
+        size_t spare = writer->spare_to - writer->spare_from;
+        if (spare > 0) {
+            size_t n = spare < size - done ? spare : size - done;
+            memcpy(bytes + done, writer->spare + writer->spare_from, n);
+            writer->spare_from += n;
+            done += n;
+        } else if (size - done >= HE_WRITE_ROOM) {
+            size_t n = writer->writing->fill(writer->state, bytes + done, size - done);
+            if (n == 0) {
+                break;
+            }
+            done += n;
+        } else {
+            writer->spare_from = 0;
+            writer->spare_to =
+                writer->writing->fill(writer->state, writer->spare, sizeof writer->spare);
+            if (writer->spare_to == 0) {
+                break;
+            }
+        }
+    }
+    return done;
+}
+
+const he_notes *he_writer_notes(const he_writer *writer)
+{
+    return &writer->notes;
+}

@@ -1,0 +1,207 @@
+#include "format/lines.h"
+
+#include "format/notes.h"
+#include "format/number.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void he_lines_init(he_lines *lines, he_line_take *take, void *context)
+{
+    *lines = (he_lines){.take = take, .context = context, .number = 1};
+}
+
+void he_lines_clear(he_lines *lines)
+{
+    he_mem_free(lines->rest);
+    lines->rest = NULL;
+    lines->length = lines->capacity = 0;
+}
+
+const char *he_continuation(const char *p, const char *end)
+{
+    p++;
+    while (p < end && *p == '\r') {
+        p++;
+    }
+    if (p == end) {
+        return p; /* the file ends here: nothing follows */
+    }
+    return *p == '\n' ? p + 1 : NULL;
+}
+
+/* Does a line that ends at the line feed `feed` go on? A comment does not; `first`: the line is not
+ * itself a continuation, so it may be one. */
+static bool goes_on(const char *begin, const char *feed, bool first)
+{
+    const char *p = feed;
+    while (p > begin && p[-1] == '\r') {
+        p--;
+    }
+    if (p == begin || p[-1] != '\\') {
+        return false;
+    }
+    p = begin;
+    while (first && (*p == ' ' || *p == '\t')) {
+        p++;
+    }
+    return !first || *p != '#';
+}
+
+static he_status check_encoding(const he_line *line, he_error *err)
+{
+    const unsigned char *b = (const unsigned char *)line->begin;
+    if (line->end - line->begin < 2) {
+        return HE_OK;
+    }
+    bool marked = (b[0] == 0xFF && b[1] == 0xFE) || (b[0] == 0xFE && b[1] == 0xFF);
+    if (marked || (b[0] == 0) != (b[1] == 0)) {
+        return he_line_fail(err, HE_UNSUPPORTED, line, line->begin,
+                            "the text is UTF-16, not UTF-8");
+    }
+    return HE_OK;
+}
+
+static he_status give(he_lines *lines, const char *begin, const char *end, he_error *err)
+{
+    while (end > begin && end[-1] == '\r') {
+        end--;
+    }
+    he_line line = {begin, end, lines->number};
+    if (lines->number == 1) {
+        he_status status = check_encoding(&line, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        if (end - begin >= 3 && memcmp(begin, "\xEF\xBB\xBF", 3) == 0) {
+            line.begin += 3;
+        }
+    }
+    return lines->take(lines->context, &line, err);
+}
+
+static he_status keep(he_lines *lines, const char *begin, const char *end, he_error *err)
+{
+    size_t n = (size_t)(end - begin);
+    if (lines->limit != 0 && lines->length + n > lines->limit) {
+        return he_fail_at(err, HE_LIMIT, HE_PLACE_LINE, lines->number,
+                          "line %llu: longer than %llu bytes", (unsigned long long)lines->number,
+                          (unsigned long long)lines->limit);
+    }
+    if (lines->length + n > lines->capacity) {
+        size_t capacity = he_mem_grown(lines->capacity, lines->length + n);
+        char *rest = he_mem_resize(lines->rest, capacity);
+        if (rest == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for a line of %zu bytes", capacity);
+        }
+        lines->rest = rest;
+        lines->capacity = capacity;
+    }
+    if (n > 0) {
+        memcpy(lines->rest + lines->length, begin, n);
+        lines->length += n;
+    }
+    return HE_OK;
+}
+
+/* One line end, at `feed`, was found; the line's last part is [begin, feed]. */
+static he_status end_line(he_lines *lines, const char *begin, const char *feed, he_error *err)
+{
+    he_status status = HE_OK;
+    if (lines->in_comment) {
+        lines->in_comment = false;
+    } else if (lines->length == 0 && !(lines->joins && goes_on(begin, feed, true))) {
+        status = give(lines, begin, feed, err);
+    } else {
+        status = keep(lines, begin, feed + 1, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        const char *last = lines->rest + lines->length - 1;
+        if (lines->joins && goes_on(lines->rest, last, lines->joined == 0)) {
+            lines->joined++;
+            return HE_OK;
+        }
+        status = give(lines, lines->rest, last, err);
+        lines->length = 0;
+    }
+    lines->number += 1 + lines->joined;
+    lines->joined = 0;
+    return status;
+}
+
+he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err)
+{
+    const char *p = bytes, *end = p + n;
+    while (p < end) {
+        const char *feed = memchr(p, '\n', (size_t)(end - p));
+        if (feed == NULL) {
+            /* line 1 is kept for its encoding to be seen */
+            lines->in_comment =
+                lines->in_comment || (lines->length == 0 && lines->number > 1 && *p == '#');
+            return lines->in_comment ? HE_OK : keep(lines, p, end, err);
+        }
+        he_status status = end_line(lines, p, feed, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        p = feed + 1;
+    }
+    return HE_OK;
+}
+
+he_status he_lines_finish(he_lines *lines, he_error *err)
+{
+    if (lines->length == 0) {
+        return HE_OK;
+    }
+    he_status status = give(lines, lines->rest, lines->rest + lines->length, err);
+    lines->length = 0;
+    return status;
+}
+
+uint64_t he_line_number(const he_line *line, const char *p)
+{
+    uint64_t number = line->number;
+    for (const char *q = line->begin; q < p; q++) {
+        number += *q == '\n';
+    }
+    return number;
+}
+
+he_status he_line_fail(he_error *err, he_status status, const he_line *line, const char *p,
+                       const char *format, ...)
+{
+    char text[HE_ERROR_TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    uint64_t number = he_line_number(line, p);
+    return he_fail_at(err, status, HE_PLACE_LINE, number, "line %llu: %s",
+                      (unsigned long long)number, text);
+}
+
+he_status he_token_fail(he_error *err, he_status status, const he_line *line, const char *p,
+                        const char *what)
+{
+    char token[40];
+    he_quote(p, he_token_end(p, line->end), token, sizeof token);
+    return he_line_fail(err, status, line, p, "'%s' %s", token, what);
+}
+
+he_status he_token_number(const he_line *line, const char **p, double *value, he_error *err)
+{
+    size_t used = 0;
+    he_status status = he_double_parse(*p, line->end, HE_FILE_NUMBER, value, &used);
+    if (status != HE_SYNTAX && !he_token_ends(*p + used, line->end)) {
+        status = HE_SYNTAX;
+    }
+    if (status != HE_OK) {
+        return he_token_fail(err, status, line, *p,
+                             status == HE_NOT_FINITE ? "is not finite" : "is not a number");
+    }
+    *p += used;
+    return HE_OK;
+}

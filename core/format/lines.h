@@ -1,0 +1,98 @@
+/* lines.h - lines and tokens of a text format that arrives in pieces.
+ *
+ * he_lines cuts the pieces into lines and gives each to a function, in place when the piece holds
+ * all of it. Lines end in LF or CRLF, the last one may end in neither. With `joins`, a backslash
+ * before the line end continues the line; the backslash and the line end then stay in the text,
+ * where the token functions take them for a blank, so that the line number of any token can still
+ * be told. A UTF-8 byte order mark is passed over, UTF-16 refused.
+ *
+ * What is kept between pieces is the unfinished line, in one block that grows by doubling; a
+ * comment is not kept. All is linear in the bytes, whatever the pieces. */
+#ifndef HE_FORMAT_LINES_H
+#define HE_FORMAT_LINES_H
+
+#include "mesh/mem.h"
+
+#include <stdbool.h>
+
+/* [begin, end) without the line end. */
+typedef struct he_line {
+    const char *begin, *end;
+    uint64_t number; /* of its first byte, from 1 */
+} he_line;
+
+typedef he_status he_line_take(void *context, const he_line *line, he_error *err);
+
+typedef struct he_lines {
+    bool joins;
+    uint64_t limit; /* bytes of an unfinished line, 0 for none */
+    he_line_take *take;
+    void *context;
+    char *rest; /* the unfinished line */
+    size_t length, capacity;
+    uint64_t number; /* of the line that is being collected */
+    uint64_t joined; /* line ends inside it */
+    bool in_comment; /* the unfinished line is a comment and not kept */
+} he_lines;
+
+void he_lines_init(he_lines *lines, he_line_take *take, void *context);
+void he_lines_clear(he_lines *lines);
+/* HE_LIMIT, HE_NO_MEMORY, HE_UNSUPPORTED for UTF-16, or what `take` returns. */
+HE_NODISCARD he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err);
+/* Give out the last line if it had no line end. */
+HE_NODISCARD he_status he_lines_finish(he_lines *lines, he_error *err);
+
+/* The end of a continuation that starts at `p`, else NULL. */
+const char *he_continuation(const char *p, const char *end);
+
+static inline const char *he_skip_blanks(const char *p, const char *end)
+{
+    while (p < end) {
+        const char *after;
+        if (*p == ' ' || *p == '\t') {
+            p++;
+        } else if (*p == '\\' && (after = he_continuation(p, end)) != NULL) {
+            p = after;
+        } else {
+            break;
+        }
+    }
+    return p;
+}
+
+/* Nothing but a comment follows; `p` is past blanks. */
+static inline bool he_at_end(const char *p, const char *end)
+{
+    return p == end || *p == '#';
+}
+
+/* Does a token end at `p`? */
+static inline bool he_token_ends(const char *p, const char *end)
+{
+    return p == end || *p == ' ' || *p == '\t' || *p == '#' ||
+           (*p == '\\' && he_continuation(p, end) != NULL);
+}
+
+/* The end of the token that starts at `p`. */
+static inline const char *he_token_end(const char *p, const char *end)
+{
+    while (!he_token_ends(p, end)) {
+        p++;
+    }
+    return p;
+}
+
+/* The number of the line that holds `p`. */
+uint64_t he_line_number(const he_line *line, const char *p);
+/* he_fail_at that line; the text begins with its number. */
+he_status he_line_fail(he_error *err, he_status status, const he_line *line, const char *p,
+                       const char *format, ...) __attribute__((format(printf, 5, 6)));
+/* The same about the token at `p`, which is quoted: "'abc' is not a number". */
+he_status he_token_fail(he_error *err, he_status status, const he_line *line, const char *p,
+                        const char *what);
+
+/* A number that is a whole token; `*p` moves behind it. HE_SYNTAX, HE_NOT_FINITE. */
+HE_NODISCARD he_status he_token_number(const he_line *line, const char **p, double *value,
+                                       he_error *err);
+
+#endif

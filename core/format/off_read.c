@@ -1,0 +1,500 @@
+#include "format/off.h"
+
+#include "format/colors.h"
+#include "format/lines.h"
+#include "format/number.h"
+
+#include <string.h>
+
+/* What the next token is. read_line goes from one to the next. */
+typedef enum section {
+    HEADER,
+    VERTEX_COUNT,
+    FACE_COUNT,
+    EDGE_COUNT,
+    VERTICES,
+    FACES,
+    DONE
+} section;
+
+enum { HAS_NORMALS = 1, HAS_COLORS = 2, HAS_UV = 4 };
+
+/* More numbers than a vertex can have: 3 + 3 + 4 + 2. */
+enum { VERTEX_NUMBERS = 16 };
+
+typedef struct off {
+    he_import *into;
+    he_lines lines;
+    section section;
+    unsigned has;
+    uint64_t vertices, faces;       /* announced */
+    double numbers[VERTEX_NUMBERS]; /* of the vertex, or of the face's colour, being read */
+    size_t number_count;            /* may exceed those kept */
+    uint32_t integers;              /* bit i: the i-th was written as an integer */
+    bool open;                      /* the last face still lacks `missing` corners */
+    uint64_t missing;
+    he_colors vertex_colors, face_colors;
+    he_column *normal, *uv; /* the soup's */
+    uint64_t last_line;
+} off;
+
+static void note(off *o, const char *code, const char *text, const he_line *line)
+{
+    he_notes_add(&o->into->notes, code, text, NULL, 0, HE_PLACE_LINE, line->number);
+}
+
+static he_status at_line(he_status status, const he_line *line, he_error *err)
+{
+    if (status != HE_OK && err != NULL && err->place == HE_PLACE_NONE) {
+        err->place = HE_PLACE_LINE;
+        err->at = line->number;
+    }
+    return status;
+}
+
+/* The flags of a header like STCNOFF; -1 when it is none, -2 for the kinds with other dimensions.
+ */
+static int header_flags(const char *p, const char *end)
+{
+    if (end - p == 3 && memcmp(p, "off", 3) == 0) {
+        return 0;
+    }
+    int flags = 0;
+    bool other = false;
+    while (end - p > 3) {
+        int flag = 0;
+        if (*p == 'S' && p[1] == 'T') {
+            flag = HAS_UV;
+            p++;
+        } else if (*p == 'C') {
+            flag = HAS_COLORS;
+        } else if (*p == 'N') {
+            flag = HAS_NORMALS;
+        } else if (*p == '4' || *p == 'n') {
+            other = true;
+        } else {
+            return -1;
+        }
+        if ((flags & flag) != 0) {
+            return -1;
+        }
+        flags |= flag;
+        p++;
+    }
+    if (end - p != 3 || memcmp(p, "OFF", 3) != 0) {
+        return -1;
+    }
+    return other ? -2 : flags;
+}
+
+static he_status read_header(off *o, const he_line *line, const char **p, he_error *err)
+{
+    const char *end = he_token_end(*p, line->end);
+    int flags = header_flags(*p, end);
+    o->section = VERTEX_COUNT;
+    if (flags == -1) {
+        if (**p >= '0' && **p <= '9') {
+            return HE_OK; /* no header: this is the number of vertices */
+        }
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not the header of an OFF file");
+    }
+    const char *rest = he_skip_blanks(end, line->end);
+    if (flags == -2) {
+        return he_token_fail(err, HE_UNSUPPORTED, line, *p,
+                             "is not supported: the points are not in three dimensions");
+    }
+    if (line->end - rest >= 6 && memcmp(rest, "BINARY", 6) == 0) {
+        return he_line_fail(err, HE_UNSUPPORTED, line, rest, "binary OFF is not supported");
+    }
+    o->has = (unsigned)flags;
+    he_status status = HE_OK;
+    he_soup *soup = &o->into->soup;
+    if ((o->has & HAS_NORMALS) != 0) {
+        status = he_soup_column(soup, "normal", HE_VERTEX, HE_DOUBLE, 3, HE_INTERPOLATE, &o->normal,
+                                err);
+    }
+    if (status == HE_OK && (o->has & HAS_UV) != 0) {
+        status = he_soup_column(soup, "uv", HE_VERTEX, HE_DOUBLE, 2, HE_INTERPOLATE, &o->uv, err);
+    }
+    *p = rest;
+    return status;
+}
+
+static he_status read_count(const he_line *line, const char **p, const char *what, uint64_t limit,
+                            uint64_t *count, he_error *err)
+{
+    uint64_t value = 0;
+    size_t used = 0;
+    he_status status = he_u64_parse(*p, line->end, &value, &used);
+    if (status == HE_SYNTAX || !he_token_ends(*p + used, line->end)) {
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a count");
+    }
+    char text[40];
+    he_quote(*p, *p + used, text, sizeof text);
+    if (status != HE_OK || value > HE_MAX_ROWS) {
+        return he_line_fail(err, HE_BAD_VALUE, line, *p, "%s %s are more than a mesh can have",
+                            text, what);
+    }
+    if (limit != 0 && value > limit) {
+        return he_line_fail(err, HE_LIMIT, line, *p, "%s %s are more than the limit of %llu", text,
+                            what, (unsigned long long)limit);
+    }
+    *count = value;
+    *p += used;
+    return HE_OK;
+}
+
+static void begin_faces(off *o)
+{
+    o->section = o->faces > 0 ? FACES : DONE;
+}
+
+static void begin_vertices(off *o)
+{
+    o->section = VERTICES;
+    if (o->vertices == 0) {
+        begin_faces(o);
+    }
+}
+
+static bool is_last_token(const he_line *line, const char *p)
+{
+    return he_at_end(he_skip_blanks(he_token_end(p, line->end), line->end), line->end);
+}
+
+/* The number of edges is often wrong, and nothing depends on it. It may be missing: then the line
+ * after the counts is that of a vertex, which has more than one number. */
+static he_status read_edge_count(off *o, const he_line *line, const char **p, bool same_line,
+                                 he_error *err)
+{
+    begin_vertices(o);
+    if (!same_line && !is_last_token(line, *p)) {
+        return HE_OK;
+    }
+    double ignored;
+    he_status status = he_token_number(line, p, &ignored, err);
+    if (status == HE_OK && !he_at_end(he_skip_blanks(*p, line->end), line->end)) {
+        return he_token_fail(err, HE_SYNTAX, line, he_skip_blanks(*p, line->end),
+                             "follows the three counts");
+    }
+    return status;
+}
+
+/* Colours tell 1 from 1.0, so the text is looked at. */
+static bool is_integer(const char *begin, const char *end, double value)
+{
+    for (const char *p = begin; p < end; p++) {
+        if (*p < '0' || *p > '9') {
+            return false;
+        }
+    }
+    return value <= UINT32_MAX;
+}
+
+/* The colour that is the numbers [first, first + count). */
+static he_status add_color(off *o, he_colors *colors, size_t element, size_t first, size_t count,
+                           he_error *err)
+{
+    uint32_t mask = ((UINT32_C(1) << count) - 1) << first;
+    colors->fractions = colors->fractions || (o->integers & mask) != mask;
+    return he_colors_add(colors, element, o->numbers + first, count, err);
+}
+
+static void forget_numbers(off *o)
+{
+    o->number_count = 0;
+    o->integers = 0;
+}
+
+static he_status add_row(he_column *column, const double *values, he_error *err)
+{
+    he_status status = he_column_extend(column, 1, err);
+    if (status == HE_OK) {
+        memcpy(he_column_row(column, column->rows - 1), values, column->row_bytes);
+    }
+    return status;
+}
+
+static he_status end_vertex(off *o, const he_line *line, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    const double *n = o->numbers;
+    size_t vertex = soup->vertex_count, count = o->number_count;
+    size_t color_at = o->normal != NULL ? 6 : 3, colors = 0;
+    size_t uvs = o->uv != NULL ? 2 : 0;
+    if ((o->has & HAS_COLORS) != 0) {
+        colors = count - color_at - uvs;
+        if (colors != 1 && colors != 3 && colors != 4) {
+            return he_line_fail(err, HE_SYNTAX, line, line->begin,
+                                "%zu numbers do not fit the header", count);
+        }
+    }
+    he_status status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
+    if (status == HE_OK && o->normal != NULL) {
+        status = add_row(o->normal, n + 3, err);
+    }
+    if (status == HE_OK && colors >= 3) {
+        status = add_color(o, &o->vertex_colors, vertex, color_at, colors, err);
+    }
+    if (status == HE_OK && o->uv != NULL) {
+        status = add_row(o->uv, n + color_at + colors, err);
+    }
+    if (colors == 1) {
+        note(o, "color_index", "ignored: an index into a colour map", line);
+    }
+    if (count > color_at + colors + uvs) {
+        note(o, "extra_numbers", "ignored: numbers the header does not announce", line);
+    }
+    forget_numbers(o);
+    if (soup->vertex_count == o->vertices) {
+        begin_faces(o);
+    }
+    return at_line(status, line, err);
+}
+
+/* Numbers up to the end of the line. */
+static he_status read_numbers(off *o, const he_line *line, const char **p, bool colors,
+                              he_error *err)
+{
+    const char *q = *p;
+    while (!he_at_end(q, line->end)) {
+        const char *begin = q;
+        double value;
+        he_status status = he_token_number(line, &q, &value, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        if (o->number_count < VERTEX_NUMBERS) {
+            o->numbers[o->number_count] = value;
+            if (colors && is_integer(begin, q, value)) {
+                o->integers |= UINT32_C(1) << o->number_count;
+            }
+        }
+        o->number_count++;
+        q = he_skip_blanks(q, line->end);
+    }
+    *p = q;
+    return HE_OK;
+}
+
+static he_status read_vertex(off *o, const he_line *line, const char **p, he_error *err)
+{
+    size_t needed = 3;
+    needed += (o->has & HAS_NORMALS) != 0 ? 3 : 0;
+    needed += (o->has & HAS_COLORS) != 0 ? 1 : 0;
+    needed += (o->has & HAS_UV) != 0 ? 2 : 0;
+    if (o->number_count == 0) {
+        he_status status = he_places_add(&o->into->vertices, (uint32_t)o->into->soup.vertex_count,
+                                         line->number, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    he_status status = read_numbers(o, line, p, (o->has & HAS_COLORS) != 0, err);
+    if (status != HE_OK || o->number_count < needed) {
+        return status; /* the vertex goes on on the next line */
+    }
+    return end_vertex(o, line, err);
+}
+
+/* What follows the corners, up to the end of the line. */
+static he_status read_face_color(off *o, const he_line *line, const char **p, he_error *err)
+{
+    he_status status = read_numbers(o, line, p, true, err);
+    size_t count = o->number_count;
+    if (status == HE_OK && (count == 3 || count == 4)) {
+        status = add_color(o, &o->face_colors, o->into->soup.face_count - 1, 0, count, err);
+    } else if (count == 1) {
+        note(o, "color_index", "ignored: an index into a colour map", line);
+    } else if (count > 0) {
+        note(o, "extra_numbers", "ignored: numbers after a face that are not a colour", line);
+    }
+    forget_numbers(o);
+    return status;
+}
+
+static he_status read_corner(off *o, const he_line *line, const char **p, he_error *err)
+{
+    uint64_t value = 0;
+    size_t used = 0;
+    bool negative = **p == '-';
+    he_status status = he_u64_parse(*p + negative, line->end, &value, &used);
+    if (status == HE_SYNTAX || !he_token_ends(*p + negative + used, line->end)) {
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a corner of a face");
+    }
+    if (status != HE_OK || value >= o->vertices || negative) {
+        char text[40];
+        he_quote(*p, *p + negative + used, text, sizeof text);
+        return he_line_fail(err, HE_BAD_INDEX, line, *p, "there is no vertex %s, only 0 to %lld",
+                            text, (long long)o->vertices - 1);
+    }
+    *p += negative + used;
+    o->missing--;
+    return he_soup_add_corner(&o->into->soup, (uint32_t)value, err);
+}
+
+static he_status read_face(off *o, const he_line *line, const char **p, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    he_status status = HE_OK;
+    if (!o->open) {
+        status = read_count(line, p, "corners", soup->limits.corners, &o->missing, err);
+        if (status == HE_OK) {
+            status = he_places_add(&o->into->faces, (uint32_t)soup->face_count, line->number, err);
+        }
+        if (status == HE_OK) {
+            status = he_soup_begin_face(soup, err);
+        }
+        o->open = true;
+        *p = he_skip_blanks(*p, line->end);
+    }
+    while (status == HE_OK && o->missing > 0 && !he_at_end(*p, line->end)) {
+        status = read_corner(o, line, p, err);
+        *p = he_skip_blanks(*p, line->end);
+    }
+    if (status == HE_OK && o->missing == 0) {
+        o->open = false;
+        status = read_face_color(o, line, p, err);
+        if (soup->face_count == o->faces) {
+            o->section = DONE;
+        }
+    }
+    return at_line(status, line, err);
+}
+
+static he_status read_line(void *context, const he_line *line, he_error *err)
+{
+    off *o = context;
+    he_soup *soup = &o->into->soup;
+    const char *begin = he_skip_blanks(line->begin, line->end), *p = begin;
+    he_status status = HE_OK;
+    bool counts = false; /* the first two are on this line */
+    o->last_line = line->number;
+    while (status == HE_OK && !he_at_end(p, line->end)) {
+        switch (o->section) {
+        case HEADER:
+            status = read_header(o, line, &p, err);
+            break;
+        case VERTEX_COUNT:
+            status = read_count(line, &p, "vertices", soup->limits.vertices, &o->vertices, err);
+            o->section = FACE_COUNT;
+            break;
+        case FACE_COUNT:
+            status = read_count(line, &p, "faces", soup->limits.faces, &o->faces, err);
+            o->section = EDGE_COUNT;
+            counts = true;
+            break;
+        case EDGE_COUNT:
+            status = read_edge_count(o, line, &p, counts, err);
+            break;
+        case VERTICES:
+            status = read_vertex(o, line, &p, err);
+            break;
+        case FACES:
+            status = read_face(o, line, &p, err);
+            break;
+        case DONE:
+            return he_token_fail(err, HE_SYNTAX, line, p, "comes after the last face announced");
+        }
+        p = he_skip_blanks(p, line->end);
+    }
+    return status;
+}
+
+static void off_close(void *state)
+{
+    off *o = state;
+    he_lines_clear(&o->lines);
+    he_colors_clear(&o->vertex_colors);
+    he_colors_clear(&o->face_colors);
+    he_mem_free(o);
+}
+
+static he_status off_open(he_import *into, void **state, he_error *err)
+{
+    off *o = he_mem_zero(1, sizeof *o);
+    if (o == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+    }
+    o->into = into;
+    he_lines_init(&o->lines, read_line, o);
+    o->lines.limit = into->soup.limits.bytes;
+    he_places_init(&into->vertices, HE_PLACE_LINE, 1);
+    he_places_init(&into->faces, HE_PLACE_LINE, 1);
+    *state = o;
+    return HE_OK;
+}
+
+static he_status off_feed(void *state, const void *bytes, size_t n, he_error *err)
+{
+    off *o = state;
+    return he_lines_feed(&o->lines, bytes, n, err);
+}
+
+static he_status too_short(const off *o, const char *what, size_t came, uint64_t announced,
+                           he_error *err)
+{
+    return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, o->last_line,
+                      "line %llu: the file ends after %zu of the %llu %s it announces",
+                      (unsigned long long)o->last_line, came, (unsigned long long)announced, what);
+}
+
+static he_status off_finish(void *state, he_error *err)
+{
+    off *o = state;
+    he_soup *soup = &o->into->soup;
+    he_status status = he_lines_finish(&o->lines, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    switch (o->section) {
+    case HEADER:
+    case VERTEX_COUNT:
+    case FACE_COUNT:
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, o->last_line,
+                          "line %llu: the file ends before its counts",
+                          (unsigned long long)o->last_line);
+    case EDGE_COUNT:
+        begin_vertices(o);
+        break;
+    case VERTICES:
+    case FACES:
+    case DONE:
+        break;
+    }
+    if (soup->vertex_count < o->vertices) {
+        return too_short(o, "vertices", soup->vertex_count, o->vertices, err);
+    }
+    if (soup->face_count - o->open < o->faces) {
+        return too_short(o, "faces", soup->face_count - o->open, o->faces, err);
+    }
+    status = he_colors_finish(&o->vertex_colors, soup, HE_VERTEX, soup->vertex_count, err);
+    if (status == HE_OK) {
+        status = he_colors_finish(&o->face_colors, soup, HE_FACE, soup->face_count, err);
+    }
+    return status;
+}
+
+const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close};
+
+/* The first token is a header; without one nothing tells the format. */
+bool he_off_sniff(const char *bytes, size_t n)
+{
+    const char *p = bytes, *end = bytes + n;
+    if (n >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0) {
+        p += 3;
+    }
+    while (p < end && (*p == ' ' || *p == '\t' || *p == '\r' || *p == '\n' || *p == '#')) {
+        if (*p == '#') {
+            const char *stop = memchr(p, '\n', (size_t)(end - p));
+            p = stop == NULL ? end : stop;
+        } else {
+            p++;
+        }
+    }
+    const char *token = p;
+    while (p < end && p - token < 12 && *p > ' ' && *p != '#') {
+        p++;
+    }
+    return header_flags(token, p) != -1;
+}

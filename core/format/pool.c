@@ -1,0 +1,96 @@
+#include "format/pool.h"
+
+#include <string.h>
+
+void he_pool_clear(he_pool *pool)
+{
+    he_mem_free(pool->values);
+    he_ids_clear(&pool->of);
+    *pool = (he_pool){0};
+}
+
+he_status he_pool_add(he_pool *pool, const double value[3], uint64_t limit, he_error *err)
+{
+    if (pool->count == pool->capacity) {
+        size_t capacity = he_mem_grown(pool->capacity, pool->count + 1);
+        if (pool->count >= HE_MAX_ROWS || (limit != 0 && capacity * sizeof *pool->values > limit)) {
+            return he_fail_plain(err, HE_LIMIT, "more than %zu texture coordinates or normals",
+                                 pool->count);
+        }
+        double(*values)[3] = he_mem_array(pool->values, capacity, sizeof *values);
+        if (values == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu texture coordinates",
+                                 capacity);
+        }
+        pool->values = values;
+        pool->capacity = capacity;
+    }
+    memcpy(pool->values[pool->count++], value, sizeof *pool->values);
+    return HE_OK;
+}
+
+he_status he_pool_name(he_pool *pool, size_t corner, uint32_t value, he_error *err)
+{
+    he_ids *of = &pool->of;
+    if (corner >= of->capacity) {
+        he_status status = he_ids_reserve(of, corner + 1 - of->count, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    while (of->count < corner) {
+        of->ids[of->count++] = HE_NONE;
+    }
+    of->ids[of->count++] = value;
+    pool->named++;
+    pool->highest = value > pool->highest ? value : pool->highest;
+    return HE_OK;
+}
+
+size_t he_pool_first_bad(const he_pool *pool)
+{
+    if (pool->named == 0 || pool->highest < pool->count) {
+        return SIZE_MAX;
+    }
+    size_t corner = 0;
+    while (pool->of.ids[corner] == HE_NONE || pool->of.ids[corner] < pool->count) {
+        corner++;
+    }
+    return corner;
+}
+
+static bool has_third(const he_pool *pool)
+{
+    for (size_t c = 0; c < pool->of.count; c++) {
+        uint32_t value = pool->of.ids[c];
+        if (value != HE_NONE && pool->values[value][2] != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+he_status he_pool_finish(const he_pool *pool, he_soup *soup, const char *name, uint32_t least,
+                         he_error *err)
+{
+    if (pool->named == 0) {
+        return HE_OK;
+    }
+    uint32_t components = has_third(pool) ? 3 : least;
+    he_column *column;
+    he_status status = he_soup_column(soup, name, HE_HALFEDGE, HE_DOUBLE, components,
+                                      HE_INTERPOLATE, &column, err);
+    if (status == HE_OK) {
+        status = he_column_extend(column, soup->corner_count, err);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    for (size_t c = 0; c < pool->of.count; c++) {
+        uint32_t value = pool->of.ids[c];
+        if (value != HE_NONE) {
+            memcpy(he_column_row(column, c), pool->values[value], column->row_bytes);
+        }
+    }
+    return HE_OK;
+}

@@ -1,0 +1,294 @@
+/* format_fixture.h - files as literals, read in pieces of every kind. Included once per program. */
+#ifndef TESTS_UNIT_FORMAT_FIXTURE_H
+#define TESTS_UNIT_FORMAT_FIXTURE_H
+
+#include "unit/fixture.h"
+
+#include "format/format.h"
+
+/* The whole text in pieces of `piece` bytes, 0 for one piece. */
+static inline he_status read_pieces(const char *format, const void *text, size_t length,
+                                    size_t piece, const he_limits *limits, he_import *out,
+                                    he_error *err)
+{
+    he_reader *reader;
+    he_status status = he_reader_new(he_format_find(format), limits, &reader, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    piece = piece == 0 ? length : piece;
+    for (size_t at = 0; at < length && status == HE_OK; at += piece) {
+        size_t n = length - at < piece ? length - at : piece;
+        /* a copy of just these bytes, so that reading beyond them is seen by the sanitizer */
+        char *bytes = malloc(n);
+        assert_non_null(bytes);
+        memcpy(bytes, (const char *)text + at, n);
+        status = he_reader_feed(reader, bytes, n, err);
+        free(bytes);
+    }
+    if (status == HE_OK) {
+        status = he_reader_finish(reader, out, err);
+    } else {
+        he_error again = {0};
+        assert_int_equal(he_reader_finish(reader, out, &again), status);
+        assert_string_equal(again.text, err->text);
+    }
+    he_reader_free(reader);
+    return status;
+}
+
+static inline void expect_same_columns(const he_column *a, const he_column *b)
+{
+    assert_string_equal(a->name, b->name);
+    assert_int_equal(a->domain, b->domain);
+    assert_int_equal(a->type, b->type);
+    assert_int_equal(a->components, b->components);
+    assert_int_equal(a->rows, b->rows);
+    assert_memory_equal(a->data, b->data, a->rows * a->row_bytes);
+    assert_int_equal(a->labels == NULL, b->labels == NULL);
+    if (a->labels != NULL) {
+        assert_int_equal(he_labels_count(a->labels), he_labels_count(b->labels));
+        for (size_t i = 0; i < he_labels_count(a->labels); i++) {
+            assert_string_equal(he_labels_get(a->labels, i), he_labels_get(b->labels, i));
+        }
+    }
+}
+
+static inline void expect_same_imports(const he_import *a, const he_import *b)
+{
+    const he_soup *s = &a->soup, *t = &b->soup;
+    assert_int_equal(s->vertex_count, t->vertex_count);
+    assert_int_equal(s->corner_count, t->corner_count);
+    assert_int_equal(s->face_count, t->face_count);
+    assert_int_equal(s->column_count, t->column_count);
+    if (s->vertex_count > 0) {
+        assert_memory_equal(s->positions, t->positions, s->vertex_count * sizeof(he_vec3));
+    }
+    if (s->face_count > 0) {
+        assert_memory_equal(s->starts, t->starts, s->face_count * sizeof(uint32_t));
+    }
+    if (s->corner_count > 0) {
+        assert_memory_equal(s->corners, t->corners, s->corner_count * sizeof(uint32_t));
+    }
+    for (size_t i = 0; i < s->column_count && s->columns != NULL && t->columns != NULL; i++) {
+        expect_same_columns(s->columns[i], t->columns[i]);
+    }
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        assert_int_equal(he_places_find(&a->vertices, v), he_places_find(&b->vertices, v));
+    }
+    for (uint32_t f = 0; f < s->face_count; f++) {
+        assert_int_equal(he_places_find(&a->faces, f), he_places_find(&b->faces, f));
+    }
+    assert_int_equal(a->notes.count, b->notes.count);
+    assert_int_equal(a->notes.more, b->notes.more);
+    for (size_t i = 0; i < a->notes.count; i++) {
+        char x[256], y[256];
+        he_note_text(&a->notes.items[i], x, sizeof x);
+        he_note_text(&b->notes.items[i], y, sizeof y);
+        assert_string_equal(x, y);
+    }
+}
+
+/* Whole, byte by byte and in small pieces: the same status, error or import. */
+static inline he_status read_bytes(const char *format, const void *text, size_t length,
+                                   he_import *out, he_error *err)
+{
+    static const size_t pieces[] = {1, 2, 3, 7};
+    he_error first = {0};
+    he_status status = read_pieces(format, text, length, 0, NULL, out, &first);
+    for (size_t i = 0; i < sizeof pieces / sizeof *pieces; i++) {
+        he_import other = {0};
+        he_error second = {0};
+        he_status again = read_pieces(format, text, length, pieces[i], NULL, &other, &second);
+        assert_int_equal(again, status);
+        assert_string_equal(first.text, second.text);
+        assert_int_equal(first.place, second.place);
+        assert_int_equal(first.at, second.at);
+        if (status == HE_OK) {
+            expect_same_imports(out, &other);
+            he_import_clear(&other);
+        }
+    }
+    *err = first;
+    return status;
+}
+
+static inline he_import read_text(const char *format, const char *text)
+{
+    he_import import = {0};
+    he_error err = {0};
+    if (read_bytes(format, text, strlen(text), &import, &err) != HE_OK) {
+        fail_msg("%s\n%s", text, err.text);
+    }
+    return import;
+}
+
+/* Refused, at this line, and with these words in the sentence. */
+static inline void expect_bytes_refused(const char *format, const void *text, size_t length,
+                                        he_status wanted, uint64_t line, const char *words)
+{
+    he_import import = {0};
+    he_error err = {0};
+    he_status status = read_bytes(format, text, length, &import, &err);
+    if (status != wanted || err.place != HE_PLACE_LINE || err.at != line ||
+        strstr(err.text, words) == NULL) {
+        fail_msg("%.300s\ngot %s, line %llu: %s\nwanted %s, line %llu, %s", (const char *)text,
+                 he_status_slug(status), (unsigned long long)err.at, err.text,
+                 he_status_slug(wanted), (unsigned long long)line, words);
+    }
+}
+
+static inline void expect_refused(const char *format, const char *text, he_status wanted,
+                                  uint64_t line, const char *words)
+{
+    expect_bytes_refused(format, text, strlen(text), wanted, line, words);
+}
+
+static inline void expect_counts(const he_import *import, size_t vertices, size_t faces,
+                                 size_t corners)
+{
+    assert_int_equal(import->soup.vertex_count, vertices);
+    assert_int_equal(import->soup.face_count, faces);
+    assert_int_equal(import->soup.corner_count, corners);
+}
+
+static inline void expect_corners(const he_import *import, const uint32_t *corners, size_t count)
+{
+    assert_int_equal(import->soup.corner_count, count);
+    assert_memory_equal(import->soup.corners, corners, count * sizeof *corners);
+}
+
+static inline const he_column *find_column(const he_import *import, he_kind domain,
+                                           const char *name)
+{
+    for (size_t i = 0; i < import->soup.column_count; i++) {
+        const he_column *column = import->soup.columns[i];
+        if (column->domain == domain && strcmp(column->name, name) == 0) {
+            return column;
+        }
+    }
+    return NULL;
+}
+
+static inline void expect_doubles(const he_import *import, he_kind domain, const char *name,
+                                  uint32_t components, const double *values, size_t rows)
+{
+    const he_column *column = find_column(import, domain, name);
+    assert_non_null(column);
+    assert_int_equal(column->type, HE_DOUBLE);
+    assert_int_equal(column->components, components);
+    assert_int_equal(column->rows, rows);
+    assert_memory_equal(column->data, values, rows * components * sizeof *values);
+}
+
+static inline void expect_u32s(const he_import *import, he_kind domain, const char *name,
+                               uint32_t components, const uint32_t *values, size_t rows)
+{
+    const he_column *column = find_column(import, domain, name);
+    assert_non_null(column);
+    assert_int_equal(column->type, HE_UINT32);
+    assert_int_equal(column->components, components);
+    assert_int_equal(column->rows, rows);
+    assert_memory_equal(column->data, values, rows * components * sizeof *values);
+}
+
+static inline const char *face_label(const he_import *import, const char *name, size_t face)
+{
+    const he_column *column = find_column(import, HE_FACE, name);
+    assert_non_null(column);
+    assert_non_null(column->labels);
+    assert_true(face < column->rows);
+    uint32_t value;
+    memcpy(&value, he_column_row(column, face), sizeof value);
+    return he_labels_get(column->labels, value);
+}
+
+static inline const he_note *find_note(const he_notes *notes, const char *code, const char *subject)
+{
+    for (size_t i = 0; i < notes->count; i++) {
+        const he_note *note = &notes->items[i];
+        if (strcmp(note->code, code) == 0 && strcmp(note->subject, subject) == 0) {
+            return note;
+        }
+    }
+    return NULL;
+}
+
+static inline void expect_note(const he_import *import, const char *code, const char *subject,
+                               uint64_t count, uint64_t line)
+{
+    const he_note *note = find_note(&import->notes, code, subject);
+    if (note == NULL) {
+        fail_msg("no note %s '%s'", code, subject);
+        return;
+    }
+    assert_int_equal(note->count, count);
+    assert_int_equal(note->at, line);
+}
+
+static inline he_mesh *build_import(he_import *import)
+{
+    he_mesh *mesh = NULL;
+    he_error err = {0};
+    if (he_build(&import->soup, 0, &mesh, NULL, &err) != HE_OK) {
+        fail_msg("%s", err.text);
+    }
+    fixture_check(mesh);
+    return mesh;
+}
+
+static inline he_mesh *mesh_of_text(const char *format, const char *text)
+{
+    he_import import = read_text(format, text);
+    he_mesh *mesh = build_import(&import);
+    he_import_clear(&import);
+    return mesh;
+}
+
+/* The document, NUL-ended, pulled through a buffer of `size` bytes; freed with free. */
+static inline char *write_pieces(const char *format, const he_mesh *mesh, size_t size,
+                                 he_notes *notes)
+{
+    he_writer *writer;
+    he_error err = {0};
+    if (he_writer_new(he_format_find(format), mesh, 0, &writer, &err) != HE_OK) {
+        fail_msg("%s", err.text);
+    }
+    size_t length = 0, capacity = 1024, n;
+    char *text = malloc(capacity), *buffer = malloc(size);
+    assert_non_null(text);
+    assert_non_null(buffer);
+    while ((n = he_writer_read(writer, buffer, size)) > 0) {
+        assert_true(n <= size);
+        if (length + n + 1 > capacity) {
+            capacity = 2 * (length + n + 1);
+            text = realloc(text, capacity);
+            assert_non_null(text);
+        }
+        memcpy(text + length, buffer, n);
+        length += n;
+    }
+    assert_int_equal(he_writer_read(writer, buffer, size), 0);
+    if (notes != NULL) {
+        *notes = *he_writer_notes(writer);
+    }
+    he_writer_free(writer);
+    free(buffer);
+    text[length] = '\0';
+    return text;
+}
+
+/* The same through buffers of several sizes. */
+static inline char *write_text(const char *format, const he_mesh *mesh, he_notes *notes)
+{
+    static const size_t sizes[] = {1, 13, 511, 512, 513, 65536};
+    char *text = write_pieces(format, mesh, 4096, notes);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        char *other = write_pieces(format, mesh, sizes[i], NULL);
+        assert_string_equal(other, text);
+        free(other);
+    }
+    return text;
+}
+
+#endif

@@ -1,0 +1,153 @@
+/* The OBJ and OFF files of the shared corpus, when it lies beside the project (or where CORPUS=
+ * says): what the manifest expects of each. */
+#include "unit/format_fixture.h"
+
+static const char *corpus;
+
+/* Column k of a line of a table with tabs, into `text`. */
+static void cell(const char *line, size_t k, char *text, size_t size)
+{
+    for (; k > 0; k--) {
+        line = strchr(line, '\t');
+        if (line == NULL) {
+            text[0] = '\0';
+            return;
+        }
+        line++;
+    }
+    size_t length = strcspn(line, "\t\n");
+    length = length < size ? length : size - 1;
+    memcpy(text, line, length);
+    text[length] = '\0';
+}
+
+static char *read_file(const char *path, size_t *length)
+{
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        return NULL;
+    }
+    size_t capacity = 1 << 16;
+    char *text = malloc(capacity + 1);
+    assert_non_null(text);
+    *length = 0;
+    size_t n;
+    while ((n = fread(text + *length, 1, capacity - *length, file)) > 0) {
+        *length += n;
+        if (*length == capacity) {
+            capacity *= 2;
+            text = realloc(text, capacity + 1);
+            assert_non_null(text);
+        }
+    }
+    fclose(file);
+    text[*length] = '\0';
+    return text;
+}
+
+enum { NAME = 0, FORMAT = 8, ACTION = 10, VERTICES = 12, FACES, EDGES };
+
+static void check_file(const char *line, const char *format)
+{
+    char name[200] = "", path[600], action[40] = "", v[20] = "", f[20] = "", e[20] = "";
+    cell(line, NAME, name, sizeof name);
+    cell(line, ACTION, action, sizeof action);
+    cell(line, VERTICES, v, sizeof v);
+    cell(line, FACES, f, sizeof f);
+    cell(line, EDGES, e, sizeof e);
+    snprintf(path, sizeof path, "%s/files/%s", corpus, name);
+    size_t length = 0;
+    char *bytes = read_file(path, &length);
+    if (bytes == NULL) {
+        fail_msg("%s is missing", path);
+        return;
+    }
+    he_import import = {0};
+    he_error err = {0};
+    he_status status = length < 100000 ? read_bytes(format, bytes, length, &import, &err)
+                                       : read_pieces(format, bytes, length, 0, NULL, &import, &err);
+    if (strcmp(action, "reject_422") == 0) {
+        assert_int_not_equal(status, HE_OK);
+        assert_int_equal(err.place, HE_PLACE_LINE);
+        print_message("%s: %s\n", name, err.text);
+        free(bytes);
+        return;
+    }
+    if (status != HE_OK) {
+        fail_msg("%s: %s", name, err.text);
+    }
+    if (he_format_sniff(bytes, length) != he_format_find(format)) {
+        print_message("%s: not recognised by its first bytes\n", name);
+    }
+    expect_counts(&import, strtoul(v, NULL, 10), strtoul(f, NULL, 10), import.soup.corner_count);
+    he_mesh *mesh = NULL;
+    status = he_build(&import.soup, 0, &mesh, NULL, &err);
+    if (strcmp(action, "accept") == 0) {
+        if (status != HE_OK) {
+            fail_msg("%s: %s", name, err.text);
+        }
+        fixture_check(mesh);
+        assert_int_equal(he_mesh_edges(mesh), strtoul(e, NULL, 10));
+        for (size_t i = 0; he_format_at(i) != NULL; i++) {
+            const he_format *other = he_format_at(i);
+            if (other->reading == NULL || other->writing == NULL ||
+                (strcmp(other->name, "obj") != 0 && strcmp(other->name, "off") != 0)) {
+                continue;
+            }
+            char *text = write_pieces(other->name, mesh, 4096, NULL);
+            he_import again = {0};
+            assert_int_equal(read_pieces(other->name, text, strlen(text), 1000, NULL, &again, &err),
+                             HE_OK);
+            assert_int_equal(again.soup.vertex_count, import.soup.vertex_count);
+            assert_memory_equal(again.soup.positions, import.soup.positions,
+                                import.soup.vertex_count * sizeof(he_vec3));
+            assert_int_equal(again.soup.corner_count, import.soup.corner_count);
+            assert_memory_equal(again.soup.corners, import.soup.corners,
+                                import.soup.corner_count * sizeof(uint32_t));
+            he_import_clear(&again);
+            free(text);
+        }
+    } else if (status != HE_OK) {
+        he_import_locate(&import, &err);
+        assert_int_equal(err.place, HE_PLACE_LINE);
+        print_message("%s: line %llu: %s\n", name, (unsigned long long)err.at, err.text);
+    }
+    he_mesh_free(mesh);
+    he_import_clear(&import);
+    free(bytes);
+}
+
+static void files_give_what_the_manifest_says(void **state)
+{
+    (void)state;
+    char path[600];
+    size_t length;
+    snprintf(path, sizeof path, "%s/manifest.tsv", corpus);
+    char *manifest = read_file(path, &length);
+    if (manifest == NULL) {
+        skip();
+    }
+    unsigned checked = 0;
+    for (char *line = manifest; line != NULL; line = strchr(line, '\n')) {
+        line += *line == '\n';
+        char format[20] = "";
+        cell(line, FORMAT, format, sizeof format);
+        if (strcmp(format, "obj") == 0 || strcmp(format, "off") == 0) {
+            check_file(line, format);
+            checked++;
+        }
+    }
+    print_message("%u files\n", checked);
+    assert_true(checked > 0);
+    free(manifest);
+}
+
+int main(void)
+{
+    corpus = getenv("CORPUS");
+    corpus = corpus != NULL ? corpus : "../shared/corpus";
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(files_give_what_the_manifest_says),
+    };
+    return cmocka_run_group_tests_name("format_corpus", tests, NULL, NULL);
+}

@@ -1,0 +1,331 @@
+/* Text readers under attack: memory that runs out, mutated files, and sizes at which anything that
+ * is not linear would be seen. SEED= repeats the mutations, ROUNDS= makes more. */
+#include "unit/format_fixture.h"
+
+#include <time.h>
+
+static const char obj[] =
+    "# all there is\nmtllib x.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1 0.5\nv 0 1 0 1 1 1\n"
+    "v 2 0.25 1e-3\nvt 0 0\nvt 1 0.5\nvt 0 1 0.5\nvn 0 0 1\nvn 0 1 0\no thing\ng left \\\n arm\n"
+    "usemtl K\xF6rper\ns 1\nf 1/1/1 2/2/2 3/3/1\nf -5//1 \\\n 3 4\nl 1 2\nxyz 1\ns off\ng\n"
+    "usemtl red\nf 2 5 3\n";
+
+static const char off[] = "STCNOFF # header\n4 2 5\n0 0 0 0 0 1 255 0 0 0.5 0\n"
+                          "1 0 0 0 0 1 0 255 0 7 1.0 0\n1 1 0 0 0 1 0 0 255 1 1\n"
+                          "0 1 0 0 0 1 9 9 9 0 1\n3 0 1 2 0.5 0.25 1\n3 0 2\n3 255 1 2 3\n";
+
+static const struct {
+    const char *name, *text;
+} files[] = {{"obj", obj}, {"off", off}};
+
+enum { FILES = sizeof files / sizeof *files };
+
+static void readers_without_memory(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < FILES; i++) {
+        he_status status = HE_NO_MEMORY;
+        long n = 0;
+        while (status != HE_OK) {
+            he_import import = {0};
+            he_error err = {0};
+            fixture_fail_at(++n);
+            status = read_pieces(files[i].name, files[i].text, strlen(files[i].text), 5, NULL,
+                                 &import, &err);
+            fixture_memory_back();
+            if (status == HE_OK) {
+                he_import_clear(&import);
+            } else {
+                assert_int_equal(status, HE_NO_MEMORY);
+                assert_int_equal(err.status, HE_NO_MEMORY);
+                assert_true(err.text[0] != '\0');
+            }
+        }
+        print_message("%s: %ld allocations of the reader failed, each refused\n", files[i].name,
+                      n - 1);
+        assert_true(n > 10);
+    }
+}
+
+static void writers_without_memory(void **state)
+{
+    (void)state;
+    he_mesh *meshes[FILES];
+    for (size_t i = 0; i < FILES; i++) {
+        meshes[i] = mesh_of_text(files[i].name, files[i].text);
+    }
+    for (size_t i = 0; i < FILES * FILES; i++) {
+        const char *name = files[i % FILES].name;
+        he_status status = HE_NO_MEMORY;
+        long n = 0;
+        while (status != HE_OK) {
+            he_writer *writer;
+            he_error err = {0};
+            fixture_fail_at(++n);
+            status = he_writer_new(he_format_find(name), meshes[i / FILES], 0, &writer, &err);
+            if (status == HE_OK) {
+                char buffer[64];
+                while (he_writer_read(writer, buffer, sizeof buffer) > 0) {
+                }
+                he_writer_free(writer);
+            } else {
+                assert_int_equal(status, HE_NO_MEMORY);
+                assert_int_equal(err.status, HE_NO_MEMORY);
+            }
+            fixture_memory_back();
+        }
+        print_message("%s: %ld allocations of the writer failed, each refused\n", name, n - 1);
+        assert_true(n > 2);
+    }
+    for (size_t i = 0; i < FILES; i++) {
+        he_mesh_free(meshes[i]);
+    }
+}
+
+static uint64_t seed;
+
+static uint64_t next_random(void)
+{
+    seed += 0x9E3779B97F4A7C15;
+    uint64_t z = (seed ^ seed >> 30) * 0xBF58476D1CE4E5B9;
+    z = (z ^ z >> 27) * 0x94D049BB133111EB;
+    return z ^ z >> 31;
+}
+
+/* Change, remove, repeat, insert; what is inserted is what readers trip over. */
+static size_t mutate(char *text, size_t length, size_t room)
+{
+    static const char *const bits[] = {"\n",
+                                       "\r",
+                                       "\\\n",
+                                       " ",
+                                       "#",
+                                       "-",
+                                       ".",
+                                       "e",
+                                       "/",
+                                       "//",
+                                       "\\",
+                                       "0",
+                                       "-1",
+                                       "9",
+                                       "1e999",
+                                       "nan",
+                                       "4294967297",
+                                       "18446744073709551617",
+                                       "\nf 1 2 3\n",
+                                       "\nv 1 2 3\n",
+                                       "3 0 1 2\n",
+                                       "g ",
+                                       "0.00000000000000000000000000001",
+                                       "123456789012345678901234567890",
+                                       "\xEF\xBB\xBF",
+                                       "OFF"};
+    for (uint64_t n = 1 + next_random() % 4; n > 0; n--) {
+        size_t at = length == 0 ? 0 : next_random() % length;
+        size_t span = next_random() % 12;
+        span = span < length - at ? span : length - at;
+        switch (next_random() % 5) {
+        case 0:
+            if (length > 0) {
+                text[at] = (char)next_random();
+            }
+            break;
+        case 1:
+            memmove(text + at, text + at + span, length - at - span);
+            length -= span;
+            break;
+        case 2:
+            if (length + span <= room) {
+                memmove(text + at + span, text + at, length - at);
+                length += span;
+            }
+            break;
+        case 3:
+            length = at + (length - at) / (1 + next_random() % 3);
+            break;
+        default: {
+            const char *bit = bits[next_random() % (sizeof bits / sizeof *bits)];
+            size_t size = strlen(bit);
+            if (length + size <= room) {
+                memmove(text + at + size, text + at, length - at);
+                for (size_t k = 0; k < size; k++) {
+                    text[at + k] = bit[k];
+                }
+                length += size;
+            }
+            break;
+        }
+        }
+    }
+    return length;
+}
+
+/* Any bytes give an import or a refusal; in pieces the same one; and an import can be built, or is
+ * refused, and written and read again. */
+static void mutated_files(void **state)
+{
+    (void)state;
+    const char *text = getenv("SEED");
+    seed = text != NULL ? strtoull(text, NULL, 10) : 20240229;
+    text = getenv("ROUNDS");
+    uint64_t rounds = text != NULL ? strtoull(text, NULL, 10) : 4000;
+    print_message("SEED=%llu ROUNDS=%llu\n", (unsigned long long)seed, (unsigned long long)rounds);
+    unsigned imported = 0, built = 0, refused = 0;
+    for (uint64_t i = 0; i < rounds; i++) {
+        char bytes[2048];
+        size_t file = next_random() % FILES, length = strlen(files[file].text);
+        memcpy(bytes, files[file].text, length);
+        length = mutate(bytes, length, sizeof bytes);
+        he_import import = {0}, other = {0};
+        he_error err = {0}, second = {0};
+        const char *name = files[file].name;
+        size_t piece = 1 + next_random() % 40;
+        he_status status = read_pieces(name, bytes, length, 0, NULL, &import, &err);
+        assert_int_equal(read_pieces(name, bytes, length, piece, NULL, &other, &second), status);
+        if (status != HE_OK) {
+            assert_string_equal(err.text, second.text);
+            assert_int_equal(err.place, HE_PLACE_LINE);
+            refused++;
+            continue;
+        }
+        expect_same_imports(&import, &other);
+        he_import_clear(&other);
+        imported++;
+        he_mesh *mesh = NULL;
+        if (he_build(&import.soup, 0, &mesh, NULL, &err) == HE_OK) {
+            fixture_check(mesh);
+            char *first = write_pieces(name, mesh, 999, NULL);
+            he_mesh *again = NULL;
+            he_import third = {0};
+            if (read_pieces(name, first, strlen(first), 0, NULL, &third, &err) != HE_OK) {
+                fail_msg("round %llu: %s\n%s", (unsigned long long)i, err.text, first);
+            }
+            assert_int_equal(he_build(&third.soup, 0, &again, NULL, NULL), HE_OK);
+            char *repeated = write_pieces(name, again, 1, NULL);
+            assert_string_equal(repeated, first);
+            free(repeated);
+            free(first);
+            he_mesh_free(again);
+            he_import_clear(&third);
+            built++;
+        } else {
+            he_import_locate(&import, &err);
+            assert_int_equal(err.place, HE_PLACE_LINE);
+        }
+        he_mesh_free(mesh);
+        he_import_clear(&import);
+    }
+    print_message("%u refused, %u imported, %u built\n", refused, imported, built);
+    assert_true(refused > rounds / 10 && built > rounds / 10);
+}
+
+/* A long text made of `count` repetitions. */
+typedef struct flood {
+    const char *what, *format, *before, *part, *after;
+    size_t count;
+    he_status status;
+} flood;
+
+static he_status pour(const flood *f, size_t count, he_import *import, double *seconds)
+{
+    he_reader *reader;
+    he_error err = {0};
+    struct timespec from, to;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
+    he_status status = he_reader_new(he_format_find(f->format), NULL, &reader, &err);
+    assert_int_equal(status, HE_OK);
+    status = he_reader_feed(reader, f->before, strlen(f->before), &err);
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        char part[64];
+        int n = snprintf(part, sizeof part, f->part, (unsigned)i);
+        assert_true(n > 0);
+        status = he_reader_feed(reader, part, (size_t)n, &err);
+    }
+    if (status == HE_OK) {
+        status = he_reader_feed(reader, f->after, strlen(f->after), &err);
+    }
+    if (status == HE_OK) {
+        status = he_reader_finish(reader, import, &err);
+    }
+    he_reader_free(reader);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
+    *seconds = (double)(to.tv_sec - from.tv_sec) + (double)(to.tv_nsec - from.tv_nsec) * 1e-9;
+    return status;
+}
+
+/* Ten times the input may not take a hundred times as long, nor fifty. */
+static void nothing_is_quadratic(void **state)
+{
+    (void)state;
+    static const char start[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    static const flood floods[] = {
+        {"a line continued again and again", "obj", "v 0 0 0\nf", " 1 \\\n", "1\n", 100000, HE_OK},
+        {"continued blank lines", "obj", "v 0 0 0\n", "\\\n", "f 1 1 1\n", 200000, HE_OK},
+        {"a face with many corners", "obj", "v 0 0 0\nf", " 1", "\n", 500000, HE_OK},
+        {"groups", "obj", start, "g group%u\nf 1 2 3\n", "", 100000, HE_OK},
+        {"changes between two groups", "obj", start, "g a\nf 1 2 3\ng b\n", "", 100000, HE_OK},
+        {"unknown keywords", "obj", start, "key%u 1 2 3\n", "", 100000, HE_OK},
+        {"a name of many continued lines", "obj", "v 0 0 0\ng ", "x\\\n", "x\nf 1 1 1\n", 200000,
+         HE_OK},
+        {"a comment without end", "obj", "v 0 0 0\n#", "# comment ", "", 200000, HE_OK},
+        {"lines that end nowhere", "obj", "v 0 0 0\nv ", "1", "", 200000, HE_NOT_FINITE},
+        {"texture coordinates", "obj", start, "vt 0.5\nf 1/-1 2/1 3/-1\n", "", 100000, HE_OK},
+        {"a first corner that is wrong", "obj", start, "f 9999999 1 2\n", "", 100000, HE_BAD_INDEX},
+        {"faces and vertices in turn", "obj", "", "v 0 0 0\nf -1 -1 -1\n", "", 100000, HE_OK},
+        {"a face with many corners", "off", "OFF\n1 1 0\n0 0 0\n500000", " 0", "\n", 500000, HE_OK},
+        {"a face with a corner a line", "off", "OFF\n1 1 0\n0 0 0\n500000", "\n0", "\n", 500000,
+         HE_OK},
+        {"numbers behind a vertex", "off", "OFF\n1 0 0\n0 0 0", " 1", "\n", 500000, HE_OK},
+        {"blank lines", "off", "OFF\n", "\n", "0 0 0\n", 500000, HE_OK},
+    };
+    for (size_t i = 0; i < sizeof floods / sizeof *floods; i++) {
+        const flood *f = &floods[i];
+        he_import import = {0};
+        double small = 0, large = 0;
+        size_t tenth = f->count / 10;
+        bool counted = strcmp(f->format, "off") == 0 && strstr(f->before, "500000") != NULL;
+        he_status status = pour(f, tenth, &import, &small);
+        if (status == HE_OK) {
+            he_import_clear(&import);
+        }
+        assert_int_equal(status, counted ? HE_SYNTAX : f->status);
+        status = pour(f, f->count, &import, &large);
+        assert_int_equal(status, f->status);
+        if (status == HE_OK) {
+            he_import_clear(&import);
+        }
+        if (large > 0.05 && large > 50 * small) {
+            fail_msg("%s %s: %.3f s, a tenth of it %.3f s", f->format, f->what, large, small);
+        }
+    }
+}
+
+static void a_face_that_repeats_its_corners(void **state)
+{
+    (void)state;
+    static const flood f = {"",  "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf", " 1 2 3 4", "\n",
+                            300, HE_OK};
+    he_import import = {0};
+    double seconds;
+    assert_int_equal(pour(&f, 300, &import, &seconds), HE_OK);
+    expect_counts(&import, 4, 1, 1200);
+    he_mesh *mesh = NULL;
+    he_error err = {0};
+    assert_int_equal(he_build(&import.soup, 0, &mesh, NULL, &err), HE_REPEATED_CORNER);
+    he_import_locate(&import, &err);
+    assert_int_equal(err.at, 5);
+    he_import_clear(&import);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(readers_without_memory),
+        cmocka_unit_test(writers_without_memory),
+        cmocka_unit_test(mutated_files),
+        cmocka_unit_test(nothing_is_quadratic),
+        cmocka_unit_test(a_face_that_repeats_its_corners),
+    };
+    return cmocka_run_group_tests_name("format_hostile", tests, NULL, NULL);
+}

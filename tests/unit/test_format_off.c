@@ -1,0 +1,292 @@
+/* The OFF reader: headers, colours, counts, and every refusal with its line. */
+#include "unit/format_fixture.h"
+
+static void plain_files(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        "OFF 3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2",
+        "OFF\r\n3 1 0\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2\r\n",
+        "off\n3 1 999999999999999999999\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        "3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        "# a\n\n  OFF # b\n 3 # d\n1 0#e\n\n0 0 0 # f\n\n1 0 0\n#\n0\t1 0\n # g\n3  0 1 2 # h\n#",
+        "OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",        /* no edge count */
+        "OFF\n3 1\n17\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* on its own line */
+        "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* one a line */
+        "OFF\n3 1 3\n0 0\n0\n1\n0 0\n0 1\n0\n3\n0 1\n2\n", /* elements over several lines */
+        "\xEF\xBB\xBFOFF\n3 1 3\n0 0 0\n1e0 .0 0.\n0 +1 0\n3 0 1 2\n\n\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        he_import import = read_text("off", texts[i]);
+        expect_counts(&import, 3, 1, 3);
+        expect_corners(&import, (uint32_t[]){0, 1, 2}, 3);
+        assert_true(import.soup.positions[0].x == 0 && import.soup.positions[1].x == 1 &&
+                    import.soup.positions[2].y == 1);
+        assert_int_equal(import.soup.column_count, 0);
+        assert_int_equal(import.notes.count, 0);
+        he_import_clear(&import);
+    }
+    he_import import = read_text("off", "OFF\n0 0 0\n");
+    expect_counts(&import, 0, 0, 0);
+    he_import_clear(&import);
+    import = read_text("off", "OFF 2 0 0\n1 2 3\n4 5 6\n");
+    expect_counts(&import, 2, 0, 0);
+    he_import_clear(&import);
+}
+
+static void polygons_and_lines(void **state)
+{
+    (void)state;
+    he_import import = read_text("off", "OFF\n5 2 6\n0 0 0\n1 0 0\n\n1 1 0\n0 1 0\n-1 .5 0\n"
+                                        "4 0 1 2 3\n# x\n3 0 3 4\n");
+    expect_corners(&import, (uint32_t[]){0, 1, 2, 3, 0, 3, 4}, 7);
+    assert_int_equal(he_places_find(&import.vertices, 1), 4);
+    assert_int_equal(he_places_find(&import.vertices, 2), 6);
+    assert_int_equal(he_places_find(&import.faces, 1), 11);
+    he_mesh *mesh = build_import(&import);
+    fixture_counts(mesh, 5, 6, 2);
+    he_mesh_free(mesh);
+    he_import_clear(&import);
+}
+
+static void vertex_data_in_every_mix(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *header, *first, *second;
+        bool normal, uv;
+        uint32_t color; /* components */
+    } rows[] = {
+        {"COFF", "0 0 0 0.5 0 1", "1 0 0 1 1 0.25", false, false, 3},
+        {"COFF", "0 0 0 0.5 0 1 0.25", "1 0 0 1 1 0.25 1", false, false, 4},
+        {"NOFF", "0 0 0 0 0 1", "1 0 0 0 1 0", true, false, 0},
+        {"STOFF", "0 0 0 0.5 0.25", "1 0 0 1 0", false, true, 0},
+        {"CNOFF", "0 0 0 0 0 1 0.5 0 1", "1 0 0 0 1 0 1 1 0.25", true, false, 3},
+        {"NCOFF", "0 0 0 0 0 1 0.5 0 1 1", "1 0 0 0 1 0 1 1 0.25 0", true, false, 4},
+        {"STNOFF", "0 0 0 0 0 1 0.5 0.25", "1 0 0 0 1 0 1 0", true, true, 0},
+        {"STCOFF", "0 0 0 0.5 0 1 0.5 0.25", "1 0 0 1 1 0.25 1 0", false, true, 3},
+        {"STCNOFF", "0 0 0 0 0 1 0.5 0 1 0.25 0.5 0.25", "1 0 0 0 1 0 1 1 0.25 1 1 0", true, true,
+         4},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[300];
+        snprintf(text, sizeof text, "%s\n2 0 0\n%s\n%s\n", rows[i].header, rows[i].first,
+                 rows[i].second);
+        he_import import = read_text("off", text);
+        expect_counts(&import, 2, 0, 0);
+        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.soup.column_count,
+                         rows[i].normal + rows[i].uv + (rows[i].color != 0));
+        assert_true(import.soup.positions[1].x == 1);
+        if (rows[i].normal) {
+            expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 1, 0, 1, 0}, 2);
+        }
+        if (rows[i].uv) {
+            expect_doubles(&import, HE_VERTEX, "uv", 2, (double[]){0.5, 0.25, 1, 0}, 2);
+        }
+        if (rows[i].color == 3) {
+            expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){0.5, 0, 1, 1, 1, 0.25}, 2);
+        }
+        if (rows[i].color == 4) {
+            const he_column *color = find_column(&import, HE_VERTEX, "color");
+            assert_int_equal(color->components, 4);
+            assert_int_equal(color->type, HE_DOUBLE);
+        }
+        he_import_clear(&import);
+    }
+}
+
+static void integer_colors_stay_integers(void **state)
+{
+    (void)state;
+    /* the texture coordinates are no colours and do not decide */
+    he_import import = read_text("off", "STCOFF\n3 0 0\n0 0 0 255 0 7 0.5 0.25\n"
+                                        "0 0 0 1 2 3 128 0 0\n0 0 0 0 0 0 0 0\n");
+    expect_u32s(&import, HE_VERTEX, "color", 4,
+                (uint32_t[]){255, 0, 7, 255, 1, 2, 3, 128, 0, 0, 0, 255}, 3);
+    he_import_clear(&import);
+    static const char *const fractions[] = {"0 0 0 255 0 1.0", "0 0 0 255 0 -1", "0 0 0 255 0 1e1",
+                                            "0 0 0 255 0 4294967296"};
+    for (size_t i = 0; i < sizeof fractions / sizeof *fractions; i++) {
+        char text[200];
+        snprintf(text, sizeof text, "COFF\n2 0 0\n0 0 0 1 2 3\n%s\n", fractions[i]);
+        import = read_text("off", text);
+        assert_int_equal(find_column(&import, HE_VERTEX, "color")->type, HE_DOUBLE);
+        he_import_clear(&import);
+    }
+}
+
+static void face_colors(void **state)
+{
+    (void)state;
+    static const char start[] = "OFF\n4 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    char text[400];
+    snprintf(text, sizeof text, "%s3 0 1 2 255 0 7\n3 0 2 3 1 2 3 128\n3 3 2 1\n", start);
+    he_import import = read_text("off", text);
+    expect_u32s(&import, HE_FACE, "color", 4,
+                (uint32_t[]){255, 0, 7, 255, 1, 2, 3, 128, 0, 0, 0, 0}, 3);
+    he_import_clear(&import);
+
+    snprintf(text, sizeof text, "%s3 0 1 2\n3 0 2 3 1 .5 0 # c\n3 3 2 1 0 0 1\n", start);
+    import = read_text("off", text);
+    expect_doubles(&import, HE_FACE, "color", 3, (double[]){0, 0, 0, 1, .5, 0, 0, 0, 1}, 3);
+    he_import_clear(&import);
+
+    snprintf(text, sizeof text, "%s3 0 1 2 9\n3 0 2 3 1 2\n3 3 2 1 1 2 3 4 5\n", start);
+    import = read_text("off", text);
+    assert_null(find_column(&import, HE_FACE, "color"));
+    expect_note(&import, "color_index", "", 1, 7);
+    expect_note(&import, "extra_numbers", "", 2, 8);
+    he_import_clear(&import);
+
+    import = read_text("off", "OFF\n2 0 0\n0 0 0 1 2 3\n1 0 0\n");
+    assert_int_equal(import.soup.column_count, 0);
+    expect_note(&import, "extra_numbers", "", 1, 3);
+    he_import_clear(&import);
+
+    import = read_text("off", "COFF\n1 0 0\n0 0 0 5\n");
+    expect_note(&import, "color_index", "", 1, 3);
+    he_import_clear(&import);
+}
+
+static void wrong_text_names_its_line(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        he_status status;
+        uint64_t line;
+        const char *words;
+    } rows[] = {
+        {"", HE_SYNTAX, 0, "before its counts"},
+        {"OFF\n", HE_SYNTAX, 1, "before its counts"},
+        {"OFF\n# x\n3\n", HE_SYNTAX, 3, "before its counts"},
+        {"PLY\n3 1 3\n", HE_SYNTAX, 1, "'PLY' is not the header"},
+        {"OFFX\n3 1 3\n", HE_SYNTAX, 1, "is not the header"},
+        {"CCOFF\n3 1 3\n", HE_SYNTAX, 1, "is not the header"},
+        {"-3 1 3\n", HE_SYNTAX, 1, "is not the header"},
+        {"#\n4OFF\n3 1 3\n", HE_UNSUPPORTED, 2, "'4OFF' is not supported"},
+        {"nOFF\n3 1 3\n", HE_UNSUPPORTED, 1, "'nOFF' is not supported"},
+        {"STCN4nOFF\n3 1 3\n", HE_UNSUPPORTED, 1, "is not supported"},
+        {"OFF BINARY\n\1\2", HE_UNSUPPORTED, 1, "binary"},
+        {"OFF\n-3 1 3\n", HE_SYNTAX, 2, "'-3' is not a count"},
+        {"OFF\n3.0 1 3\n", HE_SYNTAX, 2, "'3.0' is not a count"},
+        {"OFF\n3 1 3 4\n", HE_SYNTAX, 2, "'4' follows"},
+        {"OFF\n3 1 x\n", HE_SYNTAX, 2, "'x' is not a number"},
+        {"OFF\n353535235358 6 0\n", HE_BAD_VALUE, 2, "353535235358 vertices"},
+        {"OFF\n18446744073709551615 6 0\n", HE_BAD_VALUE, 2, "18446744073709551615 vertices"},
+        {"OFF\n18446744073709551617 6 0\n", HE_BAD_VALUE, 2, "18446744073709551617 vertices"},
+        {"OFF\n3 4294967295 0\n", HE_BAD_VALUE, 2, "4294967295 faces"},
+        {"OFF\n4000000000 1 0\n", HE_BAD_VALUE, 2, "4000000000 vertices"},
+        {"OFF\n2000000000 1 0\n0 0 0\n\n", HE_SYNTAX, 4, "1 of the 2000000000 vertices"},
+        {"OFF\n1 2000000000 0\n0 0 0\n3 0 0 0\n", HE_SYNTAX, 4, "1 of the 2000000000 faces"},
+        {"OFF\n2 0 0\n0 0 0\n1 1\n", HE_SYNTAX, 4, "1 of the 2 vertices"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 0\n", HE_SYNTAX, 4, "0 of the 1 faces"},
+        {"OFF\n1 1 0\n0 0 0\n2000000000 0 0 0\n", HE_SYNTAX, 4, "0 of the 1 faces"},
+        {"OFF\n1 1 0\n0 0 0\n4294967295 0 0 0\n", HE_BAD_VALUE, 4, "4294967295 corners"},
+        {"OFF\n1 1 0\n0 0 0\n-1 0 0 0\n", HE_SYNTAX, 4, "'-1' is not a count"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 0 1\n", HE_BAD_INDEX, 4, "vertex 1, only 0 to 0"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 \n\n-1 0\n", HE_BAD_INDEX, 6, "vertex -1"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 4294967296 0\n", HE_BAD_INDEX, 4, "vertex 4294967296"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 18446744073709551616 0\n", HE_BAD_INDEX, 4,
+         "18446744073709551616"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 0.0 0\n", HE_SYNTAX, 4, "'0.0' is not a corner"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 0 0 red\n", HE_SYNTAX, 4, "'red' is not a number"},
+        {"OFF\n1 0 0\n0 0 x\n", HE_SYNTAX, 3, "'x' is not a number"},
+        {"OFF\n1 0 0\n0 0 nan\n", HE_NOT_FINITE, 3, "'nan' is not finite"},
+        {"OFF\n1 0 0\n0 1e400 0\n", HE_NOT_FINITE, 3, "'1e400' is not finite"},
+        {"COFF\n1 0 0\n0 0 0 1 2\n", HE_SYNTAX, 3, "5 numbers do not fit"},
+        {"COFF\n1 0 0\n0 0 0 1 2 3 4 5\n", HE_SYNTAX, 3, "8 numbers do not fit"},
+        {"OFF\n1 1 0\n0 0 0\n3 0 0 0\n3 0 0 0\n", HE_SYNTAX, 5, "'3' comes after the last face"},
+        {"OFF\n1 0 0\n0 0 0\nx\n", HE_SYNTAX, 4, "'x' comes after the last face"},
+        /* a count too low must not lose faces, nor a count too high make any */
+        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n", HE_SYNTAX, 7, "after the last face"},
+        {"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", HE_SYNTAX, 6, "0 of the 1 faces"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        expect_refused("off", rows[i].text, rows[i].status, rows[i].line, rows[i].words);
+    }
+    static const char wide[] = "\xFF\xFEO\0F\0F\0\n\0";
+    expect_bytes_refused("off", wide, sizeof wide - 1, HE_UNSUPPORTED, 1, "UTF-16");
+}
+
+static void limits_are_kept(void **state)
+{
+    (void)state;
+    static const char text[] = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+    static const struct {
+        he_limits limits;
+        he_status status;
+        uint64_t line;
+    } rows[] = {
+        {{.vertices = 4, .faces = 1, .corners = 4}, HE_OK, 0},
+        {{.vertices = 3}, HE_LIMIT, 2},
+        {{.vertices = 4, .faces = 0, .corners = 3}, HE_LIMIT, 7},
+        {{.bytes = 100}, HE_LIMIT, 3},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        he_import import = {0};
+        he_error err = {0};
+        he_status status =
+            read_pieces("off", text, strlen(text), 0, &rows[i].limits, &import, &err);
+        assert_int_equal(status, rows[i].status);
+        if (status == HE_OK) {
+            he_import_clear(&import);
+        } else {
+            assert_int_equal(err.place, HE_PLACE_LINE);
+            assert_int_equal(err.at, rows[i].line);
+        }
+    }
+}
+
+/* A count is believed only when the bytes have come. */
+static void a_count_allocates_nothing(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "OFF\n2147483646 2147483646 0\n0 0 0\n",
+        "OFF\n1 2147483646 0\n0 0 0\n2147483646 0 0\n",
+        "STCNOFF\n2147483646 2147483646 0\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        he_import import = {0};
+        he_error err = {0};
+        fixture_fail_at(0);
+        he_status status = read_pieces("off", texts[i], strlen(texts[i]), 0, NULL, &import, &err);
+        assert_int_equal(status, HE_SYNTAX);
+        assert_in_range(fixture_memory.calls, 1, 12);
+        fixture_memory_back();
+    }
+}
+
+static void it_is_recognised(void **state)
+{
+    (void)state;
+    static const char *const offs[] = {"OFF\n",  "# x\n\n STCNOFF 1 2 3", "off 3 1 2",
+                                       "4OFF\n", "\xEF\xBB\xBFNOFF\n",    "OFF BINARY\n"};
+    for (size_t i = 0; i < sizeof offs / sizeof *offs; i++) {
+        assert_ptr_equal(he_format_sniff(offs[i], strlen(offs[i])), he_format_find("off"));
+    }
+    static const char *const others[] = {"OFFICE", "3 1 3\n", "# OFF", "O", "Noff"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        assert_null(he_format_sniff(others[i], strlen(others[i])));
+    }
+    assert_ptr_equal(he_format_of_media_type("model/x-off"), he_format_find("off"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plain_files),
+        cmocka_unit_test(polygons_and_lines),
+        cmocka_unit_test(vertex_data_in_every_mix),
+        cmocka_unit_test(integer_colors_stay_integers),
+        cmocka_unit_test(face_colors),
+        cmocka_unit_test(wrong_text_names_its_line),
+        cmocka_unit_test(limits_are_kept),
+        cmocka_unit_test(a_count_allocates_nothing),
+        cmocka_unit_test(it_is_recognised),
+    };
+    return cmocka_run_group_tests_name("format_off", tests, NULL, NULL);
+}
