@@ -56,7 +56,7 @@ static bool choose(api_exchange *x, const he_format **format)
 static void answer_losses(api_exchange *x, const he_notes *notes)
 {
     char text[HE_ERROR_TEXT];
-    api_text losses = {.maximum = 1024};
+    api_text losses = {.maximum = 1000};
     for (size_t i = 0; i < notes->count && !losses.failed; i++) {
         he_note_text(&notes->items[i], text, sizeof text);
         api_text_add_string(&losses, i > 0 ? "; " : "");
@@ -120,16 +120,5 @@ static void export(api_exchange *x)
 
 void api_content_get(api_exchange *x)
 {
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    uint64_t elements =
-        (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
-    api_read_end(x);
-    if (api_is_costly(x, elements, API_COSTLY_ELEMENTS)) {
-        api_defer(x, export);
-    } else {
-        export(x);
-    }
+    api_run_by_size(x, export);
 }

@@ -37,17 +37,8 @@ void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-/* Put a new mesh into the store, and answer 201. `id` NULL lets the store choose. */
-static void store_new(api_exchange *x, const char *id, he_mesh *mesh)
+static void answer_created(api_exchange *x)
 {
-    const char *name = api_upload_name(x);
-    api_store_status status =
-        x->store->create(x->store->self, id, name == NULL ? "" : name, mesh, &x->mesh);
-    if (status != API_STORE_OK) {
-        he_mesh_free(mesh);
-        api_fail_store(x, status);
-        return;
-    }
     if (api_read_begin(x) != NULL) {
         api_read_end(x);
         api_answer_header_format(x, "Location", "/v1/meshes/%s", x->info.id);
@@ -55,11 +46,30 @@ static void store_new(api_exchange *x, const char *id, he_mesh *mesh)
     }
 }
 
+/* Takes `mesh` on success. `id` NULL lets the store choose. */
+static api_store_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
+{
+    const char *name = api_upload_name(x);
+    return x->store->create(x->store->self, id, name == NULL ? "" : name, mesh, &x->mesh);
+}
+
 static void create(api_exchange *x)
 {
+    const char *id = api_param_text(x, "id");
     he_mesh *mesh;
-    if (api_upload_build(x, &mesh)) {
-        store_new(x, NULL, mesh);
+    if (id != NULL && !api_path_is_mesh_id(id)) {
+        api_fail(x, API_BAD_ID, "\"%s\" cannot name a mesh", id);
+        return;
+    }
+    if (!api_upload_build(x, &mesh)) {
+        return;
+    }
+    api_store_status status = store_new(x, id, mesh);
+    if (status == API_STORE_OK) {
+        answer_created(x);
+    } else {
+        he_mesh_free(mesh);
+        api_fail_store(x, status);
     }
 }
 
@@ -76,9 +86,13 @@ static void replace(api_exchange *x, he_mesh *mesh)
         x->store->rename(x->store->self, x->mesh, name, &x->info);
     }
     x->store->write_end(x->store->self, x->mesh);
-    api_answer_summary(x, 200, api_upload_write_report);
+    api_answer_etag(x, "summary");
+    if (!api_answer_minimal(x)) {
+        api_answer_summary(x, 200, api_upload_write_report);
+    }
 }
 
+/* The mesh may have come while the body did: then it is replaced, or the precondition fails. */
 static void put(api_exchange *x)
 {
     he_mesh *mesh;
@@ -88,10 +102,21 @@ static void put(api_exchange *x)
     if (!api_upload_build(x, &mesh)) {
         return;
     }
-    if (x->mesh != NULL) {
+    api_store_status status = API_STORE_TAKEN;
+    if (x->mesh == NULL) {
+        status = store_new(x, x->mesh_id, mesh);
+    }
+    if (x->mesh == NULL && status == API_STORE_TAKEN) {
+        status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
+        status = status == API_STORE_OK ? API_STORE_TAKEN : status;
+    }
+    if (status == API_STORE_OK) {
+        answer_created(x);
+    } else if (status == API_STORE_TAKEN) {
         replace(x, mesh);
     } else {
-        store_new(x, x->mesh_id, mesh);
+        he_mesh_free(mesh);
+        api_fail_store(x, status);
     }
 }
 

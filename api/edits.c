@@ -167,10 +167,7 @@ static void answer(api_exchange *x, const edits *e)
     if (!e->dry_run) {
         api_answer_etag(x, "edits");
     }
-    if (x->minimal) {
-        api_answer_header(x, "Preference-Applied", "return=minimal");
-        api_answer_empty(x, 204);
-    } else {
+    if (!api_answer_minimal(x)) {
         api_answer_json(x, 200);
     }
 }
@@ -222,16 +219,13 @@ static bool is_long(api_exchange *x, const edits *e)
     if (api_is_costly(x, e->count, API_COSTLY_EDITS)) {
         return true;
     }
-    if (!e->whole) {
-        return false;
-    }
-    const he_mesh *mesh = api_read_begin(x);
+    const he_mesh *mesh = e->whole ? api_read_begin(x) : NULL;
     if (mesh == NULL) {
         return false;
     }
-    uint64_t elements = issued(mesh);
+    bool large = api_is_large(x, mesh);
     api_read_end(x);
-    return api_is_costly(x, elements, API_COSTLY_ELEMENTS);
+    return large;
 }
 
 void api_edits_post(api_exchange *x)

@@ -41,18 +41,6 @@ uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallbac
     return number;
 }
 
-double api_param_number(const api_exchange *x, const char *name, double fallback)
-{
-    const char *value = find_value(x, name);
-    double number = fallback;
-    size_t used;
-    if (value != NULL &&
-        he_double_parse(value, value + strlen(value), HE_JSON_NUMBER, &number, &used) != HE_OK) {
-        assert(!"checked against the route");
-    }
-    return number;
-}
-
 static const api_parameter *find_parameter(const api_exchange *x, const char *name)
 {
     for (const api_parameter *const *p = x->route->parameters; *p != NULL; p++) {
@@ -78,7 +66,7 @@ int api_param_choice(const api_exchange *x, const char *name)
 bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice)
 {
     const char *value = find_value(x, name);
-    return value != NULL && api_header_has(value, choice);
+    return value != NULL && strcmp(value, choice) == 0;
 }
 
 const char *api_header_of(const api_exchange *x, const char *name)
@@ -163,7 +151,7 @@ static bool refuse_stale(api_exchange *x, const char *what)
     return false;
 }
 
-static bool check_preconditions(api_exchange *x, const uint64_t *expected)
+bool api_preconditions_hold(api_exchange *x, const uint64_t *expected)
 {
     const char *match = api_header_of(x, "If-Match");
     const char *none = api_header_of(x, "If-None-Match");
@@ -191,7 +179,7 @@ he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **del
         return NULL;
     }
     bool good = !x->info.removed || api_fail_store(x, API_STORE_ABSENT);
-    if (good && check_preconditions(x, expected == NULL ? NULL : &revision)) {
+    if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
         x->has_info = true;
         return mesh;
     }
@@ -234,6 +222,28 @@ bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold)
     return x->phase != API_PHASE_WORK && amount > threshold;
 }
 
+bool api_is_large(const api_exchange *x, const he_mesh *mesh)
+{
+    uint64_t elements = (uint64_t)he_mesh_issued(mesh, HE_VERTEX) +
+                        he_mesh_issued(mesh, HE_HALFEDGE) + he_mesh_issued(mesh, HE_FACE);
+    return api_is_costly(x, elements, API_COSTLY_ELEMENTS);
+}
+
+void api_run_by_size(api_exchange *x, void (*handler)(api_exchange *x))
+{
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    bool large = api_is_large(x, mesh);
+    api_read_end(x);
+    if (large) {
+        api_defer(x, handler);
+    } else {
+        handler(x);
+    }
+}
+
 /* --- answers --- */
 
 void api_answer_header(api_exchange *x, const char *name, const char *value)
@@ -243,8 +253,13 @@ void api_answer_header(api_exchange *x, const char *name, const char *value)
         api_fail_memory(x);
         return;
     }
-    assert(x->answer.header_count < API_ANSWER_HEADERS);
-    x->answer.headers[x->answer.header_count++] = (api_header){name, copy};
+    size_t i = 0;
+    while (i < x->answer.header_count && strcmp(x->answer.headers[i].name, name) != 0) {
+        i++;
+    }
+    assert(i < API_ANSWER_HEADERS);
+    x->answer.headers[i] = (api_header){name, copy};
+    x->answer.header_count += i == x->answer.header_count;
 }
 
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
@@ -289,6 +304,15 @@ void api_answer_json(api_exchange *x, int status)
 void api_answer_empty(api_exchange *x, int status)
 {
     api_answer_bytes(x, status, NULL, "", 0);
+}
+
+bool api_answer_minimal(api_exchange *x)
+{
+    if (x->minimal) {
+        api_answer_header(x, "Preference-Applied", "return=minimal");
+        api_answer_empty(x, 204);
+    }
+    return x->minimal;
 }
 
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,

@@ -4,7 +4,7 @@
  * checked Content-Type, Accept and the size of the body, parsed a control document, and taken a
  * reference to the mesh (or answered 404). A handler reads those, and either answers or fills
  * x->problem and returns: service.c then answers the problem. Answering nothing is a bug and
- * becomes 500.
+ * becomes 500. A problem that is filled wins over an answer, whose headers are then dropped.
  *
  *     void api_mesh_get(api_exchange *x)
  *     {
@@ -59,6 +59,7 @@ struct api_exchange {
     const char *media_in;  /* which of route->consumes the body is, NULL without a body */
     const char *media_out; /* which of route->produces is wanted */
     bool minimal;          /* Prefer: return=minimal */
+    char allow[API_ALLOW]; /* methods of a path that does not take this one */
 
     /* --- its body --- */
     api_text body;
@@ -91,7 +92,6 @@ struct api_exchange {
 const char *api_param_text(const api_exchange *x, const char *name); /* NULL when absent */
 bool api_param_flag(const api_exchange *x, const char *name);        /* false when absent */
 uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback);
-double api_param_number(const api_exchange *x, const char *name, double fallback);
 int api_param_choice(const api_exchange *x, const char *name); /* index, -1 when absent */
 bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice);
 
@@ -106,6 +106,8 @@ void api_read_end(api_exchange *x);
  * a cursor at the body's expected_revision or NULL. On NULL the problem is filled and no lock is
  * held. Ended by the store's write_commit, write_abort or write_end. */
 he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **delta);
+/* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
+bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
 /* An immutable copy of the present revision with x->info filled; 404 or 507 on NULL. Released by
  * the caller through the store. Not on a worker thread for large meshes: see api_defer. */
 api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content);
@@ -119,6 +121,10 @@ bool api_precondition_absent(api_exchange *x);
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
 /* Should work on this many elements (or bytes) leave the worker? False in api_work. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
+/* The same of work that costs the mesh. */
+bool api_is_large(const api_exchange *x, const he_mesh *mesh);
+/* api_defer `handler` when x->mesh is large, else call it. */
+void api_run_by_size(api_exchange *x, void (*handler)(api_exchange *x));
 
 /* --- answers: one of these, once --- */
 /* What x->out wrote, as application/json, or another type. */
@@ -128,11 +134,15 @@ void api_answer_text(api_exchange *x, int status, const char *type);
 void api_answer_bytes(api_exchange *x, int status, const char *type, const char *bytes,
                       size_t length);
 void api_answer_empty(api_exchange *x, int status); /* 204 and the like */
+/* The answer to a write that the client does not want spelt out: 204 where it prefers
+ * return=minimal, else false and nothing. */
+bool api_answer_minimal(api_exchange *x);
 /* Takes `stream`, freed with the exchange. `length` -1: not known. */
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
                        int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
                        void (*free_stream)(void *stream));
-/* A header of the answer; `value` is copied. Before or after the answer. */
+/* A header of the answer, in place of one of this name; `value` is copied. Before or after the
+ * answer. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

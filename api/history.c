@@ -67,10 +67,7 @@ static void step(api_exchange *x, api_action which)
         return;
     }
     api_answer_etag(x, "edits");
-    if (x->minimal) {
-        api_answer_header(x, "Preference-Applied", "return=minimal");
-        api_answer_empty(x, 204);
-    } else {
+    if (!api_answer_minimal(x)) {
         api_answer_json(x, 200);
     }
 }
@@ -116,27 +113,52 @@ static void write_entry(api_out *out, const api_entry *entry)
     api_out_object_end(out);
 }
 
+/* Entries from the `first` newest on; what is after them goes to `*next`, 0 at the end. */
+static void write_entries(api_exchange *x, uint64_t first, uint64_t limit, uint64_t *next)
+{
+    api_entry entry;
+    uint64_t i = first;
+    bool more = x->store->history(x->store->self, x->mesh, i, &entry);
+    api_out_key(&x->out, "entries");
+    api_out_array_begin(&x->out);
+    for (; more && i < first + limit; i++) {
+        write_entry(&x->out, &entry);
+        more = x->store->history(x->store->self, x->mesh, i + 1, &entry);
+    }
+    api_out_array_end(&x->out);
+    *next = more ? i : 0;
+}
+
+static void write_history(api_exchange *x, uint64_t first, uint64_t limit)
+{
+    api_out *out = &x->out;
+    uint64_t next;
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", x->info.revision);
+    write_entries(x, first, limit, &next);
+    api_out_key_u64(out, "undo", x->info.undo);
+    api_out_key_u64(out, "redo", x->info.redo);
+    api_out_key(out, "next");
+    if (next != 0) {
+        char cursor[API_CURSOR];
+        api_cursor_write("edits", &x->info, next, cursor);
+        api_out_string(out, cursor);
+    } else {
+        api_out_null(out);
+    }
+    api_out_object_end(out);
+}
+
 void api_edits_list(api_exchange *x)
 {
-    uint64_t limit = api_param_u64(x, "limit", API_DEFAULT_PAGE);
+    uint64_t first = 0, limit = api_param_u64(x, "limit", API_DEFAULT_PAGE);
+    const char *cursor = api_param_text(x, "cursor");
     if (api_read_begin(x) == NULL) {
         return;
     }
-    if (!api_not_modified(x, "history")) {
-        api_out *out = &x->out;
-        api_out_object_begin(out);
-        api_out_key_u64(out, "revision", x->info.revision);
-        api_out_key(out, "entries");
-        api_out_array_begin(out);
-        api_entry entry;
-        for (size_t i = 0; i < limit && x->store->history(x->store->self, x->mesh, i, &entry);
-             i++) {
-            write_entry(out, &entry);
-        }
-        api_out_array_end(out);
-        api_out_key_u64(out, "undo", x->info.undo);
-        api_out_key_u64(out, "redo", x->info.redo);
-        api_out_object_end(out);
+    if ((cursor == NULL || api_cursor_read(cursor, "edits", &x->info, &first, &x->problem)) &&
+        !api_not_modified(x, "history")) {
+        write_history(x, first, limit);
         api_answer_json(x, 200);
     }
     api_read_end(x);

@@ -326,7 +326,7 @@ static number_text show(double value)
 
 bool api_in_number_within(const api_in *in, double min, double max, bool exclusive, double *out)
 {
-    double value;
+    double value = 0;
     if (!api_in_number(in, &value)) {
         return false;
     }
@@ -341,7 +341,7 @@ bool api_in_number_within(const api_in *in, double min, double max, bool exclusi
 
 bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out)
 {
-    double value;
+    double value = 0;
     if (!api_in_is_number(in)) {
         return wrong_type(in, "a whole number");
     }
@@ -361,7 +361,7 @@ bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out)
 
 bool api_in_id(const api_in *in, uint32_t *out)
 {
-    uint64_t value;
+    uint64_t value = 0;
     if (!api_in_u64(in, 0, HE_DEAD - 1, &value)) {
         return false;
     }
@@ -423,7 +423,7 @@ bool api_in_string(const api_in *in, size_t max, const char **out)
 
 bool api_in_choice(const api_in *in, const char *const *choices, int *out)
 {
-    const char *text;
+    const char *text = "";
     if (!api_in_string(in, SIZE_MAX, &text)) {
         return false;
     }

@@ -12,7 +12,7 @@ void api_out_init(api_out *out, api_text *text)
     *out = (api_out){.text = text};
 }
 
-static bool in_object(const api_out *out)
+static inline bool in_object(const api_out *out)
 {
     return (out->objects >> out->depth & 1) != 0;
 }

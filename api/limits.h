@@ -10,8 +10,9 @@
 #define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
 #define API_MAX_EDITS          ((size_t)8 << 20) /* an edit list */
 #define API_MAX_EDITS_VALUES   ((size_t)1 << 20)
-#define API_DEFAULT_UPLOAD     ((uint64_t)1 << 30) /* a mesh document or file; api_options.max_upload \
-                                                    */
+#define API_DEFAULT_UPLOAD                                                 \
+    ((uint64_t)1 << 30) /* a mesh document or file; api_options.max_upload \
+                         */
 
 /* JSON */
 enum {
@@ -39,7 +40,7 @@ enum {
     API_MAX_AS = 64,           /* characters of an "as" name */
     API_MAX_QUERIES = 10000,   /* questions of one query */
     API_MAX_PATH_STEPS = 4096, /* of a traversal's path */
-    API_MAX_WALK = 10000000    /* half-edges a walk may answer with */
+    API_MAX_WALK = 10000000    /* half-edges a walk may answer with, or a query look at */
 };
 
 /* Above these a costly request leaves the worker for the job pool (API_WORK). */

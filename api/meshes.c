@@ -102,7 +102,10 @@ void api_mesh_patch(api_exchange *x)
         x->store->rename(x->store->self, x->mesh, name, &x->info);
     }
     x->store->write_end(x->store->self, x->mesh);
-    api_answer_summary(x, 200, NULL);
+    api_answer_etag(x, "summary");
+    if (!api_answer_minimal(x)) {
+        api_answer_summary(x, 200, NULL);
+    }
 }
 
 void api_mesh_delete(api_exchange *x)
@@ -157,10 +160,11 @@ static void copy(api_exchange *x)
     he_mesh *fresh = NULL;
     api_mesh *made = NULL;
     he_error err = {0};
-    he_status status = he_mesh_copy(content, &fresh, &err);
-    x->store->snapshot_release(x->store->self, snapshot);
-    if (status != HE_OK) {
+    if (api_preconditions_hold(x, NULL) && he_mesh_copy(content, &fresh, &err) != HE_OK) {
         api_fail_core(x, &err);
+    }
+    x->store->snapshot_release(x->store->self, snapshot);
+    if (fresh == NULL) {
         return;
     }
     api_store_status stored =
@@ -181,16 +185,5 @@ static void copy(api_exchange *x)
 
 void api_mesh_copy(api_exchange *x)
 {
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    uint64_t elements =
-        (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
-    api_read_end(x);
-    if (api_is_costly(x, elements, API_COSTLY_ELEMENTS)) {
-        api_defer(x, copy);
-    } else {
-        copy(x);
-    }
+    api_run_by_size(x, copy);
 }

@@ -6,7 +6,5 @@
 
 /* `version` is the server's, `url` its public address or NULL. */
 void api_openapi_write(api_out *out, const char *version, const char *url);
-/* The body of GET /v1/operations. */
-void api_operations_write(api_out *out);
 
 #endif

@@ -10,18 +10,9 @@ static const char *const json[] = {"application/json", NULL};
 static const char *const merge_patch[] = {"application/merge-patch+json", "application/json", NULL};
 static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
 static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
-static const char *const mesh_in[] = {"application/json",
-                                      "model/obj",
-                                      "model/stl",
-                                      "model/gltf-binary",
-                                      "model/ply",
-                                      "application/ply",
-                                      "model/x-off",
-                                      "application/octet-stream",
-                                      NULL};
-static const char *const mesh_out[] = {
-    "application/json", "model/obj",   "model/stl", "model/gltf-binary",
-    "model/ply",        "model/x-off", NULL};
+static const char *const mesh_in[] = {"application/json", "model/obj", "model/x-off",
+                                      "application/octet-stream", NULL};
+static const char *const mesh_out[] = {"application/json", "model/obj", "model/x-off", NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
                                        "text/javascript",
@@ -36,9 +27,7 @@ static const char *const anything[] = {"text/html",
 
 /* --- query parameters --- */
 
-static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "json", NULL};
-static const char *const repairs[] = {
-    "weld", "split", "orient", "drop_degenerate", "drop_duplicates", NULL};
+static const char *const formats[] = {"obj", "off", "json", NULL};
 static const char *const connections[] = {"vertex", "edge", NULL};
 
 static const api_parameter limit = {
@@ -50,12 +39,6 @@ static const api_parameter turning = {
     0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
 static const api_parameter format = {
     "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
-static const api_parameter repair = {
-    "repair", API_PARAM_CHOICES,
-    0,        0,
-    repairs,  "What may be changed so that the structure can hold the file, separated by commas."};
-static const api_parameter tolerance = {
-    "tolerance", API_PARAM_NUMBER, 0, 1e300, NULL, "Distance within which `weld` joins vertices."};
 static const api_parameter name = {
     "name", API_PARAM_TEXT, 0, 0, NULL, "Name of the mesh, where the body is a file."};
 static const api_parameter identity = {
@@ -88,13 +71,13 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
-     .parameters = {&format, &name, &identity, &repair, &tolerance},
+     .parameters = {&format, &name, &identity},
      .statuses = {201, 409, 413, 415, 422},
      .request = "create",
      .response = "created",
      .summary = "Create a mesh",
      .doc = "From a mesh document, a shape, or a file. What the structure cannot hold is refused "
-            "with each offending element, unless repair is asked for."},
+            "with each offending element."},
 
     /* one mesh */
     {.method = "GET",
@@ -131,8 +114,8 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
-     .parameters = {&format, &name, &repair, &tolerance},
-     .statuses = {200, 201, 204, 409, 412, 413, 415, 422},
+     .parameters = {&format, &name},
+     .statuses = {200, 201, 204, 412, 413, 415, 422},
      .request = "create",
      .response = "created",
      .summary = "Replace a mesh, or create it under this id",
@@ -154,7 +137,7 @@ static const api_route routes[] = {
      .flags = API_COSTLY | API_OWN_ACCEPT,
      .produces = mesh_out,
      .parameters = {&format},
-     .statuses = {200, 304, 422},
+     .statuses = {200, 304},
      .response = "document",
      .summary = "Export a mesh",
      .doc = "In the format that `format` or Accept asks for."},
@@ -209,7 +192,6 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/query",
      .name = "query_post",
      .run = api_query_post,
-     .flags = API_COSTLY,
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
      .produces = octets_too,
@@ -223,7 +205,6 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/traverse",
      .name = "traverse_post",
      .run = api_traverse_post,
-     .flags = API_COSTLY,
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
      .produces = json,
@@ -273,7 +254,7 @@ static const api_route routes[] = {
      .body_kind = API_BODY_EDITS,
      .consumes = json,
      .produces = json,
-     .statuses = {200, 204, 409, 412, 413, 415, 422},
+     .statuses = {200, 204, 412, 413, 415, 422},
      .request = "edit",
      .response = "edited",
      .summary = "Edit a mesh",
@@ -428,8 +409,7 @@ const char *const *api_relations(he_kind kind)
 
 /* --- dispatch --- */
 
-static bool match_variable(const char *variable, size_t length, const char *segment,
-                           api_variables *out)
+static bool match_variable(const char *variable, const char *segment, api_variables *out)
 {
     switch (variable[1]) {
     case 'm':
@@ -444,7 +424,7 @@ static bool match_variable(const char *variable, size_t length, const char *segm
     case 'c':
         out->code = segment;
         return true;
-    case 'k':
+    default: /* {kind} */
         for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
             if (strcmp(segment, he_kind_plural(kind)) == 0) {
                 out->kind = kind;
@@ -453,33 +433,36 @@ static bool match_variable(const char *variable, size_t length, const char *segm
             }
         }
         return false;
-    default:
-        return length > 0;
     }
 }
 
+/* Every request passes here once a row, so the first byte that differs ends it. */
 static bool match(const char *template, const api_path *path, api_variables *out)
 {
     size_t i = 0;
     *out = (api_variables){0};
-    while (template[0] == '/' && template[1] != '\0') {
-        template ++;
-        const char *slash = strchr(template, '/');
-        size_t length = slash == NULL ? strlen(template) : (size_t)(slash - template);
+    const char *at = template[1] == '\0' ? template + 1 : template;
+    while (*at == '/') {
+        at++;
         if (i == path->count) {
             return false;
         }
         const char *segment = path->segments[i++];
-        if (strncmp(template, "{asset}", length) == 0 && length == 7) {
+        if (*at != '{') {
+            while (*at == *segment && *at != '\0') {
+                at++;
+                segment++;
+            }
+            if (*segment != '\0' || (*at != '/' && *at != '\0')) {
+                return false;
+            }
+        } else if (at[1] == 'a') { /* {asset} */
             return true;
-        }
-        bool same = template[0] == '{'
-                        ? match_variable(template, length, segment, out)
-                        : strncmp(template, segment, length) == 0 && segment[length] == '\0';
-        if (!same) {
+        } else if (match_variable(at, segment, out)) {
+            at = strchr(at, '}') + 1;
+        } else {
             return false;
         }
-        template += length;
     }
     return i == path->count;
 }
@@ -500,7 +483,8 @@ const api_route *api_route_find(const char *method, const api_path *path, api_va
     for (size_t i = 0; i < api_route_count(); i++) {
         const api_route *route = &routes[i];
         /* Other methods matter only to a request that finds no row: see below. */
-        if (strcmp(route->method, wanted) == 0 && match(route->path, path, out)) {
+        if (route->method[0] == wanted[0] && strcmp(route->method, wanted) == 0 &&
+            match(route->path, path, out)) {
             return route;
         }
     }

@@ -158,13 +158,6 @@ static void answer_from_snapshot(api_exchange *x)
     }
 }
 
-static bool is_large(const api_exchange *x, const he_mesh *mesh)
-{
-    uint64_t elements =
-        (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
-    return api_is_costly(x, elements, API_COSTLY_ELEMENTS);
-}
-
 void api_answer_summary(api_exchange *x, int status, void (*extra)(api_exchange *x))
 {
     const he_mesh *mesh = api_read_begin(x);
@@ -178,7 +171,7 @@ void api_answer_summary(api_exchange *x, int status, void (*extra)(api_exchange 
         api_read_end(x);
         return;
     }
-    if (!cached && plain && is_large(x, mesh)) {
+    if (!cached && plain && api_is_large(x, mesh)) {
         api_read_end(x);
         api_defer(x, answer_from_snapshot);
         return;

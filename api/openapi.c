@@ -1,0 +1,269 @@
+#include "api/openapi.h"
+
+#include "api/operations.h"
+#include "api/routes.h"
+#include "api/schemas.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* --- paths --- */
+
+static void write_path_parameter(api_out *out, const char *name)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", name);
+    api_out_key_string(out, "in", "path");
+    api_out_key_bool(out, "required", true);
+    api_out_key(out, "schema");
+    if (strcmp(name, "id") == 0) {
+        api_schema_ref(out, "schemas", "id");
+    } else {
+        api_out_object_begin(out);
+        api_out_key_string(out, "type", "string");
+        if (strcmp(name, "mesh") == 0) {
+            api_out_key_string(out, "pattern", "^[A-Za-z0-9._-]{1,64}$");
+        } else if (strcmp(name, "kind") == 0) {
+            static const char *const kinds[] = {"vertices", "halfedges", "edges", "faces", NULL};
+            api_schema_choices(out, "enum", kinds);
+        } else if (strcmp(name, "relation") == 0) {
+            static const char *const relations[] = {"vertices", "outgoing",  "incoming",
+                                                    "edges",    "halfedges", "faces",
+                                                    "loop",     "ring",      NULL};
+            api_schema_choices(out, "enum", relations);
+        }
+        api_out_object_end(out);
+    }
+    api_out_object_end(out);
+}
+
+static void write_path_parameters(api_out *out, const char *path)
+{
+    api_out_key(out, "parameters");
+    api_out_array_begin(out);
+    for (const char *at = strchr(path, '{'); at != NULL; at = strchr(at + 1, '{')) {
+        char name[32];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at + 1, "}"), at + 1);
+        write_path_parameter(out, name);
+    }
+    api_out_array_end(out);
+}
+
+static void write_query_parameter(api_out *out, const api_parameter *parameter)
+{
+    static const char *const flags[] = {"true", "false", NULL};
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", parameter->name);
+    api_out_key_string(out, "in", "query");
+    api_out_key_string(out, "description", parameter->doc);
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    switch (parameter->type) {
+    case API_PARAM_TEXT:
+        api_out_key_string(out, "type", "string");
+        break;
+    case API_PARAM_FLAG:
+        api_out_key_string(out, "type", "string");
+        api_schema_choices(out, "enum", flags);
+        break;
+    case API_PARAM_U64:
+        api_out_key_string(out, "type", "integer");
+        api_out_key_number(out, "minimum", parameter->min);
+        api_out_key_number(out, "maximum", parameter->max);
+        break;
+    case API_PARAM_CHOICE:
+        api_out_key_string(out, "type", "string");
+        api_schema_choices(out, "enum", parameter->choices);
+        break;
+    }
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+/* Media types with the schema of those that are JSON. */
+static void write_content(api_out *out, const char *const *types, const char *schema)
+{
+    api_out_key(out, "content");
+    api_out_object_begin(out);
+    for (; *types != NULL; types++) {
+        api_out_key(out, *types);
+        api_out_object_begin(out);
+        size_t length = strlen(*types);
+        bool json = length >= 4 && strcmp(*types + length - 4, "json") == 0 &&
+                    strcmp(*types, "application/x-ndjson") != 0;
+        if (json && schema != NULL) {
+            api_schema_ref_key(out, "schema", schema);
+        }
+        api_out_object_end(out);
+    }
+    api_out_object_end(out);
+}
+
+static void write_header(api_out *out, const char *name, const char *doc)
+{
+    api_out_key(out, name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", doc);
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+static void write_success(api_out *out, const api_route *route, int status)
+{
+    const char *what = status == 201   ? "Created."
+                       : status == 204 ? "Done; nothing is returned."
+                       : status == 304 ? "The client's copy is the present one."
+                                       : "Success.";
+    bool tagged = status != 204 && strstr(route->path, "{mesh}") != NULL;
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", what);
+    if (tagged || status == 201) {
+        api_out_key(out, "headers");
+        api_out_object_begin(out);
+        write_header(out, "ETag", "Names the state that is shown.");
+        if (status == 201) {
+            write_header(out, "Location", "Where the new mesh is.");
+        }
+        api_out_object_end(out);
+    }
+    if (status == 200 || status == 201) {
+        write_content(out, route->produces, route->response);
+    }
+    api_out_object_end(out);
+}
+
+static void write_responses(api_out *out, const api_route *route)
+{
+    char code[8];
+    api_out_key(out, "responses");
+    api_out_object_begin(out);
+    for (const int *status = route->statuses; *status != 0; status++) {
+        snprintf(code, sizeof code, "%d", *status);
+        api_out_key(out, code);
+        if (*status < 400) {
+            write_success(out, route, *status);
+        } else {
+            api_schema_ref(out, "responses", "problem");
+        }
+    }
+    for (const int *status = api_route_common(); *status != 0; status++) {
+        snprintf(code, sizeof code, "%d", *status);
+        api_out_key(out, code);
+        api_schema_ref(out, "responses", "problem");
+    }
+    api_out_object_end(out);
+}
+
+static void write_operation(api_out *out, const api_route *route)
+{
+    char method[16] = "";
+    for (size_t i = 0; i + 1 < sizeof method && route->method[i] != '\0'; i++) {
+        char c = route->method[i];
+        method[i] = c >= 'A' && c <= 'Z' ? (char)(c + 32) : c;
+    }
+    api_out_key(out, method);
+    api_out_object_begin(out);
+    api_out_key_string(out, "operationId", route->name);
+    api_out_key_string(out, "summary", route->summary);
+    if (route->doc != NULL) {
+        api_out_key_string(out, "description", route->doc);
+    }
+    if (route->parameters[0] != NULL) {
+        api_out_key(out, "parameters");
+        api_out_array_begin(out);
+        for (const api_parameter *const *p = route->parameters; *p != NULL; p++) {
+            write_query_parameter(out, *p);
+        }
+        api_out_array_end(out);
+    }
+    if (route->body_kind != API_BODY_NONE) {
+        api_out_key(out, "requestBody");
+        api_out_object_begin(out);
+        api_out_key_bool(out, "required", route->body_kind != API_BODY_OPTION);
+        write_content(out, route->consumes, route->request);
+        api_out_object_end(out);
+    }
+    write_responses(out, route);
+    api_out_object_end(out);
+}
+
+static bool is_first_of_path(size_t i)
+{
+    for (size_t j = 0; j < i; j++) {
+        if (strcmp(api_route_at(j)->path, api_route_at(i)->path) == 0) {
+            return false;
+        }
+    }
+    return !(api_route_at(i)->flags & API_FIXED);
+}
+
+static void write_paths(api_out *out)
+{
+    api_out_key(out, "paths");
+    api_out_object_begin(out);
+    for (size_t i = 0; i < api_route_count(); i++) {
+        if (!is_first_of_path(i)) {
+            continue;
+        }
+        const char *path = api_route_at(i)->path;
+        api_out_key(out, path);
+        api_out_object_begin(out);
+        write_path_parameters(out, path);
+        for (size_t j = i; j < api_route_count(); j++) {
+            if (strcmp(api_route_at(j)->path, path) == 0) {
+                write_operation(out, api_route_at(j));
+            }
+        }
+        api_out_object_end(out);
+    }
+    api_out_object_end(out);
+}
+
+static void write_components(api_out *out)
+{
+    static const char *const problem[] = {"application/problem+json", NULL};
+    api_out_key(out, "components");
+    api_out_object_begin(out);
+    api_out_key(out, "schemas");
+    api_out_object_begin(out);
+    api_schemas_write(out);
+    api_operation_schemas_write(out);
+    api_out_object_end(out);
+    api_out_key(out, "responses");
+    api_out_object_begin(out);
+    api_out_key(out, "problem");
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
+    write_content(out, problem, "problem");
+    api_out_object_end(out);
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+void api_openapi_write(api_out *out, const char *version, const char *url)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "openapi", "3.1.0");
+    api_out_key(out, "info");
+    api_out_object_begin(out);
+    api_out_key_string(out, "title", "hedge");
+    api_out_key_string(out, "version", version);
+    api_out_key_string(out, "description",
+                       "Half-edge meshes over HTTP. Every GET answers HEAD too. Every refusal is "
+                       "application/problem+json.");
+    api_out_object_end(out);
+    if (url != NULL) {
+        api_out_key(out, "servers");
+        api_out_array_begin(out);
+        api_out_object_begin(out);
+        api_out_key_string(out, "url", url);
+        api_out_object_end(out);
+        api_out_array_end(out);
+    }
+    write_paths(out);
+    write_components(out);
+    api_out_object_end(out);
+}

@@ -1,0 +1,57 @@
+/* question.h - one question about a mesh, asked as a JSON object.
+ *
+ *     {"relation":"faces","of":{"vertex":5},"cw":false}    what lies beside an element
+ *     {"relation":"faces","of":{"vertices":[1,2]}}         beside many, or "all": dense
+ *     {"find":"halfedge","vertices":[1,2]}                 the half-edge between two vertices
+ *     {"get":{"edge":3}}                                   an element
+ *     {"walk":"rings","from":{"vertex":5},"depth":2}       a walk, see traverse.c
+ *
+ * POST .../traverse takes one walk, POST .../query a list of any of them; both come here.
+ *
+ * COST is counted in half-edges looked at, because a question of forty bytes may concern the whole
+ * mesh and a request may hold thousands. On a worker an asker has little to spend; when that is
+ * used up the request begins anew on the job pool with API_MAX_WALK, or the elements of the mesh
+ * where those are more. What exceeds that is refused (limit_exceeded). A question overspends by at
+ * most one pass over the mesh. */
+#ifndef HE_API_QUESTION_H
+#define HE_API_QUESTION_H
+
+#include "api/view.h"
+#include "query/adjacency.h"
+
+typedef struct api_asker {
+    const he_mesh *mesh;
+    uint64_t revision;
+    api_out *out;
+    api_arena *arena;
+    uint64_t left;  /* half-edges that may still be looked at */
+    bool on_worker; /* what is not left is looked for on the job pool */
+    bool spent;     /* it has to be */
+    he_ids first, second;
+} api_asker;
+
+/* Call `answer` with the mesh at hand; it writes onto x->out and answers, or leaves a problem or
+ * `spent`. `handler` is the route's own: it is called again on the job pool. */
+void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
+                   void (*answer)(api_exchange *x, api_asker *a));
+
+/* Answer a question of any kind, or a walk only. False with nothing written and the problem filled,
+ * or with a->spent. */
+bool api_question_ask(api_asker *a, const api_in *question);
+bool api_walk_ask(api_asker *a, const api_in *walk);
+
+/* Is this a relation of many elements? Then find its answer; `out` is the caller's to clear. */
+bool api_question_is_dense(const api_in *question);
+bool api_question_dense(api_asker *a, const api_in *question, he_dense *out);
+
+/* --- for traverse.c --- */
+#define API_KIND_BIT(kind) (1u << (kind))
+/* {"vertex":5}, an element that lives and is of one of the kinds in this set of bits. */
+bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);
+void api_asker_pay(api_asker *a, uint64_t halfedges);
+/* Always false: with a->spent on a worker, else limit_exceeded. */
+bool api_asker_exceed(api_asker *a, const api_in *in);
+/* Always false: the problem from core, and where it is. */
+bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err);
+
+#endif

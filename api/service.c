@@ -1,0 +1,534 @@
+#include "api/api.h"
+
+#include "api/handlers.h"
+#include "format/number.h"
+
+#include <stdio.h>
+#include <string.h>
+
+api_service *api_service_new(const api_store *store, const api_options *options)
+{
+    api_in_setup();
+    api_service *service = he_mem_zero(1, sizeof *service);
+    if (service != NULL) {
+        service->store = store;
+        service->options = *options;
+        if (service->options.max_upload == 0) {
+            service->options.max_upload = API_DEFAULT_UPLOAD;
+        }
+        if (service->options.version == NULL) {
+            service->options.version = "0";
+        }
+    }
+    return service;
+}
+
+void api_service_free(api_service *service)
+{
+    he_mem_free(service);
+}
+
+/* --- the end of an exchange --- */
+
+static bool has_header(const api_exchange *x, const char *name)
+{
+    for (size_t i = 0; i < x->answer.header_count; i++) {
+        if (strcmp(x->answer.headers[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Headers that every answer has. Their values live with the exchange or for ever, so that this
+ * works when memory is out. */
+static void put_header(api_exchange *x, const char *name, const char *value)
+{
+    if (x->answer.header_count < API_ANSWER_HEADERS && !has_header(x, name)) {
+        x->answer.headers[x->answer.header_count++] = (api_header){name, value};
+    }
+}
+
+static void drop_answer(api_exchange *x)
+{
+    if (x->free_stream != NULL) {
+        x->free_stream(x->stream);
+        x->free_stream = NULL;
+    }
+    x->answer = (api_answer){.route = x->answer.route, .close = x->answer.close};
+    x->answered = false;
+}
+
+static void answer_problem(api_exchange *x)
+{
+    static const char no_memory[] =
+        "{\"type\":\"/problems/no_memory\",\"title\":\"Out of memory\",\"status\":507,"
+        "\"detail\":\"no memory for the request\",\"code\":\"no_memory\"}";
+    drop_answer(x);
+    api_text_empty(&x->text);
+    api_problem_write(&x->problem, x->request.request_id, &x->text);
+    x->answered = true;
+    if (x->text.failed) {
+        x->answer.status = 507;
+        x->answer.bytes = no_memory;
+        x->answer.length = sizeof no_memory - 1;
+    } else {
+        x->answer.status = api_problem_http(&x->problem);
+        x->answer.bytes = x->text.bytes;
+        x->answer.length = (int64_t)x->text.length;
+    }
+    put_header(x, "Content-Type", "application/problem+json");
+    if (x->problem.code == API_METHOD_NOT_ALLOWED) {
+        put_header(x, "Allow", x->allow);
+    }
+    if (x->answer.status == 503 || x->problem.code == API_MESH_BUSY) {
+        put_header(x, "Retry-After", "1");
+    }
+}
+
+/* Several representations at one URL: caches must look at Accept. */
+static bool varies(const api_route *route)
+{
+    return route != NULL && route->produces[0] != NULL && route->produces[1] != NULL &&
+           !(route->flags & API_FIXED);
+}
+
+static api_step finish(api_exchange *x)
+{
+    if (x->problem.code == HE_OK && !x->answered) {
+        api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
+                 x->route == NULL ? "-" : x->route->name);
+    }
+    if (x->problem.code != HE_OK) {
+        answer_problem(x);
+    }
+    put_header(x, "X-Request-Id", x->request.request_id);
+    put_header(x, "X-Content-Type-Options", "nosniff");
+    /* A tag is worth keeping: the client asks again with it. Nothing else is. */
+    put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
+    if (varies(x->route)) {
+        put_header(x, "Vary", "Accept");
+    }
+    if (x->has_info && x->mesh != NULL) {
+        x->answer.mesh = x->mesh;
+        x->answer.revision = x->info.revision;
+    }
+    x->phase = API_PHASE_DONE;
+    return API_READY;
+}
+
+/* Answer before the body was read: what of it is still on its way must not be taken for the next
+ * request. */
+static api_step finish_early(api_exchange *x)
+{
+    x->answer.close =
+        x->request.has_body && (!x->request.has_length || x->received < x->request.length);
+    return finish(x);
+}
+
+/* --- begin --- */
+
+static bool copy_request(api_exchange *x, const api_request *request)
+{
+    const char *id = request->request_id == NULL ? "" : request->request_id;
+    x->request = *request;
+    x->request.method = api_arena_copy(&x->arena, request->method, strlen(request->method));
+    x->request.path = api_arena_copy(&x->arena, request->path, strlen(request->path));
+    x->request.query = api_arena_copy(&x->arena, request->query, strlen(request->query));
+    size_t length = strlen(id);
+    length = length > API_MAX_REQUEST_ID ? API_MAX_REQUEST_ID : length;
+    x->request.request_id = api_arena_copy(&x->arena, id, length);
+    return x->request.method != NULL && x->request.path != NULL && x->request.query != NULL &&
+           x->request.request_id != NULL;
+}
+
+static bool check_parameter(api_exchange *x, const api_parameter *parameter, const char *value)
+{
+    const char *end = value + strlen(value);
+    size_t used = 0;
+    bool good = false;
+    switch (parameter->type) {
+    case API_PARAM_TEXT:
+        good = true;
+        break;
+    case API_PARAM_FLAG:
+        good = strcmp(value, "true") == 0 || strcmp(value, "false") == 0;
+        break;
+    case API_PARAM_U64: {
+        uint64_t number;
+        good = he_u64_parse(value, end, &number, &used) == HE_OK && value + used == end &&
+               (double)number >= parameter->min && (double)number <= parameter->max;
+        break;
+    }
+    case API_PARAM_CHOICE:
+        good = api_param_choice(x, parameter->name) >= 0;
+        break;
+    }
+    return good ||
+           api_fail(x, API_BAD_PARAMETER, "\"%s\" cannot be \"%.100s\"", parameter->name, value);
+}
+
+static bool check_query(api_exchange *x)
+{
+    if (!api_query_split(x->request.query, &x->arena, &x->query, &x->problem)) {
+        return false;
+    }
+    for (size_t i = 0; i < x->query.count; i++) {
+        const api_pair *pair = &x->query.pairs[i];
+        const api_parameter *const *parameter = x->route->parameters;
+        while (*parameter != NULL && strcmp((*parameter)->name, pair->name) != 0) {
+            parameter++;
+        }
+        if (*parameter == NULL) {
+            return api_fail(x, API_UNKNOWN_PARAMETER, "\"%.100s\" is not a parameter of this route",
+                            pair->name);
+        }
+        for (size_t j = 0; j < i; j++) {
+            if (strcmp(x->query.pairs[j].name, pair->name) == 0) {
+                return api_fail(x, API_REPEATED_PARAMETER, "\"%s\" is given twice", pair->name);
+            }
+        }
+        if (!check_parameter(x, *parameter, pair->value)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check_variables(api_exchange *x, const api_variables *variables)
+{
+    if (variables->mesh != NULL) {
+        if (!api_path_is_mesh_id(variables->mesh)) {
+            bool creates = (x->route->flags & API_MAY_CREATE) != 0;
+            return api_fail(x, creates ? API_BAD_ID : API_NO_SUCH_MESH,
+                            "\"%.100s\" cannot be the id of a mesh", variables->mesh);
+        }
+        x->mesh_id = variables->mesh;
+    }
+    x->kind = variables->has_kind ? variables->kind : HE_KIND_COUNT;
+    if (variables->id != NULL && !api_path_id(variables->id, &x->id)) {
+        api_fail(x, HE_NO_SUCH_ELEMENT, "\"%.100s\" is not the id of an element", variables->id);
+        x->problem.status = 404;
+        return false;
+    }
+    if (variables->relation != NULL) {
+        const char *const *relation = api_relations(x->kind);
+        while (*relation != NULL && strcmp(*relation, variables->relation) != 0) {
+            relation++;
+        }
+        if (*relation == NULL) {
+            return api_fail(x, API_NO_SUCH_ROUTE, "\"%.100s\" is not a relation of %s",
+                            variables->relation, he_kind_plural(x->kind));
+        }
+        x->relation = *relation;
+    }
+    x->code = variables->code;
+    return true;
+}
+
+static bool find_route(api_exchange *x)
+{
+    api_path path;
+    api_variables variables;
+    if (strlen(x->request.path) + strlen(x->request.query) > API_MAX_URI) {
+        return api_fail(x, API_URI_TOO_LONG, "path and query are longer than %d characters",
+                        API_MAX_URI);
+    }
+    if (!api_path_split(x->request.path, &x->arena, &path, &x->problem)) {
+        return false;
+    }
+    x->route = api_route_find(x->request.method, &path, &variables, x->allow);
+    if (x->route == NULL && x->allow[0] == '\0') {
+        return api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
+    }
+    if (x->route == NULL && strcmp(x->request.method, "OPTIONS") == 0) {
+        api_answer_empty(x, 204);
+        api_answer_header(x, "Allow", x->allow);
+        return false;
+    }
+    if (x->route == NULL) {
+        return api_fail(x, API_METHOD_NOT_ALLOWED, "the path does not take %.20s, only %s",
+                        x->request.method, x->allow);
+    }
+    x->answer.route = x->route->path;
+    x->head = strcmp(x->request.method, "HEAD") == 0;
+    return check_variables(x, &variables) && check_query(x);
+}
+
+static bool find_mesh(api_exchange *x)
+{
+    if (x->mesh_id == NULL) {
+        return true;
+    }
+    api_store_status status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
+    if (status == API_STORE_OK) {
+        return true;
+    }
+    x->mesh = NULL;
+    return (status == API_STORE_ABSENT && (x->route->flags & API_MAY_CREATE)) ||
+           api_fail_store(x, status);
+}
+
+static uint64_t body_cap(const api_exchange *x)
+{
+    switch (x->route->body_kind) {
+    case API_BODY_NONE:
+        return 0;
+    case API_BODY_OPTION:
+    case API_BODY_CONTROL:
+        return API_MAX_CONTROL;
+    case API_BODY_EDITS:
+        return API_MAX_EDITS;
+    case API_BODY_UPLOAD:
+        return x->service->options.max_upload;
+    }
+    return 0;
+}
+
+static bool refuse_size(api_exchange *x)
+{
+    if (x->route->body_kind == API_BODY_NONE) {
+        return api_fail(x, API_UNEXPECTED_BODY, "%s takes no body here", x->request.method);
+    }
+    return api_fail(x, API_BODY_TOO_LARGE, "the body exceeds %llu bytes",
+                    (unsigned long long)body_cap(x));
+}
+
+static bool check_content_type(api_exchange *x)
+{
+    const char *type = api_header_of(x, "Content-Type");
+    for (const char *const *known = x->route->consumes; type != NULL && *known != NULL; known++) {
+        if (api_media_is(type, *known)) {
+            x->media_in = *known;
+            return true;
+        }
+    }
+    if (type == NULL) {
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "the body has no Content-Type");
+    } else {
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "\"%.100s\" is not read here", type);
+    }
+    x->problem.supported = x->route->consumes;
+    return false;
+}
+
+static bool check_body(api_exchange *x)
+{
+    static const char *const identity[] = {"identity", NULL};
+    const api_request *r = &x->request;
+    const char *coding = api_header_of(x, "Content-Encoding");
+    if (coding != NULL && !api_equal_nocase(coding, "identity")) {
+        api_fail(x, API_UNSUPPORTED_ENCODING, "\"%.60s\" is not taken", coding);
+        x->problem.supported = identity;
+        return false;
+    }
+    bool empty = !r->has_body || (r->has_length && r->length == 0);
+    if (empty) {
+        bool optional =
+            x->route->body_kind == API_BODY_NONE || x->route->body_kind == API_BODY_OPTION;
+        return optional || api_fail(x, API_MISSING_BODY, "%s needs a body here", r->method);
+    }
+    if (r->has_length && r->length > body_cap(x)) {
+        return refuse_size(x);
+    }
+    /* A body without a length may yet be empty: then it is like none. */
+    return x->route->body_kind == API_BODY_NONE || check_content_type(x);
+}
+
+static bool check_accept(api_exchange *x)
+{
+    const char *accept = api_header_of(x, "Accept");
+    if (accept != NULL && accept[strspn(accept, " \t")] == '\0') {
+        accept = NULL;
+    }
+    if (x->route->flags & API_OWN_ACCEPT) {
+        return true;
+    }
+    int choice = api_media_choose(accept, x->route->produces);
+    if (choice < 0) {
+        api_fail(x, API_NOT_ACCEPTABLE, "\"%.100s\" allows nothing this route answers with",
+                 accept);
+        x->problem.supported = x->route->produces;
+        return false;
+    }
+    x->media_out = x->route->produces[choice];
+    return true;
+}
+
+static bool begin(api_exchange *x)
+{
+    if (!find_route(x) || !find_mesh(x) || !check_body(x) || !check_accept(x)) {
+        return false;
+    }
+    x->minimal = api_header_has(api_header_of(x, "Prefer"), "return=minimal");
+    x->body.maximum = (size_t)body_cap(x);
+    if (x->route->begin != NULL) {
+        x->route->begin(x);
+    }
+    return x->problem.code == HE_OK && !x->answered;
+}
+
+api_exchange *api_begin(api_service *service, const api_request *request, api_step *step)
+{
+    api_exchange *x = he_mem_zero(1, sizeof *x);
+    if (x == NULL) {
+        return NULL;
+    }
+    x->service = service;
+    x->store = service->store;
+    x->kind = HE_KIND_COUNT;
+    x->answer.route = "-";
+    api_out_init(&x->out, &x->text);
+    if (!copy_request(x, request)) {
+        api_arena_clear(&x->arena);
+        he_mem_free(x);
+        return NULL;
+    }
+    *step = begin(x) ? API_MORE : finish_early(x);
+    return x;
+}
+
+/* --- the body --- */
+
+api_step api_body(api_exchange *x, const char *bytes, size_t length)
+{
+    if (x->phase != API_PHASE_BODY) {
+        return API_READY;
+    }
+    x->received += length;
+    if (length == 0) {
+        return API_MORE;
+    }
+    if (x->received > body_cap(x)) {
+        refuse_size(x);
+    } else if (x->route->body_kind == API_BODY_UPLOAD) {
+        x->route->body(x, bytes, length);
+    } else {
+        api_text_add(&x->body, bytes, length);
+        if (x->body.failed) {
+            api_fail_memory(x);
+        }
+    }
+    return x->problem.code == HE_OK && !x->answered ? API_MORE : finish_early(x);
+}
+
+static bool parse_body(api_exchange *x)
+{
+    api_body_kind kind = x->route->body_kind;
+    if (kind == API_BODY_NONE || kind == API_BODY_UPLOAD) {
+        return kind == API_BODY_NONE || x->received > 0 ||
+               api_fail(x, API_MISSING_BODY, "%s needs a body here", x->request.method);
+    }
+    if (x->received == 0) {
+        return kind == API_BODY_OPTION ||
+               api_fail(x, API_MISSING_BODY, "%s needs a body here", x->request.method);
+    }
+    api_in_limits limits = {.values = kind == API_BODY_EDITS ? API_MAX_EDITS_VALUES
+                                                             : API_MAX_CONTROL_VALUES};
+    x->has_root = api_document_parse(x->body.bytes, x->body.length, &limits, &x->document, &x->root,
+                                     &x->problem);
+    api_text_clear(&x->body);
+    return x->has_root;
+}
+
+/* Is this too much for a thread that others wait for? */
+static bool is_costly(api_exchange *x)
+{
+    if (!(x->route->flags & API_COSTLY)) {
+        return false;
+    }
+    if (api_is_costly(x, x->received, API_COSTLY_UPLOAD)) {
+        return true;
+    }
+    if (x->mesh == NULL) {
+        return false;
+    }
+    api_mesh_info info;
+    const he_mesh *mesh = x->store->read_begin(x->store->self, x->mesh, &info);
+    bool large = api_is_large(x, mesh);
+    x->store->read_end(x->store->self, x->mesh);
+    return large;
+}
+
+static void parse_and_run(api_exchange *x)
+{
+    if (parse_body(x)) {
+        x->route->run(x);
+    }
+}
+
+api_step api_end(api_exchange *x)
+{
+    if (x->phase != API_PHASE_BODY) {
+        return API_READY;
+    }
+    /* Reading a large document takes its time too. */
+    if (x->body.length > API_COSTLY_UPLOAD) {
+        x->deferred = parse_and_run;
+    } else if (parse_body(x)) {
+        if (is_costly(x)) {
+            x->deferred = x->route->run;
+        } else {
+            x->route->run(x);
+        }
+    }
+    if (x->deferred != NULL && !x->answered && x->problem.code == HE_OK) {
+        x->phase = API_PHASE_WORK;
+        return API_WORK;
+    }
+    return finish(x);
+}
+
+void api_work(api_exchange *x)
+{
+    if (x->phase == API_PHASE_WORK) {
+        x->deferred(x);
+        finish(x);
+    }
+}
+
+const api_answer *api_answer_of(const api_exchange *x)
+{
+    return &x->answer;
+}
+
+void api_free(api_exchange *x)
+{
+    if (x == NULL) {
+        return;
+    }
+    if (x->free_stream != NULL) {
+        x->free_stream(x->stream);
+    }
+    if (x->free_state != NULL) {
+        x->free_state(x->state);
+    }
+    api_document_clear(&x->document);
+    api_text_clear(&x->body);
+    api_text_clear(&x->text);
+    if (x->mesh != NULL) {
+        x->store->release(x->store->self, x->mesh);
+    }
+    api_arena_clear(&x->arena);
+    he_mem_free(x);
+}
+
+api_exchange *api_handle(api_service *service, const api_request *request, const char *body,
+                         size_t length)
+{
+    api_step step;
+    api_exchange *x = api_begin(service, request, &step);
+    if (x == NULL) {
+        return NULL;
+    }
+    if (step == API_MORE && length > 0) {
+        step = api_body(x, body, length);
+    }
+    if (step == API_MORE) {
+        step = api_end(x);
+    }
+    if (step == API_WORK) {
+        api_work(x);
+    }
+    return x;
+}

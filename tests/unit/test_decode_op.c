@@ -1,0 +1,365 @@
+/* Operations from JSON, and the names of an edit list. */
+#include "api/decode_op.h"
+#include "api/names.h"
+
+#include "fixture.h"
+
+static const struct {
+    const char *body;
+    int code;
+    const char *pointer;
+} bodies[] = {
+    {"{\"op\":\"edge_split\",\"edge\":5,\"t\":0.25}", HE_OK, ""},
+    {"{\"op\":\"edge_split\",\"edge\":5}", HE_OK, ""},
+    {"{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[0,0,1]}", HE_OK, ""},
+    {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"by\":[0,0,1]}", HE_OK, ""},
+    {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
+    {"{\"op\":\"face_add\",\"vertices\":[2,1,0]}", HE_OK, ""},
+    {"{\"op\":\"face_add\",\"vertices\":[0,0]}", HE_OK, ""}, /* a refusal of the operation */
+    {"{\"op\":\"face_add\",\"vertices\":[]}", HE_OK, ""},
+    {"{\"op\":\"vertex_split\",\"vertex\":0,\"left\":1,\"right\":null,\"to\":[0,0,0]}", HE_OK, ""},
+    {"{\"op\":\"hole_fill\",\"halfedge\":1,\"method\":\"fan\"}", HE_OK, ""},
+    {"{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}", HE_OK, ""},
+    {"{\"op\":\"face_delete\",\"face\":1,\"keep_isolated\":true}", HE_OK, ""},
+    {"{\"op\":\"edge_collapse\",\"halfedge\":1,\"t\":1}", HE_OK, ""},
+    /* the operation */
+    {"[]", API_WRONG_TYPE, ""},
+    {"{}", API_MISSING_MEMBER, ""},
+    {"{\"op\":7}", API_WRONG_TYPE, "/op"},
+    {"{\"op\":\"edge_spilt\",\"edge\":5}", API_UNKNOWN_OPERATION, "/op"},
+    {"{\"op\":\"Edge_split\",\"edge\":5}", API_UNKNOWN_OPERATION, "/op"},
+    /* members */
+    {"{\"op\":\"edge_split\"}", API_MISSING_MEMBER, ""},
+    {"{\"op\":\"edge_split\",\"edge\":5,\"tt\":0.5}", API_UNKNOWN_MEMBER, "/tt"},
+    {"{\"op\":\"edge_split\",\"edge\":5,\"T\":0.5}", API_UNKNOWN_MEMBER, "/T"},
+    {"{\"op\":\"edge_split\",\"edge\":5,\"as\":\"a\"}", API_UNKNOWN_MEMBER, "/as"},
+    {"{\"op\":\"face_delete\",\"face\":1,\"faces\":[2]}", API_CONFLICTING_MEMBERS, "/faces"},
+    {"{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[0,0,1],\"by\":[0,0,1]}", API_CONFLICTING_MEMBERS,
+     "/by"},
+    {"{\"op\":\"vertex_move\",\"vertex\":1}", API_MISSING_MEMBER, ""},
+    {"{\"op\":\"edge_collapse\",\"edge\":1,\"halfedge\":2}", API_CONFLICTING_MEMBERS, "-"},
+    {"{\"op\":\"edge_collapse\"}", API_MISSING_MEMBER, ""},
+    /* ids */
+    {"{\"op\":\"edge_split\",\"edge\":-1}", HE_BAD_VALUE, "/edge"},
+    {"{\"op\":\"edge_split\",\"edge\":1.5}", HE_BAD_VALUE, "/edge"},
+    {"{\"op\":\"edge_split\",\"edge\":4294967294}", HE_BAD_VALUE, "/edge"},
+    {"{\"op\":\"edge_split\",\"edge\":1e20}", HE_BAD_VALUE, "/edge"},
+    {"{\"op\":\"edge_split\",\"edge\":null}", API_WRONG_TYPE, "/edge"},
+    {"{\"op\":\"edge_split\",\"edge\":\"5\"}", API_WRONG_TYPE, "/edge"},
+    {"{\"op\":\"edge_split\",\"edge\":[5]}", API_WRONG_TYPE, "/edge"},
+    {"{\"op\":\"face_delete\",\"faces\":[]}", HE_BAD_VALUE, "/faces"},
+    {"{\"op\":\"face_delete\",\"faces\":3}", API_WRONG_TYPE, "/faces"},
+    {"{\"op\":\"face_delete\",\"faces\":[1,2,-3]}", HE_BAD_VALUE, "/faces/2"},
+    {"{\"op\":\"face_delete\",\"faces\":[1,null]}", API_WRONG_TYPE, "/faces/1"},
+    {"{\"op\":\"face_delete\",\"face\":\"$a.face\"}", API_WRONG_TYPE, "/face"},
+    /* numbers, points, choices, flags, matrices */
+    {"{\"op\":\"edge_split\",\"edge\":5,\"t\":0}", HE_BAD_VALUE, "/t"},
+    {"{\"op\":\"edge_split\",\"edge\":5,\"t\":1}", HE_BAD_VALUE, "/t"},
+    {"{\"op\":\"edge_split\",\"edge\":5,\"t\":\"0.5\"}", API_WRONG_TYPE, "/t"},
+    {"{\"op\":\"edge_collapse\",\"halfedge\":1,\"t\":1.01}", HE_BAD_VALUE, "/t"},
+    {"{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[0,0]}", HE_BAD_VALUE, "/to"},
+    {"{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[0,0,0,0]}", HE_BAD_VALUE, "/to"},
+    {"{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[0,null,0]}", API_WRONG_TYPE, "/to/1"},
+    {"{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[]}", HE_BAD_VALUE, "/to"},
+    {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1]]}", HE_BAD_VALUE, "/to"},
+    {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],[0,0]]}", HE_BAD_VALUE, "/to/1"},
+    {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],3]}", API_WRONG_TYPE, "/to/1"},
+    {"{\"op\":\"hole_fill\",\"halfedge\":1,\"method\":\"Fan\"}", HE_BAD_VALUE, "/method"},
+    {"{\"op\":\"hole_fill\",\"halfedge\":1,\"method\":1}", API_WRONG_TYPE, "/method"},
+    {"{\"op\":\"face_delete\",\"face\":1,\"keep_isolated\":1}", API_WRONG_TYPE, "/keep_isolated"},
+    {"{\"op\":\"transform\",\"matrix\":[1,0,0]}", HE_BAD_VALUE, "/matrix"},
+    {"{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]}", HE_BAD_VALUE,
+     "/matrix/15"},
+};
+
+typedef struct parsed {
+    api_document document;
+    api_arena arena;
+    api_problem problem;
+    api_in root;
+} parsed;
+
+static void parse(parsed *p, const char *body)
+{
+    *p = (parsed){0};
+    api_in_limits limits = {.values = 10000};
+    if (!api_document_parse(body, strlen(body), &limits, &p->document, &p->root, &p->problem)) {
+        fail_msg("%s: %s", body, p->problem.detail);
+    }
+}
+
+static void clear(parsed *p)
+{
+    api_document_clear(&p->document);
+    api_arena_clear(&p->arena);
+}
+
+static void bodies_are_refused_with_their_pointer(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof bodies / sizeof bodies[0]; i++) {
+        parsed p;
+        api_call call;
+        parse(&p, bodies[i].body);
+        bool good = api_decode_op(&p.root, NULL, NULL, &p.arena, &call);
+        if (good != (bodies[i].code == HE_OK) || p.problem.code != bodies[i].code ||
+            (strcmp(bodies[i].pointer, "-") != 0 &&
+             strcmp(bodies[i].pointer, p.problem.pointer) != 0)) {
+            fail_msg("%s: %s at \"%s\" (%s)", bodies[i].body, api_code_slug(p.problem.code),
+                     p.problem.pointer, p.problem.detail);
+        }
+        clear(&p);
+    }
+}
+
+/* The index of a parameter, by name. */
+static size_t param(const he_op *op, const char *name)
+{
+    size_t i = 0;
+    while (strcmp(op->params[i].name, name) != 0) {
+        i++;
+    }
+    return i;
+}
+
+static void arguments_hold_what_was_given(void **state)
+{
+    (void)state;
+    parsed p;
+    api_call call;
+    parse(&p, "{\"op\":\"vertex_move\",\"vertices\":[7,3],\"to\":[[1,2,3],[4,5,6]]}");
+    assert_true(api_decode_op(&p.root, NULL, NULL, &p.arena, &call));
+    const he_arg *vertices = &call.args[param(call.op, "vertex")];
+    const he_arg *to = &call.args[param(call.op, "to")];
+    assert_true(vertices->given && vertices->list && vertices->count == 2);
+    assert_int_equal(vertices->ids[0], 7);
+    assert_int_equal(vertices->ids[1], 3);
+    assert_true(to->given && to->list && to->count == 2);
+    assert_true(to->points[1].z > 5.5 && to->points[1].z < 6.5);
+    assert_false(call.args[param(call.op, "by")].given);
+    clear(&p);
+
+    parse(&p, "{\"op\":\"edge_split\",\"edge\":5,\"expected_revision\":4}");
+    static const char *const also[] = {"expected_revision", NULL};
+    assert_true(api_decode_op(&p.root, also, NULL, &p.arena, &call));
+    assert_int_equal(call.args[param(call.op, "edge")].id, 5);
+    const he_arg *t = &call.args[param(call.op, "t")];
+    assert_false(t->given);
+    assert_true(t->number > 0.49 && t->number < 0.51);
+    clear(&p);
+
+    parse(&p, "{\"op\":\"vertex_split\",\"vertex\":0,\"left\":null,\"right\":2,\"to\":[0,0,0]}");
+    assert_true(api_decode_op(&p.root, NULL, NULL, &p.arena, &call));
+    assert_int_equal(call.args[param(call.op, "left")].id, HE_NONE);
+    assert_true(call.args[param(call.op, "left")].given);
+    clear(&p);
+}
+
+/* Decode a list as the check does: each operation may name those before it. */
+static bool check_list(const api_in *list, api_names *names, api_arena *arena)
+{
+    api_in op;
+    for (bool more = api_in_first(list, &op); more; more = api_in_next(&op)) {
+        api_call call;
+        if (!api_decode_op(&op, NULL, &names->references, arena, &call) ||
+            !api_names_add(names, &op, &call)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+#define SPLIT "{\"op\":\"edge_split\",\"edge\":5,\"as\":\"a\"}"
+
+static const struct {
+    const char *body;
+    int code;
+    const char *pointer;
+} lists[] = {
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertex\"}]", HE_OK, ""},
+    {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.1\"}]", HE_OK, ""},
+    {"[" SPLIT ",{\"op\":\"face_delete\",\"faces\":[1,\"$a.faces\",2]}]", HE_OK, ""},
+    {"[" SPLIT ",{\"op\":\"face_add\",\"vertices\":[1,\"$a.vertex\",2]}]", HE_OK, ""},
+    {"[" SPLIT "," SPLIT "]", API_REPEATED_NAME, "/1/as"},
+    {"[{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertex\"}," SPLIT "]", API_BAD_REFERENCE,
+     "/0/vertex"},
+    {"[{\"op\":\"edge_split\",\"edge\":\"$a.edges.0\",\"as\":\"a\"}]", API_BAD_REFERENCE,
+     "/0/edge"},
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$b.vertex\"}]", API_BAD_REFERENCE,
+     "/1/vertex"},
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertices\"}]", API_BAD_REFERENCE,
+     "/1/vertex"},
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a\"}]", API_BAD_REFERENCE, "/1/vertex"},
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a.\"}]", API_BAD_REFERENCE, "/1/vertex"},
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$.vertex\"}]", API_BAD_REFERENCE,
+     "/1/vertex"},
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertex.0\"}]", API_BAD_REFERENCE,
+     "/1/vertex"},
+    {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"a.vertex\"}]", API_WRONG_TYPE, "/1/vertex"},
+    /* of another kind, or a list where one is wanted */
+    {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.vertex\"}]", API_BAD_REFERENCE, "/1/edge"},
+    {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges\"}]", API_BAD_REFERENCE, "/1/edge"},
+    {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.01\"}]", API_BAD_REFERENCE, "/1/edge"},
+    {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.-1\"}]", API_BAD_REFERENCE, "/1/edge"},
+    {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.1.2\"}]", API_BAD_REFERENCE, "/1/edge"},
+    {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.99999999999999999999\"}]",
+     API_BAD_REFERENCE, "/1/edge"},
+    /* names */
+    {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"\"}]", HE_BAD_VALUE, "/0/as"},
+    {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"1a\"}]", HE_BAD_VALUE, "/0/as"},
+    {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"a.b\"}]", HE_BAD_VALUE, "/0/as"},
+    {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":7}]", API_WRONG_TYPE, "/0/as"},
+};
+
+static void references_are_checked_before_anything_runs(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+        parsed p;
+        api_names names;
+        api_names_init(&names);
+        parse(&p, lists[i].body);
+        bool good = check_list(&p.root, &names, &p.arena);
+        if (good != (lists[i].code == HE_OK) || p.problem.code != lists[i].code ||
+            strcmp(lists[i].pointer, p.problem.pointer) != 0) {
+            fail_msg("%s: %s at \"%s\" (%s)", lists[i].body, api_code_slug(p.problem.code),
+                     p.problem.pointer, p.problem.detail);
+        }
+        api_names_clear(&names);
+        clear(&p);
+    }
+}
+
+static void set_list(he_results *results, size_t row, const uint32_t *ids, size_t count)
+{
+    results->present[row] = true;
+    for (size_t i = 0; i < count; i++) {
+        assert_int_equal(he_ids_add(&results->list[row], ids[i], NULL), HE_OK);
+    }
+}
+
+static size_t result(const he_op *op, const char *name)
+{
+    size_t i = 0;
+    while (strcmp(op->results[i].name, name) != 0) {
+        i++;
+    }
+    return i;
+}
+
+/* A list whose first operation gave vertex 17, edges 30 31 32 and no faces. */
+static void references_take_the_values_of_results(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *op, *name; /* the second operation, and the parameter looked at */
+        int code;
+        size_t count;
+        uint32_t first, last;
+    } uses[] = {
+        {"{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertex\"}", "vertex", HE_OK, 0, 17, 17},
+        {"{\"op\":\"edge_split\",\"edge\":\"$a.edges.2\"}", "edge", HE_OK, 0, 32, 32},
+        {"{\"op\":\"edge_split\",\"edge\":\"$a.edges.3\"}", "edge", HE_NO_SUCH_ELEMENT, 0, 0, 0},
+        {"{\"op\":\"face_add\",\"vertices\":[1,\"$a.vertex\"]}", "vertices", HE_OK, 2, 1, 17},
+        {"{\"op\":\"face_delete\",\"faces\":[\"$a.faces\",8,9]}", "face", HE_OK, 2, 8, 9},
+        {"{\"op\":\"face_delete\",\"faces\":[\"$a.faces\"]}", "face", HE_NO_SUCH_ELEMENT, 0, 0, 0},
+    };
+    for (size_t i = 0; i < sizeof uses / sizeof uses[0]; i++) {
+        char body[256];
+        snprintf(body, sizeof body, "[" SPLIT ",%s]", uses[i].op);
+        parsed p;
+        api_names names;
+        api_call call;
+        api_in op;
+        api_names_init(&names);
+        parse(&p, body);
+        assert_true(check_list(&p.root, &names, &p.arena));
+        assert_true(api_in_first(&p.root, &op));
+        assert_true(api_decode_op(&op, NULL, &names.references, &p.arena, &call));
+        he_results results = {0};
+        size_t vertex = result(call.op, "vertex");
+        results.present[vertex] = true;
+        results.id[vertex] = 17;
+        set_list(&results, result(call.op, "edges"), (const uint32_t[]){30, 31, 32}, 3);
+        set_list(&results, result(call.op, "faces"), NULL, 0);
+        api_names_bind(&names, &call, &results);
+        he_results_clear(&results);
+        assert_true(api_in_next(&op));
+        assert_int_equal(api_decode_op(&op, NULL, &names.references, &p.arena, &call),
+                         uses[i].code == HE_OK);
+        assert_int_equal(p.problem.code, uses[i].code);
+        if (uses[i].code == HE_OK) {
+            const he_arg *arg = &call.args[param(call.op, uses[i].name)];
+            assert_int_equal(arg->count, uses[i].count);
+            assert_int_equal(arg->count == 0 ? arg->id : arg->ids[0], uses[i].first);
+            assert_int_equal(arg->count == 0 ? arg->id : arg->ids[arg->count - 1], uses[i].last);
+        }
+        api_names_clear(&names);
+        clear(&p);
+    }
+}
+
+static void many_names_are_found(void **state)
+{
+    (void)state;
+    enum { MANY = 2000 };
+    api_text text = {0};
+    for (int i = 0; i < MANY; i++) {
+        api_text_add_format(&text, "%s{\"op\":\"edge_split\",\"edge\":", i == 0 ? "[" : ",");
+        if (i == 0) {
+            api_text_add_string(&text, "0");
+        } else {
+            api_text_add_format(&text, "\"$n%d.edges.0\"", i / 2);
+        }
+        api_text_add_format(&text, ",\"as\":\"n%d\"}", i);
+    }
+    api_text_add_string(&text, "]");
+    api_text_add_char(&text, '\0');
+    parsed p;
+    api_names names;
+    api_names_init(&names);
+    parse(&p, text.bytes);
+    assert_true(check_list(&p.root, &names, &p.arena));
+    assert_int_equal(names.count, MANY);
+    api_names_clear(&names);
+    clear(&p);
+    api_text_clear(&text);
+}
+
+static void every_failed_allocation_is_a_problem(void **state)
+{
+    (void)state;
+    static const char body[] = "[" SPLIT ",{\"op\":\"face_delete\",\"faces\":[1,\"$a.faces\",2]},"
+                               "{\"op\":\"vertex_move\",\"vertices\":[1],\"to\":[[0,0,1]]}]";
+    long n = 0;
+    bool good = false;
+    while (!good) {
+        parsed p = {0};
+        api_names names;
+        api_in_limits limits = {.values = 1000};
+        api_names_init(&names);
+        fixture_fail_at(++n);
+        good = api_document_parse(body, strlen(body), &limits, &p.document, &p.root, &p.problem) &&
+               check_list(&p.root, &names, &p.arena);
+        assert_int_equal(good, fixture_memory.calls < n);
+        assert_int_equal(p.problem.code, good ? HE_OK : HE_NO_MEMORY);
+        api_names_clear(&names);
+        clear(&p);
+        fixture_memory_back();
+    }
+    assert_true(n > 20);
+}
+
+int main(void)
+{
+    api_in_setup();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bodies_are_refused_with_their_pointer),
+        cmocka_unit_test(arguments_hold_what_was_given),
+        cmocka_unit_test(references_are_checked_before_anything_runs),
+        cmocka_unit_test(references_take_the_values_of_results),
+        cmocka_unit_test(many_names_are_found),
+        cmocka_unit_test(every_failed_allocation_is_a_problem),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

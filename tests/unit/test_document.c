@@ -1,0 +1,362 @@
+/* Mesh documents: read piece by piece, written back. */
+#include "api/document_in.h"
+#include "api/document_out.h"
+
+#include "api/limits.h"
+#include "fixture.h"
+#include "mesh/compact.h"
+
+#include <stdint.h>
+
+/* How a body ends when it is fed in pieces of `step` bytes. */
+typedef struct outcome {
+    int code;
+    char pointer[API_PROBLEM_POINTER];
+} outcome;
+
+static outcome feed(const char *body, size_t length, size_t step, api_document_in **out)
+{
+    api_document_in *in = api_document_in_new(NULL);
+    assert_non_null(in);
+    api_problem problem = {0};
+    bool good = true;
+    for (size_t at = 0; good && at < length; at += step) {
+        size_t size = length - at < step ? length - at : step;
+        /* A copy of the exact size, so that the sanitizer sees a read beyond the piece. */
+        char *piece = malloc(size);
+        assert_non_null(piece);
+        memcpy(piece, body + at, size);
+        good = api_document_in_feed(in, piece, size, &problem);
+        free(piece);
+    }
+    good = good && api_document_in_end(in, &problem);
+    assert_int_equal(good, problem.code == HE_OK);
+    outcome result = {.code = problem.code};
+    memcpy(result.pointer, problem.pointer, sizeof result.pointer);
+    if (out != NULL && good) {
+        *out = in;
+    } else {
+        api_document_in_free(in);
+    }
+    return result;
+}
+
+static const struct {
+    const char *body;
+    int code;
+    const char *pointer; /* "-": not looked at */
+} bodies[] = {
+    {"{}", HE_OK, "-"},
+    {"{\"vertices\":[],\"faces\":[]}", HE_OK, "-"},
+    {"{\"name\":\"a\",\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2]]}", HE_OK, "-"},
+    {" {\n\"faces\" : [ [ 0 , 1 , 2 ] ] ,\t\"vertices\":[ [ 0 , 0.5 , -1e-3 ] ] } \r\n", HE_OK,
+     "-"},
+    {"{\"f\\u0061ces\":[[0,1,2]],\"vertices\":[]}", HE_OK, "-"},
+    {"{\"shape\":\"cube\",\"size\":2}", HE_OK, "-"},
+    {"{\"a\":{\"x\":[1,{\"]\":\"}\\\"],\"}]},\"vertices\":[[1,2,3]]}", HE_OK, "-"},
+    {"{\"vertices\":[[1.0,-0,1e5]],\"faces\":[[1.0,2e0,-0]]}", HE_OK, "-"},
+    {"{\"faces\":[[]]}", HE_OK, "-"},
+    {"{\"faces\":[[0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18]]}", HE_OK, "-"},
+    {"{\"faces\":[[4294967293]]}", HE_OK, "-"},
+    /* not JSON */
+    {"", API_MALFORMED_JSON, ""},
+    {" ", API_MALFORMED_JSON, ""},
+    {"[]", API_MALFORMED_JSON, ""},
+    {"null", API_MALFORMED_JSON, ""},
+    {"\xEF\xBB\xBF{}", API_MALFORMED_JSON, ""},
+    {"{", API_MALFORMED_JSON, ""},
+    {"{}}", API_MALFORMED_JSON, ""},
+    {"{} 1", API_MALFORMED_JSON, ""},
+    {"{,}", API_MALFORMED_JSON, ""},
+    {"{\"vertices\":[],}", API_MALFORMED_JSON, ""},
+    {"{\"vertices\"}", API_MALFORMED_JSON, ""},
+    {"{\"vertices\":}", API_MALFORMED_JSON, "/vertices"},
+    {"{\"vertices\":[", API_MALFORMED_JSON, "-"},
+    {"{\"vertices\":[[1,2,3", API_MALFORMED_JSON, "-"},
+    {"{\"vertices\":[[1,2,3],]}", API_MALFORMED_JSON, "/vertices/1"},
+    {"{\"vertices\":[[1,2,3][1,2,3]]}", API_MALFORMED_JSON, "-"},
+    {"{\"vertices\":[[1,2 3]]}", API_MALFORMED_JSON, "-"},
+    {"{\"vertices\":[[1,2,]]}", API_MALFORMED_JSON, "/vertices/0/2"},
+    {"{\"vertices\":[[,2,3]]}", API_MALFORMED_JSON, "/vertices/0/0"},
+    {"{\"vertices\":[[1,2,3}]}", API_MALFORMED_JSON, "-"},
+    {"{\"vertices\":[[01,2,3]]}", API_MALFORMED_JSON, "/vertices/0/0"},
+    {"{\"vertices\":[[1.,2,3]]}", API_MALFORMED_JSON, "/vertices/0/0"},
+    {"{\"vertices\":[[1,.5,3]]}", API_MALFORMED_JSON, "/vertices/0/1"},
+    {"{\"vertices\":[[1,+2,3]]}", API_MALFORMED_JSON, "/vertices/0/1"},
+    {"{\"vertices\":[[1,2,1e]]}", API_MALFORMED_JSON, "/vertices/0/2"},
+    {"{\"vertices\":[[1,2,-]]}", API_MALFORMED_JSON, "/vertices/0/2"},
+    {"{\"vertices\":[[1,2,NaN]]}", API_MALFORMED_JSON, "/vertices/0/2"},
+    {"{\"vertices\":[[1,2,0x1]]}", API_MALFORMED_JSON, "-"},
+    {"{\"faces\":[[0,1,02]]}", API_MALFORMED_JSON, "/faces/0/2"},
+    {"{\"faces\":[[0,1,2-]]}", API_MALFORMED_JSON, "/faces/0/2"},
+    {"{\"name\":}", API_MALFORMED_JSON, "-"},
+    {"{\"name\":tru}", API_MALFORMED_JSON, "-"},
+    {"{\"name\":[}", API_MALFORMED_JSON, "-"},
+    {"{\"name\":1]}", API_MALFORMED_JSON, "-"},
+    {"{\"name\":\"\\ud800\"}", API_MALFORMED_JSON, "/name"},
+    {"{\"name\":\"\xFF\"}", API_MALFORMED_JSON, "/name"},
+    {"{\"na\\x\":1}", API_MALFORMED_JSON, "-"},
+    {"{\"name\":\"\\u0000\"}", API_MALFORMED_JSON, "/name"},
+    {"{\"a\":[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]}",
+     API_MALFORMED_JSON, "-"},
+    /* members given twice */
+    {"{\"vertices\":[],\"vertices\":[]}", API_DUPLICATE_MEMBER, "/vertices"},
+    {"{\"vertices\":[],\"\\u0076ertices\":[]}", API_DUPLICATE_MEMBER, "/vertices"},
+    {"{\"faces\":[],\"faces\":[[0,1,2]]}", API_DUPLICATE_MEMBER, "/faces"},
+    {"{\"name\":\"a\",\"vertices\":[],\"name\":\"b\"}", API_DUPLICATE_MEMBER, "/name"},
+    /* types and values */
+    {"{\"vertices\":null}", API_WRONG_TYPE, "/vertices"},
+    {"{\"vertices\":{}}", API_WRONG_TYPE, "/vertices"},
+    {"{\"vertices\":[1,2,3]}", API_WRONG_TYPE, "/vertices/0"},
+    {"{\"vertices\":[[1,2,3],{}]}", API_WRONG_TYPE, "/vertices/1"},
+    {"{\"vertices\":[[1,2,\"3\"]]}", API_WRONG_TYPE, "/vertices/0/2"},
+    {"{\"vertices\":[[1,2,null]]}", API_WRONG_TYPE, "/vertices/0/2"},
+    {"{\"vertices\":[[1,2,[3]]]}", API_WRONG_TYPE, "/vertices/0/2"},
+    {"{\"vertices\":[[1,2]]}", HE_BAD_VALUE, "/vertices/0"},
+    {"{\"vertices\":[[1,2,3],[]]}", HE_BAD_VALUE, "/vertices/1"},
+    {"{\"vertices\":[[1,2,3,4]]}", HE_BAD_VALUE, "/vertices/0"},
+    {"{\"vertices\":[[1,2,1e999]]}", HE_NOT_FINITE, "/vertices/0/2"},
+    {"{\"vertices\":[[1,-1e309,0]]}", HE_NOT_FINITE, "/vertices/0/1"},
+    {"{\"faces\":[[0,1,-1]]}", HE_BAD_VALUE, "/faces/0/2"},
+    {"{\"faces\":[[0,1,2],[0,1,1.5]]}", HE_BAD_VALUE, "/faces/1/2"},
+    {"{\"faces\":[[0,1,\"2\"]]}", API_WRONG_TYPE, "/faces/0/2"},
+    {"{\"faces\":[[0,4294967294,2]]}", HE_BAD_INDEX, "/faces/0/1"},
+    {"{\"faces\":[[0,4294967297,2]]}", HE_BAD_INDEX, "/faces/0/1"},
+    {"{\"faces\":[[0,18446744073709551617,2]]}", HE_BAD_INDEX, "/faces/0/1"},
+};
+
+static void pieces_do_not_matter(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof bodies / sizeof bodies[0]; i++) {
+        size_t length = strlen(bodies[i].body);
+        for (size_t step = 1; step <= length + 1; step++) {
+            outcome result = feed(bodies[i].body, length, step, NULL);
+            if (result.code != bodies[i].code || (strcmp(bodies[i].pointer, "-") != 0 &&
+                                                  strcmp(bodies[i].pointer, result.pointer) != 0)) {
+                fail_msg("%s in steps of %zu: %s at \"%s\"", bodies[i].body, step,
+                         api_code_slug(result.code), result.pointer);
+            }
+        }
+    }
+}
+
+static const char sample[] =
+    "{\"vertices\":[[0.1,-2.5e-300,9007199254740993],[123456.789,1e22,4.9e-324],"
+    "[0.30000000000000004,7,8],[1,2,3]],\"name\":\"n\\u00e9\",\"extra\":[{\"a\":1}],"
+    "\"faces\":[[0,1,2],[2,1,3,0,17,4000000000]]}";
+
+static void all_pieces_give_the_same_soup(void **state)
+{
+    (void)state;
+    static const double positions[][3] = {
+        {0.1, -2.5e-300, 9007199254740993.0},
+        {123456.789, 1e22, 4.9e-324},
+        {0.30000000000000004, 7, 8},
+        {1, 2, 3},
+    };
+    static const uint32_t corners[] = {0, 1, 2, 2, 1, 3, 0, 17, 4000000000u};
+    size_t length = strlen(sample);
+    for (size_t step = 1; step <= length; step++) {
+        api_document_in *in = NULL;
+        assert_int_equal(feed(sample, length, step, &in).code, HE_OK);
+        const he_soup *soup = api_document_in_soup(in);
+        assert_int_equal(soup->vertex_count, 4);
+        assert_memory_equal(soup->positions, positions, sizeof positions);
+        assert_int_equal(soup->face_count, 2);
+        assert_int_equal(soup->corner_count, 9);
+        assert_memory_equal(soup->corners, corners, sizeof corners);
+        assert_true(api_document_in_has_vertices(in) && api_document_in_has_faces(in));
+        api_in name;
+        const char *text;
+        const api_in *rest = api_document_in_rest(in);
+        assert_int_equal(api_in_count(rest), 2);
+        assert_true(api_in_find(rest, "name", &name) && api_in_string(&name, 100, &text));
+        assert_string_equal(text, "n\xC3\xA9");
+        api_document_in_free(in);
+    }
+}
+
+static void what_is_gathered_is_bounded(void **state)
+{
+    (void)state;
+    size_t length = API_MAX_CONTROL + 64;
+    char *body = malloc(length);
+    assert_non_null(body);
+    memset(body, 'x', length);
+    memcpy(body, "{\"name\":\"", 9);
+    memcpy(body + length - 2, "\"}", 2);
+    assert_int_equal(feed(body, length, 65536, NULL).code, HE_LIMIT);
+    /* A name that does not end. */
+    memset(body + 2, 'k', length - 2);
+    assert_int_equal(feed(body, length, 65536, NULL).code, API_UNKNOWN_MEMBER);
+    /* A number that does not end. */
+    memset(body, '0', length);
+    memcpy(body, "{\"vertices\":[[1.", 16);
+    assert_int_equal(feed(body, length, 7, NULL).code, HE_BAD_VALUE);
+    assert_int_equal(feed(body, length, length, NULL).code, HE_BAD_VALUE);
+    free(body);
+}
+
+static void limits_of_the_soup_are_kept(void **state)
+{
+    (void)state;
+    api_document_in *in = api_document_in_new(&(he_limits){.vertices = 2});
+    api_problem problem = {0};
+    static const char body[] = "{\"vertices\":[[1,2,3],[1,2,3],[1,2,3]]}";
+    assert_false(api_document_in_feed(in, body, strlen(body), &problem));
+    assert_int_equal(api_problem_http(&problem), 413);
+    assert_string_equal(problem.pointer, "/vertices/2");
+    api_document_in_free(in);
+}
+
+static void every_failed_allocation_while_reading_is_a_problem(void **state)
+{
+    (void)state;
+    long n = 0;
+    bool good = false;
+    while (!good) {
+        api_problem problem = {0};
+        fixture_fail_at(++n);
+        api_document_in *in = api_document_in_new(NULL);
+        for (size_t at = 0; in != NULL && problem.code == HE_OK && at < strlen(sample); at += 9) {
+            size_t left = strlen(sample) - at;
+            if (!api_document_in_feed(in, sample + at, left < 9 ? left : 9, &problem)) {
+                assert_int_equal(problem.code, HE_NO_MEMORY);
+            }
+        }
+        good = in != NULL && problem.code == HE_OK && api_document_in_end(in, &problem);
+        assert_int_equal(good, fixture_memory.calls < n);
+        api_document_in_free(in);
+        fixture_memory_back();
+    }
+    assert_true(n > 10);
+}
+
+/* The whole text, pulled in pieces of `step` bytes. */
+static char *write_all(const he_mesh *mesh, const char *name, size_t step, size_t *length)
+{
+    api_document_out *out = api_document_out_new(mesh, name);
+    assert_non_null(out);
+    size_t used = 0, capacity = 1 << 20;
+    char *text = malloc(capacity + step);
+    assert_non_null(text);
+    int64_t got;
+    while ((got = api_document_out_read(out, text + used, step)) > 0) {
+        used += (size_t)got;
+        assert_true(used <= capacity);
+    }
+    assert_int_equal(got, 0);
+    assert_int_equal(api_document_out_read(out, text + used, step), 0);
+    api_document_out_free(out);
+    *length = used;
+    return text;
+}
+
+static he_mesh *read_back(const char *text, size_t length)
+{
+    api_document_in *in = NULL;
+    he_mesh *mesh = NULL;
+    outcome result = feed(text, length, 1000, &in);
+    assert_int_equal(result.code, HE_OK);
+    assert_int_equal(he_build(api_document_in_soup(in), HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
+    api_document_in_free(in);
+    return mesh;
+}
+
+static void a_document_makes_its_mesh_again(void **state)
+{
+    (void)state;
+    static const char *const meshes[] = {"", "012", "0123,7654,1045,2156,3267,0374", "012,034,056"};
+    for (size_t i = 0; i < sizeof meshes / sizeof meshes[0]; i++) {
+        he_mesh *mesh = fixture_mesh(meshes[i]);
+        size_t length;
+        for (size_t step = 1; step < 200; step = step * 3 + 1) {
+            char *text = write_all(mesh, "a \"b\"", step, &length);
+            he_mesh *again = read_back(text, length);
+            assert_true(he_mesh_equal(mesh, again));
+            he_mesh_free(again);
+            free(text);
+        }
+        he_mesh_free(mesh);
+    }
+}
+
+static void text_is_one_item_a_line(void **state)
+{
+    (void)state;
+    he_mesh *mesh = fixture_mesh("012");
+    size_t length;
+    char *text = write_all(mesh, "t", 4096, &length);
+    static const char expected[] = "{\"name\":\"t\",\"vertices\":[\n[0,0,0],\n[1,3,1],\n[4,1,2]],\n"
+                                   "\"faces\":[\n[0,1,2]]}\n";
+    assert_int_equal(length, strlen(expected));
+    assert_memory_equal(text, expected, length);
+    free(text);
+    he_mesh_free(mesh);
+}
+
+static void a_large_document_is_cut_anywhere(void **state)
+{
+    (void)state;
+    /* A strip of quads, larger than the writer's buffer. */
+    enum { QUADS = 5000 };
+    he_soup soup;
+    he_mesh *mesh = NULL;
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i <= QUADS; i++) {
+        for (int side = 0; side < 2; side++) {
+            he_vec3 p = {i / 3.0, side, 1.0 / (i + 1)};
+            assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+        }
+    }
+    for (uint32_t i = 0; i < QUADS; i++) {
+        uint32_t quad[4] = {2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1};
+        assert_int_equal(he_soup_add_face(&soup, quad, 4, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    for (size_t step = 777; step < 200000; step *= 17) {
+        size_t length;
+        char *text = write_all(mesh, "strip", step, &length);
+        he_mesh *again = read_back(text, length);
+        assert_true(he_mesh_equal(mesh, again));
+        he_mesh_free(again);
+        free(text);
+    }
+    he_mesh_free(mesh);
+}
+
+static void every_failed_allocation_of_the_writer_gives_null(void **state)
+{
+    (void)state;
+    he_mesh *mesh = fixture_mesh("012");
+    long n = 0;
+    api_document_out *out = NULL;
+    while (out == NULL) {
+        fixture_fail_at(++n);
+        out = api_document_out_new(mesh, "name");
+        assert_int_equal(out != NULL, fixture_memory.calls < n);
+        fixture_memory_back();
+    }
+    api_document_out_free(out);
+    he_mesh_free(mesh);
+    assert_true(n > 1);
+}
+
+int main(void)
+{
+    api_in_setup();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pieces_do_not_matter),
+        cmocka_unit_test(all_pieces_give_the_same_soup),
+        cmocka_unit_test(what_is_gathered_is_bounded),
+        cmocka_unit_test(limits_of_the_soup_are_kept),
+        cmocka_unit_test(every_failed_allocation_while_reading_is_a_problem),
+        cmocka_unit_test(a_document_makes_its_mesh_again),
+        cmocka_unit_test(text_is_one_item_a_line),
+        cmocka_unit_test(a_large_document_is_cut_anywhere),
+        cmocka_unit_test(every_failed_allocation_of_the_writer_gives_null),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

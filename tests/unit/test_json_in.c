@@ -1,0 +1,418 @@
+#include "api/json_in.h"
+
+#include "api/limits.h"
+#include "fixture.h"
+
+#include <stdint.h>
+
+/* One body, how it ends, and where the problem points ("-": nowhere looked at). */
+typedef struct body_case {
+    const char *body;
+    int code;
+    const char *pointer;
+} body_case;
+
+static const body_case cases[] = {
+    /* well formed */
+    {"{}", HE_OK, "-"},
+    {"[]", HE_OK, "-"},
+    {" \t\r\n{ } \n", HE_OK, "-"},
+    {"0", HE_OK, "-"},
+    {"-0", HE_OK, "-"},
+    {"1e5", HE_OK, "-"},
+    {"1E+5", HE_OK, "-"},
+    {"0.5e-3", HE_OK, "-"},
+    {"1e-999", HE_OK, "-"},
+    {"\"\"", HE_OK, "-"},
+    {"\"\\u00e9\\ud83d\\ude00\\n\\/\"", HE_OK, "-"},
+    {"\"\xC3\xA9\xF0\x9F\x98\x80\x7F\"", HE_OK, "-"},
+    {"[true,false,null]", HE_OK, "-"},
+    {"{\"a\":{\"a\":{\"a\":1}}}", HE_OK, "-"},
+    {"{\"a\":1,\"A\":2}", HE_OK, "-"},
+    /* nothing, or too much */
+    {"", API_MALFORMED_JSON, ""},
+    {"   ", API_MALFORMED_JSON, ""},
+    {"{} {}", API_MALFORMED_JSON, ""},
+    {"1 2", API_MALFORMED_JSON, ""},
+    {"{}x", API_MALFORMED_JSON, ""},
+    {"[],", API_MALFORMED_JSON, ""},
+    {"\xEF\xBB\xBF{}", API_MALFORMED_JSON, ""},
+    {"\xFF\xFE{", API_MALFORMED_JSON, ""},
+    {"{}\x01", API_MALFORMED_JSON, ""},
+    {"\f{}", API_MALFORMED_JSON, ""},
+    {"// x\n{}", API_MALFORMED_JSON, ""},
+    {"/**/{}", API_MALFORMED_JSON, ""},
+    /* brackets and commas */
+    {"{", API_MALFORMED_JSON, "-"},
+    {"[", API_MALFORMED_JSON, "-"},
+    {"}", API_MALFORMED_JSON, ""},
+    {"]", API_MALFORMED_JSON, ""},
+    {"[1", API_MALFORMED_JSON, "-"},
+    {"[1,", API_MALFORMED_JSON, "/1"},
+    {"[1,]", API_MALFORMED_JSON, "/1"},
+    {"[,1]", API_MALFORMED_JSON, "/0"},
+    {"[1,,2]", API_MALFORMED_JSON, "/1"},
+    {"[1 2]", API_MALFORMED_JSON, "/0"},
+    {"[1}", API_MALFORMED_JSON, "/0"},
+    {"{]", API_MALFORMED_JSON, "-"},
+    {"{\"a\":1]", API_MALFORMED_JSON, "/a"},
+    {"{\"a\":1,}", API_MALFORMED_JSON, "-"},
+    {"{,}", API_MALFORMED_JSON, "-"},
+    {"{\"a\"}", API_MALFORMED_JSON, "/a"},
+    {"{\"a\" 1}", API_MALFORMED_JSON, "/a"},
+    {"{\"a\":}", API_MALFORMED_JSON, "/a"},
+    {"{a:1}", API_MALFORMED_JSON, "-"},
+    {"{'a':1}", API_MALFORMED_JSON, "-"},
+    {"{1:1}", API_MALFORMED_JSON, "-"},
+    {"{\"a\":1 \"b\":2}", API_MALFORMED_JSON, "/a"},
+    {"[[[]]", API_MALFORMED_JSON, "-"},
+    {"[[]]]", API_MALFORMED_JSON, "-"},
+    /* words */
+    {"nul", API_MALFORMED_JSON, ""},
+    {"True", API_MALFORMED_JSON, ""},
+    {"tru", API_MALFORMED_JSON, ""},
+    {"truex", API_MALFORMED_JSON, ""},
+    {"NaN", API_MALFORMED_JSON, ""},
+    {"nan", API_MALFORMED_JSON, ""},
+    {"Infinity", API_MALFORMED_JSON, ""},
+    {"-Infinity", API_MALFORMED_JSON, ""},
+    {"undefined", API_MALFORMED_JSON, ""},
+    /* numbers */
+    {"01", API_MALFORMED_JSON, ""},
+    {"-01", API_MALFORMED_JSON, ""},
+    {"00", API_MALFORMED_JSON, ""},
+    {"1.", API_MALFORMED_JSON, ""},
+    {".5", API_MALFORMED_JSON, ""},
+    {"-.5", API_MALFORMED_JSON, ""},
+    {"+1", API_MALFORMED_JSON, ""},
+    {"--1", API_MALFORMED_JSON, ""},
+    {"-", API_MALFORMED_JSON, ""},
+    {"1e", API_MALFORMED_JSON, ""},
+    {"1e+", API_MALFORMED_JSON, ""},
+    {"1.e5", API_MALFORMED_JSON, ""},
+    {"1e5.5", API_MALFORMED_JSON, ""},
+    {"0x10", API_MALFORMED_JSON, ""},
+    {"1,5", API_MALFORMED_JSON, ""},
+    {"1_000", API_MALFORMED_JSON, ""},
+    {"[1.2.3]", API_MALFORMED_JSON, "/0"},
+    {"1e999", HE_NOT_FINITE, ""},
+    {"[0,-1e400]", HE_NOT_FINITE, "/1"},
+    {"{\"t\":1e309}", HE_NOT_FINITE, "/t"},
+    {"[0.0000000000000000000000000000000000000000000000000000000000001]", HE_BAD_VALUE, "/0"},
+    /* strings */
+    {"\"", API_MALFORMED_JSON, ""},
+    {"\"a", API_MALFORMED_JSON, ""},
+    {"\"\\\"", API_MALFORMED_JSON, ""},
+    {"\"\\", API_MALFORMED_JSON, ""},
+    {"\"\\x\"", API_MALFORMED_JSON, ""},
+    {"\"\\a\"", API_MALFORMED_JSON, ""},
+    {"\"\\u12\"", API_MALFORMED_JSON, ""},
+    {"\"\\u12G4\"", API_MALFORMED_JSON, ""},
+    {"\"\\u 123\"", API_MALFORMED_JSON, ""},
+    {"\"\\u0000\"", API_MALFORMED_JSON, ""},
+    {"{\"a\\u0000b\":1}", API_MALFORMED_JSON, "-"},
+    {"\"\\ud800\"", API_MALFORMED_JSON, ""},
+    {"\"\\udc00\"", API_MALFORMED_JSON, ""},
+    {"\"\\ud800\\ud800\"", API_MALFORMED_JSON, ""},
+    {"\"\\ud83dx\"", API_MALFORMED_JSON, ""},
+    {"\"\\ud83d\\u0041\"", API_MALFORMED_JSON, ""},
+    {"\"a\tb\"", API_MALFORMED_JSON, ""},
+    {"\"a\nb\"", API_MALFORMED_JSON, ""},
+    {"\"\x01\"", API_MALFORMED_JSON, ""},
+    {"\"\x80\"", API_MALFORMED_JSON, ""},
+    {"\"\xC3\"", API_MALFORMED_JSON, ""},
+    {"\"\xC0\xAF\"", API_MALFORMED_JSON, ""},
+    {"\"\xE0\x80\xAF\"", API_MALFORMED_JSON, ""},
+    {"\"\xED\xA0\x80\"", API_MALFORMED_JSON, ""},
+    {"\"\xF4\x90\x80\x80\"", API_MALFORMED_JSON, ""},
+    {"\"\xF8\x88\x80\x80\x80\"", API_MALFORMED_JSON, ""},
+    {"\"\xFF\"", API_MALFORMED_JSON, ""},
+    {"'a'", API_MALFORMED_JSON, ""},
+    /* members given twice, however they are spelled */
+    {"{\"a\":1,\"a\":2}", API_DUPLICATE_MEMBER, "/a"},
+    {"{\"a\":1,\"\\u0061\":2}", API_DUPLICATE_MEMBER, "/a"},
+    {"[{},{\"x\":{\"b\":1,\"c\":2,\"b\":1}}]", API_DUPLICATE_MEMBER, "/1/x/b"},
+    {"{\"\":1,\"\":2}", API_DUPLICATE_MEMBER, "/"},
+    {"{\"a/b~c\":1,\"a/b~c\":2}", API_DUPLICATE_MEMBER, "/a~1b~0c"},
+    {"{\"a/b\":[01]}", API_MALFORMED_JSON, "/a~1b/0"},
+};
+
+static bool parse(const char *body, size_t length, size_t values, api_document *document,
+                  api_in *root, api_problem *problem)
+{
+    api_in_limits limits = {.values = values};
+    return api_document_parse(body, length, &limits, document, root, problem);
+}
+
+static void hostile_bodies_are_refused_exactly(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const body_case *c = &cases[i];
+        api_document document = {0};
+        api_in root;
+        api_problem problem = {0};
+        /* A copy of the exact size: a read beyond the end is seen by the address sanitizer. */
+        size_t length = strlen(c->body);
+        char *body = malloc(length + 1);
+        assert_non_null(body);
+        char *exact = length == 0 ? body : realloc(body, length);
+        memcpy(exact, c->body, length);
+        bool good = parse(exact, length, 1000, &document, &root, &problem);
+        if (good != (c->code == HE_OK) || problem.code != c->code ||
+            (strcmp(c->pointer, "-") != 0 && strcmp(c->pointer, problem.pointer) != 0)) {
+            fail_msg("%s: %s at \"%s\" (%s)", c->body, api_code_slug(problem.code), problem.pointer,
+                     problem.detail);
+        }
+        api_document_clear(&document);
+        free(exact);
+    }
+}
+
+static void depth_and_number_of_values_are_bounded(void **state)
+{
+    (void)state;
+    char body[2 * API_MAX_DEPTH + 8];
+    for (int depth = API_MAX_DEPTH; depth <= API_MAX_DEPTH + 1; depth++) {
+        memset(body, '[', (size_t)depth);
+        memset(body + depth, ']', (size_t)depth);
+        api_document document = {0};
+        api_in root;
+        api_problem problem = {0};
+        assert_int_equal(parse(body, 2 * (size_t)depth, 1000, &document, &root, &problem),
+                         depth == API_MAX_DEPTH);
+        assert_int_equal(problem.code, depth == API_MAX_DEPTH ? HE_OK : API_MALFORMED_JSON);
+        api_document_clear(&document);
+    }
+    api_document document = {0};
+    api_in root;
+    api_problem problem = {0};
+    assert_true(parse("[1,2,3]", 7, 4, &document, &root, &problem));
+    api_document_clear(&document);
+    assert_false(parse("[1,2,3]", 7, 3, &document, &root, &problem));
+    assert_int_equal(api_problem_http(&problem), 413);
+    /* A deep opening without an end costs no stack. */
+    static char deep[100000];
+    memset(deep, '[', sizeof deep);
+    problem = (api_problem){0};
+    assert_false(parse(deep, sizeof deep, 1000000, &document, &root, &problem));
+}
+
+static void objects_have_a_bounded_number_of_members(void **state)
+{
+    (void)state;
+    char body[8 * (API_MAX_MEMBERS + 2)];
+    for (int members = API_MAX_MEMBERS; members <= API_MAX_MEMBERS + 1; members++) {
+        size_t used = 0;
+        for (int i = 0; i < members; i++) {
+            used += (size_t)snprintf(body + used, sizeof body - used, "%s\"%d\":1",
+                                     i == 0 ? "{" : ",", i);
+        }
+        body[used++] = '}';
+        api_document document = {0};
+        api_in root;
+        api_problem problem = {0};
+        assert_int_equal(parse(body, used, 10000, &document, &root, &problem),
+                         members == API_MAX_MEMBERS);
+        api_document_clear(&document);
+    }
+}
+
+/* How reading "v" of a document as some type ends. */
+typedef enum reader {
+    READ_BOOL,
+    READ_NUMBER,
+    READ_OPEN_RANGE, /* strictly between 0 and 1 */
+    READ_U64,        /* 1..10 */
+    READ_ID,
+    READ_IDS,
+    READ_VEC3,
+    READ_STRING, /* at most 4 bytes */
+    READ_CHOICE, /* "a", "b" */
+    READ_ELEMENT
+} reader;
+
+static bool read_value(reader how, const api_in *in, api_arena *arena)
+{
+    bool flag;
+    double number;
+    uint64_t whole;
+    uint32_t id, *ids;
+    size_t count;
+    he_vec3 point;
+    const char *text;
+    int choice;
+    he_kind kind;
+    switch (how) {
+    case READ_BOOL:
+        return api_in_bool(in, &flag);
+    case READ_NUMBER:
+        return api_in_number(in, &number);
+    case READ_OPEN_RANGE:
+        return api_in_number_within(in, 0, 1, true, &number);
+    case READ_U64:
+        return api_in_u64(in, 1, 10, &whole);
+    case READ_ID:
+        return api_in_id(in, &id);
+    case READ_IDS:
+        return api_in_ids(in, 1, arena, &ids, &count);
+    case READ_VEC3:
+        return api_in_vec3(in, &point);
+    case READ_STRING:
+        return api_in_string(in, 4, &text);
+    case READ_CHOICE:
+        return api_in_choice(in, (const char *const[]){"a", "b", NULL}, &choice);
+    case READ_ELEMENT:
+        return api_in_element(in, &kind, &id);
+    }
+    return false;
+}
+
+static const struct {
+    reader how;
+    const char *value;
+    int code;
+    const char *pointer;
+} values[] = {
+    {READ_BOOL, "true", HE_OK, ""},
+    {READ_BOOL, "1", API_WRONG_TYPE, "/v"},
+    {READ_NUMBER, "0.1", HE_OK, ""},
+    {READ_NUMBER, "\"1\"", API_WRONG_TYPE, "/v"},
+    {READ_NUMBER, "null", API_WRONG_TYPE, "/v"},
+    {READ_OPEN_RANGE, "0.5", HE_OK, ""},
+    {READ_OPEN_RANGE, "0", HE_BAD_VALUE, "/v"},
+    {READ_OPEN_RANGE, "1", HE_BAD_VALUE, "/v"},
+    {READ_U64, "10", HE_OK, ""},
+    {READ_U64, "1.0", HE_OK, ""},
+    {READ_U64, "0", HE_BAD_VALUE, "/v"},
+    {READ_U64, "11", HE_BAD_VALUE, "/v"},
+    {READ_U64, "1.5", HE_BAD_VALUE, "/v"},
+    {READ_ID, "0", HE_OK, ""},
+    {READ_ID, "4294967293", HE_OK, ""},
+    {READ_ID, "4294967294", HE_BAD_VALUE, "/v"},
+    {READ_ID, "4294967296", HE_BAD_VALUE, "/v"},
+    {READ_ID, "18446744073709551617", HE_BAD_VALUE, "/v"},
+    {READ_ID, "-1", HE_BAD_VALUE, "/v"},
+    {READ_ID, "null", API_WRONG_TYPE, "/v"},
+    {READ_IDS, "[1,2]", HE_OK, ""},
+    {READ_IDS, "[]", HE_BAD_VALUE, "/v"},
+    {READ_IDS, "7", API_WRONG_TYPE, "/v"},
+    {READ_IDS, "[1,2.5]", HE_BAD_VALUE, "/v/1"},
+    {READ_VEC3, "[1,2,3]", HE_OK, ""},
+    {READ_VEC3, "[1,2]", HE_BAD_VALUE, "/v"},
+    {READ_VEC3, "[1,2,3,4]", HE_BAD_VALUE, "/v"},
+    {READ_VEC3, "[1,\"2\",3]", API_WRONG_TYPE, "/v/1"},
+    {READ_STRING, "\"abcd\"", HE_OK, ""},
+    {READ_STRING, "\"abcde\"", HE_BAD_VALUE, "/v"},
+    {READ_CHOICE, "\"b\"", HE_OK, ""},
+    {READ_CHOICE, "\"B\"", HE_BAD_VALUE, "/v"},
+    {READ_ELEMENT, "{\"edge\":3}", HE_OK, ""},
+    {READ_ELEMENT, "{}", API_MISSING_MEMBER, "/v"},
+    {READ_ELEMENT, "{\"edge\":3,\"face\":1}", API_UNKNOWN_MEMBER, "/v/face"},
+    {READ_ELEMENT, "{\"corner\":3}", API_UNKNOWN_MEMBER, "/v/corner"},
+    {READ_ELEMENT, "{\"edge\":-3}", HE_BAD_VALUE, "/v/edge"},
+};
+
+static void values_are_refused_with_their_pointer(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        char body[128];
+        int length = snprintf(body, sizeof body, "{\"v\":%s}", values[i].value);
+        api_document document = {0};
+        api_arena arena = {0};
+        api_in root, value;
+        api_problem problem = {0};
+        assert_true(parse(body, (size_t)length, 100, &document, &root, &problem));
+        assert_true(api_in_need(&root, "v", &value));
+        bool good = read_value(values[i].how, &value, &arena);
+        if (good != (values[i].code == HE_OK) || problem.code != values[i].code ||
+            strcmp(problem.pointer, values[i].pointer) != 0) {
+            fail_msg("%s: %s at \"%s\" (%s)", body, api_code_slug(problem.code), problem.pointer,
+                     problem.detail);
+        }
+        api_arena_clear(&arena);
+        api_document_clear(&document);
+    }
+}
+
+static void members_are_those_that_are_named(void **state)
+{
+    (void)state;
+    static const char body[] = "{\"a\":1,\"B\":2}";
+    api_document document = {0};
+    api_in root, value;
+    api_problem problem = {0};
+    assert_true(parse(body, strlen(body), 100, &document, &root, &problem));
+    assert_true(api_in_only(&root, (const char *const[]){"a", "B", "c", NULL}));
+    assert_false(api_in_find(&root, "b", &value)); /* letter case matters */
+    assert_int_equal(problem.code, HE_OK);
+    assert_false(api_in_need(&root, "c", &value));
+    assert_int_equal(problem.code, API_MISSING_MEMBER);
+    assert_string_equal(problem.pointer, "");
+    problem = (api_problem){0};
+    assert_false(api_in_only(&root, (const char *const[]){"a", "b", NULL}));
+    assert_int_equal(problem.code, API_UNKNOWN_MEMBER);
+    assert_string_equal(problem.pointer, "/B");
+    api_document_clear(&document);
+}
+
+static void numbers_are_exact(void **state)
+{
+    (void)state;
+    static const char body[] = "[9007199254740991,0.1,1e-320,179769313486231570e291]";
+    static const double expected[] = {9007199254740991.0, 0.1, 1e-320, 1.7976931348623157e308};
+    api_document document = {0};
+    api_in root, child;
+    api_problem problem = {0};
+    assert_true(parse(body, strlen(body), 100, &document, &root, &problem));
+    size_t i = 0;
+    for (bool more = api_in_first(&root, &child); more; more = api_in_next(&child)) {
+        double value;
+        assert_true(api_in_number(&child, &value));
+        assert_memory_equal(&value, &expected[i], sizeof value);
+        i++;
+    }
+    assert_int_equal(i, 4);
+    api_document_clear(&document);
+}
+
+static void every_failed_allocation_is_a_problem(void **state)
+{
+    (void)state;
+    static const char body[] = "{\"ids\":[1,2,3],\"name\":\"x\",\"deep\":[[{\"a\":null}]]}";
+    long n = 0;
+    bool good = false;
+    while (!good) {
+        api_document document = {0};
+        api_arena arena = {0};
+        api_in root, list;
+        api_problem problem = {0};
+        uint32_t *ids;
+        size_t count;
+        fixture_fail_at(++n);
+        good = parse(body, strlen(body), 100, &document, &root, &problem) &&
+               api_in_need(&root, "ids", &list) && api_in_ids(&list, 1, &arena, &ids, &count);
+        assert_int_equal(good, fixture_memory.calls < n);
+        assert_int_equal(problem.code, good ? HE_OK : HE_NO_MEMORY);
+        api_arena_clear(&arena);
+        api_document_clear(&document);
+        fixture_memory_back();
+    }
+    assert_true(n > 10);
+}
+
+int main(void)
+{
+    api_in_setup();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hostile_bodies_are_refused_exactly),
+        cmocka_unit_test(depth_and_number_of_values_are_bounded),
+        cmocka_unit_test(objects_have_a_bounded_number_of_members),
+        cmocka_unit_test(values_are_refused_with_their_pointer),
+        cmocka_unit_test(members_are_those_that_are_named),
+        cmocka_unit_test(numbers_are_exact),
+        cmocka_unit_test(every_failed_allocation_is_a_problem),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,547 @@
+/* Dispatch and the frame about every handler, with a store that holds one mesh, "m". */
+#include "api/exchange.h"
+
+#include "fixture.h"
+
+/* --- a store of one mesh --- */
+
+struct api_mesh {
+    he_mesh *content;
+    int references;
+};
+
+static api_store_status store_find(void *self, const char *id, api_mesh **out)
+{
+    api_mesh *mesh = self;
+    if (strcmp(id, "m") != 0) {
+        return API_STORE_ABSENT;
+    }
+    mesh->references++;
+    *out = mesh;
+    return API_STORE_OK;
+}
+
+static void store_release(void *self, api_mesh *mesh)
+{
+    assert_ptr_equal(self, mesh);
+    mesh->references--;
+}
+
+static const he_mesh *store_read_begin(void *self, api_mesh *mesh, api_mesh_info *info)
+{
+    assert_ptr_equal(self, mesh);
+    *info = (api_mesh_info){.id = "m", .incarnation = 1, .metadata = 1, .revision = 7};
+    return mesh->content;
+}
+
+static void store_read_end(void *self, api_mesh *mesh)
+{
+    assert_ptr_equal(self, mesh);
+}
+
+static bool store_cache_get(void *self, api_mesh *mesh, void *value, size_t size)
+{
+    (void)self;
+    (void)mesh;
+    (void)value;
+    return size == 0;
+}
+
+static void store_cache_put(void *self, api_mesh *mesh, const void *value, size_t size)
+{
+    (void)self;
+    (void)mesh;
+    (void)value;
+    (void)size;
+}
+
+static api_mesh only;
+static const api_store store = {.self = &only,
+                                .find = store_find,
+                                .release = store_release,
+                                .read_begin = store_read_begin,
+                                .read_end = store_read_end,
+                                .cache_get = store_cache_get,
+                                .cache_put = store_cache_put};
+
+static bool find_asset(void *context, const char *path, const char **bytes, size_t *length,
+                       const char **type, const char **etag, bool *immutable)
+{
+    (void)context;
+    bool page = strcmp(path, "/") == 0;
+    if (!page && strcmp(path, "/assets/a.js") != 0) {
+        return false;
+    }
+    *bytes = page ? "<p>" : "x()";
+    *length = 3;
+    *type = page ? "text/html; charset=utf-8" : "text/javascript";
+    *etag = "\"e\"";
+    *immutable = !page;
+    return true;
+}
+
+static bool not_ready(void *context)
+{
+    return *(bool *)context;
+}
+
+static bool is_ready = true;
+static api_service *service;
+
+static int set_up(void **state)
+{
+    (void)state;
+    api_options options = {.version = "1.2.3",
+                           .max_upload = 100,
+                           .asset = find_asset,
+                           .ready = not_ready,
+                           .ready_context = &is_ready};
+    only.content = fixture_mesh("012");
+    service = api_service_new(&store, &options);
+    return service == NULL;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    api_service_free(service);
+    he_mesh_free(only.content);
+    return only.references;
+}
+
+/* --- requests --- */
+
+typedef struct sent {
+    const char *line;    /* "GET /v1/meshes?limit=1" */
+    const char *headers; /* "Name: value\n..." */
+    const char *body;    /* NULL: none */
+} sent;
+
+/* One header of the list, into a buffer of its own: values are borrowed until api_free. */
+typedef struct header_list {
+    const char *text;
+    char value[8][256];
+    size_t used;
+} header_list;
+
+static const char *find_header(void *context, const char *name)
+{
+    header_list *list = context;
+    size_t length = strlen(name);
+    for (const char *at = list->text; at != NULL && *at != '\0';) {
+        const char *end = strchr(at, '\n');
+        size_t size = end == NULL ? strlen(at) : (size_t)(end - at);
+        if (size > length + 2 && strncmp(at, name, length) == 0 && at[length] == ':') {
+            char *value = list->value[list->used++ % 8];
+            snprintf(value, 256, "%.*s", (int)(size - length - 2), at + length + 2);
+            return value;
+        }
+        at = end == NULL ? NULL : end + 1;
+    }
+    return NULL;
+}
+
+static api_exchange *send_line(const sent *r, header_list *headers)
+{
+    char method[16] = "", path[4096] = "";
+    size_t space = strcspn(r->line, " ");
+    snprintf(method, sizeof method, "%.*s", (int)space, r->line);
+    const char *target = r->line + space + 1;
+    size_t length = strcspn(target, "?");
+    snprintf(path, sizeof path, "%.*s", (int)length, target);
+    *headers = (header_list){.text = r->headers};
+    api_request request = {.method = method,
+                           .path = path,
+                           .query = target[length] == '?' ? target + length + 1 : "",
+                           .request_id = "id-1",
+                           .header = find_header,
+                           .context = headers,
+                           .has_body = r->body != NULL,
+                           .has_length = r->body != NULL,
+                           .length = r->body == NULL ? 0 : strlen(r->body)};
+    return api_handle(service, &request, r->body, r->body == NULL ? 0 : strlen(r->body));
+}
+
+static const char *answer_header(const api_answer *answer, const char *name)
+{
+    for (size_t i = 0; i < answer->header_count; i++) {
+        if (strcmp(answer->headers[i].name, name) == 0) {
+            return answer->headers[i].value;
+        }
+    }
+    return NULL;
+}
+
+/* Does the body hold "code":"slug"? */
+static bool has_code(const api_answer *answer, const char *slug)
+{
+    char member[80];
+    size_t size = (size_t)snprintf(member, sizeof member, "\"code\":\"%s\"", slug);
+    for (size_t i = 0; answer->bytes != NULL && i + size <= (size_t)answer->length; i++) {
+        if (memcmp(answer->bytes + i, member, size) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+#define JSON "Content-Type: application/json"
+
+static const struct {
+    sent request;
+    int status;
+    const char *code; /* of a problem */
+} answers[] = {
+    {{"GET /livez", NULL, NULL}, 200, NULL},
+    {{"GET /readyz", NULL, NULL}, 200, NULL},
+    {{"GET /version", NULL, NULL}, 200, NULL},
+    {{"HEAD /version", NULL, NULL}, 200, NULL},
+    {{"GET /", NULL, NULL}, 200, NULL},
+    {{"GET /", "If-None-Match: \"e\"", NULL}, 304, NULL},
+    {{"GET /assets/a.js", NULL, NULL}, 200, NULL},
+    {{"GET /assets/b.js", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /assets/../a.js", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /problems/link_condition", NULL, NULL}, 200, NULL},
+    {{"GET /problems/nothing", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/operations", NULL, NULL}, 200, NULL},
+    {{"GET /v1/openapi.json", NULL, NULL}, 200, NULL},
+    {{"GET /v1/meshes/m", NULL, NULL}, 200, NULL},
+    /* no such path */
+    {{"GET /v1", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/mesh", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/meshes/", NULL, NULL}, 404, "no_such_route"},
+    {{"GET //v1/meshes", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /V1/meshes", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/meshes/m/corners", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/meshes/m/vertices/0/loop", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/meshes/m/vertices/0/edges/1", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/meshes%2Fm", NULL, NULL}, 400, "bad_path"},
+    {{"GET /v1/meshes/m%00", NULL, NULL}, 400, "bad_path"},
+    {{"GET /v1/meshes/m%zz", NULL, NULL}, 400, "bad_path"},
+    {{"GET /v1/meshes/m%FF", NULL, NULL}, 400, "bad_path"},
+    /* no such mesh or element */
+    {{"GET /v1/meshes/other", NULL, NULL}, 404, "no_such_mesh"},
+    {{"GET /v1/meshes/..", NULL, NULL}, 404, "no_such_mesh"},
+    {{"GET /v1/meshes/%2e%2e", NULL, NULL}, 404, "no_such_mesh"},
+    {{"GET /v1/meshes/a%20b", NULL, NULL}, 404, "no_such_mesh"},
+    {{"PUT /v1/meshes/a%20b", JSON, "{}"}, 400, "bad_id"},
+    {{"GET /v1/meshes/m/vertices/x", NULL, NULL}, 404, "no_such_element"},
+    {{"GET /v1/meshes/m/vertices/-1", NULL, NULL}, 404, "no_such_element"},
+    {{"GET /v1/meshes/m/vertices/4294967296", NULL, NULL}, 404, "no_such_element"},
+    {{"GET /v1/meshes/other/vertices/0", NULL, NULL}, 404, "no_such_mesh"},
+    /* methods */
+    {{"BREW /livez", NULL, NULL}, 405, "method_not_allowed"},
+    {{"get /livez", NULL, NULL}, 405, "method_not_allowed"},
+    {{"POST /v1/meshes/m", JSON, "{}"}, 405, "method_not_allowed"},
+    {{"BREW /nowhere", NULL, NULL}, 404, "no_such_route"},
+    {{"OPTIONS /v1/meshes/m", NULL, NULL}, 204, NULL},
+    {{"OPTIONS /nowhere", NULL, NULL}, 404, "no_such_route"},
+    /* query parameters */
+    {{"GET /v1/operations?x=1", NULL, NULL}, 400, "unknown_parameter"},
+    {{"GET /v1/meshes?Limit=1", NULL, NULL}, 400, "unknown_parameter"},
+    {{"GET /v1/meshes?limit=1&limit=1", NULL, NULL}, 400, "repeated_parameter"},
+    {{"GET /v1/meshes?limit=0", NULL, NULL}, 400, "bad_parameter"},
+    {{"GET /v1/meshes?limit=10001", NULL, NULL}, 400, "bad_parameter"},
+    {{"GET /v1/meshes?limit=-1", NULL, NULL}, 400, "bad_parameter"},
+    {{"GET /v1/meshes?limit=1.0", NULL, NULL}, 400, "bad_parameter"},
+    {{"GET /v1/meshes?limit=", NULL, NULL}, 400, "bad_parameter"},
+    {{"GET /v1/meshes?limit", NULL, NULL}, 400, "bad_query"},
+    {{"GET /v1/meshes/m/vertices/0/edges?cw=1", NULL, NULL}, 400, "bad_parameter"},
+    {{"GET /v1/meshes/m/components?by=face", NULL, NULL}, 400, "bad_parameter"},
+    /* bodies */
+    {{"GET /livez", NULL, "x"}, 400, "unexpected_body"},
+    {{"GET /livez", NULL, ""}, 200, NULL},
+    {{"POST /v1/meshes/m/query", JSON, NULL}, 400, "missing_body"},
+    {{"POST /v1/meshes/m/query", JSON, ""}, 400, "missing_body"},
+    {{"POST /v1/meshes/m/query", NULL, "{}"}, 415, "unsupported_media_type"},
+    {{"POST /v1/meshes/m/query", "Content-Type: text/plain", "{}"}, 415, "unsupported_media_type"},
+    {{"POST /v1/meshes/m/query", "Content-Type: application/json; charset=latin1", "{}"},
+     415,
+     "unsupported_media_type"},
+    {{"POST /v1/meshes/m/query", JSON "\nContent-Encoding: gzip", "{}"},
+     415,
+     "unsupported_encoding"},
+    {{"POST /v1/meshes/m/query", JSON, "{\"queries\":"}, 400, "malformed_json"},
+    {{"POST /v1/meshes/m/query", JSON, "{\"a\":1,\"a\":1}"}, 400, "duplicate_member"},
+    {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", "{}"}, 415, "unsupported_media_type"},
+    /* The upload's cap is 100 bytes here. */
+    {{"POST /v1/meshes", JSON,
+      "{\"name\":\"012345678901234567890123456789012345678901234567890123456789012345678901234567"
+      "8901234567890123456789\"}"},
+     413,
+     "body_too_large"},
+    /* what the client accepts */
+    {{"GET /version", "Accept: text/html", NULL}, 406, "not_acceptable"},
+    {{"GET /version", "Accept: application/json;q=0", NULL}, 406, "not_acceptable"},
+    {{"GET /version", "Accept: text/html, */*;q=0.1", NULL}, 200, NULL},
+    {{"GET /version", "Accept: ", NULL}, 200, NULL},
+    {{"GET /problems/syntax", "Accept: application/json", NULL}, 406, "not_acceptable"},
+};
+
+static void requests_are_answered(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++) {
+        header_list headers;
+        api_exchange *x = send_line(&answers[i].request, &headers);
+        assert_non_null(x);
+        const api_answer *answer = api_answer_of(x);
+        if (answer->status != answers[i].status ||
+            (answers[i].code != NULL && !has_code(answer, answers[i].code))) {
+            fail_msg("%s: %d %.*s", answers[i].request.line, answer->status,
+                     (int)(answer->bytes == NULL ? 0 : answer->length), answer->bytes);
+        }
+        assert_string_equal(answer_header(answer, "X-Request-Id"), "id-1");
+        assert_string_equal(answer_header(answer, "X-Content-Type-Options"), "nosniff");
+        assert_non_null(answer_header(answer, "Cache-Control"));
+        const char *type = answer_header(answer, "Content-Type");
+        assert_true(answer->status < 400 ||
+                    (type != NULL && strcmp(type, "application/problem+json") == 0));
+        assert_true(answer->status != 405 || answer_header(answer, "Allow") != NULL);
+        assert_non_null(answer->route);
+        api_free(x);
+    }
+}
+
+static void allow_lists_the_methods_of_a_path(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *allow;
+    } lines[] = {
+        {"TRACE /v1/meshes", "GET, HEAD, POST, OPTIONS"},
+        {"POST /v1/meshes/m", "GET, HEAD, PATCH, PUT, DELETE, OPTIONS"},
+        {"DELETE /v1/meshes/m/edits", "POST, GET, HEAD, OPTIONS"},
+        {"OPTIONS /v1/meshes/m/undo", "POST, OPTIONS"},
+        {"PUT /v1/meshes/m/faces/3/edges", "GET, HEAD, OPTIONS"},
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        header_list headers;
+        sent r = {lines[i].line, NULL, NULL};
+        api_exchange *x = send_line(&r, &headers);
+        assert_string_equal(answer_header(api_answer_of(x), "Allow"), lines[i].allow);
+        api_free(x);
+    }
+}
+
+static void pages_carry_a_strict_policy(void **state)
+{
+    (void)state;
+    static const char *const pages[] = {"GET /", "GET /problems/syntax"};
+    for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
+        header_list headers;
+        sent r = {pages[i], NULL, NULL};
+        api_exchange *x = send_line(&r, &headers);
+        const char *policy = answer_header(api_answer_of(x), "Content-Security-Policy");
+        assert_non_null(policy);
+        assert_ptr_equal(strstr(policy, "default-src 'none'"), policy);
+        assert_null(strstr(policy, "unsafe"));
+        api_free(x);
+    }
+}
+
+static void readiness_is_the_servers_to_say(void **state)
+{
+    (void)state;
+    header_list headers;
+    sent r = {"GET /readyz", NULL, NULL};
+    is_ready = false;
+    api_exchange *x = send_line(&r, &headers);
+    assert_int_equal(api_answer_of(x)->status, 503);
+    assert_non_null(answer_header(api_answer_of(x), "Retry-After"));
+    api_free(x);
+    is_ready = true;
+}
+
+static void too_long_a_target_is_414(void **state)
+{
+    (void)state;
+    char *path = malloc(API_MAX_URI + 3);
+    assert_non_null(path);
+    memset(path, 'a', API_MAX_URI + 2);
+    path[0] = '/';
+    path[API_MAX_URI + 2] = '\0';
+    api_request request = {.method = "GET", .path = path, .query = "", .request_id = "r"};
+    api_exchange *x = api_handle(service, &request, NULL, 0);
+    assert_int_equal(api_answer_of(x)->status, 414);
+    api_free(x);
+    path[API_MAX_URI] = '\0';
+    x = api_handle(service, &request, NULL, 0);
+    assert_int_equal(api_answer_of(x)->status, 404);
+    api_free(x);
+    free(path);
+}
+
+static void a_body_without_a_length_meets_the_cap_as_it_comes(void **state)
+{
+    (void)state;
+    api_request request = {
+        .method = "GET", .path = "/livez", .query = "", .request_id = "r", .has_body = true};
+    api_step step;
+    api_exchange *x = api_begin(service, &request, &step);
+    assert_int_equal(step, API_MORE);
+    assert_int_equal(api_body(x, "", 0), API_MORE);
+    assert_int_equal(api_body(x, "x", 1), API_READY);
+    assert_int_equal(api_answer_of(x)->status, 400);
+    assert_true(api_answer_of(x)->close);
+    assert_int_equal(api_body(x, "x", 1), API_READY);
+    assert_int_equal(api_end(x), API_READY);
+    api_free(x);
+}
+
+static void costly_work_leaves_the_worker(void **state)
+{
+    (void)state;
+    he_mesh *small = only.content;
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    for (int i = 0; i <= API_COSTLY_ELEMENTS; i++) {
+        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){i, 0, 0}, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &only.content, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    api_request request = {.method = "GET", .path = "/v1/meshes/m", .query = "", .request_id = "r"};
+    api_step step;
+    api_exchange *x = api_begin(service, &request, &step);
+    assert_int_equal(step, API_MORE);
+    assert_int_equal(api_end(x), API_WORK);
+    api_work(x);
+    assert_int_equal(api_answer_of(x)->status, 200);
+    assert_ptr_equal(api_answer_of(x)->mesh, &only);
+    assert_int_equal(api_answer_of(x)->revision, 7);
+    api_free(x);
+    he_mesh_free(only.content);
+    only.content = small;
+}
+
+static void a_large_document_is_read_off_the_worker(void **state)
+{
+    (void)state;
+    size_t length = API_COSTLY_UPLOAD + 1;
+    char *body = malloc(length);
+    assert_non_null(body);
+    memset(body, ' ', length);
+    memcpy(body, "{\"a\":1,\"a\":2}", 13);
+    header_list headers = {.text = JSON};
+    api_request request = {.method = "POST",
+                           .path = "/v1/meshes/m/query",
+                           .query = "",
+                           .request_id = "r",
+                           .header = find_header,
+                           .context = &headers,
+                           .has_body = true};
+    api_step step;
+    api_exchange *x = api_begin(service, &request, &step);
+    assert_int_equal(step, API_MORE);
+    assert_int_equal(api_body(x, body, length), API_MORE);
+    assert_int_equal(api_end(x), API_WORK);
+    api_work(x);
+    assert_int_equal(api_answer_of(x)->status, 400);
+    assert_true(has_code(api_answer_of(x), "duplicate_member"));
+    api_free(x);
+    free(body);
+}
+
+static void documents_of_the_tables_are_json(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"GET /v1/operations", "GET /v1/openapi.json"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        header_list headers;
+        sent r = {lines[i], NULL, NULL};
+        api_exchange *x = send_line(&r, &headers);
+        const api_answer *answer = api_answer_of(x);
+        api_document document = {0};
+        api_in root;
+        api_problem problem = {0};
+        api_in_limits limits = {.values = 1000000};
+        if (!api_document_parse(answer->bytes, (size_t)answer->length, &limits, &document, &root,
+                                &problem)) {
+            fail_msg("%s: %s at %s", lines[i], problem.detail, problem.pointer);
+        }
+        api_document_clear(&document);
+        api_free(x);
+    }
+}
+
+/* What the table promises of its own rows. */
+static void rows_are_whole(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < api_route_count(); i++) {
+        const api_route *route = api_route_at(i);
+        assert_non_null(route->run);
+        assert_non_null(route->name);
+        assert_non_null(route->summary);
+        assert_non_null(route->produces);
+        assert_int_equal(route->body_kind == API_BODY_UPLOAD, route->body != NULL);
+        assert_int_equal(route->body_kind == API_BODY_NONE, route->consumes == NULL);
+        assert_true(route->statuses[0] >= 200 && route->statuses[0] < 300);
+        assert_true((route->flags & API_FIXED) || route->doc != NULL);
+        assert_int_equal(route->statuses[API_ROUTE_STATUSES - 1], 0);
+        assert_null(route->parameters[API_ROUTE_PARAMETERS - 1]);
+        for (size_t s = 0; route->statuses[s] != 0; s++) {
+            for (const int *common = api_route_common(); *common != 0; common++) {
+                assert_int_not_equal(route->statuses[s], *common);
+            }
+            assert_true(s == 0 || route->statuses[s] > route->statuses[s - 1]);
+        }
+        for (size_t j = 0; j < i; j++) {
+            assert_true(strcmp(route->path, api_route_at(j)->path) != 0 ||
+                        strcmp(route->method, api_route_at(j)->method) != 0);
+            assert_string_not_equal(route->name, api_route_at(j)->name);
+        }
+    }
+}
+
+/* The answer is whole whatever allocation fails, or there is no exchange at all. */
+static void every_failed_allocation_is_answered(void **state)
+{
+    (void)state;
+    static const sent requests[] = {
+        {"GET /version", NULL, NULL},
+        {"GET /v1/operations", NULL, NULL},
+        {"GET /v1/meshes/m", NULL, NULL},
+        {"GET /v1/meshes/m/vertices/0?x=1", NULL, NULL},
+        {"POST /v1/meshes/m/query", JSON, "{\"queries\":7}"},
+        {"OPTIONS /livez", NULL, NULL},
+    };
+    for (size_t i = 0; i < sizeof requests / sizeof requests[0]; i++) {
+        long n = 0;
+        bool good = false;
+        while (!good) {
+            header_list headers;
+            fixture_fail_at(++n);
+            api_exchange *x = send_line(&requests[i], &headers);
+            good = fixture_memory.calls < n;
+            assert_true(x != NULL || !good);
+            if (x != NULL && !good && api_answer_of(x)->status != 507 &&
+                api_answer_of(x)->status >= 400) {
+                /* The refusal that was due anyhow is as good. */
+                assert_true(api_answer_of(x)->length > 0);
+            }
+            assert_true(x == NULL || api_answer_of(x)->status >= 200);
+            api_free(x);
+            fixture_memory_back();
+        }
+        assert_true(n > 2);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(requests_are_answered),
+        cmocka_unit_test(allow_lists_the_methods_of_a_path),
+        cmocka_unit_test(pages_carry_a_strict_policy),
+        cmocka_unit_test(readiness_is_the_servers_to_say),
+        cmocka_unit_test(too_long_a_target_is_414),
+        cmocka_unit_test(a_body_without_a_length_meets_the_cap_as_it_comes),
+        cmocka_unit_test(costly_work_leaves_the_worker),
+        cmocka_unit_test(a_large_document_is_read_off_the_worker),
+        cmocka_unit_test(documents_of_the_tables_are_json),
+        cmocka_unit_test(rows_are_whole),
+        cmocka_unit_test(every_failed_allocation_is_answered),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
