@@ -1,0 +1,257 @@
+#include "algo/solid.h"
+
+#include "query/vec3.h"
+
+#include <assert.h>
+#include <string.h>
+
+void he_solid_vertex(he_soup *soup, double x, double y, double z)
+{
+    assert(soup->vertex_count < soup->vertex_capacity);
+    /* Minus zero plus zero is zero: no shape has a coordinate that prints as -0. */
+    soup->positions[soup->vertex_count++] = (he_vec3){x + 0.0, y + 0.0, z + 0.0};
+}
+
+void he_solid_face(he_soup *soup, const uint32_t *corners, size_t count)
+{
+    assert(soup->face_count < soup->face_capacity);
+    assert(count <= soup->corner_capacity - soup->corner_count);
+    soup->starts[soup->face_count++] = (uint32_t)soup->corner_count;
+    memcpy(soup->corners + soup->corner_count, corners, count * sizeof *corners);
+    soup->corner_count += count;
+}
+
+static void triangle(he_soup *soup, uint32_t a, uint32_t b, uint32_t c)
+{
+    he_solid_face(soup, (uint32_t[]){a, b, c}, 3);
+}
+
+void he_solid_tetrahedron(he_soup *soup, double radius)
+{
+    double r = radius / sqrt(3);
+    he_solid_vertex(soup, r, r, r);
+    he_solid_vertex(soup, r, -r, -r);
+    he_solid_vertex(soup, -r, r, -r);
+    he_solid_vertex(soup, -r, -r, r);
+    triangle(soup, 0, 1, 2);
+    triangle(soup, 0, 2, 3);
+    triangle(soup, 0, 3, 1);
+    triangle(soup, 1, 3, 2);
+}
+
+void he_solid_cube(he_soup *soup, double size)
+{
+    static const uint32_t sides[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                         {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    double r = size / 2;
+    for (int i = 0; i < 2; i++) {
+        double z = i == 0 ? -r : r;
+        he_solid_vertex(soup, -r, -r, z);
+        he_solid_vertex(soup, r, -r, z);
+        he_solid_vertex(soup, r, r, z);
+        he_solid_vertex(soup, -r, r, z);
+    }
+    for (int i = 0; i < 6; i++) {
+        he_solid_face(soup, sides[i], 4);
+    }
+}
+
+void he_solid_octahedron(he_soup *soup, double radius)
+{
+    he_solid_vertex(soup, radius, 0, 0);
+    he_solid_vertex(soup, -radius, 0, 0);
+    he_solid_vertex(soup, 0, radius, 0);
+    he_solid_vertex(soup, 0, -radius, 0);
+    he_solid_vertex(soup, 0, 0, radius);
+    he_solid_vertex(soup, 0, 0, -radius);
+    /* One triangle an octant; each reflection turns it over. */
+    for (uint32_t i = 0; i < 8; i++) {
+        uint32_t x = i & 1u, y = i >> 1 & 1u, z = i >> 2;
+        if ((x ^ y ^ z) == 0) {
+            triangle(soup, x, 2 + y, 4 + z);
+        } else {
+            triangle(soup, x, 4 + z, 2 + y);
+        }
+    }
+}
+
+/* The icosahedron's vertices are the corners of three golden rectangles, one in each coordinate
+ * plane; its edges join those at the least distance, and its faces are the triples joined pairwise,
+ * turned outwards. */
+typedef struct icosahedron {
+    he_vec3 vertex[12];
+    uint32_t face[20][3];
+    uint32_t edge[12][12]; /* numbers of the 30 edges by their ends */
+} icosahedron;
+
+static icosahedron icosahedron_make(void)
+{
+    icosahedron ico = {0};
+    double golden = (1 + sqrt(5)) / 2, r = sqrt(1 + golden * golden);
+    for (unsigned i = 0; i < 12; i++) {
+        double s = (i & 1u ? -1 : 1) / r, l = (i & 2u ? -golden : golden) / r;
+        ico.vertex[i] = i < 4   ? (he_vec3){0, s, l}
+                        : i < 8 ? (he_vec3){l, 0, s}
+                                : (he_vec3){s, l, 0};
+    }
+    bool joined[12][12];
+    uint32_t edges = 0, faces = 0;
+    for (uint32_t a = 0; a < 12; a++) {
+        for (uint32_t b = 0; b < 12; b++) {
+            /* Cosines between vertices are 1, 1/sqrt 5, -1/sqrt 5 and -1. */
+            double cosine = he_vec3_dot(ico.vertex[a], ico.vertex[b]);
+            joined[a][b] = cosine > 0 && cosine < 0.9;
+            if (a < b && joined[a][b]) {
+                ico.edge[a][b] = ico.edge[b][a] = edges++;
+            }
+        }
+    }
+    for (uint32_t a = 0; a < 12; a++) {
+        for (uint32_t b = a + 1; b < 12; b++) {
+            for (uint32_t c = b + 1; c < 12; c++) {
+                if (!joined[a][b] || !joined[b][c] || !joined[a][c]) {
+                    continue;
+                }
+                he_vec3 turn = he_vec3_cross(ico.vertex[b], ico.vertex[c]);
+                bool outwards = he_vec3_dot(ico.vertex[a], turn) > 0;
+                ico.face[faces][0] = a;
+                ico.face[faces][1] = outwards ? b : c;
+                ico.face[faces][2] = outwards ? c : b;
+                faces++;
+            }
+        }
+    }
+    assert(edges == 30 && faces == 20);
+    return ico;
+}
+
+void he_solid_icosahedron(he_soup *soup, double radius)
+{
+    he_solid_icosphere(soup, 0, radius);
+}
+
+/* The face of the icosahedron that runs from `at` to `b`, and the corner after those. */
+static uint32_t face_from(const icosahedron *ico, uint32_t at, uint32_t b, uint32_t *after)
+{
+    for (uint32_t f = 0; f < 20; f++) {
+        for (unsigned i = 0; i < 3; i++) {
+            if (ico->face[f][i] == at && ico->face[f][(i + 1) % 3] == b) {
+                *after = ico->face[f][(i + 2) % 3];
+                return f;
+            }
+        }
+    }
+    assert(!"every edge of the icosahedron has a face on its left");
+    return 0;
+}
+
+/* The dual of the icosahedron: a vertex for each face, a face for each vertex. */
+void he_solid_dodecahedron(he_soup *soup, double radius)
+{
+    icosahedron ico = icosahedron_make();
+    for (unsigned f = 0; f < 20; f++) {
+        const uint32_t *v = ico.face[f];
+        he_vec3 p = he_vec3_add(ico.vertex[v[0]], ico.vertex[v[1]]);
+        p = he_vec3_add(p, ico.vertex[v[2]]);
+        p = he_vec3_scale(p, radius / he_vec3_length(p));
+        he_solid_vertex(soup, p.x, p.y, p.z);
+    }
+    for (uint32_t v = 0; v < 12; v++) {
+        uint32_t corners[5], spoke = 0;
+        while (he_vec3_dot(ico.vertex[v], ico.vertex[spoke]) < 0 ||
+               he_vec3_dot(ico.vertex[v], ico.vertex[spoke]) > 0.9) {
+            spoke++;
+        }
+        for (unsigned i = 0; i < 5; i++) {
+            corners[i] = face_from(&ico, v, spoke, &spoke);
+        }
+        he_solid_face(soup, corners, 5);
+    }
+}
+
+/* One triangle of the icosahedron as a grid with `n` steps a side: the point (i, j) is i steps from
+ * corner 0 to corner 1 and j steps towards corner 2. */
+typedef struct patch {
+    const icosahedron *ico;
+    uint32_t n, face;
+} patch;
+
+/* Step t of n along an edge; both triangles beside it must get the same vertex. */
+static uint32_t on_edge(const patch *p, uint32_t from, uint32_t to, uint32_t t)
+{
+    uint32_t step = from < to ? t : p->n - t;
+    return 12 + p->ico->edge[from][to] * (p->n - 1) + step - 1;
+}
+
+/* Vertices are numbered: 12 corners, then the inner points of 30 edges, then those of 20 faces. */
+static uint32_t grid_vertex(const patch *p, uint32_t i, uint32_t j)
+{
+    const uint32_t *corner = p->ico->face[p->face];
+    uint32_t n = p->n;
+    if (i + j == 0 || i == n || j == n) {
+        return i == n ? corner[1] : j == n ? corner[2] : corner[0];
+    }
+    if (j == 0) {
+        return on_edge(p, corner[0], corner[1], i);
+    }
+    if (i == 0) {
+        return on_edge(p, corner[0], corner[2], j);
+    }
+    if (i + j == n) {
+        return on_edge(p, corner[1], corner[2], j);
+    }
+    /* Row j has n - 1 - j inner points; below it lie those of the rows 1 to j - 1. */
+    uint32_t inner = (uint32_t)((uint64_t)(n - 1) * (n - 2) / 2);
+    uint32_t below = (uint32_t)((uint64_t)(j - 1) * (n - 1) - (uint64_t)(j - 1) * j / 2);
+    return 12 + 30 * (n - 1) + p->face * inner + below + i - 1;
+}
+
+static void halve(he_vec3 *at, uint32_t a, uint32_t b, uint32_t middle)
+{
+    he_vec3 sum = he_vec3_add(at[a], at[b]);
+    at[middle] = he_vec3_scale(sum, 1 / he_vec3_length(sum));
+}
+
+/* Every edge of one level is a side of exactly one triangle that points as the patch does. */
+static void place_level(const patch *p, uint32_t step, he_vec3 *at)
+{
+    uint32_t half = step / 2;
+    for (uint32_t j = 0; j < p->n; j += step) {
+        for (uint32_t i = 0; i + j < p->n; i += step) {
+            uint32_t a = grid_vertex(p, i, j), b = grid_vertex(p, i + step, j);
+            uint32_t c = grid_vertex(p, i, j + step);
+            halve(at, a, b, grid_vertex(p, i + half, j));
+            halve(at, b, c, grid_vertex(p, i + half, j + half));
+            halve(at, c, a, grid_vertex(p, i, j + half));
+        }
+    }
+}
+
+void he_solid_icosphere(he_soup *soup, unsigned subdivisions, double radius)
+{
+    icosahedron ico = icosahedron_make();
+    patch p = {.ico = &ico, .n = 1u << subdivisions};
+    uint32_t vertices = 10u * p.n * p.n + 2;
+    assert(vertices <= soup->vertex_capacity);
+    memcpy(soup->positions, ico.vertex, sizeof ico.vertex);
+    soup->vertex_count = vertices;
+    for (uint32_t step = p.n; step > 1; step /= 2) {
+        for (p.face = 0; p.face < 20; p.face++) {
+            place_level(&p, step, soup->positions);
+        }
+    }
+    for (uint32_t v = 0; v < vertices; v++) {
+        soup->positions[v] = he_vec3_scale(soup->positions[v], radius);
+    }
+    for (p.face = 0; p.face < 20; p.face++) {
+        for (uint32_t j = 0; j < p.n; j++) {
+            for (uint32_t i = 0; i + j < p.n; i++) {
+                uint32_t b = grid_vertex(&p, i + 1, j), c = grid_vertex(&p, i, j + 1);
+                triangle(soup, grid_vertex(&p, i, j), b, c);
+                if (i + j + 1 < p.n) {
+                    triangle(soup, b, grid_vertex(&p, i + 1, j + 1), c);
+                }
+            }
+        }
+    }
+}

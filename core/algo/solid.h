@@ -1,0 +1,22 @@
+/* solid.h - the five regular solids and the sphere made from one, as fillings of a soup whose
+ * arrays are large enough. `radius` is that of the sphere through the vertices. For shape.c. */
+#ifndef HE_ALGO_SOLID_H
+#define HE_ALGO_SOLID_H
+
+#include "mesh/build.h"
+
+/* Append to a soup that has room. */
+void he_solid_vertex(he_soup *soup, double x, double y, double z);
+void he_solid_face(he_soup *soup, const uint32_t *corners, size_t count);
+
+void he_solid_tetrahedron(he_soup *soup, double radius);
+void he_solid_cube(he_soup *soup, double size); /* the length of an edge */
+void he_solid_octahedron(he_soup *soup, double radius);
+void he_solid_icosahedron(he_soup *soup, double radius);
+void he_solid_dodecahedron(he_soup *soup, double radius);
+
+/* Each triangle of the icosahedron becomes 4^subdivisions: edges are halved and the new points
+ * pushed out to the sphere, again and again. Vertices: 10 * 4^subdivisions + 2. */
+void he_solid_icosphere(he_soup *soup, unsigned subdivisions, double radius);
+
+#endif

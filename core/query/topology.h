@@ -1,0 +1,77 @@
+/* topology.h - the shape of a mesh as a whole: pieces, holes, handles.
+ *
+ * Two faces are in one component BY EDGE when a chain of faces leads from one to the other, each
+ * sharing an edge with the one before; BY VERTEX when sharing a corner is enough. The two differ
+ * only at bow-ties. Isolated vertices belong to no component and are counted apart.
+ *
+ *     euler = used vertices - edges + faces
+ *     genus = (2 components - euler - boundary loops) / 2, the number of handles; it means nothing
+ *             where there is a bow-tie, because fans share a vertex that the formula counts once
+ *
+ * Everything is linear in the mesh, but for union-find's inverse Ackermann, and uses flat arrays.
+ * Links that do not close, or lead to elements that do not exist, are HE_CORRUPT; HE_NO_MEMORY is
+ * always possible. Outputs are the caller's to clear. */
+#ifndef HE_QUERY_TOPOLOGY_H
+#define HE_QUERY_TOPOLOGY_H
+
+#include "mesh/mesh.h"
+
+/* How many faces have a degree. */
+typedef struct he_degree_count {
+    uint32_t degree, faces;
+} he_degree_count;
+
+typedef struct he_topology {
+    uint32_t vertices, edges, faces; /* that live */
+    uint32_t isolated_vertices;
+    uint32_t boundary_halfedges, boundary_loops;
+    uint32_t bowties; /* vertices of two fans or more */
+    uint32_t components, components_by_edge;
+    int64_t euler, genus;
+    bool has_genus;
+    bool closed;              /* no boundary half-edge; true of a mesh without faces */
+    bool manifold;            /* no bow-tie */
+    he_degree_count *degrees; /* by rising degree, none with 0 faces */
+    size_t degree_count;
+} he_topology;
+
+/* All of it in one call. */
+HE_NODISCARD he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err);
+void he_topology_clear(he_topology *topology);
+
+/* BOUNDARY LOOPS. Each boundary half-edge is in exactly one. */
+typedef struct he_boundary {
+    uint32_t halfedge; /* the lowest id of the loop; he_traverse_loop gives the others */
+    uint32_t length;
+} he_boundary;
+
+typedef struct he_boundaries {
+    he_boundary *loops; /* by rising half-edge */
+    size_t count, capacity;
+} he_boundaries;
+
+HE_NODISCARD he_status he_boundaries_find(const he_mesh *m, he_boundaries *out, he_error *err);
+void he_boundaries_clear(he_boundaries *boundaries);
+
+/* COMPONENTS. */
+typedef enum he_joined { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_joined;
+
+typedef struct he_component {
+    uint32_t faces;
+    uint32_t vertices; /* by edge, a bow-tie counts in each component that meets there */
+    uint32_t face;     /* the lowest id */
+} he_component;
+
+typedef struct he_components {
+    he_component *components; /* by rising lowest face */
+    size_t count, capacity;
+} he_components;
+
+HE_NODISCARD he_status he_components_find(const he_mesh *m, he_joined by, he_components *out,
+                                          he_error *err);
+void he_components_clear(he_components *components);
+
+/* Append the vertices of two fans or more, by rising id. */
+HE_NODISCARD he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err);
+
+#endif

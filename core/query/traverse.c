@@ -1,0 +1,347 @@
+#include "query/traverse.h"
+
+#include "mesh/walk.h"
+#include "query/idmap.h"
+
+#include <string.h>
+
+/* Every id at or past this is absent, dead or never issued. */
+static uint32_t halfedge_end(const he_mesh *m)
+{
+    return 2u * m->c.edges.issued;
+}
+
+static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
+{
+    return he_fail(err, HE_CORRUPT, kind, id, "a walk from %s %u meets links that do not close",
+                   he_kind_name(kind), id);
+}
+
+static he_status append(he_ids *out, const he_ids *more, he_error *err)
+{
+    he_status status = he_ids_reserve(out, more->count, err);
+    if (status == HE_OK && more->count > 0) {
+        memcpy(out->ids + out->count, more->ids, more->count * sizeof *more->ids);
+        out->count += more->count;
+    }
+    return status;
+}
+
+static uint32_t take(const he_mesh *m, uint32_t h, he_step step)
+{
+    switch (step) {
+    case HE_STEP_NEXT:
+        return m->c.next[h];
+    case HE_STEP_PREV:
+        return m->c.prev[h];
+    case HE_STEP_TWIN:
+        return h ^ 1u;
+    }
+    return HE_NONE;
+}
+
+static he_status walk_path(const he_mesh *m, he_halfedge from, const he_step *steps, size_t count,
+                           uint64_t repeat, he_until until, uint64_t limit, he_ids *out,
+                           he_error *err)
+{
+    const uint32_t end = halfedge_end(m);
+    uint32_t h = from.i;
+    uint64_t taken = 0;
+    he_status status = he_ids_add(out, h, err);
+    for (uint64_t round = 0; round < repeat && status == HE_OK; round++) {
+        if (until != HE_UNTIL_COUNT && round == end) {
+            return corrupt(HE_HALFEDGE, from.i, err);
+        }
+        for (size_t i = 0; i < count && status == HE_OK; i++) {
+            if (limit != 0 && taken++ == limit) {
+                return he_fail_plain(err, HE_LIMIT, "the path is longer than %llu steps",
+                                     (unsigned long long)limit);
+            }
+            h = take(m, h, steps[i]);
+            if (h >= end) {
+                return corrupt(HE_HALFEDGE, from.i, err);
+            }
+            status = he_ids_add(out, h, err);
+            if ((until == HE_UNTIL_START && h == from.i) ||
+                (until == HE_UNTIL_BOUNDARY && m->c.face[h] == HE_NONE)) {
+                return status;
+            }
+        }
+        if (until == HE_UNTIL_BOUNDARY && h == from.i) {
+            return status;
+        }
+    }
+    return status;
+}
+
+he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *steps, size_t count,
+                           uint64_t repeat, he_until until, uint64_t limit, he_ids *out,
+                           he_error *err)
+{
+    he_status status = he_mesh_require(m, HE_HALFEDGE, from.i, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (count == 0) {
+        return he_fail_plain(err, HE_BAD_VALUE, "a path needs at least one step");
+    }
+    size_t before = out->count;
+    status = walk_path(m, from, steps, count, repeat, until, limit, out, err);
+    if (status != HE_OK) {
+        out->count = before;
+    }
+    return status;
+}
+
+he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_ids *out, he_error *err)
+{
+    he_status status = he_mesh_require(m, HE_HALFEDGE, from.i, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    size_t before = out->count;
+    uint32_t h = from.i, steps = 0;
+    do {
+        if (h >= halfedge_end(m) || steps++ == halfedge_end(m)) {
+            status = corrupt(HE_HALFEDGE, from.i, err);
+        } else {
+            status = he_ids_add(out, h, err);
+            h = m->c.next[h];
+        }
+    } while (status == HE_OK && h != from.i);
+    if (status != HE_OK) {
+        out->count = before;
+    }
+    return status;
+}
+
+/* What a breadth-first walk has met, in order, and how deep. */
+typedef struct flood {
+    he_idmap met;
+    he_ids depths;
+} flood;
+
+static void flood_clear(flood *f)
+{
+    he_idmap_clear(&f->met);
+    he_ids_clear(&f->depths);
+}
+
+static he_status meet(flood *f, uint32_t id, uint32_t depth, he_error *err)
+{
+    uint32_t index;
+    bool added;
+    he_status status = he_ids_reserve(&f->depths, 1, err);
+    if (status == HE_OK) {
+        status = he_idmap_add(&f->met, id, &index, &added, err);
+    }
+    if (status == HE_OK && added) {
+        f->depths.ids[f->depths.count++] = depth;
+    }
+    return status;
+}
+
+/* All steps together turn over each half-edge at most once, which bounds the walk on any links. */
+static he_status flood_from(const he_mesh *m, he_kind kind, uint32_t from, uint32_t depth,
+                            size_t limit, flood *f, he_error *err)
+{
+    const uint32_t end = halfedge_end(m);
+    uint32_t steps = 0;
+    he_status status = meet(f, from, 0, err);
+    for (size_t i = 0; i < f->met.ids.count && status == HE_OK; i++) {
+        uint32_t id = f->met.ids.ids[i], at = f->depths.ids[i];
+        if (at >= depth || (limit != 0 && f->met.ids.count >= limit)) {
+            break;
+        }
+        uint32_t first = kind == HE_VERTEX ? m->c.vertex_halfedge[id] : m->c.face_halfedge[id];
+        if (first == HE_NONE) {
+            continue;
+        }
+        uint32_t h = first;
+        do {
+            if (h >= end || steps++ == end) {
+                return corrupt(kind, from, err);
+            }
+            uint32_t beside = kind == HE_VERTEX ? m->c.origin[h ^ 1u] : m->c.face[h ^ 1u];
+            uint32_t issued = kind == HE_VERTEX ? m->c.vertices.issued : m->c.faces.issued;
+            if (beside < issued) {
+                status = meet(f, beside, at + 1, err);
+            } else if (kind == HE_VERTEX || beside != HE_NONE) {
+                return corrupt(kind, from, err);
+            }
+            h = kind == HE_VERTEX ? m->c.prev[h] ^ 1u : m->c.next[h];
+        } while (status == HE_OK && h != first && (limit == 0 || f->met.ids.count < limit));
+    }
+    return status;
+}
+
+he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t from, uint32_t depth,
+                                    size_t limit, he_ids *ids, he_ids *depths, he_error *err)
+{
+    if (kind != HE_VERTEX && kind != HE_FACE) {
+        return he_fail_plain(err, HE_BAD_VALUE, "a breadth-first walk is over vertices or faces");
+    }
+    he_status status = he_mesh_require(m, kind, from, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    flood f = {0};
+    size_t ids_before = ids->count, depths_before = depths->count;
+    status = flood_from(m, kind, from, depth, limit, &f, err);
+    if (status == HE_OK) {
+        status = append(ids, &f.met.ids, err);
+    }
+    if (status == HE_OK) {
+        status = append(depths, &f.depths, err);
+    }
+    if (status != HE_OK) {
+        ids->count = ids_before;
+        depths->count = depths_before;
+    }
+    flood_clear(&f);
+    return status;
+}
+
+he_status he_traverse_rings(const he_mesh *m, he_vertex from, uint32_t depth, he_ids *vertices,
+                            he_ids *starts, he_error *err)
+{
+    he_status status = he_mesh_require(m, HE_VERTEX, from.i, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    flood f = {0};
+    size_t vertices_before = vertices->count, starts_before = starts->count;
+    status = flood_from(m, HE_VERTEX, from.i, depth, 0, &f, err);
+    if (status == HE_OK) {
+        status = append(vertices, &f.met.ids, err);
+    }
+    for (size_t i = 0; i <= f.depths.count && status == HE_OK; i++) {
+        if (i == 0 || i == f.depths.count || f.depths.ids[i] != f.depths.ids[i - 1]) {
+            status = he_ids_add(starts, (uint32_t)i, err);
+        }
+    }
+    if (status != HE_OK) {
+        vertices->count = vertices_before;
+        starts->count = starts_before;
+    }
+    flood_clear(&f);
+    return status;
+}
+
+static void reverse(he_ids *list)
+{
+    for (size_t i = 0, j = list->count; i + 1 < j; i++) {
+        uint32_t id = list->ids[i];
+        list->ids[i] = list->ids[--j];
+        list->ids[j] = id;
+    }
+}
+
+/* The half-edge that continues `h`; HE_NONE where the walk ends, HE_DEAD on broken links. */
+typedef uint32_t (*onward)(const he_mesh *m, uint32_t h);
+
+/* Straight on through the target of `h`, if it is interior and has four edges. */
+static uint32_t straight_on(const he_mesh *m, uint32_t h)
+{
+    uint32_t around[5] = {h ^ 1u};
+    for (int i = 1; i < 5; i++) {
+        around[i] = m->c.prev[around[i - 1]] ^ 1u;
+        if (around[i] >= halfedge_end(m)) {
+            return HE_DEAD;
+        }
+        if (m->c.face[around[i]] == HE_NONE) {
+            return HE_NONE;
+        }
+        if (around[i] == around[0] && i < 4) {
+            return HE_NONE;
+        }
+    }
+    return around[4] == around[0] ? around[2] : HE_NONE;
+}
+
+/* Into the face of `h` and out of its opposite side, if it has four. */
+static uint32_t across(const he_mesh *m, uint32_t h)
+{
+    if (m->c.face[h] == HE_NONE) {
+        return HE_NONE;
+    }
+    uint32_t around[5] = {h};
+    for (int i = 1; i < 5; i++) {
+        around[i] = m->c.next[around[i - 1]];
+        if (around[i] >= halfedge_end(m)) {
+            return HE_DEAD;
+        }
+        if (around[i] == h && i < 4) {
+            return HE_NONE;
+        }
+    }
+    return around[4] == h ? around[2] ^ 1u : HE_NONE;
+}
+
+/* Append the edges after `first` until the walk ends or comes back to it. */
+static he_status follow(const he_mesh *m, uint32_t first, onward step, he_ids *out, bool *closed,
+                        he_error *err)
+{
+    *closed = false;
+    size_t before = out->count;
+    for (uint32_t h = step(m, first); h != HE_NONE; h = step(m, h)) {
+        if (h == first) {
+            *closed = true;
+            return HE_OK;
+        }
+        if (h == HE_DEAD || out->count - before >= m->c.edges.issued) {
+            return corrupt(HE_EDGE, first >> 1, err);
+        }
+        he_status status = he_ids_add(out, h >> 1, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    return HE_OK;
+}
+
+static he_status both_ways(const he_mesh *m, he_edge from, onward step, he_ids *out, bool *closed,
+                           he_error *err)
+{
+    he_status status = he_mesh_require(m, HE_EDGE, from.i, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_ids ahead = {0}, behind = {0};
+    size_t before = out->count;
+    bool met = false, met_behind;
+    status = follow(m, 2u * from.i, step, &ahead, &met, err);
+    if (status == HE_OK && !met) {
+        status = follow(m, 2u * from.i + 1u, step, &behind, &met_behind, err);
+    }
+    reverse(&behind);
+    if (status == HE_OK) {
+        status = append(out, &behind, err);
+    }
+    if (status == HE_OK) {
+        status = he_ids_add(out, from.i, err);
+    }
+    if (status == HE_OK) {
+        status = append(out, &ahead, err);
+    }
+    if (status == HE_OK) {
+        *closed = met;
+    } else {
+        out->count = before;
+    }
+    he_ids_clear(&ahead);
+    he_ids_clear(&behind);
+    return status;
+}
+
+he_status he_traverse_edge_loop(const he_mesh *m, he_edge from, he_ids *out, bool *closed,
+                                he_error *err)
+{
+    return both_ways(m, from, straight_on, out, closed, err);
+}
+
+he_status he_traverse_edge_ring(const he_mesh *m, he_edge from, he_ids *out, bool *closed,
+                                he_error *err)
+{
+    return both_ways(m, from, across, out, closed, err);
+}
