@@ -178,8 +178,8 @@ void api_elements_list(api_exchange *x)
     uint64_t all =
         (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
     api_read_end(x);
-    /* An element of a page costs about ten of what a whole mesh costs a copy. */
-    uint64_t cost = whole ? all : 10 * (page_limit(x) < count ? page_limit(x) : count);
+    /* Writing an element costs about as much as copying twenty. */
+    uint64_t cost = whole ? all : 20 * (page_limit(x) < count ? page_limit(x) : count);
     void (*answer)(api_exchange *) = whole ? answer_lines : answer_page;
     if (api_is_costly(x, cost, API_COSTLY_ELEMENTS)) {
         api_defer(x, answer);

@@ -196,6 +196,11 @@ api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
         return NULL;
     }
     *content = x->store->snapshot_content(snapshot, &x->info);
+    if (x->info.removed) {
+        x->store->snapshot_release(x->store->self, snapshot);
+        api_fail_store(x, API_STORE_ABSENT);
+        return NULL;
+    }
     x->has_info = true;
     return snapshot;
 }

@@ -1,5 +1,6 @@
 #include "api/names.h"
 
+#include <assert.h>
 #include <string.h>
 
 static uint32_t hash(const char *text, size_t length)
@@ -153,6 +154,7 @@ static bool grow(api_names *names)
     he_mem_free(names->table);
     names->table = table;
     names->table_size = size;
+    assert(names->names != NULL);
     for (size_t i = 0; i < names->count; i++) {
         const char *name = names->names[i].name;
         names->table[find_slot(names, name, strlen(name))] = (uint32_t)i + 1;
@@ -174,6 +176,7 @@ bool api_names_add(api_names *names, const api_in *at, const api_call *call)
     if (!grow(names)) {
         return api_in_fail(&as, HE_NO_MEMORY, "no memory for a name");
     }
+    assert(names->names != NULL && names->table != NULL);
     size_t slot = find_slot(names, call->as, length);
     names->names[names->count] = (api_name){.name = call->as, .op = call->op};
     names->table[slot] = (uint32_t)++names->count;

@@ -3,6 +3,7 @@
 #include "api/elements.h"
 #include "mesh/walk.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* What the shortest question costs beside what it looks at: reading and writing its text. */
@@ -133,26 +134,35 @@ bool api_question_is_dense(const api_in *question)
            api_in_find(question, "of", &of) && find_plural(&of, &kind, &member);
 }
 
-static bool read_many(api_asker *a, const api_in *list, he_kind kind, asked *out)
+/* A list of elements that live. */
+static bool read_ids(api_asker *a, const api_in *list, he_kind kind, uint32_t **ids, size_t *count)
 {
-    static const char *const all[] = {"all", NULL};
-    int choice;
-    if (api_in_is_string(list)) {
-        return api_in_choice(list, all, &choice);
-    }
-    uint32_t *ids;
-    if (!api_in_ids(list, 0, a->arena, &ids, &out->count)) {
+    if (!api_in_ids(list, 0, a->arena, ids, count)) {
         return false;
     }
-    out->of = ids;
     he_error err = {0};
     api_in child;
     size_t i = 0;
     for (bool more = api_in_first(list, &child); more; more = api_in_next(&child)) {
-        if (he_mesh_require(a->mesh, kind, ids[i++], &err) != HE_OK) {
+        if (he_mesh_require(a->mesh, kind, (*ids)[i++], &err) != HE_OK) {
             return api_asker_refuse(a, &child, &err);
         }
     }
+    return true;
+}
+
+static bool read_many(api_asker *a, const api_in *list, he_kind kind, asked *out)
+{
+    static const char *const all[] = {"all", NULL};
+    int choice;
+    uint32_t *ids;
+    if (api_in_is_string(list)) {
+        return api_in_choice(list, all, &choice);
+    }
+    if (!read_ids(a, list, kind, &ids, &out->count)) {
+        return false;
+    }
+    out->of = ids;
     return true;
 }
 
@@ -211,6 +221,7 @@ static uint64_t looked_at(const he_mesh *mesh, const asked *q, size_t ids)
 
 static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_dense *out)
 {
+    assert(q->relation != NULL); /* api_relations lists none that he_relation_find does not know */
     he_error err = {0};
     uint64_t count = q->of != NULL ? q->count : he_mesh_count(a->mesh, q->relation->of);
     if (count >= a->left) {
@@ -283,13 +294,14 @@ static bool ask_find(api_asker *a, const api_in *question)
     static const char *const finds[] = {"halfedge", NULL};
     api_in find, vertices;
     int choice;
-    asked ends = {0};
+    uint32_t *ends;
+    size_t count;
     if (!api_in_only(question, members) || !api_in_need(question, "find", &find) ||
         !api_in_choice(&find, finds, &choice) || !api_in_need(question, "vertices", &vertices) ||
-        !api_in_array(&vertices, 2, 2) || !read_many(a, &vertices, HE_VERTEX, &ends)) {
+        !api_in_array(&vertices, 2, 2) || !read_ids(a, &vertices, HE_VERTEX, &ends, &count)) {
         return false;
     }
-    he_vertex from = {ends.of[0]}, to = {ends.of[1]};
+    he_vertex from = {ends[0]}, to = {ends[1]};
     uint64_t cost = smaller_degree(a->mesh, from, to, a->left);
     if (cost >= a->left) {
         return api_asker_exceed(a, question);

@@ -1,0 +1,145 @@
+#include "tests/api/request.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include <cmocka.h>
+
+struct api_bench {
+    srv_store *meshes;
+    api_store store;
+    api_service *service;
+};
+
+api_bench *bench_new(void)
+{
+    api_bench *b = calloc(1, sizeof *b);
+    assert_non_null(b);
+    b->meshes = srv_store_new(&(srv_store_options){
+        .undo_budget = 64 << 20, .max_meshes = 1000, .journal = srv_journal_memory()});
+    assert_non_null(b->meshes);
+    b->store = srv_store_interface(b->meshes);
+    b->service =
+        api_service_new(&b->store, &(api_options){.version = "0.0.0-test", .max_upload = 8 << 20});
+    assert_non_null(b->service);
+    return b;
+}
+
+void bench_free(api_bench *b)
+{
+    api_service_free(b->service);
+    srv_store_free(b->meshes);
+    free(b);
+}
+
+api_service *bench_service(api_bench *b)
+{
+    return b->service;
+}
+
+const api_store *bench_store(api_bench *b)
+{
+    return &b->store;
+}
+
+static const char *find_header(void *context, const char *name)
+{
+    const char *const *pairs = context;
+    for (size_t i = 0; pairs != NULL && pairs[i] != NULL; i += 2) {
+        if (strcasecmp(pairs[i], name) == 0) {
+            return pairs[i + 1];
+        }
+    }
+    return NULL;
+}
+
+static void read_all(const api_answer *answer, bench_reply *r)
+{
+    size_t capacity = 0;
+    if (answer->read == NULL) {
+        r->length = answer->length < 0 ? 0 : (size_t)answer->length;
+        r->body = malloc(r->length + 1);
+        assert_non_null(r->body);
+        if (r->length > 0) {
+            memcpy(r->body, answer->bytes, r->length);
+        }
+    } else {
+        int64_t got;
+        do {
+            capacity = 2 * capacity + 4096;
+            r->body = realloc(r->body, capacity + 1);
+            assert_non_null(r->body);
+            while (r->length < capacity && (got = answer->read(answer->context, r->body + r->length,
+                                                               capacity - r->length)) > 0) {
+                r->length += (size_t)got;
+            }
+        } while (r->length == capacity);
+        assert_int_equal(got, 0);
+    }
+    r->body[r->length] = '\0';
+}
+
+bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
+                             const char *const *headers, const char *body, size_t length)
+{
+    static const char *const json[] = {"Content-Type", "application/json", NULL};
+    const char *pairs[32] = {NULL};
+    size_t count = 0;
+    for (; headers != NULL && headers[count] != NULL && count + 4 < 32; count++) {
+        pairs[count] = headers[count];
+    }
+    if (body != NULL && find_header(pairs, "content-type") == NULL) {
+        memcpy(pairs + count, json, 2 * sizeof *json);
+    }
+    const char *mark = strchr(target, '?');
+    size_t path_length = mark == NULL ? strlen(target) : (size_t)(mark - target);
+    char *path = strndup(target, path_length);
+    assert_non_null(path);
+    api_request request = {.method = method,
+                           .path = path,
+                           .query = mark == NULL ? "" : mark + 1,
+                           .request_id = "test",
+                           .header = find_header,
+                           .context = pairs,
+                           .has_length = body != NULL,
+                           .length = length,
+                           .has_body = body != NULL};
+    bench_reply r = {.exchange = api_handle(b->service, &request, body, length)};
+    assert_non_null(r.exchange);
+    const api_answer *answer = api_answer_of(r.exchange);
+    r.status = answer->status;
+    r.route = answer->route;
+    memcpy(r.headers, answer->headers, sizeof r.headers);
+    r.header_count = answer->header_count;
+    read_all(answer, &r);
+    r.json = cJSON_ParseWithLength(r.body, r.length);
+    free(path);
+    return r;
+}
+
+bench_reply bench_send(api_bench *b, const char *method, const char *target,
+                       const char *const *headers, const char *body)
+{
+    return bench_send_bytes(b, method, target, headers, body, body == NULL ? 0 : strlen(body));
+}
+
+const char *bench_header(const bench_reply *r, const char *name)
+{
+    for (size_t i = 0; i < r->header_count; i++) {
+        if (strcasecmp(r->headers[i].name, name) == 0) {
+            return r->headers[i].value;
+        }
+    }
+    return "";
+}
+
+void bench_reply_free(bench_reply *r)
+{
+    free(r->body);
+    cJSON_Delete(r->json);
+    api_free(r->exchange);
+    *r = (bench_reply){0};
+}

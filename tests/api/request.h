@@ -1,0 +1,37 @@
+/* request.h - requests to the api without a socket, against the store the daemon uses. */
+#ifndef TESTS_API_REQUEST_H
+#define TESTS_API_REQUEST_H
+
+#include "api/api.h"
+#include "server/store.h"
+
+#include <cjson/cJSON.h>
+
+typedef struct api_bench api_bench; /* a service over an empty store */
+
+api_bench *bench_new(void);
+void bench_free(api_bench *b);
+api_service *bench_service(api_bench *b);
+const api_store *bench_store(api_bench *b);
+
+typedef struct bench_reply {
+    int status;
+    char *body; /* ends in NUL; streams are read to their end */
+    size_t length;
+    cJSON *json;       /* NULL when the body is none */
+    const char *route; /* template, "-" when none matched */
+    api_header headers[API_ANSWER_HEADERS];
+    size_t header_count;
+    api_exchange *exchange; /* what the headers live in */
+} bench_reply;
+
+/* `target` is path and query. `headers` are pairs name, value that end in NULL, or NULL; a body
+ * without a Content-Type among them is application/json. `body` NULL sends none. */
+bench_reply bench_send(api_bench *b, const char *method, const char *target,
+                       const char *const *headers, const char *body);
+bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
+                             const char *const *headers, const char *body, size_t length);
+const char *bench_header(const bench_reply *r, const char *name); /* "" when absent */
+void bench_reply_free(bench_reply *r);
+
+#endif

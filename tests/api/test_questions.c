@@ -1,0 +1,317 @@
+/* Elements, adjacency and queries, against what searching the polygons finds. */
+#include "tests/api/specimens.h"
+
+/* --- elements --- */
+
+static void say_vertex(page *p, const pg_mesh *pg, unsigned v)
+{
+    pg_list edges;
+    pg_relation(pg, "vertex", v, "edges", false, &edges);
+    say(p, "{\"id\":%u,\"position\":[%g,%g,%g],\"halfedge\":", v, pg->position[v][0],
+        pg->position[v][1], pg->position[v][2]);
+    say_id(p, pg->vertex_first[v]);
+    say(p, ",\"degree\":%u,\"boundary\":%s,\"isolated\":%s}", edges.count,
+        pg_is_boundary(pg, v) ? "true" : "false", pg_is_isolated(pg, v) ? "true" : "false");
+}
+
+static void say_halfedge(page *p, const pg_mesh *pg, unsigned h)
+{
+    say(p,
+        "{\"id\":%u,\"twin\":%u,\"next\":%u,\"prev\":%u,\"origin\":%u,\"target\":%u,\"edge\":%u,"
+        "\"face\":",
+        h, h ^ 1u, pg->next[h], pg->prev[h], pg->origin[h], pg->origin[h ^ 1u], h / 2);
+    say_id(p, pg->face[h]);
+    say(p, ",\"boundary\":%s}", pg->face[h] == PG_NONE ? "true" : "false");
+}
+
+static void say_edge(page *p, const pg_mesh *pg, unsigned e)
+{
+    say(p, "{\"id\":%u,\"halfedges\":[%u,%u],\"vertices\":[%u,%u],\"faces\":", e, 2 * e, 2 * e + 1,
+        pg->origin[2 * e], pg->origin[2 * e + 1]);
+    say_ids(p, &pg->face[2 * e], 2);
+    bool boundary = pg->face[2 * e] == PG_NONE || pg->face[2 * e + 1] == PG_NONE;
+    say(p, ",\"length\":%.17g,\"boundary\":%s}", pg_length(pg, e), boundary ? "true" : "false");
+}
+
+static void say_face(page *p, const pg_mesh *pg, unsigned f)
+{
+    pg_list halfedges, vertices;
+    double area[3], centroid[3] = {0, 0, 0};
+    pg_relation(pg, "face", f, "halfedges", false, &halfedges);
+    pg_relation(pg, "face", f, "vertices", false, &vertices);
+    double length = pg_area(pg, f, area);
+    for (int k = 0; k < 3 && length > 0; k++) {
+        area[k] /= length;
+    }
+    for (unsigned i = 0; i < vertices.count; i++) {
+        for (int k = 0; k < 3; k++) {
+            centroid[k] += pg->position[vertices.ids[i]][k] / vertices.count;
+        }
+    }
+    say(p, "{\"id\":%u,\"halfedge\":%u,\"degree\":%u,\"vertices\":", f, pg->face_first[f],
+        pg->degree[f]);
+    say_list(p, &vertices);
+    say(p, ",\"halfedges\":");
+    say_list(p, &halfedges);
+    say(p, ",\"area\":%.17g,\"normal\":[%.17g,%.17g,%.17g],\"centroid\":[%.17g,%.17g,%.17g]}",
+        length, area[0], area[1], area[2], centroid[0], centroid[1], centroid[2]);
+}
+
+static void say_element(page *p, const pg_mesh *pg, int kind, unsigned id)
+{
+    static void (*const says[])(page *, const pg_mesh *, unsigned) = {say_vertex, say_halfedge,
+                                                                      say_edge, say_face};
+    says[kind](p, pg, id);
+}
+
+static void try_elements(api_bench *b, const pg_mesh *pg)
+{
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (unsigned id = 0; id < count_of(pg, kind); id++) {
+            page wanted = {.used = 0};
+            say_element(&wanted, pg, kind, id);
+            expect_get(b, &wanted, "/v1/meshes/m/%s/%u", kinds[kind].plural, id);
+        }
+        bench_reply r = get(b, "/v1/meshes/m/%s/%u", kinds[kind].plural, count_of(pg, kind));
+        assert_int_equal(r.status, 404);
+        bench_reply_free(&r);
+    }
+}
+
+static void elements_have_all_their_links(void **state)
+{
+    (void)state;
+    for_each_specimen(try_elements);
+}
+
+static void a_degenerate_face_has_no_normal(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                               "{\"vertices\":[[0,0,0],[1,0,0],[2,0,0]],\"faces\":[[0,1,2]]}");
+    assert_int_equal(r.status, 201);
+    bench_reply_free(&r);
+    page wanted = {.used = 0};
+    say(&wanted, "{\"id\":0,\"halfedge\":0,\"degree\":3,\"vertices\":[0,1,2],\"halfedges\":[0,2,4],"
+                 "\"area\":0,\"normal\":[0,0,0],\"centroid\":[1,0,0]}");
+    expect_get(b, &wanted, "/v1/meshes/m/faces/0");
+    bench_free(b);
+}
+
+/* --- relations --- */
+
+static void say_adjacency(page *p, const pg_mesh *pg, int kind, unsigned id, const char *what,
+                          bool clockwise)
+{
+    pg_list ids;
+    pg_relation(pg, kinds[kind].name, id, what, clockwise, &ids);
+    say(p, "{\"revision\":1,\"of\":{\"%s\":%u},\"relation\":\"%s\",\"ids\":", kinds[kind].name, id,
+        what);
+    say_list(p, &ids);
+    say(p, "}");
+}
+
+static void try_relations(api_bench *b, const pg_mesh *pg)
+{
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (unsigned id = 0; id < count_of(pg, kind); id++) {
+            for (int r = 0; kinds[kind].relations[r] != NULL; r++) {
+                const char *what = kinds[kind].relations[r];
+                for (int cw = 0; cw < 2; cw++) {
+                    page wanted = {.used = 0};
+                    say_adjacency(&wanted, pg, kind, id, what, cw == 1);
+                    expect_get(b, &wanted, "/v1/meshes/m/%s/%u/%s%s", kinds[kind].plural, id, what,
+                               cw == 1 ? "?cw=true" : "");
+                }
+            }
+        }
+    }
+}
+
+static void relations_turn_counter_clockwise(void **state)
+{
+    (void)state;
+    for_each_specimen(try_relations);
+}
+
+/* --- pages and lines --- */
+
+static void try_pages(api_bench *b, const pg_mesh *pg)
+{
+    for (int kind = 0; kind < KINDS; kind++) {
+        char cursor[256] = "", next[256];
+        for (unsigned from = 0; from == 0 || cursor[0] != '\0'; from += 3) {
+            page wanted = {.used = 0};
+            say(&wanted, "{\"revision\":1,\"items\":[");
+            for (unsigned id = from; id < from + 3 && id < count_of(pg, kind); id++) {
+                say(&wanted, id == from ? "" : ",");
+                say_element(&wanted, pg, kind, id);
+            }
+            bench_reply r = get(b, "/v1/meshes/m/%s?limit=3%s%s", kinds[kind].plural,
+                                from == 0 ? "" : "&cursor=", cursor);
+            const cJSON *value = cJSON_GetObjectItemCaseSensitive(r.json, "next");
+            snprintf(next, sizeof next, "%s", cJSON_IsString(value) ? value->valuestring : "");
+            assert_int_equal(next[0] != '\0', from + 3 < count_of(pg, kind));
+            say(&wanted, next[0] == '\0' ? "],\"next\":null}" : "],\"next\":\"%s\"}", next);
+            expect(&r, &wanted);
+            char link[600] = "";
+            if (next[0] != '\0') {
+                snprintf(link, sizeof link, "</v1/meshes/m/%s?limit=3&cursor=%s>; rel=\"next\"",
+                         kinds[kind].plural, next);
+            }
+            assert_string_equal(bench_header(&r, "Link"), link);
+            bench_reply_free(&r);
+            memcpy(cursor, next, sizeof cursor);
+        }
+    }
+}
+
+static void try_lines(api_bench *b, const pg_mesh *pg)
+{
+    static const char *const accept[] = {"Accept", "application/x-ndjson", NULL};
+    for (int kind = 0; kind < KINDS; kind++) {
+        char target[64];
+        page wanted = {.used = 0};
+        for (unsigned id = 0; id < count_of(pg, kind); id++) {
+            say_element(&wanted, pg, kind, id);
+            say(&wanted, "\n");
+        }
+        say(&wanted, "{\"end\":true,\"count\":%u}\n", count_of(pg, kind));
+        snprintf(target, sizeof target, "/v1/meshes/m/%s", kinds[kind].plural);
+        bench_reply r = bench_send(b, "GET", target, accept, NULL);
+        expect(&r, &wanted);
+        assert_string_equal(bench_header(&r, "Content-Type"), "application/x-ndjson");
+        bench_reply_free(&r);
+    }
+}
+
+static void pages_go_through_all_elements(void **state)
+{
+    (void)state;
+    for_each_specimen(try_pages);
+}
+
+static void lines_give_all_elements_and_their_count(void **state)
+{
+    (void)state;
+    for_each_specimen(try_lines);
+}
+
+/* --- many at once --- */
+
+static void try_query(api_bench *b, const pg_mesh *pg)
+{
+    page body = {.used = 0}, wanted = {.used = 0};
+    say(&body, "{\"queries\":[{\"walk\":\"none\"}");
+    say(&wanted, "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
+                 "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"none\\\" is "
+                 "none of path, loop, rings, breadth_first, shortest_path, edge_loop, edge_ring\","
+                 "\"code\":\"bad_value\",\"pointer\":\"/queries/0/walk\"}");
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (unsigned id = 0; id < count_of(pg, kind); id += 2) {
+            const char *what = kinds[kind].relations[id % 2];
+            say(&body, ",{\"relation\":\"%s\",\"of\":{\"%s\":%u},\"cw\":true}", what,
+                kinds[kind].name, id);
+            say(&wanted, ",");
+            say_adjacency(&wanted, pg, kind, id, what, true);
+            say(&body, ",{\"get\":{\"%s\":%u}}", kinds[kind].name, id);
+            say(&wanted, ",");
+            say_element(&wanted, pg, kind, id);
+        }
+    }
+    for (unsigned i = 0; i < pg->vertices; i++) {
+        for (unsigned j = 0; j < pg->vertices; j++) {
+            unsigned found = PG_NONE;
+            for (unsigned h = 0; h < pg->halfedges; h++) {
+                found = pg->origin[h] == i && pg->origin[h ^ 1u] == j ? h : found;
+            }
+            say(&body, ",{\"find\":\"halfedge\",\"vertices\":[%u,%u]}", i, j);
+            say(&wanted, ",{\"halfedge\":");
+            say_id(&wanted, found);
+            say(&wanted, "}");
+        }
+    }
+    say(&body, "]}");
+    say(&wanted, "]}");
+    expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
+}
+
+static void queries_answer_in_order(void **state)
+{
+    (void)state;
+    for_each_specimen(try_query);
+}
+
+/* All elements of a kind by rising id, or all of them backwards as a list. */
+static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const char *what,
+                               bool backwards)
+{
+    static const char *const octets[] = {"Accept", "application/octet-stream", NULL};
+    page offsets = {.used = 0}, ids = {.used = 0}, body = {.used = 0}, wanted = {.used = 0};
+    unsigned numbers[2000] = {0}, total = 0, n = count_of(pg, kind);
+    say(&body, "{\"queries\":[{\"relation\":\"%s\",\"of\":{\"%s\":", what, kinds[kind].plural);
+    say(&body, backwards ? "[" : "\"all\"");
+    say(&offsets, "[0");
+    numbers[0] = 0;
+    for (unsigned i = 0; i < n; i++) {
+        pg_list list;
+        unsigned id = backwards ? n - 1 - i : i;
+        pg_relation(pg, kinds[kind].name, id, what, false, &list);
+        for (unsigned j = 0; j < list.count; j++) {
+            numbers[n + 1 + total + j] = list.ids[j];
+            say(&ids, "%s%u", total + j == 0 ? "" : ",", list.ids[j]);
+        }
+        total += list.count;
+        numbers[i + 1] = total;
+        say(&offsets, ",%u", total);
+        if (backwards) {
+            say(&body, "%s%u", i == 0 ? "" : ",", id);
+        }
+    }
+    say(&body, "%s}}]}", backwards ? "]" : "");
+    say(&wanted, "{\"revision\":1,\"results\":[{\"offsets\":%s],\"ids\":[%s]}]}", offsets.text,
+        ids.text);
+    expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
+
+    bench_reply r = bench_send(b, "POST", "/v1/meshes/m/query", octets, body.text);
+    assert_int_equal(r.status, 200);
+    assert_string_equal(bench_header(&r, "Content-Type"), "application/octet-stream");
+    assert_int_equal(r.length, 4 * (n + 1 + total));
+    for (size_t i = 0; i < r.length / 4; i++) {
+        const unsigned char *p = (const unsigned char *)r.body + 4 * i;
+        assert_int_equal(p[0] | (unsigned)p[1] << 8 | (unsigned)p[2] << 16 | (unsigned)p[3] << 24,
+                         numbers[i]);
+    }
+    bench_reply_free(&r);
+}
+
+static void try_dense(api_bench *b, const pg_mesh *pg)
+{
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (int r = 0; kinds[kind].relations[r] != NULL; r++) {
+            try_dense_relation(b, pg, kind, kinds[kind].relations[r], false);
+            try_dense_relation(b, pg, kind, kinds[kind].relations[r], true);
+        }
+    }
+}
+
+static void dense_answers_are_offsets_and_ids(void **state)
+{
+    (void)state;
+    for_each_specimen(try_dense);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(elements_have_all_their_links),
+        cmocka_unit_test(a_degenerate_face_has_no_normal),
+        cmocka_unit_test(relations_turn_counter_clockwise),
+        cmocka_unit_test(pages_go_through_all_elements),
+        cmocka_unit_test(lines_give_all_elements_and_their_count),
+        cmocka_unit_test(queries_answer_in_order),
+        cmocka_unit_test(dense_answers_are_offsets_and_ids),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,238 @@
+/* Every row of the route table answers with every status it declares, and with no other. */
+#include "tests/api/request.h"
+
+#include "api/routes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* A request in order; later ones see what earlier ones did. */
+typedef struct step {
+    const char *method, *target;
+    int status;
+    const char *body;
+    const char *headers[5]; /* pairs */
+} step;
+
+#define CUBE    "{\"shape\":\"cube\"}"
+#define TEXT    "Content-Type", "text/plain"
+#define MINIMAL "Prefer", "return=minimal"
+#define STALE   "If-Match", "\"0-0-0-x\""
+#define ABSENT  "If-None-Match", "*"
+#define ANY     "If-None-Match", "*"
+#define BIG     "too big" /* replaced by a body above every limit of control documents */
+
+static const step steps[] = {
+    {"PUT", "/v1/meshes/m", 201, CUBE, {ABSENT}},
+    {"PUT", "/v1/meshes/m", 412, CUBE, {ABSENT}},
+    {"PUT", "/v1/meshes/m", 412, CUBE, {STALE}},
+    {"PUT", "/v1/meshes/m", 200, CUBE, {NULL}},
+    {"PUT", "/v1/meshes/m", 204, CUBE, {MINIMAL}},
+    {"PUT", "/v1/meshes/m", 415, CUBE, {TEXT}},
+    {"PUT", "/v1/meshes/m", 422, "{\"vertices\":[],\"faces\":[[0,1,2]]}", {NULL}},
+    {"PUT", "/v1/meshes/m", 413, BIG, {NULL}},
+    {"PUT", "/v1/meshes/m", 400, "{", {NULL}},
+
+    {"POST", "/v1/meshes", 201, CUBE, {NULL}},
+    {"POST", "/v1/meshes?id=n", 201, CUBE, {NULL}},
+    {"POST", "/v1/meshes?id=n", 409, CUBE, {NULL}},
+    {"POST", "/v1/meshes", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes", 415, CUBE, {TEXT}},
+    {"POST", "/v1/meshes", 422, "{\"vertices\":[],\"faces\":[[0,1,2]]}", {NULL}},
+    {"GET", "/v1/meshes", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes?cursor=?", 400, NULL, {NULL}},
+    {"GET", "/v1/meshes", 406, NULL, {"Accept", "image/png"}},
+    {"DELETE", "/v1/meshes", 405, NULL, {NULL}},
+
+    {"GET", "/v1/meshes/m", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/none", 404, NULL, {NULL}},
+    {"PATCH", "/v1/meshes/m", 200, "{\"name\":\"x\"}", {NULL}},
+    {"PATCH", "/v1/meshes/m", 204, "{\"name\":null}", {MINIMAL}},
+    {"PATCH", "/v1/meshes/m", 412, "{\"name\":\"y\"}", {STALE}},
+    {"PATCH", "/v1/meshes/m", 413, BIG, {NULL}},
+    {"PATCH", "/v1/meshes/m", 415, "{}", {TEXT}},
+    {"DELETE", "/v1/meshes/n", 412, NULL, {STALE}},
+    {"DELETE", "/v1/meshes/n", 204, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/content", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/content?format=obj", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/m/content", 406, NULL, {"Accept", "image/png"}},
+    {"POST", "/v1/meshes/m/copy", 201, "{\"id\":\"c\"}", {NULL}},
+    {"POST", "/v1/meshes/m/copy", 409, "{\"id\":\"c\"}", {NULL}},
+    {"POST", "/v1/meshes/m/copy", 412, NULL, {STALE}},
+    {"POST", "/v1/meshes/m/copy", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/copy", 415, "{}", {TEXT}},
+
+    {"GET", "/v1/meshes/m/vertices", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/vertices", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/m/faces/0", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/faces/0", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/m/faces/77", 404, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/faces/x", 404, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/faces/0/edges", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/faces/0/edges", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/m/faces/0/none", 404, NULL, {NULL}},
+
+    {"POST", "/v1/meshes/m/query", 200, "{\"queries\":[{\"get\":{\"edge\":0}}]}", {NULL}},
+    {"POST", "/v1/meshes/m/query", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/query", 415, "{}", {TEXT}},
+    {"POST",
+     "/v1/meshes/m/query",
+     422,
+     "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"faces\":[99]}}]}",
+     {"Accept", "application/octet-stream"}},
+    {"POST", "/v1/meshes/m/traverse", 200, "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}", {NULL}},
+    {"POST", "/v1/meshes/m/traverse", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/traverse", 415, "{}", {TEXT}},
+    {"POST",
+     "/v1/meshes/m/traverse",
+     422,
+     "{\"walk\":\"loop\",\"from\":{\"halfedge\":99}}",
+     {NULL}},
+    {"GET", "/v1/meshes/m/boundaries", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/boundaries", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/m/components", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/components", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/m/check", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/check", 304, NULL, {ANY}},
+
+    {"POST", "/v1/meshes/m/undo", 409, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/redo", 409, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"face_poke\",\"face\":0}", {NULL}},
+    {"POST", "/v1/meshes/m/edits", 204, "{\"op\":\"face_delete\",\"face\":0}", {MINIMAL}},
+    {"POST", "/v1/meshes/m/edits", 412, "{\"op\":\"face_poke\",\"face\":1}", {STALE}},
+    {"POST", "/v1/meshes/m/edits", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/edits", 415, "{}", {TEXT}},
+    {"POST", "/v1/meshes/m/edits", 422, "{\"op\":\"face_poke\",\"face\":99}", {NULL}},
+    {"GET", "/v1/meshes/m/faces/0", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/faces/0/edges", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/edits", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/edits", 304, NULL, {ANY}},
+    {"POST", "/v1/meshes/m/undo", 412, NULL, {STALE}},
+    {"POST", "/v1/meshes/m/undo", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/undo", 415, "{}", {TEXT}},
+    {"POST", "/v1/meshes/m/undo", 200, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/undo", 204, "{}", {MINIMAL}},
+    {"POST", "/v1/meshes/m/redo", 412, NULL, {STALE}},
+    {"POST", "/v1/meshes/m/redo", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/redo", 415, "{}", {TEXT}},
+    {"POST", "/v1/meshes/m/redo", 200, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/redo", 204, NULL, {MINIMAL}},
+
+    {"GET", "/v1/operations", 200, NULL, {NULL}},
+    {"GET", "/v1/openapi.json", 200, NULL, {NULL}},
+    {"GET", "/livez", 200, NULL, {NULL}},
+    {"GET", "/readyz", 200, NULL, {NULL}},
+    {"GET", "/version", 200, NULL, {NULL}},
+    {"GET", "/problems/closed_fan", 200, NULL, {NULL}},
+    {"GET", "/problems/none", 404, NULL, {NULL}},
+};
+
+enum { MOST_ROUTES = 128, STATUSES = 600 };
+
+static bool seen[MOST_ROUTES][STATUSES];
+
+static int route_index(const char *method, const char *path)
+{
+    for (size_t i = 0; i < api_route_count(); i++) {
+        if (strcmp(api_route_at(i)->path, path) == 0 &&
+            strcmp(api_route_at(i)->method, method) == 0) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+static bool holds(const int *statuses, int status)
+{
+    for (; *statuses != 0; statuses++) {
+        if (*statuses == status) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void take(api_bench *b, const char *method, const char *target, int status,
+                 const char *const *headers, const char *body, size_t length)
+{
+    bench_reply r = bench_send_bytes(b, method, target, headers, body, length);
+    if (r.status != status) {
+        fail_msg("%s %s: %d instead of %d: %s", method, target, r.status, status, r.body);
+    }
+    if (status >= 400) {
+        assert_string_equal(bench_header(&r, "Content-Type"), "application/problem+json");
+        assert_non_null(r.json);
+        assert_int_equal(cJSON_GetObjectItem(r.json, "status")->valueint, status);
+    }
+    int i = route_index(method, r.route);
+    if (i >= 0) {
+        seen[i][status] = true;
+        if (!holds(api_route_at((size_t)i)->statuses, status) &&
+            !holds(api_route_common(), status)) {
+            fail_msg("%s %s answers %d, which it does not declare", method, r.route, status);
+        }
+    }
+    bench_reply_free(&r);
+}
+
+/* A cursor that was good and whose revision is gone by now. */
+static void take_stale_cursor(api_bench *b, const char *collection)
+{
+    char target[300];
+    snprintf(target, sizeof target, "/v1/meshes/m/%s?limit=1", collection);
+    bench_reply r = bench_send(b, "GET", target, NULL, NULL);
+    assert_int_equal(r.status, 200);
+    const cJSON *next = cJSON_GetObjectItem(r.json, "next");
+    assert_true(cJSON_IsString(next));
+    snprintf(target, sizeof target, "/v1/meshes/m/%s?cursor=%s", collection, next->valuestring);
+    bench_reply_free(&r);
+    static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
+    take(b, "POST", "/v1/meshes/m/edits", 200, NULL, poke, sizeof poke - 1);
+    take(b, "GET", target, 410, NULL, NULL, 0);
+}
+
+static void test_each_declared_status(void **state)
+{
+    (void)state;
+    enum { TOO_BIG = 9 << 20 };
+    char *big = malloc(TOO_BIG);
+    assert_non_null(big);
+    memset(big, ' ', TOO_BIG);
+    api_bench *b = bench_new();
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        const step *s = &steps[i];
+        bool is_big = s->body != NULL && strcmp(s->body, BIG) == 0;
+        size_t length = is_big ? TOO_BIG : s->body == NULL ? 0 : strlen(s->body);
+        take(b, s->method, s->target, s->status, s->headers, is_big ? big : s->body, length);
+    }
+    take_stale_cursor(b, "vertices");
+    take_stale_cursor(b, "edits");
+    size_t missing = 0;
+    for (size_t i = 0; i < api_route_count(); i++) {
+        const api_route *route = api_route_at(i);
+        if (strncmp(route->path, "/assets", 7) == 0 || strcmp(route->path, "/") == 0) {
+            continue; /* there is no page without a server: tests/e2e and tests/web ask for it */
+        }
+        for (const int *status = route->statuses; *status != 0; status++) {
+            if (!seen[i][*status]) {
+                print_error("%s %s never answered %d\n", route->method, route->path, *status);
+                missing++;
+            }
+        }
+    }
+    assert_int_equal(missing, 0);
+    bench_free(b);
+    free(big);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_declared_status)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,71 @@
+#!/bin/sh
+# Requests a second of hedged beside a bare libmicrohttpd program that sends the same bytes, in turn
+# and in one run: each server with one worker, wrk with one thread and 64 connections.
+#
+#   http.sh HEDGED BARE [ROUNDS [SECONDS]]
+set -eu
+hedged=$1 bare=$2 rounds=${3:-5} seconds=${4:-3}
+command -v wrk >/dev/null || { echo "http.sh: wrk is not installed" >&2; exit 1; }
+work=$(mktemp -d)
+mkfifo "$work/stdin" "$work/log" "$work/port"
+daemon= bare_pid= drain=
+trap 'kill $daemon $bare_pid $drain 2>/dev/null || :; rm -rf "$work"' EXIT INT TERM
+
+# The access log is on: it is what a user has.
+"$hedged" --listen 127.0.0.1:0 --workers 1 2>"$work/log" &
+daemon=$!
+exec 4<"$work/log"
+base=
+while [ -z "$base" ] && read -r line <&4; do
+    case $line in *"listening on "*) base=${line##*listening on } ;; esac
+done
+cat <&4 >/dev/null &
+drain=$!
+curl -sf -o /dev/null -H 'Content-Type: application/json' "$base/v1/meshes?id=bench" \
+    -d '{"shape":"icosphere","subdivisions":4}'
+element=$base/v1/meshes/bench/faces/1000
+adjacency=$base/v1/meshes/bench/vertices/100/faces
+
+"$bare" 1 "$(curl -sf "$element")" <"$work/stdin" >"$work/port" &
+bare_pid=$!
+exec 3>"$work/stdin"
+read -r port <"$work/port"
+
+cat >"$work/edit.lua" <<'LUA'
+wrk.method = "POST"
+wrk.headers["Content-Type"] = "application/json"
+local n = 0
+function request()
+    n = n + 1
+    return wrk.format(nil, nil, nil,
+        '{"op":"vertex_move","vertex":' .. n % 2000 .. ',"to":[0,0,' .. n .. ']}')
+end
+LUA
+
+load() {
+    wrk -t1 -c64 -d"${seconds}s" "$@" | awk '/Requests\/sec/ { r = $2 } /Non-2xx/ { bad = 1 }
+        END { if (bad || !r) exit 1; print r }'
+}
+
+i=0
+while [ $i -lt "$rounds" ]; do
+    load "http://127.0.0.1:$port/" >>"$work/bare"
+    load "$element" >>"$work/element"
+    load "$adjacency" >>"$work/adjacency"
+    load -s "$work/edit.lua" "$base/v1/meshes/bench/edits" >>"$work/edit"
+    i=$((i + 1))
+done
+
+median() { sort -n "$work/$1" | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
+peer=$(median bare)
+row() {
+    awk -v name="$1" -v ours="$(median "$2")" -v peer="$peer" -v target="$3" 'BEGIN {
+        ratio = ours / peer
+        printf "%-28s %8.0f req/s   %.2f of bare   target %.2f   %s\n", name, ours, ratio, target,
+            (ratio >= target ? "met" : "falls short") }'
+}
+echo "medians of $rounds runs of $seconds s; access log on"
+printf '%-28s %8.0f req/s\n' "bare libmicrohttpd" "$peer"
+row "GET an element" element 0.8
+row "GET an adjacency" adjacency 0.8
+row "POST an edit" edit 0.5

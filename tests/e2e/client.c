@@ -1,0 +1,273 @@
+#include "tests/e2e/client.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <setjmp.h>
+
+#include <cmocka.h>
+#include <curl/curl.h>
+
+/* A test that would hang fails instead. */
+enum { LONGEST_SECONDS = 60 };
+
+struct client {
+    CURL *curl;
+    const daemon_process *daemon;
+};
+
+typedef struct bytes {
+    char *data;
+    size_t length, capacity;
+} bytes;
+
+static void add(bytes *b, const char *data, size_t length)
+{
+    if (b->length + length + 1 > b->capacity) {
+        b->capacity = 2 * (b->length + length + 1);
+        b->data = realloc(b->data, b->capacity);
+        assert_non_null(b->data);
+    }
+    memcpy(b->data + b->length, data, length);
+    b->length += length;
+    b->data[b->length] = '\0';
+}
+
+static size_t receive(char *data, size_t size, size_t count, void *context)
+{
+    add(context, data, size * count);
+    return size * count;
+}
+
+client *client_new(const daemon_process *d)
+{
+    client *c = calloc(1, sizeof *c);
+    assert_non_null(c);
+    c->curl = curl_easy_init();
+    assert_non_null(c->curl);
+    c->daemon = d;
+    return c;
+}
+
+void client_free(client *c)
+{
+    curl_easy_cleanup(c->curl);
+    free(c);
+}
+
+void reply_free(reply *r)
+{
+    free(r->body);
+    free(r->headers);
+    cJSON_Delete(r->json);
+    *r = (reply){0};
+}
+
+static struct curl_slist *header_list(const char *const *headers, bool has_body)
+{
+    struct curl_slist *list = NULL;
+    bool typed = false;
+    for (size_t i = 0; headers != NULL && headers[i] != NULL; i++) {
+        typed |= strncasecmp(headers[i], "content-type:", 13) == 0;
+        list = curl_slist_append(list, headers[i]);
+    }
+    if (has_body && !typed) {
+        list = curl_slist_append(list, "Content-Type: application/json");
+    }
+    return list;
+}
+
+reply client_send(client *c, const char *method, const char *path, const void *body, size_t length,
+                  const char *const *headers)
+{
+    char url[9000];
+    bytes received = {0}, head = {0};
+    add(&received, "", 0);
+    add(&head, "", 0);
+    snprintf(url, sizeof url, "%s%s", daemon_url(c->daemon), path);
+    curl_easy_reset(c->curl);
+    struct curl_slist *list = header_list(headers, body != NULL);
+    curl_easy_setopt(c->curl, CURLOPT_URL, url);
+    curl_easy_setopt(c->curl, CURLOPT_PATH_AS_IS, 1L);
+    curl_easy_setopt(c->curl, CURLOPT_CUSTOMREQUEST, method);
+    curl_easy_setopt(c->curl, CURLOPT_HTTPHEADER, list);
+    curl_easy_setopt(c->curl, CURLOPT_TIMEOUT, (long)LONGEST_SECONDS);
+    curl_easy_setopt(c->curl, CURLOPT_NOPROXY, "*");
+    curl_easy_setopt(c->curl, CURLOPT_WRITEFUNCTION, receive);
+    curl_easy_setopt(c->curl, CURLOPT_WRITEDATA, &received);
+    curl_easy_setopt(c->curl, CURLOPT_HEADERFUNCTION, receive);
+    curl_easy_setopt(c->curl, CURLOPT_HEADERDATA, &head);
+    if (strcmp(method, "HEAD") == 0) {
+        curl_easy_setopt(c->curl, CURLOPT_NOBODY, 1L);
+    }
+    if (body != NULL) {
+        curl_easy_setopt(c->curl, CURLOPT_POSTFIELDS, body);
+        curl_easy_setopt(c->curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)length);
+    }
+    CURLcode code = curl_easy_perform(c->curl);
+    reply r = {.body = received.data, .length = received.length, .headers = head.data};
+    if (code != CURLE_OK) {
+        print_error("%s %s: %s\n", method, path, curl_easy_strerror(code));
+    }
+    curl_easy_getinfo(c->curl, CURLINFO_RESPONSE_CODE, &r.status);
+    curl_slist_free_all(list);
+    r.json = cJSON_ParseWithLength(r.body, r.length);
+    return r;
+}
+
+reply client_get(client *c, const char *path)
+{
+    return client_send(c, "GET", path, NULL, 0, NULL);
+}
+
+reply client_post(client *c, const char *path, const char *json)
+{
+    return client_send(c, "POST", path, json, json == NULL ? 0 : strlen(json), NULL);
+}
+
+const char *reply_header(const reply *r, const char *name, char *value, size_t size)
+{
+    size_t length = strlen(name);
+    value[0] = '\0';
+    for (const char *line = r->headers; line != NULL && *line != '\0';) {
+        const char *end = strstr(line, "\r\n");
+        if (end == NULL) {
+            break;
+        }
+        if (strncasecmp(line, name, length) == 0 && line[length] == ':') {
+            const char *text = line + length + 1;
+            while (*text == ' ') {
+                text++;
+            }
+            snprintf(value, size, "%.*s", (int)(end - text), text);
+            break;
+        }
+        line = end + 2;
+    }
+    return value;
+}
+
+const cJSON *reply_find(const reply *r, const char *path)
+{
+    const cJSON *at = r->json;
+    for (const char *part = path; at != NULL && *part != '\0';) {
+        char name[64];
+        size_t length = strcspn(part, ".");
+        snprintf(name, sizeof name, "%.*s", (int)length, part);
+        at = cJSON_IsArray(at) ? cJSON_GetArrayItem(at, (int)strtol(name, NULL, 10))
+                               : cJSON_GetObjectItemCaseSensitive(at, name);
+        part += length + (part[length] == '.');
+    }
+    if (at == NULL) {
+        fail_msg("no %s in %s", path, r->body);
+    }
+    return at;
+}
+
+double reply_number(const reply *r, const char *path)
+{
+    const cJSON *at = reply_find(r, path);
+    if (!cJSON_IsNumber(at)) {
+        fail_msg("%s is not a number in %s", path, r->body);
+    }
+    return at->valuedouble;
+}
+
+const char *reply_string(const reply *r, const char *path)
+{
+    const cJSON *at = reply_find(r, path);
+    if (!cJSON_IsString(at)) {
+        fail_msg("%s is not a string in %s", path, r->body);
+    }
+    return at->valuestring;
+}
+
+bool reply_is_null(const reply *r, const char *path)
+{
+    return cJSON_IsNull(reply_find(r, path));
+}
+
+static int connect_to(const daemon_process *d)
+{
+    struct sockaddr_in address = {.sin_family = AF_INET,
+                                  .sin_port = htons((uint16_t)daemon_port(d)),
+                                  .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    int fd = socket(AF_INET, SOCK_STREAM, 0);
+    assert_true(fd >= 0);
+    assert_int_equal(connect(fd, (struct sockaddr *)&address, sizeof address), 0);
+    return fd;
+}
+
+/* How many whole answers are in what came, going by Content-Length. */
+static int count_answers(const char *data, size_t length)
+{
+    int count = 0;
+    const char *at = data, *end = data + length;
+    while (at < end) {
+        const char *body = strstr(at, "\r\n\r\n");
+        if (body == NULL) {
+            break;
+        }
+        body += 4;
+        size_t size = 0;
+        for (const char *line = at; line < body; line++) {
+            if (strncasecmp(line, "content-length:", 15) == 0) {
+                size = (size_t)strtoull(line + 15, NULL, 10);
+            }
+        }
+        if ((size_t)(end - body) < size) {
+            break;
+        }
+        count++;
+        at = body + size;
+    }
+    return count;
+}
+
+char *client_raw(const daemon_process *d, const char *data, size_t length, int answers,
+                 bool half_close)
+{
+    int fd = connect_to(d);
+    size_t sent = 0;
+    while (sent < length) {
+        ssize_t n = send(fd, data + sent, length - sent, MSG_NOSIGNAL);
+        if (n <= 0) {
+            break; /* the server has had enough: what it said is still to be read */
+        }
+        sent += (size_t)n;
+    }
+    if (half_close) {
+        shutdown(fd, SHUT_WR);
+    }
+    bytes received = {0};
+    add(&received, "", 0);
+    char buffer[4096];
+    while (answers == 0 || count_answers(received.data, received.length) < answers) {
+        struct pollfd wait = {.fd = fd, .events = POLLIN};
+        if (poll(&wait, 1, LONGEST_SECONDS * 1000) <= 0) {
+            fail_msg("no answer and no close within %d s", LONGEST_SECONDS);
+        }
+        ssize_t n = recv(fd, buffer, sizeof buffer, 0);
+        if (n <= 0) {
+            break;
+        }
+        add(&received, buffer, (size_t)n);
+    }
+    close(fd);
+    return received.data;
+}
+
+int client_raw_status(const char *data)
+{
+    return strncmp(data, "HTTP/1.", 7) == 0 && strlen(data) > 12 ? (int)strtol(data + 9, NULL, 10)
+                                                                 : 0;
+}

@@ -1,0 +1,217 @@
+#include "tests/e2e/daemon.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { MOST_ARGUMENTS = 32, URL_BYTES = 64 };
+
+struct daemon_process {
+    pid_t pid;
+    int log_fd;
+    pthread_t reader;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    char *log;
+    size_t length, capacity;
+    bool ended; /* nobody writes any more */
+    char url[URL_BYTES];
+    int port;
+};
+
+static const char *program(void)
+{
+    const char *path = getenv("HEDGED");
+    return path != NULL ? path : "build/hedged";
+}
+
+/* Start the program with its stdout and stderr (or only stderr) in a pipe, whose other end is
+ * given back. */
+static int spawn(const char *const *head, const char *const *tail, bool with_stdout, pid_t *pid)
+{
+    const char *argv[MOST_ARGUMENTS];
+    size_t count = 0;
+    argv[count++] = program();
+    for (size_t i = 0; head != NULL && head[i] != NULL; i++) {
+        argv[count++] = head[i];
+    }
+    for (size_t i = 0; tail != NULL && tail[i] != NULL && count + 1 < MOST_ARGUMENTS; i++) {
+        argv[count++] = tail[i];
+    }
+    argv[count] = NULL;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    *pid = fork();
+    assert_true(*pid >= 0);
+    if (*pid == 0) {
+        dup2(ends[1], STDERR_FILENO);
+        if (with_stdout) {
+            dup2(ends[1], STDOUT_FILENO);
+        }
+        close(ends[0]);
+        close(ends[1]);
+        execv(argv[0], (char *const *)(uintptr_t)argv);
+        fprintf(stderr, "%s: %s\n", argv[0], strerror(errno));
+        _exit(127);
+    }
+    close(ends[1]);
+    return ends[0];
+}
+
+static void append(daemon_process *d, const char *bytes, size_t length)
+{
+    if (d->length + length + 1 > d->capacity) {
+        d->capacity = 2 * (d->length + length + 1);
+        d->log = realloc(d->log, d->capacity);
+        if (d->log == NULL) {
+            abort();
+        }
+    }
+    memcpy(d->log + d->length, bytes, length);
+    d->length += length;
+    d->log[d->length] = '\0';
+}
+
+/* Keeps the pipe empty, so that the daemon never waits for its log. */
+static void *read_log(void *context)
+{
+    daemon_process *d = context;
+    char buffer[4096];
+    for (;;) {
+        ssize_t got = read(d->log_fd, buffer, sizeof buffer);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        pthread_mutex_lock(&d->lock);
+        if (got <= 0) {
+            d->ended = true;
+        } else {
+            append(d, buffer, (size_t)got);
+        }
+        pthread_cond_broadcast(&d->changed);
+        pthread_mutex_unlock(&d->lock);
+        if (got <= 0) {
+            return NULL;
+        }
+    }
+}
+
+/* The line that ends in "listening on URL". */
+static bool find_url(daemon_process *d)
+{
+    static const char words[] = "listening on ";
+    const char *at = d->log == NULL ? NULL : strstr(d->log, words);
+    const char *end = at == NULL ? NULL : strchr(at, '\n');
+    if (end == NULL) {
+        return false;
+    }
+    at += sizeof words - 1;
+    snprintf(d->url, sizeof d->url, "%.*s", (int)(end - at), at);
+    const char *colon = strrchr(d->url, ':');
+    d->port = colon == NULL ? 0 : (int)strtol(colon + 1, NULL, 10);
+    return true;
+}
+
+daemon_process *daemon_start(const char *const *arguments)
+{
+    static const char *const listen[] = {"--listen", "127.0.0.1:0", NULL};
+    daemon_process *d = calloc(1, sizeof *d);
+    assert_non_null(d);
+    pthread_mutex_init(&d->lock, NULL);
+    pthread_cond_init(&d->changed, NULL);
+    d->log_fd = spawn(listen, arguments, false, &d->pid);
+    assert_int_equal(pthread_create(&d->reader, NULL, read_log, d), 0);
+    pthread_mutex_lock(&d->lock);
+    while (!find_url(d) && !d->ended) {
+        pthread_cond_wait(&d->changed, &d->lock);
+    }
+    bool listening = d->port > 0;
+    if (!listening) {
+        print_error("%s did not start:\n%s\n", program(), d->log == NULL ? "" : d->log);
+    }
+    pthread_mutex_unlock(&d->lock);
+    assert_true(listening);
+    return d;
+}
+
+static int status_of(int waited)
+{
+    return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
+}
+
+int daemon_stop(daemon_process *d)
+{
+    int waited = 0;
+    kill(d->pid, SIGTERM);
+    while (waitpid(d->pid, &waited, 0) < 0 && errno == EINTR) {
+    }
+    pthread_join(d->reader, NULL);
+    int status = status_of(waited);
+    if (status != 0) {
+        print_error("hedged ended with %d:\n%s\n", status, d->log);
+    }
+    close(d->log_fd);
+    pthread_mutex_destroy(&d->lock);
+    pthread_cond_destroy(&d->changed);
+    free(d->log);
+    free(d);
+    return status;
+}
+
+const char *daemon_url(const daemon_process *d)
+{
+    return d->url;
+}
+
+int daemon_port(const daemon_process *d)
+{
+    return d->port;
+}
+
+int daemon_pid(const daemon_process *d)
+{
+    return (int)d->pid;
+}
+
+char *daemon_log(daemon_process *d)
+{
+    pthread_mutex_lock(&d->lock);
+    char *copy = strdup(d->log == NULL ? "" : d->log);
+    pthread_mutex_unlock(&d->lock);
+    return copy;
+}
+
+int daemon_run(const char *const *arguments, char *output, size_t size)
+{
+    pid_t pid;
+    int waited = 0, fd = spawn(NULL, arguments, true, &pid);
+    size_t length = 0;
+    ssize_t got;
+    char rest[512];
+    while ((got = length + 1 < size ? read(fd, output + length, size - 1 - length)
+                                    : read(fd, rest, sizeof rest)) != 0) {
+        if (got > 0 && length + 1 < size) {
+            length += (size_t)got;
+        } else if (got < 0 && errno != EINTR) {
+            break;
+        }
+    }
+    output[length] = '\0';
+    close(fd);
+    while (waitpid(pid, &waited, 0) < 0 && errno == EINTR) {
+    }
+    return status_of(waited);
+}

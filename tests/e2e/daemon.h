@@ -1,0 +1,25 @@
+/* daemon.h - a real hedged for a test: its own process, a free port, stopped by signal. */
+#ifndef TESTS_E2E_DAEMON_H
+#define TESTS_E2E_DAEMON_H
+
+#include <stddef.h>
+
+typedef struct daemon_process daemon_process;
+
+/* Start $HEDGED (build/hedged without) with --listen 127.0.0.1:0 and more arguments, which end in
+ * NULL (or are NULL), and wait until it says where it listens. Fails the test when it does not. */
+daemon_process *daemon_start(const char *const *arguments);
+/* SIGTERM, wait, free. Gives the exit status, or 128 + the signal that ended it. */
+int daemon_stop(daemon_process *d);
+
+const char *daemon_url(const daemon_process *d); /* "http://127.0.0.1:43121" */
+int daemon_port(const daemon_process *d);
+int daemon_pid(const daemon_process *d);
+/* All it has written to stderr so far, ends in NUL; the caller's to free. */
+char *daemon_log(daemon_process *d);
+
+/* Run $HEDGED to its end and give its exit status; what it wrote to stdout and stderr together goes
+ * to `output`, ended by NUL. */
+int daemon_run(const char *const *arguments, char *output, size_t size);
+
+#endif
