@@ -86,8 +86,7 @@ static he_status keep(he_lines *lines, const char *begin, const char *end, he_er
     size_t n = (size_t)(end - begin);
     if (lines->limit != 0 && lines->length + n > lines->limit) {
         return he_fail_at(err, HE_LIMIT, HE_PLACE_LINE, lines->number,
-                          "line %llu: longer than %llu bytes", (unsigned long long)lines->number,
-                          (unsigned long long)lines->limit);
+                          "a line is longer than %llu bytes", (unsigned long long)lines->limit);
     }
     if (lines->length + n > lines->capacity) {
         size_t capacity = he_mem_grown(lines->capacity, lines->length + n);
@@ -178,9 +177,7 @@ he_status he_line_fail(he_error *err, he_status status, const he_line *line, con
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    uint64_t number = he_line_number(line, p);
-    return he_fail_at(err, status, HE_PLACE_LINE, number, "line %llu: %s",
-                      (unsigned long long)number, text);
+    return he_fail_at(err, status, HE_PLACE_LINE, he_line_number(line, p), "%s", text);
 }
 
 he_status he_token_fail(he_error *err, he_status status, const he_line *line, const char *p,

@@ -346,8 +346,7 @@ static he_status bad_index(const obj *o, size_t corner, uint32_t index, const ch
 {
     uint32_t face = face_of_corner(&o->into->soup, corner);
     uint64_t line = he_places_find(&o->into->faces, face);
-    return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line,
-                      "line %llu: there is no %s %u, only %zu", (unsigned long long)line, what,
+    return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line, "there is no %s %u, only %zu", what,
                       index + 1, count);
 }
 

@@ -87,7 +87,7 @@ typedef struct he_error {
     uint32_t id;    /* its id */
     he_place place; /* unit of `at`: a line counts from 1, a byte from 0 */
     uint64_t at;
-    char text[HE_ERROR_TEXT]; /* one plain sentence with the offending value */
+    char text[HE_ERROR_TEXT]; /* one plain sentence with the offending value, without the place */
 } he_error;
 
 /* "edge_split" for HE_..., never NULL. */

@@ -1,0 +1,74 @@
+// daemon.mjs - the real daemon, started by a test on a free port and stopped when the test ends.
+//
+// HEDGED is the program and HEDGE_PAGE the built page; without them those of `make`.
+
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import path from 'node:path';
+import { createInterface } from 'node:readline';
+import { fileURLToPath } from 'node:url';
+
+const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
+const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
+const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
+
+// {url, stop()}; `t` is the context of the test.
+export async function startDaemon(t) {
+    const child = spawn(program, ['--listen', '127.0.0.1:0', '--web', page], {
+        stdio: ['ignore', 'ignore', 'pipe'],
+    });
+    const ended = new Promise((resolve) => {
+        child.on('exit', resolve);
+        child.on('error', resolve);
+    });
+    const stop = async () => {
+        child.kill('SIGTERM');
+        await ended;
+    };
+    t.after(stop);
+    const lines = createInterface({ input: child.stderr });
+    const ready = new Promise((resolve) => {
+        lines.on('line', (line) => {
+            const found = /listening on (http:\/\/\S+)$/.exec(line);
+            if (found) {
+                resolve(found[1]);
+            }
+        });
+    });
+    const url = await Promise.race([ready, ended]);
+    if (typeof url !== 'string') {
+        throw new Error(`${program} ended before it listened: ${url}`);
+    }
+    return { url, stop };
+}
+
+async function call(url, options) {
+    const answer = await fetch(url, options);
+    const body = await answer.json();
+    if (!answer.ok) {
+        throw new Error(`${url}: ${answer.status} ${body.detail}`);
+    }
+    return body;
+}
+
+// What the API says, beside the page.
+export function get(daemon, path) {
+    return call(`${daemon.url}/v1/meshes${path}`);
+}
+
+export function post(daemon, path, body, type = 'application/json') {
+    return call(`${daemon.url}/v1/meshes${path}`, {
+        method: 'POST',
+        headers: { 'Content-Type': type },
+        body: typeof body === 'string' ? body : JSON.stringify(body),
+    });
+}
+
+// All elements of a kind.
+export async function getAll(daemon, mesh, kind) {
+    const { items, next } = await get(daemon, `/${mesh}/${kind}?limit=10000`);
+    if (next !== null) {
+        throw new Error('more elements than one page holds');
+    }
+    return items;
+}

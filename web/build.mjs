@@ -1,0 +1,74 @@
+// build.mjs - the page, bundled once: `npm run build` writes it to WEB_OUT, ../build/web without.
+//
+//   index.html             with the names of the files below
+//   assets/NAME-HASH.js    and .css, .svg: a name never has two contents, so they cache for ever
+//   assets/LICENSES.txt    of everything that is in the bundle
+
+import { mkdir, readFile, rm, writeFile } from 'node:fs/promises';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+import { build } from 'esbuild';
+
+const here = path.dirname(fileURLToPath(import.meta.url));
+const out = path.resolve(here, process.env.WEB_OUT ?? '../build/web');
+
+await rm(path.join(out, 'assets'), { recursive: true, force: true });
+await mkdir(path.join(out, 'assets'), { recursive: true });
+
+const { metafile } = await build({
+    absWorkingDir: here,
+    entryPoints: ['src/main.js', 'src/style.css', 'src/icon.svg'],
+    outdir: path.join(out, 'assets'),
+    entryNames: '[name]-[hash]',
+    bundle: true,
+    format: 'esm',
+    target: 'es2022',
+    minify: true,
+    loader: { '.svg': 'copy' },
+    legalComments: 'none',
+    banner: { js: '/* Licences: LICENSES.txt beside this file. */' },
+    metafile: true,
+    logLevel: 'warning',
+});
+
+await writeFile(path.join(out, 'index.html'), await page(metafile.outputs));
+await writeFile(path.join(out, 'assets/LICENSES.txt'), await licenses(metafile.inputs));
+
+// index.html with each source replaced by the file made from it.
+async function page(outputs) {
+    let html = await readFile(path.join(here, 'index.html'), 'utf8');
+    for (const [file, { entryPoint }] of Object.entries(outputs)) {
+        if (entryPoint === undefined || !html.includes(`"${entryPoint}"`)) {
+            throw new Error(`index.html does not use ${entryPoint}`);
+        }
+        html = html.replaceAll(`"${entryPoint}"`, `"assets/${path.basename(file)}"`);
+    }
+    if (html.includes('"src/')) {
+        throw new Error('index.html names a source that is not an entry point');
+    }
+    return html;
+}
+
+// The project's own licence, then that of each package a bundled file comes from.
+async function licenses(inputs) {
+    const packages = new Set();
+    for (const input of Object.keys(inputs)) {
+        const match = /^node_modules\/((?:@[^/]+\/)?[^/]+)\//.exec(input);
+        if (match) {
+            packages.add(match[1]);
+        }
+    }
+    const parts = [await section('hedge', path.join(here, '..'))];
+    for (const name of [...packages].sort()) {
+        const folder = path.join(here, 'node_modules', name);
+        const { version } = JSON.parse(await readFile(path.join(folder, 'package.json'), 'utf8'));
+        parts.push(await section(`${name} ${version}`, folder));
+    }
+    return parts.join('\n');
+}
+
+async function section(title, folder) {
+    const text = await readFile(path.join(folder, 'LICENSE'), 'utf8');
+    return `${title}\n${'-'.repeat(title.length)}\n\n${text.trim()}\n`;
+}

@@ -1,0 +1,194 @@
+// api.js - the only module that talks to the server. Paths are relative, so that the page works
+// behind any prefix.
+
+const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
+
+// Media types by the end of a file's name; what is not here the server is asked to refuse.
+const MEDIA_TYPES = {
+    obj: 'model/obj',
+    off: 'model/x-off',
+    ply: 'model/ply',
+    stl: 'model/stl',
+    glb: 'model/gltf-binary',
+    json: 'application/json',
+};
+
+// What the server (or the way to it) refused: an RFC 9457 problem.
+export class Problem extends Error {
+    constructor({ status = 0, title = '', detail = '', code = '', pointer = '' }) {
+        super(detail || title);
+        this.status = status;
+        this.title = title;
+        this.detail = detail;
+        this.code = code;
+        this.pointer = pointer;
+    }
+}
+
+function unreachable() {
+    return new Problem({
+        title: 'No connection',
+        detail: 'The server cannot be reached. Is hedged still running?',
+    });
+}
+
+// The problem in an answer's text, or one made of its status where there is none.
+function problemOf(status, text) {
+    try {
+        const problem = JSON.parse(text);
+        if (typeof problem.detail === 'string' || typeof problem.title === 'string') {
+            return new Problem({ ...problem, status });
+        }
+    } catch {
+        // Not JSON: some gateway answered.
+    }
+    const detail = `The server answered with status ${status}.`;
+    return new Problem({ status, title: 'Request failed', detail });
+}
+
+async function request(path, options = {}) {
+    let answer;
+    try {
+        answer = await fetch(path, { cache: 'no-cache', ...options });
+    } catch (error) {
+        throw error.name === 'AbortError' ? error : unreachable();
+    }
+    if (!answer.ok) {
+        throw problemOf(answer.status, await answer.text());
+    }
+    return answer;
+}
+
+async function getJson(path, signal) {
+    return (await request(path, { signal })).json();
+}
+
+async function postJson(path, body) {
+    const answer = await request(path, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify(body),
+    });
+    return answer.json();
+}
+
+function meshPath(mesh) {
+    return `v1/meshes/${encodeURIComponent(mesh)}`;
+}
+
+// One page of the list: {items, next}; `next` is the cursor of the page after it, or null.
+export function listMeshes(cursor = null) {
+    const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
+    return getJson(`v1/meshes?limit=200${after}`);
+}
+
+export function getSummary(mesh, signal) {
+    return getJson(meshPath(mesh), signal);
+}
+
+// How many steps can be undone and redone: {undo, redo}.
+export function getHistory(mesh, signal) {
+    return getJson(`${meshPath(mesh)}/edits?limit=1`, signal);
+}
+
+export function getElement(mesh, kind, id) {
+    return getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}`);
+}
+
+// Many elements of one revision, in order; null for one that does not live.
+export async function getElements(mesh, wanted) {
+    const queries = wanted.map(({ kind, id }) => ({ get: { [kind]: id } }));
+    const { results } = await postJson(`${meshPath(mesh)}/query`, { queries });
+    return results.map((result) => ('status' in result ? null : result));
+}
+
+// The ids of the elements of another kind beside one, such as the faces of a vertex.
+export async function getAdjacent(mesh, kind, id, relation) {
+    return (await getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}/${relation}`)).ids;
+}
+
+// The edge between two vertices, null when there is none.
+export async function findEdge(mesh, from, to) {
+    const queries = [{ find: 'halfedge', vertices: [from, to] }];
+    const { results } = await postJson(`${meshPath(mesh)}/query`, { queries });
+    const { halfedge } = results[0];
+    // The half-edges of edge e are 2e and 2e + 1.
+    return halfedge === null ? null : Math.floor(halfedge / 2);
+}
+
+// All elements of a kind, in the order of their ids, as arrays of some at a time. An answer that
+// was cut short is a problem: the list ends with a line that says so.
+export async function* elements(mesh, kind, signal) {
+    const answer = await request(`${meshPath(mesh)}/${KINDS[kind]}`, {
+        headers: { Accept: 'application/x-ndjson' },
+        signal,
+    });
+    const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+    let rest = '';
+    let count = 0;
+    let ended = false;
+    for (;;) {
+        const { done, value } = await readOn(reader);
+        if (done) {
+            break;
+        }
+        const lines = (rest + value).split('\n');
+        rest = lines.pop();
+        const items = lines.filter((text) => text !== '').map((text) => JSON.parse(text));
+        if (items.at(-1)?.end === true) {
+            ended = items.pop().count === count + items.length;
+        }
+        count += items.length;
+        yield items;
+    }
+    if (!ended) {
+        const detail = `The list of ${KINDS[kind]} broke off.`;
+        throw new Problem({ title: 'Answer cut short', detail });
+    }
+}
+
+async function readOn(reader) {
+    try {
+        return await reader.read();
+    } catch (error) {
+        throw error.name === 'AbortError' ? error : unreachable();
+    }
+}
+
+// Edits name the revision they were meant for: 412 when the mesh has moved on.
+export function edit(mesh, operation, revision) {
+    return postJson(`${meshPath(mesh)}/edits`, { expected_revision: revision, ops: [operation] });
+}
+
+export function undo(mesh, revision) {
+    return postJson(`${meshPath(mesh)}/undo`, { expected_revision: revision });
+}
+
+export function redo(mesh, revision) {
+    return postJson(`${meshPath(mesh)}/redo`, { expected_revision: revision });
+}
+
+// Create a mesh of a file; `onProgress` gets the sent part, 0 to 1. Returns the new mesh's summary.
+// fetch cannot tell how much was sent, hence XMLHttpRequest.
+export function upload(file, onProgress) {
+    const dot = file.name.lastIndexOf('.');
+    const name = dot > 0 ? file.name.slice(0, dot) : file.name;
+    const type = MEDIA_TYPES[file.name.slice(dot + 1).toLowerCase()];
+    return new Promise((resolve, reject) => {
+        const sender = new XMLHttpRequest();
+        sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}`);
+        sender.setRequestHeader('Content-Type', type ?? (file.type || 'application/octet-stream'));
+        sender.upload.onprogress = (event) => {
+            onProgress(event.lengthComputable ? event.loaded / event.total : 0);
+        };
+        sender.onload = () => {
+            if (sender.status >= 200 && sender.status < 300) {
+                resolve(JSON.parse(sender.responseText));
+            } else {
+                reject(problemOf(sender.status, sender.responseText));
+            }
+        };
+        sender.onerror = () => reject(unreachable());
+        sender.send(file);
+    });
+}

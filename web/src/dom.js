@@ -1,0 +1,32 @@
+// dom.js - building elements. Text is always text: nothing here reads HTML, so a mesh may be named
+// anything.
+
+// make('button', {className: 'link', 'aria-label': 'x'}, 'text', child, ...). Names with a dash are
+// attributes, others are properties.
+export function make(tag, properties = {}, ...children) {
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(properties)) {
+        if (name.includes('-')) {
+            element.setAttribute(name, value);
+        } else {
+            element[name] = value;
+        }
+    }
+    element.append(...children);
+    return element;
+}
+
+const counts = new Intl.NumberFormat('en');
+
+// 1,234,567
+export function formatCount(value) {
+    return counts.format(value);
+}
+
+// Six significant digits at most, for what is measured. JSON has null where a double overflowed.
+export function formatMeasure(value) {
+    if (value === null) {
+        return 'too large';
+    }
+    return String(Number(value.toPrecision(6)));
+}

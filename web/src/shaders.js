@@ -1,0 +1,157 @@
+// shaders.js - the GLSL programs. They read the arrays of geometry.js from two textures by
+// gl_VertexID, so that no vertex buffer repeats them.
+
+const TEXTURES = `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp usampler2D;
+uniform mat4 modelViewMatrix;
+uniform mat4 projectionMatrix;
+uniform sampler2D vertices;
+uniform usampler2D triangles;
+
+ivec2 texel(int index, int width) {
+    return ivec2(index % width, index / width);
+}
+vec4 vertexAt(int slot) {
+    return texelFetch(vertices, texel(slot, textureSize(vertices, 0).x), 0);
+}
+uvec4 triangleAt(int index) {
+    return texelFetch(triangles, texel(index, textureSize(triangles, 0).x), 0);
+}
+`;
+
+// Three vertices a triangle. bary is 1 at the corner and 0 on the side across from it. Normals are
+// left to the fragments' derivatives: all three corners here would be fetched three times.
+export const SURFACE_VERTEX = `${TEXTURES}
+flat out uint triangle;
+flat out uint face;
+flat out uint sides;
+out vec3 bary;
+out vec3 eye;
+
+void main() {
+    int index = gl_VertexID / 3;
+    int corner = gl_VertexID - 3 * index;
+    uvec4 words = triangleAt(index);
+    vec4 seen = modelViewMatrix * vec4(vertexAt(int(words[corner])).xyz, 1.0);
+    triangle = uint(index);
+    face = words.w & 0x1fffffffu;
+    sides = words.w >> 29;
+    bary = vec3(corner == 0, corner == 1, corner == 2);
+    eye = -seen.xyz;
+    gl_Position = projectionMatrix * seen;
+}
+`;
+
+// Fill, polygon edges and the tint of a selected face in one pass.
+export const SURFACE_FRAGMENT = `
+precision highp float;
+precision highp int;
+flat in uint triangle;
+flat in uint face;
+flat in uint sides;
+in vec3 bary;
+in vec3 eye;
+uniform int selected;
+uniform float edgeWidth;
+out vec4 color;
+
+const vec3 FRONT = vec3(0.62, 0.68, 0.77);
+const vec3 BACK = vec3(0.55, 0.42, 0.40);
+const vec3 CHOSEN = vec3(0.98, 0.70, 0.28);
+const vec3 EDGE = vec3(0.055, 0.070, 0.095);
+const vec3 KEY = normalize(vec3(-0.45, 0.75, 0.60));
+
+void main() {
+    // Towards the camera, whichever side of the face is seen.
+    vec3 n = normalize(cross(dFdx(-eye), dFdy(-eye)));
+    float light = 0.34 + 0.46 * max(dot(n, KEY), 0.0)
+                + 0.24 * max(dot(n, normalize(eye)), 0.0);
+    vec3 fill = gl_FrontFacing ? FRONT : BACK;
+    fill *= light;
+    // Chosen stays chosen in the shade.
+    fill = int(face) == selected ? mix(fill, CHOSEN * (0.5 + 0.5 * light), 0.8) : fill;
+
+    // Pixels from each side: a -> b is across from the corner of bary.z, and so on.
+    vec3 dx = dFdx(bary);
+    vec3 dy = dFdy(bary);
+    vec3 rate = max(sqrt(dx * dx + dy * dy), vec3(1e-9)).zxy;
+    vec3 line = 1.0 - smoothstep(edgeWidth - 0.6, edgeWidth + 0.6, bary.zxy / rate);
+    line *= vec3(float(sides & 1u), float((sides >> 1) & 1u), float((sides >> 2) & 1u));
+    // Triangles of a few pixels would drown in their edges.
+    line *= smoothstep(1.0, 9.0, 1.0 / rate);
+    float drawn = 0.88 * max(max(line.x, line.y), line.z);
+    color = vec4(mix(fill, EDGE, drawn), 1.0);
+}
+`;
+
+export const SURFACE_PICK = `
+precision highp float;
+precision highp int;
+flat in uint triangle;
+out uvec4 id;
+void main() {
+    id = uvec4(1u, triangle, 0u, 0u);
+}
+`;
+
+// One point a vertex slot; those not wanted fall outside of the clip volume.
+export const DOT_VERTEX = `${TEXTURES}
+uniform float size;
+uniform bool isolatedOnly;
+flat out uint vertex;
+void main() {
+    vec4 place = vertexAt(gl_VertexID);
+    bool wanted = isolatedOnly ? place.w == 2.0 : place.w > 0.0;
+    vec4 seen = modelViewMatrix * vec4(place.xyz, 1.0);
+    // A dot faces the camera: bring it nearer, or the surface it lies on would cut it.
+    seen.xyz *= 0.996;
+    vertex = uint(gl_VertexID);
+    gl_PointSize = size;
+    gl_Position = wanted ? projectionMatrix * seen : vec4(2.0, 2.0, 2.0, 1.0);
+}
+`;
+
+export const DOT_FRAGMENT = `
+precision highp float;
+precision highp int;
+flat in uint vertex;
+uniform vec3 tint;
+out vec4 color;
+void main() {
+    float r = 2.0 * length(gl_PointCoord - 0.5);
+    if (r > 1.0) {
+        discard;
+    }
+    color = vec4(mix(tint, vec3(0.055, 0.070, 0.095), smoothstep(0.55, 0.75, r)), 1.0);
+}
+`;
+
+export const DOT_PICK = `
+precision highp float;
+precision highp int;
+flat in uint vertex;
+out uvec4 id;
+void main() {
+    id = uvec4(2u, vertex, 0u, 0u);
+}
+`;
+
+// A few points given by position: the selected vertices.
+export const MARK_VERTEX = `
+precision highp float;
+in vec3 position;
+uniform mat4 modelViewMatrix;
+uniform mat4 projectionMatrix;
+uniform float size;
+flat out uint vertex;
+void main() {
+    vec4 seen = modelViewMatrix * vec4(position, 1.0);
+    seen.xyz *= 0.985;
+    vertex = uint(gl_VertexID);
+    gl_PointSize = size;
+    gl_Position = projectionMatrix * seen;
+}
+`;

@@ -1,0 +1,57 @@
+// statistics.js - what the server's summary says of the open mesh. Nothing is computed here.
+
+import { formatCount, formatMeasure, make } from './dom.js';
+
+export class Statistics {
+    #sizes;
+    #facts;
+
+    constructor({ sizes, facts }) {
+        this.#sizes = sizes;
+        this.#facts = facts;
+    }
+
+    // null when no mesh is open.
+    show(summary) {
+        this.#sizes.replaceChildren(...(summary ? sizesOf(summary) : []));
+        this.#facts.replaceChildren(...(summary ? factsOf(summary) : []));
+    }
+}
+
+function sizesOf({ counts }) {
+    return ['vertices', 'edges', 'faces'].map((kind) =>
+        pair('div', kind, kind, formatCount(counts[kind])),
+    );
+}
+
+function factsOf({ counts, euler, genus, closed, manifold, degrees, area, volume, revision }) {
+    const rows = [
+        ['euler', 'Euler characteristic', `${euler}`],
+        ['genus', 'Genus', genus === null ? 'undefined' : `${genus}`],
+        ['components', 'Components', formatCount(counts.components)],
+        ['boundary_loops', 'Boundary loops', formatCount(counts.boundary_loops)],
+        ['isolated_vertices', 'Isolated vertices', formatCount(counts.isolated_vertices)],
+        ['closed', 'Closed', closed ? 'yes' : 'no'],
+        ['manifold', 'Manifold', manifold ? 'yes' : 'no'],
+        ['degrees', 'Face degrees', degreesOf(degrees)],
+        ['area', 'Area', formatMeasure(area)],
+        ['volume', 'Volume', closed ? formatMeasure(volume) : 'not closed'],
+        ['revision', 'Revision', `${revision}`],
+    ];
+    return rows.map(([name, title, value]) => pair('div', name, title, value));
+}
+
+// "12 × 3, 6 × 4": how many faces have how many corners.
+function degreesOf(degrees) {
+    const parts = Object.entries(degrees).map(
+        ([degree, count]) => `${formatCount(count)} \u00d7 ${degree}`,
+    );
+    const more = parts.length > 5 ? ', \u2026' : '';
+    return parts.length === 0 ? 'none' : parts.slice(0, 5).join(', ') + more;
+}
+
+function pair(tag, name, title, value) {
+    const description = make('dd', {}, value);
+    description.dataset.statistic = name;
+    return make(tag, {}, make('dt', {}, title), description);
+}
