@@ -134,3 +134,29 @@ void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, 
         carry(m, kind, to, from, NULL, n, from[0]);
     }
 }
+
+void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
+{
+    const uint32_t rows[2] = {gone, into};
+    const double weights[2] = {1 - t, t};
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        const he_column *column = m->c.columns[i];
+        if (column != NULL && column->domain == kind && column->rule == HE_INTERPOLATE) {
+            unsigned char value[HE_COLUMN_ROW_BYTES];
+            blend(column, rows, weights, 2, value);
+            he_set_attribute(m, i, into, value);
+        }
+    }
+}
+
+void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        const he_column *column = m->c.columns[i];
+        if (column != NULL && column->domain == kind) {
+            unsigned char value[HE_COLUMN_ROW_BYTES];
+            memcpy(value, he_column_value(column, from), column->row_bytes);
+            he_set_attribute(m, i, to, value);
+        }
+    }
+}

@@ -1,5 +1,6 @@
 #include "mesh/content.h"
 
+#include <assert.h>
 #include <string.h>
 
 static he_status no_memory(const char *what, size_t rows, he_error *err)
@@ -89,6 +90,7 @@ void he_content_clear(he_content *c)
 static void copy_rows(void *to, const void *from, size_t rows, size_t size)
 {
     if (rows > 0) {
+        assert(to != NULL && from != NULL);
         memcpy(to, from, rows * size);
     }
 }

@@ -112,6 +112,11 @@ void he_carry_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_
 void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
 /* The mean of n rows; copies the first where the rule is copy. */
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
+/* A row that stays takes in one that goes: interpolated columns become linear from `gone` (t = 0)
+ * to `into` (t = 1), all others keep the value of `into`. */
+void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t);
+/* The value itself, whatever the rule: a corner that changes its half-edge. */
+void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
 /* Are there columns in this domain? Lets a hot edit skip the calls. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 

@@ -1,0 +1,187 @@
+#include "edit/collapse.h"
+
+#include "edit/cut.h"
+#include "edit/point.h"
+#include "edit/ring.h"
+
+static he_status refuse(he_error *err, he_halfedge h, const char *rule, const char *kind,
+                        uint32_t id)
+{
+    return he_fail(err, HE_LINK_CONDITION, HE_EDGE, he_edge_of(h).i, "edge %u: %s (%s %u)",
+                   he_edge_of(h).i, rule, kind, id);
+}
+
+/* Is there a triangle to the left of h? */
+static bool is_triangle(const he_mesh *m, he_halfedge h)
+{
+    return !he_is_boundary_halfedge(m, h) && he_next(m, he_next(m, he_next(m, h))).i == h.i;
+}
+
+/* The corner opposite h in a triangle on its left, HE_NONE without one. */
+static he_vertex opposite(const he_mesh *m, he_halfedge h)
+{
+    return is_triangle(m, h) ? he_origin(m, he_prev(m, h)) : (he_vertex){HE_NONE};
+}
+
+/* L1, and L4 by the way: both turn about u. */
+static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
+{
+    he_vertex v = he_target(m, h);
+    he_vertex c = opposite(m, h), d = opposite(m, he_twin(h));
+    if (c.i != HE_NONE && c.i == d.i) {
+        return refuse(err, h, "both triangles have the same opposite corner", "vertex", c.i);
+    }
+    he_face f = he_face_of(m, h), g = he_face_of(m, he_twin(h));
+    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i; k = he_turn_ccw(m, k)) {
+        he_vertex w = he_target(m, k);
+        if (w.i != c.i && w.i != d.i && he_find_halfedge(m, w, v).i != HE_NONE) {
+            return refuse(err, h, "its ends have another neighbour in common", "vertex", w.i);
+        }
+        he_face x = he_face_of(m, k);
+        if (x.i != HE_NONE && x.i != f.i && x.i != g.i && he_face_corner(m, x, v).i != HE_NONE) {
+            return refuse(err, h, "another face has both ends as corners", "face", x.i);
+        }
+    }
+    return HE_OK;
+}
+
+/* L3 for the triangle left of h. */
+static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
+{
+    if (is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
+        he_is_boundary_halfedge(m, he_twin(he_prev(m, h)))) {
+        return refuse(err, h, "both other sides of a triangle are on the boundary", "face",
+                      he_face_of(m, h).i);
+    }
+    return HE_OK;
+}
+
+/* Is h's origin interior with three triangles about it? */
+static bool is_apex(const he_mesh *m, he_halfedge h)
+{
+    he_halfedge second = he_turn_ccw(m, h), third = he_turn_ccw(m, second);
+    return he_turn_ccw(m, third).i == h.i && is_triangle(m, h) && is_triangle(m, second) &&
+           is_triangle(m, third);
+}
+
+he_status he_edge_collapse_check(const he_mesh *m, he_halfedge h, he_error *err)
+{
+    he_status status = he_mesh_require(m, HE_HALFEDGE, h.i, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_halfedge t = he_twin(h);
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    if (he_is_boundary_vertex(m, u) && he_is_boundary_vertex(m, v) &&
+        !he_is_boundary_edge(m, he_edge_of(h))) {
+        return refuse(err, h, "it is interior but both ends are on the boundary", "vertex", u.i);
+    }
+    status = check_sides(m, h, err);
+    if (status == HE_OK) {
+        status = check_sides(m, t, err);
+    }
+    if (status == HE_OK) {
+        status = check_ring(m, h, err);
+    }
+    if (status == HE_OK && is_apex(m, h) && is_apex(m, t)) {
+        return refuse(err, h, "it is part of a tetrahedron", "vertex", u.i);
+    }
+    return status;
+}
+
+/* The triangle left of h is now a face of the two half-edges kept and gone, of which `gone` goes:
+ * `kept` takes the place of its twin, `outer`. */
+static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
+{
+    he_halfedge outer = he_twin(gone);
+    he_face f = he_face_of(m, kept), x = he_face_of(m, outer);
+    he_vertex c = he_origin(m, outer);
+    if (he_vertex_halfedge(m, c).i == outer.i) {
+        he_set_vertex_halfedge(m, c, kept);
+    }
+    c = he_origin(m, gone);
+    if (he_vertex_halfedge(m, c).i == gone.i) {
+        he_set_vertex_halfedge(m, c, he_twin(kept));
+    }
+    he_link(m, kept, he_next(m, outer));
+    he_link(m, he_prev(m, outer), kept);
+    he_set_face(m, kept, x);
+    if (x.i != HE_NONE && he_face_halfedge(m, x).i == outer.i) {
+        he_set_face_halfedge(m, x, kept);
+    }
+    he_carry_move(m, HE_HALFEDGE, kept.i, outer.i);
+    he_carry_merge(m, HE_EDGE, he_edge_of(kept).i, he_edge_of(gone).i, 0.5);
+    he_note_merged(m, HE_EDGE, he_edge_of(gone).i, he_edge_of(kept).i);
+    he_delete_edge(m, he_edge_of(gone));
+    he_delete_face(m, f);
+}
+
+/* Take h out of the loop on its left. */
+static void unlink_side(he_mesh *m, he_halfedge h)
+{
+    he_face f = he_face_of(m, h);
+    if (f.i != HE_NONE && he_face_halfedge(m, f).i == h.i) {
+        he_set_face_halfedge(m, f, he_next(m, h));
+    }
+    he_link(m, he_prev(m, h), he_next(m, h));
+}
+
+static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
+{
+    he_halfedge back = he_twin(h);
+    he_halfedge after = he_next(m, h), before = he_prev(m, h);
+    he_halfedge back_after = he_next(m, back), back_before = he_prev(m, back);
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    bool left = is_triangle(m, h), right = is_triangle(m, back);
+    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i;) {
+        he_halfedge next = he_turn_ccw(m, k);
+        he_set_origin(m, k, v);
+        k = next;
+    }
+    unlink_side(m, h);
+    unlink_side(m, back);
+    if (left) {
+        close_sides(m, after, before);
+    }
+    if (right) {
+        close_sides(m, back_before, back_after);
+    }
+    he_set_position(m, v, position);
+    he_carry_merge(m, HE_VERTEX, v.i, u.i, t);
+    he_note_merged(m, HE_VERTEX, u.i, v.i);
+    he_delete_edge(m, he_edge_of(h));
+    he_delete_vertex(m, u);
+    he_ring_settle(m, v, after);
+}
+
+he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
+                           he_vertex *vertex, he_error *err)
+{
+    he_status status = he_edge_collapse_check(m, h, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (!(t >= 0 && t <= 1)) {
+        return he_fail(err, HE_BAD_VALUE, HE_HALFEDGE, h.i, "t must be 0 to 1, not %g", t);
+    }
+    if (to != NULL && !he_point_is_finite(*to)) {
+        return he_fail(err, HE_NOT_FINITE, HE_HALFEDGE, h.i, "the position must be finite");
+    }
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    he_need need = {.deleted_vertices = 1, .deleted_edges = 3, .deleted_faces = 2};
+    need.links = (size_t)he_vertex_degree(m, u) + 24 + HE_SETTLE_LINKS;
+    need.positions = 1;
+    need.attributes = 5;
+    need.lineage = 3;
+    status = he_reserve(m, need, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    /* Nothing below can fail. */
+    he_vec3 place = to != NULL ? *to : he_point_between(he_position(m, u), he_position(m, v), t);
+    commit(m, h, place, to != NULL ? 0.5 : t);
+    if (vertex != NULL) {
+        *vertex = v;
+    }
+    return HE_OK;
+}

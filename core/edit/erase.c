@@ -1,0 +1,155 @@
+#include "edit/erase.h"
+
+#include "edit/list.h"
+#include "edit/point.h"
+#include "mesh/write.h"
+
+static bool edge_would_die(const he_mesh *m, he_halfedge h)
+{
+    return he_is_boundary_halfedge(m, he_twin(h));
+}
+
+/* What erasing a face writes when `doomed` other faces about it may already be gone: then every
+ * edge may die. */
+static void add_need(const he_mesh *m, he_face f, bool alone, he_need *need)
+{
+    he_halfedge first = he_face_halfedge(m, f), h = first;
+    do {
+        /* The face and the stored half-edge of each corner, then per dying edge two pairs of
+         * links and two stored half-edges. */
+        need->links += 2;
+        if (!alone || edge_would_die(m, h)) {
+            need->links += 6;
+            need->deleted_edges++;
+        }
+        need->deleted_vertices++;
+        h = he_next(m, h);
+    } while (h.i != first.i);
+    need->deleted_faces++;
+}
+
+/* Take an edge without faces out of the rings of its ends. Where another half-edge is left there
+ * it is a boundary one: the one that followed in the hole. */
+static void erase_edge(he_mesh *m, he_edge e)
+{
+    for (unsigned side = 0; side < 2; side++) {
+        he_halfedge h = he_edge_halfedge(e, side), t = he_twin(h);
+        he_halfedge before = he_prev(m, h), after = he_next(m, t);
+        he_vertex v = he_origin(m, h);
+        if (after.i == h.i) {
+            he_set_vertex_halfedge(m, v, (he_halfedge){HE_NONE});
+            continue;
+        }
+        he_link(m, before, after);
+        if (he_vertex_halfedge(m, v).i == h.i) {
+            he_set_vertex_halfedge(m, v, after);
+        }
+    }
+    he_delete_edge(m, e);
+}
+
+static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
+{
+    he_halfedge first = he_face_halfedge(m, f), h = first;
+    do {
+        he_set_face(m, h, (he_face){HE_NONE});
+        he_vertex v = he_origin(m, h);
+        if (!he_is_boundary_halfedge(m, he_vertex_halfedge(m, v))) {
+            he_set_vertex_halfedge(m, v, h);
+        }
+        h = he_next(m, h);
+    } while (h.i != first.i);
+    he_delete_face(m, f);
+
+    /* Erasing an edge relinks its neighbours in the loop, so the walk holds on to the next
+     * half-edge, which a dying edge before it does not take away. The last one is known by count:
+     * the first may be gone by then. */
+    uint32_t corners = he_loop_length(m, first);
+    for (uint32_t i = 0; i < corners; i++) {
+        he_halfedge next = he_next(m, h);
+        if (he_is_boundary_halfedge(m, he_twin(h))) {
+            he_vertex v = he_origin(m, h), w = he_target(m, h);
+            erase_edge(m, he_edge_of(h));
+            if (leftover == HE_DROP_ISOLATED && he_is_isolated(m, v)) {
+                he_delete_vertex(m, v);
+            }
+            if (leftover == HE_DROP_ISOLATED && he_is_isolated(m, w)) {
+                he_delete_vertex(m, w);
+            }
+        }
+        h = next;
+    }
+}
+
+static he_status erase_one(he_mesh *m, he_face f, he_leftover leftover, he_error *err)
+{
+    he_need need = {0};
+    add_need(m, f, true, &need);
+    he_status status = he_reserve(m, need, err);
+    if (status == HE_OK) {
+        /* Nothing below can fail. */
+        erase_face(m, f, leftover);
+    }
+    return status;
+}
+
+he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_leftover leftover,
+                         he_error *err)
+{
+    he_status status = he_list_require(m, HE_FACE, faces, count, HE_REPEATED_ELEMENT, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (count == 1) {
+        return erase_one(m, (he_face){faces[0]}, leftover, err);
+    }
+    /* Which edges die depends on the order, so each face reserves for itself: one reservation for
+     * all would have to count every edge twice. */
+    he_bracket bracket;
+    status = he_edit_begin(m, &bracket, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    for (size_t i = 0; status == HE_OK && i < count; i++) {
+        status = erase_one(m, (he_face){faces[i]}, leftover, err);
+    }
+    return he_edit_end(m, &bracket, status);
+}
+
+he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover, he_error *err)
+{
+    he_ids faces = {0};
+    he_need need = {.deleted_vertices = 1};
+    he_status status = he_mesh_require(m, HE_VERTEX, v.i, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (!he_is_isolated(m, v)) {
+        he_halfedge first = he_vertex_halfedge(m, v), h = first;
+        do {
+            he_face f = he_face_of(m, h);
+            if (f.i != HE_NONE) {
+                status = he_ids_add(&faces, f.i, err);
+                if (status != HE_OK) {
+                    goto out;
+                }
+                add_need(m, f, false, &need);
+            }
+            h = he_turn_ccw(m, h);
+        } while (h.i != first.i);
+    }
+    status = he_reserve(m, need, err);
+    if (status != HE_OK) {
+        goto out;
+    }
+    /* Nothing below can fail. */
+    for (size_t i = 0; i < faces.count; i++) {
+        erase_face(m, (he_face){faces.ids[i]}, leftover);
+    }
+    if (he_vertex_is_live(m, v)) {
+        he_delete_vertex(m, v);
+    }
+out:
+    he_ids_clear(&faces);
+    return status;
+}

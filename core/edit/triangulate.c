@@ -1,0 +1,71 @@
+#include "edit/triangulate.h"
+
+#include "edit/list.h"
+#include "edit/triangles.h"
+
+static he_status room(he_ids *list, size_t extra, he_error *err)
+{
+    return list == NULL ? HE_OK : he_ids_reserve(list, extra, err);
+}
+
+static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *faces,
+                                 he_ids *degenerate, he_error *err)
+{
+    he_triangles plan;
+    he_status status = he_triangles_plan(m, he_face_halfedge(m, f), &plan, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_need need = {0};
+    he_triangles_need(&plan, true, &need);
+    status = room(edges, need.edges, err);
+    if (status == HE_OK) {
+        status = room(faces, need.faces, err);
+    }
+    if (status == HE_OK) {
+        status = room(degenerate, 1, err);
+    }
+    if (status == HE_OK) {
+        status = he_reserve(m, need, err);
+    }
+    if (status == HE_OK) {
+        /* Nothing below can fail. */
+        if (plan.flat.n > 3) {
+            he_triangles_commit(m, &plan, true, edges, faces);
+        }
+        if (plan.degenerate && degenerate != NULL) {
+            degenerate->ids[degenerate->count++] = f.i;
+        }
+    }
+    he_triangles_clear(&plan);
+    return status;
+}
+
+he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count, he_ids *edges,
+                              he_ids *faces, he_ids *degenerate, he_error *err)
+{
+    he_status status = he_list_require(m, HE_FACE, face_ids, count, HE_REPEATED_ELEMENT, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    /* A later face must see the diagonals of the earlier ones, so each is checked in its turn. */
+    he_ids *const lists[3] = {edges, faces, degenerate};
+    size_t before[3] = {0, 0, 0};
+    for (unsigned i = 0; i < 3; i++) {
+        before[i] = lists[i] == NULL ? 0 : lists[i]->count;
+    }
+    he_bracket bracket;
+    status = he_edit_begin(m, &bracket, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    for (size_t i = 0; status == HE_OK && i < count; i++) {
+        status = triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, err);
+    }
+    for (unsigned i = 0; status != HE_OK && i < 3; i++) {
+        if (lists[i] != NULL) {
+            lists[i]->count = before[i];
+        }
+    }
+    return he_edit_end(m, &bracket, status);
+}

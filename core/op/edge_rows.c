@@ -1,0 +1,188 @@
+#include "op/rows.h"
+
+#include "edit/bisect.h"
+#include "edit/collapse.h"
+#include "edit/flip.h"
+#include "edit/split.h"
+
+static he_status run_edge_bisect(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_vertex v;
+    he_edge e;
+    he_status status = he_edge_bisect(m, (he_edge){args[0].id}, args[1].number, &v, &e, err);
+    if (status == HE_OK) {
+        he_give(out, 0, v.i);
+        he_give(out, 1, e.i);
+    }
+    return status;
+}
+
+static he_status run_edge_join(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_edge e;
+    he_status status = he_edge_join(m, (he_vertex){args[0].id}, &e, err);
+    if (status == HE_OK) {
+        he_give(out, 0, e.i);
+    }
+    return status;
+}
+
+static he_status run_edge_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_split split;
+    he_status status = he_give_room(out, 1, 3, err);
+    if (status == HE_OK) {
+        status = he_give_room(out, 2, 2, err);
+    }
+    if (status == HE_OK) {
+        status = he_edge_split(m, (he_edge){args[0].id}, args[1].number, &split, err);
+    }
+    if (status == HE_OK) {
+        he_give(out, 0, split.vertex.i);
+        for (unsigned i = 0; i <= split.sides; i++) {
+            he_give_add(out, 1, split.edges[i].i);
+        }
+        for (unsigned i = 0; i < split.sides; i++) {
+            he_give_add(out, 2, split.faces[i].i);
+        }
+    }
+    return status;
+}
+
+static he_status run_edge_flip(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_status status = he_edge_flip(m, (he_edge){args[0].id}, err);
+    if (status == HE_OK) {
+        he_give(out, 0, args[0].id);
+    }
+    return status;
+}
+
+static he_status run_edge_collapse(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_halfedge h = {args[0].id};
+    if (args[1].given) {
+        he_status status = he_mesh_require(m, HE_EDGE, args[1].id, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        h.i = 2 * args[1].id;
+    }
+    he_vertex v;
+    he_status status =
+        he_edge_collapse(m, h, args[2].number, args[3].given ? args[3].points : NULL, &v, err);
+    if (status == HE_OK) {
+        he_give(out, 0, v.i);
+    }
+    return status;
+}
+
+const he_op he_edge_rows[] = {
+    {
+        .name = "edge_bisect",
+        .doc = "Put a vertex on an edge.",
+        .params = {{.name = "edge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is cut; it keeps the end with the origin of its first half-edge."},
+                   {.name = "t",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_RANGE | HE_EXCLUSIVE,
+                    .min = 0,
+                    .max = 1,
+                    .fallback = 0.5,
+                    .doc = "Where, from that origin (0) to the other end (1)."}},
+        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex."},
+                    {"edge", HE_RESULT_ELEMENT, HE_EDGE, "The new edge, at the other end."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT},
+        .change = {1, 1, 0},
+        .run = run_edge_bisect,
+    },
+    {
+        .name = "edge_join",
+        .doc = "Take a vertex of degree two out of an edge; the inverse of edge_bisect.",
+        .params = {{.name = "vertex",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .doc = "What goes."}},
+        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The edge that stays."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_WRONG_DEGREE, HE_TRIANGLE_SIDE,
+                     HE_DOUBLED_EDGE},
+        .change = {-1, -1, 0},
+        .run = run_edge_join,
+    },
+    {
+        .name = "edge_split",
+        .doc = "Put a vertex on an edge and join it to a corner of each face beside it.",
+        .params = {{.name = "edge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is split; it keeps the end with the origin of its first "
+                           "half-edge."},
+                   {.name = "t",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_RANGE | HE_EXCLUSIVE,
+                    .min = 0,
+                    .max = 1,
+                    .fallback = 0.5,
+                    .doc = "Where, from that origin (0) to the other end (1)."}},
+        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "The new part of the edge, then the diagonals."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces, left one first."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_DOUBLED_EDGE},
+        .change = {1, HE_VARIES, HE_VARIES},
+        .run = run_edge_split,
+    },
+    {
+        .name = "edge_flip",
+        .doc = "Turn an edge counter-clockwise inside its two faces.",
+        .params = {{.name = "edge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What turns; each end moves to the next corner of its face."}},
+        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The same edge."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_SAME_ENDS,
+                     HE_LOW_DEGREE, HE_DOUBLED_EDGE, HE_REPEATED_CORNER},
+        .change = {0, 0, 0},
+        .run = run_edge_flip,
+    },
+    {
+        .name = "edge_collapse",
+        .doc = "Draw an edge together to one vertex.",
+        .params = {{.name = "halfedge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .group = 'e',
+                    .doc = "Its origin goes, its target stays."},
+                   {.name = "edge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .group = 'e',
+                    .doc = "Stands for its first half-edge."},
+                   {.name = "t",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_RANGE,
+                    .group = 'p',
+                    .min = 0,
+                    .max = 1,
+                    .fallback = 0.5,
+                    .doc = "Where the target goes, from the origin (0) to itself (1); half-way "
+                           "when neither this nor `to` is given."},
+                   {.name = "to",
+                    .type = HE_PARAM_POINT,
+                    .group = 'p',
+                    .doc = "The point it goes to instead."}},
+        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The vertex that stays."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_LINK_CONDITION},
+        .change = {-1, HE_VARIES, HE_VARIES},
+        .run = run_edge_collapse,
+    },
+    {.name = NULL},
+};

@@ -1,0 +1,259 @@
+#include "op/rows.h"
+
+#include "edit/cut.h"
+#include "edit/erase.h"
+#include "edit/face_add.h"
+#include "edit/hole.h"
+#include "edit/poke.h"
+#include "edit/triangulate.h"
+
+static he_status run_face_add(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_face f;
+    he_status status = he_face_add(m, args[0].ids, args[0].count, &f, &out->list[1], err);
+    if (status == HE_OK) {
+        he_give(out, 0, f.i);
+    }
+    return status;
+}
+
+static he_status run_face_delete(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)out;
+    return he_face_delete(m, args[0].ids, args[0].count,
+                          args[1].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
+}
+
+/* The half-edge that leaves a corner of f, given as a vertex or as that half-edge. */
+static he_status find_corner(const he_mesh *m, he_face f, const he_arg *vertex,
+                             const he_arg *halfedge, he_halfedge *out, he_error *err)
+{
+    if (halfedge->given) {
+        *out = (he_halfedge){halfedge->id};
+        return HE_OK;
+    }
+    he_status status = he_mesh_require(m, HE_VERTEX, vertex->id, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_halfedge h = he_face_corner(m, f, (he_vertex){vertex->id});
+    if (h.i == HE_NONE) {
+        return he_fail(err, HE_NOT_A_CORNER, HE_VERTEX, vertex->id,
+                       "vertex %u is not a corner of face %u", vertex->id, f.i);
+    }
+    *out = h;
+    return HE_OK;
+}
+
+static he_status run_face_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_face f = {args[0].id}, made;
+    he_halfedge from, to;
+    he_edge e;
+    he_status status = he_mesh_require(m, HE_FACE, f.i, err);
+    if (status == HE_OK) {
+        status = find_corner(m, f, &args[1], &args[2], &from, err);
+    }
+    if (status == HE_OK) {
+        status = find_corner(m, f, &args[3], &args[4], &to, err);
+    }
+    if (status == HE_OK) {
+        status = he_face_split(m, f, from, to, &e, &made, err);
+    }
+    if (status == HE_OK) {
+        he_give(out, 0, e.i);
+        he_give(out, 1, made.i);
+    }
+    return status;
+}
+
+static he_status run_face_join(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_face f;
+    he_status status = he_face_join(m, (he_edge){args[0].id}, &f, err);
+    if (status == HE_OK) {
+        he_give(out, 0, f.i);
+    }
+    return status;
+}
+
+static he_status run_face_poke(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_vertex v;
+    he_status status = he_face_poke(m, (he_face){args[0].id}, args[1].given ? args[1].points : NULL,
+                                    &v, &out->list[1], &out->list[2], err);
+    if (status == HE_OK) {
+        he_give(out, 0, v.i);
+    }
+    return status;
+}
+
+static he_status run_face_triangulate(he_mesh *m, const he_arg *args, he_results *out,
+                                      he_error *err)
+{
+    return he_face_triangulate(m, args[0].ids, args[0].count, &out->list[0], &out->list[1],
+                               &out->list[2], err);
+}
+
+static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_filled filled;
+    he_status status =
+        he_hole_fill(m, (he_halfedge){args[0].id}, (he_fill)args[1].choice, &filled, err);
+    if (status == HE_OK) {
+        he_give(out, 0, filled.vertex.i);
+        he_give_list(out, 1, &filled.edges);
+        he_give_list(out, 2, &filled.faces);
+        he_filled_clear(&filled);
+    }
+    return status;
+}
+
+/* In the order of he_fill. */
+static const char *const fill_methods[] = {"polygon", "fan", "triangulate", NULL};
+
+const he_op he_face_rows[] = {
+    {
+        .name = "face_add",
+        .doc = "Add a face over vertices that are there, with the edges it lacks.",
+        .params = {{.name = "vertices",
+                    .type = HE_PARAM_CYCLE,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .doc = "Its corners, counter-clockwise."}},
+        .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The new edges, in its order."}},
+        .refusals = {HE_TOO_FEW_CORNERS, HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_CORNER,
+                     HE_INTERIOR_VERTEX, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN},
+        .change = {0, HE_VARIES, 1},
+        .run = run_face_add,
+    },
+    {
+        .name = "face_delete",
+        .doc = "Delete faces, and edges and vertices that are left without any.",
+        .params = {{.name = "face",
+                    .plural = "faces",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_FACE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What goes."},
+                   {.name = "keep_isolated",
+                    .type = HE_PARAM_FLAG,
+                    .doc = "Keep vertices that are left without a face."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_face_delete,
+    },
+    {
+        .name = "face_split",
+        .doc = "Cut a face in two by a diagonal between two of its corners.",
+        .params = {{.name = "face",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_FACE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is cut; it keeps the part left of the diagonal."},
+                   {.name = "from",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .group = 'f',
+                    .doc = "The corner the diagonal leaves."},
+                   {.name = "from_halfedge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .group = 'f',
+                    .doc = "The same, as the half-edge of the face that leaves it."},
+                   {.name = "to",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .group = 't',
+                    .doc = "The corner the diagonal comes to."},
+                   {.name = "to_halfedge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .group = 't',
+                    .doc = "The same, as the half-edge of the face that leaves it."}},
+        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The diagonal."},
+                    {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face, right of the diagonal."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_A_CORNER, HE_SAME_CORNER,
+                     HE_ADJACENT_CORNERS, HE_DOUBLED_EDGE},
+        .change = {0, 1, 1},
+        .run = run_face_split,
+    },
+    {
+        .name = "face_join",
+        .doc = "Delete an edge and make its two faces one; the inverse of face_split.",
+        .params = {{.name = "edge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What goes; the face of its first half-edge stays."}},
+        .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "The face that stays."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_SHARED_BOUNDARY},
+        .change = {0, -1, -1},
+        .run = run_face_join,
+    },
+    {
+        .name = "face_poke",
+        .doc = "Turn a face into triangles about a new vertex.",
+        .params = {{.name = "face",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_FACE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is cut; it keeps the triangle of its stored half-edge."},
+                   {.name = "position",
+                    .type = HE_PARAM_POINT,
+                    .doc = "Where the vertex lies; the mean of the corners when not given."}},
+        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "The new edges, from the corner of the stored half-edge on."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces, in the same order."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT},
+        .change = {1, HE_VARIES, HE_VARIES},
+        .run = run_face_poke,
+    },
+    {
+        .name = "face_triangulate",
+        .doc = "Cut faces into triangles by diagonals.",
+        .params = {{.name = "face",
+                    .plural = "faces",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_FACE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is cut; each keeps the triangle of its stored half-edge."}},
+        .results = {{"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The diagonals."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces."},
+                    {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
+                     "Those of the given faces in whose plane a triangle has no area or is "
+                     "turned over."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_DOUBLED_EDGE,
+                     HE_LIMIT},
+        .change = {0, HE_VARIES, HE_VARIES},
+        .run = run_face_triangulate,
+    },
+    {
+        .name = "hole_fill",
+        .doc = "Close a hole.",
+        .params = {{.name = "halfedge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "A boundary half-edge of the hole."},
+                   {.name = "method",
+                    .type = HE_PARAM_CHOICE,
+                    .choices = fill_methods,
+                    .doc = "One face, triangles about a new vertex, or triangles between the "
+                           "corners."}},
+        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex of a fan, or null."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The new edges."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_REPEATED_CORNER,
+                     HE_DOUBLED_EDGE, HE_LIMIT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_hole_fill,
+    },
+    {.name = NULL},
+};

@@ -1,0 +1,202 @@
+#include "op/op.h"
+
+#include "op/rows.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+size_t he_op_count(void)
+{
+    size_t count = 0;
+    while (he_table_row(count) != NULL) {
+        count++;
+    }
+    return count;
+}
+
+const he_op *he_op_at(size_t i)
+{
+    const he_op *op = he_table_row(i);
+    assert(op != NULL);
+    return op;
+}
+
+const he_op *he_op_find(const char *name, size_t length)
+{
+    const he_op *op;
+    for (size_t i = 0; (op = he_table_row(i)) != NULL; i++) {
+        if (strlen(op->name) == length && memcmp(op->name, name, length) == 0) {
+            return op;
+        }
+    }
+    return NULL;
+}
+
+size_t he_op_params(const he_op *op)
+{
+    size_t count = 0;
+    while (count < HE_OP_PARAMS && op->params[count].name != NULL) {
+        count++;
+    }
+    return count;
+}
+
+size_t he_op_results(const he_op *op)
+{
+    size_t count = 0;
+    while (count < HE_OP_RESULTS && op->results[count].name != NULL) {
+        count++;
+    }
+    return count;
+}
+
+bool he_op_declares(const he_op *op, he_status status)
+{
+    if (status == HE_OK || status == HE_NO_MEMORY || status == HE_IDS_EXHAUSTED) {
+        return true;
+    }
+    for (size_t i = 0; i < HE_OP_REFUSALS && op->refusals[i] != HE_OK; i++) {
+        if (op->refusals[i] == status) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
+{
+    for (size_t i = 0; i < HE_OP_PARAMS; i++) {
+        const he_param *param = &op->params[i];
+        args[i] = (he_arg){.id = HE_NONE};
+        if (param->name == NULL) {
+            continue;
+        }
+        switch (param->type) {
+        case HE_PARAM_NUMBER:
+            args[i].number = param->fallback;
+            break;
+        case HE_PARAM_FLAG:
+            args[i].flag = param->fallback != 0;
+            break;
+        case HE_PARAM_CHOICE:
+            args[i].choice = (int)param->fallback;
+            break;
+        case HE_PARAM_ELEMENT:
+        case HE_PARAM_ELEMENTS:
+        case HE_PARAM_POINT:
+        case HE_PARAM_POINTS:
+        case HE_PARAM_MATRIX:
+        case HE_PARAM_CYCLE:
+            break;
+        }
+    }
+}
+
+/* What decoding promises of one argument. */
+static bool is_sound(const he_param *param, const he_arg *arg)
+{
+    if (!arg->given) {
+        return !(param->flags & HE_REQUIRED) || param->group != 0;
+    }
+    switch (param->type) {
+    case HE_PARAM_ELEMENT:
+        return arg->id != HE_NONE || (param->flags & HE_NULLABLE);
+    case HE_PARAM_ELEMENTS:
+        return arg->ids != NULL && arg->count > 0;
+    case HE_PARAM_CYCLE:
+        return arg->ids != NULL || arg->count == 0;
+    case HE_PARAM_NUMBER:
+        if (param->flags & HE_RANGE) {
+            return (param->flags & HE_EXCLUSIVE)
+                       ? arg->number > param->min && arg->number < param->max
+                       : arg->number >= param->min && arg->number <= param->max;
+        }
+        return isfinite(arg->number);
+    case HE_PARAM_POINT:
+    case HE_PARAM_POINTS:
+        return arg->points != NULL && arg->count > 0;
+    case HE_PARAM_FLAG:
+    case HE_PARAM_CHOICE:
+    case HE_PARAM_MATRIX:
+        return true;
+    }
+    return false;
+}
+
+/* Of the alternatives that share a letter with parameter i, is exactly one given where one must,
+ * and at most one elsewhere? */
+static bool is_group_sound(const he_op *op, const he_arg *args, size_t i)
+{
+    size_t given = 0;
+    bool required = false;
+    for (size_t k = 0; k < he_op_params(op); k++) {
+        if (op->params[k].group == op->params[i].group) {
+            given += args[k].given;
+            required |= (op->params[k].flags & HE_REQUIRED) != 0;
+        }
+    }
+    return required ? given == 1 : given <= 1;
+}
+
+static bool are_sound(const he_op *op, const he_arg *args)
+{
+    for (size_t i = 0; i < he_op_params(op); i++) {
+        if (!is_sound(&op->params[i], &args[i]) ||
+            (op->params[i].group != 0 && !is_group_sound(op, args, i))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void he_results_clear(he_results *results)
+{
+    for (size_t i = 0; i < HE_OP_RESULTS; i++) {
+        he_ids_clear(&results->list[i]);
+    }
+    memset(results, 0, sizeof *results);
+}
+
+he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
+                    he_results *out, he_error *err)
+{
+    bool sound = are_sound(op, args);
+    assert(sound);
+    (void)sound;
+    he_results_clear(out);
+    for (size_t i = 0; i < he_op_results(op); i++) {
+        out->present[i] = true;
+        out->id[i] = HE_NONE;
+    }
+    he_status status = op->run(mesh, args, out, err);
+    assert(he_op_declares(op, status));
+    if (status != HE_OK) {
+        he_results_clear(out);
+    }
+    return status;
+}
+
+void he_give(he_results *out, size_t i, uint32_t id)
+{
+    out->id[i] = id;
+}
+
+he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err)
+{
+    return he_ids_reserve(&out->list[i], count, err);
+}
+
+void he_give_add(he_results *out, size_t i, uint32_t id)
+{
+    he_ids *list = &out->list[i];
+    assert(list->count < list->capacity);
+    list->ids[list->count++] = id;
+}
+
+void he_give_list(he_results *out, size_t i, he_ids *takes)
+{
+    he_ids_clear(&out->list[i]);
+    out->list[i] = *takes;
+    *takes = (he_ids){0};
+}

@@ -1,0 +1,26 @@
+/* rows.h - where the rows of the table are, for table.c and op.c, and how a row gives results. */
+#ifndef HE_OP_ROWS_H
+#define HE_OP_ROWS_H
+
+#include "op/op.h"
+
+/* Rows by what they edit; each array ends in a row without a name. */
+extern const he_op he_vertex_rows[];
+extern const he_op he_edge_rows[];
+extern const he_op he_face_rows[];
+extern const he_op he_mesh_rows[];
+
+/* All rows in the order of the table. NULL past the last. */
+const he_op *he_table_row(size_t i);
+
+/* Result i of a row is one element, which may be HE_NONE. */
+void he_give(he_results *out, size_t i, uint32_t id);
+/* Room for result i, a list of at most `count` ids: asked for before the edit, which may not fail
+ * afterwards. */
+HE_NODISCARD he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err);
+/* Append to it. */
+void he_give_add(he_results *out, size_t i, uint32_t id);
+/* Result i is the whole list, which is empty afterwards. */
+void he_give_list(he_results *out, size_t i, he_ids *takes);
+
+#endif

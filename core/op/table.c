@@ -1,0 +1,15 @@
+#include "op/rows.h"
+
+static const he_op *const groups[] = {he_vertex_rows, he_edge_rows, he_face_rows, he_mesh_rows};
+
+const he_op *he_table_row(size_t i)
+{
+    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
+        for (const he_op *row = groups[g]; row->name != NULL; row++) {
+            if (i-- == 0) {
+                return row;
+            }
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,49 @@
+/* edit_script.h - meshes and operations written as short texts, for the tests of core/edit.
+ *
+ * A mesh: "012,023" are faces by vertex digit, 0-9 then a-z; the vertices are as many as the
+ * largest names, or as "+" signs at the end add. An operation: its name and arguments,
+ *
+ *     edge_split edge=4-5 t=0.25           an edge, or half-edge, by its ends (or by id: edge=#7)
+ *     face_add vertices=0,1,2              a list
+ *     vertex_move vertex=0,1 by=0,0,1      points are three numbers each
+ *     vertex_split vertex=1 left=null right=0 to=0,0,1
+ *
+ * and a script is operations separated by ";". A name that is not found fails the test. */
+#ifndef TESTS_UNIT_EDIT_SCRIPT_H
+#define TESTS_UNIT_EDIT_SCRIPT_H
+
+#include "mesh/delta.h"
+#include "op/op.h"
+
+/* Vertices at general positions, or at `positions` when that is not NULL. */
+he_mesh *script_mesh(const char *faces, const he_vec3 *positions);
+
+/* Add columns of every rule in every domain, so that edits carry something. */
+void script_add_columns(he_mesh *m);
+
+/* Run one operation. `results` may be NULL. */
+he_status script_run(he_mesh *m, const char *operation, he_results *results, he_error *err);
+/* Run all operations of a script; each must succeed. NULL does nothing. */
+void script_prepare(he_mesh *m, const char *script);
+/* The row an operation names. */
+const he_op *script_op(const char *operation);
+
+/* Fail the test with a sentence when an invariant is broken. */
+void assert_valid(const he_mesh *m);
+void assert_counts(const he_mesh *m, uint32_t vertices, uint32_t edges, uint32_t faces);
+/* Does face f run through these vertices, from any of them on? */
+void assert_face(const he_mesh *m, uint32_t f, const char *vertices);
+void assert_equal(const he_mesh *m, const he_mesh *other);
+/* Lengths of the boundary loops as digits in rising order: "345". */
+void assert_loops(const he_mesh *m, const char *lengths);
+he_mesh *copy_of(const he_mesh *m);
+
+he_halfedge halfedge_between(const he_mesh *m, uint32_t a, uint32_t b);
+he_edge edge_between(const he_mesh *m, uint32_t a, uint32_t b);
+
+/* Let the n-th allocation from now on fail, and only that; 0 lets all succeed again. */
+void fail_allocation(unsigned n);
+/* Has one failed since? */
+bool allocation_failed(void);
+
+#endif

@@ -1,0 +1,267 @@
+/* Attribute values through edits, and what the C functions refuse that JSON never brings them. */
+#include "edit_script.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "edit/bisect.h"
+#include "edit/collapse.h"
+#include "edit/poke.h"
+#include "edit/split.h"
+#include "edit/transform.h"
+#include "edit/vertex.h"
+#include "edit/vertex_split.h"
+#include "mesh/write.h"
+
+/* A column of one double named "a": row i holds 10 * i, the default is -1. */
+static void add_column(he_mesh *m, he_kind domain, he_rule rule)
+{
+    he_column *column = NULL;
+    double fallback = -1;
+    assert_int_equal(he_column_new("a", domain, HE_DOUBLE, 1, rule, &column, NULL), HE_OK);
+    memcpy(column->fallback, &fallback, sizeof fallback);
+    size_t rows = he_mesh_issued(m, domain);
+    assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
+    for (size_t i = 0; i < rows; i++) {
+        double value = 10.0 * (double)i;
+        memcpy(he_column_row(column, i), &value, sizeof value);
+    }
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+static double value_at(const he_mesh *m, he_kind domain, uint32_t row)
+{
+    double value;
+    const he_column *column = he_mesh_find_column(m, domain, "a");
+    memcpy(&value, he_column_value(column, row), sizeof value);
+    return value;
+}
+
+static void assert_value(const he_mesh *m, he_kind domain, uint32_t row, double expected)
+{
+    double value = value_at(m, domain, row);
+    if (!(fabs(value - expected) < 1e-12)) {
+        fail_msg("%s %u holds %g, not %g", he_kind_name(domain), row, value, expected);
+    }
+}
+
+/* The value of the corner at a vertex of a face. */
+static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, double expected)
+{
+    he_halfedge h = he_face_halfedge(m, (he_face){face});
+    while (he_origin(m, h).i != vertex) {
+        h = he_next(m, h);
+    }
+    assert_value(m, HE_HALFEDGE, h.i, expected);
+}
+
+/* Run a script on a mesh with one column. */
+static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
+{
+    he_mesh *m = script_mesh(mesh, NULL);
+    add_column(m, domain, rule);
+    script_prepare(m, script);
+    assert_valid(m);
+    return m;
+}
+
+static void test_vertices(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *script;
+        he_rule rule;
+        uint32_t vertex;
+        double value;
+    } cases[] = {
+        {"012,103", "edge_bisect edge=#0 t=0.25", HE_INTERPOLATE, 4, 2.5},
+        {"012,103", "edge_bisect edge=#0 t=0.25", HE_COPY, 4, 0},
+        {"012,103", "edge_bisect edge=#0 t=0.25", HE_DEFAULT, 4, -1},
+        {"012,103", "edge_split edge=1-2 t=0.5", HE_INTERPOLATE, 4, 15},
+        {"0123", "face_poke face=0", HE_INTERPOLATE, 4, 15},
+        {"0123", "edge_collapse halfedge=2-1 t=0.75", HE_INTERPOLATE, 1, 12.5},
+        {"0123", "edge_collapse halfedge=2-1 to=0,0,0", HE_INTERPOLATE, 1, 15},
+        {"0123", "edge_collapse halfedge=2-1 t=0.75", HE_COPY, 1, 10},
+        {"0123", "edge_collapse halfedge=2-1 t=0.75", HE_DEFAULT, 1, 10},
+        {"012,023", "vertex_split vertex=2 left=0 right=null to=0,0,0", HE_INTERPOLATE, 4, 20},
+        {"0123", "hole_fill halfedge=1-0 method=fan", HE_INTERPOLATE, 4, 15},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        he_mesh *m = after(cases[i].mesh, HE_VERTEX, cases[i].rule, cases[i].script);
+        assert_value(m, HE_VERTEX, cases[i].vertex, cases[i].value);
+        he_mesh_free(m);
+    }
+}
+
+static void test_edges_and_faces(void **state)
+{
+    (void)state;
+    he_mesh *m = after("012,023", HE_EDGE, HE_COPY, "edge_split edge=#2");
+    assert_value(m, HE_EDGE, 5, 20);
+    assert_value(m, HE_EDGE, 6, -1);
+    he_mesh_free(m);
+
+    m = after("01234", HE_EDGE, HE_INTERPOLATE, "edge_join vertex=2");
+    assert_value(m, HE_EDGE, 1, 15);
+    he_mesh_free(m);
+
+    m = after("012,023,034,045,056,061", HE_EDGE, HE_INTERPOLATE, NULL);
+    uint32_t kept = edge_between(m, 0, 2).i, gone = edge_between(m, 1, 2).i;
+    script_prepare(m, "edge_collapse halfedge=1-0");
+    assert_value(m, HE_EDGE, kept, 5.0 * (kept + gone));
+    he_mesh_free(m);
+
+    static const char *const cuts[] = {
+        "face_split face=1 from=1 to=3",
+        "face_poke face=1",
+        "face_triangulate face=1",
+    };
+    for (unsigned i = 0; i < 3; i++) {
+        m = after("456,0123", HE_FACE, HE_COPY, cuts[i]);
+        assert_value(m, HE_FACE, 1, 10);
+        assert_value(m, HE_FACE, 2, 10);
+        he_mesh_free(m);
+        m = after("456,0123", HE_FACE, HE_DEFAULT, cuts[i]);
+        assert_value(m, HE_FACE, 1, 10);
+        assert_value(m, HE_FACE, 2, -1);
+        he_mesh_free(m);
+    }
+    m = after("456,0123", HE_FACE, HE_COPY, "hole_fill halfedge=1-0");
+    assert_value(m, HE_FACE, 2, -1);
+    he_mesh_free(m);
+}
+
+/* Half-edges of 012,103: 0 runs 0-1 in face 0, 2 1-2, 4 2-0; 1 runs 1-0 in face 1, 6 0-3, 8 3-1. */
+static void test_corners(void **state)
+{
+    (void)state;
+    he_mesh *m = after("012,103", HE_HALFEDGE, HE_INTERPOLATE, "edge_bisect edge=#0 t=0.25");
+    assert_corner(m, 0, 0, 0);
+    assert_corner(m, 0, 4, 5);
+    assert_corner(m, 0, 1, 20);
+    assert_corner(m, 1, 1, 10);
+    assert_corner(m, 1, 4, 0.25 * 10 + 0.75 * 60);
+    assert_corner(m, 1, 0, 60);
+    script_prepare(m, "edge_join vertex=4");
+    assert_corner(m, 0, 0, 0);
+    assert_corner(m, 1, 1, 10);
+    assert_corner(m, 1, 0, 60);
+    he_mesh_free(m);
+
+    /* The old corner moves to another half-edge with its value, whatever the rule. */
+    m = after("012,103", HE_HALFEDGE, HE_DEFAULT, "edge_bisect edge=#0 t=0.25");
+    assert_corner(m, 1, 1, 10);
+    assert_corner(m, 1, 4, -1);
+    he_mesh_free(m);
+
+    m = after("012,103", HE_HALFEDGE, HE_INTERPOLATE, "edge_split edge=#0");
+    assert_corner(m, 0, 4, 10);
+    assert_corner(m, 2, 4, 10);
+    assert_corner(m, 2, 2, 40);
+    assert_corner(m, 3, 3, 80);
+    assert_corner(m, 3, 1, 10);
+    he_mesh_free(m);
+
+    m = after("0123", HE_HALFEDGE, HE_INTERPOLATE, "face_split face=0 from=0 to=2");
+    assert_corner(m, 0, 0, 0);
+    assert_corner(m, 0, 2, 40);
+    assert_corner(m, 1, 0, 0);
+    assert_corner(m, 1, 2, 40);
+    he_mesh_free(m);
+
+    static const char *const cuts[] = {"face_poke face=0", "face_triangulate face=0"};
+    for (unsigned i = 0; i < 2; i++) {
+        m = after("0123", HE_HALFEDGE, HE_INTERPOLATE, cuts[i]);
+        for (uint32_t f = 0; f < he_mesh_faces(m); f++) {
+            he_halfedge first = he_face_halfedge(m, (he_face){f}), h = first;
+            do {
+                uint32_t v = he_origin(m, h).i;
+                assert_value(m, HE_HALFEDGE, h.i, v == 4 ? 30 : 20.0 * v);
+                h = he_next(m, h);
+            } while (h.i != first.i);
+        }
+        he_mesh_free(m);
+    }
+
+    m = after("012,103", HE_HALFEDGE, HE_INTERPOLATE, "edge_flip edge=#0");
+    assert_corner(m, 0, 3, 80);
+    assert_corner(m, 1, 2, 40);
+    he_mesh_free(m);
+
+    /* The faces about the vertex that goes keep their corners' values. */
+    m = after("012,023,034,045,056,061", HE_HALFEDGE, HE_COPY, NULL);
+    double at_0 = value_at(m, HE_HALFEDGE, halfedge_between(m, 0, 2).i);
+    script_prepare(m, "edge_collapse halfedge=0-1");
+    assert_corner(m, 1, 1, at_0);
+    he_mesh_free(m);
+}
+
+static void test_bad_values(void **state)
+{
+    (void)state;
+    static const double bad[] = {0, 1, -0.5, 1.5, NAN, INFINITY};
+    he_mesh *m = script_mesh("012,103", NULL), *before = copy_of(m);
+    he_edge e = {0};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_int_equal(he_edge_bisect(m, e, bad[i], NULL, NULL, NULL), HE_BAD_VALUE);
+        assert_int_equal(he_edge_split(m, e, bad[i], NULL, NULL), HE_BAD_VALUE);
+    }
+    for (size_t i = 2; i < sizeof bad / sizeof *bad; i++) {
+        he_halfedge h = halfedge_between(m, 2, 0);
+        assert_int_equal(he_edge_collapse(m, h, bad[i], NULL, NULL, NULL), HE_BAD_VALUE);
+    }
+    he_vec3 nowhere = {0, NAN, 0};
+    double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1};
+    assert_int_equal(he_vertex_add(m, nowhere, NULL, NULL), HE_NOT_FINITE);
+    assert_int_equal(he_face_poke(m, (he_face){0}, &nowhere, NULL, NULL, NULL, NULL),
+                     HE_NOT_FINITE);
+    assert_int_equal(he_edge_collapse(m, halfedge_between(m, 2, 0), 0.5, &nowhere, NULL, NULL),
+                     HE_NOT_FINITE);
+    assert_int_equal(he_vertex_split(m, (he_vertex){0}, (he_vertex){3}, (he_vertex){HE_NONE},
+                                     nowhere, NULL, NULL),
+                     HE_NOT_FINITE);
+    assert_int_equal(he_transform(m, matrix, NULL, 0, NULL), HE_BAD_VALUE);
+    const uint32_t all[3] = {0, 1, 2};
+    const he_vec3 two[2] = {{0, 0, 0}, {1, 1, 1}};
+    assert_int_equal(he_vertex_move(m, all, 3, HE_MOVE_TO, two, 2, NULL), HE_BAD_VALUE);
+    assert_int_equal(he_vertex_move(m, all, 3, HE_MOVE_BY, two, 0, NULL), HE_BAD_VALUE);
+    assert_equal(m, before);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+/* Positions at the end of the range stay in it. */
+static void test_extreme_positions(void **state)
+{
+    (void)state;
+    static const he_vec3 far[] = {{1.7e308, 1.7e308, -1.7e308},
+                                  {1.7e308, -1.7e308, -1.7e308},
+                                  {1.7976931348623157e308, 0, 1e308},
+                                  {-1.7976931348623157e308, 0, 1}};
+    static const char *const edits[] = {
+        "edge_bisect edge=#0 t=0.3", "edge_split edge=#1",
+        "face_poke face=0",          "edge_collapse halfedge=0-1 t=0.7",
+        "face_triangulate face=0",   "hole_fill halfedge=1-0 method=fan",
+    };
+    for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+        he_mesh *m = script_mesh("0123", far);
+        script_prepare(m, edits[i]);
+        assert_valid(m);
+        he_mesh_free(m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_vertices),          cmocka_unit_test(test_edges_and_faces),
+        cmocka_unit_test(test_corners),           cmocka_unit_test(test_bad_values),
+        cmocka_unit_test(test_extreme_positions),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

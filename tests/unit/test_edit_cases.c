@@ -1,0 +1,314 @@
+/* The cases of the design's table of operations, and what bow-ties make of edits. */
+#include "edit_script.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "mesh/write.h"
+
+#define QCUBE   "0123,7654,1045,2156,3267,0374"
+#define RING10  "401,430,512,541,652,734,874,845,985,956"
+#define STRANGE "012,034,056"
+#define HEXAGON "012,023,034,045,056,061"
+
+static int euler(const he_mesh *m)
+{
+    return (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
+}
+
+static void test_empty(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("", NULL);
+    script_prepare(m, "vertex_add position=1,2,3;vertex_delete vertex=0;compact");
+    assert_counts(m, 0, 0, 0);
+    assert_int_equal(he_mesh_issued(m, HE_VERTEX), 0);
+    he_mesh_free(m);
+}
+
+static void test_triangle(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("+++", NULL);
+    script_prepare(m, "face_add vertices=0,1,2");
+    assert_counts(m, 3, 3, 1);
+    assert_loops(m, "3");
+    assert_face(m, 0, "012");
+    assert_int_equal(he_origin(m, he_face_halfedge(m, (he_face){0})).i, 0);
+    he_mesh_free(m);
+}
+
+static void assert_joins(const he_mesh *m, he_edge e, uint32_t a, uint32_t b)
+{
+    uint32_t from = he_origin(m, he_edge_halfedge(e, 0)).i;
+    uint32_t to = he_target(m, he_edge_halfedge(e, 0)).i;
+    assert_true((from == a && to == b) || (from == b && to == a));
+}
+
+static void test_ring10_flip(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(RING10, NULL);
+    he_edge e = edge_between(m, 4, 5);
+    for (unsigned i = 0; i < 2; i++) {
+        script_prepare(m, "edge_flip edge=4-5");
+        assert_counts(m, 10, 19, 10);
+        assert_joins(m, e, 1, 8);
+        script_prepare(m, "edge_flip edge=1-8");
+        assert_counts(m, 10, 19, 10);
+        assert_joins(m, e, 4, 5);
+    }
+    he_mesh_free(m);
+}
+
+static void test_ring10_hole(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(RING10, NULL);
+    script_prepare(m, "face_delete faces=3,7");
+    assert_counts(m, 10, 18, 8);
+    assert_int_equal(euler(m), 0);
+    assert_int_equal(he_vertex_fans(m, (he_vertex){1}), 2);
+    assert_int_equal(he_vertex_fans(m, (he_vertex){8}), 2);
+    assert_int_equal(he_mesh_boundary_halfedges(m), 12);
+    he_mesh_free(m);
+}
+
+static void test_strange(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(STRANGE, NULL);
+    assert_counts(m, 7, 9, 3);
+    assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 3);
+    he_mesh *before = copy_of(m);
+    assert_int_equal(script_run(m, "face_add vertices=3,0,4", NULL, NULL), HE_CLOSED_FAN);
+    assert_equal(m, before);
+    /* Gap by gap the fans become one, in whatever order they are chained. */
+    script_prepare(m, "face_add vertices=1,0,4");
+    assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
+    assert_int_equal(script_run(m, "face_add vertices=3,0,2", NULL, NULL), HE_CLOSED_FAN);
+    script_prepare(m, "face_add vertices=3,0,6");
+    assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 1);
+    script_prepare(m, "face_add vertices=5,0,2");
+    assert_counts(m, 7, 12, 6);
+    assert_false(he_is_boundary_vertex(m, (he_vertex){0}));
+    assert_int_equal(script_run(m, "face_add vertices=5,0,2", NULL, NULL), HE_INTERIOR_VERTEX);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+static void test_cube_holes(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    script_prepare(m, "face_delete faces=0,1,2");
+    assert_counts(m, 8, 10, 3);
+    assert_loops(m, "8");
+    he_mesh_free(m);
+
+    m = script_mesh(QCUBE, NULL);
+    script_prepare(m, "face_delete face=0");
+    assert_counts(m, 8, 12, 5);
+    assert_loops(m, "4");
+    script_prepare(m, "hole_fill halfedge=0-1");
+    assert_counts(m, 8, 12, 6);
+    assert_face(m, 6, "0123");
+    assert_loops(m, "");
+    he_mesh_free(m);
+}
+
+static void test_checkerboard(void **state)
+{
+    (void)state;
+    /* The white squares of three by three: five faces that touch at the corners only. */
+    he_mesh *m = script_mesh("0154,1265,2376,4598,56a9,67ba,89dc,9aed,abfe", NULL);
+    script_prepare(m, "face_delete faces=1,3,5,7");
+    assert_counts(m, 16, 20, 5);
+    for (uint32_t v = 5; v <= 10; v += v == 6 ? 3 : 1) {
+        assert_int_equal(he_vertex_fans(m, (he_vertex){v}), 2);
+    }
+    script_prepare(m, "face_delete faces=0,2,4,6,8 keep_isolated=1");
+    assert_counts(m, 16, 0, 0);
+    script_prepare(m, "face_add vertices=0,1,5,4;face_add vertices=5,6,10,9;"
+                      "face_add vertices=1,2,6,5");
+    assert_counts(m, 16, 10, 3);
+    assert_int_equal(he_vertex_fans(m, (he_vertex){5}), 1);
+    he_mesh_free(m);
+}
+
+static void test_tetrahedron_does_not_collapse(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("021,013,032,123", NULL), *before = copy_of(m);
+    for (unsigned h = 0; h < 12; h++) {
+        char text[64];
+        snprintf(text, sizeof text, "edge_collapse halfedge=#%u", h);
+        assert_int_equal(script_run(m, text, NULL, NULL), HE_LINK_CONDITION);
+        assert_equal(m, before);
+    }
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+static void test_cf1_join(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("021,123,134", NULL);
+    he_edge e = edge_between(m, 1, 2);
+    he_face kept = he_face_of(m, he_edge_halfedge(e, 0));
+    script_prepare(m, "face_join edge=1-2");
+    assert_counts(m, 5, 6, 2);
+    assert_int_equal(he_face_degree(m, kept), 4);
+    he_mesh_free(m);
+}
+
+static void test_sb(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("0341,142", NULL);
+    he_edge e = edge_between(m, 1, 4);
+    script_prepare(m, "edge_flip edge=1-4");
+    assert_counts(m, 5, 6, 2);
+    assert_joins(m, e, 0, 2);
+    assert_face(m, 0, "0342");
+    assert_face(m, 1, "021");
+    he_mesh_free(m);
+
+    m = script_mesh("0341,142", NULL);
+    script_prepare(m, "edge_split edge=1-4");
+    assert_counts(m, 6, 9, 4);
+    he_mesh_free(m);
+
+    m = script_mesh("0341,142", NULL);
+    script_prepare(m, "edge_split edge=0-1");
+    assert_counts(m, 6, 8, 3);
+    he_mesh_free(m);
+}
+
+/* Loop's refinement out of splits and flips: split all edges, flip the new ones between an old
+ * vertex and a new one. */
+static void test_split_and_flip(void **state)
+{
+    (void)state;
+    /* An octahedron. */
+    he_mesh *m = script_mesh("012,023,034,041,521,532,543,514", NULL);
+    uint32_t v = he_mesh_vertices(m), e = he_mesh_edges(m), f = he_mesh_faces(m);
+    for (uint32_t i = 0; i < e; i++) {
+        char text[64];
+        snprintf(text, sizeof text, "edge_split edge=#%u", i);
+        script_prepare(m, text);
+    }
+    for (uint32_t i = e; i < he_mesh_issued(m, HE_EDGE); i++) {
+        he_halfedge h = he_edge_halfedge((he_edge){i}, 0);
+        bool old_from = he_origin(m, h).i < v, old_to = he_target(m, h).i < v;
+        /* The first of the three edges a split makes is the other half of the one split. */
+        bool half = (i - e) % 3 == 0;
+        if (old_from != old_to && !half) {
+            char text[64];
+            snprintf(text, sizeof text, "edge_flip edge=#%u", i);
+            script_prepare(m, text);
+        }
+    }
+    assert_counts(m, v + e, 2 * e + 3 * f, 4 * f);
+    for (uint32_t i = 0; i < 4 * f; i++) {
+        assert_int_equal(he_face_degree(m, (he_face){i}), 3);
+    }
+    for (uint32_t i = v; i < v + e; i++) {
+        assert_int_equal(he_vertex_degree(m, (he_vertex){i}), 6);
+    }
+    he_mesh_free(m);
+}
+
+/* vertex_split and the collapse of its edge give back the same mesh, link by link. */
+static void test_vertex_split_is_inverse(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *split;
+        uint32_t v;
+    } cases[] = {
+        {HEXAGON, "vertex_split vertex=0 left=1 right=3 to=0,0,1", 0},
+        {HEXAGON, "vertex_split vertex=0 left=5 right=2 to=0,0,1", 0},
+        {HEXAGON, "vertex_split vertex=0 left=2 right=1 to=0,0,1", 0},
+        {HEXAGON, "vertex_split vertex=1 left=0 right=null to=0,0,1", 1},
+        {HEXAGON, "vertex_split vertex=1 left=null right=0 to=0,0,1", 1},
+        {HEXAGON, "vertex_split vertex=1 left=0 right=2 to=0,0,1", 1},
+        {HEXAGON, "vertex_split vertex=1 left=2 right=6 to=0,0,1", 1},
+        {HEXAGON, "vertex_split vertex=1 left=null right=6 to=0,0,1", 1},
+        {QCUBE, "vertex_split vertex=0 left=1 right=3 to=0,0,1", 0},
+        {QCUBE, "vertex_split vertex=0 left=3 right=1 to=0,0,1", 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        print_message("%s\n", cases[i].split);
+        he_mesh *m = script_mesh(cases[i].mesh, NULL), *before = copy_of(m);
+        uint32_t u = he_mesh_issued(m, HE_VERTEX);
+        script_prepare(m, cases[i].split);
+        assert_valid(m);
+        char text[64];
+        snprintf(text, sizeof text, "edge_collapse halfedge=%u-%u t=1", u, cases[i].v);
+        script_prepare(m, text);
+        assert_valid(m);
+        /* An interior vertex may store any half-edge that leaves it. */
+        he_vertex v = {cases[i].v};
+        if (!he_is_boundary_vertex(m, v)) {
+            he_set_vertex_halfedge(m, v, he_vertex_halfedge(before, v));
+        }
+        assert_true(he_mesh_equal_live(m, before));
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+static void test_inverses(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {
+        {"edge_bisect edge=0-1 t=0.25", "edge_join vertex=8"},
+        {"edge_bisect edge=3-7", "edge_join vertex=8"},
+        {"face_split face=0 from=0 to=2", "face_join edge=0-2"},
+        {"face_split face=0 from=3 to=1", "face_join edge=1-3"},
+    };
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        he_mesh *m = script_mesh(QCUBE, NULL), *before = copy_of(m);
+        script_prepare(m, pairs[i][0]);
+        assert_false(he_mesh_equal_live(m, before));
+        script_prepare(m, pairs[i][1]);
+        assert_counts(m, 8, 12, 6);
+        for (uint32_t f = 0; f < 6; f++) {
+            assert_int_equal(he_face_degree(m, (he_face){f}), 4);
+        }
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+static void test_pillow(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("012", NULL);
+    script_prepare(m, "face_add vertices=0,2,1");
+    assert_counts(m, 3, 3, 2);
+    assert_loops(m, "");
+    script_prepare(m, "face_delete face=0");
+    assert_counts(m, 3, 3, 1);
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_empty),          cmocka_unit_test(test_triangle),
+        cmocka_unit_test(test_ring10_flip),    cmocka_unit_test(test_ring10_hole),
+        cmocka_unit_test(test_strange),        cmocka_unit_test(test_cube_holes),
+        cmocka_unit_test(test_checkerboard),   cmocka_unit_test(test_tetrahedron_does_not_collapse),
+        cmocka_unit_test(test_cf1_join),       cmocka_unit_test(test_sb),
+        cmocka_unit_test(test_split_and_flip), cmocka_unit_test(test_vertex_split_is_inverse),
+        cmocka_unit_test(test_inverses),       cmocka_unit_test(test_pillow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,496 @@
+/* What the operation table promises, row by row: every row succeeds, every declared refusal is
+ * produced and no other, V, E and F move as declared, the checker passes, a refusal or a failed
+ * allocation leaves the mesh bit-identical, and the delta undoes and redoes. */
+#include "edit_script.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "mesh/build.h"
+
+#define QCUBE   "0123,7654,1045,2156,3267,0374"
+#define TETRA   "021,013,032,123"
+#define PILLOW  "012,021"
+#define STRANGE "012,034,056"
+#define RING6   "301,320,431,523,653,634"
+#define HEXAGON "012,023,034,045,056,061"
+/* The torus on which seven vertices are all neighbours of each other. */
+#define CSASZAR "013,032,124,143,235,254,346,365,450,406,561,510,602,621"
+
+/* More vertices than a list is compared pairwise for. */
+#define MANY \
+    "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33"
+#define MANY_MORE "+++++++++++++++++++++++++++++++++"
+
+typedef struct scenario {
+    const char *operation;
+    const char *mesh;
+    const char *prepare;
+    he_status expected;
+    int change[3];
+} scenario;
+
+static const char MIRROR[] = "transform matrix=-1,0,0,5,0,1,0,0,0,0,1,0,0,0,0,1";
+
+static const scenario scenarios[] = {
+    {"vertex_add position=1,2,3", "", NULL, HE_OK, {1, 0, 0}},
+
+    {"vertex_move vertex=1 to=0,0,9", "012", NULL, HE_OK, {0, 0, 0}},
+    {"vertex_move vertices=1,2 by=0,0,9", "012", NULL, HE_OK, {0, 0, 0}},
+    {"vertex_move vertices=1,2 to=0,0,9,1,2,3", "012", NULL, HE_OK, {0, 0, 0}},
+    {"vertex_move vertex=3 to=0,0,9", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"vertex_move vertices=0,3 to=0,0,9",
+     "012+",
+     "vertex_delete vertex=3",
+     HE_DELETED_ELEMENT,
+     {0}},
+    {"vertex_move vertices=1,2,1 to=0,0,9", "012", NULL, HE_REPEATED_ELEMENT, {0}},
+    {"vertex_move vertices=1,2,0 to=0,0,9,1,2,3", "012", NULL, HE_BAD_VALUE, {0}},
+    {"vertex_move vertex=1 to=0,0,9,1,2,3", "012", NULL, HE_BAD_VALUE, {0}},
+    {"vertex_move vertices=0,1 by=1e308,0,0",
+     "012",
+     "vertex_move vertex=1 to=1e308,0,0",
+     HE_NOT_FINITE,
+     {0}},
+
+    {"vertex_move vertices=" MANY " by=0,0,1", "+" MANY_MORE, NULL, HE_OK, {0, 0, 0}},
+    {"vertex_move vertices=" MANY ",7 by=0,0,1", "+" MANY_MORE, NULL, HE_REPEATED_ELEMENT, {0}},
+
+    {"vertex_delete vertex=0", "012", NULL, HE_OK, {-3, -3, -1}},
+    {"vertex_delete vertex=0 keep_isolated=1", "012", NULL, HE_OK, {-1, -3, -1}},
+    {"vertex_delete vertex=3", "012+", NULL, HE_OK, {-1, 0, 0}},
+    {"vertex_delete vertex=0", STRANGE, NULL, HE_OK, {-7, -9, -3}},
+    {"vertex_delete vertex=0", QCUBE, NULL, HE_OK, {-1, -3, -3}},
+    {"vertex_delete vertex=9", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"vertex_delete vertex=3", "012+", "vertex_delete vertex=3", HE_DELETED_ELEMENT, {0}},
+
+    {"vertex_split vertex=0 left=1 right=4 to=0,0,1", HEXAGON, NULL, HE_OK, {1, 3, 2}},
+    {"vertex_split vertex=0 left=1 right=2 to=0,0,1", HEXAGON, NULL, HE_OK, {1, 3, 2}},
+    {"vertex_split vertex=0 left=null right=2 to=0,0,1", "012,023", NULL, HE_OK, {1, 2, 1}},
+    {"vertex_split vertex=0 left=null right=3 to=0,0,1", "012,023", NULL, HE_OK, {1, 2, 1}},
+    {"vertex_split vertex=0 left=2 right=null to=0,0,1", "012,023", NULL, HE_OK, {1, 2, 1}},
+    {"vertex_split vertex=0 left=1 right=2 to=0,0,1", "012,023", NULL, HE_OK, {1, 3, 2}},
+    {"vertex_split vertex=0 left=2 right=1 to=0,0,1", "012,023", NULL, HE_OK, {1, 3, 2}},
+    {"vertex_split vertex=0 left=1 right=3 to=0,0,1", "012,023", NULL, HE_OK, {1, 3, 2}},
+    {"vertex_split vertex=7 left=1 right=4 to=0,0,1", HEXAGON, NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"vertex_split vertex=0 left=1 right=7 to=0,0,1", HEXAGON, NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"vertex_split vertex=0 left=3 right=1 to=0,0,1",
+     "012+",
+     "vertex_delete vertex=3",
+     HE_DELETED_ELEMENT,
+     {0}},
+    {"vertex_split vertex=0 left=1 right=1 to=0,0,1", HEXAGON, NULL, HE_REPEATED_ELEMENT, {0}},
+    {"vertex_split vertex=0 left=null right=null to=0,0,1", "012", NULL, HE_BAD_VALUE, {0}},
+    {"vertex_split vertex=0 left=1 right=2 to=0,0,1", STRANGE, NULL, HE_BOWTIE, {0}},
+    {"vertex_split vertex=0 left=null right=2 to=0,0,1", HEXAGON, NULL, HE_NOT_BOUNDARY, {0}},
+    {"vertex_split vertex=0 left=1 right=null to=0,0,1", HEXAGON, NULL, HE_NOT_BOUNDARY, {0}},
+    {"vertex_split vertex=0 left=1 right=2 to=0,0,1", QCUBE, NULL, HE_NOT_NEIGHBOUR, {0}},
+    {"vertex_split vertex=0 left=1 right=0 to=0,0,1", QCUBE, NULL, HE_NOT_NEIGHBOUR, {0}},
+    {"vertex_split vertex=3 left=null right=0 to=0,0,1", "012+", NULL, HE_NOT_NEIGHBOUR, {0}},
+    {"vertex_split vertex=0 left=3 right=1 to=0,0,1", "012,023", NULL, HE_NO_SECTOR, {0}},
+    {"vertex_split vertex=0 left=null right=1 to=0,0,1", "012,023", NULL, HE_NO_SECTOR, {0}},
+    {"vertex_split vertex=0 left=3 right=null to=0,0,1", "012,023", NULL, HE_NO_SECTOR, {0}},
+
+    {"edge_bisect edge=0-1", "012", NULL, HE_OK, {1, 1, 0}},
+    {"edge_bisect edge=0-1 t=0.25", QCUBE, NULL, HE_OK, {1, 1, 0}},
+    {"edge_bisect edge=#3", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"edge_bisect edge=#0", "012", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+
+    {"edge_join vertex=4", QCUBE, "edge_bisect edge=0-1;face_delete face=0", HE_WRONG_DEGREE, {0}},
+    {"edge_join vertex=8", QCUBE, "edge_bisect edge=0-1;face_delete face=0", HE_OK, {-1, -1, 0}},
+    {"edge_join vertex=8", QCUBE, "edge_bisect edge=0-1", HE_OK, {-1, -1, 0}},
+    {"edge_join vertex=3", "0123", NULL, HE_OK, {-1, -1, 0}},
+    {"edge_join vertex=9", "0123", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"edge_join vertex=4", "0123+", "vertex_delete vertex=4", HE_DELETED_ELEMENT, {0}},
+    {"edge_join vertex=4", "0123+", NULL, HE_WRONG_DEGREE, {0}},
+    {"edge_join vertex=0", "012", NULL, HE_TRIANGLE_SIDE, {0}},
+    {"edge_join vertex=0", "0123,314", NULL, HE_DOUBLED_EDGE, {0}},
+
+    {"edge_split edge=0-1", QCUBE, NULL, HE_OK, {1, 3, 2}},
+    {"edge_split edge=0-1 t=0.75", TETRA, NULL, HE_OK, {1, 3, 2}},
+    {"edge_split edge=0-1", "012", NULL, HE_OK, {1, 2, 1}},
+    {"edge_split edge=#3", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"edge_split edge=#0", "012", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"edge_split edge=0-1", PILLOW, NULL, HE_DOUBLED_EDGE, {0}},
+
+    {"edge_flip edge=0-2", "012,023", NULL, HE_OK, {0, 0, 0}},
+    {"edge_flip edge=1-4", "0341,142", NULL, HE_OK, {0, 0, 0}},
+    {"edge_flip edge=#9", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"edge_flip edge=#0", "012", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"edge_flip edge=0-1", "012", NULL, HE_BOUNDARY_EDGE, {0}},
+    {"edge_flip edge=0-1", PILLOW, NULL, HE_SAME_ENDS, {0}},
+    {"edge_flip edge=0-1", TETRA, NULL, HE_LOW_DEGREE, {0}},
+    {"edge_flip edge=0-1", QCUBE, NULL, HE_LOW_DEGREE, {0}},
+    {"edge_flip edge=0-1", "012,103,234", NULL, HE_DOUBLED_EDGE, {0}},
+    {"edge_flip edge=0-1", "012536,103", NULL, HE_REPEATED_CORNER, {0}},
+    {"edge_flip edge=0-1", "012,103425", NULL, HE_REPEATED_CORNER, {0}},
+
+    {"edge_collapse halfedge=0-1", HEXAGON, NULL, HE_OK, {-1, -3, -2}},
+    {"edge_collapse halfedge=1-0 t=1", HEXAGON, NULL, HE_OK, {-1, -3, -2}},
+    {"edge_collapse edge=1-2 to=7,7,7", HEXAGON, NULL, HE_OK, {-1, -2, -1}},
+    {"edge_collapse halfedge=1-4", "0341,142+", NULL, HE_LINK_CONDITION, {0}},
+    {"edge_collapse halfedge=0-1", QCUBE, NULL, HE_OK, {-1, -1, 0}},
+    {"edge_collapse halfedge=0-1", "0123", NULL, HE_OK, {-1, -1, 0}},
+    {"edge_collapse halfedge=1-2", QCUBE, "face_triangulate face=0", HE_OK, {-1, -2, -1}},
+    {"edge_collapse halfedge=#24", QCUBE, NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"edge_collapse edge=#12", QCUBE, NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"edge_collapse halfedge=#0", "012", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"edge_collapse edge=0-1", PILLOW, NULL, HE_LINK_CONDITION, {0}},
+    {"edge_collapse edge=0-1", "0341,1452,2530", NULL, HE_LINK_CONDITION, {0}},
+    {"edge_collapse edge=0-2", "012,023", NULL, HE_LINK_CONDITION, {0}},
+    {"edge_collapse edge=0-2", "012", NULL, HE_LINK_CONDITION, {0}},
+    {"edge_collapse edge=0-1", "0123,045167", NULL, HE_LINK_CONDITION, {0}},
+    {"edge_collapse edge=0-1", TETRA, NULL, HE_LINK_CONDITION, {0}},
+    {"edge_collapse edge=0-1", CSASZAR, NULL, HE_LINK_CONDITION, {0}},
+
+    {"face_add vertices=0,1,2", "+++", NULL, HE_OK, {0, 3, 1}},
+    {"face_add vertices=2,1,0", "012", NULL, HE_OK, {0, 0, 1}},
+    {"face_add vertices=0,2,3", "012+", NULL, HE_OK, {0, 2, 1}},
+    {"face_add vertices=0,4,1,5", STRANGE, NULL, HE_OK, {0, 2, 1}},
+    {"face_add vertices=0,2,4,1", STRANGE, NULL, HE_CLOSED_FAN, {0}},
+    {"face_add vertices=3,0,2", STRANGE, NULL, HE_OK, {0, 1, 1}},
+    {"face_add vertices=5,0,4", STRANGE, NULL, HE_OK, {0, 1, 1}},
+    {"face_add vertices=1,0,6", STRANGE, NULL, HE_OK, {0, 1, 1}},
+    {"face_add vertices=5,0,2", STRANGE, NULL, HE_OK, {0, 1, 1}},
+    {"face_add vertices=0,1,3,5", STRANGE, NULL, HE_ORIENTATION, {0}},
+    {"face_add vertices=0,7,8", STRANGE "++", NULL, HE_OK, {0, 3, 1}},
+    {"face_add vertices=0,1", "012", NULL, HE_TOO_FEW_CORNERS, {0}},
+    {"face_add vertices=0,1,9", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_add vertices=1,0,3", "012+", "vertex_delete vertex=3", HE_DELETED_ELEMENT, {0}},
+    {"face_add vertices=1,0,3,1", "012+", NULL, HE_REPEATED_CORNER, {0}},
+    {"face_add vertices=0,8,9", QCUBE "++", NULL, HE_INTERIOR_VERTEX, {0}},
+    {"face_add vertices=0,2,4", "012,023+", NULL, HE_NONMANIFOLD_EDGE, {0}},
+    {"face_add vertices=0,1,3", "012+", NULL, HE_ORIENTATION, {0}},
+    {"face_add vertices=3,0,4", STRANGE, NULL, HE_CLOSED_FAN, {0}},
+
+    {"face_delete face=0", QCUBE, NULL, HE_OK, {0, 0, -1}},
+    {"face_delete faces=0,1", QCUBE, NULL, HE_OK, {0, 0, -2}},
+    {"face_delete faces=0,1,2,3,4,5", QCUBE, NULL, HE_OK, {-8, -12, -6}},
+    {"face_delete faces=0,1,2,3,4,5 keep_isolated=1", QCUBE, NULL, HE_OK, {0, -12, -6}},
+    {"face_delete faces=1,0", STRANGE, NULL, HE_OK, {-4, -6, -2}},
+    {"face_delete face=1", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_delete faces=1,0", "012,034", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"face_delete faces=0,1,0", "012,034", NULL, HE_REPEATED_ELEMENT, {0}},
+
+    {"face_split face=0 from=0 to=2", "0123", NULL, HE_OK, {0, 1, 1}},
+    {"face_split face=0 from_halfedge=1-2 to=3", "0123", NULL, HE_OK, {0, 1, 1}},
+    {"face_split face=0 from_halfedge=1-2 to_halfedge=4-0", "01234", NULL, HE_OK, {0, 1, 1}},
+    {"face_split face=1 from=0 to=2", "0123", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_split face=0 from=0 to=9", "0123", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_split face=0 from_halfedge=#8 to=2", "0123", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_split face=0 from=0 to=4", "0123+", "vertex_delete vertex=4", HE_DELETED_ELEMENT, {0}},
+    {"face_split face=0 from=0 to=4", "0123+", NULL, HE_NOT_A_CORNER, {0}},
+    {"face_split face=0 from_halfedge=1-0 to=2", "0123", NULL, HE_NOT_A_CORNER, {0}},
+    {"face_split face=0 from_halfedge=0-1 to=0", "0123", NULL, HE_SAME_CORNER, {0}},
+    {"face_split face=0 from=0 to=1", "0123", NULL, HE_ADJACENT_CORNERS, {0}},
+    {"face_split face=0 from=0 to=3", "0123", NULL, HE_ADJACENT_CORNERS, {0}},
+    {"face_split face=0 from=0 to=2", "0123,024", NULL, HE_DOUBLED_EDGE, {0}},
+
+    {"face_join edge=0-1", QCUBE, NULL, HE_OK, {0, -1, -1}},
+    {"face_join edge=0-2", "012,023", NULL, HE_OK, {0, -1, -1}},
+    {"face_join edge=#9", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_join edge=#0", "012", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"face_join edge=0-1", "012", NULL, HE_BOUNDARY_EDGE, {0}},
+    {"face_join edge=0-1", PILLOW, NULL, HE_SHARED_BOUNDARY, {0}},
+    {"face_join edge=0-1", "012536,103", NULL, HE_SHARED_BOUNDARY, {0}},
+
+    {"face_poke face=0", "0123", NULL, HE_OK, {1, 4, 3}},
+    {"face_poke face=1 position=9,9,9", PILLOW, NULL, HE_OK, {1, 3, 2}},
+    {"face_poke face=1", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_poke face=0", "012", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+
+    {"face_triangulate face=0", "0123", NULL, HE_OK, {0, 1, 1}},
+    {"face_triangulate face=0", "012", NULL, HE_OK, {0, 0, 0}},
+    {"face_triangulate faces=0,1,2,3,4,5", QCUBE, NULL, HE_OK, {0, 6, 6}},
+    {"face_triangulate faces=0,1", "0123,3210", NULL, HE_OK, {0, 2, 2}},
+    {"face_triangulate face=0", "0123,024", NULL, HE_OK, {0, 1, 1}},
+    {"face_triangulate face=1", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"face_triangulate faces=1,0", "012,034", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"face_triangulate faces=0,0", "0123", NULL, HE_REPEATED_ELEMENT, {0}},
+    {"face_triangulate faces=1,0", "0123,024,4567,135", NULL, HE_DOUBLED_EDGE, {0}},
+    {"face_triangulate faces=2,0", "0123,024,4567,135", NULL, HE_DOUBLED_EDGE, {0}},
+
+    {"hole_fill halfedge=0-1", QCUBE, "face_delete face=0", HE_OK, {0, 0, 1}},
+    {"hole_fill halfedge=0-1 method=fan", QCUBE, "face_delete face=0", HE_OK, {1, 4, 4}},
+    {"hole_fill halfedge=0-1 method=triangulate", QCUBE, "face_delete face=0", HE_OK, {0, 1, 2}},
+    {"hole_fill halfedge=1-0 method=triangulate", "012", NULL, HE_OK, {0, 0, 1}},
+    {"hole_fill halfedge=#6", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"hole_fill halfedge=#1", "012", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"hole_fill halfedge=0-1", "012", NULL, HE_NOT_BOUNDARY, {0}},
+    {"hole_fill halfedge=1-0", "012,034", NULL, HE_REPEATED_CORNER, {0}},
+    {"hole_fill halfedge=0-2 method=triangulate",
+     CSASZAR,
+     "vertex_delete vertex=6",
+     HE_DOUBLED_EDGE,
+     {0}},
+    {"hole_fill halfedge=0-2 method=fan", CSASZAR, "vertex_delete vertex=6", HE_OK, {1, 6, 6}},
+
+    {MIRROR, "012,034+", "face_delete face=1", HE_OK, {0, 0, 0}},
+    {"transform matrix=2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1 vertices=0,2",
+     "012",
+     NULL,
+     HE_OK,
+     {0, 0, 0}},
+    {"transform matrix=1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1 vertex=9",
+     "012",
+     NULL,
+     HE_NO_SUCH_ELEMENT,
+     {0}},
+    {"transform matrix=1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1 vertices=0,3",
+     "012+",
+     "vertex_delete vertex=3",
+     HE_DELETED_ELEMENT,
+     {0}},
+    {"transform matrix=1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1 vertices=0,1,0",
+     "012",
+     NULL,
+     HE_REPEATED_ELEMENT,
+     {0}},
+    {"transform matrix=1e308,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", "012", NULL, HE_NOT_FINITE, {0}},
+
+    {"compact", "012,034+", "face_delete face=0", HE_OK, {0, 0, 0}},
+    {"compact", "", NULL, HE_OK, {0, 0, 0}},
+};
+
+enum { SCENARIOS = sizeof scenarios / sizeof *scenarios, MAX_OPS = 128 };
+
+/* What the scenarios of this run produced, by row. */
+static bool produced[MAX_OPS][HE_STATUS_COUNT];
+
+static void mark(const he_op *op, he_status status)
+{
+    for (size_t i = 0; i < he_op_count(); i++) {
+        if (he_op_at(i) == op) {
+            produced[i][status] = true;
+        }
+    }
+}
+
+static he_mesh *start_of(const scenario *s, bool columns)
+{
+    he_mesh *m = script_mesh(s->mesh, NULL);
+    if (columns) {
+        script_add_columns(m);
+    }
+    script_prepare(m, s->prepare);
+    assert_valid(m);
+    return m;
+}
+
+static void check_change(const scenario *s, const he_mesh *before, const he_mesh *after)
+{
+    const he_op *op = script_op(s->operation);
+    static const he_kind kinds[3] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    for (unsigned k = 0; k < 3; k++) {
+        int change = (int)he_mesh_count(after, kinds[k]) - (int)he_mesh_count(before, kinds[k]);
+        assert_int_equal(change, s->change[k]);
+        if (op->change[k] != HE_VARIES) {
+            assert_int_equal(change, op->change[k]);
+        }
+    }
+}
+
+/* Once recording: success undoes and redoes, a refusal records nothing. */
+static void run_recorded(const scenario *s, bool columns)
+{
+    he_mesh *m = start_of(s, columns), *before = copy_of(m);
+    he_delta *delta = he_delta_new();
+    he_error err = {.status = HE_OK};
+    he_results results = {{0}, {0}, {{0}}, {0}};
+    assert_non_null(delta);
+    he_mesh_record(m, delta);
+    he_status status = script_run(m, s->operation, &results, &err);
+    if (status != s->expected) {
+        fail_msg("gave %s (%s), not %s", he_status_slug(status), err.text,
+                 he_status_slug(s->expected));
+    }
+    mark(script_op(s->operation), status);
+    assert_valid(m);
+    if (status != HE_OK) {
+        assert_int_equal(err.status, status);
+        assert_true(err.text[0] != '\0');
+        assert_int_equal(delta->count, 0);
+        assert_equal(m, before);
+    } else {
+        check_change(s, before, m);
+        he_mesh *after = copy_of(m);
+        he_mesh_record(m, NULL);
+        he_delta_undo(delta, m);
+        assert_valid(m);
+        assert_true(he_mesh_equal_live(m, before));
+        he_delta_redo(delta, m);
+        assert_equal(m, after);
+        he_mesh_free(after);
+    }
+    he_mesh_record(m, NULL);
+    he_results_clear(&results);
+    he_delta_free(delta);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+/* Without recording, and with the n-th allocation failing for every n. */
+static void run_short_of_memory(const scenario *s, bool columns, bool record)
+{
+    for (unsigned n = 1;; n++) {
+        he_mesh *m = start_of(s, columns), *before = copy_of(m);
+        he_delta *delta = record ? he_delta_new() : NULL;
+        he_mesh_record(m, delta);
+        fail_allocation(n);
+        he_status status = script_run(m, s->operation, NULL, NULL);
+        bool failed = allocation_failed();
+        fail_allocation(0);
+        he_mesh_record(m, NULL);
+        assert_int_equal(status, failed ? HE_NO_MEMORY : s->expected);
+        assert_valid(m);
+        if (status != HE_OK) {
+            assert_equal(m, before);
+        }
+        he_delta_free(delta);
+        he_mesh_free(before);
+        he_mesh_free(m);
+        if (!failed) {
+            return;
+        }
+        assert_true(n < 1000);
+    }
+}
+
+static void test_scenarios(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < SCENARIOS; i++) {
+        const scenario *s = &scenarios[i];
+        print_message("%s on %s\n", s->operation, s->mesh);
+        for (unsigned columns = 0; columns < 2; columns++) {
+            run_recorded(s, columns);
+            run_short_of_memory(s, columns, false);
+            run_short_of_memory(s, columns, true);
+        }
+    }
+}
+
+/* A star of so many points that cutting its ears is more work than allowed. */
+static he_mesh *huge_star(void)
+{
+    enum { CORNERS = 50000 };
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_soup_init(&soup, NULL);
+    assert_int_equal(he_soup_begin_face(&soup, NULL), HE_OK);
+    for (uint32_t i = 0; i < CORNERS; i++) {
+        double angle = 6.283185307179586 * i / CORNERS, radius = i % 2 ? 1 : 0.5;
+        he_vec3 p = {radius * cos(angle), radius * sin(angle), 0};
+        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+        assert_int_equal(he_soup_add_corner(&soup, i, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    return m;
+}
+
+static void test_limit(void **state)
+{
+    (void)state;
+    static const char *const operations[] = {"face_triangulate face=0",
+                                             "hole_fill halfedge=1-0 method=triangulate"};
+    for (unsigned i = 0; i < 2; i++) {
+        he_mesh *m = huge_star(), *before = copy_of(m);
+        assert_int_equal(script_run(m, operations[i], NULL, NULL), HE_LIMIT);
+        assert_equal(m, before);
+        mark(script_op(operations[i]), HE_LIMIT);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+/* Runs last: what the rows declare is what the scenarios produced. */
+static void test_every_refusal_was_produced(void **state)
+{
+    (void)state;
+    unsigned missing = 0;
+    assert_true(he_op_count() <= MAX_OPS);
+    for (size_t i = 0; i < he_op_count(); i++) {
+        const he_op *op = he_op_at(i);
+        for (unsigned status = 0; status < HE_STATUS_COUNT; status++) {
+            bool declared = status == HE_OK;
+            for (size_t k = 0; k < HE_OP_REFUSALS && op->refusals[k] != HE_OK; k++) {
+                declared |= op->refusals[k] == (he_status)status;
+            }
+            if (declared != produced[i][status]) {
+                print_message("%s: %s %s\n", op->name, he_status_slug((he_status)status),
+                              declared ? "was never produced" : "is not declared");
+                missing++;
+            }
+        }
+    }
+    assert_int_equal(missing, 0);
+}
+
+static void test_rows_are_sound(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < he_op_count(); i++) {
+        const he_op *op = he_op_at(i);
+        assert_ptr_equal(he_op_find(op->name, strlen(op->name)), op);
+        assert_non_null(op->doc);
+        assert_non_null(op->run);
+        assert_int_equal(op->refusals[HE_OP_REFUSALS - 1], HE_OK);
+        for (size_t k = 0; k < he_op_params(op); k++) {
+            const he_param *param = &op->params[k];
+            assert_non_null(param->doc);
+            assert_int_equal(param->type == HE_PARAM_ELEMENTS, param->plural != NULL);
+            assert_int_equal(param->type == HE_PARAM_CHOICE, param->choices != NULL);
+            for (size_t j = 0; j < k; j++) {
+                assert_string_not_equal(op->params[j].name, param->name);
+            }
+        }
+        for (size_t k = 0; k < he_op_results(op); k++) {
+            assert_non_null(op->results[k].doc);
+        }
+    }
+    assert_null(he_op_find("edge_spli", 9));
+    assert_null(he_op_find("edge_split_", 11));
+    assert_null(he_op_find("", 0));
+}
+
+static void test_results(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("012,023", NULL);
+    he_results results = {{0}, {0}, {{0}}, {0}};
+    assert_int_equal(script_run(m, "edge_split edge=0-2", &results, NULL), HE_OK);
+    assert_true(results.present[0] && results.present[1] && results.present[2]);
+    assert_int_equal(results.id[0], 4);
+    assert_int_equal(results.list[1].count, 3);
+    assert_int_equal(results.list[1].ids[0], 5);
+    assert_int_equal(results.list[2].count, 2);
+    assert_int_equal(results.list[2].ids[1], 3);
+    /* A refusal leaves none behind. */
+    assert_int_equal(script_run(m, "edge_split edge=#99", &results, NULL), HE_NO_SUCH_ELEMENT);
+    assert_false(results.present[0]);
+    assert_int_equal(results.list[1].count, 0);
+    script_prepare(m, "face_delete face=0");
+    assert_int_equal(script_run(m, "compact", &results, NULL), HE_OK);
+    assert_int_equal(results.list[2].count, 4);
+    assert_int_equal(results.list[2].ids[0], HE_NONE);
+    assert_int_equal(results.list[2].ids[3], 2);
+    he_results_clear(&results);
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows_are_sound), cmocka_unit_test(test_scenarios),
+        cmocka_unit_test(test_limit),          cmocka_unit_test(test_every_refusal_was_produced),
+        cmocka_unit_test(test_results),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
