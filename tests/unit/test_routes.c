@@ -55,12 +55,39 @@ static void store_cache_put(void *self, api_mesh *mesh, const void *value, size_
     (void)size;
 }
 
+/* The mesh does not change: it is its own snapshot. */
+struct api_snapshot {
+    api_mesh *mesh;
+};
+
+static api_store_status store_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
+{
+    static api_snapshot only_one;
+    assert_ptr_equal(self, mesh);
+    only_one.mesh = mesh;
+    *out = &only_one;
+    return API_STORE_OK;
+}
+
+static const he_mesh *store_snapshot_content(const api_snapshot *snapshot, api_mesh_info *info)
+{
+    return store_read_begin(snapshot->mesh, snapshot->mesh, info);
+}
+
+static void store_snapshot_release(void *self, api_snapshot *snapshot)
+{
+    assert_ptr_equal(self, snapshot->mesh);
+}
+
 static api_mesh only;
 static const api_store store = {.self = &only,
                                 .find = store_find,
                                 .release = store_release,
                                 .read_begin = store_read_begin,
                                 .read_end = store_read_end,
+                                .snapshot = store_snapshot,
+                                .snapshot_content = store_snapshot_content,
+                                .snapshot_release = store_snapshot_release,
                                 .cache_get = store_cache_get,
                                 .cache_put = store_cache_put};
 

@@ -1,0 +1,265 @@
+#include "server/assets.h"
+
+#include "mesh/mem.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 160, ETAG_SIZE = 24, HASH_LENGTH = 8 };
+
+typedef struct asset {
+    char path[PATH_SIZE];
+    char etag[ETAG_SIZE];
+    const char *type;
+    char *bytes;
+    size_t length;
+    bool immutable;
+} asset;
+
+struct srv_assets {
+    asset items[SRV_ASSET_COUNT];
+    size_t count, bytes;
+};
+
+static const char notice[] =
+    "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>hedge</title></head>"
+    "<body><h1>hedge</h1><p>The server is running, without its page: <code>make page</code> builds "
+    "it. The API is at <a href=\"/v1/openapi.json\">/v1/openapi.json</a>.</p></body></html>\n";
+
+static const char *media_type(const char *name)
+{
+    static const struct {
+        const char *suffix, *type;
+    } types[] = {
+        {".html", "text/html; charset=utf-8"},
+        {".js", "text/javascript; charset=utf-8"},
+        {".mjs", "text/javascript; charset=utf-8"},
+        {".css", "text/css; charset=utf-8"},
+        {".json", "application/json"},
+        {".map", "application/json"},
+        {".svg", "image/svg+xml"},
+        {".png", "image/png"},
+        {".jpg", "image/jpeg"},
+        {".webp", "image/webp"},
+        {".ico", "image/x-icon"},
+        {".woff2", "font/woff2"},
+        {".wasm", "application/wasm"},
+        {".txt", "text/plain; charset=utf-8"},
+    };
+    size_t length = strlen(name);
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        size_t suffix = strlen(types[i].suffix);
+        if (length > suffix && strcmp(name + length - suffix, types[i].suffix) == 0) {
+            return types[i].type;
+        }
+    }
+    return "application/octet-stream";
+}
+
+/* FNV-1a (Fowler, Noll, Vo): names a content, does not authenticate it. */
+static uint64_t hash(const char *bytes, size_t length)
+{
+    uint64_t value = UINT64_C(0xcbf29ce484222325);
+    for (size_t i = 0; i < length; i++) {
+        value = (value ^ (unsigned char)bytes[i]) * UINT64_C(0x100000001b3);
+    }
+    return value;
+}
+
+/* Does the name end in -HASH.suffix, as bundlers write it: eight or more letters and digits, with
+ * capitals only or hexadecimal? */
+static bool carries_hash(const char *name)
+{
+    const char *dot = strchr(name, '.');
+    const char *dash = strrchr(name, '-');
+    if (dot == NULL || dash == NULL || dash > dot || dot - dash <= HASH_LENGTH) {
+        return false;
+    }
+    size_t length = (size_t)(dot - dash) - 1;
+    return strspn(dash + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789") >= length ||
+           strspn(dash + 1, "abcdef0123456789") >= length;
+}
+
+/* Takes `bytes`. */
+static void add(srv_assets *assets, const char *path, const char *name, char *bytes, size_t length)
+{
+    asset *item = &assets->items[assets->count++];
+    snprintf(item->path, sizeof item->path, "%s", path);
+    snprintf(item->etag, sizeof item->etag, "\"%016" PRIx64 "\"", hash(bytes, length));
+    item->type = media_type(name);
+    item->bytes = bytes;
+    item->length = length;
+    item->immutable = carries_hash(name);
+    assets->bytes += length;
+}
+
+static char *read_all(int fd, size_t length)
+{
+    char *bytes = he_mem_alloc(length + 1);
+    size_t done = 0;
+    while (bytes != NULL && done < length) {
+        ssize_t got = read(fd, bytes + done, length - done);
+        if (got > 0) {
+            done += (size_t)got;
+        } else if (got == 0 || errno != EINTR) {
+            he_mem_free(bytes);
+            return NULL;
+        }
+    }
+    return bytes;
+}
+
+/* A file that is not a regular one is passed over. */
+static bool add_file(srv_assets *assets, int folder, const char *name, const char *prefix,
+                     char *message, size_t size)
+{
+    char path[PATH_SIZE];
+    struct stat facts;
+    int fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0 || fstat(fd, &facts) != 0 || !S_ISREG(facts.st_mode)) {
+        if (fd >= 0) {
+            close(fd);
+        }
+        return true;
+    }
+    bool ok = false;
+    char *bytes = NULL;
+    size_t length = (size_t)facts.st_size;
+    if (snprintf(path, sizeof path, "%s%s", prefix, name) >= (int)sizeof path) {
+        snprintf(message, size, "the page's file name %.60s... is too long", name);
+    } else if (assets->count == SRV_ASSET_COUNT ||
+               length > (size_t)SRV_ASSET_BYTES - assets->bytes) {
+        snprintf(message, size, "the page has more than %d files or %d bytes", SRV_ASSET_COUNT,
+                 SRV_ASSET_BYTES);
+    } else if ((bytes = read_all(fd, length)) == NULL) {
+        snprintf(message, size, "the page's file %s cannot be read", name);
+    } else {
+        add(assets, path, name, bytes, length);
+        ok = true;
+    }
+    close(fd);
+    return ok;
+}
+
+static bool load(srv_assets *assets, const char *folder, char *message, size_t size)
+{
+    int root = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (root < 0) {
+        snprintf(message, size, "%.200s is not a folder with the page", folder);
+        return false;
+    }
+    bool ok = add_file(assets, root, "index.html", "/", message, size);
+    if (ok && assets->count == 1) {
+        snprintf(assets->items[0].path, PATH_SIZE, "/");
+    } else if (ok) {
+        snprintf(message, size, "%.200s has no index.html", folder);
+        ok = false;
+    }
+    int inner = ok ? openat(root, "assets", O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
+    DIR *listing = inner < 0 ? NULL : fdopendir(inner);
+    if (listing != NULL) {
+        const struct dirent *entry;
+        while (ok && (entry = readdir(listing)) != NULL) {
+            if (entry->d_name[0] != '.') {
+                ok = add_file(assets, inner, entry->d_name, "/assets/", message, size);
+            }
+        }
+        closedir(listing);
+    } else if (inner >= 0) {
+        close(inner);
+    }
+    close(root);
+    return ok;
+}
+
+static void clear(srv_assets *assets)
+{
+    for (size_t i = 0; i < assets->count; i++) {
+        he_mem_free(assets->items[i].bytes);
+    }
+    assets->count = 0;
+    assets->bytes = 0;
+}
+
+srv_assets *srv_assets_load(const char *folder, char *message, size_t size)
+{
+    srv_assets *assets = he_mem_zero(1, sizeof *assets);
+    if (assets == NULL) {
+        return NULL;
+    }
+    message[0] = '\0';
+    if (folder != NULL && load(assets, folder, message, size)) {
+        return assets;
+    }
+    clear(assets);
+    char *copy = he_mem_alloc(sizeof notice - 1);
+    if (copy == NULL) {
+        he_mem_free(assets);
+        return NULL;
+    }
+    memcpy(copy, notice, sizeof notice - 1);
+    add(assets, "/", ".html", copy, sizeof notice - 1);
+    assets->items[0].type = "text/html; charset=utf-8";
+    return assets;
+}
+
+void srv_assets_free(srv_assets *assets)
+{
+    if (assets != NULL) {
+        clear(assets);
+        he_mem_free(assets);
+    }
+}
+
+bool srv_assets_find(void *context, const char *path, const char **bytes, size_t *length,
+                     const char **type, const char **etag, bool *immutable)
+{
+    const srv_assets *assets = context;
+    for (size_t i = 0; i < assets->count; i++) {
+        const asset *item = &assets->items[i];
+        if (strcmp(item->path, path) == 0) {
+            *bytes = item->bytes;
+            *length = item->length;
+            *type = item->type;
+            *etag = item->etag;
+            *immutable = item->immutable;
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat facts;
+    return stat(path, &facts) == 0 && S_ISDIR(facts.st_mode);
+}
+
+bool srv_assets_folder(const char *configured, char *out, size_t size)
+{
+    if (configured[0] != '\0') {
+        return snprintf(out, size, "%s", configured) < (int)size;
+    }
+    char executable[PATH_MAX];
+    ssize_t length = readlink("/proc/self/exe", executable, sizeof executable - 1);
+    if (length <= 0) {
+        return false;
+    }
+    executable[length] = '\0';
+    *strrchr(executable, '/') = '\0';
+    static const char *const places[] = {"web", "../share/hedge/web"};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        if (snprintf(out, size, "%s/%s", executable, places[i]) < (int)size && is_folder(out)) {
+            return true;
+        }
+    }
+    return false;
+}

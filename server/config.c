@@ -1,0 +1,399 @@
+#include "server/config.h"
+
+#include "mesh/mem.h"
+#include "server/address.h"
+
+#include <inttypes.h>
+#include <stddef.h>
+#include <string.h>
+
+typedef enum kind { TEXT, LIST, BYTES, COUNT, FLAG, ACTION, CHOICE } kind;
+
+typedef struct option {
+    const char *name; /* --name; NAME with '_' after HEDGE_ is its variable */
+    kind kind;
+    size_t member;
+    const char *fallback; /* as it would be written */
+    const char *argument; /* for --help */
+    uint64_t low, high;
+    const char *doc;
+} option;
+
+#define MEMBER(m) offsetof(srv_config, m)
+#define KIB       (UINT64_C(1) << 10)
+#define TIB       (UINT64_C(1) << 40)
+
+static const char *const log_kinds[] = {"off", "access", NULL};
+
+static const option options[] = {
+    {"listen", TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT", 0, 0,
+     "address to listen on; port 0 takes a free one"},
+    {"insecure", FLAG, MEMBER(insecure), "0", NULL, 0, 0,
+     "listen beyond loopback although nobody has to authenticate"},
+    {"allow-host", LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
+     "answer requests for this Host too; may be repeated or a comma list"},
+    {"allow-origin", LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
+     "let pages of this origin (https://name) read and write; may be repeated or a comma list"},
+    {"web", TEXT, MEMBER(web), "", "DIR", 0, 0,
+     "folder of the built page; otherwise looked for beside the executable"},
+    {"samples", FLAG, MEMBER(samples), "0", NULL, 0, 0, "start with a few meshes"},
+    {"log", CHOICE, MEMBER(log), "access", "off|access", 0, 0,
+     "a line of JSON on stderr for each request"},
+    {"max-upload", BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
+     "largest mesh document or file"},
+    {"memory-budget", BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
+     "memory for everything; 0 takes three quarters of what there is"},
+    {"undo-budget", BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
+     "memory for the history of one mesh"},
+    {"max-meshes", COUNT, MEMBER(max_meshes), "10000", "N", 1, 10000000, "meshes at once"},
+    {"workers", COUNT, MEMBER(workers), "0", "N", 0, 64,
+     "threads that serve connections; 0 takes one a core"},
+    {"jobs", COUNT, MEMBER(jobs), "0", "N", 0, 64, "threads for long work; 0 takes one a core"},
+    {"job-queue", COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
+     "long requests that may wait for a thread; beyond it they are answered 503"},
+    {"max-connections", COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
+     "connections at once; beyond it they are answered 503"},
+    {"idle-timeout", COUNT, MEMBER(idle_timeout), "30", "SECONDS", 1, 86400,
+     "until a connection without a request is closed"},
+    {"header-timeout", COUNT, MEMBER(header_timeout), "10", "SECONDS", 1, 86400,
+     "for the headers after the request line"},
+    {"body-grace", COUNT, MEMBER(body_grace), "10", "SECONDS", 1, 86400,
+     "before a body, or the reading of an answer, must keep to --min-rate"},
+    {"min-rate", BYTES, MEMBER(min_rate), "4K", "BYTES", 0, TIB,
+     "bytes a second a client must send or take on average"},
+    {"request-timeout", COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
+     "for a whole body, however fast"},
+    {"healthcheck", ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
+     "ask a running daemon for /livez: exit status 0 when it answers"},
+    {"print-config", ACTION, MEMBER(print_config), "0", NULL, 0, 0,
+     "show the options in effect and exit"},
+    {"version", ACTION, MEMBER(version), "0", NULL, 0, 0, "show the version and exit"},
+    {"help", ACTION, MEMBER(help), "0", NULL, 0, 0, "show this and exit"},
+};
+
+enum { OPTIONS = sizeof options / sizeof *options };
+
+static void *member_of(srv_config *config, const option *row)
+{
+    return (char *)config + row->member;
+}
+
+static const void *member_in(const srv_config *config, const option *row)
+{
+    return (const char *)config + row->member;
+}
+
+/* "12", and for bytes "64K", "1M", "2G", "1T" in powers of 1024. */
+static bool parse_number(const char *text, bool bytes, uint64_t *out)
+{
+    uint64_t value = 0, unit = 1;
+    const char *c = text;
+    for (; *c >= '0' && *c <= '9'; c++) {
+        if (value > (UINT64_MAX - 9) / 10) {
+            return false;
+        }
+        value = value * 10 + (uint64_t)(*c - '0');
+    }
+    if (c == text) {
+        return false;
+    }
+    if (bytes && *c != '\0') {
+        static const char units[] = "KMGT";
+        const char *at = strchr(units, *c >= 'a' ? *c - 'a' + 'A' : *c);
+        if (at == NULL) {
+            return false;
+        }
+        unit = UINT64_C(1) << (10 * (at - units + 1));
+        c++;
+    }
+    return *c == '\0' && !__builtin_mul_overflow(value, unit, out);
+}
+
+static bool read_list(srv_config *config, srv_names *names, const char *text, char *message,
+                      size_t size, const char *source)
+{
+    size_t length = strlen(text);
+    char *copy = he_mem_alloc(length + 1);
+    if (copy == NULL || config->owned_count == 2 * SRV_MAX_NAMES) {
+        he_mem_free(copy);
+        snprintf(message, size, "%s is given too often", source);
+        return false;
+    }
+    memcpy(copy, text, length + 1);
+    config->owned[config->owned_count++] = copy;
+    for (char *item = copy; item != NULL;) {
+        char *comma = strchr(item, ',');
+        if (comma != NULL) {
+            *comma = '\0';
+        }
+        if (*item != '\0') {
+            if (names->count == SRV_MAX_NAMES) {
+                snprintf(message, size, "%s takes at most %d names", source, SRV_MAX_NAMES);
+                return false;
+            }
+            names->items[names->count++] = item;
+        }
+        item = comma == NULL ? NULL : comma + 1;
+    }
+    return true;
+}
+
+static bool read_switch(const char *text, bool *out)
+{
+    bool on = strcmp(text, "1") == 0 || strcmp(text, "true") == 0;
+    if (!on && strcmp(text, "0") != 0 && strcmp(text, "false") != 0) {
+        return false;
+    }
+    *out = on;
+    return true;
+}
+
+/* `source` is what the user wrote: "--listen" or "HEDGE_LISTEN". */
+static bool read_value(srv_config *config, const option *row, const char *text, const char *source,
+                       char *message, size_t size)
+{
+    void *member = member_of(config, row);
+    uint64_t number = 0;
+    bool on;
+    switch (row->kind) {
+    case TEXT:
+        memcpy(member, &text, sizeof text);
+        return true;
+    case LIST:
+        return read_list(config, member, text, message, size, source);
+    case BYTES:
+    case COUNT:
+        if (!parse_number(text, row->kind == BYTES, &number) || number < row->low ||
+            number > row->high) {
+            snprintf(message, size,
+                     "%s takes a number from %" PRIu64 " to %" PRIu64 "%s, not \"%s\"", source,
+                     row->low, row->high, row->kind == BYTES ? " (K, M, G and T are units)" : "",
+                     text);
+            return false;
+        }
+        memcpy(member, &number, sizeof number);
+        return true;
+    case FLAG:
+    case ACTION:
+        if (!read_switch(text, &on)) {
+            snprintf(message, size, "%s takes 0 or 1, not \"%s\"", source, text);
+            return false;
+        }
+        memcpy(member, &on, sizeof on);
+        return true;
+    case CHOICE:
+        break;
+    }
+    for (number = 0; log_kinds[number] != NULL; number++) {
+        if (strcmp(log_kinds[number], text) == 0) {
+            memcpy(member, &number, sizeof number);
+            return true;
+        }
+    }
+    snprintf(message, size, "%s takes %s, not \"%s\"", source, row->argument, text);
+    return false;
+}
+
+static void variable_of(const option *row, char out[64])
+{
+    size_t at = (size_t)snprintf(out, 64, "HEDGE_");
+    for (const char *c = row->name; *c != '\0'; c++) {
+        out[at++] = *c == '-' ? '_' : (char)(*c - 'a' + 'A');
+    }
+    out[at] = '\0';
+}
+
+static const option *find_option(const char *name, size_t length)
+{
+    for (size_t i = 0; i < OPTIONS; i++) {
+        if (strlen(options[i].name) == length && memcmp(options[i].name, name, length) == 0) {
+            return &options[i];
+        }
+    }
+    return NULL;
+}
+
+static bool is_switch(const option *row)
+{
+    return row->kind == FLAG || row->kind == ACTION;
+}
+
+static bool read_environment(srv_config *config, char *(*environment)(const char *name),
+                             char *message, size_t size)
+{
+    for (size_t i = 0; i < OPTIONS; i++) {
+        const option *row = &options[i];
+        if (row->kind == ACTION) {
+            continue;
+        }
+        char variable[64];
+        variable_of(row, variable);
+        const char *text = environment(variable);
+        if (text != NULL && *text != '\0' &&
+            !read_value(config, row, text, variable, message, size)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A list given by flags is not added to the one of the environment: it wins over it. */
+static void begin_list(srv_config *config, const option *row, bool seen[OPTIONS])
+{
+    size_t i = (size_t)(row - options);
+    if (row->kind == LIST && !seen[i]) {
+        srv_names *names = member_of(config, row);
+        names->count = 0;
+    }
+    seen[i] = true;
+}
+
+static bool read_flags(srv_config *config, int argc, char *const *argv, char *message, size_t size)
+{
+    bool seen[OPTIONS] = {false};
+    for (int i = 0; i < argc; i++) {
+        const char *argument = argv[i];
+        if (strncmp(argument, "--", 2) != 0) {
+            if (config->healthcheck && config->healthcheck_url == NULL) {
+                config->healthcheck_url = argument;
+                continue;
+            }
+            snprintf(message, size, "\"%s\" is not an option; --help lists them", argument);
+            return false;
+        }
+        size_t length = strcspn(argument + 2, "=");
+        const option *row = find_option(argument + 2, length);
+        if (row == NULL) {
+            snprintf(message, size, "there is no option %s; --help lists them", argument);
+            return false;
+        }
+        char source[64];
+        snprintf(source, sizeof source, "--%s", row->name);
+        const char *value = argument[2 + length] == '=' ? argument + 3 + length : NULL;
+        if (value == NULL && is_switch(row)) {
+            value = "1";
+        } else if (value == NULL && i + 1 < argc) {
+            value = argv[++i];
+        }
+        if (value == NULL) {
+            snprintf(message, size, "%s needs a value, %s", source, row->argument);
+            return false;
+        }
+        begin_list(config, row, seen);
+        if (!read_value(config, row, value, source, message, size)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check(const srv_config *config, char *message, size_t size)
+{
+    srv_address address;
+    if (!srv_address_parse(config->listen, &address)) {
+        snprintf(message, size,
+                 "--listen takes an address and a port such as 127.0.0.1:8080 or [::1]:0, "
+                 "not \"%s\"",
+                 config->listen);
+        return false;
+    }
+    if (!srv_address_is_loopback(&address) && !config->insecure && !config->healthcheck &&
+        !config->print_config) {
+        snprintf(message, size,
+                 "%s can be reached from other machines and requests need no token: "
+                 "set --insecure to listen there all the same",
+                 config->listen);
+        return false;
+    }
+    return true;
+}
+
+bool srv_config_read(srv_config *config, int argc, char *const *argv,
+                     char *(*environment)(const char *name), char *message, size_t size)
+{
+    *config = (srv_config){0};
+    bool ok = true;
+    for (size_t i = 0; i < OPTIONS && ok; i++) {
+        ok = read_value(config, &options[i], options[i].fallback, options[i].name, message, size);
+    }
+    ok = ok && read_environment(config, environment, message, size) &&
+         read_flags(config, argc, argv, message, size) &&
+         (config->help || config->version || check(config, message, size));
+    if (!ok) {
+        srv_config_clear(config);
+    }
+    return ok;
+}
+
+void srv_config_clear(srv_config *config)
+{
+    for (unsigned i = 0; i < config->owned_count; i++) {
+        he_mem_free(config->owned[i]);
+    }
+    *config = (srv_config){0};
+}
+
+void srv_config_help(FILE *out)
+{
+    fprintf(out, "hedged " SRV_VERSION " - a server for half-edge meshes\n\n"
+                 "usage: hedged [OPTION...]\n\n"
+                 "An option wins over its environment variable, that over the default.\n\n");
+    for (size_t i = 0; i < OPTIONS; i++) {
+        const option *row = &options[i];
+        char variable[64], flag[64];
+        variable_of(row, variable);
+        snprintf(flag, sizeof flag, "--%s%s%s", row->name, row->argument == NULL ? "" : " ",
+                 row->argument == NULL ? "" : row->argument);
+        fprintf(out, "  %-26s %s", flag, row->doc);
+        if (!is_switch(row) && row->fallback[0] != '\0') {
+            fprintf(out, " (%s)", row->fallback);
+        }
+        if (row->kind != ACTION) {
+            fprintf(out, "\n  %-26s %s", "", variable);
+        }
+        fputc('\n', out);
+    }
+}
+
+void srv_config_print(const srv_config *config, FILE *out)
+{
+    for (size_t i = 0; i < OPTIONS; i++) {
+        const option *row = &options[i];
+        const void *member = member_in(config, row);
+        const char *text;
+        const srv_names *names;
+        uint64_t number;
+        bool on;
+        if (row->kind == ACTION) {
+            continue;
+        }
+        fprintf(out, "%s = ", row->name);
+        switch (row->kind) {
+        case TEXT:
+            memcpy(&text, member, sizeof text);
+            fputs(text, out);
+            break;
+        case LIST:
+            names = member;
+            for (size_t n = 0; n < names->count; n++) {
+                fprintf(out, "%s%s", n == 0 ? "" : ",", names->items[n]);
+            }
+            break;
+        case BYTES:
+        case COUNT:
+            memcpy(&number, member, sizeof number);
+            fprintf(out, "%" PRIu64, number);
+            break;
+        case FLAG:
+        case ACTION:
+            memcpy(&on, member, sizeof on);
+            fputc(on ? '1' : '0', out);
+            break;
+        case CHOICE:
+            memcpy(&number, member, sizeof number);
+            fputs(log_kinds[number], out);
+            break;
+        }
+        fputc('\n', out);
+    }
+}

@@ -1,0 +1,56 @@
+/* config.h - what the daemon can be told: THE table of options.
+ *
+ * A flag wins over its environment variable, that over the default. --help, --print-config and the
+ * parsing are made from one row an option; adding an option is adding a row and a member. */
+#ifndef HE_SERVER_CONFIG_H
+#define HE_SERVER_CONFIG_H
+
+#include "server/http_policy.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#define SRV_VERSION "0.1.0"
+
+typedef enum srv_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS } srv_log_kind;
+
+typedef struct srv_config {
+    const char *listen;
+    bool insecure;
+    srv_policy policy;
+    const char *web; /* "": look beside the executable */
+    bool samples;
+    uint64_t log; /* srv_log_kind */
+
+    uint64_t max_upload;    /* bytes */
+    uint64_t memory_budget; /* bytes; 0: three quarters of what there is */
+    uint64_t undo_budget;   /* bytes a mesh */
+    uint64_t max_meshes;
+
+    uint64_t workers, jobs; /* threads; 0: one a core */
+    uint64_t job_queue;
+    uint64_t max_connections;
+
+    uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
+    uint64_t min_rate;                                                  /* bytes a second */
+
+    bool help, version, print_config, healthcheck;
+    const char *healthcheck_url; /* NULL: /livez at `listen` */
+
+    /* The text that list members point into. */
+    char *owned[2 * SRV_MAX_NAMES];
+    unsigned owned_count;
+} srv_config;
+
+/* Fill `config` from arguments (without the program's name) and `environment` (getenv, or a test's
+ * own). Texts are borrowed from both. False with a sentence in `message` otherwise. */
+bool srv_config_read(srv_config *config, int argc, char *const *argv,
+                     char *(*environment)(const char *name), char *message, size_t size);
+void srv_config_clear(srv_config *config);
+
+void srv_config_help(FILE *out);
+/* Each option as `name = value`, as a configuration would set it. */
+void srv_config_print(const srv_config *config, FILE *out);
+
+#endif

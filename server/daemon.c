@@ -1,0 +1,224 @@
+#include "server/daemon.h"
+
+#include "server/assets.h"
+#include "server/http.h"
+#include "server/memory.h"
+#include "server/samples.h"
+
+#include <limits.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+enum {
+    LOG_RING = 8192,
+    STOP_MILLIS = 4000, /* of the five seconds a stop may take */
+    OWN_FILES = 48,     /* descriptors that are not connections */
+    DRAIN_FILES = 64
+};
+
+typedef struct daemon_parts {
+    srv_store *store;
+    api_store interface;
+    srv_assets *assets;
+    api_service *service;
+    srv_jobs *jobs;
+    srv_access_log *log;
+    srv_http *http;
+    srv_policy policy;
+    char own_host[SRV_ADDRESS_TEXT];
+    _Atomic bool ready;
+} daemon_parts;
+
+static size_t cores(void)
+{
+    long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return online < 1 ? 1 : (size_t)online;
+}
+
+/* Connections are descriptors: as many as the system lets this process have. */
+static size_t open_files(void)
+{
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0) {
+        return 1024;
+    }
+    files.rlim_cur = files.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &files);
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur > INT_MAX) {
+        return INT_MAX;
+    }
+    return (size_t)files.rlim_cur;
+}
+
+/* Of the sockets there may be, some are for telling those who are too many. */
+static void choose_limits(const srv_config *config, srv_http_options *options)
+{
+    size_t files = open_files();
+    size_t own = OWN_FILES + DRAIN_FILES;
+    size_t sockets = files > 2 * own ? files - own : files / 2;
+    size_t slack = sockets / 16 < 256 ? sockets / 16 : 256;
+    size_t most = sockets - slack > 0 ? sockets - slack : 1;
+    if (config->max_connections < most) {
+        most = (size_t)config->max_connections;
+    }
+    options->deadlines = (srv_deadline_options){
+        .idle = config->idle_timeout,
+        .head = config->header_timeout,
+        .grace = config->body_grace,
+        .total = config->request_timeout,
+        .min_rate = config->min_rate,
+        .max_connections = most,
+    };
+    options->max_sockets = most + slack;
+    options->workers = config->workers == 0 ? cores() : (size_t)config->workers;
+}
+
+static bool is_ready(void *context)
+{
+    const daemon_parts *parts = context;
+    return atomic_load(&parts->ready);
+}
+
+static bool fail(const char *why)
+{
+    fprintf(stderr, "hedged: %s\n", why);
+    return false;
+}
+
+static bool open_store(daemon_parts *parts, const srv_config *config)
+{
+    parts->store = srv_store_new(&(srv_store_options){
+        .undo_budget = config->undo_budget,
+        .max_meshes = config->max_meshes,
+        .journal = srv_journal_memory(),
+    });
+    if (parts->store == NULL) {
+        return fail("no memory to start");
+    }
+    parts->interface = srv_store_interface(parts->store);
+    he_error err;
+    if (config->samples && srv_samples_add(&parts->interface, &err) != HE_OK) {
+        return fail(err.text);
+    }
+    return true;
+}
+
+static bool load_page(daemon_parts *parts, const srv_config *config)
+{
+    char folder[PATH_MAX], message[320];
+    bool found = srv_assets_folder(config->web, folder, sizeof folder);
+    parts->assets = srv_assets_load(found ? folder : NULL, message, sizeof message);
+    if (parts->assets == NULL) {
+        return fail("no memory for the page");
+    }
+    /* Asked for by name, the page must be there; otherwise serving without it is fine. */
+    return message[0] == '\0' || config->web[0] == '\0' || fail(message);
+}
+
+static bool open_service(daemon_parts *parts, const srv_config *config)
+{
+    parts->service = api_service_new(&parts->interface, &(api_options){
+                                                            .max_upload = config->max_upload,
+                                                            .version = SRV_VERSION,
+                                                            .asset = srv_assets_find,
+                                                            .asset_context = parts->assets,
+                                                            .ready = is_ready,
+                                                            .ready_context = parts,
+                                                        });
+    parts->jobs =
+        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
+    if (config->log == SRV_LOG_ACCESS) {
+        parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
+    }
+    return (parts->service != NULL && parts->jobs != NULL &&
+            (parts->log != NULL || config->log == SRV_LOG_OFF)) ||
+           fail("no memory or threads to start");
+}
+
+/* Whoever reaches the daemon by the address it listens on names that as the host. */
+static void allow_own_host(daemon_parts *parts, const srv_address *address)
+{
+    srv_names *hosts = &parts->policy.hosts;
+    srv_address_format(&address->socket.any, false, parts->own_host);
+    if (hosts->count < SRV_MAX_NAMES && strcmp(parts->own_host, "0.0.0.0") != 0 &&
+        strcmp(parts->own_host, "::") != 0) {
+        hosts->items[hosts->count++] = parts->own_host;
+    }
+}
+
+static bool open_http(daemon_parts *parts, const srv_config *config)
+{
+    char message[256], text[SRV_ADDRESS_TEXT];
+    srv_http_options options = {
+        .service = parts->service,
+        .store = parts->store,
+        .jobs = parts->jobs,
+        .log = parts->log,
+        .policy = &parts->policy,
+    };
+    if (!srv_address_parse(config->listen, &options.address)) {
+        return fail("no address to listen on");
+    }
+    parts->policy = config->policy;
+    allow_own_host(parts, &options.address);
+    choose_limits(config, &options);
+    atomic_store(&parts->ready, true);
+    parts->http = srv_http_start(&options, message, sizeof message);
+    if (parts->http == NULL) {
+        return fail(message);
+    }
+    srv_address_set_port(&options.address, srv_http_port(parts->http));
+    srv_address_format(&options.address.socket.any, true, text);
+    fprintf(stderr, "hedged " SRV_VERSION ": listening on http://%s\n", text);
+    return true;
+}
+
+static void wait_for_stop(const sigset_t *signals)
+{
+    int number = 0;
+    do {
+        sigwait(signals, &number);
+    } while (number != SIGTERM && number != SIGINT);
+}
+
+/* Signals are taken by the main thread alone: every other inherits that they are blocked. A lost
+ * terminal (SIGHUP) is no reason to stop, a lost client (SIGPIPE) even less. */
+static void block_signals(sigset_t *waited)
+{
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGHUP, SIG_IGN);
+    sigemptyset(waited);
+    sigaddset(waited, SIGTERM);
+    sigaddset(waited, SIGINT);
+    pthread_sigmask(SIG_BLOCK, waited, NULL);
+}
+
+int srv_daemon_run(const srv_config *config)
+{
+    daemon_parts parts = {0};
+    sigset_t signals;
+    block_signals(&signals);
+    uint64_t budget = config->memory_budget;
+    srv_memory_set_budget(budget == 0 ? srv_memory_default_budget() : budget);
+
+    bool started = open_store(&parts, config) && load_page(&parts, config) &&
+                   open_service(&parts, config) && open_http(&parts, config);
+    if (started) {
+        wait_for_stop(&signals);
+        atomic_store(&parts.ready, false);
+        if (!srv_http_stop(parts.http, STOP_MILLIS)) {
+            /* A long operation is in the middle of its work, on memory that must stay. */
+            srv_access_log_free(parts.log);
+            _exit(0);
+        }
+    }
+    srv_jobs_free(parts.jobs);
+    api_service_free(parts.service);
+    srv_store_free(parts.store);
+    srv_assets_free(parts.assets);
+    srv_access_log_free(parts.log);
+    return started ? 0 : 1;
+}

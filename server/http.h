@@ -1,0 +1,41 @@
+/* http.h - sockets on one side, exchanges of api/api.h on the other.
+ *
+ * http.c is the only file that knows libmicrohttpd. A request is a small state machine there; its
+ * states and who moves it are drawn in http.c. Workers never block: what api calls long work runs
+ * on the job pool while the connection is suspended, and so does an answer whose revision is not
+ * yet durable wait (D1). */
+#ifndef HE_SERVER_HTTP_H
+#define HE_SERVER_HTTP_H
+
+#include "api/api.h"
+#include "server/access_log.h"
+#include "server/address.h"
+#include "server/http_deadline.h"
+#include "server/http_policy.h"
+#include "server/jobs.h"
+#include "server/store.h"
+
+typedef struct srv_http srv_http;
+
+/* Everything is borrowed and outlives the server. */
+typedef struct srv_http_options {
+    srv_address address;
+    api_service *service;
+    srv_store *store;
+    srv_jobs *jobs;
+    srv_access_log *log; /* NULL: none */
+    const srv_policy *policy;
+    srv_deadline_options deadlines;
+    size_t max_sockets; /* above deadlines.max_connections: those between are answered 503 */
+    size_t workers;     /* threads, from 1 */
+} srv_http_options;
+
+/* Begins to accept. NULL with a sentence in `message` when it cannot. */
+srv_http *srv_http_start(const srv_http_options *options, char *message, size_t size);
+unsigned srv_http_port(const srv_http *http);
+/* Accept nothing more, answer 503 to what comes on open connections, let what runs end, for at most
+ * `millis`. True when all has ended and the server is freed; false when work still runs: then
+ * nothing it may use can be freed, and the process should exit. */
+bool srv_http_stop(srv_http *http, unsigned millis);
+
+#endif

@@ -1,0 +1,41 @@
+/* journal.h - where revisions are made durable.
+ *
+ * The store hands each revision to the journal in order, under the mesh's write lock, and goes on:
+ * writers build on the head. What shows a revision is held back until the journal says it is
+ * durable (D1: no answer shows a revision that a crash could lose). A journal may be far behind,
+ * and says so each time it gets further by calling the listener, from any thread and without
+ * holding a lock that `append` or `durable` take. */
+#ifndef HE_SERVER_JOURNAL_H
+#define HE_SERVER_JOURNAL_H
+
+#include "api/store.h"
+
+/* A revision as it is published. Everything is borrowed for the call. */
+typedef struct srv_record {
+    const char *id;
+    uint64_t incarnation;
+    uint64_t revision; /* the first of a mesh is 1; a rename repeats the present one */
+    const char *name;
+    api_action action;      /* API_REPLACE: `content` holds it all */
+    const he_delta *delta;  /* NULL with API_REPLACE and for a rename */
+    bool undone;            /* the delta was applied backwards */
+    bool removed;           /* the mesh was deleted; nothing follows */
+    const he_mesh *content; /* the mesh after it, NULL when removed */
+} srv_record;
+
+typedef struct srv_journal {
+    void *self;
+    /* Takes note of a revision. Neither fails nor waits. */
+    void (*append)(void *self, const srv_record *record);
+    /* The last durable revision of a mesh; UINT64_MAX when every one is. */
+    uint64_t (*durable)(void *self, const char *id, uint64_t incarnation);
+    /* Call `notify` whenever a mesh became durable further. NULL stops; once it returned, no call
+     * is under way. */
+    void (*listen)(void *self, void (*notify)(void *context), void *context);
+    void (*close)(void *self);
+} srv_journal;
+
+/* Keeps nothing: a revision is as durable as it will ever be the moment it is made. */
+srv_journal srv_journal_memory(void);
+
+#endif

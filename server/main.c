@@ -1,0 +1,36 @@
+#include "server/config.h"
+#include "server/daemon.h"
+#include "server/healthcheck.h"
+#include "server/memory.h"
+
+#include <stdlib.h>
+
+enum { MISUSE = 2 };
+
+int main(int argc, char **argv)
+{
+    srv_config config;
+    char message[320];
+    int status = 0;
+    srv_memory_install(0);
+    if (!srv_config_read(&config, argc - 1, argv + 1, getenv, message, sizeof message)) {
+        fprintf(stderr, "hedged: %s\n", message);
+        return MISUSE;
+    }
+    if (config.help) {
+        srv_config_help(stdout);
+    } else if (config.version) {
+        puts("hedged " SRV_VERSION);
+    } else if (config.print_config) {
+        srv_config_print(&config, stdout);
+    } else if (config.healthcheck) {
+        if (!srv_healthcheck(config.healthcheck_url, config.listen, message, sizeof message)) {
+            fprintf(stderr, "hedged: %s\n", message);
+            status = 1;
+        }
+    } else {
+        status = srv_daemon_run(&config);
+    }
+    srv_config_clear(&config);
+    return status;
+}

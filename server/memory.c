@@ -1,0 +1,116 @@
+#include "server/memory.h"
+
+#include "mesh/mem.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
+
+static _Atomic uint64_t used;
+static _Atomic uint64_t budget_bytes;
+
+/* Count `size` more, unless that leaves the budget. Counting first and taking back on failure
+ * keeps two threads from passing the limit together. */
+static bool take(size_t size)
+{
+    uint64_t budget = atomic_load_explicit(&budget_bytes, memory_order_relaxed);
+    uint64_t after = atomic_fetch_add_explicit(&used, size, memory_order_relaxed) + size;
+    if (budget == 0) {
+        return true;
+    }
+    uint64_t limit = size <= SMALL ? budget : budget - budget / RESERVE_SHARE;
+    if (after <= limit) {
+        return true;
+    }
+    atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
+    return false;
+}
+
+static void give_back(size_t size)
+{
+    atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
+}
+
+/* The block's true size is known only once it is there: the request is taken from the budget
+ * first, the difference is settled after. */
+static void *resize(void *context, void *memory, size_t size)
+{
+    (void)context;
+    size_t before = memory == NULL ? 0 : malloc_usable_size(memory);
+    if (size == 0) {
+        free(memory);
+        give_back(before);
+        return NULL;
+    }
+    size_t growth = size > before ? size - before : 0;
+    if (growth > 0 && !take(growth)) {
+        return NULL;
+    }
+    void *resized = realloc(memory, size);
+    if (resized == NULL) {
+        give_back(growth);
+        return NULL;
+    }
+    size_t after = malloc_usable_size(resized);
+    /* Modular arithmetic: the sum is right whichever is larger. */
+    atomic_fetch_add_explicit(&used, (uint64_t)after - before - growth, memory_order_relaxed);
+    return resized;
+}
+
+void srv_memory_install(uint64_t budget)
+{
+    srv_memory_set_budget(budget);
+    he_mem_set_hook(&(he_mem_hook){resize, NULL});
+}
+
+void srv_memory_set_budget(uint64_t budget)
+{
+    atomic_store(&budget_bytes, budget);
+}
+
+uint64_t srv_memory_used(void)
+{
+    return atomic_load_explicit(&used, memory_order_relaxed);
+}
+
+uint64_t srv_memory_budget(void)
+{
+    return atomic_load(&budget_bytes);
+}
+
+bool srv_memory_is_full(void)
+{
+    uint64_t budget = srv_memory_budget();
+    return budget != 0 && srv_memory_used() >= budget - budget / RESERVE_SHARE;
+}
+
+/* The limit of the control group, UINT64_MAX where there is none. */
+static uint64_t group_limit(void)
+{
+    int fd = open("/sys/fs/cgroup/memory.max", O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return UINT64_MAX;
+    }
+    char text[32];
+    ssize_t length = read(fd, text, sizeof text);
+    close(fd);
+    uint64_t limit = 0;
+    ssize_t digits = 0;
+    while (digits < length && digits < 19 && text[digits] >= '0' && text[digits] <= '9') {
+        limit = limit * 10 + (uint64_t)(text[digits++] - '0');
+    }
+    return digits == 0 ? UINT64_MAX : limit;
+}
+
+uint64_t srv_memory_default_budget(void)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+    uint64_t machine = pages > 0 && size > 0 ? (uint64_t)pages * (uint64_t)size : UINT64_MAX;
+    uint64_t group = group_limit();
+    uint64_t available = machine < group ? machine : group;
+    return available == UINT64_MAX ? 0 : available / 4 * 3;
+}

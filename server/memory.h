@@ -1,0 +1,30 @@
+/* memory.h - how much memory the daemon holds, and the budget it stays within.
+ *
+ * Everything core and api allocate comes through the hook installed here: columns at their
+ * capacity, undo, snapshots, uploads, documents, answers. It is counted as the C library sees it
+ * (malloc_usable_size), in one atomic counter.
+ *
+ * The counter never exceeds the budget: what would do so fails like an allocation. The last
+ * sixteenth is kept for blocks of at most 64 KiB, so that a full server still answers, refuses and
+ * deletes. */
+#ifndef HE_SERVER_MEMORY_H
+#define HE_SERVER_MEMORY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Install the hook of mesh/mem.h. `budget` in bytes, 0 for none. Before the first thread and the
+ * first allocation. */
+void srv_memory_install(uint64_t budget);
+void srv_memory_set_budget(uint64_t budget);
+
+uint64_t srv_memory_used(void);
+uint64_t srv_memory_budget(void);
+/* Would a large block be refused now? */
+bool srv_memory_is_full(void);
+
+/* Three quarters of what the machine, or the control group the process runs in, has. */
+uint64_t srv_memory_default_budget(void);
+
+#endif

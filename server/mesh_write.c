@@ -1,0 +1,145 @@
+#include "server/stored_mesh.h"
+
+#include "server/clock.h"
+
+#include <assert.h>
+#include <string.h>
+
+he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta)
+{
+    (void)self;
+    pthread_rwlock_wrlock(&mesh->lock);
+    he_delta *recording = srv_log_reserve(&mesh->log);
+    if (recording == NULL) {
+        pthread_rwlock_unlock(&mesh->lock);
+        return NULL;
+    }
+    he_mesh_record(mesh->content, recording);
+    mesh->mark = he_delta_mark(mesh->content);
+    if (info != NULL) {
+        srv_mesh_info(mesh, info);
+    }
+    if (delta != NULL) {
+        *delta = recording;
+    }
+    return mesh->content;
+}
+
+static void unlock(api_mesh *mesh)
+{
+    he_mesh *discard = mesh->discard;
+    mesh->discard = NULL;
+    pthread_rwlock_unlock(&mesh->lock);
+    he_mesh_free(discard);
+}
+
+static double revise(api_mesh *mesh)
+{
+    mesh->info.revision++;
+    mesh->info.modified = srv_clock_utc();
+    return mesh->info.modified;
+}
+
+void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
+                      api_mesh_info *info)
+{
+    (void)self;
+    he_delta *delta = he_mesh_record(mesh->content, NULL);
+    double now = revise(mesh);
+    srv_mesh_append(mesh, barrier ? API_REPLACE : API_EDIT, barrier ? NULL : delta, false);
+    if (barrier) {
+        srv_log_add_barrier(&mesh->log, mesh->info.revision, API_EDIT, ops, now);
+    } else {
+        srv_log_add_edit(&mesh->log, mesh->info.revision, ops, now);
+    }
+    if (info != NULL) {
+        srv_mesh_info(mesh, info);
+    }
+    unlock(mesh);
+}
+
+/* Back to where the writer began; what it recorded is forgotten. */
+static void roll_back(api_mesh *mesh)
+{
+    he_delta_rollback(mesh->content, mesh->mark);
+    he_mesh_record(mesh->content, NULL);
+    srv_log_unreserve(&mesh->log);
+}
+
+void srv_write_abort(void *self, api_mesh *mesh)
+{
+    (void)self;
+    roll_back(mesh);
+    unlock(mesh);
+}
+
+api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, he_delta **delta,
+                                api_mesh_info *info)
+{
+    (void)self;
+    assert(which == API_UNDO || which == API_REDO);
+    he_delta *step = srv_log_next(&mesh->log, which);
+    if (step == NULL) {
+        return API_STORE_NOTHING;
+    }
+    /* A step makes a revision by itself: it may not be recorded into another. */
+    roll_back(mesh);
+    if (which == API_UNDO) {
+        he_delta_undo(step, mesh->content);
+    } else {
+        he_delta_redo(step, mesh->content);
+    }
+    double now = revise(mesh);
+    srv_log_add_step(&mesh->log, mesh->info.revision, which, now);
+    srv_mesh_append(mesh, which, step, which == API_UNDO);
+    if (delta != NULL) {
+        *delta = step;
+    }
+    if (info != NULL) {
+        srv_mesh_info(mesh, info);
+    }
+    return API_STORE_OK;
+}
+
+void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info)
+{
+    (void)self;
+    roll_back(mesh);
+    assert(mesh->discard == NULL);
+    mesh->discard = mesh->content;
+    mesh->content = content;
+    he_mesh_record(content, NULL);
+    double now = revise(mesh);
+    srv_log_add_barrier(&mesh->log, mesh->info.revision, API_REPLACE, "replace", now);
+    srv_mesh_append(mesh, API_REPLACE, NULL, false);
+    if (info != NULL) {
+        srv_mesh_info(mesh, info);
+    }
+}
+
+void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info *info)
+{
+    (void)self;
+    size_t length = strnlen(name, API_MESH_NAME);
+    memcpy(mesh->info.name, name, length);
+    mesh->info.name[length] = '\0';
+    mesh->info.metadata++;
+    mesh->info.modified = srv_clock_utc();
+    srv_mesh_append(mesh, API_EDIT, NULL, false);
+    if (info != NULL) {
+        srv_mesh_info(mesh, info);
+    }
+}
+
+void srv_write_end(void *self, api_mesh *mesh)
+{
+    (void)self;
+    /* After a step or replace nothing records any more. */
+    he_delta *recording = he_mesh_record(mesh->content, NULL);
+    if (recording != NULL) {
+        he_mesh_record(mesh->content, recording);
+        roll_back(mesh);
+    }
+    srv_log_settle(&mesh->log);
+    unlock(mesh);
+}

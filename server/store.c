@@ -1,0 +1,263 @@
+#include "server/store.h"
+
+#include "server/memory.h"
+#include "server/random.h"
+#include "server/stored_mesh.h"
+
+#include <assert.h>
+#include <string.h>
+
+struct srv_store {
+    srv_journal journal;
+    uint64_t undo_budget;
+    uint64_t max_meshes;
+    pthread_rwlock_t lock; /* of the table */
+    api_mesh **meshes;     /* in the order of ids, each with a use */
+    size_t count, capacity;
+};
+
+enum { ID_LENGTH = 10, SHED_BATCH = 64 };
+
+srv_store *srv_store_new(const srv_store_options *options)
+{
+    srv_store *store = he_mem_zero(1, sizeof *store);
+    if (store == NULL) {
+        return NULL;
+    }
+    if (pthread_rwlock_init(&store->lock, NULL) != 0) {
+        he_mem_free(store);
+        return NULL;
+    }
+    store->journal = options->journal;
+    store->undo_budget = options->undo_budget;
+    store->max_meshes = options->max_meshes;
+    return store;
+}
+
+void srv_store_free(srv_store *store)
+{
+    if (store == NULL) {
+        return;
+    }
+    for (size_t i = 0; i < store->count; i++) {
+        srv_mesh_release(store->meshes[i]);
+    }
+    he_mem_free(store->meshes);
+    store->journal.close(store->journal.self);
+    pthread_rwlock_destroy(&store->lock);
+    he_mem_free(store);
+}
+
+/* The first mesh whose id is not below `id`; *found when it is that id. Under the table's lock. */
+static size_t position_of(const srv_store *store, const char *id, bool *found)
+{
+    size_t low = 0, high = store->count;
+    *found = false;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        int order = strcmp(store->meshes[middle]->info.id, id);
+        if (order == 0) {
+            *found = true;
+            return middle;
+        }
+        if (order < 0) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static api_mesh *add_use(api_mesh *mesh)
+{
+    atomic_fetch_add_explicit(&mesh->uses, 1, memory_order_relaxed);
+    return mesh;
+}
+
+static api_store_status find(void *self, const char *id, api_mesh **out)
+{
+    srv_store *store = self;
+    bool found;
+    pthread_rwlock_rdlock(&store->lock);
+    size_t i = position_of(store, id, &found);
+    if (found) {
+        *out = add_use(store->meshes[i]);
+    }
+    pthread_rwlock_unlock(&store->lock);
+    return found ? API_STORE_OK : API_STORE_ABSENT;
+}
+
+static void release(void *self, api_mesh *mesh)
+{
+    (void)self;
+    srv_mesh_release(mesh);
+}
+
+static bool reserve_place(srv_store *store)
+{
+    if (store->count < store->capacity) {
+        return true;
+    }
+    size_t capacity = he_mem_grown(store->capacity, store->count + 1);
+    api_mesh **meshes = he_mem_array(store->meshes, capacity, sizeof(api_mesh *));
+    if (meshes == NULL) {
+        return false;
+    }
+    store->meshes = meshes;
+    store->capacity = capacity;
+    return true;
+}
+
+/* Under the table's exclusive lock. Takes `content` on success. */
+static api_store_status insert(srv_store *store, const char *id, const char *name, he_mesh *content,
+                               api_mesh **out)
+{
+    bool found;
+    char made[ID_LENGTH + 1];
+    size_t place;
+    if (id == NULL) {
+        do {
+            srv_random_id(made, ID_LENGTH);
+            place = position_of(store, made, &found);
+        } while (found);
+        id = made;
+    } else {
+        place = position_of(store, id, &found);
+    }
+    if (found) {
+        return API_STORE_TAKEN;
+    }
+    if (store->count >= store->max_meshes) {
+        return API_STORE_TOO_MANY;
+    }
+    if (!reserve_place(store)) {
+        return API_STORE_NO_MEMORY;
+    }
+    api_mesh *mesh = srv_mesh_new(id, name, content, store->undo_budget, &store->journal);
+    if (mesh == NULL) {
+        return API_STORE_NO_MEMORY;
+    }
+    memmove(store->meshes + place + 1, store->meshes + place,
+            (store->count - place) * sizeof(api_mesh *));
+    store->meshes[place] = mesh;
+    store->count++;
+    *out = add_use(mesh);
+    /* Before the table is unlocked nobody can write a second revision. */
+    srv_mesh_append(mesh, API_REPLACE, NULL, false);
+    return API_STORE_OK;
+}
+
+static api_store_status create(void *self, const char *id, const char *name, he_mesh *content,
+                               api_mesh **out)
+{
+    srv_store *store = self;
+    if (srv_memory_is_full()) {
+        srv_store_shed(store);
+        if (srv_memory_is_full()) {
+            return API_STORE_BUDGET;
+        }
+    }
+    pthread_rwlock_wrlock(&store->lock);
+    api_store_status status = insert(store, id, name, content, out);
+    pthread_rwlock_unlock(&store->lock);
+    return status;
+}
+
+static api_store_status remove_mesh(void *self, api_mesh *mesh)
+{
+    srv_store *store = self;
+    bool found;
+    pthread_rwlock_wrlock(&store->lock);
+    size_t place = position_of(store, mesh->info.id, &found);
+    found = found && store->meshes[place] == mesh;
+    if (found) {
+        store->count--;
+        memmove(store->meshes + place, store->meshes + place + 1,
+                (store->count - place) * sizeof(api_mesh *));
+    }
+    pthread_rwlock_unlock(&store->lock);
+    if (!found) {
+        return API_STORE_ABSENT;
+    }
+    pthread_rwlock_wrlock(&mesh->lock);
+    mesh->info.removed = true;
+    srv_mesh_append(mesh, API_REPLACE, NULL, false);
+    pthread_rwlock_unlock(&mesh->lock);
+    srv_mesh_release(mesh);
+    return API_STORE_OK;
+}
+
+static size_t list(void *self, const char *after, api_mesh **out, size_t limit)
+{
+    srv_store *store = self;
+    bool found;
+    size_t given = 0;
+    pthread_rwlock_rdlock(&store->lock);
+    size_t i = position_of(store, after, &found);
+    for (i += found ? 1 : 0; i < store->count && given < limit; i++) {
+        out[given++] = add_use(store->meshes[i]);
+    }
+    pthread_rwlock_unlock(&store->lock);
+    return given;
+}
+
+api_store srv_store_interface(srv_store *store)
+{
+    return (api_store){
+        .self = store,
+        .find = find,
+        .release = release,
+        .create = create,
+        .remove = remove_mesh,
+        .list = list,
+        .read_begin = srv_read_begin,
+        .read_end = srv_read_end,
+        .snapshot = srv_snapshot,
+        .snapshot_content = srv_snapshot_content,
+        .snapshot_release = srv_snapshot_release,
+        .cache_get = srv_cache_get,
+        .cache_put = srv_cache_put,
+        .write_begin = srv_write_begin,
+        .write_commit = srv_write_commit,
+        .write_abort = srv_write_abort,
+        .step = srv_step_apply,
+        .write_end = srv_write_end,
+        .replace = srv_mesh_replace,
+        .rename = srv_mesh_rename,
+        .history = srv_history,
+    };
+}
+
+bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t revision)
+{
+    const srv_journal *journal = &store->journal;
+    return journal->durable(journal->self, mesh->info.id, mesh->info.incarnation) >= revision;
+}
+
+void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context)
+{
+    store->journal.listen(store->journal.self, notify, context);
+}
+
+size_t srv_store_count(srv_store *store)
+{
+    pthread_rwlock_rdlock(&store->lock);
+    size_t count = store->count;
+    pthread_rwlock_unlock(&store->lock);
+    return count;
+}
+
+void srv_store_shed(srv_store *store)
+{
+    api_mesh *batch[SHED_BATCH];
+    char after[API_MESH_ID + 1] = "";
+    size_t count;
+    while ((count = list(store, after, batch, SHED_BATCH)) > 0) {
+        memcpy(after, batch[count - 1]->info.id, sizeof after);
+        for (size_t i = 0; i < count; i++) {
+            srv_mesh_shed(batch[i]);
+            srv_mesh_release(batch[i]);
+        }
+    }
+}

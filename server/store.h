@@ -1,0 +1,43 @@
+/* store.h - the meshes a daemon holds: by id, locked, revised. Fills in api/store.h.
+ *
+ * Locks, in the order in which they are taken:
+ *     table     the collection, for as long as a search takes
+ *     mesh      one mesh, shared by readers or held by one writer; writers come first
+ *     snapshot  the mesh's cached copy
+ *     cache     the mesh's cached value
+ * Whoever holds a mesh's lock takes no other mesh's, not even shared and not the same one twice:
+ * a waiting writer would stop both. To bring another mesh's content in, take its snapshot first.
+ *
+ * A mesh is counted: by the table, and by each handle given out. It is freed with the last one, so
+ * a removed mesh is still there for those who were reading it. */
+#ifndef HE_SERVER_STORE_H
+#define HE_SERVER_STORE_H
+
+#include "api/store.h"
+#include "server/journal.h"
+
+typedef struct srv_store srv_store;
+
+typedef struct srv_store_options {
+    uint64_t undo_budget; /* bytes a mesh */
+    uint64_t max_meshes;
+    srv_journal journal; /* closed with the store */
+} srv_store_options;
+
+/* NULL when memory is out; the journal is the caller's then. */
+srv_store *srv_store_new(const srv_store_options *options);
+/* Nobody may hold a handle. */
+void srv_store_free(srv_store *store);
+/* The functions of api/store.h over this store. */
+api_store srv_store_interface(srv_store *store);
+
+/* May an answer that shows this revision be sent? */
+bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t revision);
+/* Call `notify` whenever that may have become true for some mesh; see journal.h. */
+void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context);
+
+size_t srv_store_count(srv_store *store);
+/* Free the cached copies nobody reads. */
+void srv_store_shed(srv_store *store);
+
+#endif

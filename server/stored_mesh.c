@@ -1,0 +1,147 @@
+#include "server/stored_mesh.h"
+
+#include "server/clock.h"
+#include "server/random.h"
+
+#include <string.h>
+
+static void copy_name(char *out, size_t size, const char *name)
+{
+    size_t length = strlen(name);
+    if (length >= size) {
+        length = size - 1;
+        /* Not inside a UTF-8 sequence. */
+        while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) {
+            length--;
+        }
+    }
+    memcpy(out, name, length);
+    out[length] = '\0';
+}
+
+/* A steady stream of readers must not keep a writer out. */
+static int init_lock(pthread_rwlock_t *lock)
+{
+    pthread_rwlockattr_t attributes;
+    pthread_rwlockattr_init(&attributes);
+#ifdef __GLIBC__
+    pthread_rwlockattr_setkind_np(&attributes, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
+#endif
+    int failed = pthread_rwlock_init(lock, &attributes);
+    pthread_rwlockattr_destroy(&attributes);
+    return failed;
+}
+
+api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint64_t undo_budget,
+                       const srv_journal *journal)
+{
+    api_mesh *mesh = he_mem_zero(1, sizeof *mesh);
+    if (mesh == NULL || init_lock(&mesh->lock) != 0) {
+        he_mem_free(mesh);
+        return NULL;
+    }
+    pthread_mutex_init(&mesh->snapshot_lock, NULL);
+    pthread_mutex_init(&mesh->cache_lock, NULL);
+    atomic_init(&mesh->uses, 1);
+    mesh->journal = journal;
+    copy_name(mesh->info.id, sizeof mesh->info.id, id);
+    copy_name(mesh->info.name, sizeof mesh->info.name, name == NULL ? "" : name);
+    mesh->info.incarnation = srv_random();
+    mesh->info.metadata = 1;
+    mesh->info.revision = 1;
+    mesh->info.created = srv_clock_utc();
+    mesh->info.modified = mesh->info.created;
+    mesh->content = content;
+    srv_log_init(&mesh->log, undo_budget);
+    return mesh;
+}
+
+void srv_mesh_release(api_mesh *mesh)
+{
+    if (mesh == NULL || atomic_fetch_sub_explicit(&mesh->uses, 1, memory_order_acq_rel) > 1) {
+        return;
+    }
+    srv_log_clear(&mesh->log);
+    he_mesh_free(mesh->content);
+    srv_copy_release(mesh->copy);
+    he_mem_free(mesh->cache);
+    pthread_rwlock_destroy(&mesh->lock);
+    pthread_mutex_destroy(&mesh->snapshot_lock);
+    pthread_mutex_destroy(&mesh->cache_lock);
+    he_mem_free(mesh);
+}
+
+void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out)
+{
+    *out = mesh->info;
+    out->undo = mesh->log.undo_count;
+    out->redo = mesh->log.redo_count;
+}
+
+void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone)
+{
+    srv_record record = {
+        .id = mesh->info.id,
+        .incarnation = mesh->info.incarnation,
+        .revision = mesh->info.revision,
+        .name = mesh->info.name,
+        .action = action,
+        .delta = delta,
+        .undone = undone,
+        .removed = mesh->info.removed,
+        .content = mesh->info.removed ? NULL : mesh->content,
+    };
+    mesh->journal->append(mesh->journal->self, &record);
+}
+
+const he_mesh *srv_read_begin(void *self, api_mesh *mesh, api_mesh_info *info)
+{
+    (void)self;
+    pthread_rwlock_rdlock(&mesh->lock);
+    if (info != NULL) {
+        srv_mesh_info(mesh, info);
+    }
+    return mesh->content;
+}
+
+void srv_read_end(void *self, api_mesh *mesh)
+{
+    (void)self;
+    pthread_rwlock_unlock(&mesh->lock);
+}
+
+bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out)
+{
+    (void)self;
+    return srv_log_entry(&mesh->log, i, out);
+}
+
+bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size)
+{
+    (void)self;
+    pthread_mutex_lock(&mesh->cache_lock);
+    bool found = mesh->cache != NULL && mesh->cache_size == size &&
+                 mesh->cache_revision == mesh->info.revision;
+    if (found) {
+        memcpy(value, mesh->cache, size);
+    }
+    pthread_mutex_unlock(&mesh->cache_lock);
+    return found;
+}
+
+/* Without memory nothing is kept, and the value is computed again the next time. */
+void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size)
+{
+    (void)self;
+    pthread_mutex_lock(&mesh->cache_lock);
+    if (mesh->cache_size != size) {
+        he_mem_free(mesh->cache);
+        mesh->cache = he_mem_alloc(size);
+        mesh->cache_size = mesh->cache == NULL ? 0 : size;
+    }
+    if (mesh->cache != NULL) {
+        memcpy(mesh->cache, value, size);
+        mesh->cache_revision = mesh->info.revision;
+    }
+    pthread_mutex_unlock(&mesh->cache_lock);
+}

@@ -1,0 +1,71 @@
+/* stored_mesh.h - one mesh of the store: what store.c, mesh_write.c and snapshot.c share. */
+#ifndef HE_SERVER_STORED_MESH_H
+#define HE_SERVER_STORED_MESH_H
+
+#include "server/journal.h"
+#include "server/revision_log.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+/* An immutable copy at a revision, counted by the cache and by each snapshot. */
+typedef struct srv_copy {
+    _Atomic uint32_t uses;
+    uint64_t revision;
+    he_mesh *content;
+} srv_copy;
+
+struct api_mesh {
+    _Atomic uint32_t uses;
+    const srv_journal *journal;
+
+    pthread_rwlock_t lock; /* of all down to `discard` */
+    api_mesh_info info;    /* but for undo and redo, which the log has */
+    he_mesh *content;
+    srv_revision_log log;
+    he_savepoint mark; /* where the writer began */
+    he_mesh *discard;  /* freed when the writer has given the lock back */
+
+    pthread_mutex_t snapshot_lock;
+    srv_copy *copy; /* NULL: none cached */
+
+    pthread_mutex_t cache_lock;
+    void *cache;
+    size_t cache_size;
+    uint64_t cache_revision;
+};
+
+/* Takes `content`. NULL when memory is out. */
+api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint64_t undo_budget,
+                       const srv_journal *journal);
+void srv_mesh_release(api_mesh *mesh);
+/* Under its lock. */
+void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out);
+/* Free the cached copy, unless somebody reads it. */
+void srv_mesh_shed(api_mesh *mesh);
+/* Under the exclusive lock: tell the journal about the present revision. */
+void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone);
+
+/* The members of api_store of the same names. */
+const he_mesh *srv_read_begin(void *self, api_mesh *mesh, api_mesh_info *info);
+void srv_read_end(void *self, api_mesh *mesh);
+bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size);
+void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size);
+bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
+
+he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta);
+void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
+                      api_mesh_info *info);
+void srv_write_abort(void *self, api_mesh *mesh);
+api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, he_delta **delta,
+                                api_mesh_info *info);
+void srv_write_end(void *self, api_mesh *mesh);
+void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
+void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
+
+api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out);
+const he_mesh *srv_snapshot_content(const api_snapshot *snapshot, api_mesh_info *info);
+void srv_snapshot_release(void *self, api_snapshot *snapshot);
+void srv_copy_release(srv_copy *copy);
+
+#endif

@@ -1,0 +1,256 @@
+/* Options: flag over environment over default, and every refusal in a sentence. */
+#include "tests/unit/fixture.h"
+
+#include "server/address.h"
+#include "server/config.h"
+
+static const char *const *variables; /* name, value, ..., NULL */
+
+static char *environment(const char *name)
+{
+    for (size_t i = 0; variables != NULL && variables[i] != NULL; i += 2) {
+        if (strcmp(variables[i], name) == 0) {
+            return (char *)(uintptr_t)variables[i + 1];
+        }
+    }
+    return NULL;
+}
+
+static char message[320];
+
+static bool read_words(srv_config *config, const char *const *words)
+{
+    char *argv[16];
+    int argc = 0;
+    for (; words[argc] != NULL; argc++) {
+        argv[argc] = (char *)(uintptr_t)words[argc];
+    }
+    message[0] = '\0';
+    return srv_config_read(config, argc, argv, environment, message, sizeof message);
+}
+
+#define READ(config, ...) read_words(config, (const char *const[]){__VA_ARGS__, NULL})
+
+static void test_defaults(void **state)
+{
+    (void)state;
+    srv_config config;
+    variables = NULL;
+    assert_true(read_words(&config, (const char *const[]){NULL}));
+    assert_string_equal(config.listen, "127.0.0.1:8080");
+    assert_int_equal(config.undo_budget, 256 << 20);
+    assert_int_equal(config.log, SRV_LOG_ACCESS);
+    assert_false(config.insecure);
+    assert_int_equal(config.policy.hosts.count, 0);
+    srv_config_clear(&config);
+}
+
+static void test_flag_over_environment(void **state)
+{
+    (void)state;
+    static const char *const set[] = {
+        "HEDGE_MAX_MESHES", "7",   "HEDGE_LISTEN", "[::1]:1", "HEDGE_LOG", "off",
+        "HEDGE_ALLOW_HOST", "a,b", "HEDGE_WEB",    "",        NULL};
+    srv_config config;
+    variables = set;
+    assert_true(READ(&config, "--max-meshes", "9", "--undo-budget=3K", "--samples"));
+    assert_int_equal(config.max_meshes, 9);
+    assert_int_equal(config.undo_budget, 3072);
+    assert_true(config.samples);
+    assert_string_equal(config.listen, "[::1]:1");
+    assert_int_equal(config.log, SRV_LOG_OFF);
+    assert_int_equal(config.policy.hosts.count, 2);
+    assert_string_equal(config.policy.hosts.items[1], "b");
+    srv_config_clear(&config);
+
+    assert_true(READ(&config, "--allow-host", "c", "--allow-host=d,e,", "--samples=0"));
+    assert_int_equal(config.policy.hosts.count, 3);
+    assert_string_equal(config.policy.hosts.items[0], "c");
+    assert_string_equal(config.policy.hosts.items[2], "e");
+    assert_false(config.samples);
+    srv_config_clear(&config);
+}
+
+static void test_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        uint64_t value;
+    } rows[] = {{"1024", 1024},  {"1k", 1024},    {"1K", 1024},
+                {"2M", 2 << 20}, {"1G", 1 << 30}, {"1T", UINT64_C(1) << 40}};
+    static const char *const bad[] = {"",
+                                      "x",
+                                      "-1",
+                                      "+1",
+                                      "1.5",
+                                      "1KB",
+                                      "1P",
+                                      " 1K",
+                                      "1 K",
+                                      "0x10",
+                                      "1023",
+                                      "2T",
+                                      "99999999999999999999999",
+                                      "18446744073709551615T"};
+    srv_config config;
+    variables = NULL;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_true(READ(&config, "--max-upload", rows[i].text));
+        assert_true(config.max_upload == rows[i].value);
+        srv_config_clear(&config);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        if (READ(&config, "--max-upload", bad[i])) {
+            fail_msg("--max-upload \"%s\" was taken", bad[i]);
+        }
+        assert_non_null(strstr(message, "--max-upload takes a number"));
+    }
+}
+
+static void test_refusals(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *words[4];
+        const char *says;
+    } rows[] = {
+        {{"--nope"}, "no option --nope"},
+        {{"--"}, "no option --"},
+        {{"-h"}, "not an option"},
+        {{"file"}, "not an option"},
+        {{"--listen"}, "--listen needs a value"},
+        {{"--listen", "8080"}, "--listen takes"},
+        {{"--listen", "host:80"}, "--listen takes"},
+        {{"--listen", "127.0.0.1:65536"}, "--listen takes"},
+        {{"--listen", "127.0.0.1:"}, "--listen takes"},
+        {{"--listen", "0.0.0.0:80"}, "--insecure"},
+        {{"--listen", "[::]:80"}, "--insecure"},
+        {{"--log", "all"}, "off|access"},
+        {{"--samples=maybe"}, "0 or 1"},
+        {{"--workers", "65"}, "from 0 to 64"},
+        {{"--max-meshes", "0"}, "from 1"},
+    };
+    srv_config config;
+    variables = NULL;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_false(read_words(&config, rows[i].words));
+        if (strstr(message, rows[i].says) == NULL) {
+            fail_msg("%s: %s", rows[i].words[0], message);
+        }
+    }
+    static const char *const set[] = {"HEDGE_WORKERS", "many", NULL};
+    variables = set;
+    assert_false(read_words(&config, (const char *const[]){NULL}));
+    assert_non_null(strstr(message, "HEDGE_WORKERS"));
+    static const char *const insecure[] = {"HEDGE_INSECURE", "1", NULL};
+    variables = insecure;
+    assert_true(READ(&config, "--listen", "0.0.0.0:80"));
+    srv_config_clear(&config);
+}
+
+static void test_actions(void **state)
+{
+    (void)state;
+    srv_config config;
+    variables = NULL;
+    assert_true(READ(&config, "--healthcheck", "http://127.0.0.1:1/livez"));
+    assert_true(config.healthcheck);
+    assert_string_equal(config.healthcheck_url, "http://127.0.0.1:1/livez");
+    srv_config_clear(&config);
+    assert_true(READ(&config, "--help", "--listen", "nonsense"));
+    assert_true(config.help);
+    srv_config_clear(&config);
+    /* Actions are not for the environment, which is the same for every command. */
+    static const char *const set[] = {"HEDGE_HELP", "1", NULL};
+    variables = set;
+    assert_true(read_words(&config, (const char *const[]){NULL}));
+    assert_false(config.help);
+    srv_config_clear(&config);
+}
+
+/* What --print-config shows is taken again and gives the same; --help names every option of it. */
+static void test_print_and_help(void **state)
+{
+    (void)state;
+    srv_config config, again;
+    char printed[4096] = "", twice[4096] = "", help[16384] = "";
+    variables = NULL;
+    assert_true(READ(&config, "--allow-host", "a,b", "--max-upload", "5M", "--log", "off"));
+    FILE *out = fmemopen(printed, sizeof printed, "w");
+    srv_config_print(&config, out);
+    fclose(out);
+    out = fmemopen(help, sizeof help, "w");
+    srv_config_help(out);
+    fclose(out);
+    srv_config_clear(&config);
+    assert_non_null(strstr(printed, "allow-host = a,b\n"));
+    assert_non_null(strstr(printed, "max-upload = 5242880\n"));
+    assert_non_null(strstr(printed, "log = off\n"));
+
+    char *argv[64], flags[64][300];
+    int argc = 0;
+    for (char *line = printed; *line != '\0' && argc < 64;) {
+        char *equals = strstr(line, " = "), *end = strchr(line, '\n');
+        assert_true(equals != NULL && end != NULL);
+        snprintf(flags[argc], sizeof *flags, "--%.*s=%.*s", (int)(equals - line), line,
+                 (int)(end - equals - 3), equals + 3);
+        char name[80];
+        snprintf(name, sizeof name, "  --%.*s", (int)(equals - line), line);
+        assert_non_null(strstr(help, name));
+        argv[argc] = flags[argc];
+        argc++;
+        line = end + 1;
+    }
+    assert_true(srv_config_read(&again, argc, argv, environment, message, sizeof message));
+    out = fmemopen(twice, sizeof twice, "w");
+    srv_config_print(&again, out);
+    fclose(out);
+    srv_config_clear(&again);
+    assert_string_equal(printed, twice);
+}
+
+static void test_addresses(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *shown;
+        bool loopback;
+    } rows[] = {
+        {"127.0.0.1:80", "127.0.0.1:80", true},
+        {"localhost:0", "127.0.0.1:0", true},
+        {"[::1]:65535", "[::1]:65535", true},
+        {"10.0.0.1:1", "10.0.0.1:1", false},
+        {"[::]:1", "[::]:1", false},
+        {"0.0.0.0:1", "0.0.0.0:1", false},
+    };
+    static const char *const bad[] = {
+        "",          ":80",        "1.2.3:80",       "[::1:80", "::1:80",        "[::1]",
+        "1.2.3.4:x", "1.2.3.4:-1", "1.2.3.4:000080", "[zz]:80", "example.com:80"};
+    srv_address address;
+    char shown[SRV_ADDRESS_TEXT];
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_true(srv_address_parse(rows[i].text, &address));
+        assert_int_equal(srv_address_is_loopback(&address), rows[i].loopback);
+        srv_address_format(&address.socket.any, true, shown);
+        assert_string_equal(shown, rows[i].shown);
+    }
+    srv_address_set_port(&address, 7);
+    assert_int_equal(srv_address_port(&address), 7);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        if (srv_address_parse(bad[i], &address)) {
+            fail_msg("\"%s\" was taken for an address", bad[i]);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_defaults),  cmocka_unit_test(test_flag_over_environment),
+        cmocka_unit_test(test_numbers),   cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_actions),   cmocka_unit_test(test_print_and_help),
+        cmocka_unit_test(test_addresses),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,374 @@
+/* The real server in this process, over real sockets: answers wait for a journal that is slow on
+ * purpose (D1), a full job queue and too many connections are 503, a stop ends everything. */
+#include "tests/unit/fixture.h"
+
+#include "server/http.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <pthread.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+/* --- a journal that makes durable only what the test tells it to --- */
+
+static struct {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    uint64_t appended, durable; /* revisions, of whatever mesh */
+    void (*notify)(void *context);
+    void *context;
+} slow = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+
+static void slow_append(void *self, const srv_record *record)
+{
+    (void)self;
+    pthread_mutex_lock(&slow.lock);
+    slow.appended = record->revision;
+    pthread_cond_broadcast(&slow.changed);
+    pthread_mutex_unlock(&slow.lock);
+}
+
+static uint64_t slow_durable(void *self, const char *id, uint64_t incarnation)
+{
+    (void)self;
+    (void)id;
+    (void)incarnation;
+    pthread_mutex_lock(&slow.lock);
+    uint64_t durable = slow.durable;
+    pthread_mutex_unlock(&slow.lock);
+    return durable;
+}
+
+static void slow_listen(void *self, void (*notify)(void *context), void *context)
+{
+    (void)self;
+    slow.notify = notify;
+    slow.context = context;
+}
+
+static void slow_close(void *self)
+{
+    (void)self;
+}
+
+static void slow_wait(uint64_t revision)
+{
+    pthread_mutex_lock(&slow.lock);
+    while (slow.appended < revision) {
+        pthread_cond_wait(&slow.changed, &slow.lock);
+    }
+    pthread_mutex_unlock(&slow.lock);
+}
+
+static void slow_advance(uint64_t revision)
+{
+    pthread_mutex_lock(&slow.lock);
+    slow.durable = revision;
+    pthread_mutex_unlock(&slow.lock);
+    slow.notify(slow.context);
+}
+
+/* --- the server --- */
+
+enum { CONNECTIONS = 20 };
+
+static srv_store *store;
+static api_store interface;
+static api_service *service;
+static srv_jobs *jobs;
+static srv_http *http;
+static const srv_policy policy;
+
+static int start(void **state)
+{
+    (void)state;
+    slow.appended = 0;
+    slow.durable = 0;
+    store = srv_store_new(&(srv_store_options){
+        .undo_budget = 1 << 20,
+        .max_meshes = 100,
+        .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
+    });
+    interface = srv_store_interface(store);
+    service = api_service_new(&interface, &(api_options){.version = "test"});
+    jobs = srv_jobs_new(1, 1);
+    srv_http_options options = {
+        .service = service,
+        .store = store,
+        .jobs = jobs,
+        .policy = &policy,
+        .deadlines = {.idle = 20,
+                      .head = 20,
+                      .grace = 20,
+                      .total = 20,
+                      .min_rate = 1,
+                      .max_connections = CONNECTIONS},
+        .max_sockets = CONNECTIONS + 4,
+        .workers = 1,
+    };
+    char message[256];
+    assert_true(srv_address_parse("127.0.0.1:0", &options.address));
+    http = srv_http_start(&options, message, sizeof message);
+    if (http == NULL) {
+        fail_msg("%s", message);
+    }
+    return 0;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    bool stopped = http == NULL || srv_http_stop(http, 20000);
+    http = NULL;
+    srv_jobs_free(jobs);
+    api_service_free(service);
+    srv_store_free(store);
+    return stopped ? 0 : -1;
+}
+
+/* --- a client --- */
+
+static int connect_client(void)
+{
+    struct sockaddr_in to = {.sin_family = AF_INET,
+                             .sin_port = htons((uint16_t)srv_http_port(http))};
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    int fd = socket(AF_INET, SOCK_STREAM, 0);
+    assert_true(fd >= 0);
+    assert_int_equal(connect(fd, (struct sockaddr *)&to, sizeof to), 0);
+    return fd;
+}
+
+static void ask(int fd, const char *method, const char *path, const char *body)
+{
+    char request[1024];
+    int length = snprintf(request, sizeof request,
+                          "%s %s HTTP/1.1\r\nHost: localhost\r\nContent-Length: %zu\r\n"
+                          "Content-Type: application/json\r\n\r\n%s",
+                          method, path, strlen(body), body);
+    assert_int_equal(send(fd, request, (size_t)length, MSG_NOSIGNAL), length);
+}
+
+/* The status of the next answer, which is read to its end; `text` gets all of it. */
+static int answer(int fd, char *text, size_t size)
+{
+    size_t got = 0;
+    text[0] = '\0';
+    for (;;) {
+        char *end = strstr(text, "\r\n\r\n"), *length = strstr(text, "Content-Length: ");
+        if (end != NULL && length != NULL && length < end) {
+            size_t want = (size_t)(end + 4 - text) + strtoul(length + 16, NULL, 10);
+            if (got >= want) {
+                break;
+            }
+        }
+        ssize_t more = recv(fd, text + got, size - 1 - got, 0);
+        if (more <= 0) {
+            break;
+        }
+        got += (size_t)more;
+        text[got] = '\0';
+    }
+    return got < 12 ? 0 : (int)strtol(text + 9, NULL, 10);
+}
+
+static int round_trip(const char *method, const char *path, const char *body)
+{
+    char text[4096];
+    int fd = connect_client();
+    ask(fd, method, path, body);
+    int status = answer(fd, text, sizeof text);
+    close(fd);
+    return status;
+}
+
+/* The one worker has served others since: what it could answer, it has. */
+static void assert_held(int fd)
+{
+    char byte;
+    for (int i = 0; i < 30; i++) {
+        assert_int_equal(round_trip("GET", "/livez", ""), 200);
+        ssize_t got = recv(fd, &byte, 1, MSG_DONTWAIT);
+        assert_true(got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK));
+    }
+}
+
+static void test_answers_wait_until_durable(void **state)
+{
+    (void)state;
+    char text[8192];
+    int writer = connect_client(), reader = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    slow_wait(1);
+    assert_held(writer);
+    /* A read of what is not durable waits too. */
+    ask(reader, "GET", "/v1/meshes/m", "");
+    assert_held(reader);
+    slow_advance(1);
+    assert_int_equal(answer(writer, text, sizeof text), 201);
+    assert_int_equal(answer(reader, text, sizeof text), 200);
+
+    /* The same connections, a second revision: only who saw it waits. */
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"tetrahedron\"}");
+    slow_wait(2);
+    assert_held(writer);
+    slow_advance(1);
+    assert_held(writer);
+    slow_advance(2);
+    assert_int_equal(answer(writer, text, sizeof text), 200);
+    ask(reader, "GET", "/v1/meshes/m", "");
+    assert_int_equal(answer(reader, text, sizeof text), 200);
+    assert_non_null(strstr(text, "\"revision\":2"));
+    close(writer);
+    close(reader);
+}
+
+static void test_a_stop_ends_what_waits(void **state)
+{
+    char text[8192];
+    int writer = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    slow_wait(1);
+    assert_held(writer);
+    assert_int_equal(stop(state), 0);
+    assert_int_equal(answer(writer, text, sizeof text), 503);
+    assert_non_null(strstr(text, "Retry-After: "));
+    assert_non_null(strstr(text, "\"code\":\"not_ready\""));
+    close(writer);
+    start(state);
+}
+
+static pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+static pthread_cond_t gate_changed = PTHREAD_COND_INITIALIZER;
+static bool gate_entered, gate_open;
+
+static void wait_at_gate(void *context)
+{
+    (void)context;
+    pthread_mutex_lock(&gate);
+    gate_entered = true;
+    pthread_cond_broadcast(&gate_changed);
+    while (!gate_open) {
+        pthread_cond_wait(&gate_changed, &gate);
+    }
+    pthread_mutex_unlock(&gate);
+}
+
+static void test_full_queue_is_503(void **state)
+{
+    (void)state;
+    slow_advance(UINT64_MAX);
+    gate_entered = gate_open = false;
+    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    pthread_mutex_lock(&gate);
+    while (!gate_entered) {
+        pthread_cond_wait(&gate_changed, &gate);
+    }
+    pthread_mutex_unlock(&gate);
+    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    assert_false(srv_jobs_submit(jobs, wait_at_gate, NULL));
+
+    static const char large[] = "{\"shape\":\"icosphere\",\"subdivisions\":6}";
+    char text[4096];
+    int fd = connect_client();
+    ask(fd, "POST", "/v1/meshes", large);
+    assert_int_equal(answer(fd, text, sizeof text), 503);
+    assert_non_null(strstr(text, "Retry-After: "));
+    assert_non_null(strstr(text, "\"code\":\"overloaded\""));
+
+    pthread_mutex_lock(&gate);
+    gate_open = true;
+    pthread_cond_broadcast(&gate_changed);
+    pthread_mutex_unlock(&gate);
+    /* Refused, not broken: the connection serves on. The queue may still be emptying. */
+    int status;
+    do {
+        ask(fd, "POST", "/v1/meshes", large);
+        status = answer(fd, text, sizeof text);
+    } while (status == 503);
+    assert_int_equal(status, 201);
+    close(fd);
+}
+
+static void test_too_many_connections(void **state)
+{
+    (void)state;
+    int fds[CONNECTIONS + 1];
+    char text[4096];
+    for (int i = 0; i < CONNECTIONS; i++) {
+        fds[i] = connect_client();
+        ask(fds[i], "GET", "/livez", "");
+        assert_int_equal(answer(fds[i], text, sizeof text), 200);
+    }
+    fds[CONNECTIONS] = connect_client();
+    ask(fds[CONNECTIONS], "GET", "/livez", "");
+    assert_int_equal(answer(fds[CONNECTIONS], text, sizeof text), 503);
+    assert_non_null(strstr(text, "Retry-After: "));
+    assert_non_null(strstr(text, "Connection: close"));
+    for (int i = 0; i <= CONNECTIONS; i++) {
+        close(fds[i]);
+    }
+    int status;
+    do { /* until the server has seen them go */
+        status = round_trip("GET", "/livez", "");
+    } while (status == 503);
+    assert_int_equal(status, 200);
+}
+
+/* A body that is refused: small, it is passed over and the connection goes on; large or endless, it
+ * is cut off, with the reason. */
+static void test_refused_bodies(void **state)
+{
+    (void)state;
+    enum { LARGE = 8 << 20 };
+    static char piece[65536];
+    char text[4096];
+    int fd = connect_client();
+    ask(fd, "POST", "/v1/nothing", "some bytes");
+    assert_int_equal(answer(fd, text, sizeof text), 404);
+    assert_null(strstr(text, "Connection: close"));
+    ask(fd, "GET", "/livez", "");
+    assert_int_equal(answer(fd, text, sizeof text), 200);
+    close(fd);
+
+    memset(piece, ' ', sizeof piece);
+    fd = connect_client();
+    static const char chunked[] = "POST /v1/meshes/m/edits HTTP/1.1\r\nHost: localhost\r\n"
+                                  "Content-Type: application/json\r\n"
+                                  "Transfer-Encoding: chunked\r\n\r\n";
+    slow_advance(UINT64_MAX);
+    assert_int_equal(round_trip("PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}"), 201);
+    assert_true(send(fd, chunked, sizeof chunked - 1, MSG_NOSIGNAL) > 0);
+    for (size_t sent = 0; sent < 4 * (size_t)LARGE; sent += sizeof piece) {
+        if (send(fd, "10000\r\n", 7, MSG_NOSIGNAL) < 0 ||
+            send(fd, piece, sizeof piece, MSG_NOSIGNAL) < 0 ||
+            send(fd, "\r\n", 2, MSG_NOSIGNAL) < 0) {
+            break; /* cut off */
+        }
+    }
+    assert_int_equal(answer(fd, text, sizeof text), 413);
+    assert_non_null(strstr(text, "Connection: close"));
+    close(fd);
+
+    fd = connect_client();
+    static const char announced[] = "POST /v1/meshes/m/edits HTTP/1.1\r\nHost: localhost\r\n"
+                                    "Content-Type: application/json\r\nExpect: 100-continue\r\n"
+                                    "Content-Length: 1000000000\r\n\r\n";
+    assert_true(send(fd, announced, sizeof announced - 1, MSG_NOSIGNAL) > 0);
+    assert_int_equal(answer(fd, text, sizeof text), 413);
+    close(fd);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, start, stop)
+    const struct CMUnitTest tests[] = {
+        TEST(test_answers_wait_until_durable),
+        TEST(test_a_stop_ends_what_waits),
+        TEST(test_full_queue_is_503),
+        TEST(test_too_many_connections),
+        TEST(test_refused_bodies),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,303 @@
+/* The server's small parts: job pool, access log, the page's files, deadlines. */
+#include "tests/unit/fixture.h"
+
+#include "server/access_log.h"
+#include "server/assets.h"
+#include "server/clock.h"
+#include "server/http_deadline.h"
+#include "server/jobs.h"
+#include "server/random.h"
+
+#include <pthread.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* --- jobs --- */
+
+enum { JOBS = 100 };
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static int order[JOBS], done;
+
+static void note(void *context)
+{
+    pthread_mutex_lock(&lock);
+    order[done++] = *(const int *)context;
+    pthread_mutex_unlock(&lock);
+}
+
+static void test_jobs_run_in_order_and_to_the_end(void **state)
+{
+    (void)state;
+    int numbers[JOBS];
+    done = 0;
+    srv_jobs *jobs = srv_jobs_new(1, JOBS);
+    for (int i = 0; i < JOBS; i++) {
+        numbers[i] = i;
+        assert_true(srv_jobs_submit(jobs, note, &numbers[i]));
+    }
+    srv_jobs_free(jobs);
+    assert_int_equal(done, JOBS);
+    for (int i = 0; i < JOBS; i++) {
+        assert_int_equal(order[i], i);
+    }
+}
+
+/* --- access log --- */
+
+static const srv_access sample = {
+    .time = 1714564800.25,
+    .request_id = "r-1",
+    .method = "GET",
+    .path = "/a\"b\\c\x01\xe9",
+    .route = "/v1/meshes/{mesh}",
+    .status = 200,
+    .bytes_in = 1,
+    .bytes_out = 22,
+    .duration_us = 333,
+    .peer = "::1",
+};
+
+static void test_access_line(void **state)
+{
+    (void)state;
+    char line[SRV_LOG_LINE];
+    size_t length = srv_access_format(&sample, line);
+    assert_string_equal(line, "{\"time\":\"2024-05-01T12:00:00.250Z\",\"request_id\":\"r-1\","
+                              "\"method\":\"GET\",\"path\":\"/a\\u0022b\\u005cc\\u0001\\u00e9\","
+                              "\"route\":\"/v1/meshes/{mesh}\",\"status\":200,\"bytes_in\":1,"
+                              "\"bytes_out\":22,\"duration_us\":333,\"peer\":\"::1\"}\n");
+    assert_int_equal(length, strlen(line));
+
+    srv_access longest = sample;
+    memset(longest.path, 1, sizeof longest.path - 1);
+    memset(longest.request_id, 'x', SRV_REQUEST_ID);
+    memset(longest.method, 'M', SRV_METHOD);
+    longest.route = NULL;
+    length = srv_access_format(&longest, line);
+    assert_true(length < SRV_LOG_LINE);
+    assert_int_equal(length, strlen(line));
+    assert_int_equal(line[length - 1], '\n');
+    assert_non_null(strstr(line, "\"route\":\"-\""));
+}
+
+static void *free_log(void *log)
+{
+    srv_access_log_free(log);
+    return NULL;
+}
+
+/* Nobody reads until the ring has overflowed: lines and drops together are what was logged. */
+static void test_access_log_drops_and_counts(void **state)
+{
+    (void)state;
+    enum { RECORDS = 5000, RING = 4 };
+    static char text[2 << 20];
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    srv_access_log *log = srv_access_log_new(ends[1], RING);
+    for (int i = 0; i < RECORDS; i++) {
+        srv_access_log_add(log, &sample);
+    }
+    /* Freeing waits for the writer, and the writer for room in the pipe. */
+    pthread_t thread;
+    assert_int_equal(pthread_create(&thread, NULL, free_log, log), 0);
+    size_t got = 0;
+    unsigned long lines = 0, dropped = 0;
+    while (lines + dropped < RECORDS) {
+        ssize_t more = read(ends[0], text + got, sizeof text - 1 - got);
+        assert_true(more > 0);
+        got += (size_t)more;
+        text[got] = '\0';
+        lines = dropped = 0;
+        for (char *line = text, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+            char *drop = strstr(line, "\"dropped\":");
+            if (drop != NULL && drop < end) {
+                dropped += strtoul(drop + 10, NULL, 10);
+            } else {
+                lines++;
+            }
+        }
+    }
+    pthread_join(thread, NULL);
+    assert_int_equal(lines + dropped, RECORDS);
+    assert_true(lines >= 1);
+    close(ends[0]);
+    close(ends[1]);
+}
+
+/* --- the page --- */
+
+static void write_file(const char *folder, const char *name, const char *content)
+{
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(content, file);
+    fclose(file);
+}
+
+static void remove_files(const char *folder, const char *const *names)
+{
+    char path[256];
+    for (; *names != NULL; names++) {
+        snprintf(path, sizeof path, "%s/%s", folder, *names);
+        remove(path);
+    }
+    remove(folder);
+}
+
+typedef struct found {
+    const char *bytes, *type, *etag;
+    size_t length;
+    bool immutable;
+} found;
+
+static bool find(srv_assets *assets, const char *path, found *f)
+{
+    return srv_assets_find(assets, path, &f->bytes, &f->length, &f->type, &f->etag, &f->immutable);
+}
+
+static void test_assets(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/srv-assets-XXXXXX", inner[64], path[128], message[320];
+    assert_non_null(mkdtemp(folder));
+    snprintf(inner, sizeof inner, "%s/assets", folder);
+    assert_int_equal(mkdir(inner, 0700), 0);
+    write_file(folder, "index.html", "<p>hello");
+    write_file(folder, "secret.txt", "no");
+    write_file(inner, "app-ABCD1234.js", "1");
+    write_file(inner, "style.css", "");
+    write_file(inner, "sub-component.js", "2");
+    write_file(inner, ".hidden", "no");
+    snprintf(path, sizeof path, "%s/link.txt", inner);
+    assert_int_equal(symlink("../secret.txt", path), 0);
+    snprintf(path, sizeof path, "%s/fifo", inner);
+    assert_int_equal(mkfifo(path, 0600), 0);
+
+    srv_assets *assets = srv_assets_load(folder, message, sizeof message);
+    assert_string_equal(message, "");
+    found f, g;
+    assert_true(find(assets, "/", &f));
+    assert_int_equal(f.length, 8);
+    assert_memory_equal(f.bytes, "<p>hello", 8);
+    assert_string_equal(f.type, "text/html; charset=utf-8");
+    assert_false(f.immutable);
+    assert_true(find(assets, "/assets/app-ABCD1234.js", &g));
+    assert_true(g.immutable);
+    assert_string_equal(g.type, "text/javascript; charset=utf-8");
+    assert_string_not_equal(f.etag, g.etag);
+    assert_true(find(assets, "/assets/style.css", &g));
+    assert_int_equal(g.length, 0);
+    assert_true(find(assets, "/assets/sub-component.js", &g));
+    assert_false(g.immutable);
+    static const char *const absent[] = {
+        "/index.html",           "/secret.txt",       "/assets/link.txt",      "/assets/.hidden",
+        "/assets/fifo",          "/assets/",          "/assets/../index.html", "",
+        "/assets/../secret.txt", "/assets//style.css"};
+    for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) {
+        assert_false(find(assets, absent[i], &f));
+    }
+    srv_assets_free(assets);
+    static const char *const inside[] = {
+        "app-ABCD1234.js", "style.css", "sub-component.js", ".hidden", "link.txt", "fifo", NULL};
+    static const char *const outside[] = {"index.html", "secret.txt", NULL};
+    remove_files(inner, inside);
+    remove_files(folder, outside);
+
+    /* Gone: a notice, and a sentence about why. */
+    assets = srv_assets_load(folder, message, sizeof message);
+    assert_true(strlen(message) > 0);
+    assert_true(find(assets, "/", &f));
+    assert_non_null(strstr(f.bytes, "make page"));
+    srv_assets_free(assets);
+    assets = srv_assets_load(NULL, message, sizeof message);
+    assert_string_equal(message, "");
+    assert_true(find(assets, "/", &f));
+    srv_assets_free(assets);
+}
+
+/* --- deadlines --- */
+
+#define SECONDS(n) ((uint64_t)(n)*1000000)
+
+static void test_deadlines(void **state)
+{
+    (void)state;
+    static const srv_deadline_options o = {
+        .idle = 30, .head = 10, .grace = 5, .total = 100, .min_rate = 1000};
+    static const struct {
+        srv_stage stage;
+        uint64_t bytes, elapsed;
+        bool crowded, late;
+    } rows[] = {
+        {SRV_STAGE_IDLE, 0, 29, false, false},     {SRV_STAGE_IDLE, 0, 31, false, true},
+        {SRV_STAGE_IDLE, 0, 3, true, true},        {SRV_STAGE_IDLE, 0, 1, true, false},
+        {SRV_STAGE_HEAD, 0, 9, true, false},       {SRV_STAGE_HEAD, 0, 11, false, true},
+        {SRV_STAGE_BODY, 0, 5, false, false},      {SRV_STAGE_BODY, 0, 7, false, true},
+        {SRV_STAGE_BODY, 3000, 7, false, false},   {SRV_STAGE_BODY, 44000, 50, false, true},
+        {SRV_STAGE_BODY, 46000, 50, false, false}, {SRV_STAGE_BODY, 1 << 30, 101, false, true},
+        {SRV_STAGE_WORK, 0, 100000, true, false},  {SRV_STAGE_ANSWER, 0, 100000, true, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        srv_connection c = {0};
+        srv_connection_enter(&c, rows[i].stage, SECONDS(1000));
+        srv_connection_moved(&c, rows[i].bytes);
+        if (srv_connection_is_late(&c, &o, rows[i].crowded,
+                                   SECONDS(1000) + SECONDS(rows[i].elapsed)) != rows[i].late) {
+            fail_msg("row %zu", i);
+        }
+    }
+    /* Nothing may crash where a connection is not watched. */
+    srv_connection_enter(NULL, SRV_STAGE_BODY, 0);
+    srv_connection_moved(NULL, 1);
+}
+
+static void test_slow_readers(void **state)
+{
+    (void)state;
+    static const srv_deadline_options o = {.grace = 5, .min_rate = 1000};
+    srv_connection c = {0};
+    assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(1)));
+    assert_false(srv_connection_is_stuck(&c, &o, 100, 10, SECONDS(5)));
+    /* 6000 bytes in 5 seconds are enough, and begin a new window. */
+    assert_false(srv_connection_is_stuck(&c, &o, 100, 6000, SECONDS(6)));
+    assert_false(srv_connection_is_stuck(&c, &o, 100, 6100, SECONDS(10)));
+    assert_true(srv_connection_is_stuck(&c, &o, 100, 7000, SECONDS(11)));
+    /* A client that has taken everything is not slow, however long nothing comes. */
+    c = (srv_connection){0};
+    assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(1)));
+    assert_false(srv_connection_is_stuck(&c, &o, 0, 0, SECONDS(100)));
+    assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(200)));
+}
+
+static void test_random_ids(void **state)
+{
+    (void)state;
+    enum { IDS = 200, LENGTH = 10 };
+    static char ids[IDS][LENGTH + 1];
+    for (int i = 0; i < IDS; i++) {
+        srv_random_id(ids[i], LENGTH);
+        assert_int_equal(strlen(ids[i]), LENGTH);
+        for (int j = 0; j < i; j++) {
+            assert_string_not_equal(ids[i], ids[j]);
+        }
+    }
+    assert_true(srv_random() != srv_random());
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_jobs_run_in_order_and_to_the_end),
+        cmocka_unit_test(test_access_line),
+        cmocka_unit_test(test_access_log_drops_and_counts),
+        cmocka_unit_test(test_assets),
+        cmocka_unit_test(test_deadlines),
+        cmocka_unit_test(test_slow_readers),
+        cmocka_unit_test(test_random_ids),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
