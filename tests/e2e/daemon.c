@@ -186,11 +186,24 @@ int daemon_pid(const daemon_process *d)
     return (int)d->pid;
 }
 
-char *daemon_log(daemon_process *d)
+static int count(const char *log, const char *text)
+{
+    int times = 0;
+    for (const char *at = log; at != NULL && (at = strstr(at, text)) != NULL; at++) {
+        times++;
+    }
+    return times;
+}
+
+char *daemon_wait_log(daemon_process *d, const char *text, int times)
 {
     pthread_mutex_lock(&d->lock);
+    while (count(d->log, text) < times && !d->ended) {
+        pthread_cond_wait(&d->changed, &d->lock);
+    }
     char *copy = strdup(d->log == NULL ? "" : d->log);
     pthread_mutex_unlock(&d->lock);
+    assert_true(count(copy, text) >= times);
     return copy;
 }
 

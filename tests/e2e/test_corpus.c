@@ -1,0 +1,44 @@
+/* Real and hostile files, where the corpus lies beside the project: what its manifest expects of
+ * each is what the daemon does. Without the corpus there is nothing to show. */
+#include "tests/e2e/client.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define CHECKER "../shared/corpus/check_corpus.py"
+
+static void test_obj_and_off(void **state)
+{
+    (void)state;
+    if (access(CHECKER, R_OK) != 0) {
+        skip();
+    }
+    daemon_process *d = daemon_start(NULL);
+    char command[256], line[512], last[512] = "";
+    snprintf(command, sizeof command, "python3 " CHECKER " --base %s --only 'obj|off' 2>&1",
+             daemon_url(d));
+    FILE *output = popen(command, "r");
+    assert_non_null(output);
+    while (fgets(line, sizeof line, output) != NULL) {
+        print_message("%s", line);
+        memcpy(last, line, sizeof last);
+    }
+    int status = pclose(output);
+    assert_int_equal(daemon_stop(d), 0);
+    assert_int_equal(WEXITSTATUS(status), 0);
+    assert_non_null(strstr(last, " passed, 0 failed"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_obj_and_off)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,190 @@
+/* The daemon as a process: its options, its log, its signals, and what it does at its limits. */
+#include "tests/e2e/client.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static void expect_run(const char *const *arguments, int status, const char *words)
+{
+    char output[16384];
+    int got = daemon_run(arguments, output, sizeof output);
+    if (got != status || strstr(output, words) == NULL) {
+        fail_msg("%s ...: exit %d instead of %d, or no \"%s\" in:\n%s", arguments[0], got, status,
+                 words, output);
+    }
+}
+
+static void test_options(void **state)
+{
+    (void)state;
+    expect_run(ARGUMENTS("--version"), 0, "hedged ");
+    expect_run(ARGUMENTS("--help"), 0, "--listen");
+    expect_run(ARGUMENTS("--help"), 0, "HEDGE_");
+    expect_run(ARGUMENTS("--print-config", "--workers", "1"), 0, "workers");
+    expect_run(ARGUMENTS("--no-such-option"), 2, "no-such-option");
+    expect_run(ARGUMENTS("--workers", "many"), 2, "many");
+    expect_run(ARGUMENTS("--listen", "nowhere"), 2, "nowhere");
+    expect_run(ARGUMENTS("--listen", "0.0.0.0:0"), 2, "other machines");
+}
+
+static void test_port_in_use(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(NULL);
+    const char *address = strstr(daemon_url(d), "127");
+    char output[4096];
+    assert_int_equal(daemon_run(ARGUMENTS("--listen", address), output, sizeof output), 1);
+    assert_non_null(strstr(output, address));
+    assert_int_equal(daemon_run(ARGUMENTS("--healthcheck", daemon_url(d)), output, sizeof output),
+                     0);
+    char url[64];
+    snprintf(url, sizeof url, "%s", daemon_url(d));
+    assert_int_equal(daemon_stop(d), 0);
+    assert_int_not_equal(daemon_run(ARGUMENTS("--healthcheck", url), output, sizeof output), 0);
+}
+
+static void test_samples_and_log(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(ARGUMENTS("--samples"));
+    client *c = client_new(d);
+    reply r = client_get(c, "/v1/meshes");
+    assert_int_equal(r.status, 200);
+    assert_true(cJSON_GetArraySize(reply_find(&r, "items")) >= 3);
+    reply_free(&r);
+    r = client_send(c, "GET", "/livez", NULL, 0, ARGUMENTS("X-Request-Id: my-own.id_1"));
+    char id[128];
+    assert_string_equal(reply_header(&r, "X-Request-Id", id, sizeof id), "my-own.id_1");
+    reply_free(&r);
+    r = client_send(c, "GET", "/livez", NULL, 0, ARGUMENTS("X-Request-Id: bad\"id"));
+    assert_string_not_equal(reply_header(&r, "X-Request-Id", id, sizeof id), "bad\"id");
+    reply_free(&r);
+    client_free(c);
+    kill(daemon_pid(d), SIGHUP); /* not a reason to stop */
+    c = client_new(d);
+    r = client_get(c, "/livez");
+    assert_int_equal(r.status, 200);
+    reply_free(&r);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* Each request leaves one line of JSON, written by the time the daemon has ended. */
+static void test_log_lines(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(NULL);
+    client *c = client_new(d);
+    for (int i = 0; i < 20; i++) {
+        reply r = client_get(c, "/version");
+        assert_int_equal(r.status, 200);
+        reply_free(&r);
+    }
+    client_free(c);
+    char *log = daemon_wait_log(d, "\"route\":\"/version\"", 20);
+    const char *line = strstr(log, "{\"time\"");
+    cJSON *json = cJSON_Parse(line);
+    assert_non_null(json);
+    assert_int_equal(cJSON_GetObjectItem(json, "status")->valueint, 200);
+    cJSON_Delete(json);
+    free(log);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+typedef struct worker {
+    const daemon_process *daemon;
+    int id, answered;
+} worker;
+
+/* Writes until the daemon is gone. Whatever was answered was a whole answer. */
+static void *edit_on(void *context)
+{
+    worker *w = context;
+    client *c = client_new(w->daemon);
+    char path[64];
+    snprintf(path, sizeof path, "/v1/meshes/m%d/edits", w->id);
+    for (;;) {
+        reply r = client_post(c, path, "{\"op\":\"face_poke\",\"face\":0}");
+        bool stopped = r.status != 200;
+        w->answered += !stopped;
+        reply_free(&r);
+        if (stopped) {
+            break;
+        }
+    }
+    client_free(c);
+    return NULL;
+}
+
+static void test_stop_under_load(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(NULL);
+    client *c = client_new(d);
+    enum { WORKERS = 4 };
+    worker workers[WORKERS];
+    pthread_t threads[WORKERS];
+    for (int i = 0; i < WORKERS; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "/v1/meshes/m%d", i);
+        reply r = client_send(c, "PUT", path, "{\"shape\":\"cube\"}", 16, NULL);
+        assert_int_equal(r.status, 201);
+        reply_free(&r);
+        workers[i] = (worker){d, i, 0};
+        assert_int_equal(pthread_create(&threads[i], NULL, edit_on, &workers[i]), 0);
+    }
+    reply r = client_get(c, "/v1/meshes/m0"); /* they are at work by the time this is answered */
+    assert_int_equal(r.status, 200);
+    reply_free(&r);
+    client_free(c);
+    /* The workers use the daemon's facts until they have seen it go. */
+    kill(daemon_pid(d), SIGTERM);
+    for (int i = 0; i < WORKERS; i++) {
+        pthread_join(threads[i], NULL);
+    }
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+static void test_bounds_of_the_store(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(ARGUMENTS("--max-meshes", "2", "--max-upload", "1024"));
+    client *c = client_new(d);
+    const int expected[3] = {201, 201, 507};
+    for (int i = 0; i < 3; i++) {
+        reply r = client_post(c, "/v1/meshes", "{\"shape\":\"cube\"}");
+        assert_int_equal(r.status, expected[i]);
+        if (r.status == 507) {
+            assert_string_equal(reply_string(&r, "code"), "too_many_meshes");
+        }
+        reply_free(&r);
+    }
+    char big[2001];
+    memset(big, ' ', 2000);
+    big[2000] = '\0';
+    reply r = client_post(c, "/v1/meshes", big);
+    assert_int_equal(r.status, 413);
+    reply_free(&r);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_options),         cmocka_unit_test(test_port_in_use),
+        cmocka_unit_test(test_samples_and_log), cmocka_unit_test(test_log_lines),
+        cmocka_unit_test(test_stop_under_load), cmocka_unit_test(test_bounds_of_the_store),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
