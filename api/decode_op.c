@@ -264,7 +264,7 @@ static bool check_given(const decoder *d)
         const he_param *param = &d->op->params[i];
         bool given = d->call->args[i].given, needed = (param->flags & HE_REQUIRED) != 0;
         char names[160] = "";
-        strncat(names, param->name, sizeof names - 1);
+        strncat(names, param->name, sizeof names - strlen(names) - 1);
         for (size_t j = 0; param->group != 0 && j < he_op_params(d->op); j++) {
             const he_param *other = &d->op->params[j];
             if (j == i || other->group != param->group) {

@@ -70,7 +70,8 @@ static void fill(he_soup *soup, const order *o)
 {
     he_soup_init(soup, NULL);
     for (uint32_t i = 0; i < VERTICES; i++) {
-        require(he_soup_add_vertex(soup, (he_vec3){i % SIDE, i / SIDE, i % 7}, NULL));
+        uint32_t row = i / SIDE;
+        require(he_soup_add_vertex(soup, (he_vec3){i % SIDE, row, i % 7}, NULL));
     }
     for (uint32_t k = 0; k < FACES; k++) {
         uint32_t f = o->face[k], q = f / 2, i = q / SIDE, j = q % SIDE;

@@ -1,0 +1,212 @@
+# hedge - everything is done from here; `make help` lists the targets.
+#
+# A configuration is a build folder: release in build/, asan, tsan and coverage in build/NAME.
+# Sources are found by pattern, so a new file needs no line here. What must be installed is checked
+# by .ci/deps before the first compilation; pkg-config therefore runs inside recipes only.
+
+CONFIG ?= release
+BUILD  := $(if $(filter release,$(CONFIG)),build,build/$(CONFIG))
+PREFIX ?= /usr/local
+WERROR ?= -Werror
+SHELL  := /bin/sh
+.DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+# As many jobs as cores, unless the caller said otherwise.
+ifeq ($(MAKELEVEL)$(filter -j% --jobserver%,$(MAKEFLAGS)),0)
+MAKEFLAGS += -j$(shell nproc)
+endif
+
+# V=1 shows the commands whole.
+Q        := $(if $(V),,@)
+CC       := gcc
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes \
+            -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
+CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
+CFLAGS   := -std=c11 -pthread -g $(WARNINGS) $(EXTRA_CFLAGS)
+LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
+# Lazy: evaluated when a program is linked, after .ci/deps has run.
+DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson) -lm
+TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
+
+# Asserts stay in the release: a daemon that stops is better than one that overwrites a mesh.
+# What -O3 inlines makes gcc guess wrongly about values set through a pointer; lint's analyzer looks
+# for reads of uninitialized memory instead.
+ifeq ($(CONFIG),release)
+CFLAGS  += -O3 -fno-math-errno -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 \
+           -Wno-maybe-uninitialized
+LDFLAGS += -Wl,-z,relro,-z,now
+else ifeq ($(CONFIG),asan)
+SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+CFLAGS  += -O1 $(SANITIZE)
+LDFLAGS += $(SANITIZE)
+else ifeq ($(CONFIG),tsan)
+SANITIZE := -fsanitize=thread -fno-omit-frame-pointer
+CFLAGS  += -O1 $(SANITIZE)
+LDFLAGS += $(SANITIZE)
+else ifeq ($(CONFIG),coverage)
+CFLAGS  += -O0 --coverage -fprofile-update=atomic
+LDFLAGS += --coverage
+else
+$(error CONFIG is release, asan, tsan or coverage, not "$(CONFIG)")
+endif
+
+# --- what there is -------------------------------------------------------------------------
+
+object      = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
+CORE_C     := $(sort $(wildcard core/*/*.c))
+API_C      := $(sort $(wildcard api/*.c))
+SERVER_C   := $(sort $(filter-out server/main.c,$(wildcard server/*.c)))
+SUITES     := unit model api e2e
+PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
+SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
+                $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
+BENCH_C    := $(sort $(wildcard tests/bench/*.c))
+HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h))
+ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
+              $(BENCH_C)
+
+LIBRARIES  := $(BUILD)/libserver.a $(BUILD)/libapi.a $(BUILD)/libcore.a
+HEDGED     := $(BUILD)/hedged
+PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
+BENCHES    := $(patsubst %.c,$(BUILD)/%,$(BENCH_C))
+PAGE       := build/web
+PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
+STAMPS     := build/.stamps
+
+.PHONY: all help run page programs test lint format asan tsan coverage proof bench install clean
+
+all: $(HEDGED) ## the daemon, build/hedged (default)
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1|\2/p' Makefile | \
+	    awk -F'|' '{ printf "%-18s %s\n", $$1, $$2 }'
+
+run: $(HEDGED) page ## build the daemon and its page, then serve sample meshes
+	exec $(HEDGED) --samples $(RUN_FLAGS)
+
+# --- what must be installed ----------------------------------------------------------------
+# One after another: two apt-get at once would wait for each other's lock.
+
+$(STAMPS)/build: .ci/deps
+	@sh .ci/deps build
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/web: .ci/deps | $(STAMPS)/build
+	@sh .ci/deps web
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/test: .ci/deps | $(STAMPS)/web
+	@sh .ci/deps test
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/lint: .ci/deps | $(STAMPS)/test
+	@sh .ci/deps lint
+	@mkdir -p $(@D) && touch $@
+
+# --- compiling -----------------------------------------------------------------------------
+
+$(BUILD)/obj/tests/%.o: tests/%.c Makefile | $(STAMPS)/test
+	@mkdir -p $(@D)
+	@echo "CC $<"
+	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(BUILD)/obj/%.o: %.c Makefile | $(STAMPS)/build
+	@mkdir -p $(@D)
+	@echo "CC $<"
+	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+# Made anew each time, so that the object of a deleted source does not stay inside; appended to, since
+# two folders may hold sources of one name.
+$(BUILD)/libcore.a: $(call object,$(CORE_C))
+$(BUILD)/libapi.a: $(call object,$(API_C))
+$(BUILD)/libserver.a: $(call object,$(SERVER_C))
+$(BUILD)/libsupport.a: $(call object,$(SUPPORT_C))
+$(BUILD)/%.a:
+	@mkdir -p $(@D)
+	@rm -f $@
+	@echo "AR $@"
+	$(Q)ar qcs $@ $^
+
+$(HEDGED): $(call object,server/main.c) $(LIBRARIES)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
+
+$(PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/libsupport.a $(LIBRARIES) | $(STAMPS)/test
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
+
+$(BENCHES): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
+
+-include $(patsubst %.o,%.d,$(call object,$(ALL_C)))
+
+# --- the page ------------------------------------------------------------------------------
+
+page: $(STAMPS)/page ## the browser's page, build/web
+
+$(STAMPS)/modules: web/package.json web/package-lock.json | $(STAMPS)/web
+	cd web && npm ci --no-audit --no-fund
+	@touch $@
+
+$(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
+	cd web && WEB_OUT=$(abspath $(PAGE)) npm run build
+	@touch $@
+
+# --- tests ---------------------------------------------------------------------------------
+# TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
+
+TESTS   ?= $(SUITES) web
+CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
+WITH_WEB = $(filter web,$(TESTS))
+WITH_DAEMON = $(filter e2e web tests/e2e/%,$(TESTS))
+
+programs: $(PROGRAMS) ## all test programs, without running them
+
+test: $(if $(WITH_DAEMON),$(HEDGED)) $(CHOSEN) $(if $(WITH_WEB),page) | $(STAMPS)/test ## all tests, with their counts
+	@HEDGED=$(abspath $(HEDGED)) \
+	    sh .ci/run-tests $(BUILD)/logs $(if $(WITH_WEB),--web) $(CHOSEN)
+
+asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
+	+$(MAKE) CONFIG=asan TESTS="$(filter-out web,$(TESTS))" TEST_SECONDS=900 test
+
+# The kernel has no threads: only what runs on the daemon's is worth the time here.
+tsan: ## the threaded tests with ThreadSanitizer
+	+$(MAKE) CONFIG=tsan TESTS="api e2e $(wildcard tests/unit/test_srv_*.c)" \
+	    TEST_SECONDS=900 test
+
+coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
+	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
+	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web,$(TESTS))" TEST_SECONDS=900 test
+	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
+	    --print-summary --txt build/coverage/report.txt build/coverage/obj
+
+# The long versions of what .ci/run does once.
+ROUNDS ?= 10
+proof: ## ROUNDS=10 of random edits: a million each, a tenth of that under ASan
+	+$(MAKE) $(BUILD)/tests/model/test_model
+	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
+	sh .ci/proof $(ROUNDS)
+
+bench: $(BENCHES) ## the kernel's figures
+	@for program in $(BENCHES); do echo "== $$program"; $$program || exit 1; done
+
+# --- style ---------------------------------------------------------------------------------
+
+lint: $(LIBRARIES) | $(STAMPS)/lint ## formatting, names, directions of includes, static analysis
+	@sh .ci/lint "$(CPPFLAGS) $(CFLAGS)" $(BUILD) $(HEADERS) $(ALL_C)
+
+format: | $(STAMPS)/lint ## rewrite all C files as .clang-format says
+	clang-format -i $(HEADERS) $(ALL_C)
+
+# --- the rest ------------------------------------------------------------------------------
+
+install: $(HEDGED) page ## to DESTDIR and PREFIX (/usr/local)
+	install -D -m 755 $(HEDGED) $(DESTDIR)$(PREFIX)/bin/hedged
+	find $(PAGE) -type f | while read -r file; do \
+	    install -D -m 644 "$$file" "$(DESTDIR)$(PREFIX)/share/hedge/web/$${file#$(PAGE)/}" || exit 1; \
+	done
+
+clean: ## remove build/
+	rm -rf build

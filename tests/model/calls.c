@@ -1,0 +1,592 @@
+#include "model/calls.h"
+
+#include "mesh/walk.h"
+#include "model/arguments.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+/* --- the rows ------------------------------------------------------------------------------ */
+
+static bool draw_vertex_add(md_draft *d)
+{
+    md_give_points(d, "position", 1, false);
+    return true;
+}
+
+static uint64_t play_vertex_add(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    return or_vertex_add(o, md_get(c, "position")->points[0]);
+}
+
+static bool draw_vertex_move(md_draft *d)
+{
+    uint32_t n = md_pick_some(d, "vertex", "vertices", HE_VERTEX, 4);
+    bool each = n > 1 && md_chance(d->r, 50);
+    uint32_t points = each ? n : 1;
+    if (each && he_op_declares(d->c->op, HE_BAD_VALUE) && md_chance(d->r, 10)) {
+        points++;
+    }
+    md_give_points(d, md_chance(d->r, 50) ? "to" : "by", points, each);
+    return true;
+}
+
+static uint64_t play_vertex_move(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *v = md_get(c, "vertex");
+    const he_arg *to = md_get(c, "to");
+    const he_arg *by = md_get(c, "by");
+    const he_arg *where = to->given ? to : by;
+    uint64_t refused = md_require_all(o, HE_VERTEX, v);
+    if (where->list && where->count != v->count) {
+        refused |= OR_BIT(HE_BAD_VALUE);
+    }
+    for (size_t i = 0; i < v->count && refused == 0; i++) {
+        he_vec3 p = where->points[where->list ? i : 0];
+        if (by->given) {
+            he_vec3 at = o->vertex[v->ids[i]].at;
+            p = (he_vec3){at.x + p.x, at.y + p.y, at.z + p.z};
+        }
+        refused |= or_vertex_move(o, v->ids[i], p);
+    }
+    return refused;
+}
+
+static bool draw_vertex_delete(md_draft *d)
+{
+    md_give_id(d, "vertex", md_pick(d, HE_VERTEX));
+    if (md_chance(d->r, 50)) {
+        md_give_flag(d, "keep_isolated", md_chance(d->r, 60));
+    }
+    return true;
+}
+
+static uint64_t play_vertex_delete(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint64_t refused = or_require(o, HE_VERTEX, md_get(c, "vertex")->id);
+    return refused != 0
+               ? refused
+               : or_vertex_delete(o, md_get(c, "vertex")->id, md_get(c, "keep_isolated")->flag);
+}
+
+static bool draw_vertex_split(md_draft *d)
+{
+    uint32_t v = md_pick(d, HE_VERTEX);
+    uint32_t around[OR_VERTICES];
+    uint32_t n = 0;
+    if (or_require(d->o, HE_VERTEX, v) == 0) {
+        n = or_neighbours(d->o, v, around, OR_VERTICES);
+    }
+    md_give_id(d, "vertex", v);
+    for (int side = 0; side < 2; side++) {
+        uint32_t x =
+            n > 0 && md_chance(d->r, 90) ? around[md_below(d->r, n)] : md_pick(d, HE_VERTEX);
+        bool none = md_chance(d->r, n > 0 && or_on_boundary(d->o, v) ? 25 : 5);
+        md_give_id(d, side == 0 ? "left" : "right", none ? HE_NONE : x);
+    }
+    if (md_chance(d->r, 60) || (d->c->op->params[md_index(d->c, "to")].flags & HE_REQUIRED) != 0) {
+        md_give_points(d, "to", 1, false);
+    }
+    return true;
+}
+
+static uint64_t play_vertex_split(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint32_t left = md_get(c, "left")->id;
+    uint32_t right = md_get(c, "right")->id;
+    uint64_t refused = or_require(o, HE_VERTEX, md_get(c, "vertex")->id);
+    uint64_t sides = left == HE_NONE ? 0 : or_require(o, HE_VERTEX, left);
+    sides |= right == HE_NONE ? 0 : or_require(o, HE_VERTEX, right);
+    if (sides != 0) {
+        /* Some other reason that holds as well may be noticed first. */
+        bool null = left == HE_NONE || right == HE_NONE;
+        uint32_t v = md_get(c, "vertex")->id;
+        bool there = refused == 0;
+        refused |= sides | OR_BIT(HE_NOT_NEIGHBOUR);
+        refused |= left == right ? OR_BIT(HE_REPEATED_ELEMENT) : 0;
+        refused |= there && or_fans(o, v) > 1 ? OR_BIT(HE_BOWTIE) : 0;
+        refused |= there && null && !or_on_boundary(o, v) ? OR_BIT(HE_NOT_BOUNDARY) : 0;
+    }
+    const he_arg *to = md_get(c, "to");
+    return refused != 0 ? refused
+                        : or_vertex_split(o, md_get(c, "vertex")->id, left, right,
+                                          to->given ? to->points : NULL);
+}
+
+static bool draw_face_add(md_draft *d)
+{
+    uint32_t v[MD_LIST];
+    uint32_t n = 0;
+    uint32_t h = md_boundary_halfedge(d);
+    switch (md_is_live_boundary(d->m, h) ? md_below(d->r, 6) : md_below(d->r, 3)) {
+    case 0: /* any vertices */
+        n = md_from(d->r, 2, 5);
+        for (uint32_t i = 0; i < n; i++) {
+            v[i] = md_pick(d, HE_VERTEX);
+        }
+        break;
+    case 1: /* the other side of a face, or the same side */
+    {
+        uint32_t f = md_live(d, HE_FACE);
+        if (or_require(d->o, HE_FACE, f) != 0 || d->o->face[f].count > MD_LIST) {
+            return false;
+        }
+        bool same = md_chance(d->r, 20);
+        n = d->o->face[f].count;
+        for (uint32_t i = 0; i < n; i++) {
+            v[i] = d->o->face[f].v[same ? i : n - 1 - i];
+        }
+        break;
+    }
+    case 2: /* vertices on the boundary or isolated */
+        n = md_from(d->r, 3, 4);
+        for (uint32_t i = 0; i < n; i++) {
+            v[i] = md_live(d, HE_VERTEX);
+            for (int tries = 0; tries < 20 && or_require(d->o, HE_VERTEX, v[i]) == 0 &&
+                                !or_on_boundary(d->o, v[i]);
+                 tries++) {
+                v[i] = md_live(d, HE_VERTEX);
+            }
+        }
+        break;
+    default: /* a run along a hole, closed by a new side or by new corners */
+    {
+        he_halfedge at = {h};
+        uint32_t run = md_from(d->r, 2, 5);
+        for (uint32_t i = 0; i < run && (i == 0 || at.i != h); i++) {
+            v[n++] = he_origin(d->m, at).i;
+            at = he_next(d->m, at);
+        }
+        if (n < 3 || md_chance(d->r, 20)) {
+            v[n++] = md_live(d, HE_VERTEX);
+        }
+        break;
+    }
+    }
+    if (n > 0 && md_chance(d->r, 4)) {
+        v[md_below(d->r, n)] = v[0];
+    }
+    md_give_ids(d, "vertices", v, n, true);
+    return true;
+}
+
+static uint64_t play_face_add(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *v = md_get(c, "vertices");
+    uint64_t refused = 0;
+    for (size_t i = 0; i < v->count; i++) {
+        refused |= or_require(o, HE_VERTEX, v->ids[i]);
+        for (size_t k = 0; k < i; k++) {
+            refused |= v->ids[i] == v->ids[k] ? OR_BIT(HE_REPEATED_CORNER) : 0;
+        }
+    }
+    if (refused != 0) {
+        return refused | (v->count < 3 ? OR_BIT(HE_TOO_FEW_CORNERS) : 0);
+    }
+    return or_face_add(o, v->ids, (uint32_t)v->count);
+}
+
+static bool draw_face_delete(md_draft *d)
+{
+    (void)md_pick_some(d, "face", "faces", HE_FACE, 3);
+    if (md_chance(d->r, 50)) {
+        md_give_flag(d, "keep_isolated", md_chance(d->r, 60));
+    }
+    return true;
+}
+
+static uint64_t play_face_delete(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *f = md_get(c, "face");
+    uint64_t refused = md_require_all(o, HE_FACE, f);
+    return refused != 0
+               ? refused
+               : or_face_delete(o, f->ids, (uint32_t)f->count, md_get(c, "keep_isolated")->flag);
+}
+
+/* Corners are named by vertex or by the half-edge that leaves them. */
+static const char *const split_corner[2][2] = {{"from", "from_halfedge"}, {"to", "to_halfedge"}};
+
+static bool draw_face_split(md_draft *d)
+{
+    uint32_t f = md_pick(d, HE_FACE);
+    for (int tries = 0; tries < 4 && or_require(d->o, HE_FACE, f) == 0 && d->o->face[f].count == 3;
+         tries++) {
+        f = md_live(d, HE_FACE);
+    }
+    md_give_id(d, "face", f);
+    bool there = or_require(d->o, HE_FACE, f) == 0;
+    for (int side = 0; side < 2; side++) {
+        uint32_t v = md_pick(d, HE_VERTEX);
+        uint32_t h = md_pick(d, HE_HALFEDGE);
+        if (there && md_chance(d->r, 93)) {
+            v = d->o->face[f].v[md_below(d->r, d->o->face[f].count)];
+            uint32_t e = d->o->joined[v][or_after(&d->o->face[f], v)];
+            h = 2 * e + (d->o->edge[e].a != v);
+        }
+        bool by_vertex = md_chance(d->r, 60);
+        md_give_id(d, split_corner[side][by_vertex ? 0 : 1], by_vertex ? v : h);
+    }
+    return true;
+}
+
+static uint64_t play_face_split(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint32_t f = md_get(c, "face")->id;
+    uint32_t corner[2];
+    uint64_t refused = or_require(o, HE_FACE, f);
+    uint64_t missing = 0;
+    for (int side = 0; side < 2; side++) {
+        const he_arg *v = md_get(c, split_corner[side][0]);
+        const he_arg *h = md_get(c, split_corner[side][1]);
+        corner[side] = v->id;
+        missing |= v->given ? or_require(o, HE_VERTEX, v->id) : or_require(o, HE_HALFEDGE, h->id);
+        if (h->given && missing == 0) {
+            const or_edge *e = &o->edge[h->id / 2];
+            uint32_t a = h->id % 2 == 0 ? e->a : e->b;
+            uint32_t b = h->id % 2 == 0 ? e->b : e->a;
+            corner[side] = a;
+            if (o->left[a][b] != f) {
+                missing |= OR_BIT(HE_NOT_A_CORNER);
+            }
+        }
+    }
+    refused |= missing;
+    if (refused != 0) {
+        /* With something amiss, that both corners are one and the same may be noticed first. */
+        return refused | OR_BIT(HE_NOT_A_CORNER) | OR_BIT(HE_SAME_CORNER);
+    }
+    return or_face_split(o, f, corner[0], corner[1]);
+}
+
+static bool draw_edge(md_draft *d)
+{
+    md_give_id(d, "edge", md_pick(d, HE_EDGE));
+    return true;
+}
+
+/* Faces beside a live edge, or a face, must not outgrow the oracle. */
+static bool edge_has_room(const or_mesh *o, uint32_t e, uint32_t most)
+{
+    uint32_t corners = 0;
+    if (or_require(o, HE_EDGE, e) != 0) {
+        return true;
+    }
+    uint32_t f = o->left[o->edge[e].a][o->edge[e].b];
+    uint32_t g = o->left[o->edge[e].b][o->edge[e].a];
+    corners += f == OR_NONE ? 0 : o->face[f].count;
+    corners += g == OR_NONE ? 0 : o->face[g].count;
+    return corners < most;
+}
+
+static bool draw_face_join(md_draft *d)
+{
+    return draw_edge(d) && edge_has_room(d->o, md_get(d->c, "edge")->id, OR_CORNERS);
+}
+
+static uint64_t play_face_join(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint64_t refused = or_require(o, HE_EDGE, md_get(c, "edge")->id);
+    return refused != 0 ? refused : or_face_join(o, md_get(c, "edge")->id);
+}
+
+static bool draw_face_poke(md_draft *d)
+{
+    md_give_id(d, "face", md_pick(d, HE_FACE));
+    if (md_chance(d->r, 50)) {
+        md_give_points(d, "position", 1, false);
+    }
+    return true;
+}
+
+static uint64_t play_face_poke(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    uint32_t f = md_get(c, "face")->id;
+    const he_arg *at = md_get(c, "position");
+    uint64_t refused = or_require(o, HE_FACE, f);
+    if (refused != 0) {
+        return refused;
+    }
+    uint32_t start = he_origin(m, he_face_halfedge(m, (he_face){f})).i;
+    return or_face_poke(o, f, start, at->given ? at->points : NULL);
+}
+
+static bool draw_face_triangulate(md_draft *d)
+{
+    (void)md_pick_some(d, "face", "faces", HE_FACE, 3);
+    return true;
+}
+
+static uint64_t play_face_triangulate(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    const he_arg *f = md_get(c, "face");
+    uint64_t refused = md_require_all(o, HE_FACE, f);
+    if (refused != 0) {
+        return refused;
+    }
+    uint32_t start[MD_LIST];
+    for (size_t i = 0; i < f->count; i++) {
+        start[i] = he_origin(m, he_face_halfedge(m, (he_face){f->ids[i]})).i;
+    }
+    return or_face_triangulate(o, f->ids, start, (uint32_t)f->count);
+}
+
+static bool draw_hole_fill(md_draft *d)
+{
+    uint32_t loop[OR_CORNERS];
+    uint32_t h = md_chance(d->r, 85) ? md_boundary_halfedge(d) : md_pick(d, HE_HALFEDGE);
+    md_give_id(d, "halfedge", h);
+    if (md_chance(d->r, 80)) {
+        he_arg *method = &d->c->args[md_index(d->c, "method")];
+        method->given = true;
+        method->choice = (int)md_below(d->r, 3);
+    }
+    return !md_is_live_boundary(d->m, h) || md_hole(d->m, h, loop) != 0;
+}
+
+static uint64_t play_hole_fill(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    static const char *const names[] = {"polygon", "fan", "triangulate"};
+    uint32_t h = md_get(c, "halfedge")->id;
+    uint64_t refused = or_require(o, HE_HALFEDGE, h);
+    if (refused != 0) {
+        return refused;
+    }
+    uint32_t a = h % 2 == 0 ? o->edge[h / 2].a : o->edge[h / 2].b;
+    uint32_t b = h % 2 == 0 ? o->edge[h / 2].b : o->edge[h / 2].a;
+    if (o->left[a][b] != OR_NONE) {
+        return OR_BIT(HE_NOT_BOUNDARY);
+    }
+    size_t i = md_index(c, "method");
+    const char *choice = c->op->params[i].choices[c->args[i].choice];
+    or_fill method = OR_POLYGON;
+    while (strcmp(names[method], choice) != 0) {
+        method++;
+        assert(method <= OR_TRIANGULATE);
+    }
+    uint32_t loop[OR_CORNERS];
+    uint32_t count = md_hole(m, h, loop);
+    return or_hole_fill(o, loop, count, method);
+}
+
+static bool draw_edge_cut(md_draft *d)
+{
+    if (md_chance(d->r, 70)) {
+        md_give_number(d, "t", md_unit(d->r) * 0.98 + 0.01);
+    }
+    return draw_edge(d) && edge_has_room(d->o, md_get(d->c, "edge")->id, OR_CORNERS - 2);
+}
+
+static uint64_t play_edge_bisect(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint64_t refused = or_require(o, HE_EDGE, md_get(c, "edge")->id);
+    return refused != 0 ? refused
+                        : or_edge_bisect(o, md_get(c, "edge")->id, md_get(c, "t")->number);
+}
+
+static uint64_t play_edge_split(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint64_t refused = or_require(o, HE_EDGE, md_get(c, "edge")->id);
+    return refused != 0 ? refused : or_edge_split(o, md_get(c, "edge")->id, md_get(c, "t")->number);
+}
+
+static bool draw_edge_join(md_draft *d)
+{
+    uint32_t v = md_pick(d, HE_VERTEX);
+    uint32_t issued = he_mesh_issued(d->m, HE_VERTEX);
+    if (md_chance(d->r, 70)) {
+        for (uint32_t i = 0; i < issued; i++) {
+            uint32_t x = (v % issued + i) % issued;
+            if (d->o->vertex[x].alive && or_degree(d->o, x) == 2) {
+                v = x;
+                break;
+            }
+        }
+    }
+    md_give_id(d, "vertex", v);
+    return true;
+}
+
+static uint64_t play_edge_join(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint64_t refused = or_require(o, HE_VERTEX, md_get(c, "vertex")->id);
+    return refused != 0 ? refused : or_edge_join(o, md_get(c, "vertex")->id);
+}
+
+static uint64_t play_edge_flip(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    uint64_t refused = or_require(o, HE_EDGE, md_get(c, "edge")->id);
+    return refused != 0 ? refused : or_edge_flip(o, md_get(c, "edge")->id);
+}
+
+static bool draw_edge_collapse(md_draft *d)
+{
+    if (md_chance(d->r, 60)) {
+        md_give_id(d, "halfedge", md_pick(d, HE_HALFEDGE));
+    } else {
+        md_give_id(d, "edge", md_pick(d, HE_EDGE));
+    }
+    switch (md_below(d->r, 4)) {
+    case 0:
+        break;
+    case 1:
+        md_give_points(d, "to", 1, false);
+        break;
+    case 2:
+        md_give_number(d, "t", md_below(d->r, 2));
+        break;
+    default:
+        md_give_number(d, "t", md_unit(d->r));
+        break;
+    }
+    return true;
+}
+
+static uint64_t play_edge_collapse(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *halfedge = md_get(c, "halfedge");
+    const he_arg *edge = md_get(c, "edge");
+    const he_arg *to = md_get(c, "to");
+    uint64_t refused = halfedge->given ? or_require(o, HE_HALFEDGE, halfedge->id)
+                                       : or_require(o, HE_EDGE, edge->id);
+    if (refused != 0) {
+        return refused;
+    }
+    const or_edge *e = &o->edge[halfedge->given ? halfedge->id / 2 : edge->id];
+    bool turned = halfedge->given && halfedge->id % 2 == 1;
+    return or_edge_collapse(o, turned ? e->b : e->a, turned ? e->a : e->b, md_get(c, "t")->number,
+                            to->given ? to->points : NULL);
+}
+
+/* A turn about z, a shift, and now and then a mirror: what it does many times over stays small. */
+static bool draw_transform(md_draft *d)
+{
+    double angle = md_unit(d->r) * 6;
+    double mirror = md_chance(d->r, 20) ? -1 : 1;
+    const double matrix[16] = {cos(angle), -sin(angle), 0,      md_unit(d->r) - 0.5,
+                               sin(angle), cos(angle),  0,      md_unit(d->r) - 0.5,
+                               0,          0,           mirror, md_unit(d->r) - 0.5,
+                               0,          0,           0,      1};
+    he_arg *arg = &d->c->args[md_index(d->c, "matrix")];
+    arg->given = true;
+    memcpy(arg->matrix, matrix, sizeof matrix);
+    if (md_chance(d->r, 5)) {
+        /* Everything that is not near the plane x = 0 leaves the range of doubles. */
+        bool overflows = false;
+        for (uint32_t v = 0; v < d->o->vertices; v++) {
+            overflows = overflows || (d->o->vertex[v].alive && d->o->vertex[v].at.x > 0.2);
+        }
+        arg->matrix[0] = overflows ? 1.7e308 : 1;
+        arg->matrix[1] = 0;
+        arg->matrix[3] = overflows ? 1.7e308 : 0;
+        return true;
+    }
+    if (md_chance(d->r, 60)) {
+        const he_param *p = &d->c->op->params[md_index(d->c, "vertices")];
+        const char *many = p->plural != NULL ? p->plural : p->name;
+        (void)md_pick_some(d, p->name, many, HE_VERTEX, 4);
+    }
+    return true;
+}
+
+static uint64_t play_transform(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *v = md_get(c, "vertices");
+    uint64_t refused = v->given ? md_require_all(o, HE_VERTEX, v) : 0;
+    return refused != 0 ? refused
+                        : or_transform(o, md_get(c, "matrix")->matrix, v->given ? v->ids : NULL,
+                                       v->given ? (uint32_t)v->count : 0);
+}
+
+static bool draw_compact(md_draft *d)
+{
+    return md_chance(d->r, 15);
+}
+
+static uint64_t play_compact(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)c;
+    (void)m;
+    or_compact(o);
+    return 0;
+}
+
+static const struct row {
+    const char *name;
+    int growth; /* of the mesh, roughly: rows above 0 wait while there is no room */
+    bool (*draw)(md_draft *d);
+    uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);
+} rows[] = {
+    {"vertex_add", 1, draw_vertex_add, play_vertex_add},
+    {"vertex_move", 0, draw_vertex_move, play_vertex_move},
+    {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete},
+    {"vertex_split", 1, draw_vertex_split, play_vertex_split},
+    {"face_add", 1, draw_face_add, play_face_add},
+    {"face_delete", -1, draw_face_delete, play_face_delete},
+    {"face_split", 1, draw_face_split, play_face_split},
+    {"face_join", -1, draw_face_join, play_face_join},
+    {"face_poke", 1, draw_face_poke, play_face_poke},
+    {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate},
+    {"hole_fill", 1, draw_hole_fill, play_hole_fill},
+    {"edge_bisect", 1, draw_edge_cut, play_edge_bisect},
+    {"edge_join", -1, draw_edge_join, play_edge_join},
+    {"edge_split", 1, draw_edge_cut, play_edge_split},
+    {"edge_flip", 0, draw_edge, play_edge_flip},
+    {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse},
+    {"transform", 0, draw_transform, play_transform},
+    {"compact", 0, draw_compact, play_compact},
+};
+
+static const struct row *row_of(const char *name)
+{
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        if (strcmp(rows[i].name, name) == 0) {
+            return &rows[i];
+        }
+    }
+    return NULL;
+}
+
+const char *md_missing(void)
+{
+    for (size_t i = 0; i < he_op_count(); i++) {
+        if (row_of(he_op_at(i)->name) == NULL) {
+            return he_op_at(i)->name;
+        }
+    }
+    return NULL;
+}
+
+bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool room)
+{
+    md_draft d = {c, o, m, r};
+    c->row = md_below(r, (uint32_t)he_op_count());
+    c->op = he_op_at(c->row);
+    he_op_defaults(c->op, c->args);
+    const struct row *row = row_of(c->op->name);
+    /* What little there is should not be gone at once. */
+    if (row->growth < 0 && he_mesh_faces(m) < 8 && md_chance(r, 60)) {
+        return false;
+    }
+    return (room || row->growth <= 0) && row->draw(&d);
+}
+
+uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    return row_of(c->op->name)->play(c, o, m);
+}

@@ -1,0 +1,114 @@
+#include "model/net.h"
+
+#include "mesh/walk.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Bit for bit: -0 and 0 differ. */
+static bool same_point(he_vec3 a, he_vec3 b)
+{
+    uint64_t bits[2][3];
+    memcpy(bits[0], &a, sizeof a);
+    memcpy(bits[1], &b, sizeof b);
+    return memcmp(bits[0], bits[1], sizeof bits[0]) == 0;
+}
+
+static bool same_vertex(const he_mesh *was, const he_mesh *is, he_vertex v)
+{
+    return same_point(he_position(was, v), he_position(is, v)) &&
+           he_vertex_halfedge(was, v).i == he_vertex_halfedge(is, v).i;
+}
+
+static bool same_edge(const he_mesh *was, const he_mesh *is, he_edge e)
+{
+    for (unsigned side = 0; side < 2; side++) {
+        he_halfedge h = he_edge_halfedge(e, side);
+        if (he_origin(was, h).i != he_origin(is, h).i ||
+            he_face_of(was, h).i != he_face_of(is, h).i) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool same_face(const he_mesh *was, const he_mesh *is, he_face f)
+{
+    he_halfedge first = he_face_halfedge(was, f);
+    he_halfedge h = first;
+    if (he_face_halfedge(is, f).i != first.i) {
+        return false;
+    }
+    do {
+        if (he_origin(was, h).i != he_origin(is, h).i || he_next(was, h).i != he_next(is, h).i) {
+            return false;
+        }
+        h = he_next(was, h);
+    } while (h.i != first.i);
+    return true;
+}
+
+static bool same_element(const he_mesh *was, const he_mesh *is, he_kind kind, uint32_t id)
+{
+    switch (kind) {
+    case HE_VERTEX:
+        return same_vertex(was, is, (he_vertex){id});
+    case HE_EDGE:
+        return same_edge(was, is, (he_edge){id});
+    case HE_FACE:
+        return same_face(was, is, (he_face){id});
+    case HE_HALFEDGE:
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return true;
+}
+
+static bool lives(const he_mesh *m, he_kind kind, uint32_t id)
+{
+    return id < he_mesh_issued(m, kind) && he_mesh_is_live(m, kind, id);
+}
+
+/* Take id off the front of a sorted list, if it is there. */
+static bool take(const he_ids *list, size_t *at, uint32_t id)
+{
+    bool there = *at < list->count && list->ids[*at] == id;
+    *at += there;
+    return there;
+}
+
+bool md_net_matches(const he_mesh *was, const he_mesh *is, const he_changes *changes,
+                    char text[MD_NET_TEXT])
+{
+    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+        he_kind kind = kinds[k];
+        uint32_t issued = he_mesh_issued(was, kind);
+        size_t created = 0;
+        size_t deleted = 0;
+        size_t modified = 0;
+        if (he_mesh_issued(is, kind) > issued) {
+            issued = he_mesh_issued(is, kind);
+        }
+        for (uint32_t id = 0; id < issued; id++) {
+            bool before = lives(was, kind, id);
+            bool after = lives(is, kind, id);
+            bool other = before && after && !same_element(was, is, kind, id);
+            if (take(&changes->created[kind], &created, id) != (!before && after) ||
+                take(&changes->deleted[kind], &deleted, id) != (before && !after) ||
+                take(&changes->modified[kind], &modified, id) != other) {
+                (void)snprintf(text, MD_NET_TEXT, "%s %u lived %d, lives %d, changed %d",
+                               he_kind_name(kind), id, before, after, other);
+                return false;
+            }
+        }
+        if (created != changes->created[kind].count || deleted != changes->deleted[kind].count ||
+            modified != changes->modified[kind].count) {
+            (void)snprintf(text, MD_NET_TEXT, "a set of %s is unsorted or too long",
+                           he_kind_plural(kind));
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,145 @@
+/* oracle.h - a mesh without half-edges: slow, obvious, and written from the meaning of the
+ * operations alone.
+ *
+ * The oracle knows three lists: vertices with a position, faces as cycles of vertex ids, edges as
+ * pairs of vertex ids (the first is the origin of half-edge 2e). There are no links. Everything
+ * else is found again after each operation by looking at every face:
+ *
+ *     left[a][b]    the face that runs from a to b, OR_NONE when none does
+ *     joined[a][b]  the edge between a and b, OR_NONE when none does
+ *
+ * An operation of the oracle answers with the set of all refusals that apply, one bit a status. The
+ * set is empty when it succeeded. Which of several reasons hedge names is its own choice.
+ *
+ * New vertices get the next id. New faces and edges have no ids at first, since the specification
+ * does not order them: or_adopt finds them in hedge's mesh by their corners and ends. Who survives
+ * is specified, so ids that were there before are compared by id.
+ *
+ * Room is fixed (OR_VERTICES and so on): the model test starts a new mesh before it runs out. */
+#ifndef TESTS_ORACLE_ORACLE_H
+#define TESTS_ORACLE_ORACLE_H
+
+#include "mesh/mesh.h"
+
+enum { OR_VERTICES = 320, OR_EDGES = 1500, OR_FACES = 1000, OR_CORNERS = 96, OR_LIST = 16 };
+
+#define OR_NONE        UINT32_MAX
+#define OR_BIT(status) (UINT64_C(1) << (unsigned)(status))
+
+typedef struct or_vertex {
+    bool alive;
+    bool near;   /* `at` was computed here: compare with a tolerance, then take hedge's */
+    bool inside; /* `at` is not specified: anything within low..high will do */
+    he_vec3 at, low, high;
+} or_vertex;
+
+typedef struct or_edge {
+    bool alive;
+    uint32_t a, b;
+} or_edge;
+
+typedef struct or_face {
+    bool alive;
+    uint32_t count;
+    uint32_t v[OR_CORNERS];
+} or_face;
+
+typedef struct or_mesh {
+    uint32_t vertices, edges, faces; /* issued */
+    uint32_t fresh;                  /* faces beyond `faces` that wait for their ids */
+    /* Faces that became triangles of hedge's choice: their cycle as it was. `id` is OR_NONE where
+     * all triangles are new (a filled hole). */
+    struct {
+        uint32_t id, start;
+        or_face was;
+    } cut[OR_LIST];
+    uint32_t cuts;
+    uint64_t may; /* refusals that depend on those triangles: hedge may give them or succeed */
+    bool either;  /* edge_join: `joining` are the two edges of which one survives */
+    uint32_t joining[2];
+    or_vertex vertex[OR_VERTICES];
+    or_edge edge[OR_EDGES];
+    or_face face[OR_FACES];
+    uint32_t left[OR_VERTICES][OR_VERTICES];
+    uint32_t joined[OR_VERTICES][OR_VERTICES];
+} or_mesh;
+
+or_mesh *or_new(void);
+void or_free(or_mesh *o);
+void or_empty(or_mesh *o);
+
+/* --- building: ids in order; faces are not checked ----------------------------------------- */
+
+uint32_t or_add_vertex(or_mesh *o, he_vec3 at);
+uint32_t or_add_face(or_mesh *o, const uint32_t *v, uint32_t count);
+void or_remove_last_face(or_mesh *o);
+
+/* --- looking -------------------------------------------------------------------------------- */
+
+/* Fill left and joined from the lists. Answers with what no mesh can hold: HE_TOO_FEW_CORNERS,
+ * HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
+uint64_t or_derive(or_mesh *o);
+
+uint32_t or_live_vertices(const or_mesh *o);
+uint32_t or_live_edges(const or_mesh *o);
+uint32_t or_live_faces(const or_mesh *o);
+/* Place of v in the cycle of f, OR_NONE when it is no corner. */
+uint32_t or_place(const or_face *f, uint32_t v);
+uint32_t or_after(const or_face *f, uint32_t v);
+uint32_t or_before(const or_face *f, uint32_t v);
+uint32_t or_degree(const or_mesh *o, uint32_t v);
+bool or_on_boundary(const or_mesh *o, uint32_t v); /* true of an isolated vertex */
+uint32_t or_fans(const or_mesh *o, uint32_t v);
+/* Neighbours of v, no more than `room`. */
+uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t room);
+/* Counter-clockwise from x about v: the next neighbour of the same fan, OR_NONE at its end. */
+uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
+bool or_same_cycle(const or_face *f, const or_face *g);
+
+/* --- operations (ops_vertex.c, ops_edge.c, ops_face.c) --------------------------------------- */
+
+/* HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
+uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
+
+uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
+uint64_t or_vertex_move(or_mesh *o, uint32_t v, he_vec3 to);
+uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated);
+/* left or right may be OR_NONE; to NULL leaves the new vertex where v is. */
+uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, const he_vec3 *to);
+
+uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t);
+uint64_t or_edge_join(or_mesh *o, uint32_t v);
+uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
+uint64_t or_edge_flip(or_mesh *o, uint32_t e);
+/* u, the origin, goes; v stays, at `to` or at t between them. */
+uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
+
+uint64_t or_face_add(or_mesh *o, const uint32_t *v, uint32_t count);
+uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep_isolated);
+uint64_t or_face_split(or_mesh *o, uint32_t f, uint32_t from, uint32_t to);
+uint64_t or_face_join(or_mesh *o, uint32_t e);
+/* start is the origin of the stored half-edge of f; at NULL means somewhere inside. */
+uint64_t or_face_poke(or_mesh *o, uint32_t f, uint32_t start, const he_vec3 *at);
+/* Each keeps the triangle of its stored half-edge, which leaves start[i]. */
+uint64_t or_face_triangulate(or_mesh *o, const uint32_t *f, const uint32_t *start, uint32_t count);
+
+typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
+/* The hole as hedge's boundary links go round it: at a bow-tie that is hedge's choice. */
+uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
+
+uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
+void or_compact(or_mesh *o);
+
+/* --- against hedge (match.c) ------------------------------------------------------------------ */
+
+enum { OR_TEXT = 256 };
+
+/* Take over the ids hedge gave to what the last operation made, then or_derive. False with a
+ * sentence when hedge's mesh has other new elements than the oracle. or_decline is for a refusal
+ * in `may`: the oracle goes back to before the operation. */
+void or_decline(or_mesh *o);
+bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
+/* Is hedge's mesh this one in every count, cycle, end, link, ring and position? */
+bool or_matches(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
+
+#endif
