@@ -63,9 +63,10 @@ PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.
 SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
                 $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
 BENCH_C    := $(sort $(wildcard tests/bench/*.c))
+HTTP_C     := tests/bench/http/bare.c
 HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h))
 ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
-              $(BENCH_C)
+              $(BENCH_C) $(HTTP_C)
 
 LIBRARIES  := $(BUILD)/libserver.a $(BUILD)/libapi.a $(BUILD)/libcore.a
 HEDGED     := $(BUILD)/hedged
@@ -75,12 +76,13 @@ PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs test lint format asan tsan coverage proof bench install clean
+.PHONY: all help run page programs test lint format asan tsan coverage proof bench bench-http \
+        bench-large install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1|\2/p' Makefile | \
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' Makefile | \
 	    awk -F'|' '{ printf "%-18s %s\n", $$1, $$2 }'
 
 run: $(HEDGED) page ## build the daemon and its page, then serve sample meshes
@@ -97,6 +99,9 @@ $(STAMPS)/web: .ci/deps | $(STAMPS)/build
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/test: .ci/deps | $(STAMPS)/web
 	@sh .ci/deps test
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/bench: .ci/deps | $(STAMPS)/build
+	@sh .ci/deps bench
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/lint: .ci/deps | $(STAMPS)/test
 	@sh .ci/deps lint
@@ -191,6 +196,17 @@ proof: ## ROUNDS=10 of random edits: a million each, a tenth of that under ASan
 
 bench: $(BENCHES) ## the kernel's figures
 	@for program in $(BENCHES); do echo "== $$program"; $$program || exit 1; done
+
+bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(STAMPS)/bench ## requests a second, beside a bare libmicrohttpd
+	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
+
+bench-large: $(HEDGED) | $(STAMPS)/bench ## a million quads through the daemon: times and memory
+	@sh tests/bench/large.sh $(HEDGED)
+
+$(BUILD)/tests/bench/http/bare: $(BUILD)/obj/tests/bench/http/bare.o
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
 # --- style ---------------------------------------------------------------------------------
 

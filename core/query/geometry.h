@@ -76,8 +76,9 @@ typedef struct he_box {
 bool he_mesh_box(const he_mesh *m, he_box *out);
 
 /* The sum of the faces' areas, and the volume that a closed mesh encloses: positive where normals
- * point out of it, each face taken as the fan from the corner its stored half-edge leaves (divergence
- * theorem); for planar faces any fan is the same. Sums are compensated (Neumaier 1974). */
+ * point out of it, each face taken as the fan from the corner its stored half-edge leaves
+ * (divergence theorem); for planar faces any fan is the same. Sums are compensated (Neumaier 1974).
+ */
 typedef struct he_measures {
     double area;
     double volume;   /* 0 unless closed */

@@ -42,8 +42,7 @@ int main(int argc, char **argv)
     }
     unsigned workers = (unsigned)strtoul(argv[1], NULL, 10);
     body = argv[2];
-    struct sockaddr_in address = {.sin_family = AF_INET,
-                                  .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     struct MHD_Daemon *daemon = MHD_start_daemon(
         MHD_USE_EPOLL_INTERNAL_THREAD, 0, NULL, NULL, answer, NULL, MHD_OPTION_SOCK_ADDR,
         (struct sockaddr *)&address, workers > 1 ? MHD_OPTION_THREAD_POOL_SIZE : MHD_OPTION_END,

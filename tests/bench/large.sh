@@ -1,0 +1,53 @@
+#!/bin/sh
+# A million quads through the daemon: upload, questions, an edit and its undo, export; seconds as a
+# client sees them, and the daemon's memory.
+#
+#   large.sh HEDGED [SIDE]      SIDE x SIDE quads (1024)
+set -eu
+hedged=$1 side=${2:-1024}
+work=$(mktemp -d)
+mkfifo "$work/log"
+daemon= drain=
+trap 'kill $daemon $drain 2>/dev/null || :; rm -rf "$work"' EXIT INT TERM
+"$hedged" --listen 127.0.0.1:0 2>"$work/log" &
+daemon=$!
+exec 4<"$work/log"
+base=
+while [ -z "$base" ] && read -r line <&4; do
+    case $line in *"listening on "*) base=${line##*listening on } ;; esac
+done
+cat <&4 >/dev/null &
+drain=$!
+meshes=$base/v1/meshes
+
+memory() { awk '/VmRSS/ { r = $2 } /VmHWM/ { h = $2 }
+    END { printf "%.0f MB, at most %.0f MB", r / 1000, h / 1000 }' "/proc/$daemon/status"; }
+# step NAME STATUS CURL-ARGUMENTS...
+step() {
+    name=$1 status=$2
+    shift 2
+    result=$(curl -s -o "$work/answer" -w '%{http_code} %{time_total}' "$@")
+    [ "${result% *}" = "$status" ] || { echo "$name: $result" >&2; head -c 400 "$work/answer" >&2; exit 1; }
+    printf '%-34s %8.1f ms   memory %s\n' "$name" \
+        "$(echo "${result#* }" | awk '{ print $1 * 1000 }')" "$(memory)"
+}
+json='Content-Type: application/json'
+step "create as a shape" 201 -X PUT -H "$json" "$meshes/shape" \
+    -d "{\"shape\":\"torus\",\"major_segments\":$side,\"minor_segments\":$side}"
+step "export OBJ" 200 "$meshes/shape/content?format=obj"
+mv "$work/answer" "$work/torus.obj"
+step "delete" 204 -X DELETE "$meshes/shape"
+step "upload OBJ, $(($(wc -c <"$work/torus.obj") / 1000000)) MB" 201 -X PUT -H 'Content-Type: model/obj' \
+    -T "$work/torus.obj" "$meshes/m"
+step "faces about a vertex" 200 "$meshes/m/vertices/5000/faces"
+step "the same again" 200 "$meshes/m/vertices/5000/faces"
+step "split an edge" 200 -H "$json" "$meshes/m/edits" -d '{"op":"edge_split","edge":300}'
+step "undo" 200 -X POST "$meshes/m/undo"
+step "split another edge" 200 -H "$json" "$meshes/m/edits" -d '{"op":"edge_split","edge":777}'
+step "undo" 200 -X POST "$meshes/m/undo"
+step "summary, computed" 200 "$meshes/m"
+step "summary, kept" 200 "$meshes/m"
+step "all neighbours as octets" 200 -H "$json" -H 'Accept: application/octet-stream' \
+    "$meshes/m/query" -d '{"queries":[{"relation":"vertices","of":{"vertices":"all"}}]}'
+step "check" 200 "$meshes/m/check"
+step "export JSON" 200 "$meshes/m/content"
