@@ -64,7 +64,7 @@ static bool is_apex(const he_mesh *m, he_halfedge h)
            is_triangle(m, third);
 }
 
-he_status he_edge_collapse_check(const he_mesh *m, he_halfedge h, he_error *err)
+static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_status status = he_mesh_require(m, HE_HALFEDGE, h.i, err);
     if (status != HE_OK) {
@@ -157,7 +157,7 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
 he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                            he_vertex *vertex, he_error *err)
 {
-    he_status status = he_edge_collapse_check(m, h, err);
+    he_status status = check(m, h, err);
     if (status != HE_OK) {
         return status;
     }

@@ -43,12 +43,9 @@
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_LINK_CONDITION, which names the part that
  * fails; HE_BAD_VALUE unless 0 <= t <= 1; HE_NOT_FINITE for `to`. HE_NO_MEMORY.
- * `vertex` is v and may be NULL. */
+ * `vertex` is v and may be NULL. Costs at most the half-edges of the mesh, and for bounded degrees
+ * a constant. */
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                                         he_vertex *vertex, he_error *err);
-
-/* Would the link condition, or the liveness of h, refuse? Costs at most the half-edges of the
- * mesh, and for bounded degrees a constant. */
-HE_NODISCARD he_status he_edge_collapse_check(const he_mesh *m, he_halfedge h, he_error *err);
 
 #endif

@@ -15,7 +15,7 @@ static he_status check_end(const he_mesh *m, he_edge e, he_vertex v, he_error *e
     return HE_OK;
 }
 
-he_status he_edge_flip_check(const he_mesh *m, he_edge e, he_error *err)
+static he_status check(const he_mesh *m, he_edge e, he_error *err)
 {
     he_status status = he_mesh_require(m, HE_EDGE, e.i, err);
     if (status != HE_OK) {
@@ -72,7 +72,7 @@ static void turn_end(he_mesh *m, he_halfedge h, he_halfedge side)
 
 he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err)
 {
-    he_status status = he_edge_flip_check(m, e, err);
+    he_status status = check(m, e, err);
     if (status == HE_OK) {
         status = he_reserve(m, (he_need){.links = 20, .attributes = 2}, err);
     }

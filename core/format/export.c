@@ -27,7 +27,8 @@ he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he_error *err)
 
 static double component_of(const he_column *column, size_t row, uint32_t component)
 {
-    const unsigned char *at = he_column_row(column, row) + component * he_type_bytes(column->type);
+    const unsigned char *at =
+        he_column_value(column, row) + component * he_type_bytes(column->type);
     switch (column->type) {
     case HE_BOOL:
         return *at != 0;
@@ -98,23 +99,31 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
     }
 }
 
-char *he_export_value(const he_column *column, size_t row, uint32_t component, char *text)
+char *he_export_text(const char *text, char *to)
+{
+    while (*text != '\0') {
+        *to++ = *text++;
+    }
+    return to;
+}
+
+char *he_export_value(const he_column *column, size_t row, uint32_t component, char *to)
 {
     double value = component_of(column, row, component);
     if (!isfinite(value)) {
         value = 0;
     }
-    return text + (column->type == HE_FLOAT ? he_float_print((float)value, text)
-                                            : he_double_print(value, text));
+    return to + (column->type == HE_FLOAT ? he_float_print((float)value, to)
+                                          : he_double_print(value, to));
 }
 
-char *he_export_row(const he_column *column, size_t row, char *text)
+char *he_export_row(const he_column *column, size_t row, char *to)
 {
     for (uint32_t i = 0; i < column->components; i++) {
-        *text++ = ' ';
-        text = he_export_value(column, row, i, text);
+        *to++ = ' ';
+        to = he_export_value(column, row, i, to);
     }
-    return text;
+    return to;
 }
 
 static size_t hash(const unsigned char *row, size_t bytes)
@@ -141,10 +150,10 @@ typedef struct table {
 /* The slot of the value of half-edge h, or the free one where it belongs. */
 static size_t slot_of(const table *t, const he_ids *first, uint32_t h)
 {
-    const unsigned char *row = he_column_row(t->column, h);
+    const unsigned char *row = he_column_value(t->column, h);
     size_t bytes = t->column->row_bytes, slot = hash(row, bytes) & t->mask;
     while (t->slots[slot] != 0 &&
-           memcmp(he_column_row(t->column, first->ids[t->slots[slot] - 1]), row, bytes) != 0) {
+           memcmp(he_column_value(t->column, first->ids[t->slots[slot] - 1]), row, bytes) != 0) {
         slot = (slot + 1) & t->mask;
     }
     return slot;

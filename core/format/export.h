@@ -17,10 +17,12 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
 void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size_t count,
                          he_notes *notes);
 
-/* One component, at most HE_NUMBER_TEXT bytes. Returns the end. */
-char *he_export_value(const he_column *column, size_t row, uint32_t component, char *text);
-/* A blank and a value for each component. */
-char *he_export_row(const he_column *column, size_t row, char *text);
+/* These write to `to` without a NUL and return the end. A text of any length, */
+char *he_export_text(const char *text, char *to);
+/* one component, at most HE_NUMBER_TEXT bytes, */
+char *he_export_value(const he_column *column, size_t row, uint32_t component, char *to);
+/* a blank and a value for each component. */
+char *he_export_row(const he_column *column, size_t row, char *to);
 
 /* Corner values that are equal bit by bit, told apart and numbered in the order of faces, so that
  * each is written once. */

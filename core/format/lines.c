@@ -150,6 +150,12 @@ he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *
     return HE_OK;
 }
 
+uint64_t he_lines_last(const he_lines *lines)
+{
+    bool begun = lines->length > 0 || lines->in_comment || lines->number == 1;
+    return begun ? lines->number : lines->number - 1;
+}
+
 he_status he_lines_finish(he_lines *lines, he_error *err)
 {
     if (lines->length == 0) {
@@ -178,6 +184,15 @@ he_status he_line_fail(he_error *err, he_status status, const he_line *line, con
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     return he_fail_at(err, status, HE_PLACE_LINE, he_line_number(line, p), "%s", text);
+}
+
+he_status he_line_locate(he_status status, const he_line *line, he_error *err)
+{
+    if (status != HE_OK && err != NULL && err->place == HE_PLACE_NONE) {
+        err->place = HE_PLACE_LINE;
+        err->at = line->number;
+    }
+    return status;
 }
 
 he_status he_token_fail(he_error *err, he_status status, const he_line *line, const char *p,

@@ -39,6 +39,8 @@ void he_lines_init(he_lines *lines, he_line_take *take, void *context);
 void he_lines_clear(he_lines *lines);
 /* HE_LIMIT, HE_NO_MEMORY, HE_UNSUPPORTED for UTF-16, or what `take` returns. */
 HE_NODISCARD he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err);
+/* The number of the last line that has come, comments included; 1 while there is none. */
+uint64_t he_lines_last(const he_lines *lines);
 /* Give out the last line if it had no line end. */
 HE_NODISCARD he_status he_lines_finish(he_lines *lines, he_error *err);
 
@@ -84,10 +86,12 @@ static inline const char *he_token_end(const char *p, const char *end)
 
 /* The number of the line that holds `p`. */
 uint64_t he_line_number(const he_line *line, const char *p);
-/* he_fail_at that line; the text begins with its number. */
+/* he_fail_at that line. */
 he_status he_line_fail(he_error *err, he_status status, const he_line *line, const char *p,
                        const char *format, ...) __attribute__((format(printf, 5, 6)));
-/* The same about the token at `p`, which is quoted: "'abc' is not a number". */
+/* Give a failure without a place, such as a resource that ran out, that of the line. Returns it. */
+he_status he_line_locate(he_status status, const he_line *line, he_error *err);
+/* he_line_fail about the token at `p`, which is quoted: "'abc' is not a number". */
 he_status he_token_fail(he_error *err, he_status status, const he_line *line, const char *p,
                         const char *what);
 

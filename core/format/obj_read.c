@@ -26,16 +26,6 @@ static void note(obj *o, const char *code, const char *text, const char *subject
     he_notes_add(&o->into->notes, code, text, subject, length, HE_PLACE_LINE, line->number);
 }
 
-/* A resource ran out while this line was read: say which. */
-static he_status at_line(he_status status, const he_line *line, he_error *err)
-{
-    if (status != HE_OK && err != NULL && err->place == HE_PLACE_NONE) {
-        err->place = HE_PLACE_LINE;
-        err->at = line->number;
-    }
-    return status;
-}
-
 /* Up to `most` numbers; more of them is an error. */
 static he_status read_numbers(const he_line *line, const char *p, double *values, size_t most,
                               size_t *count, he_error *err)
@@ -79,7 +69,7 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     if (count == 4 && n[3] != 1) {
         note(o, "vertex_weight", "ignored: the weight of a vertex", NULL, 0, line);
     }
-    return at_line(status, line, err);
+    return he_line_locate(status, line, err);
 }
 
 static he_status read_pool_value(he_pool *pool, const he_line *line, const char *p, size_t least,
@@ -95,7 +85,7 @@ static he_status read_pool_value(he_pool *pool, const he_line *line, const char 
         return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers, and %zu are needed",
                             count, least);
     }
-    return at_line(he_pool_add(pool, n, limit, err), line, err);
+    return he_line_locate(he_pool_add(pool, n, limit, err), line, err);
 }
 
 /* An index as the file has it, to one that counts from 0. `count` elements came so far; whether a
@@ -156,7 +146,7 @@ static he_status read_corner(obj *o, const he_line *line, const char **p, he_err
     if (status == HE_OK && !he_token_ends(*p, end)) {
         return he_token_fail(err, HE_SYNTAX, line, begin, "is not a corner of a face");
     }
-    return at_line(status, line, err);
+    return he_line_locate(status, line, err);
 }
 
 static he_status read_face(obj *o, const he_line *line, const char *p, he_error *err)
@@ -175,7 +165,7 @@ static he_status read_face(obj *o, const he_line *line, const char *p, he_error 
         status = read_corner(o, line, &p, err);
         p = he_skip_blanks(p, line->end);
     }
-    return at_line(status, line, err);
+    return he_line_locate(status, line, err);
 }
 
 static he_status read_smoothing(obj *o, const he_line *line, const char *p, he_error *err)
@@ -326,25 +316,10 @@ static he_status obj_feed(void *state, const void *bytes, size_t n, he_error *er
     return he_lines_feed(&o->lines, bytes, n, err);
 }
 
-/* The face that has this corner, by bisection. */
-static uint32_t face_of_corner(const he_soup *soup, size_t corner)
-{
-    size_t low = 0, high = soup->face_count;
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        if (soup->starts[middle] <= corner) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return (uint32_t)low;
-}
-
 static he_status bad_index(const obj *o, size_t corner, uint32_t index, const char *what,
                            size_t count, he_error *err)
 {
-    uint32_t face = face_of_corner(&o->into->soup, corner);
+    uint32_t face = he_soup_face_of(&o->into->soup, corner);
     uint64_t line = he_places_find(&o->into->faces, face);
     return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line, "there is no %s %u, only %zu", what,
                       index + 1, count);
@@ -398,8 +373,7 @@ static he_status obj_finish(void *state, he_error *err)
     if (nothing && (o->unknown != 0 || o->last_line == 0)) {
         uint64_t line = o->unknown != 0 ? o->unknown : 1;
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, line,
-                          "line %llu: not an OBJ file: it has no vertices",
-                          (unsigned long long)line);
+                          "not an OBJ file: it has no vertices");
     }
     note_partial(o, o->uv.named, soup->corner_count, "corners_without_uv",
                  "set to 0: corners without a texture coordinate");

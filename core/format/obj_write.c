@@ -130,21 +130,13 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     return HE_OK;
 }
 
-static char *put(const char *text, char *p)
-{
-    while (*text != '\0') {
-        *p++ = *text++;
-    }
-    return p;
-}
-
 static char *write_header(const obj_writer *w, char *p)
 {
-    p = put("# ", p);
+    p = he_export_text("# ", p);
     p += he_u32_print(he_mesh_vertices(w->mesh), p);
-    p = put(" vertices, ", p);
+    p = he_export_text(" vertices, ", p);
     p += he_u32_print(he_mesh_faces(w->mesh), p);
-    return put(" faces\n", p);
+    return he_export_text(" faces\n", p);
 }
 
 static char *write_vertex(const obj_writer *w, uint32_t v, char *p)
@@ -165,7 +157,7 @@ static char *write_vertex(const obj_writer *w, uint32_t v, char *p)
 static char *write_value(const values *v, uint32_t row, char *p)
 {
     p = he_export_row(v->column, v->of_corners ? v->distinct.first.ids[row] : row,
-                      put(v->keyword, p));
+                      he_export_text(v->keyword, p));
     *p++ = '\n';
     return p;
 }
@@ -228,7 +220,7 @@ static char *write_span(obj_writer *w, uint32_t face, char *p)
         if (w->spans[i] == NULL) {
             continue;
         }
-        memcpy(&value, he_column_row(w->spans[i], face), sizeof value);
+        memcpy(&value, he_column_value(w->spans[i], face), sizeof value);
         if (value == w->said[i]) {
             continue;
         }
@@ -237,7 +229,7 @@ static char *write_span(obj_writer *w, uint32_t face, char *p)
         if (first && i != SMOOTHING && *label_of(w->spans[i], value) == '\0') {
             continue;
         }
-        p = put(spans[i].keyword, p);
+        p = he_export_text(spans[i].keyword, p);
         if (i == SMOOTHING) {
             *p++ = ' ';
             p += he_u32_print(value, p);

@@ -35,21 +35,11 @@ typedef struct off {
     uint64_t missing;
     he_colors vertex_colors, face_colors;
     he_column *normal, *uv; /* the soup's */
-    uint64_t last_line;
 } off;
 
 static void note(off *o, const char *code, const char *text, const he_line *line)
 {
     he_notes_add(&o->into->notes, code, text, NULL, 0, HE_PLACE_LINE, line->number);
-}
-
-static he_status at_line(he_status status, const he_line *line, he_error *err)
-{
-    if (status != HE_OK && err != NULL && err->place == HE_PLACE_NONE) {
-        err->place = HE_PLACE_LINE;
-        err->at = line->number;
-    }
-    return status;
 }
 
 /* The flags of a header like STCNOFF; -1 when it is none, -2 for the kinds with other dimensions.
@@ -249,7 +239,7 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     if (soup->vertex_count == o->vertices) {
         begin_faces(o);
     }
-    return at_line(status, line, err);
+    return he_line_locate(status, line, err);
 }
 
 /* Numbers up to the end of the line. */
@@ -359,7 +349,7 @@ static he_status read_face(off *o, const he_line *line, const char **p, he_error
             o->section = DONE;
         }
     }
-    return at_line(status, line, err);
+    return he_line_locate(status, line, err);
 }
 
 static he_status read_line(void *context, const he_line *line, he_error *err)
@@ -369,7 +359,6 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     const char *begin = he_skip_blanks(line->begin, line->end), *p = begin;
     he_status status = HE_OK;
     bool counts = false; /* the first two are on this line */
-    o->last_line = line->number;
     while (status == HE_OK && !he_at_end(p, line->end)) {
         switch (o->section) {
         case HEADER:
@@ -431,18 +420,19 @@ static he_status off_feed(void *state, const void *bytes, size_t n, he_error *er
     return he_lines_feed(&o->lines, bytes, n, err);
 }
 
-static he_status too_short(const off *o, const char *what, size_t came, uint64_t announced,
+static he_status too_short(uint64_t last_line, const char *what, size_t came, uint64_t announced,
                            he_error *err)
 {
-    return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, o->last_line,
-                      "line %llu: the file ends after %zu of the %llu %s it announces",
-                      (unsigned long long)o->last_line, came, (unsigned long long)announced, what);
+    return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, last_line,
+                      "the file ends after %zu of the %llu %s it announces", came,
+                      (unsigned long long)announced, what);
 }
 
 static he_status off_finish(void *state, he_error *err)
 {
     off *o = state;
     he_soup *soup = &o->into->soup;
+    uint64_t last_line = he_lines_last(&o->lines);
     he_status status = he_lines_finish(&o->lines, err);
     if (status != HE_OK) {
         return status;
@@ -451,9 +441,8 @@ static he_status off_finish(void *state, he_error *err)
     case HEADER:
     case VERTEX_COUNT:
     case FACE_COUNT:
-        return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, o->last_line,
-                          "line %llu: the file ends before its counts",
-                          (unsigned long long)o->last_line);
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, last_line,
+                          "the file ends before its counts");
     case EDGE_COUNT:
         begin_vertices(o);
         break;
@@ -463,10 +452,10 @@ static he_status off_finish(void *state, he_error *err)
         break;
     }
     if (soup->vertex_count < o->vertices) {
-        return too_short(o, "vertices", soup->vertex_count, o->vertices, err);
+        return too_short(last_line, "vertices", soup->vertex_count, o->vertices, err);
     }
     if (soup->face_count - o->open < o->faces) {
-        return too_short(o, "faces", soup->face_count - o->open, o->faces, err);
+        return too_short(last_line, "faces", soup->face_count - o->open, o->faces, err);
     }
     status = he_colors_finish(&o->vertex_colors, soup, HE_VERTEX, soup->vertex_count, err);
     if (status == HE_OK) {

@@ -49,20 +49,12 @@ static he_status off_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     return HE_OK;
 }
 
-static char *put(const char *text, char *p)
-{
-    while (*text != '\0') {
-        *p++ = *text++;
-    }
-    return p;
-}
-
 static char *write_header(const off_writer *w, char *p)
 {
-    p = put(w->uv != NULL ? "ST" : "", p);
-    p = put(w->color != NULL ? "C" : "", p);
-    p = put(w->normal != NULL ? "N" : "", p);
-    p = put("OFF\n", p);
+    p = he_export_text(w->uv != NULL ? "ST" : "", p);
+    p = he_export_text(w->color != NULL ? "C" : "", p);
+    p = he_export_text(w->normal != NULL ? "N" : "", p);
+    p = he_export_text("OFF\n", p);
     p += he_u32_print(he_mesh_vertices(w->mesh), p);
     *p++ = ' ';
     p += he_u32_print(he_mesh_faces(w->mesh), p);
@@ -82,7 +74,7 @@ static char *write_color(const he_column *column, size_t row, char *p)
         char *end = he_export_value(column, row, i, p);
         size_t length = (size_t)(end - p);
         if (fraction && memchr(p, '.', length) == NULL && memchr(p, 'e', length) == NULL) {
-            end = put(".0", end);
+            end = he_export_text(".0", end);
         }
         p = end;
     }

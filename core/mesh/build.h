@@ -42,6 +42,8 @@ HE_NODISCARD he_status he_soup_begin_face(he_soup *soup, he_error *err);
 HE_NODISCARD he_status he_soup_add_corner(he_soup *soup, uint32_t vertex, he_error *err);
 HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices, size_t count,
                                         he_error *err);
+/* The face that has a corner, by bisection. */
+uint32_t he_soup_face_of(const he_soup *soup, size_t corner);
 /* The column of this domain and name, made when absent. HE_BAD_VALUE when one of another type
  * exists. */
 HE_NODISCARD he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,

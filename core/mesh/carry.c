@@ -1,6 +1,8 @@
 /* How attributes follow an edit: the carry functions of write.h. */
 #include "mesh/write.h"
 
+#include <math.h>
+
 bool he_has_columns(const he_mesh *m, he_kind kind)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {
@@ -12,7 +14,7 @@ bool he_has_columns(const he_mesh *m, he_kind kind)
 }
 
 /* The weighted sum of n rows, or their mean without weights, in the column's own type. Integers and
- * booleans round to nearest. */
+ * booleans round to nearest; rounding errors of very many rows do not carry them out of range. */
 static void blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
                   unsigned char *out)
 {
@@ -58,12 +60,13 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
             *to = sum >= 0.5;
             break;
         case HE_INT32: {
+            sum = fmax(INT32_MIN, fmin(sum, INT32_MAX));
             int32_t number = (int32_t)(sum < 0 ? sum - 0.5 : sum + 0.5);
             memcpy(to, &number, sizeof number);
             break;
         }
         case HE_UINT32: {
-            uint32_t number = (uint32_t)(sum + 0.5);
+            uint32_t number = (uint32_t)(fmin(sum, UINT32_MAX) + 0.5);
             memcpy(to, &number, sizeof number);
             break;
         }

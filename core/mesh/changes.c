@@ -152,11 +152,16 @@ static he_status note_row(he_changes *out, he_kind kind, uint32_t row, uint32_t 
 static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_column *column,
                                 uint32_t row, he_error *err)
 {
-    if (column == NULL || column->domain == HE_MESH_KIND) {
-        return HE_OK;
+    if (column == NULL) {
+        return HE_OK; /* it came or went as a whole */
     }
     if (column->domain == HE_HALFEDGE) {
+        out->others |= mesh->c.face[row] == HE_NONE;
         return note_face(out, mesh->c.face[row], err);
+    }
+    if (column->domain == HE_MESH_KIND) {
+        out->others = true;
+        return HE_OK;
     }
     return he_ids_add(&out->modified[column->domain], row, err);
 }
@@ -172,6 +177,7 @@ static he_status note_word(const he_mesh *mesh, he_changes *out, uint32_t column
         if ((row & 1u) == 0 && (before == HE_DEAD || after == HE_DEAD)) {
             status = note_row(out, HE_EDGE, row >> 1, before, after, err);
         }
+        out->others |= mesh->c.face[row] == HE_NONE;
         return status != HE_OK ? status : note_face(out, mesh->c.face[row], err);
     case HE_COL_PREV:
         return HE_OK;
@@ -208,7 +214,7 @@ static bool is_word(const he_record *r)
 }
 
 static he_status gather(const he_delta *delta, size_t from, size_t to, bool undone,
-                        word_record **out, size_t *count, bool *replaced, he_error *err)
+                        word_record **out, size_t *count, he_changes *found, he_error *err)
 {
     word_record *records = he_mem_array(NULL, to - from, sizeof *records);
     if (records == NULL) {
@@ -221,7 +227,9 @@ static he_status gather(const he_delta *delta, size_t from, size_t to, bool undo
             records[n++] = (word_record){key_of(r), undone ? r->after : r->before,
                                          undone ? r->before : r->after};
         } else if (r->column == HE_COL_REPLACED) {
-            *replaced = true;
+            found->replaced = true;
+        } else if (r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED) {
+            found->others = true;
         }
     }
     he_status status = sort_records(&records, n, err);
@@ -299,7 +307,7 @@ he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t fro
     he_changes found = {0};
     word_record *records = NULL;
     size_t count = 0;
-    he_status status = gather(delta, from, to, undone, &records, &count, &found.replaced, err);
+    he_status status = gather(delta, from, to, undone, &records, &count, &found, err);
     if (status != HE_OK || found.replaced) {
         goto out;
     }
@@ -343,7 +351,7 @@ void he_changes_clear(he_changes *changes)
 
 bool he_changes_none(const he_changes *changes)
 {
-    size_t total = changes->replaced;
+    size_t total = (size_t)changes->replaced + changes->others;
     for (size_t kind = 0; kind < HE_KIND_COUNT; kind++) {
         total += changes->created[kind].count + changes->deleted[kind].count +
                  changes->modified[kind].count;

@@ -224,11 +224,10 @@ static void check_vertices(checker *c)
     }
 }
 
-static void check_count(checker *c, he_kind kind, uint32_t stored, uint32_t counted)
+static void check_count(checker *c, const char *what, uint32_t stored, uint32_t counted)
 {
     if (stored != counted) {
-        broken(c, 12, HE_MESH_KIND, 0, "%u live %s are counted, there are %u", stored,
-               he_kind_plural(kind), counted);
+        broken(c, 12, HE_MESH_KIND, 0, "%u %s are counted, there are %u", stored, what, counted);
     }
 }
 
@@ -261,10 +260,10 @@ static void check_rows(checker *c)
     for (uint32_t f = 0; f < k->faces.issued; f++) {
         faces += k->face_halfedge[f] != HE_DEAD;
     }
-    check_count(c, HE_VERTEX, k->vertices.live, vertices);
-    check_count(c, HE_EDGE, k->edges.live, edges);
-    check_count(c, HE_FACE, k->faces.live, faces);
-    check_count(c, HE_HALFEDGE, k->boundary_halfedges, boundary);
+    check_count(c, "live vertices", k->vertices.live, vertices);
+    check_count(c, "live edges", k->edges.live, edges);
+    check_count(c, "live faces", k->faces.live, faces);
+    check_count(c, "boundary halfedges", k->boundary_halfedges, boundary);
     for (size_t i = 0; i < k->column_count && !enough(c); i++) {
         if (k->columns[i] != NULL && k->columns[i]->domain != HE_MESH_KIND) {
             check_dead_attributes(c, k->columns[i]);

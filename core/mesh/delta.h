@@ -98,6 +98,8 @@ typedef struct he_changes {
     he_ids created[HE_KIND_COUNT], deleted[HE_KIND_COUNT], modified[HE_KIND_COUNT];
     he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];
     bool replaced; /* the content as a whole: the sets are empty */
+    bool others;   /* what no set shows: a column came or went, or a value of the mesh, or a link
+                      or value of a half-edge that runs along a hole, differs */
 } he_changes;
 
 /* Records `from`..`to` of `delta`, with `mesh` in the state after `to`, or, when `undone`, before

@@ -95,6 +95,15 @@ he_status he_ids_add(he_ids *list, uint32_t id, he_error *err)
     return HE_OK;
 }
 
+void he_ids_reverse(he_ids *list)
+{
+    for (size_t i = 0, j = list->count; i + 1 < j; i++) {
+        uint32_t id = list->ids[i];
+        list->ids[i] = list->ids[--j];
+        list->ids[j] = id;
+    }
+}
+
 void he_ids_clear(he_ids *list)
 {
     he_mem_free(list->ids);

@@ -83,20 +83,6 @@ typedef struct filed {
 
 #define DOWNWARD 0x80000000u
 
-static uint32_t face_of_corner(const he_soup *soup, uint32_t corner)
-{
-    size_t low = 0, high = soup->face_count;
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        if (soup->starts[middle] <= corner) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return (uint32_t)low;
-}
-
 /* Bucket sort of all corners by the smaller end of their edge: starts[v]..starts[v + 1] are the
  * entries of vertex v. */
 static void file_corners(const he_soup *soup, uint32_t *starts, filed *entries)
@@ -140,7 +126,7 @@ static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
     uint32_t far = b->far & ~DOWNWARD;
     if (p->mate[a->corner] != HE_NONE) {
         he_report_add(p->report, p->total,
-                      (he_defect){HE_NONMANIFOLD_EDGE, HE_FACE, face_of_corner(p->soup, b->corner),
+                      (he_defect){HE_NONMANIFOLD_EDGE, HE_FACE, he_soup_face_of(p->soup, b->corner),
                                   HE_NONE, low, far});
         return;
     }
@@ -148,7 +134,7 @@ static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
     p->mate[b->corner] = a->corner;
     if (((a->far ^ b->far) & DOWNWARD) == 0) {
         he_report_add(p->report, p->total,
-                      (he_defect){HE_ORIENTATION, HE_FACE, face_of_corner(p->soup, b->corner),
+                      (he_defect){HE_ORIENTATION, HE_FACE, he_soup_face_of(p->soup, b->corner),
                                   HE_NONE, low, far});
     }
 }

@@ -124,6 +124,20 @@ he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices, size_t count
     return status;
 }
 
+uint32_t he_soup_face_of(const he_soup *soup, size_t corner)
+{
+    size_t low = 0, high = soup->face_count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (soup->starts[middle] <= corner) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return (uint32_t)low;
+}
+
 he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
                          uint32_t components, he_rule rule, he_column **out, he_error *err)
 {

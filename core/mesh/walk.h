@@ -58,10 +58,6 @@ static inline he_halfedge he_turn_ccw(const he_mesh *m, he_halfedge h)
 {
     return he_twin(he_prev(m, h));
 }
-static inline he_halfedge he_turn_cw(const he_mesh *m, he_halfedge h)
-{
-    return he_next(m, he_twin(h));
-}
 
 static inline bool he_is_none(uint32_t id)
 {

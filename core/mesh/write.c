@@ -35,12 +35,12 @@ static size_t records_needed(const he_mesh *m, const he_need *need)
 {
     size_t vertex = column_words(m, HE_VERTEX), face = column_words(m, HE_FACE);
     size_t edge = column_words(m, HE_EDGE) + 2 * column_words(m, HE_HALFEDGE);
+    size_t any = vertex + edge + face + column_words(m, HE_MESH_KIND);
     size_t vertices = need->vertices + need->deleted_vertices;
     size_t edges = need->edges + need->deleted_edges;
     size_t faces = need->faces + need->deleted_faces;
     return vertices * (2 + POSITION_WORDS + vertex) + edges * (16 + edge) + faces * (2 + face) +
-           need->links + need->positions * POSITION_WORDS +
-           need->attributes * (vertex + edge + face) + need->lineage;
+           need->links + need->positions * POSITION_WORDS + need->attributes * any + need->lineage;
 }
 
 static he_status reserve_column(he_column *column, size_t issued, size_t extra, he_error *err)

@@ -173,15 +173,6 @@ static he_status dijkstra(const he_mesh *m, uint32_t from, uint32_t to, he_measu
     return status;
 }
 
-static void reverse(he_ids *list)
-{
-    for (size_t i = 0, j = list->count; i + 1 < j; i++) {
-        uint32_t id = list->ids[i];
-        list->ids[i] = list->ids[--j];
-        list->ids[j] = id;
-    }
-}
-
 static he_status trace_back(const he_mesh *m, const search *s, uint32_t goal, he_path *out,
                             he_error *err)
 {
@@ -202,8 +193,8 @@ static he_status trace_back(const he_mesh *m, const search *s, uint32_t goal, he
             return corrupt(HE_HALFEDGE, via, err);
         }
     }
-    reverse(&out->vertices);
-    reverse(&out->edges);
+    he_ids_reverse(&out->vertices);
+    he_ids_reverse(&out->edges);
     out->found = true;
     out->length = s->nodes[goal].distance;
     return status;

@@ -202,41 +202,6 @@ he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t fro
     return status;
 }
 
-he_status he_traverse_rings(const he_mesh *m, he_vertex from, uint32_t depth, he_ids *vertices,
-                            he_ids *starts, he_error *err)
-{
-    he_status status = he_mesh_require(m, HE_VERTEX, from.i, err);
-    if (status != HE_OK) {
-        return status;
-    }
-    flood f = {0};
-    size_t vertices_before = vertices->count, starts_before = starts->count;
-    status = flood_from(m, HE_VERTEX, from.i, depth, 0, &f, err);
-    if (status == HE_OK) {
-        status = append(vertices, &f.met.ids, err);
-    }
-    for (size_t i = 0; i <= f.depths.count && status == HE_OK; i++) {
-        if (i == 0 || i == f.depths.count || f.depths.ids[i] != f.depths.ids[i - 1]) {
-            status = he_ids_add(starts, (uint32_t)i, err);
-        }
-    }
-    if (status != HE_OK) {
-        vertices->count = vertices_before;
-        starts->count = starts_before;
-    }
-    flood_clear(&f);
-    return status;
-}
-
-static void reverse(he_ids *list)
-{
-    for (size_t i = 0, j = list->count; i + 1 < j; i++) {
-        uint32_t id = list->ids[i];
-        list->ids[i] = list->ids[--j];
-        list->ids[j] = id;
-    }
-}
-
 /* The half-edge that continues `h`; HE_NONE where the walk ends, HE_DEAD on broken links. */
 typedef uint32_t (*onward)(const he_mesh *m, uint32_t h);
 
@@ -314,7 +279,7 @@ static he_status both_ways(const he_mesh *m, he_edge from, onward step, he_ids *
     if (status == HE_OK && !met) {
         status = follow(m, 2u * from.i + 1u, step, &behind, &met_behind, err);
     }
-    reverse(&behind);
+    he_ids_reverse(&behind);
     if (status == HE_OK) {
         status = append(out, &behind, err);
     }

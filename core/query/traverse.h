@@ -42,12 +42,6 @@ HE_NODISCARD he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind,
                                                  uint32_t depth, size_t limit, he_ids *ids,
                                                  he_ids *depths, he_error *err);
 
-/* RINGS. Ring k holds the vertices k edges away: ring 0 is `from`. The rings up to `depth`, less
- * the empty ones beyond the far end of the component: ring k is vertices[starts[k]] up to
- * vertices[starts[k + 1]], and there is one start more than rings. Both lists are to be empty. */
-HE_NODISCARD he_status he_traverse_rings(const he_mesh *m, he_vertex from, uint32_t depth,
-                                         he_ids *vertices, he_ids *starts, he_error *err);
-
 /* SHORTEST PATH along edges. */
 typedef enum he_measure {
     HE_BY_EDGES, /* each counts 1 */

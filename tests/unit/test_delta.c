@@ -261,6 +261,71 @@ static void test_columns_are_recorded(void **state)
     he_mesh_free(end);
 }
 
+/* What the sets of no element show is still not nothing. */
+static void test_changes_of_no_element(void **state)
+{
+    (void)state;
+    static const he_kind domains[] = {HE_MESH_KIND, HE_HALFEDGE};
+    for (size_t i = 0; i < 2; i++) {
+        he_mesh *m = fixture_mesh("012");
+        he_delta *d = he_delta_new();
+        he_column *column;
+        he_changes changes;
+        he_mesh_record(m, d);
+        assert_int_equal(he_column_new("mark", domains[i], HE_UINT32, 1, HE_COPY, &column, NULL),
+                         HE_OK);
+        size_t rows = i == 0 ? 1 : he_mesh_issued(m, HE_HALFEDGE);
+        assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
+        assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+        assert_int_equal(he_changes_find(m, d, 0, d->count, false, &changes, NULL), HE_OK);
+        assert_false(he_changes_none(&changes));
+        he_changes_clear(&changes);
+        size_t from = d->count;
+        assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+        /* Half-edge 1 runs along the hole. */
+        he_set_attribute(m, 0, (uint32_t)rows == 1 ? 0 : 1, &(uint32_t){7});
+        assert_int_equal(d->count, from + 1);
+        assert_int_equal(he_changes_find(m, d, from, d->count, false, &changes, NULL), HE_OK);
+        assert_false(he_changes_none(&changes));
+        assert_int_equal(changes.modified[HE_FACE].count, 0);
+        he_changes_clear(&changes);
+        he_mesh_record(m, NULL);
+        he_delta_free(d);
+        he_mesh_free(m);
+    }
+}
+
+/* he_reserve makes room for every word of a value, whatever its domain. */
+static void test_the_widest_value_has_room(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
+        he_mesh *m = fixture_mesh("012"), *start = NULL;
+        he_column *column;
+        double value[HE_COLUMN_COMPONENTS];
+        for (size_t i = 0; i < HE_COLUMN_COMPONENTS; i++) {
+            value[i] = -1.0 / (double)(3 + i);
+        }
+        assert_int_equal(he_column_new("wide", (he_kind)kind, HE_DOUBLE, HE_COLUMN_COMPONENTS,
+                                       HE_COPY, &column, NULL),
+                         HE_OK);
+        assert_int_equal(he_column_extend(column, he_mesh_issued(m, (he_kind)kind), NULL), HE_OK);
+        assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+        start = copy_of(m);
+        he_delta *d = he_delta_new();
+        he_mesh_record(m, d);
+        assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+        assert_in_range(d->capacity, sizeof value / 4, SIZE_MAX);
+        he_set_attribute(m, 0, 0, value);
+        he_mesh_record(m, NULL);
+        he_delta_undo(d, m);
+        assert_true(he_mesh_equal(m, start));
+        he_delta_free(d);
+        he_mesh_free(m);
+        he_mesh_free(start);
+    }
+}
+
 static void test_compact_renumbers_and_undoes(void **state)
 {
     (void)state;
@@ -383,6 +448,8 @@ int main(void)
         cmocka_unit_test(test_changes_are_net),
         cmocka_unit_test(test_changes_of_many_rows),
         cmocka_unit_test(test_columns_are_recorded),
+        cmocka_unit_test(test_changes_of_no_element),
+        cmocka_unit_test(test_the_widest_value_has_room),
         cmocka_unit_test(test_compact_renumbers_and_undoes),
         cmocka_unit_test(test_every_allocation_may_fail),
         cmocka_unit_test(test_carry_follows_rules),

@@ -148,6 +148,17 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     }
 }
 
+/* Nothing changed exactly when both meshes are the same. */
+static void require_honest_changes(const he_mesh *before, const he_mesh *m, const he_delta *delta)
+{
+    he_changes changes;
+    assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
+    if (!changes.replaced) {
+        assert_int_equal(he_changes_none(&changes), he_mesh_equal_live(before, m));
+    }
+    he_changes_clear(&changes);
+}
+
 /* Was it done? */
 static bool step(he_mesh *m, const he_op *op)
 {
@@ -169,6 +180,7 @@ static bool step(he_mesh *m, const he_op *op)
         assert_equal(m, before);
     } else {
         he_mesh *after = copy_of(m);
+        require_honest_changes(before, m, delta);
         he_delta_undo(delta, m);
         assert_true(he_mesh_equal_live(m, before));
         he_delta_redo(delta, m);

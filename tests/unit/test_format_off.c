@@ -159,9 +159,11 @@ static void wrong_text_names_its_line(void **state)
         uint64_t line;
         const char *words;
     } rows[] = {
-        {"", HE_SYNTAX, 0, "before its counts"},
+        {"", HE_SYNTAX, 1, "before its counts"},
         {"OFF\n", HE_SYNTAX, 1, "before its counts"},
         {"OFF\n# x\n3\n", HE_SYNTAX, 3, "before its counts"},
+        {"OFF\n3\n# x\n", HE_SYNTAX, 3, "before its counts"},
+        {"OFF\n3\n# x", HE_SYNTAX, 3, "before its counts"},
         {"PLY\n3 1 3\n", HE_SYNTAX, 1, "'PLY' is not the header"},
         {"OFFX\n3 1 3\n", HE_SYNTAX, 1, "is not the header"},
         {"CCOFF\n3 1 3\n", HE_SYNTAX, 1, "is not the header"},

@@ -40,6 +40,43 @@ static void text_is_as_expected(void **state)
     he_mesh_free(mesh);
 }
 
+/* column.h: rows beyond those stored hold the default. */
+static void rows_that_are_not_stored_are_the_default(void **state)
+{
+    (void)state;
+    static const double white[3] = {1, 1, 1}, red[3] = {1, 0, 0};
+    static const uint32_t corners[3] = {0, 1, 2}, seven = 7;
+    he_soup soup;
+    he_column *color, *smoothing;
+    he_mesh *mesh;
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i < 3; i++) {
+        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){i, i == 2, 0}, NULL), HE_OK);
+    }
+    assert_int_equal(he_soup_add_face(&soup, corners, 3, NULL), HE_OK);
+    assert_int_equal(
+        he_soup_column(&soup, "color", HE_VERTEX, HE_DOUBLE, 3, HE_INTERPOLATE, &color, NULL),
+        HE_OK);
+    memcpy(color->fallback, white, sizeof white);
+    assert_int_equal(he_column_extend(color, 1, NULL), HE_OK);
+    memcpy(he_column_row(color, 0), red, sizeof red);
+    assert_int_equal(
+        he_soup_column(&soup, "smoothing", HE_FACE, HE_UINT32, 1, HE_COPY, &smoothing, NULL),
+        HE_OK);
+    memcpy(smoothing->fallback, &seven, sizeof seven);
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
+    char *text = write_text("obj", mesh, NULL);
+    assert_string_equal(text, "# 3 vertices, 1 faces\n"
+                              "v 0 0 0 1 0 0\nv 1 0 0 1 1 1\nv 2 1 0 1 1 1\ns 7\nf 1 2 3\n");
+    free(text);
+    text = write_text("off", mesh, NULL);
+    assert_string_equal(text, "COFF\n3 1 3\n0 0 0 1.0 0.0 0.0\n1 0 0 1.0 1.0 1.0\n"
+                              "2 1 0 1.0 1.0 1.0\n3 0 1 2\n");
+    free(text);
+    he_mesh_free(mesh);
+    he_soup_clear(&soup);
+}
+
 static const char quads[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 .25\nv 2 1 .125\n";
 
 static void obj_round_trips(void **state)
@@ -269,10 +306,15 @@ static void random_meshes_round_trip(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(text_is_as_expected),   cmocka_unit_test(obj_round_trips),
-        cmocka_unit_test(off_round_trips),       cmocka_unit_test(vertex_values_go_to_obj),
-        cmocka_unit_test(dead_rows_are_skipped), cmocka_unit_test(names_that_do_not_fit_a_line),
-        cmocka_unit_test(what_is_lost_is_named), cmocka_unit_test(random_meshes_round_trip),
+        cmocka_unit_test(text_is_as_expected),
+        cmocka_unit_test(rows_that_are_not_stored_are_the_default),
+        cmocka_unit_test(obj_round_trips),
+        cmocka_unit_test(off_round_trips),
+        cmocka_unit_test(vertex_values_go_to_obj),
+        cmocka_unit_test(dead_rows_are_skipped),
+        cmocka_unit_test(names_that_do_not_fit_a_line),
+        cmocka_unit_test(what_is_lost_is_named),
+        cmocka_unit_test(random_meshes_round_trip),
     };
     return cmocka_run_group_tests_name("format_write", tests, NULL, NULL);
 }

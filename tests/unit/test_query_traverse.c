@@ -101,46 +101,6 @@ static void try_breadth_first(const he_mesh *m, he_kind kind)
     }
 }
 
-static void try_rings(const he_mesh *m)
-{
-    distances t;
-    distances_find(&t, m, HE_VERTEX, false);
-    for (uint32_t from = 0; from < t.n; from++) {
-        if (!he_mesh_is_live(m, HE_VERTEX, from)) {
-            continue;
-        }
-        uint32_t furthest = 0;
-        for (uint32_t i = 0; i < t.n; i++) {
-            if (!isinf(t.d[from][i]) && t.d[from][i] > furthest) {
-                furthest = (uint32_t)t.d[from][i];
-            }
-        }
-        for (uint32_t depth = 0; depth <= furthest + 2; depth++) {
-            he_ids ids = {0}, starts = {0};
-            assert_int_equal(he_traverse_rings(m, (he_vertex){from}, depth, &ids, &starts, NULL),
-                             HE_OK);
-            uint32_t rings = (depth < furthest ? depth : furthest) + 1;
-            assert_int_equal(starts.count, rings + 1);
-            assert_int_equal(starts.ids[0], 0);
-            assert_int_equal(starts.ids[1], 1);
-            assert_int_equal(ids.ids[0], from);
-            assert_int_equal(starts.ids[rings], ids.count);
-            for (uint32_t k = 0; k < rings; k++) {
-                uint32_t wanted = 0;
-                for (uint32_t i = 0; i < t.n; i++) {
-                    wanted += t.d[from][i] == k;
-                }
-                assert_int_equal(starts.ids[k + 1] - starts.ids[k], wanted);
-                for (uint32_t i = starts.ids[k]; i < starts.ids[k + 1]; i++) {
-                    assert_true(t.d[from][ids.ids[i]] == k);
-                }
-            }
-            he_ids_clear(&ids);
-            he_ids_clear(&starts);
-        }
-    }
-}
-
 static void try_paths(const he_mesh *m, he_measure by)
 {
     distances t;
@@ -185,7 +145,6 @@ static void test_traverse_agrees_with_all_distances(void **state)
             i < QUERY_SPECIMENS ? fixture_mesh(query_specimens[i]) : query_with_dead_rows();
         try_breadth_first(m, HE_VERTEX);
         try_breadth_first(m, HE_FACE);
-        try_rings(m);
         try_paths(m, HE_BY_EDGES);
         try_paths(m, HE_BY_LENGTH);
         he_mesh_free(m);
@@ -389,7 +348,8 @@ static void test_traverse_refuses(void **state)
     he_path path = {.length = 5};
     he_error err = {0};
     assert_int_equal(he_traverse_loop(m, (he_halfedge){6}, &a, &err), HE_DELETED_ELEMENT);
-    assert_int_equal(he_traverse_rings(m, (he_vertex){4}, 1, &a, &b, &err), HE_DELETED_ELEMENT);
+    assert_int_equal(he_traverse_breadth_first(m, HE_VERTEX, 4, 1, 0, &a, &b, &err),
+                     HE_DELETED_ELEMENT);
     assert_int_equal(he_traverse_breadth_first(m, HE_FACE, 1, 1, 0, &a, &b, &err),
                      HE_DELETED_ELEMENT);
     assert_int_equal(he_traverse_breadth_first(m, HE_EDGE, 0, 1, 0, &a, &b, &err), HE_BAD_VALUE);
@@ -446,7 +406,7 @@ static void walk_all(const he_mesh *m, he_status *worst)
         got[n++] = he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_START, 0, &a, NULL);
         got[n++] = he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, &a, NULL);
         got[n++] = he_traverse_loop(m, h, &a, NULL);
-        got[n++] = he_traverse_rings(m, v, 3, &a, &b, NULL);
+        got[n++] = he_traverse_breadth_first(m, HE_VERTEX, v.i, 3, 0, &a, &b, NULL);
         got[n++] = he_traverse_breadth_first(m, HE_FACE, i, HE_NONE, 0, &a, &b, NULL);
         got[n++] = he_traverse_shortest_path(m, v, w, HE_BY_EDGES, &path, NULL);
         he_path_clear(&path);
@@ -520,7 +480,7 @@ static void test_traverse_survives_failing_memory(void **state)
                 status = he_traverse_breadth_first(m, HE_FACE, 0, HE_NONE, 0, &a, &b, NULL);
                 break;
             case 3:
-                status = he_traverse_rings(m, (he_vertex){0}, HE_NONE, &a, &b, NULL);
+                status = he_traverse_breadth_first(m, HE_VERTEX, 0, HE_NONE, 0, &a, &b, NULL);
                 break;
             case 4:
                 status = he_traverse_shortest_path(m, (he_vertex){0}, (he_vertex){44}, HE_BY_LENGTH,
@@ -558,7 +518,7 @@ static void test_traverse_costs_what_it_touches(void **state)
         he_ids a = {0}, b = {0};
         he_path path;
         fixture_fail_at(0);
-        assert_int_equal(he_traverse_rings(m, (he_vertex){0}, 3, &a, &b, NULL), HE_OK);
+        assert_int_equal(he_traverse_breadth_first(m, HE_VERTEX, 0, 3, 0, &a, &b, NULL), HE_OK);
         assert_int_equal(
             he_traverse_shortest_path(m, (he_vertex){0}, (he_vertex){3}, HE_BY_EDGES, &path, NULL),
             HE_OK);
