@@ -15,7 +15,7 @@
  *           |
  *       api_free
  *
- * The server must not send the answer before api_answer's `mesh` is durable up to `revision`.
+ * The server must not send the answer before api_answer's `mesh` is durable up to `record`.
  * api_handle does all of it at once on bytes in memory: tests live on that. */
 #ifndef HE_API_API_H
 #define HE_API_API_H
@@ -63,9 +63,10 @@ typedef struct api_answer {
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
     bool close; /* the connection must not be used again */
-    /* Hold the answer until this mesh is durable up to this revision; mesh NULL: do not. */
+    /* Hold the answer until this mesh is durable up to this record (api_mesh_info); mesh NULL: do
+     * not. */
     api_mesh *mesh;
-    uint64_t revision;
+    uint64_t record;
     const char *route; /* template for logs and metrics, "-" when none matched */
 } api_answer;
 

@@ -39,7 +39,7 @@ static bool choose(api_exchange *x, const he_format **format)
     if (name == NULL) {
         int offer = api_media_choose(api_header_of(x, "Accept"), x->route->produces);
         if (offer < 0) {
-            return api_fail(x, API_NOT_ACCEPTABLE, "none of the formats is acceptable");
+            return api_fail_accept(x);
         }
         name = x->route->produces[offer];
         *format = he_format_of_media_type(name);
@@ -97,7 +97,7 @@ static void answer(api_exchange *x, const he_format *format, content *c, const h
     api_answer_stream(x, 200, type, -1, read_content, c, free_content);
 }
 
-static void export(api_exchange *x)
+void api_content_get(api_exchange *x)
 {
     const he_format *format = NULL;
     const he_mesh *mesh;
@@ -116,9 +116,4 @@ static void export(api_exchange *x)
         return;
     }
     answer(x, format, c, mesh);
-}
-
-void api_content_get(api_exchange *x)
-{
-    api_run_by_size(x, export);
 }

@@ -27,9 +27,19 @@ void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
+/* Preconditions that fail already spare the client its body. */
 void api_mesh_put_begin(api_exchange *x)
 {
-    begin(x);
+    bool good = true;
+    if (x->mesh == NULL) {
+        good = api_precondition_absent(x);
+    } else if (api_read_begin(x) != NULL) {
+        good = api_preconditions_hold(x, NULL);
+        api_read_end(x);
+    }
+    if (good && x->problem.code == HE_OK) {
+        begin(x);
+    }
 }
 
 void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length)
@@ -37,13 +47,22 @@ void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-static void answer_created(api_exchange *x)
+/* A mesh on its way into the store, and what is known of it before others can change it. */
+typedef struct made {
+    he_mesh *mesh;
+    api_summary summary;
+} made;
+
+static bool build(api_exchange *x, made *out)
 {
-    if (api_read_begin(x) != NULL) {
-        api_read_end(x);
-        api_answer_header_format(x, "Location", "/v1/meshes/%s", x->info.id);
-        api_answer_summary(x, 201, api_upload_write_report);
+    if (!api_upload_build(x, &out->mesh)) {
+        return false;
     }
+    if (!api_summary_find(x, out->mesh, &out->summary)) {
+        he_mesh_free(out->mesh);
+        return false;
+    }
+    return true;
 }
 
 /* Takes `mesh` on success. `id` NULL lets the store choose. */
@@ -56,66 +75,67 @@ static api_store_status store_new(api_exchange *x, const char *id, he_mesh *mesh
 static void create(api_exchange *x)
 {
     const char *id = api_param_text(x, "id");
-    he_mesh *mesh;
+    made m;
     if (id != NULL && !api_path_is_mesh_id(id)) {
-        api_fail(x, API_BAD_ID, "\"%s\" cannot name a mesh", id);
+        api_fail(x, API_BAD_ID, "\"%.100s\" cannot name a mesh", id);
         return;
     }
-    if (!api_upload_build(x, &mesh)) {
+    if (!build(x, &m)) {
         return;
     }
-    api_store_status status = store_new(x, id, mesh);
+    api_store_status status = store_new(x, id, m.mesh);
     if (status == API_STORE_OK) {
-        answer_created(x);
+        api_answer_created(x, &m.summary, api_upload_write_report);
     } else {
-        he_mesh_free(mesh);
+        he_mesh_free(m.mesh);
         api_fail_store(x, status);
     }
 }
 
-static void replace(api_exchange *x, he_mesh *mesh)
+static void replace(api_exchange *x, const made *m)
 {
     he_delta *delta;
     if (api_write_begin(x, NULL, &delta) == NULL) {
-        he_mesh_free(mesh);
+        he_mesh_free(m->mesh);
         return;
     }
     const char *name = api_upload_name(x);
-    x->store->replace(x->store->self, x->mesh, mesh, &x->info);
+    x->store->replace(x->store->self, x->mesh, m->mesh, &x->info);
     if (name != NULL) {
         x->store->rename(x->store->self, x->mesh, name, &x->info);
     }
     x->store->write_end(x->store->self, x->mesh);
+    api_publish(x, 204);
     api_answer_etag(x, "summary");
     if (!api_answer_minimal(x)) {
-        api_answer_summary(x, 200, api_upload_write_report);
+        api_answer_stored(x, 200, &m->summary, api_upload_write_report);
     }
 }
 
 /* The mesh may have come while the body did: then it is replaced, or the precondition fails. */
 static void put(api_exchange *x)
 {
-    he_mesh *mesh;
+    made m;
     if (x->mesh == NULL && !api_precondition_absent(x)) {
         return;
     }
-    if (!api_upload_build(x, &mesh)) {
+    if (!build(x, &m)) {
         return;
     }
     api_store_status status = API_STORE_TAKEN;
     if (x->mesh == NULL) {
-        status = store_new(x, x->mesh_id, mesh);
+        status = store_new(x, x->mesh_id, m.mesh);
     }
     if (x->mesh == NULL && status == API_STORE_TAKEN) {
         status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
         status = status == API_STORE_OK ? API_STORE_TAKEN : status;
     }
     if (status == API_STORE_OK) {
-        answer_created(x);
+        api_answer_created(x, &m.summary, api_upload_write_report);
     } else if (status == API_STORE_TAKEN) {
-        replace(x, mesh);
+        replace(x, &m);
     } else {
-        he_mesh_free(mesh);
+        he_mesh_free(m.mesh);
         api_fail_store(x, status);
     }
 }

@@ -67,6 +67,10 @@ static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in
         if (!decode_ids(d, &child, kind, &one, &found)) {
             return false;
         }
+        if (found.count > API_MAX_IDS - count) {
+            return api_in_fail(&child, HE_LIMIT, "the list stands for more than %d ids",
+                               (int)API_MAX_IDS);
+        }
         if (found.count > capacity - count) {
             size_t grown = he_mem_grown(capacity, count + found.count);
             uint32_t *larger = api_arena_array(d->arena, grown, sizeof *ids);

@@ -3,6 +3,7 @@
 
 #include "api/changes.h"
 #include "api/decode_op.h"
+#include "api/edit_cost.h"
 #include "api/names.h"
 
 #include <string.h>
@@ -16,6 +17,8 @@ typedef struct edits {
     bool has_expected;
     bool dry_run;
     bool whole; /* one of the operations costs the mesh */
+    api_edit_cost cost;
+    uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
     api_names names;
     api_arena scratch; /* arguments of the operation at hand */
     api_text results;  /* objects of `results`, comma-separated */
@@ -30,6 +33,7 @@ static void free_edits(void *state)
 {
     edits *e = state;
     api_names_clear(&e->names);
+    api_edit_cost_clear(&e->cost);
     api_arena_clear(&e->scratch);
     api_text_clear(&e->results);
     he_mem_free(e);
@@ -60,6 +64,15 @@ static bool decode(edits *e, const api_in *in, api_call *call)
                          e->is_list ? &e->names.references : NULL, &e->scratch, call);
 }
 
+static bool note(edits *e, const api_in *in, const api_call *call)
+{
+    he_error err = {0};
+    e->whole |= call->op->size == HE_OP_WHOLE;
+    note_name(e, call->op->name);
+    return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
+           api_problem_set_core(in->problem, &err);
+}
+
 /* All that is wrong with the document itself is found before the first operation runs. */
 static bool check_ops(edits *e, const api_in *root)
 {
@@ -68,9 +81,7 @@ static bool check_ops(edits *e, const api_in *root)
         if (!decode(e, root, &call)) {
             return false;
         }
-        e->whole = call.op->size == HE_OP_WHOLE;
-        note_name(e, call.op->name);
-        return true;
+        return note(e, root, &call);
     }
     api_in op;
     for (bool more = api_in_first(&e->list, &op); more; more = api_in_next(&op)) {
@@ -78,8 +89,9 @@ static bool check_ops(edits *e, const api_in *root)
             return false;
         }
         e->count++;
-        e->whole |= call.op->size == HE_OP_WHOLE;
-        note_name(e, call.op->name);
+        if (!note(e, &op, &call)) {
+            return false;
+        }
     }
     return true;
 }
@@ -104,13 +116,41 @@ static bool read_request(api_exchange *x, edits *e)
     return check_ops(e, root);
 }
 
+static uint64_t issued(const he_mesh *mesh)
+{
+    return (uint64_t)he_mesh_issued(mesh, HE_VERTEX) + he_mesh_issued(mesh, HE_EDGE) +
+           he_mesh_issued(mesh, HE_FACE);
+}
+
+/* A list of few bytes may ask for the whole mesh as often as it has operations. */
+static bool within_limits(edits *e, const he_mesh *mesh, const he_delta *delta, const api_in *in,
+                          const api_call *call)
+{
+    if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
+        return api_in_fail(in, HE_LIMIT, "the operations before look at %llu elements, over %d",
+                           (unsigned long long)e->looked_at, (int)API_MAX_EDITS_ELEMENTS);
+    }
+    if (delta->count > API_MAX_EDITS_ROWS) {
+        return api_in_fail(in, HE_LIMIT, "the operations before change %zu rows, over %d",
+                           delta->count, (int)API_MAX_EDITS_ROWS);
+    }
+    if (call->op->size == HE_OP_WHOLE) {
+        e->looked_at += issued(mesh);
+    }
+    for (size_t i = 0; i < he_op_params(call->op); i++) {
+        e->looked_at += call->args[i].list ? call->args[i].count : 0;
+    }
+    return true;
+}
+
 /* Run one operation and write its results. The pointer of a refusal is the operation. */
-static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const api_in *in)
+static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta,
+                   const api_in *in)
 {
     api_call call;
     he_results results = {0};
     he_error err = {0};
-    if (!decode(e, in, &call)) {
+    if (!decode(e, in, &call) || !within_limits(e, mesh, delta, in, &call)) {
         return false;
     }
     if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
@@ -126,24 +166,18 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const api_in *in)
     return true;
 }
 
-static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh)
+static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
 {
     if (!e->is_list) {
-        return run_op(x, e, mesh, &x->root);
+        return run_op(x, e, mesh, delta, &x->root);
     }
     api_in op;
     for (bool more = api_in_first(&e->list, &op); more; more = api_in_next(&op)) {
-        if (!run_op(x, e, mesh, &op)) {
+        if (!run_op(x, e, mesh, delta, &op)) {
             return false;
         }
     }
     return true;
-}
-
-static uint64_t issued(const he_mesh *mesh)
-{
-    return (uint64_t)he_mesh_issued(mesh, HE_VERTEX) + he_mesh_issued(mesh, HE_EDGE) +
-           he_mesh_issued(mesh, HE_FACE);
 }
 
 /* The whole answer is written before anything is published, so that no failure follows it. */
@@ -185,7 +219,7 @@ static void run(api_exchange *x)
     uint64_t ids = issued(mesh);
     bool publish = false;
     api_out_array_begin(&e->out);
-    if (!run_ops(x, e, mesh)) {
+    if (!run_ops(x, e, mesh, delta)) {
         goto out;
     }
     api_out_array_end(&e->out);
@@ -200,10 +234,15 @@ static void run(api_exchange *x)
     /* An edit without effect makes no revision, unless it used up ids that its answer names. */
     bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
     write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0));
-    publish = effect && !e->dry_run && !x->text.failed;
+    if (x->text.failed) {
+        api_fail_memory(x);
+        goto out;
+    }
+    publish = effect && !e->dry_run;
 out:
     if (publish) {
         x->store->write_commit(x->store->self, x->mesh, e->ops, changes.replaced, &x->info);
+        api_publish(x, 204);
     } else {
         x->store->write_abort(x->store->self, x->mesh);
     }
@@ -213,17 +252,19 @@ out:
     }
 }
 
-/* A list of many operations, or one that costs the mesh, belongs on a thread that may block. */
+/* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a
+ * thread that may block. */
 static bool is_long(api_exchange *x, const edits *e)
 {
     if (api_is_costly(x, e->count, API_COSTLY_EDITS)) {
         return true;
     }
-    const he_mesh *mesh = e->whole ? api_read_begin(x) : NULL;
+    const he_mesh *mesh = x->phase != API_PHASE_WORK ? api_read_begin(x) : NULL;
     if (mesh == NULL) {
         return false;
     }
-    bool large = api_is_large(x, mesh);
+    bool large = api_is_large(x, mesh) &&
+                 (e->whole || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS));
     api_read_end(x);
     return large;
 }

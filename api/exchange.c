@@ -105,7 +105,7 @@ bool api_fail_store(api_exchange *x, api_store_status status)
         return api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"",
                         x->mesh_id == NULL ? "" : x->mesh_id);
     case API_STORE_TAKEN:
-        return api_fail(x, API_MESH_EXISTS, "the id is in use");
+        return api_fail(x, API_MESH_EXISTS, "the id is that of another mesh");
     case API_STORE_NO_MEMORY:
         return api_fail_memory(x);
     case API_STORE_BUDGET:
@@ -121,6 +121,14 @@ bool api_fail_store(api_exchange *x, api_store_status status)
 bool api_fail_memory(api_exchange *x)
 {
     return api_fail(x, HE_NO_MEMORY, "no memory for the request");
+}
+
+bool api_fail_accept(api_exchange *x)
+{
+    api_fail(x, API_NOT_ACCEPTABLE, "\"%.100s\" allows nothing this route answers with",
+             api_header_of(x, "Accept"));
+    x->problem.supported = x->route->produces;
+    return false;
 }
 
 /* --- locks --- */
@@ -162,7 +170,10 @@ bool api_preconditions_hold(api_exchange *x, const uint64_t *expected)
         return api_fail(x, API_PRECONDITION, "the mesh exists in a state If-None-Match names");
     }
     if (expected != NULL && *expected != x->info.revision) {
-        return refuse_stale(x, "the mesh is not at the expected revision");
+        char what[64];
+        snprintf(what, sizeof what, "the mesh is not at revision %llu",
+                 (unsigned long long)*expected);
+        return refuse_stale(x, what);
     }
     return true;
 }
@@ -178,9 +189,10 @@ he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **del
         api_fail_memory(x);
         return NULL;
     }
-    bool good = !x->info.removed || api_fail_store(x, API_STORE_ABSENT);
+    /* A refusal, too, shows the state it was found in. */
+    x->has_info = !x->info.removed;
+    bool good = x->has_info || api_fail_store(x, API_STORE_ABSENT);
     if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
-        x->has_info = true;
         return mesh;
     }
     x->store->write_end(x->store->self, x->mesh);
@@ -234,22 +246,15 @@ bool api_is_large(const api_exchange *x, const he_mesh *mesh)
     return api_is_costly(x, elements, API_COSTLY_ELEMENTS);
 }
 
-void api_run_by_size(api_exchange *x, void (*handler)(api_exchange *x))
+/* --- answers --- */
+
+void api_publish(api_exchange *x, int status)
 {
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    bool large = api_is_large(x, mesh);
-    api_read_end(x);
-    if (large) {
-        api_defer(x, handler);
-    } else {
-        handler(x);
+    x->published = status;
+    if (status == 201) {
+        snprintf(x->location, sizeof x->location, "/v1/meshes/%s", x->info.id);
     }
 }
-
-/* --- answers --- */
 
 void api_answer_header(api_exchange *x, const char *name, const char *value)
 {

@@ -40,6 +40,8 @@ struct api_service {
 /* Where an exchange is: begin sets BODY, WORK or DONE; end sets WORK or DONE; work sets DONE. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_DONE } api_phase;
 
+enum { API_LOCATION = sizeof "/v1/meshes/" + API_MESH_ID };
+
 struct api_exchange {
     api_service *service;
     const api_store *store;
@@ -79,6 +81,8 @@ struct api_exchange {
     void (*deferred)(api_exchange *x);
 
     /* --- the answer --- */
+    int published; /* see api_publish; 0: nothing was */
+    char location[API_LOCATION];
     api_problem problem;
     api_text text;
     api_out out; /* writes x->text */
@@ -123,10 +127,12 @@ void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
 /* The same of work that costs the mesh. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
-/* api_defer `handler` when x->mesh is large, else call it. */
-void api_run_by_size(api_exchange *x, void (*handler)(api_exchange *x));
 
 /* --- answers: one of these, once --- */
+/* The write took effect, so that a refusal would be a lie: a problem that comes up from here on (no
+ * memory for the answer, a mesh that somebody else has deleted) leaves `status`, 201 or 204,
+ * without a body. With 201, x->info is the new mesh's and gives Location. */
+void api_publish(api_exchange *x, int status);
 /* What x->out wrote, as application/json, or another type. */
 void api_answer_json(api_exchange *x, int status);
 void api_answer_text(api_exchange *x, int status, const char *type);
@@ -158,5 +164,7 @@ bool api_fail_core(api_exchange *x, const he_error *err); /* about the body */
 bool api_fail_path(api_exchange *x, const he_error *err); /* about the path */
 bool api_fail_store(api_exchange *x, api_store_status status);
 bool api_fail_memory(api_exchange *x);
+/* Accept allows none of what the route answers with. */
+bool api_fail_accept(api_exchange *x);
 
 #endif

@@ -9,14 +9,15 @@ static const char *const step_members[] = {"expected_revision", NULL};
 
 /* The revision a step makes is one step further in the log, so its changes are those of the delta
  * it applied, seen in the direction it was applied. */
-static bool write_step(api_exchange *x, const he_mesh *mesh, const he_delta *delta,
+static void write_step(api_exchange *x, const he_mesh *mesh, const he_delta *delta,
                        api_action which)
 {
     he_changes changes;
     he_error err = {0};
     bool undone = which == API_UNDO;
     if (he_changes_find(mesh, delta, 0, delta->count, undone, &changes, &err) != HE_OK) {
-        return api_fail_core(x, &err);
+        api_fail_core(x, &err);
+        return;
     }
     api_out *out = &x->out;
     api_out_object_begin(out);
@@ -29,7 +30,6 @@ static bool write_step(api_exchange *x, const he_mesh *mesh, const he_delta *del
     api_out_key_u64(out, "redo", x->info.redo);
     api_out_object_end(out);
     he_changes_clear(&changes);
-    return !x->text.failed || api_fail_memory(x);
 }
 
 static void step(api_exchange *x, api_action which)
@@ -55,12 +55,9 @@ static void step(api_exchange *x, api_action which)
                  (unsigned long long)x->info.revision);
     } else if (status != API_STORE_OK) {
         api_fail_store(x, status);
-    } else if (!write_step(x, mesh, delta, which)) {
-        /* The client is told that nothing happened: make it true. */
-        api_action back = which == API_UNDO ? API_REDO : API_UNDO;
-        if (store->step(store->self, x->mesh, back, &delta, &x->info) != API_STORE_OK) {
-            api_fail(x, API_INTERNAL, "the step could not be taken back");
-        }
+    } else {
+        api_publish(x, 204);
+        write_step(x, mesh, delta, which);
     }
     store->write_end(store->self, x->mesh);
     if (x->problem.code != HE_OK) {
@@ -143,6 +140,9 @@ static void write_history(api_exchange *x, uint64_t first, uint64_t limit)
         char cursor[API_CURSOR];
         api_cursor_write("edits", &x->info, next, cursor);
         api_out_string(out, cursor);
+        api_answer_header_format(x, "Link",
+                                 "</v1/meshes/%s/edits?limit=%llu&cursor=%s>; rel=\"next\"",
+                                 x->mesh_id, (unsigned long long)limit, cursor);
     } else {
         api_out_null(out);
     }

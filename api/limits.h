@@ -36,7 +36,13 @@ enum {
 enum {
     API_DEFAULT_PAGE = 1000, /* items */
     API_MAX_PAGE = 10000,
-    API_MAX_OPS = 65536,       /* operations of one edit list */
+    API_MAX_OPS = 65536, /* operations of one edit list */
+    /* What the operations of one list may look at and change before the next one is refused: ids
+     * named, elements of the mesh for each operation on the whole of it; rows of the delta. The
+     * mesh is locked meanwhile, and a row takes 16 bytes. */
+    API_MAX_EDITS_ELEMENTS = 1 << 26,
+    API_MAX_EDITS_ROWS = 1 << 26,
+    API_MAX_IDS = 1 << 24,     /* in one list of ids, what references stand for included */
     API_MAX_AS = 64,           /* characters of an "as" name */
     API_MAX_QUERIES = 10000,   /* questions of one query */
     API_MAX_PATH_STEPS = 4096, /* of a traversal's path */

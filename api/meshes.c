@@ -75,7 +75,7 @@ void api_meshes_list(api_exchange *x)
 
 void api_mesh_get(api_exchange *x)
 {
-    api_answer_summary(x, 200, NULL);
+    api_answer_summary(x);
 }
 
 static const char *const patch_members[] = {"name", NULL};
@@ -102,9 +102,10 @@ void api_mesh_patch(api_exchange *x)
         x->store->rename(x->store->self, x->mesh, name, &x->info);
     }
     x->store->write_end(x->store->self, x->mesh);
+    api_publish(x, 204);
     api_answer_etag(x, "summary");
     if (!api_answer_minimal(x)) {
-        api_answer_summary(x, 200, NULL);
+        api_answer_summary(x);
     }
 }
 
@@ -115,8 +116,8 @@ void api_mesh_delete(api_exchange *x)
     if (api_write_begin(x, NULL, &delta) == NULL) {
         return;
     }
+    api_store_status status = x->store->remove(x->store->self, x->mesh, &x->info);
     x->store->write_end(x->store->self, x->mesh);
-    api_store_status status = x->store->remove(x->store->self, x->mesh);
     if (status == API_STORE_OK) {
         api_answer_empty(x, 204);
     } else {
@@ -146,7 +147,7 @@ static bool read_copy(api_exchange *x, const char **id, const char **name)
     return !api_in_find(&x->root, "name", &member) || api_in_string(&member, API_MESH_NAME, name);
 }
 
-static void copy(api_exchange *x)
+void api_mesh_copy(api_exchange *x)
 {
     const char *id = NULL, *name = NULL;
     if (!read_copy(x, &id, &name)) {
@@ -159,12 +160,17 @@ static void copy(api_exchange *x)
     }
     he_mesh *fresh = NULL;
     api_mesh *made = NULL;
+    api_summary summary;
     he_error err = {0};
     if (api_preconditions_hold(x, NULL) && he_mesh_copy(content, &fresh, &err) != HE_OK) {
         api_fail_core(x, &err);
     }
     x->store->snapshot_release(x->store->self, snapshot);
     if (fresh == NULL) {
+        return;
+    }
+    if (!api_summary_find(x, fresh, &summary)) {
+        he_mesh_free(fresh);
         return;
     }
     api_store_status stored =
@@ -176,14 +182,5 @@ static void copy(api_exchange *x)
     }
     x->store->release(x->store->self, x->mesh);
     x->mesh = made;
-    if (api_read_begin(x) != NULL) {
-        api_read_end(x);
-        api_answer_header_format(x, "Location", "/v1/meshes/%s", x->info.id);
-        api_answer_summary(x, 201, NULL);
-    }
-}
-
-void api_mesh_copy(api_exchange *x)
-{
-    api_run_by_size(x, copy);
+    api_answer_created(x, &summary, NULL);
 }

@@ -3,6 +3,7 @@
 #include "api/operations.h"
 #include "api/routes.h"
 #include "api/schemas.h"
+#include "api/shapes.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -111,16 +112,25 @@ static void write_header(api_out *out, const char *name, const char *doc)
     api_out_object_end(out);
 }
 
+static bool answers(const api_route *route, int status)
+{
+    const int *at = route->statuses;
+    while (*at != 0 && *at != status) {
+        at++;
+    }
+    return *at == status;
+}
+
 static void write_success(api_out *out, const api_route *route, int status)
 {
     const char *what = status == 201   ? "Created."
                        : status == 204 ? "Done; nothing is returned."
                        : status == 304 ? "The client's copy is the present one."
                                        : "Success.";
-    bool tagged = status != 204 && strstr(route->path, "{mesh}") != NULL;
+    bool tagged = answers(route, 304) || (status < 204 && (route->flags & API_WRITES));
     api_out_object_begin(out);
     api_out_key_string(out, "description", what);
-    if (tagged || status == 201) {
+    if (tagged) {
         api_out_key(out, "headers");
         api_out_object_begin(out);
         write_header(out, "ETag", "Names the state that is shown.");
@@ -157,6 +167,34 @@ static void write_responses(api_out *out, const api_route *route)
     api_out_object_end(out);
 }
 
+static void write_header_parameter(api_out *out, const char *name, const char *doc)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", name);
+    api_out_key_string(out, "in", "header");
+    api_out_key_string(out, "description", doc);
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+/* What the route reads beside Accept and Content-Type. */
+static void write_header_parameters(api_out *out, const api_route *route)
+{
+    if (answers(route, 304)) {
+        write_header_parameter(out, "If-None-Match", "ETag of the copy the client has.");
+    }
+    if (answers(route, 412)) {
+        write_header_parameter(out, "If-Match", "ETag of the state the request was made for.");
+        write_header_parameter(out, "If-None-Match", "ETag of a state it must not meet, or *.");
+    }
+    if (answers(route, 204) && answers(route, 200)) {
+        write_header_parameter(out, "Prefer", "return=minimal: 204 in place of the answer.");
+    }
+}
+
 static void write_operation(api_out *out, const api_route *route)
 {
     char method[16] = "";
@@ -171,14 +209,13 @@ static void write_operation(api_out *out, const api_route *route)
     if (route->doc != NULL) {
         api_out_key_string(out, "description", route->doc);
     }
-    if (route->parameters[0] != NULL) {
-        api_out_key(out, "parameters");
-        api_out_array_begin(out);
-        for (const api_parameter *const *p = route->parameters; *p != NULL; p++) {
-            write_query_parameter(out, *p);
-        }
-        api_out_array_end(out);
+    api_out_key(out, "parameters");
+    api_out_array_begin(out);
+    for (const api_parameter *const *p = route->parameters; *p != NULL; p++) {
+        write_query_parameter(out, *p);
     }
+    write_header_parameters(out, route);
+    api_out_array_end(out);
     if (route->body_kind != API_BODY_NONE) {
         api_out_key(out, "requestBody");
         api_out_object_begin(out);
@@ -231,6 +268,7 @@ static void write_components(api_out *out)
     api_out_object_begin(out);
     api_schemas_write(out);
     api_operation_schemas_write(out);
+    api_shape_schema_write(out);
     api_out_object_end(out);
     api_out_key(out, "responses");
     api_out_object_begin(out);
@@ -254,15 +292,21 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_key_string(out, "description",
                        "Half-edge meshes over HTTP. Every GET answers HEAD too. Every refusal is "
                        "application/problem+json.");
+    api_out_key(out, "license");
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", "MIT");
+    api_out_key_string(out, "identifier", "MIT");
     api_out_object_end(out);
-    if (url != NULL) {
-        api_out_key(out, "servers");
-        api_out_array_begin(out);
-        api_out_object_begin(out);
-        api_out_key_string(out, "url", url);
-        api_out_object_end(out);
-        api_out_array_end(out);
-    }
+    api_out_object_end(out);
+    api_out_key(out, "servers");
+    api_out_array_begin(out);
+    api_out_object_begin(out);
+    api_out_key_string(out, "url", url != NULL ? url : "/");
+    api_out_object_end(out);
+    api_out_array_end(out);
+    api_out_key(out, "security"); /* none: nobody has to authenticate */
+    api_out_array_begin(out);
+    api_out_array_end(out);
     write_paths(out);
     write_components(out);
     api_out_object_end(out);

@@ -189,6 +189,16 @@ int api_problem_http(const api_problem *problem)
     return problem->status != 0 ? problem->status : api_code_http(problem->code);
 }
 
+void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER])
+{
+    const char *list = defect->kind == HE_FACE ? "faces" : "vertices";
+    if (defect->corner != HE_NONE && defect->kind == HE_FACE) {
+        snprintf(out, API_DEFECT_POINTER, "/%s/%u/%u", list, defect->id, defect->corner);
+    } else {
+        snprintf(out, API_DEFECT_POINTER, "/%s/%u", list, defect->id);
+    }
+}
+
 static void write_element(api_out *out, he_kind kind, uint32_t id)
 {
     api_out_key_string(out, "kind", he_kind_name(kind));
@@ -210,13 +220,8 @@ static void write_report(const api_problem *problem, api_out *out)
         api_out_key_string(out, "code", he_status_slug(defect->reason));
         api_out_key_string(out, "detail", text);
         if (problem->report_pointers) {
-            char pointer[64];
-            const char *list = defect->kind == HE_FACE ? "faces" : "vertices";
-            if (defect->corner != HE_NONE && defect->kind == HE_FACE) {
-                snprintf(pointer, sizeof pointer, "/%s/%u/%u", list, defect->id, defect->corner);
-            } else {
-                snprintf(pointer, sizeof pointer, "/%s/%u", list, defect->id);
-            }
+            char pointer[API_DEFECT_POINTER];
+            api_defect_pointer(defect, pointer);
             api_out_key_string(out, "pointer", pointer);
         }
         api_out_object_end(out);

@@ -168,6 +168,10 @@ bool api_problem_set_path(api_problem *problem, const he_error *err);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Where in a mesh document a defect is: "/faces/3/1". */
+enum { API_DEFECT_POINTER = 40 };
+void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
+
 int api_problem_http(const api_problem *problem);
 /* The JSON object onto `text`; `request_id` may be NULL. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);

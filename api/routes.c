@@ -33,16 +33,17 @@ static const char *const connections[] = {"vertex", "edge", NULL};
 static const api_parameter limit = {
     "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "How many items a page has at most."};
 static const api_parameter cursor = {
-    "cursor", API_PARAM_TEXT, 0, 0, NULL, "Where to go on: `next` of the page before."};
+    "cursor", API_PARAM_TEXT, 0, API_MAX_URI, NULL, "Where to go on: `next` of the page before."};
 static const api_parameter turning = {
     "cw", API_PARAM_FLAG, 0,
     0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
 static const api_parameter format = {
     "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
 static const api_parameter name = {
-    "name", API_PARAM_TEXT, 0, 0, NULL, "Name of the mesh, where the body is a file."};
+    "name", API_PARAM_TEXT, 0, API_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
 static const api_parameter identity = {
-    "id", API_PARAM_TEXT, 0, 0, NULL, "Id of the mesh to be made; the server chooses without."};
+    "id",        API_PARAM_TEXT, 0,
+    API_MAX_URI, NULL,           "Id of the mesh to be made; the server chooses without."};
 static const api_parameter by = {
     "by", API_PARAM_CHOICE, 0,
     0,    connections,      "Faces are connected across edges, or already by a shared vertex."};
@@ -378,7 +379,7 @@ const api_route *api_route_at(size_t i)
 
 const int *api_route_common(void)
 {
-    static const int common[] = {400, 404, 405, 406, 414, 500, 503, 507, 0};
+    static const int common[] = {400, 403, 404, 405, 406, 408, 414, 421, 431, 500, 503, 507, 0};
     return common;
 }
 

@@ -23,7 +23,7 @@ typedef enum api_body_kind {
 } api_body_kind;
 
 typedef enum api_param_type {
-    API_PARAM_TEXT,
+    API_PARAM_TEXT,  /* of at most `max` bytes */
     API_PARAM_FLAG,  /* true or false */
     API_PARAM_U64,   /* a whole number within min and max */
     API_PARAM_CHOICE /* one of `choices` */
@@ -69,7 +69,7 @@ typedef struct api_route {
 
 size_t api_route_count(void);
 const api_route *api_route_at(size_t i);
-/* Statuses any route may answer: 400 404 405 406 414 500 503 507; ends in 0. */
+/* Statuses any route may answer, those included that the server finds reasons for; ends in 0. */
 const int *api_route_common(void);
 
 /* What the segments of a path gave to the variables of its template. */

@@ -7,7 +7,8 @@
  * may have it all the same in answers ("others may be added beside them"), but not in requests.
  *
  * Types: id, count, number, flag, text, point, box, time, any, #other for a schema by name; a star
- * before makes it an array (**id: arrays of ids), a question mark behind lets the whole be null. */
+ * before makes it an array (**id: arrays of ids), a plus one that is not empty, a question mark
+ * behind lets the whole be null. */
 typedef struct member {
     const char *schema, *name, *type;
     bool required;
@@ -58,6 +59,7 @@ static const member answers[] = {
     {"import", "faces", "count", REQUIRED, NULL},
     {"import", "repairs", "*any", REQUIRED, NULL},
     {"import", "warnings", "*any", REQUIRED, NULL},
+    {"import", "more_warnings", "count", OPTIONAL, "How many are not listed."},
 
     {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
 
@@ -136,6 +138,7 @@ static const member answers[] = {
     {"check", "valid", "flag", REQUIRED, NULL},
     {"check", "problems", "*#broken", REQUIRED, "Broken invariants."},
     {"check", "defects", "*#defect", REQUIRED, "What a valid mesh may have, such as a bow-tie."},
+    {"check", "totals", "any", REQUIRED, "How many there are of each; 100 of each are listed."},
 
     {"sets", "vertices", "*id", REQUIRED, NULL},
     {"sets", "edges", "*id", REQUIRED, "Half-edges of edge e are 2e and 2e + 1."},
@@ -145,14 +148,25 @@ static const member answers[] = {
     {"parents", "edges", "**id", OPTIONAL, NULL},
     {"parents", "faces", "**id", OPTIONAL, NULL},
 
+    {"merged", "vertices", "**id", OPTIONAL, "Pairs: what went, what it became part of."},
+    {"merged", "edges", "**id", OPTIONAL, NULL},
+    {"merged", "faces", "**id", OPTIONAL, NULL},
+
     {"edited", "revision", "count", REQUIRED, NULL},
-    {"edited", "results", "*any", OPTIONAL, "One object an operation: `op` and its results."},
+    {"edited", "dry_run", "flag", OPTIONAL, "Nothing was done: the revision and ids are to be."},
+    {"edited", "results", "*any", REQUIRED, "One object an operation: `op` and its results."},
     {"edited", "created", "#sets", REQUIRED, NULL},
     {"edited", "deleted", "#sets", REQUIRED, NULL},
     {"edited", "modified", "#sets", REQUIRED, "Live before and after, with another link or value."},
     {"edited", "parents", "#parents", REQUIRED, NULL},
+    {"edited", "merged", "#merged", REQUIRED, NULL},
+    {"edited", "replaced", "flag", OPTIONAL, "All ids are new; `results` has the maps."},
+    {"edited", "undo", "count", OPTIONAL, "After undo and redo: steps that can be undone."},
+    {"edited", "redo", "count", OPTIONAL, "After undo and redo: steps that can be done again."},
 
     {"entry", "revision", "count", REQUIRED, NULL},
+    {"entry", "action", "text", REQUIRED, "edit, undo, redo or replace."},
+    {"entry", "inverts", "count", OPTIONAL, "Revision it undid or did again."},
     {"entry", "ops", "*text", REQUIRED, NULL},
     {"entry", "undoable", "flag", REQUIRED, NULL},
     {"entry", "bytes", "count", REQUIRED, "What undoing it keeps in memory."},
@@ -162,15 +176,23 @@ static const member answers[] = {
     {"history", "entries", "*#entry", REQUIRED, "Newest first."},
     {"history", "undo", "count", REQUIRED, "Steps that can be undone."},
     {"history", "redo", "count", REQUIRED, "Steps that can be done again."},
+    {"history", "next", "text?", REQUIRED, "The cursor of the next page."},
 
     {"found", "halfedge", "id?", REQUIRED, "From the first vertex to the second."},
 
     {"query_results", "revision", "count", REQUIRED, NULL},
-    {"query_results", "results", "*any", REQUIRED,
-     "In order: an adjacency, a dense answer, a walk, {\"halfedge\":id}, an element or a problem."},
+    {"query_results", "results", "*#answer", REQUIRED, "In the order of the questions."},
 
     {"walked", "revision", "count", REQUIRED, NULL},
     {"walked", "walk", "text", REQUIRED, NULL},
+    {"walked", "from", "#of", REQUIRED, NULL},
+    {"walked", "to", "#of", OPTIONAL, "shortest_path"},
+    {"walked", "path", "*#step_name", OPTIONAL, "path"},
+    {"walked", "repeat", "count", OPTIONAL, "path"},
+    {"walked", "until", "text", OPTIONAL, "path"},
+    {"walked", "depth", "count", OPTIONAL, "rings, breadth_first"},
+    {"walked", "limit", "count", OPTIONAL, "breadth_first"},
+    {"walked", "by", "text", OPTIONAL, "shortest_path"},
     {"walked", "halfedges", "*id", OPTIONAL, "path, loop"},
     {"walked", "end", "id", OPTIONAL, "path: the last half-edge"},
     {"walked", "vertices", "*id?", OPTIONAL, "loop, shortest_path; null: unreachable"},
@@ -230,8 +252,7 @@ static const member answers[] = {
 };
 
 static const member requests[] = {
-    {"document", "name", "text", OPTIONAL, NULL},
-    {"document", "id", "text", OPTIONAL, NULL},
+    {"document", "name", "text?", OPTIONAL, NULL},
     {"document", "vertices", "*point", OPTIONAL, NULL},
     {"document", "faces", "**index", OPTIONAL, "Vertices counter-clockwise, counted from 0."},
 
@@ -239,19 +260,8 @@ static const member requests[] = {
 
     {"copy", "id", "text", OPTIONAL, NULL},
     {"copy", "name", "text", OPTIONAL, NULL},
-    {"copy", "expected_revision", "count", OPTIONAL, NULL},
 
     {"step", "expected_revision", "count", OPTIONAL, NULL},
-
-    {"of", "vertex", "id", OPTIONAL, NULL},
-    {"of", "halfedge", "id", OPTIONAL, NULL},
-    {"of", "edge", "id", OPTIONAL, NULL},
-    {"of", "face", "id", OPTIONAL, NULL},
-
-    {"of_many", "vertices", "#ids_or_all", OPTIONAL, NULL},
-    {"of_many", "halfedges", "#ids_or_all", OPTIONAL, NULL},
-    {"of_many", "edges", "#ids_or_all", OPTIONAL, NULL},
-    {"of_many", "faces", "#ids_or_all", OPTIONAL, NULL},
 
     {"relation_query", "relation", "text", REQUIRED, NULL},
     {"relation_query", "of", "#of_any", REQUIRED, NULL},
@@ -267,14 +277,14 @@ static const member requests[] = {
     {"walk", "walk", "#walk_name", REQUIRED, NULL},
     {"walk", "from", "#of", REQUIRED, NULL},
     {"walk", "to", "#of", OPTIONAL, "shortest_path"},
-    {"walk", "path", "*#step_name", OPTIONAL, "path"},
+    {"walk", "path", "+#step_name", OPTIONAL, "path"},
     {"walk", "repeat", "count", OPTIONAL, "path"},
     {"walk", "until", "text", OPTIONAL, "path: start or boundary"},
     {"walk", "depth", "count", OPTIONAL, "rings, breadth_first"},
     {"walk", "limit", "count", OPTIONAL, "breadth_first"},
     {"walk", "by", "text", OPTIONAL, "shortest_path: length or edges"},
 
-    {"edit_list", "ops", "*#operation", REQUIRED, NULL},
+    {"edit_list", "ops", "+#operation", REQUIRED, NULL},
     {"edit_list", "expected_revision", "count", OPTIONAL, NULL},
     {"edit_list", "dry_run", "flag", OPTIONAL, NULL},
 };
@@ -306,11 +316,20 @@ static const struct {
                 "{\"$ref\":\"#/components/schemas/imported\"}]}"},
     {"create", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/document\"},"
                "{\"$ref\":\"#/components/schemas/shape\"}]}"},
-    {"shape", "{\"type\":\"object\",\"properties\":{\"shape\":{\"enum\":[\"tetrahedron\",\"cube\","
-              "\"octahedron\",\"icosahedron\",\"dodecahedron\",\"icosphere\",\"uv_sphere\","
-              "\"grid\",\"torus\",\"cylinder\",\"cone\",\"disk\",\"polygon\"]}},"
-              "\"required\":[\"shape\"],\"additionalProperties\":true,\"description\":"
-              "\"The other members are the shape's own, such as subdivisions, and name.\"}"},
+    {"answer", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/adjacency\"},"
+               "{\"$ref\":\"#/components/schemas/dense\"},"
+               "{\"$ref\":\"#/components/schemas/walked\"},"
+               "{\"$ref\":\"#/components/schemas/found\"},"
+               "{\"$ref\":\"#/components/schemas/element\"},"
+               "{\"$ref\":\"#/components/schemas/problem\"}]}"},
+    {"of", "{\"type\":\"object\",\"propertyNames\":"
+           "{\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\"]},"
+           "\"additionalProperties\":{\"$ref\":\"#/components/schemas/id\"},"
+           "\"minProperties\":1,\"maxProperties\":1}"},
+    {"of_many", "{\"type\":\"object\",\"propertyNames\":"
+                "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\"]},"
+                "\"additionalProperties\":{\"$ref\":\"#/components/schemas/ids_or_all\"},"
+                "\"minProperties\":1,\"maxProperties\":1}"},
     {"ids_or_all", "{\"oneOf\":[{\"type\":\"array\",\"items\":"
                    "{\"$ref\":\"#/components/schemas/id\"}},{\"const\":\"all\"}]}"},
     {"of_any", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/of\"},"
@@ -399,9 +418,12 @@ static void write_type(api_out *out, const char *type, size_t length, const char
         }
         api_out_array_end(out);
         api_out_object_end(out);
-    } else if (type[0] == '*') {
+    } else if (type[0] == '*' || type[0] == '+') {
         api_out_object_begin(out);
         api_out_key_string(out, "type", "array");
+        if (type[0] == '+') {
+            api_out_key_u64(out, "minItems", 1);
+        }
         api_out_key(out, "items");
         write_type(out, type + 1, length - 1, NULL);
         api_out_object_end(out);

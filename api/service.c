@@ -1,7 +1,6 @@
 #include "api/api.h"
 
-#include "api/handlers.h"
-#include "format/number.h"
+#include "api/admit.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -86,6 +85,19 @@ static void answer_problem(api_exchange *x)
     }
 }
 
+/* What is left of the answer to a write that took effect. */
+static void answer_published(api_exchange *x)
+{
+    x->problem = (api_problem){0};
+    drop_answer(x);
+    x->answered = true;
+    x->answer.status = x->published;
+    x->answer.bytes = "";
+    if (x->published == 201) {
+        put_header(x, "Location", x->location);
+    }
+}
+
 /* Several representations at one URL: caches must look at Accept. */
 static bool varies(const api_route *route)
 {
@@ -99,7 +111,9 @@ static api_step finish(api_exchange *x)
         api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
                  x->route == NULL ? "-" : x->route->name);
     }
-    if (x->problem.code != HE_OK) {
+    if (x->problem.code != HE_OK && x->published != 0) {
+        answer_published(x);
+    } else if (x->problem.code != HE_OK) {
         answer_problem(x);
     }
     put_header(x, "X-Request-Id", x->request.request_id);
@@ -111,7 +125,7 @@ static api_step finish(api_exchange *x)
     }
     if (x->has_info && x->mesh != NULL) {
         x->answer.mesh = x->mesh;
-        x->answer.revision = x->info.revision;
+        x->answer.record = x->info.record;
     }
     x->phase = API_PHASE_DONE;
     return API_READY;
@@ -142,226 +156,13 @@ static bool copy_request(api_exchange *x, const api_request *request)
            x->request.request_id != NULL;
 }
 
-static bool check_parameter(api_exchange *x, const api_parameter *parameter, const char *value)
-{
-    const char *end = value + strlen(value);
-    size_t used = 0;
-    bool good = false;
-    switch (parameter->type) {
-    case API_PARAM_TEXT:
-        good = true;
-        break;
-    case API_PARAM_FLAG:
-        good = strcmp(value, "true") == 0 || strcmp(value, "false") == 0;
-        break;
-    case API_PARAM_U64: {
-        uint64_t number;
-        good = he_u64_parse(value, end, &number, &used) == HE_OK && value + used == end &&
-               (double)number >= parameter->min && (double)number <= parameter->max;
-        break;
-    }
-    case API_PARAM_CHOICE:
-        good = api_param_choice(x, parameter->name) >= 0;
-        break;
-    }
-    return good ||
-           api_fail(x, API_BAD_PARAMETER, "\"%s\" cannot be \"%.100s\"", parameter->name, value);
-}
-
-static bool check_query(api_exchange *x)
-{
-    if (!api_query_split(x->request.query, &x->arena, &x->query, &x->problem)) {
-        return false;
-    }
-    for (size_t i = 0; i < x->query.count; i++) {
-        const api_pair *pair = &x->query.pairs[i];
-        const api_parameter *const *parameter = x->route->parameters;
-        while (*parameter != NULL && strcmp((*parameter)->name, pair->name) != 0) {
-            parameter++;
-        }
-        if (*parameter == NULL) {
-            return api_fail(x, API_UNKNOWN_PARAMETER, "\"%.100s\" is not a parameter of this route",
-                            pair->name);
-        }
-        for (size_t j = 0; j < i; j++) {
-            if (strcmp(x->query.pairs[j].name, pair->name) == 0) {
-                return api_fail(x, API_REPEATED_PARAMETER, "\"%s\" is given twice", pair->name);
-            }
-        }
-        if (!check_parameter(x, *parameter, pair->value)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static bool check_variables(api_exchange *x, const api_variables *variables)
-{
-    if (variables->mesh != NULL) {
-        if (!api_path_is_mesh_id(variables->mesh)) {
-            bool creates = (x->route->flags & API_MAY_CREATE) != 0;
-            return api_fail(x, creates ? API_BAD_ID : API_NO_SUCH_MESH,
-                            "\"%.100s\" cannot be the id of a mesh", variables->mesh);
-        }
-        x->mesh_id = variables->mesh;
-    }
-    x->kind = variables->has_kind ? variables->kind : HE_KIND_COUNT;
-    if (variables->id != NULL && !api_path_id(variables->id, &x->id)) {
-        api_fail(x, HE_NO_SUCH_ELEMENT, "\"%.100s\" is not the id of an element", variables->id);
-        x->problem.status = 404;
-        return false;
-    }
-    if (variables->relation != NULL) {
-        const char *const *relation = api_relations(x->kind);
-        while (*relation != NULL && strcmp(*relation, variables->relation) != 0) {
-            relation++;
-        }
-        if (*relation == NULL) {
-            return api_fail(x, API_NO_SUCH_ROUTE, "\"%.100s\" is not a relation of %s",
-                            variables->relation, he_kind_plural(x->kind));
-        }
-        x->relation = *relation;
-    }
-    x->code = variables->code;
-    return true;
-}
-
-static bool find_route(api_exchange *x)
-{
-    api_path path;
-    api_variables variables;
-    if (strlen(x->request.path) + strlen(x->request.query) > API_MAX_URI) {
-        return api_fail(x, API_URI_TOO_LONG, "path and query are longer than %d characters",
-                        API_MAX_URI);
-    }
-    if (!api_path_split(x->request.path, &x->arena, &path, &x->problem)) {
-        return false;
-    }
-    x->route = api_route_find(x->request.method, &path, &variables, x->allow);
-    if (x->route == NULL && x->allow[0] == '\0') {
-        return api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
-    }
-    if (x->route == NULL && strcmp(x->request.method, "OPTIONS") == 0) {
-        api_answer_empty(x, 204);
-        api_answer_header(x, "Allow", x->allow);
-        return false;
-    }
-    if (x->route == NULL) {
-        return api_fail(x, API_METHOD_NOT_ALLOWED, "the path does not take %.20s, only %s",
-                        x->request.method, x->allow);
-    }
-    x->answer.route = x->route->path;
-    x->head = strcmp(x->request.method, "HEAD") == 0;
-    return check_variables(x, &variables) && check_query(x);
-}
-
-static bool find_mesh(api_exchange *x)
-{
-    if (x->mesh_id == NULL) {
-        return true;
-    }
-    api_store_status status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
-    if (status == API_STORE_OK) {
-        return true;
-    }
-    x->mesh = NULL;
-    return (status == API_STORE_ABSENT && (x->route->flags & API_MAY_CREATE)) ||
-           api_fail_store(x, status);
-}
-
-static uint64_t body_cap(const api_exchange *x)
-{
-    switch (x->route->body_kind) {
-    case API_BODY_NONE:
-        return 0;
-    case API_BODY_OPTION:
-    case API_BODY_CONTROL:
-        return API_MAX_CONTROL;
-    case API_BODY_EDITS:
-        return API_MAX_EDITS;
-    case API_BODY_UPLOAD:
-        return x->service->options.max_upload;
-    }
-    return 0;
-}
-
-static bool refuse_size(api_exchange *x)
-{
-    if (x->route->body_kind == API_BODY_NONE) {
-        return api_fail(x, API_UNEXPECTED_BODY, "%s takes no body here", x->request.method);
-    }
-    return api_fail(x, API_BODY_TOO_LARGE, "the body exceeds %llu bytes",
-                    (unsigned long long)body_cap(x));
-}
-
-static bool check_content_type(api_exchange *x)
-{
-    const char *type = api_header_of(x, "Content-Type");
-    for (const char *const *known = x->route->consumes; type != NULL && *known != NULL; known++) {
-        if (api_media_is(type, *known)) {
-            x->media_in = *known;
-            return true;
-        }
-    }
-    if (type == NULL) {
-        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "the body has no Content-Type");
-    } else {
-        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "\"%.100s\" is not read here", type);
-    }
-    x->problem.supported = x->route->consumes;
-    return false;
-}
-
-static bool check_body(api_exchange *x)
-{
-    static const char *const identity[] = {"identity", NULL};
-    const api_request *r = &x->request;
-    const char *coding = api_header_of(x, "Content-Encoding");
-    if (coding != NULL && !api_equal_nocase(coding, "identity")) {
-        api_fail(x, API_UNSUPPORTED_ENCODING, "\"%.60s\" is not taken", coding);
-        x->problem.supported = identity;
-        return false;
-    }
-    bool empty = !r->has_body || (r->has_length && r->length == 0);
-    if (empty) {
-        bool optional =
-            x->route->body_kind == API_BODY_NONE || x->route->body_kind == API_BODY_OPTION;
-        return optional || api_fail(x, API_MISSING_BODY, "%s needs a body here", r->method);
-    }
-    if (r->has_length && r->length > body_cap(x)) {
-        return refuse_size(x);
-    }
-    /* A body without a length may yet be empty: then it is like none. */
-    return x->route->body_kind == API_BODY_NONE || check_content_type(x);
-}
-
-static bool check_accept(api_exchange *x)
-{
-    const char *accept = api_header_of(x, "Accept");
-    if (accept != NULL && accept[strspn(accept, " \t")] == '\0') {
-        accept = NULL;
-    }
-    if (x->route->flags & API_OWN_ACCEPT) {
-        return true;
-    }
-    int choice = api_media_choose(accept, x->route->produces);
-    if (choice < 0) {
-        api_fail(x, API_NOT_ACCEPTABLE, "\"%.100s\" allows nothing this route answers with",
-                 accept);
-        x->problem.supported = x->route->produces;
-        return false;
-    }
-    x->media_out = x->route->produces[choice];
-    return true;
-}
-
 static bool begin(api_exchange *x)
 {
-    if (!find_route(x) || !find_mesh(x) || !check_body(x) || !check_accept(x)) {
+    if (!api_admit(x)) {
         return false;
     }
     x->minimal = api_header_has(api_header_of(x, "Prefer"), "return=minimal");
-    x->body.maximum = (size_t)body_cap(x);
+    x->body.maximum = (size_t)api_body_cap(x);
     if (x->route->begin != NULL) {
         x->route->begin(x);
     }
@@ -399,8 +200,8 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length)
     if (length == 0) {
         return API_MORE;
     }
-    if (x->received > body_cap(x)) {
-        refuse_size(x);
+    if (x->received > api_body_cap(x)) {
+        api_refuse_size(x);
     } else if (x->route->body_kind == API_BODY_UPLOAD) {
         x->route->body(x, bytes, length);
     } else {

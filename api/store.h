@@ -23,6 +23,7 @@ typedef struct api_mesh_info {
     uint64_t incarnation;         /* random, new for each create of an id */
     uint64_t metadata;            /* counts changes of name and metadata, from 1 */
     uint64_t revision;            /* of the content, from 1 */
+    uint64_t record;              /* counts every change: revisions, metadata, the removal */
     double created, modified;     /* seconds since 1970 UTC */
     uint32_t undo, redo;          /* steps on the stacks */
     bool removed;
@@ -50,7 +51,8 @@ typedef struct api_store {
     /* Takes `content` on success. `id` NULL lets the store choose. */
     api_store_status (*create)(void *self, const char *id, const char *name, he_mesh *content,
                                api_mesh **out);
-    api_store_status (*remove)(void *self, api_mesh *mesh);
+    /* Under the write lock, so that what the caller looked at is what goes. */
+    api_store_status (*remove)(void *self, api_mesh *mesh, api_mesh_info *info);
     /* Up to `limit` meshes with ids after `after` ("" from the start), in the order of ids, each
      * with a reference. */
     size_t (*list)(void *self, const char *after, api_mesh **out, size_t limit);
@@ -82,7 +84,8 @@ typedef struct api_store {
      * delta is lent until write_end. API_STORE_NOTHING when the stack is empty. */
     api_store_status (*step)(void *self, api_mesh *mesh, api_action which, he_delta **delta,
                              api_mesh_info *info);
-    void (*write_end)(void *self, api_mesh *mesh); /* after step, replace, rename or nothing */
+    /* After step, replace, rename, remove or nothing. */
+    void (*write_end)(void *self, api_mesh *mesh);
     /* PUT and PATCH, under the write lock. replace takes `content`. */
     void (*replace)(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
     void (*rename)(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);

@@ -140,6 +140,25 @@ static void keep(api_exchange *x, const api_summary *summary)
     }
 }
 
+void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
+                       void (*extra)(api_exchange *x))
+{
+    keep(x, summary);
+    api_answer_etag(x, "summary");
+    write_answer(x, summary, status, extra);
+}
+
+void api_answer_created(api_exchange *x, const api_summary *summary, void (*extra)(api_exchange *x))
+{
+    /* Its facts are read even where somebody has deleted it by now: it was made. */
+    x->store->read_begin(x->store->self, x->mesh, &x->info);
+    x->store->read_end(x->store->self, x->mesh);
+    x->has_info = true;
+    api_publish(x, 201);
+    api_answer_header(x, "Location", x->location);
+    api_answer_stored(x, 201, summary, extra);
+}
+
 /* The summary of a large mesh, whose lock is not held meanwhile. */
 static void answer_from_snapshot(api_exchange *x)
 {
@@ -152,26 +171,33 @@ static void answer_from_snapshot(api_exchange *x)
     bool found = api_summary_find(x, mesh, &summary);
     x->store->snapshot_release(x->store->self, snapshot);
     if (found) {
-        keep(x, &summary);
-        api_answer_etag(x, "summary");
-        write_answer(x, &summary, 200, NULL);
+        api_answer_stored(x, 200, &summary, NULL);
     }
 }
 
-void api_answer_summary(api_exchange *x, int status, void (*extra)(api_exchange *x))
+/* The answer to a write is never "not modified". */
+static bool is_known(api_exchange *x)
+{
+    if (!(x->route->flags & API_WRITES)) {
+        return api_not_modified(x, "summary");
+    }
+    api_answer_etag(x, "summary");
+    return false;
+}
+
+void api_answer_summary(api_exchange *x)
 {
     const he_mesh *mesh = api_read_begin(x);
     if (mesh == NULL) {
         return;
     }
-    api_summary summary;
-    bool plain = status == 200 && extra == NULL;
-    bool cached = x->store->cache_get(x->store->self, x->mesh, &summary, sizeof summary);
-    if (plain && api_not_modified(x, "summary")) {
+    if (is_known(x)) {
         api_read_end(x);
         return;
     }
-    if (!cached && plain && api_is_large(x, mesh)) {
+    api_summary summary;
+    bool cached = x->store->cache_get(x->store->self, x->mesh, &summary, sizeof summary);
+    if (!cached && api_is_large(x, mesh)) {
         api_read_end(x);
         api_defer(x, answer_from_snapshot);
         return;
@@ -180,10 +206,7 @@ void api_answer_summary(api_exchange *x, int status, void (*extra)(api_exchange 
         if (!cached) {
             x->store->cache_put(x->store->self, x->mesh, &summary, sizeof summary);
         }
-        if (!plain) {
-            api_answer_etag(x, "summary");
-        }
-        write_answer(x, &summary, status, extra);
+        write_answer(x, &summary, 200, NULL);
     }
     api_read_end(x);
 }

@@ -31,9 +31,15 @@ void api_write_summary(api_out *out, const api_mesh_info *info, const api_summar
 /* id, name, revision and the counts that cost nothing. */
 void api_write_brief(api_out *out, const api_mesh_info *info, const he_mesh *mesh);
 
-/* Answer `status` with the summary of x->mesh, from the cache where it has it. A plain 200 for a
- * large mesh is summed up on the job pool from a snapshot. `extra` (may be NULL) writes more
- * members before the object ends. */
-void api_answer_summary(api_exchange *x, int status, void (*extra)(api_exchange *x));
+/* Answer 200 with the summary of x->mesh, from the cache where it has it. A large mesh is summed up
+ * on the job pool from a snapshot. */
+void api_answer_summary(api_exchange *x);
+/* Answer `status` with the summary of what x->info names, found before it was stored: no lock is
+ * held for it. `extra` (may be NULL) writes more members before the object ends. */
+void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
+                       void (*extra)(api_exchange *x));
+/* The same, 201 and Location, for x->mesh that was just made: publishes. */
+void api_answer_created(api_exchange *x, const api_summary *summary,
+                        void (*extra)(api_exchange *x));
 
 #endif

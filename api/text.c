@@ -6,6 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The answer about one element fits, so that it is not copied again and again as it grows. */
+enum { FIRST_BYTES = 512 };
+
 void api_text_clear(api_text *text)
 {
     he_mem_free(text->bytes);
@@ -28,6 +31,7 @@ char *api_text_room(api_text *text, size_t size)
     }
     if (need > text->capacity) {
         size_t capacity = he_mem_grown(text->capacity, need);
+        capacity = capacity < FIRST_BYTES ? FIRST_BYTES : capacity;
         if (text->maximum != 0 && capacity > text->maximum) {
             capacity = text->maximum;
         }

@@ -100,8 +100,10 @@ static bool choose(api_exchange *x, upload *u)
     bool json = blank < u->head_length && u->head[blank] == '{';
     const he_format *format = json ? NULL : he_format_sniff(u->head, u->head_length);
     if (!json && (format == NULL || format->reading == NULL)) {
-        return api_fail(x, API_UNSUPPORTED_MEDIA_TYPE,
-                        "the first bytes are of no format this server reads: say ?format=");
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE,
+                 "the first bytes are of no format this server reads: say ?format=");
+        x->problem.supported = x->route->consumes;
+        return false;
     }
     return (json ? open_document(x, u) : open_reader(x, u, format)) &&
            feed(x, u, u->head, u->head_length);
@@ -245,6 +247,11 @@ static bool refuse(api_exchange *x, upload *u, he_error *err)
     if (u->report.total > 0) {
         x->problem.report = &u->report;
         x->problem.report_pointers = u->document != NULL;
+        if (u->document != NULL) {
+            char pointer[API_DEFECT_POINTER];
+            api_defect_pointer(&u->report.defects[0], pointer);
+            api_problem_set_pointer(&x->problem, "%s", pointer);
+        }
     }
     return false;
 }

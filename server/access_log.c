@@ -5,20 +5,32 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
+#include <poll.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
+
+enum {
+    GATHER_MILLIS = 20, /* a line is written at most this late */
+    BATCH = 16,         /* lines formatted at once */
+    POLL_MILLIS = 100,
+    ENDING_MILLIS = 500
+};
 
 struct srv_access_log {
     int fd;
     pthread_mutex_t lock;
     pthread_cond_t wake;
-    bool ending;
+    _Atomic bool ending;
     srv_access *ring;
     size_t capacity, first, count;
     uint64_t dropped;
+    int waited; /* polls in vain while it ends; the thread's own */
     pthread_t thread;
 };
 
@@ -67,12 +79,19 @@ size_t srv_access_format(const srv_access *access, char line[SRV_LOG_LINE])
     return at + (size_t)length;
 }
 
-/* A log that cannot be written to is not a reason to stop serving. */
-static void write_all(int fd, const char *bytes, size_t length)
+/* A log that cannot be written to is not a reason to stop serving, and a reader that takes nothing
+ * is none to go on for ever: once the log ends, it has a moment. A pipe that is ready takes
+ * PIPE_BUF bytes without blocking. */
+static void write_all(srv_access_log *log, const char *bytes, size_t length)
 {
-    while (length > 0) {
-        ssize_t written = write(fd, bytes, length);
-        if (written < 0 && errno != EINTR) {
+    while (length > 0 && log->waited < ENDING_MILLIS / POLL_MILLIS) {
+        struct pollfd out = {.fd = log->fd, .events = POLLOUT};
+        if (poll(&out, 1, POLL_MILLIS) == 0) {
+            log->waited += atomic_load(&log->ending) ? 1 : 0;
+            continue;
+        }
+        ssize_t written = write(log->fd, bytes, length < PIPE_BUF ? length : PIPE_BUF);
+        if (written < 0 && errno != EINTR && errno != EAGAIN) {
             return;
         }
         if (written > 0) {
@@ -82,42 +101,62 @@ static void write_all(int fd, const char *bytes, size_t length)
     }
 }
 
-static void write_dropped(int fd, uint64_t dropped)
+static void write_dropped(srv_access_log *log, uint64_t dropped)
 {
     char time[SRV_TIMESTAMP], line[96];
     srv_clock_format(srv_clock_utc(), time);
     int length =
         snprintf(line, sizeof line, "{\"time\":\"%s\",\"dropped\":%" PRIu64 "}\n", time, dropped);
-    write_all(fd, line, (size_t)length);
+    write_all(log, line, (size_t)length);
 }
 
+/* Waking a thread costs a request more than its record does, so the thread is woken for the first
+ * one and then lets others gather. Under the lock; false when all is written and the log ends. */
+static bool wait_for_records(srv_access_log *log)
+{
+    while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
+        pthread_cond_wait(&log->wake, &log->lock);
+    }
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += GATHER_MILLIS * 1000000L;
+    if (until.tv_nsec >= 1000000000L) {
+        until.tv_nsec -= 1000000000L;
+        until.tv_sec++;
+    }
+    int timed_out = 0;
+    while (timed_out == 0 && log->count < log->capacity / 2 && !atomic_load(&log->ending)) {
+        timed_out = pthread_cond_timedwait(&log->wake, &log->lock, &until);
+    }
+    return log->count > 0 || log->dropped > 0;
+}
+
+/* What is in the ring is not touched by others until `count` says that it was taken. */
 static void *run(void *context)
 {
     srv_access_log *log = context;
-    char lines[8 * SRV_LOG_LINE];
     pthread_mutex_lock(&log->lock);
-    for (;;) {
-        while (log->count == 0 && log->dropped == 0 && !log->ending) {
-            pthread_cond_wait(&log->wake, &log->lock);
-        }
-        if (log->count == 0 && log->dropped == 0) {
-            break;
-        }
+    while (wait_for_records(log)) {
+        size_t count = log->count, first = log->first;
         uint64_t dropped = log->dropped;
         log->dropped = 0;
-        size_t at = 0;
-        while (log->count > 0 && at + SRV_LOG_LINE <= sizeof lines) {
-            srv_access next = log->ring[log->first];
-            log->first = (log->first + 1) % log->capacity;
-            log->count--;
-            pthread_mutex_unlock(&log->lock);
-            at += srv_access_format(&next, lines + at);
-            pthread_mutex_lock(&log->lock);
-        }
         pthread_mutex_unlock(&log->lock);
-        write_all(log->fd, lines, at);
+        for (size_t taken = 0; taken < count;) {
+            char lines[BATCH * SRV_LOG_LINE];
+            size_t at = 0, batch = 0;
+            for (; batch < BATCH && taken + batch < count; batch++) {
+                at += srv_access_format(&log->ring[(first + taken + batch) % log->capacity],
+                                        lines + at);
+            }
+            write_all(log, lines, at);
+            taken += batch;
+            pthread_mutex_lock(&log->lock);
+            log->first = (first + taken) % log->capacity;
+            log->count -= batch;
+            pthread_mutex_unlock(&log->lock);
+        }
         if (dropped > 0) {
-            write_dropped(log->fd, dropped);
+            write_dropped(log, dropped);
         }
         pthread_mutex_lock(&log->lock);
     }
@@ -135,7 +174,11 @@ srv_access_log *srv_access_log_new(int fd, size_t capacity)
     log->capacity = capacity;
     log->ring = he_mem_zero(capacity, sizeof *log->ring);
     pthread_mutex_init(&log->lock, NULL);
-    pthread_cond_init(&log->wake, NULL);
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&log->wake, &attributes);
+    pthread_condattr_destroy(&attributes);
     if (log->ring == NULL || pthread_create(&log->thread, NULL, run, log) != 0) {
         pthread_mutex_destroy(&log->lock);
         pthread_cond_destroy(&log->wake);
@@ -152,7 +195,7 @@ void srv_access_log_free(srv_access_log *log)
         return;
     }
     pthread_mutex_lock(&log->lock);
-    log->ending = true;
+    atomic_store(&log->ending, true);
     pthread_cond_signal(&log->wake);
     pthread_mutex_unlock(&log->lock);
     pthread_join(log->thread, NULL);
@@ -171,8 +214,7 @@ void srv_access_log_add(srv_access_log *log, const srv_access *access)
         log->ring[(log->first + log->count) % log->capacity] = *access;
         log->count++;
     }
-    /* Woken once a batch: while it writes it will look again by itself. */
-    if (log->count == 1 || log->dropped == 1) {
+    if (log->count == 1 || log->count == log->capacity / 2 || log->dropped == 1) {
         pthread_cond_signal(&log->wake);
     }
     pthread_mutex_unlock(&log->lock);

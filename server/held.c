@@ -13,7 +13,7 @@ struct srv_held {
 
 static bool is_over(const srv_held *held, const srv_hold *hold)
 {
-    return held->abandoned || srv_store_is_durable(held->store, hold->mesh, hold->revision);
+    return held->abandoned || srv_store_is_durable(held->store, hold->mesh, hold->record);
 }
 
 /* Unlinked first: resume may end the hold's life. */

@@ -1,6 +1,6 @@
 /* held.h - answers that wait until what they show is durable.
  *
- * D1: no answer shows a revision that a crash could lose. Whoever is about to send one that the
+ * D1: no answer shows a change that a crash could lose. Whoever is about to send one that the
  * journal has not caught up with adds a hold, and is called back, once, from another thread when
  * the journal has, or when the server stops (then `abandoned` is set and the answer must not be
  * sent). */
@@ -16,7 +16,7 @@ typedef struct srv_held srv_held;
 /* In the caller's storage, which outlives the hold. */
 typedef struct srv_hold {
     const api_mesh *mesh; /* with a reference of the caller's */
-    uint64_t revision;
+    uint64_t record;      /* api_mesh_info */
     void (*resume)(struct srv_hold *hold);
     bool abandoned;
     struct srv_hold *next, *previous;

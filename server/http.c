@@ -29,7 +29,7 @@
  *       |                   +-- refused while reading, much left: CUT               |
  *       +-- refused at once, much to come ------------------------------------------+
  *
- *     instead of DONE, when the answer's revision is not durable: HELD --resume_held*--> DONE
+ *     instead of DONE, when what the answer shows is not durable: HELD --resume_held*--> DONE
  *
  * While WORK or HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
  * or the hold resumes it exactly once. */
@@ -126,20 +126,26 @@ static void *request_begin(void *context, const char *uri, struct MHD_Connection
     return r;
 }
 
-static void write_log(const request *r)
+static void copy_text(char *out, size_t size, const char *text)
 {
-    srv_access access = {
-        .time = srv_clock_utc(),
-        .route = r->exchange == NULL ? "-" : api_answer_of(r->exchange)->route,
-        .status = r->status,
-        .bytes_in = r->bytes_in,
-        .bytes_out = r->bytes_out,
-        .duration_us = srv_clock_micros() - r->started,
-    };
-    snprintf(access.request_id, sizeof access.request_id, "%s", r->request_id);
-    snprintf(access.method, sizeof access.method, "%s", r->method);
-    snprintf(access.path, sizeof access.path, "%s", r->path == NULL ? r->target : r->path);
-    snprintf(access.peer, sizeof access.peer, "%s", r->socket == NULL ? "-" : r->socket->peer);
+    size_t length = strnlen(text, size - 1);
+    memcpy(out, text, length);
+    out[length] = '\0';
+}
+
+static void write_log(const request *r, uint64_t now)
+{
+    srv_access access; /* not zeroed: most of it is room for a long path */
+    access.time = srv_clock_utc();
+    access.route = r->exchange == NULL ? "-" : api_answer_of(r->exchange)->route;
+    access.status = r->status;
+    access.bytes_in = r->bytes_in;
+    access.bytes_out = r->bytes_out;
+    access.duration_us = now - r->started;
+    copy_text(access.request_id, sizeof access.request_id, r->request_id);
+    copy_text(access.method, sizeof access.method, r->method);
+    copy_text(access.path, sizeof access.path, r->path == NULL ? r->target : r->path);
+    copy_text(access.peer, sizeof access.peer, r->socket == NULL ? "-" : r->socket->peer);
     srv_access_log_add(r->http->options.log, &access);
 }
 
@@ -155,9 +161,10 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
         return;
     }
     srv_http *http = r->http;
-    srv_connection_enter(r->socket, SRV_STAGE_IDLE, srv_clock_micros());
+    uint64_t now = srv_clock_micros();
+    srv_connection_enter(r->socket, SRV_STAGE_IDLE, now);
     if (r->counted && http->options.log != NULL) {
-        write_log(r);
+        write_log(r, now);
     }
     bool counted = r->counted;
     api_free(r->exchange);
@@ -288,7 +295,7 @@ static enum MHD_Result send_answer(request *r)
     r->state = DONE;
     r->status = wire.status;
     srv_connection_enter(r->socket, SRV_STAGE_ANSWER, srv_clock_micros());
-    if (!is_streamed(r)) {
+    if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;
     }
     enum MHD_Result queued = MHD_queue_response(r->connection, (unsigned)wire.status, response);
@@ -360,10 +367,10 @@ static enum MHD_Result answer_when_durable(request *r)
 {
     const api_answer *answer = r->exchange == NULL ? NULL : api_answer_of(r->exchange);
     if (answer == NULL || answer->mesh == NULL ||
-        srv_store_is_durable(r->http->options.store, answer->mesh, answer->revision)) {
+        srv_store_is_durable(r->http->options.store, answer->mesh, answer->record)) {
         return send_answer(r);
     }
-    r->hold = (srv_hold){.mesh = answer->mesh, .revision = answer->revision, .resume = resume_held};
+    r->hold = (srv_hold){.mesh = answer->mesh, .record = answer->record, .resume = resume_held};
     if (!begin_wait(r, HELD)) {
         return MHD_NO;
     }

@@ -45,9 +45,10 @@ struct srv_deadlines {
 void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)
 {
     if (c != NULL) {
-        /* The stage last: whoever reads the new one reads its beginning too. */
+        /* The beginning first: whoever reads the new stage, or that nothing came in it yet, reads
+         * its beginning too. */
         atomic_store_explicit(&c->since, now, memory_order_relaxed);
-        atomic_store_explicit(&c->bytes, 0, memory_order_relaxed);
+        atomic_store_explicit(&c->bytes, 0, memory_order_release);
         atomic_store_explicit(&c->stage, (int)stage, memory_order_release);
     }
 }
@@ -71,8 +72,8 @@ bool srv_connection_is_late(const srv_connection *c, const srv_deadline_options 
                             uint64_t now)
 {
     srv_stage stage = (srv_stage)atomic_load_explicit(&c->stage, memory_order_acquire);
+    uint64_t bytes = atomic_load_explicit(&c->bytes, memory_order_acquire);
     uint64_t since = atomic_load_explicit(&c->since, memory_order_relaxed);
-    uint64_t bytes = atomic_load_explicit(&c->bytes, memory_order_relaxed);
     uint64_t elapsed = now > since ? now - since : 0;
     switch (stage) {
     case SRV_STAGE_IDLE:

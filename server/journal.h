@@ -1,8 +1,10 @@
-/* journal.h - where revisions are made durable.
+/* journal.h - where changes are made durable.
  *
- * The store hands each revision to the journal in order, under the mesh's write lock, and goes on:
- * writers build on the head. What shows a revision is held back until the journal says it is
- * durable (D1: no answer shows a revision that a crash could lose). A journal may be far behind,
+ * The store hands each change of a mesh to the journal in order, under the mesh's write lock, and
+ * goes on: writers build on the head. Changes are revisions, renames and the removal, numbered
+ * together without a gap. What shows a change is held back until the journal says it is durable
+ * (D1: no answer shows a change that a crash could lose). The removal of a mesh comes before the
+ * first record of another one of its id. A journal may be far behind,
  * and says so each time it gets further by calling the listener, from any thread and without
  * holding a lock that `append` or `durable` take. */
 #ifndef HE_SERVER_JOURNAL_H
@@ -10,11 +12,12 @@
 
 #include "api/store.h"
 
-/* A revision as it is published. Everything is borrowed for the call. */
+/* A change as it is published. Everything is borrowed for the call. */
 typedef struct srv_record {
     const char *id;
     uint64_t incarnation;
-    uint64_t revision; /* the first of a mesh is 1; a rename repeats the present one */
+    uint64_t number;   /* of the record, from 1 for each incarnation */
+    uint64_t revision; /* the first of a mesh is 1; a rename and the removal repeat the last */
     const char *name;
     api_action action;      /* API_REPLACE: `content` holds it all */
     const he_delta *delta;  /* NULL with API_REPLACE and for a rename */
@@ -25,9 +28,9 @@ typedef struct srv_record {
 
 typedef struct srv_journal {
     void *self;
-    /* Takes note of a revision. Neither fails nor waits. */
+    /* Takes note of a change. Neither fails nor waits. */
     void (*append)(void *self, const srv_record *record);
-    /* The last durable revision of a mesh; UINT64_MAX when every one is. */
+    /* The number of the last durable record of a mesh; UINT64_MAX when every one is. */
     uint64_t (*durable)(void *self, const char *id, uint64_t incarnation);
     /* Call `notify` whenever a mesh became durable further. NULL stops; once it returned, no call
      * is under way. */

@@ -109,22 +109,11 @@ static bool reserve_place(srv_store *store)
     return true;
 }
 
-/* Under the table's exclusive lock. Takes `content` on success. */
-static api_store_status insert(srv_store *store, const char *id, const char *name, he_mesh *content,
-                               api_mesh **out)
+/* Under the table's exclusive lock. */
+static api_store_status insert(srv_store *store, api_mesh *mesh)
 {
     bool found;
-    char made[ID_LENGTH + 1];
-    size_t place;
-    if (id == NULL) {
-        do {
-            srv_random_id(made, ID_LENGTH);
-            place = position_of(store, made, &found);
-        } while (found);
-        id = made;
-    } else {
-        place = position_of(store, id, &found);
-    }
+    size_t place = position_of(store, mesh->info.id, &found);
     if (found) {
         return API_STORE_TAKEN;
     }
@@ -134,18 +123,36 @@ static api_store_status insert(srv_store *store, const char *id, const char *nam
     if (!reserve_place(store)) {
         return API_STORE_NO_MEMORY;
     }
-    api_mesh *mesh = srv_mesh_new(id, name, content, store->undo_budget, &store->journal);
-    if (mesh == NULL) {
-        return API_STORE_NO_MEMORY;
-    }
     memmove(store->meshes + place + 1, store->meshes + place,
             (store->count - place) * sizeof(api_mesh *));
     store->meshes[place] = mesh;
     store->count++;
-    *out = add_use(mesh);
-    /* Before the table is unlocked nobody can write a second revision. */
-    srv_mesh_append(mesh, API_REPLACE, NULL, false);
     return API_STORE_OK;
+}
+
+static api_store_status create_as(srv_store *store, const char *id, const char *name,
+                                  he_mesh *content, api_mesh **out)
+{
+    api_mesh *mesh = srv_mesh_new(id, name, content, store->undo_budget, &store->journal);
+    if (mesh == NULL) {
+        return API_STORE_NO_MEMORY;
+    }
+    /* Whoever finds it waits until the journal has its first record. */
+    pthread_rwlock_wrlock(&mesh->lock);
+    pthread_rwlock_wrlock(&store->lock);
+    api_store_status status = insert(store, mesh);
+    pthread_rwlock_unlock(&store->lock);
+    if (status == API_STORE_OK) {
+        *out = add_use(mesh);
+        srv_mesh_append(mesh, API_REPLACE, NULL, false);
+    } else {
+        mesh->content = NULL; /* still the caller's */
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+    if (status != API_STORE_OK) {
+        srv_mesh_release(mesh);
+    }
+    return status;
 }
 
 static api_store_status create(void *self, const char *id, const char *name, he_mesh *content,
@@ -158,32 +165,38 @@ static api_store_status create(void *self, const char *id, const char *name, he_
             return API_STORE_BUDGET;
         }
     }
-    pthread_rwlock_wrlock(&store->lock);
-    api_store_status status = insert(store, id, name, content, out);
-    pthread_rwlock_unlock(&store->lock);
+    if (id != NULL) {
+        return create_as(store, id, name, content, out);
+    }
+    api_store_status status;
+    do {
+        char made[ID_LENGTH + 1];
+        srv_random_id(made, ID_LENGTH);
+        status = create_as(store, made, name, content, out);
+    } while (status == API_STORE_TAKEN);
     return status;
 }
 
-static api_store_status remove_mesh(void *self, api_mesh *mesh)
+static api_store_status remove_mesh(void *self, api_mesh *mesh, api_mesh_info *info)
 {
     srv_store *store = self;
+    if (mesh->info.removed) {
+        return API_STORE_ABSENT;
+    }
+    mesh->info.removed = true;
+    srv_mesh_append(mesh, API_REPLACE, NULL, false);
+    if (info != NULL) {
+        srv_mesh_info(mesh, info);
+    }
+    /* Only now may the id be another's. */
     bool found;
     pthread_rwlock_wrlock(&store->lock);
     size_t place = position_of(store, mesh->info.id, &found);
-    found = found && store->meshes[place] == mesh;
-    if (found) {
-        store->count--;
-        memmove(store->meshes + place, store->meshes + place + 1,
-                (store->count - place) * sizeof(api_mesh *));
-    }
+    assert(found && store->meshes[place] == mesh);
+    store->count--;
+    memmove(store->meshes + place, store->meshes + place + 1,
+            (store->count - place) * sizeof(api_mesh *));
     pthread_rwlock_unlock(&store->lock);
-    if (!found) {
-        return API_STORE_ABSENT;
-    }
-    pthread_rwlock_wrlock(&mesh->lock);
-    mesh->info.removed = true;
-    srv_mesh_append(mesh, API_REPLACE, NULL, false);
-    pthread_rwlock_unlock(&mesh->lock);
     srv_mesh_release(mesh);
     return API_STORE_OK;
 }
@@ -229,10 +242,10 @@ api_store srv_store_interface(srv_store *store)
     };
 }
 
-bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t revision)
+bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t record)
 {
     const srv_journal *journal = &store->journal;
-    return journal->durable(journal->self, mesh->info.id, mesh->info.incarnation) >= revision;
+    return journal->durable(journal->self, mesh->info.id, mesh->info.incarnation) >= record;
 }
 
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context)

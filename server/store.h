@@ -1,8 +1,8 @@
 /* store.h - the meshes a daemon holds: by id, locked, revised. Fills in api/store.h.
  *
  * Locks, in the order in which they are taken:
- *     table     the collection, for as long as a search takes
  *     mesh      one mesh, shared by readers or held by one writer; writers come first
+ *     table     the collection, for as long as a search takes
  *     snapshot  the mesh's cached copy
  *     cache     the mesh's cached value
  * Whoever holds a mesh's lock takes no other mesh's, not even shared and not the same one twice:
@@ -31,8 +31,8 @@ void srv_store_free(srv_store *store);
 /* The functions of api/store.h over this store. */
 api_store srv_store_interface(srv_store *store);
 
-/* May an answer that shows this revision be sent? */
-bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t revision);
+/* May an answer that shows the mesh at this record be sent? */
+bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t record);
 /* Call `notify` whenever that may have become true for some mesh; see journal.h. */
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context);
 

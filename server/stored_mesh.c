@@ -80,9 +80,11 @@ void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out)
 
 void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone)
 {
+    mesh->info.record++;
     srv_record record = {
         .id = mesh->info.id,
         .incarnation = mesh->info.incarnation,
+        .number = mesh->info.record,
         .revision = mesh->info.revision,
         .name = mesh->info.name,
         .action = action,

@@ -43,7 +43,7 @@ void srv_mesh_release(api_mesh *mesh);
 void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out);
 /* Free the cached copy, unless somebody reads it. */
 void srv_mesh_shed(api_mesh *mesh);
-/* Under the exclusive lock: tell the journal about the present revision. */
+/* Under the exclusive lock: number a change that was made and tell the journal about it. */
 void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone);
 
 /* The members of api_store of the same names. */

@@ -82,8 +82,8 @@ static void read_all(const api_answer *answer, bench_reply *r)
     r->body[r->length] = '\0';
 }
 
-bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
-                             const char *const *headers, const char *body, size_t length)
+bool bench_try(api_bench *b, const char *method, const char *target, const char *const *headers,
+               const char *body, size_t length, bench_reply *out)
 {
     static const char *const json[] = {"Content-Type", "application/json", NULL};
     const char *pairs[32] = {NULL};
@@ -108,15 +108,26 @@ bench_reply bench_send_bytes(api_bench *b, const char *method, const char *targe
                            .length = length,
                            .has_body = body != NULL};
     bench_reply r = {.exchange = api_handle(b->service, &request, body, length)};
-    assert_non_null(r.exchange);
+    free(path);
+    if (r.exchange == NULL) {
+        return false;
+    }
     const api_answer *answer = api_answer_of(r.exchange);
     r.status = answer->status;
     r.route = answer->route;
     memcpy(r.headers, answer->headers, sizeof r.headers);
     r.header_count = answer->header_count;
     read_all(answer, &r);
+    *out = r;
+    return true;
+}
+
+bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
+                             const char *const *headers, const char *body, size_t length)
+{
+    bench_reply r;
+    assert_true(bench_try(b, method, target, headers, body, length, &r));
     r.json = cJSON_ParseWithLength(r.body, r.length);
-    free(path);
     return r;
 }
 

@@ -31,6 +31,9 @@ bench_reply bench_send(api_bench *b, const char *method, const char *target,
                        const char *const *headers, const char *body);
 bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
                              const char *const *headers, const char *body, size_t length);
+/* The same without parsing the answer; false when there was no memory for any. */
+bool bench_try(api_bench *b, const char *method, const char *target, const char *const *headers,
+               const char *body, size_t length, bench_reply *out);
 const char *bench_header(const bench_reply *r, const char *name); /* "" when absent */
 void bench_reply_free(bench_reply *r);
 

@@ -30,7 +30,7 @@ static void store_release(void *self, api_mesh *mesh)
 static const he_mesh *store_read_begin(void *self, api_mesh *mesh, api_mesh_info *info)
 {
     assert_ptr_equal(self, mesh);
-    *info = (api_mesh_info){.id = "m", .incarnation = 1, .metadata = 1, .revision = 7};
+    *info = (api_mesh_info){.id = "m", .incarnation = 1, .metadata = 1, .revision = 7, .record = 9};
     return mesh->content;
 }
 
@@ -435,7 +435,7 @@ static void costly_work_leaves_the_worker(void **state)
     api_work(x);
     assert_int_equal(api_answer_of(x)->status, 200);
     assert_ptr_equal(api_answer_of(x)->mesh, &only);
-    assert_int_equal(api_answer_of(x)->revision, 7);
+    assert_int_equal(api_answer_of(x)->record, 9);
     api_free(x);
     he_mesh_free(only.content);
     only.content = small;

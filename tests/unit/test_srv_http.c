@@ -15,7 +15,7 @@
 static struct {
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    uint64_t appended, durable; /* revisions, of whatever mesh */
+    uint64_t appended, durable; /* records, of whatever mesh */
     void (*notify)(void *context);
     void *context;
 } slow = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
@@ -24,7 +24,7 @@ static void slow_append(void *self, const srv_record *record)
 {
     (void)self;
     pthread_mutex_lock(&slow.lock);
-    slow.appended = record->revision;
+    slow.appended = record->number;
     pthread_cond_broadcast(&slow.changed);
     pthread_mutex_unlock(&slow.lock);
 }
@@ -157,6 +157,9 @@ static int answer(int fd, char *text, size_t size)
     text[0] = '\0';
     for (;;) {
         char *end = strstr(text, "\r\n\r\n"), *length = strstr(text, "Content-Length: ");
+        if (end != NULL && strncmp(text + 9, "204", 3) == 0) {
+            break;
+        }
         if (end != NULL && length != NULL && length < end) {
             size_t want = (size_t)(end + 4 - text) + strtoul(length + 16, NULL, 10);
             if (got >= want) {
@@ -220,8 +223,43 @@ static void test_answers_wait_until_durable(void **state)
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_int_equal(answer(reader, text, sizeof text), 200);
     assert_non_null(strstr(text, "\"revision\":2"));
+
+    /* What makes no revision could be lost as well. */
+    ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
+    slow_wait(3);
+    assert_held(writer);
+    ask(reader, "GET", "/v1/meshes/m", "");
+    assert_held(reader);
+    slow_advance(3);
+    assert_int_equal(answer(writer, text, sizeof text), 200);
+    assert_int_equal(answer(reader, text, sizeof text), 200);
+    ask(writer, "DELETE", "/v1/meshes/m", "");
+    slow_wait(4);
+    assert_held(writer);
+    slow_advance(4);
+    assert_int_equal(answer(writer, text, sizeof text), 204);
     close(writer);
     close(reader);
+}
+
+/* Known before the body has come, shown when it is durable. */
+static void test_early_refusals_wait_too(void **state)
+{
+    (void)state;
+    static const char put[] = "PUT /v1/meshes/m HTTP/1.1\r\nHost: localhost\r\n"
+                              "Content-Type: application/json\r\nIf-None-Match: *\r\n"
+                              "Expect: 100-continue\r\nContent-Length: 1000000\r\n\r\n";
+    char text[4096];
+    int writer = connect_client(), other = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    slow_wait(1);
+    assert_int_equal(send(other, put, sizeof put - 1, MSG_NOSIGNAL), sizeof put - 1);
+    assert_held(other);
+    slow_advance(1);
+    assert_int_equal(answer(writer, text, sizeof text), 201);
+    assert_int_equal(answer(other, text, sizeof text), 412);
+    close(writer);
+    close(other);
 }
 
 static void test_a_stop_ends_what_waits(void **state)
@@ -364,11 +402,9 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, start, stop)
     const struct CMUnitTest tests[] = {
-        TEST(test_answers_wait_until_durable),
-        TEST(test_a_stop_ends_what_waits),
-        TEST(test_full_queue_is_503),
-        TEST(test_too_many_connections),
-        TEST(test_refused_bodies),
+        TEST(test_answers_wait_until_durable), TEST(test_early_refusals_wait_too),
+        TEST(test_a_stop_ends_what_waits),     TEST(test_full_queue_is_503),
+        TEST(test_too_many_connections),       TEST(test_refused_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,6 +126,22 @@ static void test_access_log_drops_and_counts(void **state)
     close(ends[1]);
 }
 
+/* Nobody reads at all: the daemon must end all the same. */
+static void test_access_log_ends_without_a_reader(void **state)
+{
+    (void)state;
+    enum { RECORDS = 4000 };
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    srv_access_log *log = srv_access_log_new(ends[1], RECORDS);
+    for (int i = 0; i < RECORDS; i++) {
+        srv_access_log_add(log, &sample);
+    }
+    srv_access_log_free(log);
+    close(ends[0]);
+    close(ends[1]);
+}
+
 /* --- the page --- */
 
 static void write_file(const char *folder, const char *name, const char *content)
@@ -294,6 +310,7 @@ int main(void)
         cmocka_unit_test(test_jobs_run_in_order_and_to_the_end),
         cmocka_unit_test(test_access_line),
         cmocka_unit_test(test_access_log_drops_and_counts),
+        cmocka_unit_test(test_access_log_ends_without_a_reader),
         cmocka_unit_test(test_assets),
         cmocka_unit_test(test_deadlines),
         cmocka_unit_test(test_slow_readers),

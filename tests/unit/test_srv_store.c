@@ -75,6 +75,14 @@ static api_mesh_info info_of(api_mesh *mesh)
     return info;
 }
 
+static api_store_status take_away(api_mesh *mesh)
+{
+    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
+    api_store_status status = api.remove(api.self, mesh, NULL);
+    api.write_end(api.self, mesh);
+    return status;
+}
+
 static api_store_status step(api_mesh *mesh, api_action which)
 {
     he_delta *delta = NULL;
@@ -132,13 +140,13 @@ static void test_removed_mesh_stays_for_its_readers(void **state)
     (void)state;
     api_mesh *mesh = create("m"), *found = NULL;
     uint64_t incarnation = info_of(mesh).incarnation;
-    assert_int_equal(api.remove(api.self, mesh), API_STORE_OK);
-    assert_int_equal(api.remove(api.self, mesh), API_STORE_ABSENT);
+    assert_int_equal(take_away(mesh), API_STORE_OK);
+    assert_int_equal(take_away(mesh), API_STORE_ABSENT);
     assert_true(info_of(mesh).removed);
     assert_int_equal(api.find(api.self, "m", &found), API_STORE_ABSENT);
     api_mesh *again = create("m");
     assert_true(info_of(again).incarnation != incarnation);
-    assert_int_equal(api.remove(api.self, mesh), API_STORE_ABSENT);
+    assert_int_equal(take_away(mesh), API_STORE_ABSENT);
     api.release(api.self, mesh);
     api.release(api.self, again);
 }
@@ -381,7 +389,7 @@ static void test_snapshots(void **state)
 
     /* It outlives its mesh. */
     assert_int_equal(api.snapshot(api.self, mesh, &a), API_STORE_OK);
-    assert_int_equal(api.remove(api.self, mesh), API_STORE_OK);
+    assert_int_equal(take_away(mesh), API_STORE_OK);
     api.release(api.self, mesh);
     assert_int_equal(he_mesh_vertices(api.snapshot_content(a, NULL)), 5);
     api.snapshot_release(api.self, a);
@@ -448,7 +456,7 @@ static void test_every_allocation_may_fail(void **state)
             api.snapshot_release(api.self, snapshot);
         }
         if (status == API_STORE_OK) {
-            assert_int_equal(api.remove(api.self, made), API_STORE_OK);
+            assert_int_equal(take_away(made), API_STORE_OK);
             api.release(api.self, made);
         } else {
             he_mesh_free(content);
@@ -571,7 +579,7 @@ static void *come_and_go(void *context)
                 continue;
             }
         }
-        api_store_status status = api.remove(api.self, mesh);
+        api_store_status status = take_away(mesh);
         (void)status;
         api.release(api.self, mesh);
     }

@@ -1,0 +1,485 @@
+/* Writes: whole or not at all whatever memory there is, refused before they cost too much, and
+ * answered by what became of them. */
+#include "tests/api/request.h"
+
+#include "api/limits.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static bench_reply expect(int status, bench_reply r)
+{
+    if (r.status != status) {
+        fail_msg("%d instead of %d: %s", r.status, status, r.body);
+    }
+    return r;
+}
+
+static void done(bench_reply r)
+{
+    bench_reply_free(&r);
+}
+
+static bench_reply post(api_bench *b, const char *target, const char *body)
+{
+    return bench_send(b, "POST", target, NULL, body);
+}
+
+static bench_reply get(api_bench *b, const char *target)
+{
+    return bench_send(b, "GET", target, NULL, NULL);
+}
+
+static const char *text_of(const bench_reply *r, const char *member)
+{
+    const cJSON *value = cJSON_GetObjectItem(r->json, member);
+    assert_true(cJSON_IsString(value));
+    return value->valuestring;
+}
+
+/* --- memory --- */
+
+static struct {
+    long calls, fail_at; /* 0 never fails */
+    bool sticky;
+} memory;
+
+static void *resize(void *context, void *old, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(old);
+        return NULL;
+    }
+    memory.calls++;
+    bool fails = memory.fail_at != 0 && (memory.calls == memory.fail_at ||
+                                         (memory.sticky && memory.calls > memory.fail_at));
+    return fails ? NULL : realloc(old, size);
+}
+
+typedef struct write {
+    const char *method, *target;
+    int status;
+    const char *body;
+    const char *headers[3];
+} write;
+
+static const write writes[] = {
+    {"POST", "/v1/meshes?id=new", 201, "{\"shape\":\"cube\"}", {NULL}},
+    {"POST", "/v1/meshes", 201, "{\"vertices\":[[0,0,0]],\"faces\":[]}", {NULL}},
+    {"PUT", "/v1/meshes/new", 201, "{\"shape\":\"cube\"}", {NULL}},
+    {"PUT", "/v1/meshes/m", 200, "{\"shape\":\"octahedron\"}", {NULL}},
+    {"PUT", "/v1/meshes/m", 204, "{\"shape\":\"octahedron\"}", {"Prefer", "return=minimal"}},
+    {"PATCH", "/v1/meshes/m", 200, "{\"name\":\"other\"}", {NULL}},
+    {"DELETE", "/v1/meshes/m", 204, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/copy", 201, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"face_poke\",\"face\":1}", {NULL}},
+    {"POST",
+     "/v1/meshes/m/edits",
+     204,
+     "{\"ops\":[{\"op\":\"face_poke\",\"face\":1,\"as\":\"a\"},"
+     "{\"op\":\"vertex_move\",\"vertex\":\"$a.vertex\",\"by\":[0,0,1]}]}",
+     {"Prefer", "return=minimal"}},
+    {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"compact\"}", {NULL}},
+    {"POST", "/v1/meshes/m/undo", 200, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/redo", 200, "{}", {NULL}},
+};
+
+/* A mesh with something to undo, something to do again, and a dead face. */
+static api_bench *begin(void)
+{
+    api_bench *b = bench_new();
+    done(expect(201, post(b, "/v1/meshes?id=m&name=first", "{\"shape\":\"cube\"}")));
+    for (int face = 2; face < 5; face++) {
+        char body[64];
+        snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", face);
+        done(expect(200, post(b, "/v1/meshes/m/edits", body)));
+    }
+    done(expect(200, post(b, "/v1/meshes/m/undo", NULL)));
+    return b;
+}
+
+/* All that a client can see. */
+static char *state_of(api_bench *b)
+{
+    static const char *const targets[] = {"/v1/meshes", "/v1/meshes/m", "/v1/meshes/m/edits",
+                                          "/v1/meshes/m/content", "/v1/meshes/m/faces"};
+    char *state = calloc(1, 1 << 16);
+    assert_non_null(state);
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        bench_reply r = get(b, targets[i]);
+        /* What a mesh takes includes room that a refused edit had asked for. */
+        char *bytes = strstr(r.body, "\"memory_bytes\":");
+        if (bytes != NULL) {
+            memset(bytes, ' ', strcspn(bytes, ","));
+        }
+        strncat(state, r.body, (1 << 16) - strlen(state) - 1);
+        bench_reply_free(&r);
+    }
+    return state;
+}
+
+/* False when the allocation to fail was never reached. */
+static bool try_write(const write *w, long fail_at, bool sticky)
+{
+    memory.fail_at = 0;
+    api_bench *b = begin();
+    char *before = state_of(b);
+    const char *question = strchr(w->target, '?');
+    char path[64];
+    snprintf(path, sizeof path, "%.*s",
+             question == NULL ? (int)strlen(w->target) : (int)(question - w->target), w->target);
+    const char *headers[] = {"Content-Type", "application/json", w->headers[0], w->headers[1],
+                             NULL};
+    memory.calls = 0;
+    memory.sticky = sticky;
+    memory.fail_at = fail_at;
+    bench_reply r = {0};
+    size_t length = w->body == NULL ? 0 : strlen(w->body);
+    bool sent = bench_try(b, w->method, w->target, headers, w->body, length, &r);
+    bool reached = memory.calls >= fail_at;
+    memory.fail_at = 0;
+    char *after = state_of(b);
+    bool same = strcmp(before, after) == 0;
+    if (!sent || r.status >= 300) {
+        if ((sent && r.status != 507) || !same) {
+            fail_msg("%s %s, allocation %ld: %d, and the state is%s the same", w->method, w->target,
+                     fail_at, sent ? r.status : 0, same ? "" : " not");
+        }
+    } else {
+        /* Where memory did not suffice for the answer, its status still tells. */
+        bool bare = r.status == (w->status == 201 ? 201 : 204) && r.length == 0;
+        if (same || (r.status != w->status && !bare)) {
+            fail_msg("%s %s, allocation %ld: %d", w->method, w->target, fail_at, r.status);
+        }
+        if (r.status == 201) {
+            done(expect(200, get(b, bench_header(&r, "Location"))));
+        }
+    }
+    if (sent) {
+        bench_reply_free(&r);
+    }
+    free(before);
+    free(after);
+    bench_free(b);
+    return reached;
+}
+
+static void writes_are_whole_or_not_at_all(void **state)
+{
+    (void)state;
+    static const he_mem_hook hook = {resize, NULL};
+    he_mem_set_hook(&hook);
+    for (size_t i = 0; i < sizeof writes / sizeof *writes; i++) {
+        for (int sticky = 0; sticky < 2; sticky++) {
+            long n = 1;
+            while (try_write(&writes[i], n, sticky != 0)) {
+                n++;
+            }
+            assert_true(n > 2);
+            print_message("%s %s: %ld allocations failed%s\n", writes[i].method, writes[i].target,
+                          n - 1, sticky ? " and all after" : "");
+        }
+    }
+    he_mem_set_hook(NULL);
+}
+
+/* --- preconditions --- */
+
+static bool writing, removed_under_lock;
+static const api_store *real;
+
+static he_mesh *note_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta)
+{
+    writing = true;
+    return real->write_begin(self, mesh, info, delta);
+}
+
+static void note_end(void *self, api_mesh *mesh)
+{
+    writing = false;
+    real->write_end(self, mesh);
+}
+
+static api_store_status note_remove(void *self, api_mesh *mesh, api_mesh_info *info)
+{
+    removed_under_lock = writing;
+    return real->remove(self, mesh, info);
+}
+
+static void nothing_comes_between_if_match_and_delete(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    real = bench_store(b);
+    api_store watched = *real;
+    watched.write_begin = note_begin;
+    watched.write_end = note_end;
+    watched.remove = note_remove;
+    api_service *service = api_service_new(&watched, &(api_options){.version = "0"});
+    assert_non_null(service);
+    api_request request = {
+        .method = "DELETE", .path = "/v1/meshes/m", .query = "", .request_id = "r"};
+    api_exchange *x = api_handle(service, &request, NULL, 0);
+    assert_non_null(x);
+    assert_int_equal(api_answer_of(x)->status, 204);
+    assert_true(removed_under_lock);
+    api_free(x);
+    api_service_free(service);
+    bench_free(b);
+}
+
+static const char *one_header(void *context, const char *name)
+{
+    const char *const *pair = context;
+    return strcmp(name, pair[0]) == 0          ? pair[1]
+           : strcmp(name, "Content-Type") == 0 ? "application/json"
+                                               : NULL;
+}
+
+static void a_put_that_must_fail_needs_no_body(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *header[2];
+    } cases[] = {{"/v1/meshes/m", {"If-None-Match", "*"}},
+                 {"/v1/meshes/m", {"If-Match", "\"x\""}},
+                 {"/v1/meshes/absent", {"If-Match", "*"}}};
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        api_step step;
+        api_request request = {.method = "PUT",
+                               .path = cases[i].path,
+                               .query = "",
+                               .request_id = "r",
+                               .header = one_header,
+                               .context = (void *)cases[i].header,
+                               .has_length = true,
+                               .length = 1 << 20,
+                               .has_body = true};
+        api_exchange *x = api_begin(bench_service(b), &request, &step);
+        assert_non_null(x);
+        assert_int_equal(step, API_READY);
+        assert_int_equal(api_answer_of(x)->status, 412);
+        assert_true(api_answer_of(x)->close);
+        api_free(x);
+    }
+    bench_free(b);
+}
+
+/* A refusal that shows a revision waits for it to be durable, as any answer does. */
+static void a_stale_write_shows_a_state(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r = expect(412, post(b, "/v1/meshes/m/undo", "{\"expected_revision\":2}"));
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 5);
+    assert_non_null(strstr(text_of(&r, "detail"), "not at revision 2"));
+    assert_non_null(api_answer_of(r.exchange)->mesh);
+    assert_true(api_answer_of(r.exchange)->record >= 5);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* The tag a write will make may be guessed; its answer is no "not modified" all the same. */
+static void a_write_is_never_not_modified(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r = expect(200, get(b, "/v1/meshes/m"));
+    char next[128];
+    snprintf(next, sizeof next, "%s", bench_header(&r, "ETag"));
+    bench_reply_free(&r);
+    char *metadata = strchr(next, '-') + 1;
+    *metadata = (char)(*metadata + 1);
+    done(expect(200, bench_send(b, "PATCH", "/v1/meshes/m",
+                                (const char *const[]){"If-None-Match", next, NULL},
+                                "{\"name\":\"second\"}")));
+    r = expect(200, get(b, "/v1/meshes/m"));
+    assert_string_equal(bench_header(&r, "ETag"), next);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* --- costs --- */
+
+static void append(char *text, size_t size, const char *more)
+{
+    strncat(text, more, size - strlen(text) - 1);
+}
+
+static void lists_of_operations_have_a_price(void **state)
+{
+    (void)state;
+    enum { SIZE = 1 << 20, SIDE = 100, TRANSFORMS = 3000, REFERENCES = 2000 };
+    char *body = calloc(1, SIZE), *at = body;
+    assert_non_null(body);
+    api_bench *b = bench_new();
+    done(expect(201,
+                post(b, "/v1/meshes?id=m", "{\"shape\":\"grid\",\"columns\":100,\"rows\":100}")));
+
+    append(body, SIZE, "{\"ops\":[");
+    at += strlen(body);
+    for (int i = 0; i < TRANSFORMS; i++) {
+        at += sprintf(at, "%s{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}",
+                      i == 0 ? "" : ",");
+    }
+    append(at, SIZE / 2, "]}");
+    bench_reply r = expect(413, post(b, "/v1/meshes/m/edits", body));
+    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
+    int at_most = API_MAX_EDITS_ELEMENTS / (SIDE * SIDE * 4);
+    int refused = 0;
+    assert_int_equal(sscanf(text_of(&r, "pointer"), "/ops/%d", &refused), 1);
+    assert_true(refused > at_most - 100 && refused <= at_most + 1);
+    bench_reply_free(&r);
+
+    at = body;
+    at += sprintf(at, "{\"ops\":[{\"op\":\"face_triangulate\",\"as\":\"a\",\"faces\":[0");
+    for (int i = 1; i < SIDE * SIDE; i++) {
+        at += sprintf(at, ",%d", i);
+    }
+    at += sprintf(at, "]},{\"op\":\"face_delete\",\"faces\":[\"$a.faces\"");
+    for (int i = 1; i < REFERENCES; i++) {
+        at += sprintf(at, ",\"$a.faces\"");
+    }
+    at += sprintf(at, "]}]}");
+    assert_true(at - body < SIZE);
+    r = expect(413, post(b, "/v1/meshes/m/edits", body));
+    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
+    bench_reply_free(&r);
+
+    r = expect(200, get(b, "/v1/meshes/m"));
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
+    bench_reply_free(&r);
+    bench_free(b);
+    free(body);
+}
+
+static api_step step_of(api_bench *b, const char *path, const char *body)
+{
+    api_step step;
+    api_request request = {.method = "POST",
+                           .path = path,
+                           .query = "",
+                           .request_id = "r",
+                           .header = one_header,
+                           .context = (const char *[]){"Accept", "application/json"},
+                           .has_length = true,
+                           .length = strlen(body),
+                           .has_body = true};
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    assert_non_null(x);
+    assert_int_equal(step, API_MORE);
+    assert_int_equal(api_body(x, body, strlen(body)), API_MORE);
+    step = api_end(x);
+    if (step == API_WORK) {
+        api_work(x);
+    }
+    if (api_answer_of(x)->status != 200) {
+        fail_msg("%s: %d", body, api_answer_of(x)->status);
+    }
+    api_free(x);
+    return step;
+}
+
+static void huge_elements_are_no_work_for_a_worker(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *body;
+        api_step step;
+    } cases[] = {
+        {"p", "{\"op\":\"face_triangulate\",\"face\":0,\"dry_run\":true}", API_WORK},
+        {"p", "{\"ops\":[{\"op\":\"face_poke\",\"face\":0}],\"dry_run\":true}", API_WORK},
+        {"p", "{\"op\":\"hole_fill\",\"halfedge\":1,\"method\":\"fan\",\"dry_run\":true}",
+         API_WORK},
+        {"p", "{\"op\":\"edge_split\",\"edge\":7,\"dry_run\":true}", API_WORK},
+        {"p", "{\"op\":\"vertex_move\",\"vertex\":7,\"to\":[0,0,1],\"dry_run\":true}", API_READY},
+        {"g", "{\"op\":\"face_triangulate\",\"faces\":[0,7],\"dry_run\":true}", API_READY},
+        {"g", "{\"op\":\"edge_split\",\"edge\":0,\"dry_run\":true}", API_READY},
+        {"g", "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}", API_WORK},
+    };
+    api_bench *b = bench_new();
+    done(expect(201, post(b, "/v1/meshes?id=p", "{\"shape\":\"polygon\",\"sides\":30000}")));
+    done(expect(201,
+                post(b, "/v1/meshes?id=g", "{\"shape\":\"grid\",\"columns\":9000,\"rows\":1}")));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "/v1/meshes/%s/edits", cases[i].mesh);
+        if (step_of(b, path, cases[i].body) != cases[i].step) {
+            fail_msg("%s of %s", cases[i].body, cases[i].mesh);
+        }
+    }
+    bench_free(b);
+}
+
+/* --- refusals that help --- */
+
+static void has_supported(bench_reply r, const char *type)
+{
+    const cJSON *list = cJSON_GetObjectItem(r.json, "supported"), *item;
+    bool found = false;
+    assert_true(cJSON_IsArray(list));
+    cJSON_ArrayForEach(item, list)
+    {
+        found = found || strcmp(item->valuestring, type) == 0;
+    }
+    assert_true(found);
+    bench_reply_free(&r);
+}
+
+static void refusals_name_the_value_and_the_limit(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    char target[400] = "/v1/meshes?name=";
+    memset(target + strlen(target), 'n', 257);
+    bench_reply r = expect(400, post(b, target, "{\"shape\":\"cube\"}"));
+    assert_string_equal(text_of(&r, "code"), "bad_parameter");
+    assert_non_null(strstr(text_of(&r, "detail"), "256"));
+    bench_reply_free(&r);
+    r = expect(400, get(b, "/v1/meshes/m/vertices?limit=10001"));
+    assert_string_equal(text_of(&r, "detail"),
+                        "\"limit\" cannot be \"10001\": a whole number from 1 to 10000");
+    bench_reply_free(&r);
+    r = expect(400, get(b, "/v1/meshes/m/components?by=face"));
+    assert_string_equal(text_of(&r, "detail"), "\"by\" cannot be \"face\": vertex, edge");
+    bench_reply_free(&r);
+    r = expect(422, post(b, "/v1/meshes", "{\"vertices\":[[0,0,0]],\"faces\":[[0,1,2]]}"));
+    assert_string_equal(text_of(&r, "pointer"), "/faces/0/1");
+    bench_reply_free(&r);
+    has_supported(
+        expect(406, bench_send(b, "GET", "/v1/meshes/m/content",
+                               (const char *const[]){"Accept", "text/plain", NULL}, NULL)),
+        "model/obj");
+    has_supported(expect(415, bench_send(b, "POST", "/v1/meshes",
+                                         (const char *const[]){"Content-Type",
+                                                               "application/octet-stream", NULL},
+                                         "?")),
+                  "model/x-off");
+    r = expect(200, get(b, "/v1/meshes/m/edits?limit=1"));
+    assert_non_null(strstr(bench_header(&r, "Link"), "rel=\"next\""));
+    assert_non_null(strstr(bench_header(&r, "Link"), text_of(&r, "next")));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(writes_are_whole_or_not_at_all),
+        cmocka_unit_test(nothing_comes_between_if_match_and_delete),
+        cmocka_unit_test(a_put_that_must_fail_needs_no_body),
+        cmocka_unit_test(a_stale_write_shows_a_state),
+        cmocka_unit_test(a_write_is_never_not_modified),
+        cmocka_unit_test(lists_of_operations_have_a_price),
+        cmocka_unit_test(huge_elements_are_no_work_for_a_worker),
+        cmocka_unit_test(refusals_name_the_value_and_the_limit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
