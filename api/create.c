@@ -28,16 +28,28 @@ void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length)
 }
 
 /* Preconditions that fail already spare the client its body. */
+/* A PUT is as good where the mesh was removed while it came: go on as if it had never been. */
+static bool forget_removed(api_exchange *x)
+{
+    if (x->problem.code != API_NO_SUCH_MESH) {
+        return false;
+    }
+    x->problem = (api_problem){0};
+    x->store->release(x->store->self, x->mesh);
+    x->mesh = NULL;
+    return true;
+}
+
 void api_mesh_put_begin(api_exchange *x)
 {
-    bool good = true;
-    if (x->mesh == NULL) {
-        good = api_precondition_absent(x);
-    } else if (api_read_begin(x) != NULL) {
+    bool good = false;
+    if (x->mesh != NULL && api_read_begin(x) != NULL) {
         good = api_preconditions_hold(x, NULL);
         api_read_end(x);
+    } else if (x->mesh == NULL || forget_removed(x)) {
+        good = api_precondition_absent(x);
     }
-    if (good && x->problem.code == HE_OK) {
+    if (good) {
         begin(x);
     }
 }
@@ -92,12 +104,16 @@ static void create(api_exchange *x)
     }
 }
 
-static void replace(api_exchange *x, const made *m)
+/* False, with nothing done, where the mesh was removed meanwhile. */
+static bool replace(api_exchange *x, const made *m)
 {
     he_delta *delta;
     if (api_write_begin(x, NULL, &delta) == NULL) {
-        he_mesh_free(m->mesh);
-        return;
+        bool removed = x->problem.code == API_NO_SUCH_MESH;
+        if (!removed) {
+            he_mesh_free(m->mesh);
+        }
+        return !removed;
     }
     const char *name = api_upload_name(x);
     x->store->replace(x->store->self, x->mesh, m->mesh, &x->info);
@@ -110,33 +126,43 @@ static void replace(api_exchange *x, const made *m)
     if (!api_answer_minimal(x)) {
         api_answer_stored(x, 200, &m->summary, api_upload_write_report);
     }
+    return true;
 }
 
-/* The mesh may have come while the body did: then it is replaced, or the precondition fails. */
+/* Make the mesh under the id of the path. False, with nothing done, where it exists by now: then
+ * x->mesh is it. */
+static bool create_named(api_exchange *x, const made *m)
+{
+    if (!api_precondition_absent(x)) {
+        he_mesh_free(m->mesh);
+        return true;
+    }
+    api_store_status status = store_new(x, x->mesh_id, m->mesh);
+    if (status == API_STORE_OK) {
+        api_answer_created(x, &m->summary, api_upload_write_report);
+        return true;
+    }
+    if (status == API_STORE_TAKEN) {
+        status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
+        if (status == API_STORE_OK || status == API_STORE_ABSENT) {
+            return false;
+        }
+    }
+    he_mesh_free(m->mesh);
+    api_fail_store(x, status);
+    return true;
+}
+
+/* The mesh may come and go while the body does: replace it or make it, whichever holds when it is
+ * tried. */
 static void put(api_exchange *x)
 {
     made m;
-    if (x->mesh == NULL && !api_precondition_absent(x)) {
+    if ((x->mesh == NULL && !api_precondition_absent(x)) || !build(x, &m)) {
         return;
     }
-    if (!build(x, &m)) {
-        return;
-    }
-    api_store_status status = API_STORE_TAKEN;
-    if (x->mesh == NULL) {
-        status = store_new(x, x->mesh_id, m.mesh);
-    }
-    if (x->mesh == NULL && status == API_STORE_TAKEN) {
-        status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
-        status = status == API_STORE_OK ? API_STORE_TAKEN : status;
-    }
-    if (status == API_STORE_OK) {
-        api_answer_created(x, &m.summary, api_upload_write_report);
-    } else if (status == API_STORE_TAKEN) {
-        replace(x, &m);
-    } else {
-        he_mesh_free(m.mesh);
-        api_fail_store(x, status);
+    while (x->mesh == NULL ? !create_named(x, &m) : !replace(x, &m)) {
+        forget_removed(x);
     }
 }
 
