@@ -3,6 +3,7 @@
 #include "tests/api/request.h"
 
 #include "api/limits.h"
+#include "api/text.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -308,29 +309,23 @@ static void a_write_is_never_not_modified(void **state)
 
 /* --- costs --- */
 
-static void append(char *text, size_t size, const char *more)
-{
-    strncat(text, more, size - strlen(text) - 1);
-}
-
 static void lists_of_operations_have_a_price(void **state)
 {
     (void)state;
-    enum { SIZE = 1 << 20, SIDE = 100, TRANSFORMS = 3000, REFERENCES = 2000 };
-    char *body = calloc(1, SIZE), *at = body;
-    assert_non_null(body);
+    enum { SIDE = 100, TRANSFORMS = 3000, REFERENCES = 2000 };
+    api_text body = {0};
     api_bench *b = bench_new();
     done(expect(201,
                 post(b, "/v1/meshes?id=m", "{\"shape\":\"grid\",\"columns\":100,\"rows\":100}")));
 
-    append(body, SIZE, "{\"ops\":[");
-    at += strlen(body);
+    api_text_add_string(&body, "{\"ops\":[");
     for (int i = 0; i < TRANSFORMS; i++) {
-        at += sprintf(at, "%s{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}",
-                      i == 0 ? "" : ",");
+        api_text_add_format(&body,
+                            "%s{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}",
+                            i == 0 ? "" : ",");
     }
-    append(at, SIZE / 2, "]}");
-    bench_reply r = expect(413, post(b, "/v1/meshes/m/edits", body));
+    api_text_add(&body, "]}", sizeof "]}");
+    bench_reply r = expect(413, post(b, "/v1/meshes/m/edits", body.bytes));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
     int at_most = API_MAX_EDITS_ELEMENTS / (SIDE * SIDE * 4);
     int refused = 0;
@@ -338,18 +333,18 @@ static void lists_of_operations_have_a_price(void **state)
     assert_true(refused > at_most - 100 && refused <= at_most + 1);
     bench_reply_free(&r);
 
-    at = body;
-    at += sprintf(at, "{\"ops\":[{\"op\":\"face_triangulate\",\"as\":\"a\",\"faces\":[0");
+    api_text_empty(&body);
+    api_text_add_string(&body, "{\"ops\":[{\"op\":\"face_triangulate\",\"as\":\"a\",\"faces\":[0");
     for (int i = 1; i < SIDE * SIDE; i++) {
-        at += sprintf(at, ",%d", i);
+        api_text_add_format(&body, ",%d", i);
     }
-    at += sprintf(at, "]},{\"op\":\"face_delete\",\"faces\":[\"$a.faces\"");
+    api_text_add_string(&body, "]},{\"op\":\"face_delete\",\"faces\":[\"$a.faces\"");
     for (int i = 1; i < REFERENCES; i++) {
-        at += sprintf(at, ",\"$a.faces\"");
+        api_text_add_string(&body, ",\"$a.faces\"");
     }
-    at += sprintf(at, "]}]}");
-    assert_true(at - body < SIZE);
-    r = expect(413, post(b, "/v1/meshes/m/edits", body));
+    api_text_add(&body, "]}]}", sizeof "]}]}");
+    assert_false(body.failed);
+    r = expect(413, post(b, "/v1/meshes/m/edits", body.bytes));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
     bench_reply_free(&r);
 
@@ -357,7 +352,7 @@ static void lists_of_operations_have_a_price(void **state)
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
     bench_reply_free(&r);
     bench_free(b);
-    free(body);
+    api_text_clear(&body);
 }
 
 static api_step step_of(api_bench *b, const char *path, const char *body)

@@ -1,0 +1,112 @@
+/* Clients that meet over one mesh. */
+#include "tests/e2e/client.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { CLIENTS = 4, REQUESTS = 300, MESHES = 3 };
+
+typedef struct visitor {
+    const daemon_process *daemon;
+    bool removes;
+    int strange; /* the first status that has no place here */
+} visitor;
+
+static void *come_and_go(void *context)
+{
+    static const char cube[] = "{\"shape\":\"cube\"}";
+    visitor *v = context;
+    client *c = client_new(v->daemon);
+    for (int i = 0; i < REQUESTS; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "/v1/meshes/x%d", i % MESHES);
+        reply r = v->removes ? client_send(c, "DELETE", path, NULL, 0, NULL)
+                             : client_send(c, "PUT", path, cube, sizeof cube - 1, NULL);
+        bool good =
+            v->removes ? r.status == 204 || r.status == 404 : r.status == 200 || r.status == 201;
+        if (!good && v->strange == 0) {
+            v->strange = (int)r.status;
+        }
+        reply_free(&r);
+    }
+    client_free(c);
+    return NULL;
+}
+
+/* A PUT replaces or creates, whatever others remove meanwhile. */
+static void test_put_meets_delete(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
+    visitor visitors[CLIENTS];
+    pthread_t threads[CLIENTS];
+    for (int i = 0; i < CLIENTS; i++) {
+        visitors[i] = (visitor){d, i % 2 == 1, 0};
+        assert_int_equal(pthread_create(&threads[i], NULL, come_and_go, &visitors[i]), 0);
+    }
+    for (int i = 0; i < CLIENTS; i++) {
+        pthread_join(threads[i], NULL);
+        assert_int_equal(visitors[i].strange, 0);
+    }
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+static void *poke(void *context)
+{
+    visitor *v = context;
+    client *c = client_new(v->daemon);
+    for (int i = 0; i < REQUESTS; i++) {
+        reply r = client_post(c, "/v1/meshes/shared/edits", "{\"op\":\"face_poke\",\"face\":0}");
+        if (r.status != 200 && v->strange == 0) {
+            v->strange = (int)r.status;
+        }
+        reply_free(&r);
+    }
+    client_free(c);
+    return NULL;
+}
+
+/* Every edit of every writer is applied, and applied once. */
+static void test_writers_of_one_mesh(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
+    client *c = client_new(d);
+    reply r = client_send(c, "PUT", "/v1/meshes/shared", "{\"shape\":\"cube\"}", 16, NULL);
+    assert_int_equal(r.status, 201);
+    reply_free(&r);
+    visitor visitors[CLIENTS];
+    pthread_t threads[CLIENTS];
+    for (int i = 0; i < CLIENTS; i++) {
+        visitors[i] = (visitor){d, false, 0};
+        assert_int_equal(pthread_create(&threads[i], NULL, poke, &visitors[i]), 0);
+    }
+    for (int i = 0; i < CLIENTS; i++) {
+        pthread_join(threads[i], NULL);
+        assert_int_equal(visitors[i].strange, 0);
+    }
+    r = client_get(c, "/v1/meshes/shared");
+    assert_int_equal((int)reply_number(&r, "revision"), 1 + CLIENTS * REQUESTS);
+    assert_int_equal((int)reply_number(&r, "counts.vertices"), 8 + CLIENTS * REQUESTS);
+    reply_free(&r);
+    r = client_get(c, "/v1/meshes/shared/check");
+    assert_true(cJSON_IsTrue(reply_find(&r, "valid")));
+    reply_free(&r);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_put_meets_delete),
+        cmocka_unit_test(test_writers_of_one_mesh),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
