@@ -221,7 +221,7 @@ test('files are uploaded by dropping them, one after another', async (t) => {
 test('polygons are drawn with their edges and without diagonals', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, SQUARE);
     // A second square beside it, so that an edge lies inside of the surface.
-    await post(daemon, '', {
+    const { id: other } = await post(daemon, '', {
         name: 'two squares',
         vertices: [[-1, -1, 0], [0, -1, 0], [1, -1, 0], [1, 1, 0], [0, 1, 0], [-1, 1, 0]],
         faces: [[0, 1, 4, 5], [1, 2, 3, 4]],
@@ -246,8 +246,6 @@ test('polygons are drawn with their edges and without diagonals', async (t) => {
 
     await page.getByRole('button', { name: 'Refresh' }).click();
     await page.locator('#meshes button').filter({ hasText: 'two squares' }).click();
-    await page.locator('#mesh-title').filter({ hasText: 'two squares' }).waitFor();
-    const other = await page.locator('#canvas').getAttribute('data-mesh');
     await waitForFrame(page, { mesh: other, revision: 1 });
     const middle = (await projector(page, daemon, other)).at([1, 4]);
     const two = await readCanvas(page);
