@@ -26,7 +26,8 @@
  * when d is on f already, or c on g. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err);
 
-/* Would he_edge_flip refuse? Costs the corners of both faces and the degrees of the four ends. */
+/* Would he_edge_flip refuse? Costs the corners of both faces and the lesser degree of
+ * c and d. */
 HE_NODISCARD he_status he_edge_flip_check(const he_mesh *m, he_edge e, he_error *err);
 
 #endif
