@@ -513,6 +513,70 @@ static uint64_t play_transform(const md_call *c, or_mesh *o, const he_mesh *m)
                                        v->given ? (uint32_t)v->count : 0);
 }
 
+/* Anywhere, or through three vertices. */
+static void draw_plane(md_draft *d)
+{
+    md_give_points(d, "point", 1, false);
+    md_give_points(d, "normal", 1, false);
+    he_vec3 *point = d->c->points[md_index(d->c, "point")];
+    he_vec3 *normal = d->c->points[md_index(d->c, "normal")];
+    if (md_chance(d->r, 40) && or_live_vertices(d->o) > 0) {
+        he_vec3 p[3];
+        for (int i = 0; i < 3; i++) {
+            p[i] = d->o->vertex[md_live(d, HE_VERTEX)].at;
+        }
+        he_vec3 a = {p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
+        he_vec3 b = {p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
+        he_vec3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+        *point = p[0];
+        *normal = n.x * n.x + n.y * n.y + n.z * n.z > 1e-3 ? n : *normal;
+    }
+    if (md_chance(d->r, 2)) {
+        *normal = (he_vec3){0, 0, 0};
+    }
+}
+
+static bool draw_plane_split(md_draft *d)
+{
+    draw_plane(d);
+    if (md_chance(d->r, 30)) {
+        md_give_number(d, "tolerance", md_chance(d->r, 5) ? -1 : md_unit(d->r) * 0.5);
+    }
+    if (or_live_faces(d->o) > 40 || md_chance(d->r, 30)) {
+        (void)md_pick_some(d, "face", "faces", HE_FACE, 5);
+    }
+    const he_arg *tolerance = md_get(d->c, "tolerance");
+    or_plane_size size =
+        or_plane_measure(d->o, md_get(d->c, "point")->points[0], md_get(d->c, "normal")->points[0],
+                         tolerance->given ? &tolerance->number : NULL);
+    return !size.doubtful && d->o->vertices + size.crossed < OR_VERTICES &&
+           d->o->edges + 3 * size.crossed + size.cut < OR_EDGES &&
+           d->o->faces + size.crossed + size.cut < OR_FACES && size.cut < OR_LIST &&
+           size.longest < OR_CORNERS;
+}
+
+static uint64_t play_plane_split(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    const he_arg *f = md_get(c, "face");
+    const he_arg *tolerance = md_get(c, "tolerance");
+    uint64_t refused = f->given ? md_require_all(o, HE_FACE, f) : 0;
+    uint32_t start[OR_FACES];
+    for (uint32_t i = 0; i < o->faces; i++) {
+        start[i] = OR_NONE;
+        if (o->face[i].alive) {
+            start[i] = he_origin(m, he_face_halfedge(m, (he_face){i})).i;
+        }
+    }
+    he_vec3 normal = md_get(c, "normal")->points[0];
+    if (refused != 0) {
+        bool zero = fabs(normal.x) + fabs(normal.y) + fabs(normal.z) == 0;
+        return refused | (zero || tolerance->number < 0 ? OR_BIT(HE_BAD_VALUE) : 0);
+    }
+    return or_plane_split(o, md_get(c, "point")->points[0], normal,
+                          tolerance->given ? &tolerance->number : NULL, f->given ? f->ids : NULL,
+                          (uint32_t)f->count, start);
+}
+
 static bool draw_compact(md_draft *d)
 {
     return md_chance(d->r, 15);
@@ -549,6 +613,7 @@ static const struct row {
     {"edge_flip", 0, draw_edge, play_edge_flip},
     {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse},
     {"transform", 0, draw_transform, play_transform},
+    {"plane_split", 1, draw_plane_split, play_plane_split},
     {"compact", 0, draw_compact, play_compact},
 };
 

@@ -254,6 +254,29 @@ static const scenario scenarios[] = {
      {0}},
     {"transform matrix=1e308,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", "012", NULL, HE_NOT_FINITE, {0}},
 
+    {"plane_split point=0.5,0,0 normal=1,0,0", "0123", NULL, HE_OK, {2, 3, 1}},
+    {"plane_split point=1,0,0 normal=-7,0,0", "0123", NULL, HE_OK, {1, 2, 1}},
+    {"plane_split point=3,0,0 normal=1,0,0 tolerance=1.5", "01234567", NULL, HE_OK, {1, 2, 1}},
+    {"plane_split point=9,0,0 normal=1,0,0", "0123", NULL, HE_OK, {0, 0, 0}},
+    {"plane_split point=3.5,0,0 normal=1,0,0", QCUBE, NULL, HE_OK, {4, 8, 4}},
+    {"plane_split point=0.5,0,0 normal=1,0,0", STRANGE, NULL, HE_OK, {6, 9, 3}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 face=0", "012,103", NULL, HE_OK, {2, 3, 1}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 faces=0,1",
+     "012,034",
+     "face_delete face=0",
+     HE_DELETED_ELEMENT,
+     {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 face=1", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 faces=0,1,0",
+     "012,034",
+     NULL,
+     HE_REPEATED_ELEMENT,
+     {0}},
+    {"plane_split point=0.5,0,0 normal=0,0,0", "012", NULL, HE_BAD_VALUE, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 tolerance=-1", "012", NULL, HE_BAD_VALUE, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0", PILLOW, NULL, HE_DOUBLED_EDGE, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 face=1", PILLOW, NULL, HE_OK, {2, 3, 1}},
+
     {"compact", "012,034+", "face_delete face=0", HE_OK, {0, 0, 0}},
     {"compact", "", NULL, HE_OK, {0, 0, 0}},
 };
@@ -447,6 +470,7 @@ static void test_rows_are_sound(void **state)
             assert_non_null(param->doc);
             assert_int_equal(param->type == HE_PARAM_ELEMENTS, param->plural != NULL);
             assert_int_equal(param->type == HE_PARAM_CHOICE, param->choices != NULL);
+            assert_true(!(param->flags & HE_DERIVED) || param->type == HE_PARAM_NUMBER);
             for (size_t j = 0; j < k; j++) {
                 assert_string_not_equal(op->params[j].name, param->name);
             }
