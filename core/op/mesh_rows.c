@@ -1,5 +1,6 @@
 #include "op/rows.h"
 
+#include "edit/delaunay.h"
 #include "edit/plane_split.h"
 #include "edit/transform.h"
 #include "mesh/compact.h"
@@ -25,6 +26,16 @@ static he_status run_plane_split(he_mesh *m, const he_arg *args, he_results *out
         he_give_list(out, 3, &parts.edges);
         he_give_list(out, 4, &parts.faces);
         he_plane_parts_clear(&parts);
+    }
+    return status;
+}
+
+static he_status run_delaunay(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    const uint32_t *edges = args[0].given ? args[0].ids : NULL;
+    he_status status = he_delaunay(m, edges, args[0].count, &out->list[1], err);
+    if (status == HE_OK) {
+        he_give_number(out, 0, (double)out->list[1].count);
     }
     return status;
 }
@@ -101,6 +112,24 @@ const he_op he_mesh_rows[] = {
                      HE_DOUBLED_EDGE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .run = run_plane_split,
+    },
+    {
+        .name = "delaunay",
+        .doc = "Flip edges between triangles while the angles opposite to them sum to more than "
+               "pi.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "edge",
+                    .plural = "edges",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_EDGE,
+                    .doc = "Where to begin, from where flips spread; all edges when not given. "
+                           "Edges whose bool attribute `feature` is true are kept."}},
+        .results = {{"flips", HE_RESULT_NUMBER, HE_EDGE, "How many."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "What was flipped, in order; twice what was flipped twice."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_LIMIT},
+        .change = {0, 0, 0},
+        .run = run_delaunay,
     },
     {
         .name = "compact",

@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* --- the rows ------------------------------------------------------------------------------ */
@@ -577,6 +578,45 @@ static uint64_t play_plane_split(const md_call *c, or_mesh *o, const he_mesh *m)
                           (uint32_t)f->count, start);
 }
 
+static bool draw_delaunay(md_draft *d)
+{
+    if (md_chance(d->r, 50)) {
+        (void)md_pick_some(d, "edge", "edges", HE_EDGE, 4);
+    }
+    return true;
+}
+
+static uint64_t play_delaunay(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *e = md_get(c, "edge");
+    return e->given ? md_require_all(o, HE_EDGE, e) : 0;
+}
+
+static bool follow_delaunay(const md_call *c, or_mesh *o, const he_results *results,
+                            char text[OR_TEXT])
+{
+    const he_arg *begin = md_get(c, "edge");
+    bool looked[OR_EDGES];
+    for (uint32_t e = 0; e < OR_EDGES; e++) {
+        looked[e] = !begin->given;
+    }
+    for (size_t i = 0; i < begin->count; i++) {
+        looked[begin->ids[i]] = true;
+    }
+    const he_ids *flips = &results->list[1];
+    if (results->number[0] != (double)flips->count) {
+        (void)snprintf(text, OR_TEXT, "%g flips, %zu listed", results->number[0], flips->count);
+        return false;
+    }
+    for (size_t i = 0; i < flips->count; i++) {
+        if (!or_delaunay_flip(o, flips->ids[i], looked, text, OR_TEXT)) {
+            return false;
+        }
+    }
+    return or_delaunay_done(o, looked, text, OR_TEXT);
+}
+
 static bool draw_compact(md_draft *d)
 {
     return md_chance(d->r, 15);
@@ -595,26 +635,28 @@ static const struct row {
     int growth; /* of the mesh, roughly: rows above 0 wait while there is no room */
     bool (*draw)(md_draft *d);
     uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);
+    bool (*follow)(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
 } rows[] = {
-    {"vertex_add", 1, draw_vertex_add, play_vertex_add},
-    {"vertex_move", 0, draw_vertex_move, play_vertex_move},
-    {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete},
-    {"vertex_split", 1, draw_vertex_split, play_vertex_split},
-    {"face_add", 1, draw_face_add, play_face_add},
-    {"face_delete", -1, draw_face_delete, play_face_delete},
-    {"face_split", 1, draw_face_split, play_face_split},
-    {"face_join", -1, draw_face_join, play_face_join},
-    {"face_poke", 1, draw_face_poke, play_face_poke},
-    {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate},
-    {"hole_fill", 1, draw_hole_fill, play_hole_fill},
-    {"edge_bisect", 1, draw_edge_cut, play_edge_bisect},
-    {"edge_join", -1, draw_edge_join, play_edge_join},
-    {"edge_split", 1, draw_edge_cut, play_edge_split},
-    {"edge_flip", 0, draw_edge, play_edge_flip},
-    {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse},
-    {"transform", 0, draw_transform, play_transform},
-    {"plane_split", 1, draw_plane_split, play_plane_split},
-    {"compact", 0, draw_compact, play_compact},
+    {"vertex_add", 1, draw_vertex_add, play_vertex_add, NULL},
+    {"vertex_move", 0, draw_vertex_move, play_vertex_move, NULL},
+    {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete, NULL},
+    {"vertex_split", 1, draw_vertex_split, play_vertex_split, NULL},
+    {"face_add", 1, draw_face_add, play_face_add, NULL},
+    {"face_delete", -1, draw_face_delete, play_face_delete, NULL},
+    {"face_split", 1, draw_face_split, play_face_split, NULL},
+    {"face_join", -1, draw_face_join, play_face_join, NULL},
+    {"face_poke", 1, draw_face_poke, play_face_poke, NULL},
+    {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate, NULL},
+    {"hole_fill", 1, draw_hole_fill, play_hole_fill, NULL},
+    {"edge_bisect", 1, draw_edge_cut, play_edge_bisect, NULL},
+    {"edge_join", -1, draw_edge_join, play_edge_join, NULL},
+    {"edge_split", 1, draw_edge_cut, play_edge_split, NULL},
+    {"edge_flip", 0, draw_edge, play_edge_flip, NULL},
+    {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse, NULL},
+    {"transform", 0, draw_transform, play_transform, NULL},
+    {"plane_split", 1, draw_plane_split, play_plane_split, NULL},
+    {"delaunay", 0, draw_delaunay, play_delaunay, follow_delaunay},
+    {"compact", 0, draw_compact, play_compact, NULL},
 };
 
 static const struct row *row_of(const char *name)
@@ -654,4 +696,10 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
 uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m)
 {
     return row_of(c->op->name)->play(c, o, m);
+}
+
+bool md_follow(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT])
+{
+    const struct row *row = row_of(c->op->name);
+    return row->follow == NULL || row->follow(c, o, results, text);
 }

@@ -148,6 +148,12 @@ typedef struct or_plane_size {
 or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
                                const double *tolerance);
 
+/* One flip that hedge's delaunay reports: false with a sentence unless the edge lies between two
+ * triangles, the angles opposite to it ask for it, and edge_flip allows it. The order of the flips
+ * is hedge's choice. Afterwards no edge of `looked` may ask for a flip that is allowed. */
+bool or_delaunay_flip(or_mesh *o, uint32_t e, bool looked[], char *text, size_t room);
+bool or_delaunay_done(or_mesh *o, const bool looked[], char *text, size_t room);
+
 /* --- against hedge (match.c) ------------------------------------------------------------------ */
 
 enum { OR_TEXT = 256 };
