@@ -35,7 +35,7 @@ static const char *param_type(const he_param *param)
 /* What holds where the parameter is not given. */
 static void write_default(api_out *out, const he_param *param)
 {
-    if (param->flags & HE_REQUIRED) {
+    if (param->flags & (HE_REQUIRED | HE_DERIVED)) {
         return;
     }
     if (param->type == HE_PARAM_NUMBER) {

@@ -2,13 +2,22 @@
 
 #include "edit/cut.h"
 
+/* Edges an interior vertex must have to lose one. */
+enum { ENOUGH = 4 };
+
 static he_status check_end(const he_mesh *m, he_edge e, he_vertex v, he_error *err)
 {
     if (he_is_boundary_vertex(m, v)) {
         return HE_OK;
     }
-    uint32_t degree = he_vertex_degree(m, v);
-    if (degree < 4) {
+    /* Not he_vertex_degree: a thousand flips about one vertex would each turn all about it. */
+    he_halfedge first = he_vertex_halfedge(m, v), h = first;
+    uint32_t degree = 0;
+    do {
+        h = he_turn_ccw(m, h);
+        degree++;
+    } while (h.i != first.i && degree < ENOUGH);
+    if (degree < ENOUGH) {
         return he_fail(err, HE_LOW_DEGREE, HE_VERTEX, v.i,
                        "vertex %u has degree %u and cannot lose edge %u", v.i, degree, e.i);
     }

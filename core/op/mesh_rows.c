@@ -1,5 +1,7 @@
 #include "op/rows.h"
 
+#include "edit/delaunay.h"
+#include "edit/plane_split.h"
 #include "edit/transform.h"
 #include "mesh/compact.h"
 
@@ -8,6 +10,34 @@ static he_status run_transform(he_mesh *m, const he_arg *args, he_results *out, 
     (void)out;
     const uint32_t *vertices = args[1].given ? args[1].ids : NULL;
     return he_transform(m, args[0].matrix, vertices, args[1].count, err);
+}
+
+static he_status run_plane_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_plane_parts parts;
+    const double *tolerance = args[3].given ? &args[3].number : NULL;
+    const uint32_t *faces = args[2].given ? args[2].ids : NULL;
+    he_status status = he_plane_split(m, args[0].points[0], args[1].points[0], tolerance, faces,
+                                      args[2].count, &parts, err);
+    if (status == HE_OK) {
+        he_give_number(out, 0, (double)parts.vertices.count);
+        he_give_number(out, 1, parts.faces_split);
+        he_give_list(out, 2, &parts.vertices);
+        he_give_list(out, 3, &parts.edges);
+        he_give_list(out, 4, &parts.faces);
+        he_plane_parts_clear(&parts);
+    }
+    return status;
+}
+
+static he_status run_delaunay(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    const uint32_t *edges = args[0].given ? args[0].ids : NULL;
+    he_status status = he_delaunay(m, edges, args[0].count, &out->list[1], err);
+    if (status == HE_OK) {
+        he_give_number(out, 0, (double)out->list[1].count);
+    }
+    return status;
 }
 
 static void give_map(he_results *out, size_t i, uint32_t **takes, uint32_t count)
@@ -48,6 +78,58 @@ const he_op he_mesh_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_FINITE},
         .change = {0, 0, 0},
         .run = run_transform,
+    },
+    {
+        .name = "plane_split",
+        .doc = "Split the faces a plane crosses: a vertex on each edge it crosses, a diagonal in "
+               "each face.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "point",
+                    .type = HE_PARAM_POINT,
+                    .flags = HE_REQUIRED,
+                    .doc = "Any point of the plane."},
+                   {.name = "normal",
+                    .type = HE_PARAM_POINT,
+                    .flags = HE_REQUIRED,
+                    .doc = "The direction it faces, of any length but zero."},
+                   {.name = "face",
+                    .plural = "faces",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_FACE,
+                    .doc = "What is cut; all faces when not given."},
+                   {.name = "tolerance",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_DERIVED,
+                    .doc = "Vertices within this distance of the plane count as in it; 1e-9 of the "
+                           "longest side of the mesh's box when not given, or what rounding needs "
+                           "where coordinates are larger than that."}},
+        .results = {{"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges got a vertex."},
+                    {"faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."},
+                    {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "The new vertices."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The diagonals."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces, one a diagonal."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
+                     HE_DOUBLED_EDGE},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_plane_split,
+    },
+    {
+        .name = "delaunay",
+        .doc = "Flip edges between triangles while the angles opposite to them sum to more than "
+               "pi.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "edge",
+                    .plural = "edges",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_EDGE,
+                    .doc = "Where to begin, from where flips spread; all edges when not given. "
+                           "Edges whose bool attribute `feature` is true are kept."}},
+        .results = {{"flips", HE_RESULT_NUMBER, HE_EDGE, "How many."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "What was flipped, in order; twice what was flipped twice."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_LIMIT},
+        .change = {0, 0, 0},
+        .run = run_delaunay,
     },
     {
         .name = "compact",

@@ -182,6 +182,11 @@ void he_give(he_results *out, size_t i, uint32_t id)
     out->id[i] = id;
 }
 
+void he_give_number(he_results *out, size_t i, double number)
+{
+    out->number[i] = number;
+}
+
 he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err)
 {
     return he_ids_reserve(&out->list[i], count, err);

@@ -29,7 +29,8 @@ enum {
     HE_REQUIRED = 1,
     HE_NULLABLE = 2,  /* an element that may be null: HE_NONE */
     HE_EXCLUSIVE = 4, /* the ends of the range are not in it */
-    HE_RANGE = 8      /* min and max apply */
+    HE_RANGE = 8,     /* min and max apply */
+    HE_DERIVED = 16   /* a number whose default follows from the mesh, as `doc` says */
 };
 
 typedef struct he_param {

@@ -15,6 +15,7 @@ const he_op *he_table_row(size_t i);
 
 /* Result i of a row is one element, which may be HE_NONE. */
 void he_give(he_results *out, size_t i, uint32_t id);
+void he_give_number(he_results *out, size_t i, double number);
 /* Room for result i, a list of at most `count` ids: asked for before the edit, which may not fail
  * afterwards. */
 HE_NODISCARD he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err);

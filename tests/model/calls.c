@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* --- the rows ------------------------------------------------------------------------------ */
@@ -513,6 +514,109 @@ static uint64_t play_transform(const md_call *c, or_mesh *o, const he_mesh *m)
                                        v->given ? (uint32_t)v->count : 0);
 }
 
+/* Anywhere, or through three vertices. */
+static void draw_plane(md_draft *d)
+{
+    md_give_points(d, "point", 1, false);
+    md_give_points(d, "normal", 1, false);
+    he_vec3 *point = d->c->points[md_index(d->c, "point")];
+    he_vec3 *normal = d->c->points[md_index(d->c, "normal")];
+    if (md_chance(d->r, 40) && or_live_vertices(d->o) > 0) {
+        he_vec3 p[3];
+        for (int i = 0; i < 3; i++) {
+            p[i] = d->o->vertex[md_live(d, HE_VERTEX)].at;
+        }
+        he_vec3 a = {p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
+        he_vec3 b = {p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
+        he_vec3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+        *point = p[0];
+        *normal = n.x * n.x + n.y * n.y + n.z * n.z > 1e-3 ? n : *normal;
+    }
+    if (md_chance(d->r, 2)) {
+        *normal = (he_vec3){0, 0, 0};
+    }
+}
+
+static bool draw_plane_split(md_draft *d)
+{
+    draw_plane(d);
+    if (md_chance(d->r, 30)) {
+        md_give_number(d, "tolerance", md_chance(d->r, 5) ? -1 : md_unit(d->r) * 0.5);
+    }
+    if (or_live_faces(d->o) > 40 || md_chance(d->r, 30)) {
+        (void)md_pick_some(d, "face", "faces", HE_FACE, 5);
+    }
+    const he_arg *tolerance = md_get(d->c, "tolerance");
+    or_plane_size size =
+        or_plane_measure(d->o, md_get(d->c, "point")->points[0], md_get(d->c, "normal")->points[0],
+                         tolerance->given ? &tolerance->number : NULL);
+    return !size.doubtful && d->o->vertices + size.crossed < OR_VERTICES &&
+           d->o->edges + 3 * size.crossed + size.cut < OR_EDGES &&
+           d->o->faces + size.crossed + size.cut < OR_FACES && size.cut < OR_LIST &&
+           size.longest < OR_CORNERS;
+}
+
+static uint64_t play_plane_split(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    const he_arg *f = md_get(c, "face");
+    const he_arg *tolerance = md_get(c, "tolerance");
+    uint64_t refused = f->given ? md_require_all(o, HE_FACE, f) : 0;
+    uint32_t start[OR_FACES];
+    for (uint32_t i = 0; i < o->faces; i++) {
+        start[i] = OR_NONE;
+        if (o->face[i].alive) {
+            start[i] = he_origin(m, he_face_halfedge(m, (he_face){i})).i;
+        }
+    }
+    he_vec3 normal = md_get(c, "normal")->points[0];
+    if (refused != 0) {
+        bool zero = fabs(normal.x) + fabs(normal.y) + fabs(normal.z) == 0;
+        return refused | (zero || tolerance->number < 0 ? OR_BIT(HE_BAD_VALUE) : 0);
+    }
+    return or_plane_split(o, md_get(c, "point")->points[0], normal,
+                          tolerance->given ? &tolerance->number : NULL, f->given ? f->ids : NULL,
+                          (uint32_t)f->count, start);
+}
+
+static bool draw_delaunay(md_draft *d)
+{
+    if (md_chance(d->r, 50)) {
+        (void)md_pick_some(d, "edge", "edges", HE_EDGE, 4);
+    }
+    return true;
+}
+
+static uint64_t play_delaunay(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *e = md_get(c, "edge");
+    return e->given ? md_require_all(o, HE_EDGE, e) : 0;
+}
+
+static bool follow_delaunay(const md_call *c, or_mesh *o, const he_results *results,
+                            char text[OR_TEXT])
+{
+    const he_arg *begin = md_get(c, "edge");
+    bool looked[OR_EDGES];
+    for (uint32_t e = 0; e < OR_EDGES; e++) {
+        looked[e] = !begin->given;
+    }
+    for (size_t i = 0; i < begin->count; i++) {
+        looked[begin->ids[i]] = true;
+    }
+    const he_ids *flips = &results->list[1];
+    if (results->number[0] != (double)flips->count) {
+        (void)snprintf(text, OR_TEXT, "%g flips, %zu listed", results->number[0], flips->count);
+        return false;
+    }
+    for (size_t i = 0; i < flips->count; i++) {
+        if (!or_delaunay_flip(o, flips->ids[i], looked, text, OR_TEXT)) {
+            return false;
+        }
+    }
+    return or_delaunay_done(o, looked, text, OR_TEXT);
+}
+
 static bool draw_compact(md_draft *d)
 {
     return md_chance(d->r, 15);
@@ -531,25 +635,28 @@ static const struct row {
     int growth; /* of the mesh, roughly: rows above 0 wait while there is no room */
     bool (*draw)(md_draft *d);
     uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);
+    bool (*follow)(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
 } rows[] = {
-    {"vertex_add", 1, draw_vertex_add, play_vertex_add},
-    {"vertex_move", 0, draw_vertex_move, play_vertex_move},
-    {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete},
-    {"vertex_split", 1, draw_vertex_split, play_vertex_split},
-    {"face_add", 1, draw_face_add, play_face_add},
-    {"face_delete", -1, draw_face_delete, play_face_delete},
-    {"face_split", 1, draw_face_split, play_face_split},
-    {"face_join", -1, draw_face_join, play_face_join},
-    {"face_poke", 1, draw_face_poke, play_face_poke},
-    {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate},
-    {"hole_fill", 1, draw_hole_fill, play_hole_fill},
-    {"edge_bisect", 1, draw_edge_cut, play_edge_bisect},
-    {"edge_join", -1, draw_edge_join, play_edge_join},
-    {"edge_split", 1, draw_edge_cut, play_edge_split},
-    {"edge_flip", 0, draw_edge, play_edge_flip},
-    {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse},
-    {"transform", 0, draw_transform, play_transform},
-    {"compact", 0, draw_compact, play_compact},
+    {"vertex_add", 1, draw_vertex_add, play_vertex_add, NULL},
+    {"vertex_move", 0, draw_vertex_move, play_vertex_move, NULL},
+    {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete, NULL},
+    {"vertex_split", 1, draw_vertex_split, play_vertex_split, NULL},
+    {"face_add", 1, draw_face_add, play_face_add, NULL},
+    {"face_delete", -1, draw_face_delete, play_face_delete, NULL},
+    {"face_split", 1, draw_face_split, play_face_split, NULL},
+    {"face_join", -1, draw_face_join, play_face_join, NULL},
+    {"face_poke", 1, draw_face_poke, play_face_poke, NULL},
+    {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate, NULL},
+    {"hole_fill", 1, draw_hole_fill, play_hole_fill, NULL},
+    {"edge_bisect", 1, draw_edge_cut, play_edge_bisect, NULL},
+    {"edge_join", -1, draw_edge_join, play_edge_join, NULL},
+    {"edge_split", 1, draw_edge_cut, play_edge_split, NULL},
+    {"edge_flip", 0, draw_edge, play_edge_flip, NULL},
+    {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse, NULL},
+    {"transform", 0, draw_transform, play_transform, NULL},
+    {"plane_split", 1, draw_plane_split, play_plane_split, NULL},
+    {"delaunay", 0, draw_delaunay, play_delaunay, follow_delaunay},
+    {"compact", 0, draw_compact, play_compact, NULL},
 };
 
 static const struct row *row_of(const char *name)
@@ -589,4 +696,10 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
 uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m)
 {
     return row_of(c->op->name)->play(c, o, m);
+}
+
+bool md_follow(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT])
+{
+    const struct row *row = row_of(c->op->name);
+    return row->follow == NULL || row->follow(c, o, results, text);
 }

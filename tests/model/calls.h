@@ -14,5 +14,8 @@ const char *md_missing(void);
 bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool room);
 /* Play the call on the oracle, before hedge runs it: the set of refusals that apply. */
 uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m);
+/* Where the order of the steps is hedge's choice: after it succeeded, take the ones it reports on
+ * the oracle too. False with a sentence when they are not right. */
+bool md_follow(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
 
 #endif

@@ -245,6 +245,9 @@ static void succeeded(world *w, uint64_t expected, he_mesh *before, he_delta *de
              he_status_slug((he_status)__builtin_ctzll(expected)));
     }
     w->tally[w->call.row].done++;
+    if (!md_follow(&w->call, w->oracle, results, text)) {
+        stop(w, "hedge did what the oracle does not", text);
+    }
     if (strcmp(w->call.op->name, "compact") != 0 && !or_adopt(w->oracle, w->mesh, text)) {
         stop(w, "hedge made something else", text);
     }

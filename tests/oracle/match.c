@@ -43,10 +43,10 @@ static bool adopt_faces(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
 {
     uint32_t made = he_mesh_issued(m, HE_FACE) - o->faces;
     uint32_t expected = o->fresh;
-    for (uint32_t i = 0; i < o->cuts; i++) {
+    for (uint32_t i = 0; i < o->cuts && !o->by_plane; i++) {
         expected += o->cut[i].was.count - (o->cut[i].id == OR_NONE ? 2 : 3);
     }
-    if (made != expected) {
+    if (made != expected && (!o->by_plane || o->cuts == 0)) {
         return differ(text, "%u faces were issued, not %u", made, expected);
     }
     for (uint32_t i = 0; i < o->cuts; i++) {
@@ -158,11 +158,89 @@ static bool chain_is_cut(const or_mesh *o, const or_face *p, uint32_t i, uint32_
     return chain_is_cut(o, p, i, j, triangles) && chain_is_cut(o, p, j, k, triangles);
 }
 
+/* 1 or -1 when a face has corners on that side of the plane only, else 0. */
+static int side_of_part(const or_mesh *o, const or_face *f)
+{
+    bool above = false;
+    bool below = false;
+    for (uint32_t i = 0; i < f->count; i++) {
+        above = above || o->distance[f->v[i]] > 0;
+        below = below || o->distance[f->v[i]] < 0;
+    }
+    return above == below ? 0 : above ? 1 : -1;
+}
+
+/* The parts of a cut face, found from the one that keeps its id by crossing diagonals: each on one
+ * side of the plane, its neighbours on the other, and together the whole cycle once. Parts joined
+ * by one diagonal less than they are make a disk. */
+static bool parts_make_up(const or_mesh *o, uint32_t i, uint32_t first_new, uint32_t *made)
+{
+    const or_face *was = &o->cut[i].was;
+    uint32_t part[OR_CORNERS];
+    uint32_t parts = 1;
+    uint32_t sides = 0;
+    uint32_t diagonals = 0;
+    part[0] = o->left[o->cut[i].start][or_after(was, o->cut[i].start)];
+    if (part[0] != o->cut[i].id) {
+        return false;
+    }
+    for (uint32_t k = 0; k < parts; k++) {
+        const or_face *f = &o->face[part[k]];
+        int side = side_of_part(o, f);
+        if (side == 0 || (k > 0 && part[k] < first_new)) {
+            return false;
+        }
+        for (uint32_t c = 0; c < f->count; c++) {
+            uint32_t a = f->v[c];
+            uint32_t b = or_after(f, a);
+            if (or_place(was, a) == OR_NONE || or_place(was, b) == OR_NONE) {
+                return false;
+            }
+            if (or_after(was, a) == b) {
+                sides++;
+                continue;
+            }
+            uint32_t beyond = o->left[b][a];
+            if (o->distance[a] != 0 || o->distance[b] != 0 || beyond == OR_NONE ||
+                side_of_part(o, &o->face[beyond]) != -side) {
+                return false;
+            }
+            diagonals++;
+            uint32_t known = 0;
+            while (known < parts && part[known] != beyond) {
+                known++;
+            }
+            if (known == parts) {
+                if (parts == OR_CORNERS) {
+                    return false;
+                }
+                part[parts++] = beyond;
+            }
+        }
+    }
+    *made += parts - 1;
+    return parts > 1 && sides == was->count && diagonals == 2 * (parts - 1);
+}
+
+static bool adopt_parts(const or_mesh *o, uint32_t first_new, char text[OR_TEXT])
+{
+    uint32_t made = 0;
+    for (uint32_t i = 0; i < o->cuts; i++) {
+        if (!parts_make_up(o, i, first_new, &made)) {
+            return differ(text, "face %u is not cut into parts on one side of the plane each",
+                          o->cut[i].id);
+        }
+    }
+    return made == o->faces - first_new
+               ? true
+               : differ(text, "%u faces are new, %u of them parts", o->faces - first_new, made);
+}
+
 static void settled(or_mesh *o)
 {
     o->cuts = 0;
     o->may = 0;
-    o->either = false;
+    o->either = o->by_plane = false;
 }
 
 void or_decline(or_mesh *o)
@@ -172,6 +250,10 @@ void or_decline(or_mesh *o)
 
 bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
 {
+    uint32_t first_new = o->faces;
+    if (o->by_plane) {
+        or_plane_vertices(o);
+    }
     if (he_mesh_issued(m, HE_VERTEX) != o->vertices || he_mesh_issued(m, HE_EDGE) > OR_EDGES ||
         he_mesh_issued(m, HE_FACE) > OR_FACES) {
         return differ(text, "%u vertices were issued, not %u", he_mesh_issued(m, HE_VERTEX),
@@ -180,7 +262,10 @@ bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     if (!adopt_faces(o, m, text) || !adopt_edges(o, m, text)) {
         return false;
     }
-    for (uint32_t i = 0; i < o->cuts; i++) {
+    if (o->by_plane && !adopt_parts(o, first_new, text)) {
+        return false;
+    }
+    for (uint32_t i = 0; i < o->cuts && !o->by_plane; i++) {
         const or_face *was = &o->cut[i].was;
         uint32_t triangles = 0;
         if (!chain_is_cut(o, was, 0, was->count - 1, &triangles) || triangles != was->count - 2) {

@@ -21,7 +21,7 @@
 
 #include "mesh/mesh.h"
 
-enum { OR_VERTICES = 320, OR_EDGES = 1500, OR_FACES = 1000, OR_CORNERS = 96, OR_LIST = 16 };
+enum { OR_VERTICES = 320, OR_EDGES = 1500, OR_FACES = 1000, OR_CORNERS = 96, OR_LIST = 256 };
 
 #define OR_NONE        UINT32_MAX
 #define OR_BIT(status) (UINT64_C(1) << (unsigned)(status))
@@ -48,12 +48,16 @@ typedef struct or_mesh {
     uint32_t vertices, edges, faces; /* issued */
     uint32_t fresh;                  /* faces beyond `faces` that wait for their ids */
     /* Faces that became triangles of hedge's choice: their cycle as it was. `id` is OR_NONE where
-     * all triangles are new (a filled hole). */
+     * all triangles are new (a filled hole). By plane_split: faces that became parts on one side of
+     * the plane, and or_adopt makes the vertices of `was` that are new. */
     struct {
         uint32_t id, start;
         or_face was;
     } cut[OR_LIST];
     uint32_t cuts;
+    bool by_plane;
+    bool chosen[OR_FACES];        /* what plane_split is to cut */
+    double distance[OR_VERTICES]; /* from the plane; 0 in it */
     uint64_t may; /* refusals that depend on those triangles: hedge may give them or succeed */
     bool either;  /* edge_join: `joining` are the two edges of which one survives */
     uint32_t joining[2];
@@ -130,10 +134,33 @@ uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill 
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);
 
+/* A NULL tolerance stands for hedge's, NULL faces for all; start[f] is the origin of the stored
+ * half-edge of face f. Which corners in the plane are joined in a face with more than two is
+ * hedge's choice, as long as every part lies on one side of the plane. */
+uint64_t or_plane_split(or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
+                        const uint32_t *faces, uint32_t count, const uint32_t *start);
+/* What that would make at most, and whether a vertex is so near to where the tolerance ends that
+ * rounding decides. */
+typedef struct or_plane_size {
+    uint32_t crossed, cut, longest; /* edges, faces, corners of the longest face afterwards */
+    bool doubtful;
+} or_plane_size;
+or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
+                               const double *tolerance);
+
+/* One flip that hedge's delaunay reports: false with a sentence unless the edge lies between two
+ * triangles, the angles opposite to it ask for it, and edge_flip allows it. The order of the flips
+ * is hedge's choice. Afterwards no edge of `looked` may ask for a flip that is allowed. */
+bool or_delaunay_flip(or_mesh *o, uint32_t e, bool looked[], char *text, size_t room);
+bool or_delaunay_done(or_mesh *o, const bool looked[], char *text, size_t room);
+
 /* --- against hedge (match.c) ------------------------------------------------------------------ */
 
 enum { OR_TEXT = 256 };
 
+/* The vertices that plane_split puts on edges, by rising edge, and the faces to be cut with them.
+ */
+void or_plane_vertices(or_mesh *o);
 /* Take over the ids hedge gave to what the last operation made, then or_derive. False with a
  * sentence when hedge's mesh has other new elements than the oracle. or_decline is for a refusal
  * in `may`: the oracle goes back to before the operation. */

@@ -287,6 +287,30 @@ static void test_inverses(void **state)
     }
 }
 
+static void test_plane_split(void **state)
+{
+    (void)state;
+    static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    he_mesh *m = script_mesh("0123", square);
+    script_prepare(m, "plane_split point=0,0,0 normal=-1,1,0");
+    assert_counts(m, 4, 5, 2);
+    (void)edge_between(m, 0, 2);
+    he_mesh_free(m);
+
+    m = script_mesh("0123", square);
+    script_prepare(m, "plane_split point=0.5,0.5,0 normal=0,1,0");
+    assert_counts(m, 6, 7, 2);
+    he_mesh_free(m);
+
+    m = script_mesh("0123", square);
+    he_mesh *before = copy_of(m);
+    script_prepare(m, "plane_split point=0,2,0 normal=0,1,0");
+    assert_counts(m, 4, 4, 1);
+    assert_equal(m, before);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
 static void test_pillow(void **state)
 {
     (void)state;
@@ -309,6 +333,7 @@ int main(void)
         cmocka_unit_test(test_cf1_join),       cmocka_unit_test(test_sb),
         cmocka_unit_test(test_split_and_flip), cmocka_unit_test(test_vertex_split_is_inverse),
         cmocka_unit_test(test_inverses),       cmocka_unit_test(test_pillow),
+        cmocka_unit_test(test_plane_split),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

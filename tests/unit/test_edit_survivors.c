@@ -270,6 +270,9 @@ static void test_nothing_happens(void **state)
         "vertex_move vertex=1 by=0,0,0",
         "transform matrix=1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1",
         "face_triangulate face=0",
+        "plane_split point=9,0,0 normal=1,0,0",
+        "plane_split point=0,0,0 normal=1,0,0",
+        "delaunay",
     };
     for (size_t i = 0; i < sizeof operations / sizeof *operations; i++) {
         edit e = edit_begin("012");

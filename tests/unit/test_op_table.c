@@ -38,6 +38,8 @@ typedef struct scenario {
 
 static const char MIRROR[] = "transform matrix=-1,0,0,5,0,1,0,0,0,0,1,0,0,0,0,1";
 
+static const char FLAT_KITE[] = "vertex_move vertices=0,1,2,3 to=0,0,0,4,0,0,2,1,0,2,-1,0";
+
 static const scenario scenarios[] = {
     {"vertex_add position=1,2,3", "", NULL, HE_OK, {1, 0, 0}},
 
@@ -254,6 +256,37 @@ static const scenario scenarios[] = {
      {0}},
     {"transform matrix=1e308,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", "012", NULL, HE_NOT_FINITE, {0}},
 
+    {"plane_split point=0.5,0,0 normal=1,0,0", "0123", NULL, HE_OK, {2, 3, 1}},
+    {"plane_split point=1,0,0 normal=-7,0,0", "0123", NULL, HE_OK, {1, 2, 1}},
+    {"plane_split point=3,0,0 normal=1,0,0 tolerance=1.5", "01234567", NULL, HE_OK, {1, 2, 1}},
+    {"plane_split point=9,0,0 normal=1,0,0", "0123", NULL, HE_OK, {0, 0, 0}},
+    {"plane_split point=3.5,0,0 normal=1,0,0", QCUBE, NULL, HE_OK, {4, 8, 4}},
+    {"plane_split point=0.5,0,0 normal=1,0,0", STRANGE, NULL, HE_OK, {6, 9, 3}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 face=0", "012,103", NULL, HE_OK, {2, 3, 1}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 faces=0,1",
+     "012,034",
+     "face_delete face=0",
+     HE_DELETED_ELEMENT,
+     {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 face=1", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 faces=0,1,0",
+     "012,034",
+     NULL,
+     HE_REPEATED_ELEMENT,
+     {0}},
+    {"plane_split point=0.5,0,0 normal=0,0,0", "012", NULL, HE_BAD_VALUE, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 tolerance=-1", "012", NULL, HE_BAD_VALUE, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0", PILLOW, NULL, HE_DOUBLED_EDGE, {0}},
+    {"plane_split point=0.5,0,0 normal=1,0,0 face=1", PILLOW, NULL, HE_OK, {2, 3, 1}},
+
+    {"delaunay", "", NULL, HE_OK, {0, 0, 0}},
+    {"delaunay", "012,103", FLAT_KITE, HE_OK, {0, 0, 0}},
+    {"delaunay edge=0-1", "012,103", FLAT_KITE, HE_OK, {0, 0, 0}},
+    {"delaunay edges=1-2,0-2", "012,103", FLAT_KITE, HE_OK, {0, 0, 0}},
+    {"delaunay edge=#9", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"delaunay edges=0-3,#0", "012,034", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"delaunay edges=0-1,1-0", "012", NULL, HE_REPEATED_ELEMENT, {0}},
+
     {"compact", "012,034+", "face_delete face=0", HE_OK, {0, 0, 0}},
     {"compact", "", NULL, HE_OK, {0, 0, 0}},
 };
@@ -395,13 +428,34 @@ static he_mesh *huge_star(void)
     return m;
 }
 
+/* Two rows of points, joined so that flips grow with the square of their number. */
+static he_mesh *two_rows(void)
+{
+    enum { ROW = 1000 };
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i < 2 * ROW; i++) {
+        he_vec3 p = {i % ROW, i < ROW ? 0 : 1, 0};
+        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+    }
+    for (uint32_t i = 0; i + 1 < ROW; i++) {
+        const uint32_t lower[3] = {i, i + 1, ROW}, upper[3] = {ROW + i + 1, ROW + i, ROW - 1};
+        assert_int_equal(he_soup_add_face(&soup, lower, 3, NULL), HE_OK);
+        assert_int_equal(he_soup_add_face(&soup, upper, 3, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    return m;
+}
+
 static void test_limit(void **state)
 {
     (void)state;
-    static const char *const operations[] = {"face_triangulate face=0",
-                                             "hole_fill halfedge=1-0 method=triangulate"};
-    for (unsigned i = 0; i < 2; i++) {
-        he_mesh *m = huge_star(), *before = copy_of(m);
+    static const char *const operations[] = {
+        "face_triangulate face=0", "hole_fill halfedge=1-0 method=triangulate", "delaunay"};
+    for (unsigned i = 0; i < 3; i++) {
+        he_mesh *m = i < 2 ? huge_star() : two_rows(), *before = copy_of(m);
         assert_int_equal(script_run(m, operations[i], NULL, NULL), HE_LIMIT);
         assert_equal(m, before);
         mark(script_op(operations[i]), HE_LIMIT);
@@ -447,6 +501,7 @@ static void test_rows_are_sound(void **state)
             assert_non_null(param->doc);
             assert_int_equal(param->type == HE_PARAM_ELEMENTS, param->plural != NULL);
             assert_int_equal(param->type == HE_PARAM_CHOICE, param->choices != NULL);
+            assert_true(!(param->flags & HE_DERIVED) || param->type == HE_PARAM_NUMBER);
             for (size_t j = 0; j < k; j++) {
                 assert_string_not_equal(op->params[j].name, param->name);
             }

@@ -1,0 +1,539 @@
+/* delaunay against the circle test of every edge. SEED=n in the environment repeats a random run,
+ * ROUNDS=n makes it longer. */
+#include "edit_script.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "edit/delaunay.h"
+#include "edit/flip.h"
+#include "edit/poke.h"
+#include "edit/triangulate.h"
+#include "mesh/build.h"
+#include "mesh/write.h"
+#include "model/shapes.h"
+#include "query/geometry.h"
+
+static uint64_t number_from(const char *name, uint64_t fallback)
+{
+    const char *text = getenv(name);
+    return text != NULL ? strtoull(text, NULL, 10) : fallback;
+}
+
+static double total_area(const he_mesh *m)
+{
+    he_measures measures;
+    assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
+    return measures.area;
+}
+
+/* --- what the edges are like, by other means than the edit's --- */
+
+static bool is_inner(const he_mesh *m, uint32_t e)
+{
+    return he_mesh_is_live(m, HE_EDGE, e) && !he_is_boundary_edge(m, (he_edge){e}) &&
+           he_face_degree(m, he_face_of(m, (he_halfedge){2 * e})) == 3 &&
+           he_face_degree(m, he_face_of(m, (he_halfedge){2 * e + 1})) == 3;
+}
+
+/* Law of cosines at the corner opposite to h. */
+static double opposite(const he_mesh *m, he_halfedge h)
+{
+    double a = he_edge_length(m, he_edge_of(h)), b = he_edge_length(m, he_edge_of(he_next(m, h)));
+    double c = he_edge_length(m, he_edge_of(he_prev(m, h)));
+    double cosine = b == 0 || c == 0 ? 1 : (b * b + c * c - a * a) / (2 * b * c);
+    return acos(cosine < -1 ? -1 : cosine > 1 ? 1 : cosine);
+}
+
+static bool is_clearly_crooked(const he_mesh *m, uint32_t e)
+{
+    he_halfedge h = {2 * e};
+    return is_inner(m, e) && opposite(m, h) + opposite(m, he_twin(h)) > 3.14159265358979 + 1e-6;
+}
+
+/* In z = 0: how far d is inside the circle through a, b and c, relative to its size. */
+static double depth_in_circle(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
+{
+    long double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y;
+    long double cx = c.x - d.x, cy = c.y - d.y;
+    long double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
+    long double det =
+        ax * (by * cc - bb * cy) - ay * (bx * cc - bb * cx) + aa * (bx * cy - by * cx);
+    return (double)(det / (aa * bb + bb * cc + cc * aa));
+}
+
+static void assert_delaunay_in_plane(const he_mesh *m)
+{
+    for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
+        if (is_inner(m, e)) {
+            he_halfedge h = {2 * e}, t = he_twin(h);
+            assert_true(depth_in_circle(he_position(m, he_origin(m, h)),
+                                        he_position(m, he_target(m, h)),
+                                        he_position(m, he_origin(m, he_prev(m, h))),
+                                        he_position(m, he_origin(m, he_prev(m, t)))) < 1e-7);
+        }
+    }
+    for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+        he_vec3 normal;
+        assert_true(he_face_normal(m, (he_face){f}, &normal) && normal.z > 0);
+    }
+}
+
+/* --- small cases --- */
+
+static const he_vec3 KITE[] = {{0, 0, 0}, {4, 0, 0}, {2, 1, 0}, {2, -1, 0}, {9, 9, 9}};
+
+static void test_kite(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("012,103", KITE);
+    he_ids flips = {0};
+    he_edge e = edge_between(m, 0, 1);
+    assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+    assert_int_equal(flips.count, 1);
+    assert_int_equal(flips.ids[0], e.i);
+    assert_int_equal(edge_between(m, 2, 3).i, e.i);
+    he_mesh *once = copy_of(m);
+    assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+    assert_int_equal(flips.count, 0);
+    assert_equal(m, once);
+    he_ids_clear(&flips);
+    he_mesh_free(once);
+    he_mesh_free(m);
+}
+
+/* Four points on a circle are as good one way as the other. */
+static void test_circle_is_left_alone(void **state)
+{
+    (void)state;
+    static const he_vec3 square[] = {
+        {0.1, 0.1, 0.7}, {0.4, 0.1, 0.7}, {0.4, 0.4, 0.7}, {0.1, 0.4, 0.7}};
+    static const char *const halves[] = {"012,023", "013,123"};
+    for (unsigned i = 0; i < 2; i++) {
+        he_mesh *m = script_mesh(halves[i], square), *before = copy_of(m);
+        script_prepare(m, "delaunay");
+        assert_equal(m, before);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+static void test_what_is_never_flipped(void **state)
+{
+    (void)state;
+    static const he_vec3 pentagon[] = {{0, 0, 0}, {4, 0, 0}, {2, 1, 0}, {1, -1, 0}, {3, -1, 0}};
+    static const struct {
+        const char *mesh;
+        const he_vec3 *at;
+    } cases[] = {
+        {"012", KITE},             /* a boundary */
+        {"012,1034", pentagon},    /* beside a quadrilateral */
+        {"012,103,213,023", KITE}, /* flat, but the other diagonal is there */
+        {"012,103,234", KITE},     /* there in a face elsewhere */
+        {"012,021", KITE},         /* a pillow */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        he_mesh *m = script_mesh(cases[i].mesh, cases[i].at), *before = copy_of(m);
+        script_prepare(m, "delaunay");
+        assert_equal(m, before);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+static void mark_features(he_mesh *m, he_type type, const unsigned char *marks)
+{
+    he_column *column = NULL;
+    assert_int_equal(he_column_new("feature", HE_EDGE, type, 1, HE_COPY, &column, NULL), HE_OK);
+    size_t rows = he_mesh_issued(m, HE_EDGE);
+    assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
+    for (size_t i = 0; i < rows; i++) {
+        *he_column_row(column, i) = marks[i];
+    }
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+static void test_features_stay(void **state)
+{
+    (void)state;
+    static const unsigned char marks[] = {1, 0, 0, 0, 0};
+    static const struct {
+        he_type type;
+        size_t flips;
+    } cases[] = {{HE_BOOL, 0}, {HE_INT32, 1}};
+    for (unsigned i = 0; i < 2; i++) {
+        he_mesh *m = script_mesh("012,103", KITE);
+        he_ids flips = {0};
+        mark_features(m, cases[i].type, marks);
+        assert_int_equal(edge_between(m, 0, 1).i, 0);
+        assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+        assert_int_equal(flips.count, cases[i].flips);
+        he_ids_clear(&flips);
+        he_mesh_free(m);
+    }
+}
+
+/* Small and far away, huge, tiny. */
+static void test_any_scale(void **state)
+{
+    (void)state;
+    static const double scales[] = {1e305, 1e150, 1e-150, 1e-305};
+    for (unsigned i = 0; i < 4; i++) {
+        he_vec3 at[4];
+        for (unsigned k = 0; k < 4; k++) {
+            at[k] = he_vec3_scale(KITE[k], scales[i]);
+        }
+        he_mesh *m = script_mesh("012,103", at);
+        script_prepare(m, "delaunay");
+        (void)edge_between(m, 2, 3);
+        he_mesh_free(m);
+    }
+}
+
+/* --- points in the plane --- */
+
+static bool is_left(he_vec3 a, he_vec3 b, he_vec3 p)
+{
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 1e-9;
+}
+
+static bool is_inside(const he_mesh *m, uint32_t f, he_vec3 p)
+{
+    he_halfedge h = he_face_halfedge(m, (he_face){f}), first = h;
+    do {
+        if (!is_left(he_position(m, he_origin(m, h)), he_position(m, he_target(m, h)), p)) {
+            return false;
+        }
+        h = he_next(m, h);
+    } while (h.i != first.i);
+    return true;
+}
+
+/* A square with points dropped into it, each joined to the corners of the triangle it fell in. */
+static he_mesh *random_points(md_random *r, uint32_t n)
+{
+    static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    he_mesh *m = script_mesh("012,023", square);
+    for (uint32_t i = 0; i < n; i++) {
+        he_vec3 p = {md_unit(r), md_unit(r), 0};
+        for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+            if (is_inside(m, f, p)) {
+                assert_int_equal(he_face_poke(m, (he_face){f}, &p, NULL, NULL, NULL, NULL), HE_OK);
+                break;
+            }
+        }
+    }
+    return m;
+}
+
+static void test_random_points(void **state)
+{
+    (void)state;
+    uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 200);
+    for (uint64_t round = 0; round < rounds; round++) {
+        md_random r = {seed + round};
+        print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)r.state);
+        he_mesh *m = random_points(&r, md_from(&r, 1, 200)), *before = copy_of(m);
+        he_delta *delta = he_delta_new();
+        he_ids flips = {0};
+        assert_non_null(delta);
+        he_mesh_record(m, delta);
+        assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+        he_mesh_record(m, NULL);
+        assert_valid(m);
+        assert_delaunay_in_plane(m);
+        assert_true(fabs(total_area(m) - 1) < 1e-9);
+        /* The reported flips lead from there to here. */
+        he_mesh *replay = copy_of(before);
+        for (size_t i = 0; i < flips.count; i++) {
+            assert_true(is_inner(replay, flips.ids[i]));
+            assert_int_equal(he_edge_flip(replay, (he_edge){flips.ids[i]}, NULL), HE_OK);
+        }
+        assert_equal(replay, m);
+        he_mesh_free(replay);
+        he_mesh *after = copy_of(m);
+        he_delta_undo(delta, m);
+        assert_true(he_mesh_equal_live(m, before));
+        he_delta_redo(delta, m);
+        assert_equal(m, after);
+        assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+        assert_int_equal(flips.count, 0);
+        assert_equal(m, after);
+        he_mesh_free(after);
+        he_ids_clear(&flips);
+        he_delta_free(delta);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+/* Kept edges join what they joined; all others are as they should be. */
+static void test_random_features(void **state)
+{
+    (void)state;
+    uint64_t seed = number_from("SEED", 1);
+    for (uint64_t round = 0; round < 50; round++) {
+        md_random r = {seed + round};
+        he_mesh *m = random_points(&r, 100), *before = copy_of(m);
+        uint32_t edges = he_mesh_issued(m, HE_EDGE);
+        unsigned char *marks = calloc(edges, 1);
+        assert_non_null(marks);
+        for (uint32_t e = 0; e < edges; e++) {
+            marks[e] = md_chance(&r, 20);
+        }
+        mark_features(m, HE_BOOL, marks);
+        script_prepare(m, "delaunay");
+        assert_valid(m);
+        for (uint32_t e = 0; e < edges; e++) {
+            he_halfedge h = {2 * e};
+            if (marks[e]) {
+                assert_int_equal(he_origin(m, h).i, he_origin(before, h).i);
+                assert_int_equal(he_target(m, h).i, he_target(before, h).i);
+            } else {
+                assert_false(is_clearly_crooked(m, e));
+            }
+        }
+        free(marks);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+/* After a point is dropped into a Delaunay triangulation, beginning with the sides of its triangle
+ * is enough (Lawson's insertion). */
+static void test_flips_spread_from_the_list(void **state)
+{
+    (void)state;
+    md_random r = {number_from("SEED", 1)};
+    static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    he_mesh *m = script_mesh("012,023", square);
+    size_t spread = 0;
+    for (uint32_t i = 0; i < 300; i++) {
+        he_vec3 p = {md_unit(&r), md_unit(&r), 0};
+        uint32_t f = 0;
+        while (f < he_mesh_issued(m, HE_FACE) && !is_inside(m, f, p)) {
+            f++;
+        }
+        if (f == he_mesh_issued(m, HE_FACE)) {
+            continue;
+        }
+        he_halfedge h = he_face_halfedge(m, (he_face){f});
+        const uint32_t sides[3] = {h.i >> 1, he_next(m, h).i >> 1, he_prev(m, h).i >> 1};
+        he_ids flips = {0};
+        assert_int_equal(he_face_poke(m, (he_face){f}, &p, NULL, NULL, NULL, NULL), HE_OK);
+        assert_int_equal(he_delaunay(m, sides, 3, &flips, NULL), HE_OK);
+        spread += flips.count > 3;
+        assert_delaunay_in_plane(m);
+        he_ids_clear(&flips);
+    }
+    assert_true(spread > 10);
+    he_mesh_free(m);
+}
+
+/* An edge that is not in the list, nor beside a flip, is not looked at. */
+static void test_only_the_list(void **state)
+{
+    (void)state;
+    static const he_vec3 two[] = {{0, 0, 0}, {4, 0, 0}, {2, 1, 0},  {2, -1, 0},
+                                  {0, 9, 0}, {4, 9, 0}, {2, 10, 0}, {2, 8, 0}};
+    he_mesh *m = script_mesh("012,103,456,547", two);
+    script_prepare(m, "delaunay edge=4-5");
+    (void)edge_between(m, 0, 1);
+    (void)edge_between(m, 6, 7);
+    he_mesh_free(m);
+}
+
+/* --- triangles in space --- */
+
+static bool random_triangles(md_random *r, he_mesh **out)
+{
+    or_mesh *o = or_new();
+    he_ids faces = {0};
+    md_shape(o, r);
+    he_mesh *m = md_build(o);
+    assert_non_null(m);
+    or_free(o);
+    for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+        assert_int_equal(he_ids_add(&faces, f, NULL), HE_OK);
+    }
+    bool done = faces.count > 0 &&
+                he_face_triangulate(m, faces.ids, faces.count, NULL, NULL, NULL, NULL) == HE_OK;
+    he_ids_clear(&faces);
+    if (!done) {
+        he_mesh_free(m);
+        return false;
+    }
+    *out = m;
+    return true;
+}
+
+static void test_triangles_in_space(void **state)
+{
+    (void)state;
+    uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 2000), all = 0;
+    for (uint64_t round = 0; round < rounds; round++) {
+        md_random r = {seed + round};
+        print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)r.state);
+        he_mesh *m;
+        he_ids flips = {0};
+        if (!random_triangles(&r, &m)) {
+            continue;
+        }
+        double area = total_area(m);
+        assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+        assert_valid(m);
+        /* What delaunay.h ends by. */
+        assert_true(total_area(m) <= area * (1 + 1e-9));
+        all += flips.count;
+        for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
+            if (is_clearly_crooked(m, e)) {
+                assert_true(he_edge_flip(m, (he_edge){e}, NULL) != HE_OK);
+            }
+        }
+        he_mesh *once = copy_of(m);
+        assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+        assert_int_equal(flips.count, 0);
+        assert_equal(m, once);
+        he_ids_clear(&flips);
+        he_mesh_free(once);
+        he_mesh_free(m);
+    }
+    print_message("%llu flips\n", (unsigned long long)all);
+    assert_true(all > rounds);
+}
+
+/* --- work --- */
+
+/* Two rows of points, all triangles of the lower from one point and all of the upper from another:
+ * the number of flips grows with the square. */
+static he_mesh *two_rows(uint32_t n)
+{
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i < 2 * n; i++) {
+        he_vec3 p = {i % n, i < n ? 0 : 1, 0};
+        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+    }
+    for (uint32_t i = 0; i + 1 < n; i++) {
+        const uint32_t lower[3] = {i, i + 1, n}, upper[3] = {n + i + 1, n + i, n - 1};
+        assert_int_equal(he_soup_add_face(&soup, lower, 3, NULL), HE_OK);
+        assert_int_equal(he_soup_add_face(&soup, upper, 3, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    return m;
+}
+
+static void test_work_is_limited(void **state)
+{
+    (void)state;
+    he_ids flips = {0};
+    he_error err = {.status = HE_OK};
+    he_mesh *m = two_rows(100);
+    assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+    assert_true(flips.count > 2000);
+    he_mesh_free(m);
+    m = two_rows(1000);
+    he_mesh *before = copy_of(m);
+    size_t count = flips.count;
+    assert_int_equal(he_delaunay(m, NULL, 0, &flips, &err), HE_LIMIT);
+    assert_int_equal(err.status, HE_LIMIT);
+    assert_int_equal(flips.count, count);
+    assert_equal(m, before);
+    he_ids_clear(&flips);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+/* Ten thousand spokes about one vertex: no flip turns about all of them. */
+static void test_hub(void **state)
+{
+    (void)state;
+    enum { SPOKES = 10000 };
+    he_soup soup;
+    he_mesh *m = NULL;
+    md_random r = {1};
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i <= SPOKES; i++) {
+        double angle = 6.283185307179586 * i / SPOKES, radius = 1 + md_unit(&r);
+        he_vec3 p = {radius * cos(angle), radius * sin(angle), 0};
+        p = i == SPOKES ? (he_vec3){0, 0, 0} : p;
+        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+    }
+    for (uint32_t i = 0; i < SPOKES; i++) {
+        const uint32_t triangle[3] = {i, (i + 1) % SPOKES, SPOKES};
+        assert_int_equal(he_soup_add_face(&soup, triangle, 3, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    he_ids flips = {0};
+    assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+    assert_true(flips.count > SPOKES / 2);
+    print_message("%zu flips\n", flips.count);
+    assert_valid(m);
+    he_ids_clear(&flips);
+    he_mesh_free(m);
+}
+
+static void test_memory_runs_out(void **state)
+{
+    (void)state;
+    md_random r = {7};
+    he_mesh *start = random_points(&r, 60);
+    for (unsigned record = 0; record < 2; record++) {
+        for (unsigned n = 1;; n++) {
+            he_mesh *m = copy_of(start);
+            script_add_columns(m);
+            he_mesh *before = copy_of(m);
+            he_delta *delta = record ? he_delta_new() : NULL;
+            he_mesh_record(m, delta);
+            he_ids flips = {0};
+            fail_allocation(n);
+            he_status status = he_delaunay(m, NULL, 0, &flips, NULL);
+            bool failed = allocation_failed();
+            fail_allocation(0);
+            he_mesh_record(m, NULL);
+            assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);
+            if (failed) {
+                assert_equal(m, before);
+                assert_int_equal(flips.count, 0);
+            }
+            he_ids_clear(&flips);
+            he_delta_free(delta);
+            he_mesh_free(before);
+            he_mesh_free(m);
+            if (!failed) {
+                assert_true(n > 5);
+                break;
+            }
+        }
+    }
+    he_mesh_free(start);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kite),
+        cmocka_unit_test(test_circle_is_left_alone),
+        cmocka_unit_test(test_what_is_never_flipped),
+        cmocka_unit_test(test_features_stay),
+        cmocka_unit_test(test_any_scale),
+        cmocka_unit_test(test_random_points),
+        cmocka_unit_test(test_random_features),
+        cmocka_unit_test(test_flips_spread_from_the_list),
+        cmocka_unit_test(test_only_the_list),
+        cmocka_unit_test(test_triangles_in_space),
+        cmocka_unit_test(test_work_is_limited),
+        cmocka_unit_test(test_hub),
+        cmocka_unit_test(test_memory_runs_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
