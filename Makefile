@@ -7,6 +7,7 @@
 CONFIG ?= release
 BUILD  := $(if $(filter release,$(CONFIG)),build,build/$(CONFIG))
 PREFIX ?= /usr/local
+UNITS  ?= $(PREFIX)/lib/systemd/system
 WERROR ?= -Werror
 SHELL  := /bin/sh
 .DEFAULT_GOAL := all
@@ -77,7 +78,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs test lint format asan tsan coverage proof bench bench-http \
-        bench-large install clean
+        bench-large container install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -162,19 +163,21 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 # --- tests ---------------------------------------------------------------------------------
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
 
-TESTS   ?= $(SUITES) web
+TESTS   ?= $(SUITES) web install
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web,$(TESTS))
-WITH_DAEMON = $(filter e2e web tests/e2e/%,$(TESTS))
+WITH_INSTALL = $(filter install,$(TESTS))
+WITH_DAEMON = $(filter e2e web install tests/e2e/%,$(TESTS))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
-test: $(if $(WITH_DAEMON),$(HEDGED)) $(CHOSEN) $(if $(WITH_WEB),page) | $(STAMPS)/test ## all tests, with their counts
+test: $(if $(WITH_DAEMON),$(HEDGED)) $(CHOSEN) $(if $(WITH_WEB)$(WITH_INSTALL),page) | $(STAMPS)/test ## all tests, with their counts
 	@HEDGED=$(abspath $(HEDGED)) \
-	    sh .ci/run-tests $(BUILD)/logs $(if $(WITH_WEB),--web) $(CHOSEN)
+	    sh .ci/run-tests $(BUILD)/logs $(if $(WITH_WEB),--web) $(CHOSEN) \
+	    $(if $(WITH_INSTALL),tests/install.sh)
 
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
-	+$(MAKE) CONFIG=asan TESTS="$(filter-out web,$(TESTS))" TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install,$(TESTS))" TEST_SECONDS=900 test
 
 # The kernel has no threads: only what runs on the daemon's is worth the time here.
 tsan: ## the threaded tests with ThreadSanitizer
@@ -183,7 +186,7 @@ tsan: ## the threaded tests with ThreadSanitizer
 
 coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web,$(TESTS))" TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web install,$(TESTS))" TEST_SECONDS=900 test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
@@ -218,8 +221,19 @@ format: | $(STAMPS)/lint ## rewrite all C files as .clang-format says
 
 # --- the rest ------------------------------------------------------------------------------
 
-install: $(HEDGED) page ## to DESTDIR and PREFIX (/usr/local)
+container: ## build the image with buildah and try it (root)
+	@sh tests/container.sh
+
+$(BUILD)/hedged.8: $(HEDGED) server/hedged.8.in .ci/man
+	$(Q)sh .ci/man $(HEDGED) server/hedged.8.in >$@
+
+# The unit goes where systemd looks, which for a PREFIX of one's own is UNITS=/etc/systemd/system.
+install: $(HEDGED) $(BUILD)/hedged.8 page ## to DESTDIR and PREFIX (/usr/local)
 	install -D -m 755 $(HEDGED) $(DESTDIR)$(PREFIX)/bin/hedged
+	install -D -m 644 $(BUILD)/hedged.8 $(DESTDIR)$(PREFIX)/share/man/man8/hedged.8
+	install -d $(DESTDIR)$(UNITS)
+	sed 's|@PREFIX@|$(PREFIX)|' server/hedged.service.in >$(DESTDIR)$(UNITS)/hedged.service
+	chmod 644 $(DESTDIR)$(UNITS)/hedged.service
 	find $(PAGE) -type f | while read -r file; do \
 	    install -D -m 644 "$$file" "$(DESTDIR)$(PREFIX)/share/hedge/web/$${file#$(PAGE)/}" || exit 1; \
 	done

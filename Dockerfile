@@ -1,0 +1,55 @@
+# An image of hedged with its page: only the program, what it links and what a browser loads.
+#
+#   docker build -t hedge .
+#   docker run --read-only -e HEDGE_INSECURE=1 -p 127.0.0.1:8080:8080 hedge
+#
+# Inside, only an address beyond loopback can be reached from outside the container, and hedged takes
+# such a one only when HEDGE_INSECURE=1 says that requests without a token are meant. -p decides who
+# reaches it then: with 127.0.0.1 before the port, this machine alone. tests/container.sh builds and
+# tries the image.
+ARG DEBIAN=docker.io/library/debian:bookworm-slim
+
+# --- the daemon ---
+FROM ${DEBIAN} AS build
+WORKDIR /src
+COPY .ci/deps .ci/
+RUN apt-get -q update && apt-get -q install -y --no-install-recommends make && sh .ci/deps build
+COPY Makefile ./
+COPY core core
+COPY api api
+COPY server server
+RUN make build/hedged && strip build/hedged
+
+# --- its page ---
+FROM ${DEBIAN} AS page
+WORKDIR /src
+COPY .ci/deps .ci/
+RUN sh .ci/deps web
+COPY web/package.json web/package-lock.json web/
+RUN cd web && npm ci --no-audit --no-fund
+COPY LICENSE ./
+COPY web web
+RUN cd web && WEB_OUT=/src/build/web npm run build
+
+# --- what runs ---
+FROM ${DEBIAN}
+ARG REVISION=
+LABEL org.opencontainers.image.title="hedge" \
+      org.opencontainers.image.description="A server for half-edge meshes over HTTP" \
+      org.opencontainers.image.licenses="MIT" \
+      org.opencontainers.image.version="0.1.0" \
+      org.opencontainers.image.revision="${REVISION}"
+RUN apt-get -q update && \
+    apt-get -q install -y --no-install-recommends libmicrohttpd12 libcjson1 && \
+    rm -rf /var/lib/apt/lists/* /var/cache/apt/*.bin /var/log/*
+COPY LICENSE /usr/local/share/doc/hedge/
+COPY --from=page /src/build/web /usr/local/share/hedge/web
+COPY --from=build /src/build/hedged /usr/local/bin/
+# The health check reads the port from here too.
+ENV HEDGE_LISTEN=0.0.0.0:8080
+EXPOSE 8080
+USER 10001:10001
+STOPSIGNAL SIGTERM
+HEALTHCHECK --interval=10s --timeout=5s --start-period=5s --retries=3 \
+    CMD ["hedged", "--healthcheck"]
+ENTRYPOINT ["hedged"]

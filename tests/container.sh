@@ -1,0 +1,224 @@
+#!/bin/sh
+# container.sh - builds the image of the Dockerfile and tries it, with buildah as root.
+#
+# Where the registry cannot be reached, the base image is made with debootstrap. Behind a proxy with a
+# certificate of its own, NODE_EXTRA_CA_CERTS is what npm is to trust while the page is built.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+
+skip() {
+    echo "skipped: $1"
+    echo "0 passed, 0 failed"
+    exit 0
+}
+[ "$(id -u)" -eq 0 ] || skip 'the container is built and entered as root'
+command -v buildah >/dev/null || skip 'there is no buildah (apt-get install buildah)'
+command -v curl >/dev/null || skip 'there is no curl (apt-get install curl)'
+
+base=docker.io/library/debian:bookworm-slim
+image=localhost/hedge-test:$$
+work=$(mktemp -d)
+container=
+daemon=
+finish() {
+    [ -z "$daemon" ] || kill "$daemon" 2>/dev/null
+    if [ -n "$container" ]; then
+        buildah umount "$container"
+        buildah rm "$container"
+    fi
+    buildah rmi "$image"
+    rm -rf "$work"
+}
+trap 'finish >/dev/null 2>&1' EXIT
+trap 'exit 1' INT TERM
+
+passed=0
+failed=0
+check() {
+    title=$1
+    shift
+    if "$@" >"$work/said" 2>&1; then
+        passed=$((passed + 1))
+        echo "ok $title"
+        sed -n '/^note: /p' "$work/said"
+    else
+        failed=$((failed + 1))
+        tail -n 40 "$work/said"
+        echo "FAILED $title"
+    fi
+}
+
+end() {
+    echo "$passed passed, $failed failed"
+    [ "$failed" -eq 0 ]
+    exit
+}
+
+has_base() {
+    buildah inspect --type image "$base" || buildah pull "$base" && return
+    debootstrap --variant=minbase bookworm "$work/base" http://deb.debian.org/debian || return 1
+    rm -rf "$work"/base/var/cache/apt/archives/*.deb "$work"/base/var/lib/apt/lists/*
+    scratch=$(buildah from scratch) && buildah add -q "$scratch" "$work/base" / &&
+        buildah commit -q --rm "$scratch" "$base" && rm -rf "$work/base"
+}
+
+size_of() {
+    buildah images --format '{{.Size}}' "$1"
+}
+
+builds() {
+    set -- --isolation chroot --format docker --layers --tag "$image"
+    if [ -n "${NODE_EXTRA_CA_CERTS:-}" ]; then
+        echo 'cafile=/run/ca.crt' >"$work/npmrc"
+        set -- "$@" --volume "$NODE_EXTRA_CA_CERTS:/run/ca.crt:ro" \
+            --volume "$work/npmrc:/root/.npmrc:ro"
+    fi
+    buildah bud "$@" --build-arg "REVISION=$(git rev-parse HEAD 2>/dev/null)" . || return 1
+    echo "note: the image has $(size_of "$image"), of which the base is $(size_of "$base")"
+}
+
+# config TEMPLATE: something of the image's configuration
+config() {
+    buildah inspect --type image --format "{{$1}}" "$image"
+}
+
+says() {
+    [ "$1" = "$2" ] || { echo "\"$1\" instead of \"$2\""; return 1; }
+}
+
+is_described() {
+    says "$(config .Docker.Config.User)" 10001:10001 &&
+        says "$(config .Docker.Config.Entrypoint)" '[hedged]' &&
+        says "$(config .Docker.Config.StopSignal)" SIGTERM &&
+        says "$(config .Docker.Config.ExposedPorts)" 'map[8080/tcp:{}]' &&
+        says "$(config .Docker.Config.Healthcheck.Test)" '[CMD hedged --healthcheck]' &&
+        says "hedged $(config 'index .Docker.Config.Labels "org.opencontainers.image.version"')" \
+            "$(chroot "$root" /usr/local/bin/hedged --version)" &&
+        says "$(config 'index .Docker.Config.Labels "org.opencontainers.image.licenses"')" MIT
+}
+
+has_no_tools() {
+    for tool in gcc make node npm curl; do
+        ! ls "$root/usr/bin/$tool" || return 1
+    done
+}
+
+# inside VARIABLES COMMAND...: in a container of the image, as its user
+inside() {
+    variables=$1
+    shift
+    # shellcheck disable=SC2086 # a list of options
+    buildah run --isolation chroot $variables "$container" -- "$@"
+}
+
+# Beyond loopback only when told.
+refuses_to_be_open() {
+    inside '' sh -c 'hedged 2>/tmp/said'
+    says $? 2 && grep 'set --insecure' "$root/tmp/said"
+}
+
+# Read log lines until the daemon is ready; `base` is then where it is.
+wait_until_ready() {
+    base=
+    while [ -z "$base" ] && read -r line <&4; do
+        echo "$line"
+        case $line in
+        *'listening on http://0.0.0.0:'*) base=http://127.0.0.1:${line##*:} ;;
+        esac
+    done
+    [ -n "$base" ]
+}
+
+creates_and_edits() {
+    curl -sSf "$base/" | grep -q '<title>hedge</title>' || return 1
+    curl -sSf -o "$work/answer" -w '%{http_code}\n' -H 'Content-Type: application/json' \
+        -d '{"shape":"cube"}' "$base/v1/meshes?id=box" | grep -qx 201 || return 1
+    curl -sSf -H 'Content-Type: application/json' -d '{"op":"edge_split","edge":0}' \
+        "$base/v1/meshes/box/edits" | grep -q '"revision":2,' || return 1
+    curl -sSf "$base/v1/meshes/box" | grep -q '"vertices":9,'
+}
+
+is_healthy() {
+    inside "--env HEDGE_LISTEN=0.0.0.0:${base##*:}" hedged --healthcheck
+}
+
+is_not_healthy() {
+    inside '--env HEDGE_LISTEN=0.0.0.0:1' hedged --healthcheck
+    says $? 1
+}
+
+# What buildah or unshare has started: the last of the chain of their children. buildah's own end is
+# harsher than an engine's, so that a stop is told to the daemon itself.
+find_first() {
+    first=$daemon
+    while child=$(cat /proc/"$first"/task/*/children | cut -d ' ' -f 1) && [ -n "$child" ]; do
+        first=$child
+    done
+    says "$(cat "/proc/$first/comm")" hedged
+}
+
+stops() {
+    kill -TERM "$first"
+    wait "$daemon"
+    status=$?
+    daemon=
+    says "$status" 0
+}
+
+# As buildah runs it.
+start_in_container() {
+    inside '--env HEDGE_INSECURE=1 --env HEDGE_LISTEN=0.0.0.0:0' hedged --log off 2>"$work/log" &
+    daemon=$!
+    exec 4<"$work/log"
+    wait_until_ready && find_first
+}
+
+# As an engine runs it with --read-only: the first process of its own, on a root nobody can write to.
+start_read_only() {
+    env -i HEDGE_INSECURE=1 HEDGE_LISTEN=0.0.0.0:0 PATH="$PATH:/usr/local/bin" \
+        unshare --mount --pid --fork sh -c '
+            mount --bind "$1" "$1" && mount -o remount,bind,ro "$1" && mount -t proc proc "$1/proc" &&
+                exec chroot --userspec=10001:10001 "$1" hedged --log off' - "$root" \
+        2>"$work/log" &
+    daemon=$!
+    exec 4<"$work/log"
+    wait_until_ready && find_first
+}
+
+is_nobody() {
+    says "$(awk '/^[UG]id:/ { print $2, $3, $4, $5 }' "/proc/$first/status" | uniq)" \
+        '10001 10001 10001 10001'
+}
+
+is_locked_in() {
+    is_nobody || return 1
+    says "$(awk '/^NSpid:/ { print $NF }' "/proc/$first/status")" 1 || return 1
+    says "$(awk '/^CapEff:/ { print $2 }' "/proc/$first/status")" 0000000000000000 || return 1
+    touch "/proc/$first/root/tmp/x" 2>&1 | grep 'Read-only file system'
+}
+
+mkfifo "$work/log"
+check 'there is the base image' has_base
+check 'the image builds' builds
+[ "$failed" -eq 0 ] || end
+container=$(buildah from "$image") && root=$(buildah mount "$container") || exit 1
+check 'it says what it is and how it is run' is_described
+check 'it has no compiler and no package manager of the page' has_no_tools
+check 'it refuses to be reached when nobody said so' refuses_to_be_open
+check 'a closed port is not healthy' is_not_healthy
+
+check 'it starts' start_in_container
+if [ -n "$base" ]; then
+    check 'it runs as nobody in particular' is_nobody
+    check 'its health check passes' is_healthy
+    check 'a mesh is created and edited' creates_and_edits
+    check 'SIGTERM stops it with status 0' stops
+fi
+
+check 'it starts on a read-only root' start_read_only
+if [ -n "$base" ]; then
+    check 'it is process 1, without rights, on a root that cannot be written' is_locked_in
+    check 'a mesh is created and edited there' creates_and_edits
+    check 'SIGTERM stops process 1 with status 0' stops
+fi
+end

@@ -1,0 +1,107 @@
+#!/bin/sh
+# install.sh - `make install` to a folder of its own: is everything there, and does it hold together?
+set -u
+cd "$(dirname "$0")/.." || exit 1
+unset MAKEFLAGS MAKELEVEL MAKEOVERRIDES
+work=$(mktemp -d)
+daemon=
+trap '[ -z "$daemon" ] || kill "$daemon" 2>/dev/null; rm -rf "$work"' EXIT
+trap 'exit 1' INT TERM
+
+passed=0
+failed=0
+check() {
+    title=$1
+    shift
+    if "$@" >"$work/said" 2>&1; then
+        passed=$((passed + 1))
+        echo "ok $title"
+    else
+        failed=$((failed + 1))
+        cat "$work/said"
+        echo "FAILED $title"
+    fi
+}
+
+root=$work/root
+hedged=$root/usr/bin/hedged
+man=$root/usr/share/man/man8/hedged.8
+unit=$root/usr/lib/systemd/system/hedged.service
+
+# modes FILE...: who may do what with them
+modes() {
+    (cd "$root/usr" && stat -c '%a %n' "$@")
+}
+
+installs() {
+    make install DESTDIR="$root" PREFIX=/usr || return 1
+    modes bin/hedged share/man/man8/hedged.8 lib/systemd/system/hedged.service \
+        share/hedge/web/index.html >"$work/modes" || return 1
+    printf '%s\n' '755 bin/hedged' '644 share/man/man8/hedged.8' \
+        '644 lib/systemd/system/hedged.service' '644 share/hedge/web/index.html' |
+        diff - "$work/modes"
+}
+
+# The program finds the page from where it is, and stops when told.
+runs_from_there() {
+    mkfifo "$work/log" || return 1
+    "$hedged" --listen 127.0.0.1:0 --log off 2>"$work/log" &
+    daemon=$!
+    read -r line <"$work/log"
+    base=${line##*listening on }
+    python3 - "$base" "$root/usr/share/hedge/web/index.html" <<'PY' || return 1
+import sys, urllib.request
+served = urllib.request.urlopen(sys.argv[1] + "/").read()
+sys.exit(served != open(sys.argv[2], "rb").read())
+PY
+    kill -TERM "$daemon"
+    wait "$daemon"
+    status=$?
+    daemon=
+    return $status
+}
+
+# Each option and variable of --help is in the page, and nothing is left to fill in.
+man_is_whole() {
+    "$hedged" --help | grep -oE '^  --[a-z-]+|HEDGE_[A-Z_]+' | tr -d ' ' >"$work/names"
+    [ "$(wc -l <"$work/names")" -gt 30 ] || return 1
+    tr -d '\\' <"$man" >"$work/plain"
+    while read -r name; do
+        grep -qE -- "^(\.BI \")?$name(\"| |$)" "$work/plain" || { echo "no $name"; return 1; }
+    done <"$work/names"
+    grep -q "$("$hedged" --version)" "$work/plain" && ! grep -n '@[A-Z]*@' "$man"
+}
+
+man_is_clean() {
+    groff -man -Tascii -ww "$man" 2>"$work/warnings" >/dev/null || return 1
+    cat "$work/warnings"
+    [ ! -s "$work/warnings" ]
+}
+
+unit_is_whole() {
+    grep -qx 'ExecStart=/usr/bin/hedged' "$unit" && ! grep -n '@[A-Z]*@' "$unit"
+}
+
+# systemd grades what a service may do from 0 (nothing) to 100.
+unit_is_hard() {
+    systemd-analyze security --offline=yes --root="$root" --threshold=15 --no-pager \
+        hedged.service
+}
+
+check 'make install puts everything in its place' installs
+check 'the program runs from there with its page' runs_from_there
+check 'the manual page has every option' man_is_whole
+check 'the unit starts what was installed' unit_is_whole
+if command -v groff >/dev/null; then
+    check 'the manual page is set without a warning' man_is_clean
+else
+    echo 'note: no groff: the manual page was not set'
+fi
+if command -v systemd-analyze >/dev/null; then
+    check 'the unit may do little' unit_is_hard
+else
+    echo 'note: no systemd-analyze: the unit was not graded'
+fi
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
