@@ -26,7 +26,7 @@ WORKDIR /src
 COPY .ci/deps .ci/
 RUN sh .ci/deps web
 COPY web/package.json web/package-lock.json web/
-RUN cd web && npm ci --no-audit --no-fund
+RUN cd web && npm ci --omit=dev --no-audit --no-fund
 COPY LICENSE ./
 COPY web web
 RUN cd web && WEB_OUT=/src/build/web npm run build

@@ -213,7 +213,7 @@ $(BUILD)/tests/bench/http/bare: $(BUILD)/obj/tests/bench/http/bare.o
 
 # --- style ---------------------------------------------------------------------------------
 
-lint: $(LIBRARIES) | $(STAMPS)/lint ## formatting, names, directions of includes, static analysis
+lint: $(LIBRARIES) $(HEDGED) | $(STAMPS)/lint ## formatting, names, directions of includes, static analysis
 	@sh .ci/lint "$(CPPFLAGS) $(CFLAGS)" $(BUILD) $(HEADERS) $(ALL_C)
 
 format: | $(STAMPS)/lint ## rewrite all C files as .clang-format says

@@ -1,5 +1,6 @@
 #include "api/openapi.h"
 
+#include "api/examples.h"
 #include "api/operations.h"
 #include "api/routes.h"
 #include "api/schemas.h"
@@ -81,8 +82,10 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
     api_out_object_end(out);
 }
 
-/* Media types with the schema of those that are JSON. */
-static void write_content(api_out *out, const char *const *types, const char *schema)
+/* Media types with the schema of those that are JSON. `example` gives a body of one for `route`. */
+static void write_content(api_out *out, const char *const *types, const char *schema,
+                          const char *(*example)(const char *route, const char *media),
+                          const char *route)
 {
     api_out_key(out, "content");
     api_out_object_begin(out);
@@ -94,6 +97,13 @@ static void write_content(api_out *out, const char *const *types, const char *sc
                     strcmp(*types, "application/x-ndjson") != 0;
         if (json && schema != NULL) {
             api_schema_ref_key(out, "schema", schema);
+        }
+        const char *body = example(route, *types);
+        if (body != NULL && json) {
+            api_out_key(out, "example");
+            api_out_raw(out, body, strlen(body));
+        } else if (body != NULL) {
+            api_out_key_string(out, "example", body);
         }
         api_out_object_end(out);
     }
@@ -140,7 +150,7 @@ static void write_success(api_out *out, const api_route *route, int status)
         api_out_object_end(out);
     }
     if (status == 200 || status == 201) {
-        write_content(out, route->produces, route->response);
+        write_content(out, route->produces, route->response, api_example_response, route->name);
     }
     api_out_object_end(out);
 }
@@ -220,7 +230,7 @@ static void write_operation(api_out *out, const api_route *route)
         api_out_key(out, "requestBody");
         api_out_object_begin(out);
         api_out_key_bool(out, "required", route->body_kind != API_BODY_OPTION);
-        write_content(out, route->consumes, route->request);
+        write_content(out, route->consumes, route->request, api_example_request, route->name);
         api_out_object_end(out);
     }
     write_responses(out, route);
@@ -259,6 +269,13 @@ static void write_paths(api_out *out)
     api_out_object_end(out);
 }
 
+static const char *example_problem(const char *route, const char *media)
+{
+    (void)route;
+    (void)media;
+    return api_example_problem();
+}
+
 static void write_components(api_out *out)
 {
     static const char *const problem[] = {"application/problem+json", NULL};
@@ -275,7 +292,7 @@ static void write_components(api_out *out)
     api_out_key(out, "problem");
     api_out_object_begin(out);
     api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
-    write_content(out, problem, "problem");
+    write_content(out, problem, "problem", example_problem, NULL);
     api_out_object_end(out);
     api_out_object_end(out);
     api_out_object_end(out);

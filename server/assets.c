@@ -149,6 +149,18 @@ static bool add_file(srv_assets *assets, int folder, const char *name, const cha
     return ok;
 }
 
+/* The same for a file that is served under a name without a suffix. */
+static bool add_page(srv_assets *assets, int folder, const char *name, const char *path,
+                     char *message, size_t size)
+{
+    size_t before = assets->count;
+    bool ok = add_file(assets, folder, name, "/", message, size);
+    if (assets->count > before) {
+        snprintf(assets->items[before].path, PATH_SIZE, "%s", path);
+    }
+    return ok;
+}
+
 static bool load(srv_assets *assets, const char *folder, char *message, size_t size)
 {
     int root = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -156,13 +168,12 @@ static bool load(srv_assets *assets, const char *folder, char *message, size_t s
         snprintf(message, size, "%.200s is not a folder with the page", folder);
         return false;
     }
-    bool ok = add_file(assets, root, "index.html", "/", message, size);
-    if (ok && assets->count == 1) {
-        snprintf(assets->items[0].path, PATH_SIZE, "/");
-    } else if (ok) {
+    bool ok = add_page(assets, root, "index.html", "/", message, size);
+    if (ok && assets->count == 0) {
         snprintf(message, size, "%.200s has no index.html", folder);
         ok = false;
     }
+    ok = ok && add_page(assets, root, "docs.html", "/docs", message, size);
     int inner = ok ? openat(root, "assets", O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
     DIR *listing = inner < 0 ? NULL : fdopendir(inner);
     if (listing != NULL) {

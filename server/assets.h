@@ -1,8 +1,8 @@
 /* assets.h - the page's files, read into memory once at the start.
  *
- * Of a folder made by `make page`: index.html is served as "/", and the regular files of assets/
- * as "/assets/NAME". Links are not followed and nothing else is looked at, so no request can reach
- * a file. Without a folder "/" is a plain notice. */
+ * Of a folder made by `make page`: index.html is served as "/", docs.html where there is one as
+ * "/docs", and the regular files of assets/ as "/assets/NAME". Links are not followed and nothing
+ * else is looked at, so no request can reach a file. Without a folder "/" is a plain notice. */
 #ifndef HE_SERVER_ASSETS_H
 #define HE_SERVER_ASSETS_H
 

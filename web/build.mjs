@@ -1,6 +1,6 @@
 // build.mjs - the page, bundled once: `npm run build` writes it to WEB_OUT, ../build/web without.
 //
-//   index.html             with the names of the files below
+//   index.html, docs.html  with the names of the files below
 //   assets/NAME-HASH.js    and .css, .svg: a name never has two contents, so they cache for ever
 //   assets/LICENSES.txt    of everything that is in the bundle
 
@@ -18,7 +18,13 @@ await mkdir(path.join(out, 'assets'), { recursive: true });
 
 const { metafile } = await build({
     absWorkingDir: here,
-    entryPoints: ['src/main.js', 'src/style.css', 'src/icon.svg'],
+    entryPoints: [
+        'src/main.js',
+        'src/style.css',
+        'src/docs.js',
+        'src/docs.css',
+        'src/icon.svg',
+    ],
     outdir: path.join(out, 'assets'),
     entryNames: '[name]-[hash]',
     bundle: true,
@@ -32,22 +38,30 @@ const { metafile } = await build({
     logLevel: 'warning',
 });
 
-await writeFile(path.join(out, 'index.html'), await page(metafile.outputs));
+const made = new Map(
+    Object.entries(metafile.outputs)
+        .filter(([, { entryPoint }]) => entryPoint !== undefined)
+        .map(([file, { entryPoint }]) => [entryPoint, `assets/${path.basename(file)}`]),
+);
+const unused = new Set(made.keys());
+for (const name of ['index.html', 'docs.html']) {
+    await writeFile(path.join(out, name), await page(name));
+}
+if (unused.size > 0) {
+    throw new Error(`no page uses ${[...unused].join(', ')}`);
+}
 await writeFile(path.join(out, 'assets/LICENSES.txt'), await licenses(metafile.inputs));
 
-// index.html with each source replaced by the file made from it.
-async function page(outputs) {
-    let html = await readFile(path.join(here, 'index.html'), 'utf8');
-    for (const [file, { entryPoint }] of Object.entries(outputs)) {
-        if (entryPoint === undefined || !html.includes(`"${entryPoint}"`)) {
-            throw new Error(`index.html does not use ${entryPoint}`);
+// A page with each source replaced by the file made from it.
+async function page(name) {
+    const html = await readFile(path.join(here, name), 'utf8');
+    return html.replaceAll(/"(src\/[^"]*)"/g, (quoted, source) => {
+        if (!made.has(source)) {
+            throw new Error(`${name} names ${source}, which is no entry point`);
         }
-        html = html.replaceAll(`"${entryPoint}"`, `"assets/${path.basename(file)}"`);
-    }
-    if (html.includes('"src/')) {
-        throw new Error('index.html names a source that is not an entry point');
-    }
-    return html;
+        unused.delete(source);
+        return `"${made.get(source)}"`;
+    });
 }
 
 // The project's own licence, then that of each package a bundled file comes from.

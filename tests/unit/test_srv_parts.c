@@ -183,6 +183,7 @@ static void test_assets(void **state)
     snprintf(inner, sizeof inner, "%s/assets", folder);
     assert_int_equal(mkdir(inner, 0700), 0);
     write_file(folder, "index.html", "<p>hello");
+    write_file(folder, "docs.html", "<p>docs");
     write_file(folder, "secret.txt", "no");
     write_file(inner, "app-ABCD1234.js", "1");
     write_file(inner, "style.css", "");
@@ -201,6 +202,8 @@ static void test_assets(void **state)
     assert_memory_equal(f.bytes, "<p>hello", 8);
     assert_string_equal(f.type, "text/html; charset=utf-8");
     assert_false(f.immutable);
+    assert_true(find(assets, "/docs", &f));
+    assert_memory_equal(f.bytes, "<p>docs", 7);
     assert_true(find(assets, "/assets/app-ABCD1234.js", &g));
     assert_true(g.immutable);
     assert_string_equal(g.type, "text/javascript; charset=utf-8");
@@ -209,17 +212,24 @@ static void test_assets(void **state)
     assert_int_equal(g.length, 0);
     assert_true(find(assets, "/assets/sub-component.js", &g));
     assert_false(g.immutable);
-    static const char *const absent[] = {
-        "/index.html",           "/secret.txt",       "/assets/link.txt",      "/assets/.hidden",
-        "/assets/fifo",          "/assets/",          "/assets/../index.html", "",
-        "/assets/../secret.txt", "/assets//style.css"};
+    static const char *const absent[] = {"/index.html",
+                                         "/docs.html",
+                                         "/secret.txt",
+                                         "/assets/link.txt",
+                                         "/assets/.hidden",
+                                         "/assets/fifo",
+                                         "/assets/",
+                                         "/assets/../index.html",
+                                         "",
+                                         "/assets/../secret.txt",
+                                         "/assets//style.css"};
     for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) {
         assert_false(find(assets, absent[i], &f));
     }
     srv_assets_free(assets);
     static const char *const inside[] = {
         "app-ABCD1234.js", "style.css", "sub-component.js", ".hidden", "link.txt", "fifo", NULL};
-    static const char *const outside[] = {"index.html", "secret.txt", NULL};
+    static const char *const outside[] = {"index.html", "docs.html", "secret.txt", NULL};
     remove_files(inner, inside);
     remove_files(folder, outside);
 

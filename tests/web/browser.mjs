@@ -36,7 +36,12 @@ export function launch() {
 // Open the page in a fresh profile. When the test ends the page must have had no error, no breach
 // of its content security policy and no request to another host. `allowed` are expressions for
 // console errors that the test provokes.
-export async function openPage(t, browser, daemon, { allowed = [], init, ...options } = {}) {
+export async function openPage(
+    t,
+    browser,
+    daemon,
+    { allowed = [], init, path = '/', ...options } = {},
+) {
     const context = await browser.newContext({
         viewport: { width: 1280, height: 800 },
         ...options,
@@ -68,7 +73,7 @@ export async function openPage(t, browser, daemon, { allowed = [], init, ...opti
         await context.close();
         assert.deepEqual(wrong, []);
     });
-    await page.goto(daemon.url);
+    await page.goto(daemon.url + path);
     return page;
 }
 

@@ -76,6 +76,11 @@ function meshPath(mesh) {
     return `v1/meshes/${encodeURIComponent(mesh)}`;
 }
 
+// The server's own OpenAPI document.
+export function getDescription() {
+    return getJson('v1/openapi.json');
+}
+
 // One page of the list: {items, next}; `next` is the cursor of the page after it, or null.
 export function listMeshes(cursor = null) {
     const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;

@@ -1,0 +1,298 @@
+#include "api/examples.h"
+
+#include <string.h>
+
+static const api_example examples[] = {
+    {.route = "mesh_put",
+     .target = "/v1/meshes/kite",
+     .consumes = "application/json",
+     .request = "{\"name\":\"kite\",\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0]],\"faces\":[[0,"
+                "1,2],[0,2,3]]}",
+     .status = 201,
+     .produces = "application/json",
+     .response = "{\"id\":\"kite\",\"name\":\"kite\",\"revision\":1,\"counts\":{\"vertices\":4,"
+                 "\"halfedges\":10,\"edges\":5,\"faces\":2,\"boundary_loops\":1,"
+                 "\"isolated_vertices\":0,\"components\":1,\"components_by_edge\":1},\"euler\":1,"
+                 "\"genus\":0,\"closed\":false,\"manifold\":true,\"degrees\":{\"3\":2},"
+                 "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":1,\"volume\":null,"
+                 "\"memory_bytes\":408,\"created\":\"2026-01-01T12:00:00.000Z\","
+                 "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"json\","
+                 "\"vertices\":4,\"faces\":2,\"repairs\":[],\"warnings\":[]}}"},
+    {.route = "meshes_create",
+     .target = "/v1/meshes?id=box",
+     .consumes = "application/json",
+     .request = "{\"shape\":\"cube\",\"size\":2}",
+     .status = 201,
+     .produces = "application/json",
+     .response = "{\"id\":\"box\",\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":8,"
+                 "\"halfedges\":24,\"edges\":12,\"faces\":6,\"boundary_loops\":0,"
+                 "\"isolated_vertices\":0,\"components\":1,\"components_by_edge\":1},\"euler\":2,"
+                 "\"genus\":0,\"closed\":true,\"manifold\":true,\"degrees\":{\"4\":6},"
+                 "\"bbox\":{\"min\":[-1,-1,-1],\"max\":[1,1,1]},\"area\":24,\"volume\":8,"
+                 "\"memory_bytes\":760,\"created\":\"2026-01-01T12:00:00.000Z\","
+                 "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"shape\","
+                 "\"vertices\":8,\"faces\":6,\"repairs\":[],\"warnings\":[]}}"},
+    {.route = "meshes_create",
+     .target = "/v1/meshes?id=tile&name=tile",
+     .consumes = "model/obj",
+     .request = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+     .status = 201,
+     .produces = "application/json",
+     .response = "{\"id\":\"tile\",\"name\":\"tile\",\"revision\":1,\"counts\":{\"vertices\":3,"
+                 "\"halfedges\":6,\"edges\":3,\"faces\":1,\"boundary_loops\":1,"
+                 "\"isolated_vertices\":0,\"components\":1,\"components_by_edge\":1},\"euler\":1,"
+                 "\"genus\":0,\"closed\":false,\"manifold\":true,\"degrees\":{\"3\":1},"
+                 "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":0.5,\"volume\":null,"
+                 "\"memory_bytes\":312,\"created\":\"2026-01-01T12:00:00.000Z\","
+                 "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"obj\","
+                 "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
+    {.route = "meshes_create",
+     .target = "/v1/meshes?id=tile-off",
+     .consumes = "model/x-off",
+     .request = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+     .status = 201,
+     .produces = "application/json",
+     .response = "{\"id\":\"tile-off\",\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":3,"
+                 "\"halfedges\":6,\"edges\":3,\"faces\":1,\"boundary_loops\":1,"
+                 "\"isolated_vertices\":0,\"components\":1,\"components_by_edge\":1},\"euler\":1,"
+                 "\"genus\":0,\"closed\":false,\"manifold\":true,\"degrees\":{\"3\":1},"
+                 "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":0.5,\"volume\":null,"
+                 "\"memory_bytes\":312,\"created\":\"2026-01-01T12:00:00.000Z\","
+                 "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"off\","
+                 "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
+    {.route = "meshes_list",
+     .target = "/v1/meshes",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"items\":[{\"id\":\"box\",\"name\":\"\",\"revision\":1,"
+                 "\"counts\":{\"vertices\":8,\"halfedges\":24,\"edges\":12,\"faces\":6}},"
+                 "{\"id\":\"kite\",\"name\":\"kite\",\"revision\":1,\"counts\":{\"vertices\":4,"
+                 "\"halfedges\":10,\"edges\":5,\"faces\":2}},{\"id\":\"tile\",\"name\":\"tile\","
+                 "\"revision\":1,\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,"
+                 "\"faces\":1}},{\"id\":\"tile-off\",\"name\":\"\",\"revision\":1,"
+                 "\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,\"faces\":1}}],"
+                 "\"next\":null}"},
+    {.route = "mesh_get",
+     .target = "/v1/meshes/kite",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"id\":\"kite\",\"name\":\"kite\",\"revision\":1,\"counts\":{\"vertices\":4,"
+                 "\"halfedges\":10,\"edges\":5,\"faces\":2,\"boundary_loops\":1,"
+                 "\"isolated_vertices\":0,\"components\":1,\"components_by_edge\":1},\"euler\":1,"
+                 "\"genus\":0,\"closed\":false,\"manifold\":true,\"degrees\":{\"3\":2},"
+                 "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":1,\"volume\":null,"
+                 "\"memory_bytes\":408,\"created\":\"2026-01-01T12:00:00.000Z\","
+                 "\"modified\":\"2026-01-01T12:00:00.000Z\"}"},
+    {.route = "mesh_patch",
+     .target = "/v1/meshes/kite",
+     .consumes = "application/merge-patch+json",
+     .request = "{\"name\":\"Kite\"}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"id\":\"kite\",\"name\":\"Kite\",\"revision\":1,\"counts\":{\"vertices\":4,"
+                 "\"halfedges\":10,\"edges\":5,\"faces\":2,\"boundary_loops\":1,"
+                 "\"isolated_vertices\":0,\"components\":1,\"components_by_edge\":1},\"euler\":1,"
+                 "\"genus\":0,\"closed\":false,\"manifold\":true,\"degrees\":{\"3\":2},"
+                 "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":1,\"volume\":null,"
+                 "\"memory_bytes\":408,\"created\":\"2026-01-01T12:00:00.000Z\","
+                 "\"modified\":\"2026-01-01T12:00:00.000Z\"}"},
+    {.route = "content_get",
+     .target = "/v1/meshes/kite/content",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"name\":\"Kite\",\"vertices\":[\n[0,0,0],\n[1,0,0],\n[1,1,0],\n[0,1,0]],"
+                 "\n\"faces\":[\n[0,1,2],\n[0,2,3]]}\n"},
+    {.route = "content_get",
+     .target = "/v1/meshes/kite/content",
+     .status = 200,
+     .produces = "model/obj",
+     .response = "# 4 vertices, 2 faces\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"},
+    {.route = "content_get",
+     .target = "/v1/meshes/kite/content",
+     .status = 200,
+     .produces = "model/x-off",
+     .response = "OFF\n4 2 5\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"},
+    {.route = "mesh_copy",
+     .target = "/v1/meshes/kite/copy",
+     .consumes = "application/json",
+     .request = "{\"id\":\"kite-2\",\"name\":\"Another kite\"}",
+     .status = 201,
+     .produces = "application/json",
+     .response = "{\"id\":\"kite-2\",\"name\":\"Another kite\",\"revision\":1,"
+                 "\"counts\":{\"vertices\":4,\"halfedges\":10,\"edges\":5,\"faces\":2,"
+                 "\"boundary_loops\":1,\"isolated_vertices\":0,\"components\":1,"
+                 "\"components_by_edge\":1},\"euler\":1,\"genus\":0,\"closed\":false,"
+                 "\"manifold\":true,\"degrees\":{\"3\":2},\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,"
+                 "0]},\"area\":1,\"volume\":null,\"memory_bytes\":408,"
+                 "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000"
+                 "Z\"}"},
+    {.route = "elements_list",
+     .target = "/v1/meshes/kite/vertices",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"items\":[{\"id\":0,\"position\":[0,0,0],\"halfedge\":9,"
+                 "\"degree\":3,\"boundary\":true,\"isolated\":false},{\"id\":1,\"position\":[1,0,"
+                 "0],\"halfedge\":1,\"degree\":2,\"boundary\":true,\"isolated\":false},{\"id\":2,"
+                 "\"position\":[1,1,0],\"halfedge\":3,\"degree\":3,\"boundary\":true,"
+                 "\"isolated\":false},{\"id\":3,\"position\":[0,1,0],\"halfedge\":7,\"degree\":2,"
+                 "\"boundary\":true,\"isolated\":false}],\"next\":null}"},
+    {.route = "elements_list",
+     .target = "/v1/meshes/kite/edges",
+     .status = 200,
+     .produces = "application/x-ndjson",
+     .response = "{\"id\":0,\"halfedges\":[0,1],\"vertices\":[0,1],\"faces\":[0,null],"
+                 "\"length\":1,\"boundary\":true}\n{\"id\":1,\"halfedges\":[2,3],\"vertices\":[1,"
+                 "2],\"faces\":[0,null],\"length\":1,\"boundary\":true}\n{\"id\":2,"
+                 "\"halfedges\":[4,5],\"vertices\":[2,0],\"faces\":[0,1],"
+                 "\"length\":1.4142135623730951,\"boundary\":false}\n{\"id\":3,\"halfedges\":[6,"
+                 "7],\"vertices\":[2,3],\"faces\":[1,null],\"length\":1,"
+                 "\"boundary\":true}\n{\"id\":4,\"halfedges\":[8,9],\"vertices\":[3,0],"
+                 "\"faces\":[1,null],\"length\":1,\"boundary\":true}\n{\"end\":true,"
+                 "\"count\":5}\n"},
+    {.route = "element_get",
+     .target = "/v1/meshes/kite/halfedges/0",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"id\":0,\"twin\":1,\"next\":2,\"prev\":4,\"origin\":0,\"target\":1,"
+                 "\"edge\":0,\"face\":0,\"boundary\":false}"},
+    {.route = "relation_get",
+     .target = "/v1/meshes/kite/vertices/2/faces",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"faces\",\"ids\":[1,0]}"},
+    {.route = "query_post",
+     .target = "/v1/meshes/kite/query",
+     .consumes = "application/json",
+     .request = "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"vertex\":2}},"
+                "{\"find\":\"halfedge\",\"vertices\":[0,2]},{\"get\":{\"face\":1}}]}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"results\":[{\"revision\":1,\"of\":{\"vertex\":2},"
+                 "\"relation\":\"faces\",\"ids\":[1,0]},{\"halfedge\":5},{\"id\":1,"
+                 "\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,8],"
+                 "\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
+                 "0.6666666666666666,0]}]}"},
+    {.route = "traverse_post",
+     .target = "/v1/meshes/kite/traverse",
+     .consumes = "application/json",
+     .request = "{\"walk\":\"path\",\"from\":{\"halfedge\":0},\"path\":[\"next\",\"next\","
+                "\"twin\"]}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"walk\":\"path\",\"from\":{\"halfedge\":0},\"path\":[\"next\","
+                 "\"next\",\"twin\"],\"repeat\":1,\"halfedges\":[0,2,4,5],\"end\":5}"},
+    {.route = "boundaries_get",
+     .target = "/v1/meshes/kite/boundaries",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"loops\":[{\"halfedge\":1,\"length\":4,\"halfedges\":[1,9,7,"
+                 "3],\"vertices\":[1,0,3,2]}]}"},
+    {.route = "components_get",
+     .target = "/v1/meshes/kite/components",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"by\":\"edge\",\"components\":[{\"faces\":2,\"vertices\":4,"
+                 "\"face\":0}]}"},
+    {.route = "check_get",
+     .target = "/v1/meshes/kite/check",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"valid\":true,\"problems\":[],\"defects\":[],"
+                 "\"totals\":{\"problems\":0,\"bowtie\":0,\"isolated_vertex\":0,"
+                 "\"zero_length_edge\":0,\"degenerate_face\":0}}"},
+    {.route = "edits_post",
+     .target = "/v1/meshes/kite/edits",
+     .consumes = "application/json",
+     .request = "{\"expected_revision\":1,\"ops\":[{\"op\":\"edge_split\",\"edge\":2,\"t\":0.5},"
+                "{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[1,0,0.25]}]}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":2,\"results\":[{\"op\":\"edge_split\",\"vertex\":4,\"edges\":[5,"
+                 "6,7],\"faces\":[2,3]},{\"op\":\"vertex_move\"}],\"created\":{\"vertices\":[4],"
+                 "\"edges\":[5,6,7],\"faces\":[2,3]},\"deleted\":{\"vertices\":[],\"edges\":[],"
+                 "\"faces\":[]},\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,"
+                 "1]},\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{}}"},
+    {.route = "edits_post",
+     .target = "/v1/meshes/kite/edits",
+     .consumes = "application/json",
+     .request = "{\"op\":\"edge_flip\",\"edge\":0}",
+     .status = 422,
+     .produces = "application/problem+json",
+     .response = "{\"type\":\"/problems/boundary_edge\",\"title\":\"The edge is on the boundary\""
+                 ",\"status\":422,\"detail\":\"edge 0 has only one face\","
+                 "\"code\":\"boundary_edge\",\"element\":{\"kind\":\"edge\",\"id\":0}}"},
+    {.route = "edits_list",
+     .target = "/v1/meshes/kite/edits",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":2,\"entries\":[{\"revision\":2,\"action\":\"edit\","
+                 "\"ops\":[\"edge_split\",\"vertex_move\"],\"undoable\":true,\"bytes\":952,"
+                 "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"next\":null}"},
+    {.route = "undo_post",
+     .target = "/v1/meshes/kite/undo",
+     .consumes = "application/json",
+     .request = "{\"expected_revision\":2}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":3,\"results\":[],\"created\":{\"vertices\":[],\"edges\":[],"
+                 "\"faces\":[]},\"deleted\":{\"vertices\":[4],\"edges\":[5,6,7],\"faces\":[2,3]},"
+                 "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
+                 "\"parents\":{},\"merged\":{},\"undo\":0,\"redo\":1}"},
+    {.route = "redo_post",
+     .target = "/v1/meshes/kite/redo",
+     .consumes = "application/json",
+     .request = "{\"expected_revision\":3}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":4,\"results\":[],\"created\":{\"vertices\":[4],\"edges\":[5,6,7],"
+                 "\"faces\":[2,3]},\"deleted\":{\"vertices\":[],\"edges\":[],\"faces\":[]},"
+                 "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
+                 "\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},"
+                 "\"undo\":1,\"redo\":0}"},
+};
+
+enum { EXAMPLES = sizeof examples / sizeof *examples };
+
+size_t api_example_count(void)
+{
+    return EXAMPLES;
+}
+
+const api_example *api_example_at(size_t i)
+{
+    return &examples[i];
+}
+
+const char *api_example_request(const char *route, const char *media)
+{
+    for (size_t i = 0; i < EXAMPLES; i++) {
+        const api_example *row = &examples[i];
+        if (row->status < 400 && row->request != NULL && strcmp(row->route, route) == 0 &&
+            strcmp(row->consumes, media) == 0) {
+            return row->request;
+        }
+    }
+    return NULL;
+}
+
+const char *api_example_response(const char *route, const char *media)
+{
+    for (size_t i = 0; i < EXAMPLES; i++) {
+        const api_example *row = &examples[i];
+        if (row->status < 400 && strcmp(row->route, route) == 0 &&
+            strcmp(row->produces, media) == 0) {
+            return row->response;
+        }
+    }
+    return NULL;
+}
+
+const char *api_example_problem(void)
+{
+    for (size_t i = 0; i < EXAMPLES; i++) {
+        if (examples[i].status >= 400) {
+            return examples[i].response;
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,190 @@
+/* The examples of the OpenAPI document are what the server answers. */
+#include "tests/api/request.h"
+
+#include "api/examples.h"
+#include "api/routes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const api_route *route_of(const char *name)
+{
+    for (size_t i = 0; i < api_route_count(); i++) {
+        if (strcmp(api_route_at(i)->name, name) == 0) {
+            return api_route_at(i);
+        }
+    }
+    fail_msg("an example is of %s, which is no route", name);
+    return NULL;
+}
+
+static bool is_one_of(const char *name, const char *const *names)
+{
+    while (*names != NULL && (name == NULL || strcmp(name, *names) != 0)) {
+        names++;
+    }
+    return *names != NULL;
+}
+
+/* What differs from run to run and from machine to machine keeps its form. */
+static void settle(cJSON *answer, const cJSON *example)
+{
+    static const char *const times[] = {"created", "modified", "time", NULL};
+    static const char *const sizes[] = {"memory_bytes", "bytes", NULL};
+    for (cJSON *a = answer->child; a != NULL && example != NULL; a = a->next) {
+        const cJSON *e = example->child;
+        while (e != NULL && a->string != NULL && strcmp(a->string, e->string) != 0) {
+            e = e->next;
+        }
+        if (cJSON_IsArray(answer)) {
+            e = cJSON_GetArrayItem(example, 0);
+            for (const cJSON *b = answer->child; b != a && e != NULL; b = b->next) {
+                e = e->next;
+            }
+        }
+        if (e == NULL) {
+            continue;
+        }
+        if (is_one_of(a->string, times) && cJSON_IsString(a) && cJSON_IsString(e)) {
+            assert_int_equal(strlen(a->valuestring), strlen(e->valuestring));
+            memcpy(a->valuestring, e->valuestring, strlen(e->valuestring));
+        } else if (is_one_of(a->string, sizes) && cJSON_IsNumber(a) && cJSON_IsNumber(e)) {
+            assert_true(a->valuedouble > 0);
+            cJSON_SetNumberValue(a, e->valuedouble);
+        } else {
+            settle(a, e);
+        }
+    }
+}
+
+static void compare(const api_example *row, const bench_reply *r)
+{
+    if (strcmp(row->produces, "application/json") != 0 && row->status < 400) {
+        assert_string_equal(r->body, row->response);
+        return;
+    }
+    cJSON *example = cJSON_Parse(row->response);
+    assert_non_null(example);
+    assert_non_null(r->json);
+    cJSON_DeleteItemFromObject(r->json, "request_id");
+    settle(r->json, example);
+    if (!cJSON_Compare(r->json, example, true)) {
+        char *answer = cJSON_PrintUnformatted(r->json);
+        print_error("%s %s is answered\n%s\nand not\n%s\n", row->route, row->target, answer,
+                    row->response);
+        cJSON_free(answer);
+        fail();
+    }
+    cJSON_Delete(example);
+}
+
+static void each_example_is_a_real_answer(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    for (size_t i = 0; i < api_example_count(); i++) {
+        const api_example *row = api_example_at(i);
+        const api_route *route = route_of(row->route);
+        /* A refusal is a problem whatever is accepted. */
+        const char *accept = row->status < 400 ? row->produces : "*/*";
+        const char *headers[] = {"Accept", accept, "Content-Type", row->consumes, NULL};
+        headers[2] = row->consumes == NULL ? NULL : headers[2];
+        bench_reply r = bench_send(b, route->method, row->target, headers, row->request);
+        if (r.status != row->status) {
+            fail_msg("%s %s: %d: %s", route->method, row->target, r.status, r.body);
+        }
+        assert_string_equal(r.route, route->path);
+        compare(row, &r);
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
+static const cJSON *member(const cJSON *object, const char *name)
+{
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
+    if (found == NULL) {
+        fail_msg("there is no \"%s\"", name);
+    }
+    return found;
+}
+
+/* `content` has the body as the example of its media type. */
+static void find_in(const cJSON *content, const char *media, const char *body)
+{
+    const cJSON *shown = member(member(content, media), "example");
+    if (cJSON_IsString(shown)) {
+        assert_string_equal(shown->valuestring, body);
+    } else {
+        cJSON *parsed = cJSON_Parse(body);
+        assert_true(cJSON_Compare(shown, parsed, true));
+        cJSON_Delete(parsed);
+    }
+}
+
+static void the_description_shows_them(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_reply r = bench_send(b, "GET", "/v1/openapi.json", NULL, NULL);
+    assert_non_null(r.json);
+    for (size_t i = 0; i < api_example_count(); i++) {
+        const api_example *row = api_example_at(i);
+        const api_route *route = route_of(row->route);
+        char method[8] = "", status[8];
+        for (size_t c = 0; c + 1 < sizeof method && route->method[c] != '\0'; c++) {
+            method[c] = (char)(route->method[c] | 32);
+        }
+        if (row->status >= 400) {
+            continue;
+        }
+        const cJSON *operation = member(member(member(r.json, "paths"), route->path), method);
+        snprintf(status, sizeof status, "%d", row->status);
+        find_in(member(member(member(operation, "responses"), status), "content"), row->produces,
+                api_example_response(row->route, row->produces));
+        if (row->request != NULL) {
+            find_in(member(member(operation, "requestBody"), "content"), row->consumes,
+                    api_example_request(row->route, row->consumes));
+        }
+    }
+    find_in(member(member(member(member(r.json, "components"), "responses"), "problem"), "content"),
+            "application/problem+json", api_example_problem());
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* These are as long as the tables they show. */
+static const char *const too_long[] = {"operations_get", "openapi_get", NULL};
+
+static void no_route_is_without_one(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < api_route_count(); i++) {
+        const api_route *route = api_route_at(i);
+        if ((route->flags & API_FIXED) || is_one_of(route->name, too_long)) {
+            continue;
+        }
+        if (route->response != NULL &&
+            api_example_response(route->name, route->produces[0]) == NULL) {
+            fail_msg("%s has no example of an answer", route->name);
+        }
+        if (route->request != NULL &&
+            api_example_request(route->name, route->consumes[0]) == NULL) {
+            fail_msg("%s has no example of a body", route->name);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_example_is_a_real_answer),
+        cmocka_unit_test(the_description_shows_them),
+        cmocka_unit_test(no_route_is_without_one),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,75 @@
+// client.ts - a program in TypeScript against the types that openapi-typescript makes of the served
+// document. What the document gets wrong about a body or an answer does not compile here.
+
+import createClient from 'openapi-fetch';
+
+import type { components, paths } from './openapi.js';
+
+type Element = components['schemas']['element'];
+type Halfedge = components['schemas']['halfedge'];
+
+function isHalfedge(element: Element): element is Halfedge {
+    return 'twin' in element;
+}
+
+// Split the diagonal of a square and walk back to where the walk began. Returns what it met.
+export async function tour(baseUrl: string) {
+    const client = createClient<paths>({ baseUrl });
+    const mesh = { mesh: 'square' };
+
+    const made = await client.PUT('/v1/meshes/{mesh}', {
+        params: { path: mesh },
+        body: {
+            vertices: [
+                [0, 0, 0],
+                [1, 0, 0],
+                [1, 1, 0],
+                [0, 1, 0],
+            ],
+            faces: [
+                [0, 1, 2],
+                [0, 2, 3],
+            ],
+        },
+    });
+    if (made.data === undefined) {
+        throw new Error(made.error?.detail);
+    }
+
+    const edited = await client.POST('/v1/meshes/{mesh}/edits', {
+        params: { path: mesh },
+        body: {
+            expected_revision: made.data.revision,
+            ops: [{ op: 'edge_split', edge: 2, t: 0.25 }],
+        },
+    });
+    if (edited.data === undefined) {
+        throw new Error(edited.error?.detail);
+    }
+    const [vertex] = edited.data.created.vertices;
+
+    const ring: number[] = [];
+    let id = 0;
+    do {
+        const answer = await client.GET('/v1/meshes/{mesh}/{kind}/{id}', {
+            params: { path: { ...mesh, kind: 'halfedges', id } },
+        });
+        if (answer.data === undefined || !isHalfedge(answer.data)) {
+            throw new Error(answer.error?.detail ?? 'not a half-edge');
+        }
+        ring.push(answer.data.origin);
+        id = answer.data.next;
+    } while (id !== 0);
+
+    const refused = await client.POST('/v1/meshes/{mesh}/edits', {
+        params: { path: mesh },
+        body: { op: 'edge_flip', edge: 0 },
+    });
+    return {
+        faces: made.data.counts.faces,
+        vertex,
+        ring,
+        refusal: refused.error?.code,
+        element: refused.error?.element?.id,
+    };
+}

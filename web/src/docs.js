@@ -1,0 +1,193 @@
+// docs.js - the manual at /docs: the OpenAPI document of this very server, set as a page. It has a
+// section for each endpoint, id its operationId, and one for each schema, id schema-NAME.
+
+import { getDescription } from './api.js';
+import { make } from './dom.js';
+import { alternatives, typeOf } from './schema.js';
+
+// Types as text, with names of schemas as links.
+function typeNodes(schema) {
+    return typeOf(schema).map((part) =>
+        typeof part === 'string' ? part : make('a', { href: `#schema-${part.ref}` }, part.ref),
+    );
+}
+
+function cells(tag, ...contents) {
+    return make('tr', {}, ...contents.map((content) => make(tag, {}, ...content)));
+}
+
+function table(heads, rows) {
+    const head = make('thead', {}, cells('th', ...heads.map((text) => [text])));
+    // It may be wider than the page; the keyboard can then move it.
+    return make(
+        'div',
+        { className: 'table', tabIndex: 0, role: 'group', 'aria-label': heads[0] },
+        make('table', {}, head, make('tbody', {}, ...rows)),
+    );
+}
+
+function code(text) {
+    return make('code', {}, text);
+}
+
+// JSON is set with one member a line, other text as it is.
+function example(body) {
+    const text = typeof body === 'string' ? body : JSON.stringify(body, null, 2);
+    // Short arrays, such as ids and points, are easier to read in one line.
+    const flat = text.replace(/\[[^[\]{}]*\]/g, (array) =>
+        typeof body === 'string' ? array : array.replace(/\s+/g, ''),
+    );
+    return make('pre', { tabIndex: 0 }, code(flat.trimEnd()));
+}
+
+function note(text) {
+    return text === undefined ? [] : [make('p', {}, text)];
+}
+
+function membersTable({ properties, required = [] }) {
+    const rows = Object.entries(properties).map(([name, schema]) =>
+        cells(
+            'td',
+            [code(name), required.includes(name) ? ' (required)' : ''],
+            typeNodes(schema),
+            [schema.description ?? ''],
+        ),
+    );
+    return table(['Member', 'Type', 'Meaning'], rows);
+}
+
+// What a schema says, below its heading.
+function schemaNodes(schema) {
+    const nodes = note(schema.description);
+    const choices = alternatives(schema);
+    for (const choice of choices.filter((each) => each.properties)) {
+        nodes.push(...note(choice.description), membersTable(choice));
+    }
+    const named = choices.filter((each) => each.$ref);
+    if (named.length > 0) {
+        const word = schema.allOf ? 'All of: ' : 'One of: ';
+        nodes.push(make('p', {}, word, ...named.flatMap((each) => [...typeNodes(each), ' '])));
+    }
+    if (schema.properties && Object.keys(schema.properties).length > 0) {
+        nodes.push(membersTable(schema));
+    }
+    if (choices.length === 0 && !schema.properties) {
+        nodes.push(make('p', {}, ...typeNodes(schema)));
+    }
+    return nodes;
+}
+
+function contentNodes(content = {}) {
+    return Object.entries(content).flatMap(([media, { schema, example: body }]) => [
+        make('p', {}, code(media), ...(schema ? [': ', ...typeNodes(schema)] : [])),
+        ...(body === undefined ? [] : [example(body)]),
+    ]);
+}
+
+function parametersTable(parameters) {
+    const rows = parameters.map((parameter) =>
+        cells(
+            'td',
+            [code(parameter.name), parameter.required ? ' (required)' : ''],
+            [parameter.in],
+            typeNodes(parameter.schema),
+            [parameter.description ?? ''],
+        ),
+    );
+    return table(['Parameter', 'In', 'Type', 'Meaning'], rows);
+}
+
+function responseNodes(responses) {
+    const nodes = [];
+    const refusals = [];
+    for (const [status, response] of Object.entries(responses)) {
+        if (response.$ref) {
+            refusals.push(status);
+            continue;
+        }
+        nodes.push(make('h4', {}, `${status} ${response.description}`));
+        if (response.headers) {
+            const names = Object.keys(response.headers).flatMap((name) => [' ', code(name)]);
+            nodes.push(make('p', {}, 'With', ...names));
+        }
+        nodes.push(...contentNodes(response.content));
+    }
+    const link = make('a', { href: '#refusals' }, 'problem');
+    nodes.push(make('h4', {}, 'Refusals'));
+    nodes.push(make('p', {}, `${refusals.join(', ')}, each a `, link, '.'));
+    return nodes;
+}
+
+function section(id, heading, ...nodes) {
+    return make('section', { id, 'aria-labelledby': `${id}-title` }, heading, ...nodes);
+}
+
+function operationSection(path, method, operation, shared) {
+    const id = operation.operationId;
+    const parameters = [...shared, ...operation.parameters];
+    const heading = make('h3', { id: `${id}-title` }, operation.summary);
+    const nodes = [
+        make('p', { className: 'request' }, code(`${method.toUpperCase()} ${path}`)),
+        ...note(operation.description),
+    ];
+    if (parameters.length > 0) {
+        nodes.push(parametersTable(parameters));
+    }
+    if (operation.requestBody) {
+        const word = operation.requestBody.required ? 'Body' : 'Body, which may be left out';
+        nodes.push(make('h4', {}, word), ...contentNodes(operation.requestBody.content));
+    }
+    return section(id, heading, ...nodes, ...responseNodes(operation.responses));
+}
+
+function schemaSection([name, schema]) {
+    const id = `schema-${name}`;
+    return section(id, make('h3', { id: `${id}-title` }, name), ...schemaNodes(schema));
+}
+
+function list(entries) {
+    const links = entries.map(([id, text]) => make('li', {}, make('a', { href: `#${id}` }, text)));
+    return make('ul', {}, ...links);
+}
+
+function show({ info, paths, components }) {
+    const operations = Object.entries(paths).flatMap(([path, { parameters, ...methods }]) =>
+        Object.entries(methods).map(([method, operation]) => [path, method, operation, parameters]),
+    );
+    const schemas = Object.entries(components.schemas);
+    const { problem } = components.responses;
+    document.getElementById('version').textContent = info.version;
+    document.getElementById('introduction').textContent = info.description;
+    document
+        .getElementById('contents')
+        .append(
+            make('h2', {}, 'Endpoints'),
+            list(operations.map(([, , each]) => [each.operationId, each.summary])),
+            make('h2', {}, 'Refusals'),
+            list([['refusals', 'What a refusal says']]),
+            make('h2', {}, 'Schemas'),
+            list(schemas.map(([name]) => [`schema-${name}`, name])),
+        );
+    document
+        .getElementById('manual')
+        .append(
+            make('h2', {}, 'Endpoints'),
+            ...operations.map((operation) => operationSection(...operation)),
+            section(
+                'refusals',
+                make('h2', { id: 'refusals-title' }, 'Refusals'),
+                ...note(problem.description),
+                ...contentNodes(problem.content),
+            ),
+            make('h2', {}, 'Schemas'),
+            ...schemas.map(schemaSection),
+        );
+    // The browser looked for the place before it was there.
+    document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
+}
+
+try {
+    show(await getDescription());
+} catch (error) {
+    document.getElementById('introduction').textContent = error.message;
+}

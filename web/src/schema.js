@@ -1,0 +1,66 @@
+// schema.js - JSON Schema as words, for the manual. Pure: no document, no server.
+
+// The last segment of a reference.
+function nameOf(reference) {
+    return reference.slice(reference.lastIndexOf('/') + 1);
+}
+
+// Members of oneOf, anyOf or allOf.
+export function alternatives(schema) {
+    return schema.oneOf ?? schema.anyOf ?? schema.allOf ?? [];
+}
+
+function join(schemas, word) {
+    return schemas.flatMap((schema, i) => [...(i === 0 ? [] : [word]), ...typeOf(schema)]);
+}
+
+function range({ minimum, maximum, exclusiveMinimum, exclusiveMaximum }) {
+    const parts = [];
+    if (exclusiveMinimum !== undefined) {
+        parts.push(`above ${exclusiveMinimum}`);
+    } else if (minimum !== undefined) {
+        parts.push(`from ${minimum}`);
+    }
+    if (exclusiveMaximum !== undefined) {
+        parts.push(`below ${exclusiveMaximum}`);
+    } else if (maximum !== undefined) {
+        parts.push(`to ${maximum}`);
+    }
+    return parts.map((part) => ` ${part}`).join('');
+}
+
+function arrayOf({ items, minItems = 0, maxItems }) {
+    if (minItems === maxItems) {
+        return [`${minItems} of `, ...typeOf(items)];
+    }
+    return [minItems > 0 ? 'array, not empty, of ' : 'array of ', ...typeOf(items)];
+}
+
+function basic(schema) {
+    if (schema.const !== undefined) {
+        return [JSON.stringify(schema.const)];
+    }
+    if (schema.enum) {
+        return [schema.enum.map((value) => JSON.stringify(value)).join(' or ')];
+    }
+    if (schema.type === 'array') {
+        return arrayOf(schema);
+    }
+    const type = Array.isArray(schema.type) ? schema.type.join(' or ') : schema.type;
+    const form = schema.format ?? schema.pattern;
+    return [`${type ?? 'anything'}${range(schema)}${form === undefined ? '' : ` (${form})`}`];
+}
+
+// What values a schema allows: text, and {ref: NAME} where another schema says it.
+export function typeOf(schema) {
+    const parts = schema.$ref
+        ? [{ ref: nameOf(schema.$ref) }]
+        : schema.oneOf || schema.anyOf
+          ? join(alternatives(schema), ' or ')
+          : schema.allOf
+            ? join(schema.allOf, ' and ')
+            : basic(schema);
+    return schema.default === undefined
+        ? parts
+        : [...parts, `; ${JSON.stringify(schema.default)} when not given`];
+}
