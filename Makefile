@@ -78,7 +78,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs test lint format asan tsan coverage proof bench bench-http \
-        bench-large container install clean
+        bench-large container screenshot install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -220,6 +220,9 @@ format: | $(STAMPS)/lint ## rewrite all C files as .clang-format says
 	clang-format -i $(HEADERS) $(ALL_C)
 
 # --- the rest ------------------------------------------------------------------------------
+
+screenshot: $(HEDGED) page | $(STAMPS)/test ## the README's picture, web/screenshot.png
+	HEDGED=$(abspath $(HEDGED)) node tests/web/screenshot.mjs
 
 container: ## build the image with buildah and try it (root)
 	@sh tests/container.sh

@@ -1,0 +1,77 @@
+// readme.test.mjs - what README.md tells its readers to paste works, with the daemon's address in
+// place of the usual one, and prints what it says.
+
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { readFile } from 'node:fs/promises';
+import { test } from 'node:test';
+import { promisify } from 'node:util';
+
+import { startDaemon } from './daemon.mjs';
+
+const readme = await readFile(new URL('../../README.md', import.meta.url), 'utf8');
+
+// The code blocks of a language, with another address.
+function blocks(language, url) {
+    const found = readme.matchAll(new RegExp(`^\`\`\`${language}\n(.*?)^\`\`\`$`, 'gms'));
+    return [...found].map(([, code]) => code.replaceAll('http://127.0.0.1:8080', url));
+}
+
+async function run(program, words) {
+    const { stdout } = await promisify(execFile)(program, words, { timeout: 60000 });
+    return stdout;
+}
+
+// The comment at the end of the line that prints.
+function promised(code, mark) {
+    const [, text] = new RegExp(`^(?:print|console\\.log)\\(.*${mark} (.*)$`, 'm').exec(code);
+    return text;
+}
+
+test('the curl lines work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const [block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const lines = block.replaceAll('\\\n', '').split('\n');
+    const commands = lines.filter((line) => line !== '' && !line.startsWith('#'));
+    assert.equal(commands.length, 5);
+    const answers = [];
+    for (const command of commands) {
+        assert.match(command, /^curl /);
+        answers.push(JSON.parse(await run('sh', ['-c', `${command} -sS --fail-with-body`])));
+    }
+    const [made, halfedge, faces, edited, undone] = answers;
+    assert.equal(made.counts.faces, 2);
+    assert.deepEqual(Object.keys(halfedge).slice(1, 8), [
+        ...['twin', 'next', 'prev', 'origin', 'target', 'edge', 'face'],
+    ]);
+    assert.deepEqual(faces.ids.sort(), [0, 1]);
+    const { created, deleted } = edited;
+    const more = (kind) => created[kind].length - deleted[kind].length;
+    assert.deepEqual(['vertices', 'edges', 'faces'].map(more), [1, 3, 2]);
+    assert.equal(undone.redo, 1);
+});
+
+test('the Python lines work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const [code, ...others] = blocks('python', url);
+    assert.equal(others.length, 0);
+    assert.equal((await run('python3', ['-c', code])).trim(), promised(code, '#'));
+});
+
+test('the JavaScript lines work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const [code, ...others] = blocks('js', url);
+    assert.equal(others.length, 0);
+    const printed = await run(process.execPath, ['--input-type=module', '--eval', code]);
+    assert.equal(printed.trim(), promised(code, '//'));
+});
+
+test('each file and make target it names is there', async () => {
+    const makefile = await readFile(new URL('../../Makefile', import.meta.url), 'utf8');
+    for (const [, target] of readme.matchAll(/`make ([a-z-]+)/g)) {
+        assert.match(makefile, new RegExp(`^${target}:`, 'm'), target);
+    }
+    for (const [, link] of readme.matchAll(/\]\(([^):]+)\)/g)) {
+        await readFile(new URL(`../../${link}`, import.meta.url));
+    }
+});

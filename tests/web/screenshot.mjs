@@ -1,0 +1,49 @@
+// screenshot.mjs - the README's picture, web/screenshot.png: a torus in the viewer with one of its
+// faces chosen.
+
+import { statSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+
+import { launch, openPage, projector, waitForFrame } from './browser.mjs';
+import { getAll, post, startDaemon } from './daemon.mjs';
+
+const file = fileURLToPath(new URL('../../web/screenshot.png', import.meta.url));
+const MOST_BYTES = 100 * 1024;
+
+// What a test would clean up at its end.
+const endings = [];
+const run = { after: (ending) => endings.unshift(ending) };
+try {
+    const daemon = await startDaemon(run);
+    const browser = await launch();
+    run.after(() => browser.close());
+    await post(daemon, '?id=cube', { name: 'cube', shape: 'cube' });
+    const torus = { name: 'torus', shape: 'torus', major_segments: 24, minor_segments: 12 };
+    const { id: mesh } = await post(daemon, '?id=torus', torus);
+    const page = await openPage(run, browser, daemon, { viewport: { width: 880, height: 520 } });
+    await page.locator('#meshes button').filter({ hasText: 'torus' }).click();
+    await waitForFrame(page, { mesh, revision: 1 });
+    // The face that is nearest to a point of the ring's near side.
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    const projected = await projector(page, daemon, mesh);
+    const [place] = (await getAll(daemon, mesh, 'faces'))
+        .filter((face) => projected.isSeen(face))
+        .map(({ vertices }) => projected.at(vertices))
+        .sort((a, b) => distance(a) - distance(b));
+    function distance(at) {
+        return Math.hypot(at.x - 0.4 * width, at.y - 0.62 * height);
+    }
+    await page.mouse.click(x + place.x, y + place.y);
+    await page.waitForFunction(() =>
+        document.getElementById('canvas').dataset.selection.startsWith('face:'),
+    );
+    await page.screenshot({ path: file });
+    const { size } = statSync(file);
+    if (size > MOST_BYTES) {
+        throw new Error(`${file} has ${size} bytes, more than ${MOST_BYTES}`);
+    }
+} finally {
+    for (const ending of endings) {
+        await ending();
+    }
+}
