@@ -27,7 +27,8 @@ he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he_error *err)
 
 static double component_of(const he_column *column, size_t row, uint32_t component)
 {
-    const unsigned char *at = he_column_row(column, row) + component * he_type_bytes(column->type);
+    const unsigned char *at =
+        he_column_value(column, row) + component * he_type_bytes(column->type);
     switch (column->type) {
     case HE_BOOL:
         return *at != 0;
@@ -98,12 +99,15 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
     }
 }
 
-char *he_export_value(const he_column *column, size_t row, uint32_t component, char *text)
+double he_export_number(const he_column *column, size_t row, uint32_t component)
 {
     double value = component_of(column, row, component);
-    if (!isfinite(value)) {
-        value = 0;
-    }
+    return isfinite(value) ? value : 0;
+}
+
+char *he_export_value(const he_column *column, size_t row, uint32_t component, char *text)
+{
+    double value = he_export_number(column, row, component);
     return text + (column->type == HE_FLOAT ? he_float_print((float)value, text)
                                             : he_double_print(value, text));
 }
