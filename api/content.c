@@ -4,6 +4,7 @@
 #include "api/document_out.h"
 #include "format/format.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* A snapshot with what writes it; freed with the exchange. */
@@ -30,6 +31,23 @@ static int64_t read_content(void *stream, char *buffer, size_t size)
     content *c = stream;
     return c->document != NULL ? api_document_out_read(c->document, buffer, size)
                                : (int64_t)he_writer_read(c->writer, buffer, size);
+}
+
+/* The number of the encoding that is wanted. */
+static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
+{
+    const char *name = api_param_text(x, "encoding");
+    *encoding = 0;
+    if (name == NULL) {
+        return true;
+    }
+    int found = format == NULL ? -1 : he_format_encoding(format, name);
+    if (found < 0) {
+        return api_fail(x, API_BAD_PARAMETER, "%s has no encoding \"%s\"",
+                        format == NULL ? "json" : format->name, name);
+    }
+    *encoding = (size_t)found;
+    return true;
 }
 
 /* What is wanted: NULL is the JSON document. False when nothing fits. */
@@ -68,11 +86,15 @@ static void answer_losses(api_exchange *x, const he_notes *notes)
     api_text_clear(&losses);
 }
 
-static void answer(api_exchange *x, const he_format *format, content *c, const he_mesh *mesh)
+static void answer(api_exchange *x, const he_format *format, size_t encoding, content *c,
+                   const he_mesh *mesh)
 {
+    char representation[40];
     const char *name = format == NULL ? "json" : format->name;
     const char *type = format == NULL ? "application/json" : format->media_types[0];
-    if (api_not_modified(x, name)) {
+    snprintf(representation, sizeof representation, "%s%s%s", name, encoding > 0 ? "_" : "",
+             encoding > 0 ? format->encodings[encoding] : "");
+    if (api_not_modified(x, representation)) {
         free_content(c);
         return;
     }
@@ -82,7 +104,7 @@ static void answer(api_exchange *x, const he_format *format, content *c, const h
         if (c->document == NULL) {
             api_fail_memory(x);
         }
-    } else if (he_writer_new(format, mesh, 0, &c->writer, &err) != HE_OK) {
+    } else if (he_writer_new(format, mesh, encoding, &c->writer, &err) != HE_OK) {
         api_fail_core(x, &err);
     }
     if (x->problem.code != HE_OK) {
@@ -101,7 +123,8 @@ void api_content_get(api_exchange *x)
 {
     const he_format *format = NULL;
     const he_mesh *mesh;
-    if (!choose(x, &format)) {
+    size_t encoding;
+    if (!choose(x, &format) || !choose_encoding(x, format, &encoding)) {
         return;
     }
     content *c = he_mem_zero(1, sizeof *c);
@@ -115,5 +138,5 @@ void api_content_get(api_exchange *x)
         free_content(c);
         return;
     }
-    answer(x, format, c, mesh);
+    answer(x, format, encoding, c, mesh);
 }

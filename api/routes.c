@@ -11,9 +11,16 @@ static const char *const merge_patch[] = {"application/merge-patch+json", "appli
 static const char *const octets[] = {"application/octet-stream", NULL};
 static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
 static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
-static const char *const mesh_in[] = {"application/json", "model/obj", "model/x-off",
-                                      "application/octet-stream", NULL};
-static const char *const mesh_out[] = {"application/json", "model/obj", "model/x-off", NULL};
+static const char *const mesh_in[] = {"application/json",
+                                      "model/obj",
+                                      "model/x-off",
+                                      "model/ply",
+                                      "application/ply",
+                                      "model/stl",
+                                      "application/octet-stream",
+                                      NULL};
+static const char *const mesh_out[] = {"application/json", "model/obj", "model/x-off",
+                                       "model/ply",        "model/stl", NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
                                        "text/javascript",
@@ -28,7 +35,8 @@ static const char *const anything[] = {"text/html",
 
 /* --- query parameters --- */
 
-static const char *const formats[] = {"obj", "off", "json", NULL};
+static const char *const formats[] = {"obj", "off", "ply", "stl", "json", NULL};
+static const char *const encodings[] = {"ascii", "binary", "binary_big_endian", NULL};
 static const char *const connections[] = {"vertex", "edge", NULL};
 
 static const api_parameter limit = {
@@ -40,6 +48,9 @@ static const api_parameter turning = {
     0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
 static const api_parameter format = {
     "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
+static const api_parameter encoding = {
+    "encoding", API_PARAM_CHOICE, 0,
+    0,          encodings,        "Text or binary, where a format has both; binary if not said."};
 static const api_parameter name = {
     "name", API_PARAM_TEXT, 0, API_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
 static const api_parameter identity = {
@@ -137,11 +148,12 @@ static const api_route routes[] = {
      .run = api_content_get,
      .flags = API_COSTLY | API_OWN_ACCEPT,
      .produces = mesh_out,
-     .parameters = {&format},
+     .parameters = {&format, &encoding},
      .statuses = {200, 304},
      .response = "document",
      .summary = "Export a mesh",
-     .doc = "In the format that `format` or Accept asks for."},
+     .doc = "In the format that `format` or Accept asks for. What the format cannot carry is named "
+            "in the header Export-Warnings."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "geometry_get",

@@ -107,12 +107,15 @@ char *he_export_text(const char *text, char *to)
     return to;
 }
 
-char *he_export_value(const he_column *column, size_t row, uint32_t component, char *to)
+double he_export_number(const he_column *column, size_t row, uint32_t component)
 {
     double value = component_of(column, row, component);
-    if (!isfinite(value)) {
-        value = 0;
-    }
+    return isfinite(value) ? value : 0;
+}
+
+char *he_export_value(const he_column *column, size_t row, uint32_t component, char *to)
+{
+    double value = he_export_number(column, row, component);
     return to + (column->type == HE_FLOAT ? he_float_print((float)value, to)
                                           : he_double_print(value, to));
 }

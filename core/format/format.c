@@ -2,6 +2,8 @@
 
 #include "format/obj.h"
 #include "format/off.h"
+#include "format/ply.h"
+#include "format/stl.h"
 
 #include <string.h>
 
@@ -19,6 +21,30 @@ static const he_format formats[] = {
         .sniff = he_off_sniff,
         .reading = &he_off_reading,
         .writing = &he_off_writing,
+    },
+    {
+        .name = "ply",
+        .doc = "Polygon File Format (Stanford), binary little-endian unless asked otherwise",
+        .media_types = LIST("model/ply", "application/ply"),
+        .extensions = LIST("ply"),
+        .encodings = LIST("binary", "ascii", "binary_big_endian"),
+        .carries = LIST("polygons", "isolated vertices", "vertex color", "vertex normal",
+                        "vertex uv", "face color", "face normal", "face uv",
+                        "vertex attributes of one component", "face attributes of one component"),
+        .sniff = he_ply_sniff,
+        .reading = &he_ply_reading,
+        .writing = &he_ply_writing,
+    },
+    {
+        .name = "stl",
+        .doc = "Stereolithography triangles; corners at equal positions become one vertex",
+        .media_types = LIST("model/stl", "application/sla", "application/vnd.ms-pki.stl"),
+        .extensions = LIST("stl"),
+        .encodings = LIST("binary", "ascii"),
+        .carries = LIST("triangles"),
+        .sniff = he_stl_sniff,
+        .reading = &he_stl_reading,
+        .writing = &he_stl_writing,
     },
     {
         .name = "obj",

@@ -33,6 +33,18 @@ void he_notes_add(he_notes *notes, const char *code, const char *text, const cha
     memcpy(note->subject, name, sizeof name);
 }
 
+void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count)
+{
+    size_t before = notes->count;
+    if (count == 0) {
+        return;
+    }
+    he_notes_add(notes, code, text, NULL, 0, HE_PLACE_NONE, 0);
+    if (notes->count > before) {
+        notes->items[before].count = count;
+    }
+}
+
 size_t he_note_text(const he_note *note, char *text, size_t size)
 {
     char subject[HE_NOTE_SUBJECT + 4] = "", times[40] = "", where[48] = "";

@@ -30,6 +30,8 @@ typedef struct he_notes {
 /* `subject` (may be NULL) is cut to fit and made printable. */
 void he_notes_add(he_notes *notes, const char *code, const char *text, const char *subject,
                   size_t length, he_place place, uint64_t at);
+/* What has no place and is counted at once; nothing when `count` is 0. */
+void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count);
 /* "ignored: unknown keyword 'xyz', 3 times, first on line 7" */
 size_t he_note_text(const he_note *note, char *text, size_t size);
 

@@ -349,12 +349,8 @@ static he_status check_indices(const obj *o, he_error *err)
 
 static void note_partial(obj *o, size_t with, size_t all, const char *code, const char *text)
 {
-    if (with > 0 && with < all) {
-        he_notes_add(&o->into->notes, code, text, NULL, 0, HE_PLACE_NONE, 0);
-        he_note *last = &o->into->notes.items[o->into->notes.count - 1];
-        if (last->code == code) { /* there was room */
-            last->count = all - with;
-        }
+    if (with > 0) {
+        he_notes_add_count(&o->into->notes, code, text, all - with);
     }
 }
 

@@ -15,7 +15,7 @@
 
 #define CHECKER "../shared/corpus/check_corpus.py"
 
-static void test_obj_and_off(void **state)
+static void test_files_of_the_corpus(void **state)
 {
     (void)state;
     if (access(CHECKER, R_OK) != 0) {
@@ -23,7 +23,8 @@ static void test_obj_and_off(void **state)
     }
     daemon_process *d = daemon_start(NULL);
     char command[256], line[512], last[512] = "";
-    snprintf(command, sizeof command, "python3 " CHECKER " --base %s --only 'obj|off' 2>&1",
+    snprintf(command, sizeof command,
+             "python3 " CHECKER " --base %s --only '(?i)[.](obj|off|ply|stl)$' 2>&1",
              daemon_url(d));
     FILE *output = popen(command, "r");
     assert_non_null(output);
@@ -39,6 +40,6 @@ static void test_obj_and_off(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_obj_and_off)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_files_of_the_corpus)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

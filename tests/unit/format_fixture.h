@@ -145,6 +145,21 @@ static inline void expect_refused(const char *format, const char *text, he_statu
     expect_bytes_refused(format, text, strlen(text), wanted, line, words);
 }
 
+/* Refused, at this byte, and with these words in the sentence. */
+static inline void expect_refused_at_byte(const char *format, const void *bytes, size_t length,
+                                          he_status wanted, uint64_t at, const char *words)
+{
+    he_import import = {0};
+    he_error err = {0};
+    he_status status = read_bytes(format, bytes, length, &import, &err);
+    if (status != wanted || err.place != HE_PLACE_BYTE || err.at != at ||
+        strstr(err.text, words) == NULL) {
+        fail_msg("got %s, %llu: %s\nwanted %s, byte %llu, %s", he_status_slug(status),
+                 (unsigned long long)err.at, err.text, he_status_slug(wanted),
+                 (unsigned long long)at, words);
+    }
+}
+
 static inline void expect_counts(const he_import *import, size_t vertices, size_t faces,
                                  size_t corners)
 {
@@ -247,12 +262,15 @@ static inline he_mesh *mesh_of_text(const char *format, const char *text)
 }
 
 /* The document, NUL-ended, pulled through a buffer of `size` bytes; freed with free. */
-static inline char *write_pieces(const char *format, const he_mesh *mesh, size_t size,
-                                 he_notes *notes)
+static inline char *write_encoded(const char *format, const char *encoding, const he_mesh *mesh,
+                                  size_t size, he_notes *notes, size_t *out_length)
 {
     he_writer *writer;
     he_error err = {0};
-    if (he_writer_new(he_format_find(format), mesh, 0, &writer, &err) != HE_OK) {
+    const he_format *row = he_format_find(format);
+    int number = he_format_encoding(row, encoding);
+    assert_true(number >= 0);
+    if (he_writer_new(row, mesh, (size_t)number, &writer, &err) != HE_OK) {
         fail_msg("%s", err.text);
     }
     size_t length = 0, capacity = 1024, n;
@@ -276,10 +294,34 @@ static inline char *write_pieces(const char *format, const he_mesh *mesh, size_t
     he_writer_free(writer);
     free(buffer);
     text[length] = '\0';
+    *out_length = length;
     return text;
 }
 
-/* The same through buffers of several sizes. */
+static inline char *write_pieces(const char *format, const he_mesh *mesh, size_t size,
+                                 he_notes *notes)
+{
+    size_t length;
+    return write_encoded(format, "ascii", mesh, size, notes, &length);
+}
+
+/* A document that holds any bytes, the same through buffers of several sizes. */
+static inline char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
+                                he_notes *notes, size_t *length)
+{
+    static const size_t sizes[] = {1, 13, 511, 512, 513, 65536};
+    char *bytes = write_encoded(format, encoding, mesh, 4096, notes, length);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        size_t again;
+        char *other = write_encoded(format, encoding, mesh, sizes[i], NULL, &again);
+        assert_int_equal(again, *length);
+        assert_memory_equal(other, bytes, again);
+        free(other);
+    }
+    return bytes;
+}
+
+/* Text through buffers of several sizes. */
 static inline char *write_text(const char *format, const he_mesh *mesh, he_notes *notes)
 {
     static const size_t sizes[] = {1, 13, 511, 512, 513, 65536};

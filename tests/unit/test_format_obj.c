@@ -459,8 +459,8 @@ static void it_is_recognised(void **state)
     for (size_t i = 0; i < sizeof objs / sizeof *objs; i++) {
         assert_ptr_equal(he_format_sniff(objs[i], strlen(objs[i])), he_format_find("obj"));
     }
-    static const char *const others[] = {"",          "solid x", "ply\n", "glTF",
-                                         "{\"v\":1}", "# only",  "vx 1"};
+    static const char *const others[] = {"",          "sold x", "ply?\n", "glTF",
+                                         "{\"v\":1}", "# only", "vx 1"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         assert_null(he_format_sniff(others[i], strlen(others[i])));
     }

@@ -1,0 +1,177 @@
+/* Mesh files through the api: exported in every encoding, and read back under every name that says
+ * what they are. */
+#include "tests/api/request.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const struct {
+    const char *format, *encoding, *type;
+    unsigned vertices, faces;
+} files[] = {
+    {"obj", "ascii", "model/obj", 8, 6},
+    {"off", "ascii", "model/x-off", 8, 6},
+    {"ply", "ascii", "model/ply", 8, 6},
+    {"ply", "binary", "application/ply", 8, 6},
+    {"ply", "binary_big_endian", "model/ply", 8, 6},
+    {"stl", "ascii", "model/stl", 8, 12},
+    {"stl", "binary", "model/stl", 8, 12},
+};
+
+enum { FILES = sizeof files / sizeof *files };
+
+static bench_reply expect(int status, bench_reply r)
+{
+    if (r.status != status) {
+        fail_msg("%d instead of %d: %s", r.status, status, r.body);
+    }
+    return r;
+}
+
+static api_bench *with_cube(void)
+{
+    api_bench *b = bench_new();
+    bench_reply r = expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}"));
+    bench_reply_free(&r);
+    return b;
+}
+
+static bench_reply export(api_bench *b, size_t i)
+{
+    char target[100];
+    snprintf(target, sizeof target, "/v1/meshes/m/content?format=%s&encoding=%s", files[i].format,
+             files[i].encoding);
+    return expect(200, bench_send(b, "GET", target, NULL, NULL));
+}
+
+static void import(api_bench *b, const char *target, const char *type, const bench_reply *file,
+                   size_t i)
+{
+    const char *const headers[] = {"Content-Type", type, NULL};
+    bench_reply r =
+        expect(201, bench_send_bytes(b, "POST", target, headers, file->body, file->length));
+    const cJSON *counts = cJSON_GetObjectItem(r.json, "counts");
+    const cJSON *report = cJSON_GetObjectItem(r.json, "import");
+    assert_int_equal(cJSON_GetObjectItem(counts, "vertices")->valueint, files[i].vertices);
+    assert_int_equal(cJSON_GetObjectItem(counts, "faces")->valueint, files[i].faces);
+    assert_string_equal(cJSON_GetObjectItem(report, "format")->valuestring, files[i].format);
+    if (strcmp(files[i].format, "stl") == 0) {
+        const cJSON *note = cJSON_GetArrayItem(cJSON_GetObjectItem(report, "warnings"), 0);
+        assert_string_equal(cJSON_GetObjectItem(note, "code")->valuestring, "welded");
+        assert_int_equal(cJSON_GetObjectItem(note, "count")->valueint, 28);
+    }
+    bench_reply_free(&r);
+}
+
+static void what_is_exported_is_read_back(void **state)
+{
+    (void)state;
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < FILES; i++) {
+        char target[60];
+        bench_reply file = export(b, i);
+        import(b, "/v1/meshes", files[i].type, &file, i);
+        import(b, "/v1/meshes", "application/octet-stream", &file, i);
+        snprintf(target, sizeof target, "/v1/meshes?format=%s", files[i].format);
+        import(b, target, "application/octet-stream", &file, i);
+        bench_reply_free(&file);
+    }
+    bench_free(b);
+}
+
+static void each_encoding_has_its_tag(void **state)
+{
+    (void)state;
+    api_bench *b = with_cube();
+    char tags[FILES][100];
+    for (size_t i = 0; i < FILES; i++) {
+        bench_reply file = export(b, i);
+        snprintf(tags[i], sizeof tags[i], "%s", bench_header(&file, "ETag"));
+        for (size_t k = 0; k < i; k++) {
+            assert_string_not_equal(tags[i], tags[k]);
+        }
+        bench_reply_free(&file);
+    }
+    /* what is written unless an encoding is named, by format and by media type */
+    static const char *const accept[] = {"Accept", "model/ply", NULL};
+    bench_reply r = expect(200, bench_send(b, "GET", "/v1/meshes/m/content", accept, NULL));
+    assert_string_equal(bench_header(&r, "Content-Type"), "model/ply");
+    assert_string_equal(bench_header(&r, "ETag"), tags[3]);
+    bench_reply_free(&r);
+    r = expect(200, bench_send(b, "GET", "/v1/meshes/m/content?format=stl", NULL, NULL));
+    assert_string_equal(bench_header(&r, "Content-Type"), "model/stl");
+    assert_string_equal(bench_header(&r, "ETag"), tags[6]);
+    assert_non_null(strstr(bench_header(&r, "Content-Disposition"), "m.stl"));
+    assert_non_null(strstr(bench_header(&r, "Export-Warnings"), "cut into triangles: a face"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static void encodings_that_do_not_exist(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {
+        "/v1/meshes/m/content?format=obj&encoding=binary",
+        "/v1/meshes/m/content?format=stl&encoding=binary_big_endian",
+        "/v1/meshes/m/content?format=json&encoding=ascii",
+        "/v1/meshes/m/content?encoding=binary",
+        "/v1/meshes/m/content?format=ply&encoding=utf-8",
+        "/v1/meshes/m/content?format=glb",
+    };
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        bench_reply r = expect(400, bench_send(b, "GET", targets[i], NULL, NULL));
+        assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "bad_parameter");
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
+static void a_wrong_file_names_its_place(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *type, *body;
+        const char *member;
+        int at;
+    } rows[] = {
+        {"model/ply", "ply\nformat ascii 1.0\nelement face 3\nend_header\n", "line", 3},
+        {"model/stl", "solid\nfacet\nvertex 0 0 0\nendfacet\n", "line", 4},
+        {"model/stl", "short", "byte", 5},
+        {"model/ply",
+         "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty char x\n"
+         "property char y\nproperty char z\nend_header\n12",
+         "byte", 114},
+        {"model/stl", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 -0\nvertex 1 0 0\nendfacet\n", "line",
+         2},
+    };
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const char *const headers[] = {"Content-Type", rows[i].type, NULL};
+        bench_reply r = bench_send(b, "POST", "/v1/meshes", headers, rows[i].body);
+        assert_true(r.status == 400 || r.status == 422);
+        char place[40];
+        snprintf(place, sizeof place, "%s %d", rows[i].member, rows[i].at);
+        if (strstr(r.body, place) == NULL) {
+            fail_msg("no %s in %s", place, r.body);
+        }
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_exported_is_read_back),
+        cmocka_unit_test(each_encoding_has_its_tag),
+        cmocka_unit_test(encodings_that_do_not_exist),
+        cmocka_unit_test(a_wrong_file_names_its_place),
+    };
+    return cmocka_run_group_tests_name("files", tests, NULL, NULL);
+}

@@ -1,0 +1,463 @@
+/* PLY files: every type in every encoding, what becomes of properties, and what is refused. */
+#include "unit/ply_file.h"
+
+#include <float.h>
+#include <math.h>
+
+static void expect_points(const he_import *import, const double (*points)[3], size_t count)
+{
+    assert_int_equal(import->soup.vertex_count, count);
+    for (size_t i = 0; i < count; i++) {
+        const he_vec3 *p = &import->soup.positions[i];
+        assert_true(p->x == points[i][0] && p->y == points[i][1] && p->z == points[i][2]);
+    }
+}
+
+/* --- types --- */
+
+/* A square with every type for its coordinates, counts and corners. */
+static void every_type_in_every_encoding(void **state)
+{
+    (void)state;
+    static const uint32_t corners[] = {0, 1, 2, 0, 2, 3};
+    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+        for (size_t i = 0; i < TYPES * WHOLE_TYPES * WHOLE_TYPES; i++) {
+            size_t type = i % TYPES, count = i / TYPES % WHOLE_TYPES;
+            size_t index = i / TYPES / WHOLE_TYPES;
+            char header[400];
+            snprintf(header, sizeof header,
+                     "element vertex 4\nproperty %s x\nproperty %s y\nproperty %s z\n"
+                     "property %s quality\nelement face 2\nproperty list %s %s %s\nend_header\n",
+                     types[type].names[0], types[type].names[1], types[type].names[i & 1],
+                     types[type].names[0], types[count].names[i & 1], types[index].names[i & 1],
+                     i & 1 ? "vertex_index" : "vertex_indices");
+            file f;
+            begin(&f, e, header);
+            for (size_t v = 0; v < 4; v++) {
+                for (size_t k = 0; k < 3; k++) {
+                    put_value(&f, type, square[v][k]);
+                }
+                put_value(&f, type, types[type].is_signed ? -3 : 77);
+                end_row(&f);
+            }
+            for (size_t k = 0; k < 6; k++) {
+                if (k % 3 == 0) {
+                    put_value(&f, count, 3);
+                }
+                put_value(&f, index, corners[k]);
+                if (k % 3 == 2) {
+                    end_row(&f);
+                }
+            }
+            he_import import = {0};
+            he_error err = {0};
+            if (read_pieces("ply", f.bytes, f.length, 1 + i % 9, NULL, &import, &err) != HE_OK) {
+                fail_msg("%s: %s", header, err.text);
+            }
+            expect_points(&import, square, 4);
+            expect_corners(&import, corners, 6);
+            assert_int_equal(import.notes.count, 0);
+            const he_column *column = find_column(&import, HE_VERTEX, "quality");
+            assert_non_null(column);
+            assert_int_equal(column->type, types[type].column);
+            assert_int_equal(column->rows, 4);
+            he_import_clear(&import);
+        }
+    }
+}
+
+static void extreme_values_arrive(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t type;
+        double value;
+    } rows[] = {{0, -128},       {0, 127},      {1, 255},         {2, -32768},
+                {2, 32767},      {3, 65535},    {4, -2147483648}, {4, 2147483647},
+                {5, 4294967295}, {6, -0.0},     {6, 0.1f},        {7, 0.1},
+                {7, 5e-324},     {7, -DBL_MAX}, {6, 16777216.0},  {7, 1e300}};
+    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            size_t type = rows[i].type;
+            char header[300];
+            snprintf(header, sizeof header,
+                     "element vertex 1\nproperty %s q\nproperty double z\nproperty %s y\n"
+                     "property %s x\nend_header\n",
+                     types[type].names[1], types[type].names[0], types[type].names[1]);
+            file f;
+            begin(&f, e, header);
+            put_value(&f, type, rows[i].value);
+            put_value(&f, DOUBLE, 1.5);
+            put_value(&f, type, rows[i].value);
+            put_value(&f, type, rows[i].value);
+            end_row(&f);
+            he_import import = read_file(&f);
+            he_vec3 wanted = {rows[i].value, rows[i].value, 1.5};
+            assert_memory_equal(import.soup.positions, &wanted, sizeof wanted);
+            const he_column *q = find_column(&import, HE_VERTEX, "q");
+            const void *row = he_column_row(q, 0);
+            if (type == FLOAT) {
+                float value = (float)rows[i].value;
+                assert_memory_equal(row, &value, sizeof value);
+            } else if (type == DOUBLE) {
+                assert_memory_equal(row, &rows[i].value, sizeof rows[i].value);
+            } else if (types[type].is_signed) {
+                int32_t value = (int32_t)rows[i].value;
+                assert_memory_equal(row, &value, sizeof value);
+            } else {
+                uint32_t value = (uint32_t)rows[i].value;
+                assert_memory_equal(row, &value, sizeof value);
+            }
+            he_import_clear(&import);
+        }
+    }
+}
+
+static void elements_and_properties_in_any_order(void **state)
+{
+    (void)state;
+    static const uint32_t corners[] = {0, 1, 2, 3, 0, 2, 3}, groups[] = {7, 9};
+    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+        file f;
+        begin(&f, e,
+              "comment made by hand # not a comment sign\nobj_info anything at all\n"
+              "element face 2\nproperty float angle\n"
+              "property list ushort uchar vertex_index\nproperty uchar group\n\n"
+              "element vertex 4\nproperty double z\n  property\tshort  x\nproperty float y\n"
+              "element edge 0\nend_header\n");
+        put_value(&f, FLOAT, 0.5);
+        put_value(&f, 3, 4);
+        for (size_t k = 0; k < 4; k++) {
+            put_value(&f, UCHAR, corners[k]);
+        }
+        put_value(&f, UCHAR, 7);
+        end_row(&f);
+        put_value(&f, FLOAT, -0.5);
+        put_value(&f, 3, 3);
+        for (size_t k = 4; k < 7; k++) {
+            put_value(&f, UCHAR, corners[k]);
+        }
+        put_value(&f, UCHAR, 9);
+        end_row(&f);
+        for (size_t v = 0; v < 4; v++) {
+            put_value(&f, DOUBLE, square[v][2]);
+            put_value(&f, 2, square[v][0]);
+            put_value(&f, FLOAT, square[v][1]);
+            end_row(&f);
+        }
+        he_import import = read_file(&f);
+        expect_points(&import, square, 4);
+        expect_corners(&import, corners, 7);
+        expect_u32s(&import, HE_FACE, "group", 1, groups, 2);
+        assert_int_equal(find_column(&import, HE_FACE, "angle")->type, HE_FLOAT);
+        assert_int_equal(import.notes.count, 0);
+        he_import_clear(&import);
+    }
+}
+
+/* --- properties --- */
+
+static void properties_become_attributes(void **state)
+{
+    (void)state;
+    static const double points[2][3] = {{1, 2, 3}, {4, 5, 6}};
+    static const uint32_t colors[] = {255, 0, 7, 128, 0, 1, 2, 3}, faces[] = {9, 8, 7};
+    static const float normals[] = {0, 0, 1, 0, 1, 0}, uvs[] = {0.25f, 0.5f, 0.75f, 1};
+    static const double qualities[] = {0.1, -1e300};
+    static const int32_t marks[] = {-5, 5};
+    he_import import =
+        read_text("ply", ASCII "element vertex 2\n" XYZ "property float nx\nproperty float ny\n"
+                               "property float nz\nproperty uchar red\nproperty uchar green\n"
+                               "property uchar blue\nproperty uchar alpha\nproperty float s\n"
+                               "property float t\nproperty double quality\nproperty short mark\n"
+                               "property float u\nelement face 1\n" CORNER
+                               "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                               "end_header\n"
+                               "1 2 3 0 0 1 255 0 7 128 .25 .5 .1 -5 1\n"
+                               "4 5 6 0 1 0 0 1 2 3 .75 1 -1e300 5 2\n3 0 1 0 9 8 7\n");
+    expect_points(&import, points, 2);
+    expect_u32s(&import, HE_VERTEX, "color", 4, colors, 2);
+    expect_u32s(&import, HE_FACE, "color", 3, faces, 1);
+    expect_doubles(&import, HE_VERTEX, "quality", 1, qualities, 2);
+    const he_column *column = find_column(&import, HE_VERTEX, "normal");
+    assert_int_equal(column->type, HE_FLOAT);
+    assert_int_equal(column->components, 3);
+    assert_int_equal(column->rule, HE_INTERPOLATE);
+    assert_memory_equal(column->data, normals, sizeof normals);
+    column = find_column(&import, HE_VERTEX, "uv");
+    assert_int_equal(column->components, 2);
+    assert_memory_equal(column->data, uvs, sizeof uvs);
+    column = find_column(&import, HE_VERTEX, "mark");
+    assert_int_equal(column->rule, HE_COPY);
+    assert_memory_equal(column->data, marks, sizeof marks);
+    assert_non_null(find_column(&import, HE_VERTEX, "u"));
+    assert_int_equal(import.notes.count, 0);
+    he_import_clear(&import);
+}
+
+static void groups_have_several_spellings(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *properties, *attribute;
+        uint32_t components;
+        he_type type;
+    } rows[] = {
+        {"property uchar r\nproperty uchar g\nproperty uchar b\n", "color", 3, HE_UINT32},
+        {"property uchar b\nproperty uchar g\nproperty uchar r\nproperty uchar a\n", "color", 4,
+         HE_UINT32},
+        {"property float red\nproperty float green\nproperty float blue\n", "color", 3, HE_FLOAT},
+        {"property float u\nproperty float v\n", "uv", 2, HE_FLOAT},
+        {"property double texture_u\nproperty float texture_v\n", "uv", 2, HE_DOUBLE},
+        {"property float texture_s\nproperty float texture_t\n", "uv", 2, HE_FLOAT},
+        {"property char nz\nproperty uchar ny\nproperty short nx\n", "normal", 3, HE_DOUBLE},
+        {"property float nx\nproperty float nz\n", "nx", 1, HE_FLOAT},
+        {"property int alpha\n", "alpha", 1, HE_INT32},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[500];
+        snprintf(text, sizeof text, ASCII "element vertex 1\n" XYZ "%send_header\n0 0 0 1 2 3 4\n",
+                 rows[i].properties);
+        he_import import = read_text("ply", text);
+        const he_column *column = find_column(&import, HE_VERTEX, rows[i].attribute);
+        assert_non_null(column);
+        assert_int_equal(column->components, rows[i].components);
+        assert_int_equal(column->type, rows[i].type);
+        he_import_clear(&import);
+    }
+}
+
+static void what_is_left_out_is_noted(void **state)
+{
+    (void)state;
+    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+        file f;
+        begin(&f, e,
+              "element material 2\nproperty float shine\nproperty int number\n"
+              "element vertex 3\n" XYZ "property list uchar float weights\n"
+              "element face 1\n" CORNER "property list int double texcoord\n"
+              "element strange 2\nproperty list uchar ushort pairs\nproperty uchar last\n"
+              "end_header\n");
+        for (size_t k = 0; k < 2; k++) {
+            put_value(&f, FLOAT, 1);
+            put_value(&f, INT, 2);
+            end_row(&f);
+        }
+        for (size_t v = 0; v < 3; v++) {
+            for (size_t k = 0; k < 3; k++) {
+                put_value(&f, FLOAT, square[v][k]);
+            }
+            put_value(&f, UCHAR, (double)v);
+            for (size_t k = 0; k < v; k++) {
+                put_value(&f, FLOAT, 0.5);
+            }
+            end_row(&f);
+        }
+        for (size_t k = 0; k < 4; k++) {
+            put_value(&f, k == 0 ? UCHAR : INT, k == 0 ? 3 : (double)k - 1);
+        }
+        put_value(&f, INT, 6);
+        for (size_t k = 0; k < 6; k++) {
+            put_value(&f, DOUBLE, 0.25);
+        }
+        end_row(&f);
+        for (size_t k = 0; k < 2; k++) {
+            put_value(&f, UCHAR, 2);
+            put_value(&f, 3, 2);
+            put_value(&f, 3, 2);
+            put_value(&f, UCHAR, 2);
+            end_row(&f);
+        }
+        he_import import = read_file(&f);
+        expect_counts(&import, 3, 1, 3);
+        expect_points(&import, square, 3);
+        expect_note(&import, "ignored_element", "material", 1, 3);
+        expect_note(&import, "ignored_list", "weights", 1, 10);
+        expect_note(&import, "ignored_list", "texcoord", 1, 13);
+        expect_note(&import, "ignored_element", "strange", 1, 14);
+        assert_int_equal(import.notes.count, 4);
+        assert_int_equal(import.soup.column_count, 0);
+        he_import_clear(&import);
+    }
+    he_import import = read_text(
+        "ply", ASCII "element vertex 1\n" XYZ
+                     "property float a_name_of_more_bytes_than_the_name_of_an_attribute_can_have_"
+                     "in_all\nproperty float caf\xC3\xA9\nproperty uchar uv\nproperty float s\n"
+                     "property float t\nend_header\n0 0 0 1 2 3 4 5 6 7\n\n1 2\n3\n");
+    expect_note(&import, "ignored_property", "caf??", 1, 8);
+    expect_note(&import, "ignored_property", "uv", 1, 9);
+    expect_note(&import, "extra_numbers", "", 1, 13);
+    expect_note(&import, "trailing_lines", "", 2, 15);
+    assert_int_equal(import.notes.count, 5);
+    he_import_clear(&import);
+    static const char trailing[] =
+        LITTLE "element vertex 1\nproperty char x\nproperty char y\nproperty char z\nend_header\n"
+               "\1\2\3\n\0\0";
+    assert_int_equal(read_bytes("ply", trailing, sizeof trailing - 1, &import, &(he_error){0}),
+                     HE_OK);
+    expect_note(&import, "trailing_bytes", "", 1, sizeof trailing - 4);
+    he_import_clear(&import);
+}
+
+static void values_that_are_not_finite(void **state)
+{
+    (void)state;
+    static const float wanted[] = {0, 1, 0, 0};
+    for (encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
+        file f;
+        begin(&f, e, "element vertex 4\n" XYZ "property float q\nend_header\n");
+        static const double values[] = {NAN, 1, INFINITY, -INFINITY};
+        for (size_t v = 0; v < 4; v++) {
+            for (size_t k = 0; k < 3; k++) {
+                put_value(&f, FLOAT, 0);
+            }
+            put_value(&f, FLOAT, values[v]);
+        }
+        he_import import = read_file(&f);
+        assert_memory_equal(find_column(&import, HE_VERTEX, "q")->data, wanted, sizeof wanted);
+        expect_note(&import, "not_finite", "q", 3, f.length - 64);
+        he_import_clear(&import);
+    }
+    he_import import =
+        read_text("ply", ASCII "element vertex 4\n" XYZ "property float q\nend_header\n"
+                               "0 0 0 nan\n0 0 0 1\n0 0 0 1e999\n0 0 0 -1e39\n");
+    assert_memory_equal(find_column(&import, HE_VERTEX, "q")->data, wanted, sizeof wanted);
+    expect_note(&import, "not_finite", "q", 3, 9);
+    he_import_clear(&import);
+}
+
+/* --- traps --- */
+
+static void strips_become_triangles(void **state)
+{
+    (void)state;
+    static const uint32_t corners[] = {0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 0, 1, 2, 3, 0, 4, 2};
+    static const double strips[] = {0, 1, 2, 3, 4, 0, -1, 1, 2, 3, -1, -1, 2, 3, -1, 0, 4, 2};
+    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+        file f;
+        begin(&f, e,
+              "element vertex 5\n" XYZ
+              "element tristrips 1\nproperty list int int vertex_indices\nend_header\n");
+        for (size_t v = 0; v < 5; v++) {
+            for (size_t k = 0; k < 3; k++) {
+                put_value(&f, FLOAT, (double)(v * k));
+            }
+            end_row(&f);
+        }
+        put_value(&f, INT, 18);
+        for (size_t k = 0; k < 18; k++) {
+            put_value(&f, INT, strips[k]);
+        }
+        end_row(&f);
+        he_import import = read_file(&f);
+        expect_counts(&import, 5, 6, 18);
+        expect_corners(&import, corners, 18);
+        assert_int_equal(he_places_find(&import.faces, 0), e == TEXT ? 15 : f.length - 64);
+        assert_int_equal(he_places_find(&import.faces, 5), e == TEXT ? 15 : f.length - 4);
+        he_import_clear(&import);
+    }
+    /* strips of their own rows, and faces beside them with an attribute */
+    static const uint32_t both[] = {0, 1, 2, 2, 1, 3, 0, 2, 1}, marks[] = {0, 0, 7};
+    he_import import = read_text(
+        "ply", ASCII "element vertex 4\n" XYZ
+                     "element tristrips 3\nproperty list uchar int vertex_index\nproperty int id\n"
+                     "element face 1\n" CORNER "property uint mark\nend_header\n"
+                     "0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2 1\n2 0 1 2\n3 2 1 3 3\n3 0 2 1 7\n");
+    expect_corners(&import, both, 9);
+    expect_u32s(&import, HE_FACE, "mark", 1, marks, 3);
+    expect_note(&import, "ignored_property", "id", 1, 9);
+    he_import_clear(&import);
+}
+
+static void line_ends_of_the_header(void **state)
+{
+    (void)state;
+    /* the first coordinate's first byte is a line feed */
+    static const char crlf[] = "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\n"
+                               "property short x\r\nproperty uchar y\r\nproperty char z\r\n"
+                               "end_header\r\n\n\r\xFF\r";
+    he_import import = {0};
+    he_error err = {0};
+    assert_int_equal(read_bytes("ply", crlf, sizeof crlf - 1, &import, &err), HE_OK);
+    assert_true(import.soup.positions[0].x == 0x0D0A && import.soup.positions[0].y == 255 &&
+                import.soup.positions[0].z == 13);
+    assert_int_equal(import.notes.count, 0);
+    he_import_clear(&import);
+    import = read_text("ply", "\r\n\nply\r\nformat ascii 1.0\r\nelement vertex 1\r\n" XYZ
+                              "end_header\r\n\r\ncomment not a row\r\n1 2\t3");
+    expect_counts(&import, 1, 0, 0);
+    assert_int_equal(he_places_find(&import.vertices, 0), 12);
+    he_import_clear(&import);
+    import = read_text("ply", "\xEF\xBB\xBFply\nformat ascii 1.0\nelement face 0\nend_header");
+    expect_counts(&import, 0, 0, 0);
+    he_import_clear(&import);
+}
+
+static void places_are_known(void **state)
+{
+    (void)state;
+    he_import import = read_text("ply", ASCII "element vertex 4\n" XYZ "element face 3\n" CORNER
+                                              "end_header\n0 0 0\n1 0 0\n\n1 1 0\n0 1 0\n3 0 1 2\n"
+                                              "3 0 2 3\n3 0 2 0\n");
+    he_mesh *mesh = NULL;
+    he_error err = {0};
+    assert_int_equal(he_build(&import.soup, 0, &mesh, NULL, &err), HE_REPEATED_CORNER);
+    he_import_locate(&import, &err);
+    assert_int_equal(err.place, HE_PLACE_LINE);
+    assert_int_equal(err.at, 17);
+    he_import_clear(&import);
+    file f;
+    begin(&f, MOST_FIRST,
+          "element vertex 3\nproperty char x\nproperty char y\nproperty char z\nelement face 4\n"
+          "property list uchar char vertex_indices\nend_header\n");
+    size_t body = f.length;
+    for (size_t k = 0; k < 9; k++) {
+        put_value(&f, UCHAR, 0);
+    }
+    static const double faces[] = {3, 0, 1, 2, 4, 0, 1, 2, 0, 3, 0, 2, 1, 2, 0, 1};
+    for (size_t k = 0; k < sizeof faces / sizeof *faces; k++) {
+        put_value(&f, UCHAR, faces[k]);
+    }
+    import = read_file(&f);
+    static const size_t places[] = {9, 13, 18, 22};
+    for (uint32_t i = 0; i < 4; i++) {
+        assert_int_equal(he_places_find(&import.faces, i), body + places[i]);
+    }
+    for (uint32_t v = 0; v < 3; v++) {
+        assert_int_equal(he_places_find(&import.vertices, v), body + 3 * v);
+    }
+    he_import_clear(&import);
+}
+
+static void first_bytes_tell(void **state)
+{
+    (void)state;
+    static const char *const plys[] = {"ply\n", "ply\r\nformat", "\n ply \n", "\xEF\xBB\xBFply\n"};
+    static const char *const others[] = {"", "ply", "plyx\n", "PLY\n", "OFF\n", "solid ply\n"};
+    for (size_t i = 0; i < sizeof plys / sizeof *plys; i++) {
+        assert_ptr_equal(he_format_sniff(plys[i], strlen(plys[i])), he_format_find("ply"));
+    }
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        assert_ptr_not_equal(he_format_sniff(others[i], strlen(others[i])), he_format_find("ply"));
+    }
+    assert_ptr_equal(he_format_of_media_type("model/ply"), he_format_find("ply"));
+    assert_ptr_equal(he_format_of_extension("PLY"), he_format_find("ply"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_type_in_every_encoding),
+        cmocka_unit_test(extreme_values_arrive),
+        cmocka_unit_test(elements_and_properties_in_any_order),
+        cmocka_unit_test(properties_become_attributes),
+        cmocka_unit_test(groups_have_several_spellings),
+        cmocka_unit_test(what_is_left_out_is_noted),
+        cmocka_unit_test(values_that_are_not_finite),
+        cmocka_unit_test(strips_become_triangles),
+        cmocka_unit_test(line_ends_of_the_header),
+        cmocka_unit_test(places_are_known),
+        cmocka_unit_test(first_bytes_tell),
+    };
+    return cmocka_run_group_tests_name("format_ply", tests, NULL, NULL);
+}
