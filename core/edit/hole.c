@@ -57,7 +57,7 @@ he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out
 {
     he_ids loop = {0};
     he_poke poke = {.keep = false};
-    he_triangles triangles = {.corners = NULL};
+    he_triangles triangles = {.side = NULL};
     he_filled made = {.vertex = {HE_NONE}};
     he_need need = {0};
     he_status status = check(m, h, &loop, err);

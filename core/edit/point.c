@@ -2,17 +2,6 @@
 
 #include <float.h>
 
-uint32_t he_loop_length(const he_mesh *m, he_halfedge h)
-{
-    uint32_t length = 0;
-    he_halfedge x = h;
-    do {
-        length++;
-        x = he_next(m, x);
-    } while (x.i != h.i);
-    return length;
-}
-
 /* Each corner counts 1/n of `scale`. */
 static he_vec3 sum_corners(const he_mesh *m, he_halfedge h, double scale)
 {

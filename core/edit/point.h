@@ -27,7 +27,5 @@ static inline he_vec3 he_point_between(he_vec3 a, he_vec3 b, double t)
 
 /* The mean of the corners of the loop of h: of a face, or of a hole. Finite. */
 he_vec3 he_loop_mean(const he_mesh *m, he_halfedge h);
-/* How many half-edges the loop of h has. */
-uint32_t he_loop_length(const he_mesh *m, he_halfedge h);
 
 #endif

@@ -30,10 +30,10 @@ static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *f
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */
-        if (plan.flat.n > 3) {
+        if (plan.of.flat.n > 3) {
             he_triangles_commit(m, &plan, true, edges, faces);
         }
-        if (plan.degenerate && degenerate != NULL) {
+        if (plan.of.degenerate && degenerate != NULL) {
             degenerate->ids[degenerate->count++] = f.i;
         }
     }

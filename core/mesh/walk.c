@@ -16,13 +16,18 @@ uint32_t he_vertex_degree(const he_mesh *m, he_vertex v)
 
 uint32_t he_face_degree(const he_mesh *m, he_face f)
 {
-    uint32_t degree = 0;
-    he_halfedge first = he_face_halfedge(m, f), h = first;
+    return he_loop_length(m, he_face_halfedge(m, f));
+}
+
+uint32_t he_loop_length(const he_mesh *m, he_halfedge h)
+{
+    uint32_t length = 0;
+    he_halfedge x = h;
     do {
-        degree++;
-        h = he_next(m, h);
-    } while (h.i != first.i);
-    return degree;
+        length++;
+        x = he_next(m, x);
+    } while (x.i != h.i);
+    return length;
 }
 
 uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)

@@ -98,6 +98,8 @@ static inline bool he_face_is_live(const he_mesh *m, he_face f)
 uint32_t he_vertex_degree(const he_mesh *m, he_vertex v);
 /* Corners of a face; linear in the answer. */
 uint32_t he_face_degree(const he_mesh *m, he_face f);
+/* Half-edges of the loop of h: of a face, or of a hole; linear in the answer. */
+uint32_t he_loop_length(const he_mesh *m, he_halfedge h);
 /* Fans at a vertex: 0 isolated, 1 manifold, more at a bow-tie. */
 uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
 /* The half-edge from a to b, HE_NONE when no edge joins them. Turns about both in step, so it

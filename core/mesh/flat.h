@@ -5,8 +5,8 @@
  * hidden-surface algorithms", 1974). It is the vector area of the loop, so a loop that is not
  * planar is seen from where it looks largest, and runs counter-clockwise. Coordinates are scaled
  * by a power of two to lie within [-2, 2]: no size of mesh overflows or vanishes. */
-#ifndef HE_EDIT_FLAT_H
-#define HE_EDIT_FLAT_H
+#ifndef HE_MESH_FLAT_H
+#define HE_MESH_FLAT_H
 
 #include "mesh/walk.h"
 

@@ -1,6 +1,6 @@
-#include "edit/flat.h"
+#include "mesh/flat.h"
 
-#include "edit/point.h"
+#include <math.h>
 
 /* Twice the area of a triangle, relative to its squared sides, under which it has none. */
 static const double THIN = 1e-12;
