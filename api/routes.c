@@ -8,6 +8,7 @@
 
 static const char *const json[] = {"application/json", NULL};
 static const char *const merge_patch[] = {"application/merge-patch+json", "application/json", NULL};
+static const char *const octets[] = {"application/octet-stream", NULL};
 static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
 static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
 static const char *const mesh_in[] = {"application/json", "model/obj", "model/x-off",
@@ -141,6 +142,20 @@ static const api_route routes[] = {
      .response = "document",
      .summary = "Export a mesh",
      .doc = "In the format that `format` or Accept asks for."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/geometry",
+     .name = "geometry_get",
+     .run = api_geometry_get,
+     .flags = API_COSTLY,
+     .produces = octets,
+     .statuses = {200, 304},
+     .summary = "Arrays to draw a mesh from",
+     .doc = "Little-endian: a header of 96 bytes (\"HEDG\", u32 version 1, u64 revision, u64 base, "
+            "u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x 3 "
+            "origin, f64 scale, 16 bytes of zeros); then for each vertex id f32 x 4, (position - "
+            "origin) * scale and 0 dead, 1 used or 2 isolated; then for each triangle u32 x 4, "
+            "three vertices and the face's id with bits 29 to 31 for the sides that are edges of "
+            "the face. The base is 0: these are all rows."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/copy",
      .name = "mesh_copy",

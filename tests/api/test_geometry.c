@@ -1,0 +1,329 @@
+/* The arrays to draw from, against the polygons of the mesh. */
+#include "tests/api/specimens.h"
+
+enum { HEADER = 96, ROW = 16 };
+
+static const char PATH[] = "/v1/meshes/m/geometry";
+
+static uint32_t u32_at(const char *p)
+{
+    const unsigned char *b = (const unsigned char *)p;
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static uint64_t u64_at(const char *p)
+{
+    return u32_at(p) | (uint64_t)u32_at(p + 4) << 32;
+}
+
+static double double_at(const char *p)
+{
+    uint64_t bits = u64_at(p);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static float float_at(const char *p)
+{
+    uint32_t bits = u32_at(p);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* An answer taken apart. */
+typedef struct arrays {
+    bench_reply reply;
+    uint64_t revision;
+    uint32_t vertices, triangles;
+    double origin[3], scale;
+    const char *vertex, *triangle;
+} arrays;
+
+static arrays fetch(api_bench *b)
+{
+    arrays a = {.reply = bench_send(b, "GET", PATH, NULL, NULL)};
+    const char *body = a.reply.body;
+    assert_int_equal(a.reply.status, 200);
+    assert_string_equal(bench_header(&a.reply, "Content-Type"), "application/octet-stream");
+    assert_true(a.reply.length >= HEADER);
+    assert_memory_equal(body, "HEDG", 4);
+    assert_int_equal(u32_at(body + 4), 1);
+    a.revision = u64_at(body + 8);
+    assert_true(u64_at(body + 16) == 0);
+    a.vertices = u32_at(body + 40);
+    a.triangles = u32_at(body + 44);
+    assert_true(u64_at(body + 24) == (uint64_t)a.vertices * ROW);
+    assert_true(u64_at(body + 32) == (uint64_t)a.triangles * ROW);
+    assert_true(a.reply.length == HEADER + ((size_t)a.vertices + a.triangles) * ROW);
+    for (int i = 0; i < 3; i++) {
+        a.origin[i] = double_at(body + 48 + 8 * i);
+    }
+    a.scale = double_at(body + 72);
+    assert_true(u64_at(body + 80) == 0 && u64_at(body + 88) == 0);
+    a.vertex = body + HEADER;
+    a.triangle = a.vertex + (size_t)a.vertices * ROW;
+    return a;
+}
+
+static unsigned corner_of(const arrays *a, unsigned triangle, unsigned i)
+{
+    return u32_at(a->triangle + (size_t)triangle * ROW + 4 * i);
+}
+
+static unsigned face_of(const arrays *a, unsigned triangle)
+{
+    return corner_of(a, triangle, 3) & ((1u << 29) - 1);
+}
+
+/* Is from -> to the half-edge of a face, and which? */
+static unsigned side_of(const pg_mesh *pg, unsigned f, unsigned from, unsigned to)
+{
+    for (unsigned h = 0; h < pg->halfedges; h++) {
+        if (pg->face[h] == f && pg->origin[h] == from && pg->origin[h ^ 1u] == to) {
+            return h;
+        }
+    }
+    return PG_NONE;
+}
+
+/* Half of the cross products of a face's triangles, in the mesh's own coordinates. */
+static void add_area(const pg_mesh *pg, const arrays *a, unsigned triangle, double sum[3])
+{
+    const double *p = pg->position[corner_of(a, triangle, 0)];
+    const double *q = pg->position[corner_of(a, triangle, 1)];
+    const double *r = pg->position[corner_of(a, triangle, 2)];
+    for (int i = 0; i < 3; i++) {
+        int u = (i + 1) % 3, v = (i + 2) % 3;
+        sum[i] += ((q[u] - p[u]) * (r[v] - p[v]) - (q[v] - p[v]) * (r[u] - p[u])) / 2;
+    }
+}
+
+static void check_triangles(const pg_mesh *pg, const arrays *a)
+{
+    bool marked[PG_HALFEDGES] = {false};
+    unsigned triangle = 0, edges = 0, corners = 0;
+    for (unsigned f = 0; f < pg->faces; f++) {
+        double sum[3] = {0, 0, 0}, wanted[3];
+        unsigned begin = triangle;
+        for (; triangle < a->triangles && face_of(a, triangle) == f; triangle++) {
+            add_area(pg, a, triangle, sum);
+            for (unsigned i = 0; i < 3; i++) {
+                unsigned from = corner_of(a, triangle, i), to = corner_of(a, triangle, (i + 1) % 3);
+                unsigned h = side_of(pg, f, from, to);
+                bool mark = (corner_of(a, triangle, 3) >> (29 + i) & 1) != 0;
+                assert_int_equal(mark, h != PG_NONE);
+                if (mark) {
+                    assert_false(marked[h]);
+                    marked[h] = true;
+                    edges++;
+                }
+            }
+        }
+        assert_int_equal(triangle - begin, pg->degree[f] - 2);
+        pg_area(pg, f, wanted);
+        for (int i = 0; i < 3; i++) {
+            assert_true(fabs(sum[i] - wanted[i]) < 1e-9);
+        }
+        corners += pg->degree[f];
+    }
+    assert_int_equal(triangle, a->triangles);
+    assert_int_equal(edges, corners);
+}
+
+static void check_vertices(const pg_mesh *pg, const arrays *a)
+{
+    assert_int_equal(a->vertices, pg->vertices);
+    for (unsigned v = 0; v < a->vertices; v++) {
+        const char *row = a->vertex + (size_t)v * ROW;
+        double length = 0;
+        for (int i = 0; i < 3; i++) {
+            double view = float_at(row + 4 * i);
+            length += view * view;
+            assert_true(fabs(view / a->scale + a->origin[i] - pg->position[v][i]) * a->scale <
+                        1e-6);
+        }
+        assert_true(length <= 1);
+        assert_true(float_at(row + 12) == (pg_is_isolated(pg, v) ? 2 : 1));
+    }
+}
+
+static void try_arrays(api_bench *b, const pg_mesh *pg)
+{
+    arrays a = fetch(b);
+    assert_true(a.revision == 1);
+    check_vertices(pg, &a);
+    check_triangles(pg, &a);
+    bench_reply_free(&a.reply);
+}
+
+static void test_each_specimen(void **state)
+{
+    (void)state;
+    for_each_specimen(try_arrays);
+}
+
+static void edit(api_bench *b, const char *body)
+{
+    bench_reply r = bench_send(b, "POST", "/v1/meshes/m/edits", NULL, body);
+    if (r.status != 200) {
+        fail_msg("%s: %d %s", body, r.status, r.body);
+    }
+    bench_reply_free(&r);
+}
+
+/* What is deleted leaves a gap among the vertices and none among the triangles. */
+static void test_rows_keep_their_ids_when_others_die(void **state)
+{
+    (void)state;
+    pg_mesh pg;
+    api_bench *b = begin("0123,7654,1045,2156,3267,0374", &pg);
+    edit(b, "{\"ops\":[{\"op\":\"face_delete\",\"face\":2},{\"op\":\"vertex_delete\","
+            "\"vertex\":8}]}");
+    arrays a = fetch(b);
+    assert_true(a.revision == 2);
+    assert_int_equal(a.vertices, 9);
+    assert_int_equal(a.triangles, 10);
+    static const char zeros[ROW];
+    assert_memory_equal(a.vertex + 8 * ROW, zeros, ROW);
+    static const unsigned faces[] = {0, 0, 1, 1, 3, 3, 4, 4, 5, 5};
+    for (unsigned i = 0; i < 10; i++) {
+        assert_int_equal(face_of(&a, i), faces[i]);
+    }
+    bench_reply_free(&a.reply);
+    bench_free(b);
+}
+
+/* An edit and its undo give the rows there were: only the revision differs. */
+static void test_undo_brings_the_same_rows(void **state)
+{
+    (void)state;
+    pg_mesh pg;
+    api_bench *b = begin("0123,7654,1045,2156,3267,0374", &pg);
+    arrays before = fetch(b);
+    edit(b, "{\"op\":\"vertex_delete\",\"vertex\":8}");
+    bench_reply undone = bench_send(b, "POST", "/v1/meshes/m/undo", NULL, NULL);
+    assert_int_equal(undone.status, 200);
+    arrays after = fetch(b);
+    assert_true(after.revision == 3);
+    assert_int_equal(before.reply.length, after.reply.length);
+    assert_memory_equal(before.reply.body + 16, after.reply.body + 16, before.reply.length - 16);
+    bench_reply_free(&undone);
+    bench_reply_free(&before.reply);
+    bench_reply_free(&after.reply);
+    bench_free(b);
+}
+
+static void test_not_modified_until_it_is(void **state)
+{
+    (void)state;
+    pg_mesh pg;
+    api_bench *b = begin("012,023", &pg);
+    arrays a = fetch(b);
+    char etag[128];
+    snprintf(etag, sizeof etag, "%s", bench_header(&a.reply, "ETag"));
+    assert_true(strlen(etag) > 2);
+    bench_reply_free(&a.reply);
+    const char *const none[] = {"If-None-Match", etag, NULL};
+    bench_reply same = bench_send(b, "GET", PATH, none, NULL);
+    assert_int_equal(same.status, 304);
+    assert_int_equal(same.length, 0);
+    bench_reply_free(&same);
+    edit(b, "{\"op\":\"face_poke\",\"face\":0}");
+    bench_reply other = bench_send(b, "GET", PATH, none, NULL);
+    assert_int_equal(other.status, 200);
+    assert_string_not_equal(bench_header(&other, "ETag"), etag);
+    bench_reply_free(&other);
+    bench_free(b);
+}
+
+static void test_refusals(void **state)
+{
+    (void)state;
+    pg_mesh pg;
+    api_bench *b = begin("012", &pg);
+    const char *const json[] = {"Accept", "application/json", NULL};
+    bench_reply r = bench_send(b, "GET", PATH, json, NULL);
+    assert_int_equal(r.status, 406);
+    bench_reply_free(&r);
+    static const char *const wrong[] = {"/v1/meshes/m/geometry?since=1", "/v1/meshes/m/geometry?x"};
+    for (int i = 0; i < 2; i++) {
+        r = bench_send(b, "GET", wrong[i], NULL, NULL);
+        assert_int_equal(r.status, 400);
+        bench_reply_free(&r);
+    }
+    r = bench_send(b, "GET", "/v1/meshes/gone/geometry", NULL, NULL);
+    assert_int_equal(r.status, 404);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* --- memory --- */
+
+static long allocations, failing;
+
+static void *fail_one(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    return ++allocations == failing ? NULL : realloc(memory, size);
+}
+
+/* Each allocation in turn fails: the answer is whole or a refusal, never something between. */
+static void test_each_allocation_failing(void **state)
+{
+    (void)state;
+    pg_mesh pg;
+    api_bench *b = bench_new();
+    /* A star, which is no fan. */
+    pg_make(&pg, "01234567", 0);
+    for (unsigned v = 0; v < 8; v++) {
+        double radius = v % 2 == 0 ? 4 : 1, angle = v * acos(-1) / 4;
+        pg.position[v][0] = radius * cos(angle);
+        pg.position[v][1] = radius * sin(angle);
+        pg.position[v][2] = 0;
+    }
+    put_mesh(b, &pg);
+    arrays whole = fetch(b);
+    unsigned refused = 0;
+    bool done = false;
+    for (failing = 1; !done; failing++) {
+        static const he_mem_hook hook = {fail_one, NULL};
+        bench_reply r = {0};
+        allocations = 0;
+        he_mem_set_hook(&hook);
+        bool answered = bench_try(b, "GET", PATH, NULL, NULL, 0, &r);
+        done = allocations < failing;
+        he_mem_set_hook(NULL);
+        if (answered && r.status == 200) {
+            assert_int_equal(r.length, whole.reply.length);
+            assert_memory_equal(r.body, whole.reply.body, r.length);
+        } else {
+            assert_true(!answered || r.status == 507 || r.status == 500);
+            refused++;
+        }
+        if (answered) {
+            bench_reply_free(&r);
+        }
+    }
+    assert_true(refused > 3);
+    bench_reply_free(&whole.reply);
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_each_specimen),
+        cmocka_unit_test(test_rows_keep_their_ids_when_others_die),
+        cmocka_unit_test(test_undo_brings_the_same_rows),
+        cmocka_unit_test(test_not_modified_until_it_is),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_each_allocation_failing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
