@@ -5,9 +5,10 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 
 import { PerspectiveCamera, Vector3 } from '../../web/node_modules/three/build/three.module.js';
-import { Elements, pack } from '../../web/src/geometry.js';
+import { middleOf } from '../../web/src/arrows.js';
+import { pointAt, unpack } from '../../web/src/geometry.js';
 import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance } from '../../web/src/view.js';
-import { getAll } from './daemon.mjs';
+import { get, getGeometry } from './daemon.mjs';
 
 // The packages are the page's: they live in web/node_modules.
 const require = createRequire(new URL('../../web/package.json', import.meta.url));
@@ -101,26 +102,32 @@ export async function checkAccessible(page, state) {
 // Where elements of a mesh just opened are on the canvas, from the API's numbers and a camera put
 // where view.js says.
 export async function projector(page, daemon, mesh) {
-    const elements = new Elements();
-    (await getAll(daemon, mesh, 'vertices')).forEach((vertex) => elements.addVertex(vertex));
-    const { vertices, vertexIds, radius } = pack(elements);
+    const geometry = unpack(await getGeometry(daemon, mesh));
     const { width, height } = await page.locator('#canvas').boundingBox();
     const camera = new PerspectiveCamera(FIELD_OF_VIEW, width / height, 0.01, 100);
+    const center = new Vector3(...geometry.center);
     camera.up.set(...UP);
-    camera.position.set(...DIRECTION).multiplyScalar(fitDistance(width / height) * radius);
-    camera.lookAt(0, 0, 0);
+    camera.position.set(...DIRECTION);
+    camera.position.multiplyScalar(fitDistance(width / height) * geometry.radius).add(center);
+    camera.lookAt(center);
     camera.updateMatrixWorld();
-    const placeOf = (id) => {
-        const slot = vertexIds.indexOf(id);
-        return new Vector3(...vertices.subarray(4 * slot, 4 * slot + 3));
+    const placeOf = (id) => new Vector3(...pointAt(geometry, id));
+    const toCanvas = (place) => {
+        place.project(camera);
+        return { x: ((place.x + 1) / 2) * width, y: ((1 - place.y) / 2) * height };
     };
     const middle = (ids) =>
         ids.reduce((sum, id) => sum.add(placeOf(id)), new Vector3()).divideScalar(ids.length);
     return {
         // The pixel of the mean of some vertices.
         at(ids) {
-            const place = middle(ids).project(camera);
-            return { x: ((place.x + 1) / 2) * width, y: ((1 - place.y) / 2) * height };
+            return toCanvas(middle(ids));
+        },
+        // The pixel in the middle of a half-edge's arrow.
+        async arrow(id) {
+            const halfedge = await get(daemon, `/${mesh}/halfedges/${id}`);
+            const { face: across } = await get(daemon, `/${mesh}/halfedges/${halfedge.twin}`);
+            return toCanvas(new Vector3(...middleOf(geometry, { ...halfedge, across })));
         },
         // Does a face of a convex mesh turn its front to the camera?
         isSeen({ vertices: ids }) {
@@ -182,4 +189,10 @@ export async function readCanvas(page) {
 // The colours of render.js and shaders.js, loosely.
 export const isBackground = ([r, g, b]) => r < 20 && g < 24 && b < 30;
 export const isChosen = ([r, g, b]) => r > 90 && r > g + 25 && g > b + 25;
+export const isBoundary = ([r, g, b]) => r < 100 && g > 150 && b > 170;
+export const isNext = ([r, g, b]) => g > 180 && g > r + 60 && g > b + 60;
+export const isPrev = ([r, g, b]) => r > 180 && b > 200 && g < 160;
+export const isTwin = ([r, g, b]) => b > 200 && r < 140 && g > 120 && g < 200;
+export const isSelf = ([r, g, b]) => r > 220 && g > 150 && g < 200 && b < 110;
+export const isNear = ([r, g, b]) => r > 225 && g > 225 && b > 225;
 export const isSurface = ([r, g, b]) => r > 60 && b > r && b - r < 60 && g >= r;

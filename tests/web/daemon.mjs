@@ -56,6 +56,15 @@ export function get(daemon, path) {
     return call(`${daemon.url}/v1/meshes${path}`);
 }
 
+// The arrays to draw a mesh from, as they came.
+export async function getGeometry(daemon, mesh) {
+    const answer = await fetch(`${daemon.url}/v1/meshes/${mesh}/geometry`);
+    if (!answer.ok) {
+        throw new Error(`geometry of ${mesh}: ${answer.status}`);
+    }
+    return answer.arrayBuffer();
+}
+
 export function post(daemon, path, body, type = 'application/json') {
     return call(`${daemon.url}/v1/meshes${path}`, {
         method: 'POST',

@@ -15,6 +15,7 @@ import {
     waitForFrame,
 } from './browser.mjs';
 import { get, getAll, post, startDaemon } from './daemon.mjs';
+import { checkInspector, click, expectToast, openMesh as open, setMode } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -42,46 +43,7 @@ f 2 3 6 5
 f 3 1 4 6
 `;
 
-// A daemon with one mesh, and the page that shows it.
-async function openMesh(t, document, options) {
-    const daemon = await startDaemon(t);
-    const { id: mesh } = await post(daemon, '', document);
-    const page = await openPage(t, browser, daemon, options);
-    await waitForFrame(page, { mesh, revision: 1 });
-    return { daemon, mesh, page };
-}
-
-// The inspector's members as text, keyed by name.
-function readMembers(page) {
-    return page.locator('#members').evaluate((list) =>
-        Object.fromEntries(
-            [...list.querySelectorAll('dd')].map((dd) => [
-                dd.dataset.member,
-                [...dd.children].map((child) => child.textContent),
-            ]),
-        ),
-    );
-}
-
-// The same of an element of the API.
-function membersOf(element) {
-    const text = (value) => (value === null ? 'none' : String(value));
-    return Object.fromEntries(
-        Object.entries(element).map(([name, value]) => [
-            name,
-            Array.isArray(value) ? value.map(text) : [text(value)],
-        ]),
-    );
-}
-
-const PLURALS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
-
-async function checkInspector({ daemon, mesh, page }, kind, id) {
-    await waitForFrame(page, { selection: `${kind}:${id}` });
-    const element = await get(daemon, `/${mesh}/${PLURALS[kind]}/${id}`);
-    assert.deepEqual(await readMembers(page), membersOf(element), `${kind} ${id}`);
-    return element;
-}
+const openMesh = (t, document, options) => open(t, browser, document, options);
 
 async function checkStatistics({ daemon, mesh, page }) {
     const summary = await get(daemon, `/${mesh}`);
@@ -93,20 +55,6 @@ async function checkStatistics({ daemon, mesh, page }) {
     const euler = await page.locator('[data-statistic="euler"]').textContent();
     assert.equal(euler, `${summary.euler}`);
     return summary;
-}
-
-function click(page, position, modifiers = []) {
-    return page.locator('#canvas').click({ position, modifiers });
-}
-
-async function setMode(page, mode) {
-    await page.getByRole('radio', { name: mode }).check();
-}
-
-async function expectToast(page, pattern) {
-    const toast = page.getByRole('alert').filter({ hasText: pattern });
-    await toast.waitFor();
-    assert.equal(await toast.count(), 1);
 }
 
 test('the page comes with its policy, its licences, and nothing inline', async (t) => {
@@ -551,7 +499,7 @@ test('everything is reached by keyboard, and the focus is seen', async (t) => {
     }
     await page.getByRole('radio', { name: 'Face' }).focus();
     await page.keyboard.press('ArrowRight');
-    assert.ok(await page.getByRole('radio', { name: 'Edge' }).isChecked());
+    assert.ok(await page.getByRole('radio', { name: 'Edge', exact: true }).isChecked());
 });
 
 test('on a small screen the panels go around the view', async (t) => {

@@ -1,6 +1,8 @@
 // api.js - the only module that talks to the server. Paths are relative, so that the page works
 // behind any prefix.
 
+import { HEADER_BYTES, lengthOf } from './geometry.js';
+
 const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
 // Media types by the end of a file's name; what is not here the server is asked to refuse.
@@ -100,11 +102,25 @@ export function getElement(mesh, kind, id) {
     return getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}`);
 }
 
+// Many questions of one revision, answered in order; a failed one by its problem.
+export async function query(mesh, queries) {
+    return (await postJson(`${meshPath(mesh)}/query`, { queries })).results;
+}
+
 // Many elements of one revision, in order; null for one that does not live.
 export async function getElements(mesh, wanted) {
-    const queries = wanted.map(({ kind, id }) => ({ get: { [kind]: id } }));
-    const { results } = await postJson(`${meshPath(mesh)}/query`, { queries });
+    const results = await query(mesh, wanted.map(({ kind, id }) => ({ get: { [kind]: id } })));
     return results.map((result) => ('status' in result ? null : result));
+}
+
+// {revision, loops: [{halfedges, vertices, ...}]}
+export function getBoundaries(mesh, signal) {
+    return getJson(`${meshPath(mesh)}/boundaries`, signal);
+}
+
+// The operation table: [{name, doc, params, ...}].
+export async function getOperations() {
+    return (await getJson('v1/operations')).operations;
 }
 
 // The ids of the elements of another kind beside one, such as the faces of a vertex.
@@ -112,44 +128,47 @@ export async function getAdjacent(mesh, kind, id, relation) {
     return (await getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}/${relation}`)).ids;
 }
 
-// The edge between two vertices, null when there is none.
-export async function findEdge(mesh, from, to) {
-    const queries = [{ find: 'halfedge', vertices: [from, to] }];
-    const { results } = await postJson(`${meshPath(mesh)}/query`, { queries });
-    const { halfedge } = results[0];
-    // The half-edges of edge e are 2e and 2e + 1.
-    return halfedge === null ? null : Math.floor(halfedge / 2);
+// The half-edge from one vertex to another, null when there is none.
+export async function findHalfedge(mesh, from, to) {
+    const [{ halfedge }] = await query(mesh, [{ find: 'halfedge', vertices: [from, to] }]);
+    return halfedge;
 }
 
-// All elements of a kind, in the order of their ids, as arrays of some at a time. An answer that
-// was cut short is a problem: the list ends with a line that says so.
-export async function* elements(mesh, kind, signal) {
-    const answer = await request(`${meshPath(mesh)}/${KINDS[kind]}`, {
-        headers: { Accept: 'application/x-ndjson' },
-        signal,
-    });
-    const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
-    let rest = '';
-    let count = 0;
-    let ended = false;
+// The arrays to draw a mesh from, as an ArrayBuffer; `onProgress` gets the part that has come, 0 to
+// 1. Its header says how long it is: Content-Length may be that of a compressed body.
+export async function getGeometry(mesh, onProgress, signal) {
+    const answer = await request(`${meshPath(mesh)}/geometry`, { signal });
+    const reader = answer.body.getReader();
+    let whole = new Uint8Array(HEADER_BYTES);
+    let at = 0;
+    const take = (bytes) => {
+        const room = bytes.subarray(0, whole.length - at);
+        whole.set(room, at);
+        at += room.length;
+        return bytes.subarray(room.length);
+    };
     for (;;) {
         const { done, value } = await readOn(reader);
         if (done) {
             break;
         }
-        const lines = (rest + value).split('\n');
-        rest = lines.pop();
-        const items = lines.filter((text) => text !== '').map((text) => JSON.parse(text));
-        if (items.at(-1)?.end === true) {
-            ended = items.pop().count === count + items.length;
+        let rest = take(value);
+        if (at === HEADER_BYTES && whole.length === HEADER_BYTES) {
+            const header = whole;
+            whole = new Uint8Array(lengthOf(header.buffer));
+            whole.set(header.subarray(0, whole.length));
         }
-        count += items.length;
-        yield items;
+        rest = take(rest);
+        if (rest.length > 0) {
+            break;
+        }
+        onProgress(at / whole.length);
     }
-    if (!ended) {
-        const detail = `The list of ${KINDS[kind]} broke off.`;
+    if (at < HEADER_BYTES || at !== whole.length) {
+        const detail = 'The geometry of the mesh broke off.';
         throw new Problem({ title: 'Answer cut short', detail });
     }
+    return whole.buffer;
 }
 
 async function readOn(reader) {

@@ -1,8 +1,7 @@
-// geometry.js - elements in, typed arrays for drawing out. Pure: no page, no network, no WebGL.
+// geometry.js - the arrays a mesh is drawn from, as GET .../geometry sends them. Pure: no page, no
+// network, no WebGL.
 //
-// A mesh is drawn from two arrays, laid out as the renderer's textures read them:
-//
-//   vertices   4 floats each:  x, y, z, state (VERTEX_USED or VERTEX_ISOLATED)
+//   vertices   4 floats each:  x, y, z, state (0 dead, VERTEX_USED or VERTEX_ISOLATED)
 //   triangles  4 words each:   corners a, b, c, and face | sides << 29
 //
 //            c              bit 29: a -> b is an edge of the polygon
@@ -10,200 +9,79 @@
 //          a---b            bit 31: c -> a
 //                           a bit that is clear marks a diagonal, which is not drawn
 //
-// Corners and faces are slots: places in `vertexIds` and `faceIds`, both ascending. Ids have gaps
-// where elements were deleted; slots have none. slotOf() and the two arrays lead back and forth.
-//
-// Positions are moved and scaled into the unit ball ("view coordinates") in double precision before
-// they are rounded to floats, so that a mesh far from the origin or of any size draws the same. The
-// frame that says how stays with a mesh across its edits: what did not move does not move.
+// A vertex's place is its id. Triangles are in the order of their faces. The server has moved and
+// scaled positions into the unit ball ("view coordinates") before it rounded them to floats, so that
+// a mesh far from the origin or of any size draws the same; `frame` says how.
 
 export const VERTEX_USED = 1;
 export const VERTEX_ISOLATED = 2;
 
+export const HEADER_BYTES = 96;
+const VERSION = 1;
 const SIDE_SHIFT = 29;
 const FACE_MASK = 2 ** SIDE_SHIFT - 1;
 
-// Most tests of a point against a triangle that one polygon may cost. Beyond it ears are cut
-// unchecked: a polygon of a hundred thousand corners then looks wrong instead of stopping the page.
-const MAX_EAR_TESTS = 2e7;
-
-// The sine under which three corners count as collinear. An ear cut there would have no area, and
-// the two edges on it would not be drawn.
-const COLLINEAR = 1e-10;
-
-// A typed array that grows.
-class Column {
-    constructor(Type) {
-        this.array = new Type(1024);
-        this.length = 0;
+// How many bytes an answer has, by its header. Throws a RangeError where it is no header.
+export function lengthOf(header) {
+    const view = new DataView(header);
+    const text = String.fromCharCode(...new Uint8Array(header, 0, 4));
+    if (text !== 'HEDG' || view.getUint32(4, true) !== VERSION) {
+        throw new RangeError('The server sent no geometry this page can read.');
     }
-
-    push(value) {
-        if (this.length === this.array.length) {
-            const larger = new this.array.constructor(2 * this.length);
-            larger.set(this.array);
-            this.array = larger;
-        }
-        this.array[this.length++] = value;
-    }
-
-    get values() {
-        return this.array.subarray(0, this.length);
-    }
+    return HEADER_BYTES + Number(view.getBigUint64(24, true) + view.getBigUint64(32, true));
 }
 
-// Gathers the vertices and faces of a mesh as the server lists them, in the order of their ids.
-export class Elements {
-    #vertexIds = new Column(Uint32Array);
-    #positions = new Column(Float64Array);
-    #faceIds = new Column(Uint32Array);
-    #starts = new Column(Uint32Array);
-    #corners = new Column(Uint32Array);
-
-    constructor() {
-        this.#starts.push(0);
+// An answer of the server, an ArrayBuffer, as {revision, frame, vertices, triangles, center, radius,
+// hasIsolated}. The arrays are views of it. Throws a RangeError where it is not what it should be.
+export function unpack(buffer) {
+    const view = new DataView(buffer);
+    if (lengthOf(buffer) !== buffer.byteLength) {
+        throw new RangeError('The geometry of the mesh was cut short.');
     }
-
-    addVertex({ id, position }) {
-        Elements.#addId(this.#vertexIds, id);
-        for (let axis = 0; axis < 3; axis++) {
-            this.#positions.push(position[axis]);
-        }
-    }
-
-    addFace({ id, vertices }) {
-        Elements.#addId(this.#faceIds, id);
-        for (const vertex of vertices) {
-            this.#corners.push(vertex);
-        }
-        this.#starts.push(this.#corners.length);
-    }
-
-    static #addId(ids, id) {
-        if (ids.length > 0 && id <= ids.array[ids.length - 1]) {
-            throw new RangeError(`id ${id} comes after id ${ids.array[ids.length - 1]}`);
-        }
-        ids.push(id);
-    }
-
-    get vertexIds() {
-        return this.#vertexIds.values;
-    }
-
-    get positions() {
-        return this.#positions.values;
-    }
-
-    get faceIds() {
-        return this.#faceIds.values;
-    }
-
-    // Face i has corners[starts[i]] ... corners[starts[i + 1] - 1]: vertex ids.
-    get starts() {
-        return this.#starts.values;
-    }
-
-    get corners() {
-        return this.#corners.values;
-    }
-}
-
-// The slot of an id in an ascending array of ids, -1 when it is not there.
-export function slotOf(ids, id) {
-    let low = 0;
-    let high = ids.length - 1;
-    while (low <= high) {
-        const middle = (low + high) >>> 1;
-        if (ids[middle] === id) {
-            return middle;
-        }
-        if (ids[middle] < id) {
-            low = middle + 1;
-        } else {
-            high = middle - 1;
-        }
-    }
-    return -1;
-}
-
-// The frame in which positions fit the unit ball: their box's centre, and half of its longest side.
-export function frameOf(positions) {
-    const low = [Infinity, Infinity, Infinity];
-    const high = [-Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < positions.length; i++) {
-        const axis = i % 3;
-        low[axis] = Math.min(low[axis], positions[i]);
-        high[axis] = Math.max(high[axis], positions[i]);
-    }
-    if (positions.length === 0) {
-        return { center: [0, 0, 0], half: 1 };
-    }
-    // Halves first: the sum or difference of two large doubles may be infinite.
-    const center = low.map((value, axis) => value / 2 + high[axis] / 2);
-    const half = Math.max(...low.map((value, axis) => high[axis] / 2 - value / 2));
-    return { center, half: half > 0 ? half : 1 };
-}
-
-function toView(frame, value, axis) {
-    return (2 * (value / 2 - frame.center[axis] / 2)) / frame.half / Math.sqrt(3);
-}
-
-// The arrays for drawing `elements`. Without a frame one is made.
-export function pack(elements, frame = frameOf(elements.positions)) {
-    const { vertexIds, positions, faceIds, starts, corners } = elements;
-    if (faceIds.length > FACE_MASK) {
-        throw new RangeError(`a mesh of ${faceIds.length} faces cannot be drawn`);
-    }
-    const vertices = new Float32Array(4 * vertexIds.length);
-    for (let slot = 0; slot < vertexIds.length; slot++) {
-        for (let axis = 0; axis < 3; axis++) {
-            vertices[4 * slot + axis] = toView(frame, positions[3 * slot + axis], axis);
-        }
-        vertices[4 * slot + 3] = VERTEX_ISOLATED;
-    }
-    const triangles = new Uint32Array(4 * Math.max(corners.length - 2 * faceIds.length, 0));
-    const polygon = new Polygon();
-    let at = 0;
-    for (let face = 0; face < faceIds.length; face++) {
-        polygon.begin(starts[face + 1] - starts[face]);
-        for (let i = starts[face]; i < starts[face + 1]; i++) {
-            const slot = slotOf(vertexIds, corners[i]);
-            if (slot < 0) {
-                throw new RangeError(`face ${faceIds[face]} has unknown vertex ${corners[i]}`);
-            }
-            vertices[4 * slot + 3] = VERTEX_USED;
-            polygon.add(
-                slot,
-                toView(frame, positions[3 * slot], 0),
-                toView(frame, positions[3 * slot + 1], 1),
-                toView(frame, positions[3 * slot + 2], 2),
-            );
-        }
-        polygon.triangulate((a, b, c, sides) => {
-            triangles[at++] = a;
-            triangles[at++] = b;
-            triangles[at++] = c;
-            triangles[at++] = face | (sides << SIDE_SHIFT);
-        });
-    }
+    const [vertexBytes, triangleBytes] = [24, 32].map((at) => Number(view.getBigUint64(at, true)));
+    const vertices = new Float32Array(buffer, HEADER_BYTES, vertexBytes / 4);
+    const triangles = new Uint32Array(buffer, HEADER_BYTES + vertexBytes, triangleBytes / 4);
     return {
-        frame,
-        radius: radiusOf(vertices),
-        hasIsolated: hasIsolated(vertices),
+        revision: Number(view.getBigUint64(8, true)),
+        frame: {
+            origin: [48, 56, 64].map((at) => view.getFloat64(at, true)),
+            scale: view.getFloat64(72, true),
+        },
         vertices,
         triangles,
-        vertexIds,
-        faceIds,
+        ...ballOf(vertices),
+        hasIsolated: hasIsolated(vertices),
     };
 }
 
-// How far the vertices reach from the frame's centre; never nothing: a camera must stand further.
-function radiusOf(vertices) {
+// A ball around all live vertices: the middle of their box, and how far they reach from it. Never
+// nothing: a camera must stand further.
+function ballOf(vertices) {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < vertices.length; i += 4) {
+        if (vertices[i + 3] !== 0) {
+            for (let axis = 0; axis < 3; axis++) {
+                low[axis] = Math.min(low[axis], vertices[i + axis]);
+                high[axis] = Math.max(high[axis], vertices[i + axis]);
+            }
+        }
+    }
+    if (low[0] > high[0]) {
+        return { center: [0, 0, 0], radius: 1 };
+    }
+    const center = low.map((value, axis) => (value + high[axis]) / 2);
     let radius = 0;
     for (let i = 0; i < vertices.length; i += 4) {
-        radius = Math.max(radius, Math.hypot(vertices[i], vertices[i + 1], vertices[i + 2]));
+        if (vertices[i + 3] !== 0) {
+            radius = Math.max(radius, distance(vertices, i, center));
+        }
     }
-    return radius > 0 ? radius : 1;
+    return { center, radius: radius > 0 ? radius : 1 };
+}
+
+function distance(vertices, i, [x, y, z]) {
+    return Math.hypot(vertices[i] - x, vertices[i + 1] - y, vertices[i + 2] - z);
 }
 
 function hasIsolated(vertices) {
@@ -215,7 +93,17 @@ function hasIsolated(vertices) {
     return false;
 }
 
-// The slot of a triangle's face, and whether its side i is an edge of the polygon.
+// Is this the id of a vertex that lives?
+export function hasVertex({ vertices }, id) {
+    return 4 * id < vertices.length && vertices[4 * id + 3] !== 0;
+}
+
+// [x, y, z] of a vertex.
+export function pointAt({ vertices }, id) {
+    return Array.from(vertices.subarray(4 * id, 4 * id + 3));
+}
+
+// The face of a triangle, and whether its side i is an edge of the polygon.
 export function faceOf(triangles, triangle) {
     return triangles[4 * triangle + 3] & FACE_MASK;
 }
@@ -224,7 +112,7 @@ export function isEdge(triangles, triangle, side) {
     return ((triangles[4 * triangle + 3] >>> (SIDE_SHIFT + side)) & 1) === 1;
 }
 
-// The polygon edges on some triangles, as pairs of vertex slots in the direction of their face.
+// The polygon edges on some triangles, as pairs of vertices in the direction of their face.
 export function edgesOfTriangles(triangles, which) {
     const edges = [];
     for (const triangle of which) {
@@ -240,192 +128,37 @@ export function edgesOfTriangles(triangles, which) {
     return edges;
 }
 
+// The triangles of a face, none when it does not live.
 export function trianglesOfFace(triangles, face) {
-    const found = [];
-    for (let triangle = 0; 4 * triangle < triangles.length; triangle++) {
-        if (faceOf(triangles, triangle) === face) {
-            found.push(triangle);
+    let low = 0;
+    let high = triangles.length / 4;
+    while (low < high) {
+        const middle = (low + high) >>> 1;
+        if (faceOf(triangles, middle) < face) {
+            low = middle + 1;
+        } else {
+            high = middle;
         }
+    }
+    const found = [];
+    for (; 4 * low < triangles.length && faceOf(triangles, low) === face; low++) {
+        found.push(low);
     }
     return found;
 }
 
-// One polygon, cut into triangles: ear clipping (Meisters, "Polygons have ears", 1975) in the plane
-// of its Newell normal (Sutherland, Sproull, Schumacker, 1974). Kept for many polygons in turn, so
-// that a mesh of a million faces does not allocate a million times.
-//
-//     begin(n)  add() n times  triangulate(emit)
-//
-// emit(a, b, c, sides) gets n - 2 triangles wound as the polygon is, with bit i of `sides` set
-// where side i is an edge of the polygon. A polygon that crosses itself or has no area still gives
-// n - 2 triangles.
-export class Polygon {
-    #count = 0;
-    #slots = [];
-    #points = new Float64Array(3 * 16);
-    #flat = new Float64Array(2 * 16);
-    #next = new Int32Array(16);
-    #prev = new Int32Array(16);
-    #isReflex = new Uint8Array(16);
-    #reflex = []; // all corners with that mark, and some that have lost it
-    #tests = 0;
-
-    begin(count) {
-        this.#count = 0;
-        this.#tests = 0;
-        if (count > this.#next.length) {
-            this.#points = new Float64Array(3 * count);
-            this.#flat = new Float64Array(2 * count);
-            this.#next = new Int32Array(count);
-            this.#prev = new Int32Array(count);
-            this.#isReflex = new Uint8Array(count);
+// The direction a face looks to; not of length 1, and zero where it has no area.
+export function normalOfFace({ vertices, triangles }, face) {
+    const normal = [0, 0, 0];
+    for (const triangle of trianglesOfFace(triangles, face)) {
+        const [a, b, c] = [0, 1, 2].map((i) => 4 * triangles[4 * triangle + i]);
+        for (let axis = 0; axis < 3; axis++) {
+            const u = (axis + 1) % 3;
+            const v = (axis + 2) % 3;
+            normal[axis] +=
+                (vertices[b + u] - vertices[a + u]) * (vertices[c + v] - vertices[a + v]) -
+                (vertices[b + v] - vertices[a + v]) * (vertices[c + u] - vertices[a + u]);
         }
     }
-
-    add(slot, x, y, z) {
-        const i = this.#count++;
-        this.#slots[i] = slot;
-        this.#points[3 * i] = x;
-        this.#points[3 * i + 1] = y;
-        this.#points[3 * i + 2] = z;
-    }
-
-    triangulate(emit) {
-        const n = this.#count;
-        if (n === 3) {
-            emit(this.#slots[0], this.#slots[1], this.#slots[2], 7);
-            return;
-        }
-        this.#flatten();
-        this.#reflex.length = 0;
-        for (let i = 0; i < n; i++) {
-            this.#next[i] = (i + 1) % n;
-            this.#prev[i] = (i + n - 1) % n;
-        }
-        for (let i = 0; i < n; i++) {
-            this.#isReflex[i] = this.#isConvex(i) ? 0 : 1;
-            if (this.#isReflex[i]) {
-                this.#reflex.push(i);
-            }
-        }
-        let left = n;
-        let corner = 0;
-        let misses = 0;
-        while (left > 3) {
-            // Without an ear in a whole round the polygon is degenerate: cut here all the same.
-            if (misses < left && !this.#isEar(corner)) {
-                corner = this.#next[corner];
-                misses++;
-                continue;
-            }
-            this.#emit(corner, emit);
-            const before = this.#prev[corner];
-            const after = this.#next[corner];
-            this.#next[before] = after;
-            this.#prev[after] = before;
-            this.#isReflex[corner] = 0;
-            // A cut never makes a neighbour reflex, only convex.
-            for (const neighbour of [before, after]) {
-                if (this.#isReflex[neighbour] && this.#isConvex(neighbour)) {
-                    this.#isReflex[neighbour] = 0;
-                }
-            }
-            left--;
-            misses = 0;
-            // Skipping a corner keeps a round polygon from becoming a fan of slivers.
-            corner = this.#next[after];
-        }
-        this.#emit(corner, emit);
-    }
-
-    // Drop the axis that the normal is closest to, keeping the winding counter-clockwise.
-    #flatten() {
-        const n = this.#count;
-        const p = this.#points;
-        const normal = [0, 0, 0];
-        for (let i = 0; i < n; i++) {
-            const j = (i + 1) % n;
-            for (let axis = 0; axis < 3; axis++) {
-                const u = (axis + 1) % 3;
-                const v = (axis + 2) % 3;
-                // Relative to the first corner: far from the origin the products cancel badly.
-                normal[axis] +=
-                    (p[3 * i + u] - p[u]) * (p[3 * j + v] - p[v]) -
-                    (p[3 * i + v] - p[v]) * (p[3 * j + u] - p[u]);
-            }
-        }
-        const size = normal.map(Math.abs);
-        const drop = size.indexOf(Math.max(...size));
-        const first = (drop + (normal[drop] < 0 ? 2 : 1)) % 3;
-        const second = (drop + (normal[drop] < 0 ? 1 : 2)) % 3;
-        for (let i = 0; i < n; i++) {
-            this.#flat[2 * i] = p[3 * i + first] - p[first];
-            this.#flat[2 * i + 1] = p[3 * i + second] - p[second];
-        }
-    }
-
-    // Twice the signed area of the corners i, j, k.
-    #area(i, j, k) {
-        const q = this.#flat;
-        return (
-            (q[2 * j] - q[2 * i]) * (q[2 * k + 1] - q[2 * i + 1]) -
-            (q[2 * j + 1] - q[2 * i + 1]) * (q[2 * k] - q[2 * i])
-        );
-    }
-
-    #isConvex(i) {
-        const q = this.#flat;
-        const a = this.#prev[i];
-        const c = this.#next[i];
-        const before = (q[2 * i] - q[2 * a]) ** 2 + (q[2 * i + 1] - q[2 * a + 1]) ** 2;
-        const after = (q[2 * c] - q[2 * i]) ** 2 + (q[2 * c + 1] - q[2 * i + 1]) ** 2;
-        return this.#area(a, i, c) > COLLINEAR * Math.sqrt(before) * Math.sqrt(after);
-    }
-
-    // A convex corner whose triangle holds no other corner. Only reflex ones can be inside; those
-    // that are so no longer leave the list as they are met.
-    #isEar(i) {
-        if (this.#isReflex[i]) {
-            return false;
-        }
-        const a = this.#prev[i];
-        const c = this.#next[i];
-        for (let at = 0; at < this.#reflex.length && this.#tests < MAX_EAR_TESTS; at++) {
-            const r = this.#reflex[at];
-            this.#tests++;
-            if (!this.#isReflex[r]) {
-                this.#reflex[at--] = this.#reflex[this.#reflex.length - 1];
-                this.#reflex.length--;
-            } else if (r !== a && r !== c && this.#contains(a, i, c, r)) {
-                return false;
-            }
-        }
-        return true;
-    }
-
-    // Is corner r in the closed triangle? Another corner at the same place does not count.
-    #contains(a, b, c, r) {
-        return (
-            this.#area(a, b, r) >= 0 &&
-            this.#area(b, c, r) >= 0 &&
-            this.#area(c, a, r) >= 0 &&
-            !this.#isSamePlace(a, r) &&
-            !this.#isSamePlace(b, r) &&
-            !this.#isSamePlace(c, r)
-        );
-    }
-
-    #isSamePlace(i, j) {
-        const q = this.#flat;
-        return q[2 * i] === q[2 * j] && q[2 * i + 1] === q[2 * j + 1];
-    }
-
-    #emit(b, emit) {
-        const n = this.#count;
-        const a = this.#prev[b];
-        const c = this.#next[b];
-        const sides =
-            ((a + 1) % n === b ? 1 : 0) | ((b + 1) % n === c ? 2 : 0) | ((c + 1) % n === a ? 4 : 0);
-        emit(this.#slots[a], this.#slots[b], this.#slots[c], sides);
-    }
+    return normal;
 }

@@ -28,18 +28,20 @@ export class Inspector {
     #title;
     #hint;
     #members;
+    #around;
     #onFollow;
 
     // `onFollow(kind, id)` is called when a link is clicked.
-    constructor({ title, hint, members }, { onFollow }) {
+    constructor({ title, hint, members, around }, { onFollow }) {
         this.#title = title;
         this.#hint = hint;
         this.#members = members;
+        this.#around = around;
         this.#onFollow = onFollow;
     }
 
-    // Show the last of the selected elements.
-    show(selection) {
+    // Show the last of the selected elements and what is around it, see around.js.
+    show(selection, around) {
         const last = selection.at(-1);
         this.#title.textContent = last ? `${TITLES[last.kind]} ${last.id}` : 'Nothing selected';
         this.#hint.textContent = hintFor(selection);
@@ -48,25 +50,44 @@ export class Inspector {
         this.#members.replaceChildren(
             ...Object.entries(last?.element ?? {}).flatMap(([name, value]) => [
                 make('dt', {}, name),
-                this.#description(name, value),
+                this.#description(name, value, LINKS[name]),
             ]),
+        );
+        this.#showAround(around ?? { rings: [], measures: [] });
+    }
+
+    #showAround({ rings, measures }) {
+        this.#around.hidden = rings.length + measures.length === 0;
+        this.#around.replaceChildren(
+            ...measures.flatMap(({ name, value }) => {
+                const description = make('dd', {}, value);
+                description.dataset.measure = name;
+                return [make('dt', {}, name), description];
+            }),
+            ...rings.flatMap(({ name, kind, ids }) => {
+                const description = this.#description(name, ids, kind);
+                delete description.dataset.member;
+                description.dataset.ring = name;
+                return [make('dt', {}, `${name} around`), description];
+            }),
         );
     }
 
-    #description(name, value) {
+    // `kind` of what is linked to, undefined where it is no link.
+    #description(name, value, kind) {
         const description = make('dd', { className: Array.isArray(value) ? 'many' : 'one' });
         description.dataset.member = name;
         if (Array.isArray(value)) {
-            description.classList.toggle('vector', !(name in LINKS));
-            description.append(...value.slice(0, MOST).map((item) => this.#value(name, item)));
-            this.#offerRest(description, name, value.slice(MOST));
+            description.classList.toggle('vector', kind === undefined);
+            description.append(...value.slice(0, MOST).map((item) => this.#value(kind, item)));
+            this.#offerRest(description, kind, value.slice(MOST));
         } else {
-            description.append(this.#value(name, value));
+            description.append(this.#value(kind, value));
         }
         return description;
     }
 
-    #offerRest(description, name, rest) {
+    #offerRest(description, kind, rest) {
         if (rest.length === 0) {
             return;
         }
@@ -75,15 +96,14 @@ export class Inspector {
             {
                 type: 'button',
                 className: 'rest',
-                onclick: () => button.replaceWith(...rest.map((item) => this.#value(name, item))),
+                onclick: () => button.replaceWith(...rest.map((item) => this.#value(kind, item))),
             },
             `${rest.length} more`,
         );
         description.append(button);
     }
 
-    #value(name, value) {
-        const kind = LINKS[name];
+    #value(kind, value) {
         if (value === null) {
             return make('span', { className: 'none' }, 'none');
         }
@@ -105,9 +125,10 @@ export class Inspector {
 
 function hintFor(selection) {
     if (selection.length === 0) {
-        return 'Click the mesh to pick a face, an edge or a vertex. Shift picks a second one.';
+        return 'Click the mesh to pick an element. Shift picks several.';
     }
-    return selection.length === 1
+    const others = selection.slice(0, -1);
+    return others.length === 0
         ? ''
-        : `with ${TITLES[selection[0].kind].toLowerCase()} ${selection[0].id}`;
+        : `with ${TITLES[others[0].kind].toLowerCase()} ${others.map(({ id }) => id).join(', ')}`;
 }

@@ -1,13 +1,18 @@
 // main.js - puts the page together: session in the middle, panels and renderer around it.
 
 import * as api from './api.js';
+import { make } from './dom.js';
+import { pointAt } from './geometry.js';
 import { Inspector } from './inspector.js';
+import { keyList, listenToKeys } from './keys.js';
+import { formatLink, parseLink } from './link.js';
 import { MeshList } from './list.js';
 import { REACH, choose } from './pick.js';
 import { NoWebGL, Renderer } from './render.js';
 import { Session } from './session.js';
 import { Statistics } from './statistics.js';
 import { Toasts } from './toast.js';
+import { Tools } from './tools.js';
 import { Uploads } from './upload.js';
 
 // A pointer that moved further than this between down and up was orbiting.
@@ -27,7 +32,12 @@ const fail = (error) => toasts.show(error);
 const session = new Session(update);
 const statistics = new Statistics({ sizes: page('sizes'), facts: page('facts') });
 const inspector = new Inspector(
-    { title: page('element-title'), hint: page('element-hint'), members: page('members') },
+    {
+        title: page('element-title'),
+        hint: page('element-hint'),
+        members: page('members'),
+        around: page('around'),
+    },
     { onFollow: (kind, id) => session.select(kind, id).catch(fail) },
 );
 const list = new MeshList(
@@ -37,6 +47,10 @@ const list = new MeshList(
         onOpen: (mesh) => session.open(mesh).catch(fail),
         onError: fail,
     },
+);
+const tools = new Tools(
+    { select: page('operation'), form: page('parameters') },
+    { onRun: (operation) => session.run(operation).catch(fail), onError: fail },
 );
 new Uploads(
     {
@@ -63,6 +77,7 @@ function makeRenderer() {
             onLost: (lost) => {
                 page('context-lost').hidden = !lost;
             },
+            onMove: writeLink,
         });
     } catch (error) {
         page('no-webgl').hidden = false;
@@ -98,15 +113,17 @@ function shown() {
 // The session changed: see Session for what.
 function update(what) {
     if (what === 'mesh' || what === 'revision') {
-        renderer?.show(session.geometry, shown());
+        renderer?.show(session.geometry, session.boundary, shown());
         showMesh();
     }
     if (what === 'mesh') {
         renderer?.fit();
     }
     if (what !== 'state') {
-        renderer?.select(session.marks, shown());
-        inspector.show(session.selection);
+        renderer?.select(session.marks, session.arrows, shown());
+        inspector.show(session.selection, session.around);
+        tools.setSelection(session.selection);
+        writeLink();
     }
     showState();
 }
@@ -116,7 +133,10 @@ function showMesh() {
     const name = summary.name || mesh;
     page('mesh-title').textContent = name;
     document.title = `${name} \u2013 hedge`;
-    canvas.setAttribute('aria-label', `3D view of ${name}. Drag to orbit, click to pick.`);
+    canvas.setAttribute(
+        'aria-label',
+        `3D view of ${name}. Drag to orbit, click to pick, press ? for keys.`,
+    );
     page('empty').hidden = true;
     page('details').hidden = false;
     statistics.show(summary);
@@ -132,6 +152,10 @@ function showState() {
     page('undo').disabled = !ready || history.undo === 0;
     page('redo').disabled = !ready || history.redo === 0;
     page('fit').disabled = mesh === null || renderer === null;
+    page('screenshot').disabled = mesh === null || renderer === null;
+    page('goto-id').disabled = mesh === null;
+    page('goto-button').disabled = mesh === null;
+    tools.setEnabled(ready);
     page('loading').hidden = loading === null;
     page('load-progress').value = loading ?? 0;
 }
@@ -165,12 +189,129 @@ canvas.addEventListener('pointerup', (event) => {
     session.pick(chosen, event.shiftKey).catch(fail);
 });
 
-page('pick-modes').addEventListener('change', () => {
-    renderer?.showVertices(pickMode() === 'vertex');
+function setPickMode(mode) {
+    document.querySelector(`input[name="pick"][value="${mode}"]`).checked = true;
+    renderer?.showVertices(mode === 'vertex');
+}
+
+// The vertices of the selection and, where it is one vertex, those around it.
+function frameSelection() {
+    const ids = session.marks.flatMap(({ kind, id, from, to }) => {
+        if (kind === 'vertex') {
+            return [id];
+        }
+        return kind === 'face' ? cornersOf(id) : [from, to];
+    });
+    if (ids.length === 1) {
+        ids.push(...session.arrows.map(({ target }) => target));
+    }
+    if (ids.length === 0) {
+        renderer?.fit();
+    } else {
+        renderer?.frame(ids.map((id) => pointAt(session.geometry, id)));
+    }
+}
+
+function cornersOf(face) {
+    const chosen = session.selection.find(({ kind, id }) => kind === 'face' && id === face);
+    return chosen.element.vertices;
+}
+
+function openTool(name) {
+    if (!tools.open(name)) {
+        toasts.show({ title: 'Not here', detail: `This server has no operation ${name}.` });
+    }
+}
+
+// What X does to the last selected element.
+function removeSelection() {
+    const last = session.selection.at(-1);
+    const operations = {
+        vertex: 'vertex_delete',
+        halfedge: 'edge_collapse',
+        edge: 'edge_collapse',
+        face: 'face_delete',
+    };
+    if (last !== undefined) {
+        session.run({ op: operations[last.kind], [last.kind]: last.id }).catch(fail);
+    }
+}
+
+// --- the address ---
+
+// Moving the camera makes no entry in the browser's history.
+function writeLink() {
+    const { mesh, selection } = session;
+    if (mesh !== null) {
+        const { kind, id } = selection.at(-1) ?? {};
+        const link = formatLink({ mesh, kind, id, camera: renderer?.camera });
+        window.history.replaceState(null, '', link);
+    }
+}
+
+async function followLink() {
+    const { mesh, kind, id, camera } = parseLink(window.location.hash);
+    if (mesh === null) {
+        return;
+    }
+    if (mesh !== session.mesh) {
+        await session.open(mesh);
+    }
+    if (session.mesh === mesh && renderer !== null && camera !== null) {
+        renderer.camera = camera;
+    }
+    if (session.mesh === mesh && kind !== null) {
+        await session.select(kind, id);
+    }
+}
+
+// --- what is pressed ---
+
+async function saveScreenshot() {
+    const blob = await renderer.capture();
+    const address = URL.createObjectURL(blob);
+    const link = make('a', { href: address, download: `${session.summary.name || session.mesh}.png` });
+    link.click();
+    URL.revokeObjectURL(address);
+}
+
+async function goTo(event) {
+    event.preventDefault();
+    await session.select(page('goto-kind').value, Number(page('goto-id').value));
+    frameSelection();
+}
+
+const undo = () => !page('undo').disabled && session.undo().catch(fail);
+const redo = () => !page('redo').disabled && session.redo().catch(fail);
+
+listenToKeys(canvas, {
+    pickVertex: () => setPickMode('vertex'),
+    pickEdge: () => setPickMode('edge'),
+    pickFace: () => setPickMode('face'),
+    pickHalfedge: () => setPickMode('halfedge'),
+    next: () => session.step('next').catch(fail),
+    prev: () => session.step('prev').catch(fail),
+    twin: () => session.step('twin').catch(fail),
+    frame: frameSelection,
+    move: () => openTool('vertex_move'),
+    extrude: () => openTool('face_extrude'),
+    inset: () => openTool('face_inset'),
+    remove: removeSelection,
+    undo,
+    redo,
+    help: () => page('help').showModal(),
+    clear: () => session.clearSelection(),
 });
+page('keys').append(...keyList());
+page('pick-modes').addEventListener('change', () => setPickMode(pickMode()));
+page('help-button').addEventListener('click', () => page('help').showModal());
+page('help-close').addEventListener('click', () => page('help').close());
+page('screenshot').addEventListener('click', () => saveScreenshot().catch(fail));
+page('goto').addEventListener('submit', (event) => goTo(event).catch(fail));
+window.addEventListener('hashchange', () => followLink().catch(fail));
 page('split').addEventListener('click', () => session.splitSelection().catch(fail));
-page('undo').addEventListener('click', () => session.undo().catch(fail));
-page('redo').addEventListener('click', () => session.redo().catch(fail));
+page('undo').addEventListener('click', undo);
+page('redo').addEventListener('click', redo);
 page('fit').addEventListener('click', () => renderer.fit());
 page('refresh').addEventListener('click', () => refreshList().catch(fail));
 for (const button of document.querySelectorAll('.upload')) {
@@ -180,7 +321,20 @@ window.addEventListener('error', (event) => fail(event.error ?? event));
 window.addEventListener('unhandledrejection', (event) => fail(event.reason));
 
 showState();
-inspector.show([]);
-refreshList()
-    .then(([first]) => first !== undefined && session.open(first))
+inspector.show([], null);
+api.getOperations()
+    .then((operations) => {
+        tools.setOperations(operations);
+        showState();
+    })
     .catch(fail);
+start().catch(fail);
+
+// What the address says, or else the first of the list.
+async function start() {
+    const [first] = await refreshList();
+    await followLink().catch(fail);
+    if (session.mesh === null && first !== undefined) {
+        await session.open(first);
+    }
+}

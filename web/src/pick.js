@@ -4,24 +4,32 @@
 // Renderer.look). Kinds are never mixed: in edge mode only an edge can be picked, and so on. Near
 // the pointer what is seen counts; else an edge or a corner of the face under the pointer does.
 
-import { edgesOfTriangles, faceOf, trianglesOfFace } from './geometry.js';
+import {
+    edgesOfTriangles,
+    faceOf,
+    pointAt,
+    trianglesOfFace,
+} from './geometry.js';
 import { distanceToPoint, distanceToSegment } from './view.js';
 
 // CSS pixels around the pointer in which a visible edge or vertex is meant.
 export const REACH = 8;
 
-// Returns {kind: 'face', face}, {kind: 'edge', from, to} or {kind: 'vertex', vertex}, all of them
-// slots, or null when there is nothing. `seen` is {under, triangles, vertices}; `screen` is
+// Returns {kind: 'face', id}, {kind: 'vertex', id}, {kind: 'edge', from, to} or {kind: 'halfedge',
+// from, to}, or null when there is nothing. `seen` is {under, triangles, vertices}; `screen` is
 // {matrix, width, height, x, y} in CSS pixels.
 export function choose(mode, geometry, seen, screen) {
     if (mode === 'face') {
         return seen.under < 0
             ? null
-            : { kind: 'face', face: faceOf(geometry.triangles, seen.under) };
+            : { kind: 'face', id: faceOf(geometry.triangles, seen.under) };
+    }
+    if (mode === 'vertex') {
+        return chooseVertex(geometry, seen, screen);
     }
     return mode === 'edge'
         ? chooseEdge(geometry, seen, screen)
-        : chooseVertex(geometry, seen, screen);
+        : chooseHalfedge(geometry, seen, screen);
 }
 
 function chooseEdge(geometry, seen, screen) {
@@ -41,6 +49,19 @@ function chooseEdge(geometry, seen, screen) {
     return edge === undefined ? null : { kind: 'edge', from: edge[0], to: edge[1] };
 }
 
+// That of the face under the pointer, on its nearest edge. Beside the surface it is that of the
+// nearest visible edge which runs along the hole, or the other face's.
+function chooseHalfedge(geometry, seen, screen) {
+    if (seen.under >= 0 && seen.away === 0) {
+        const { triangles } = geometry;
+        const face = trianglesOfFace(triangles, faceOf(triangles, seen.under));
+        const edge = chooseEdge(geometry, { under: seen.under, triangles: face }, screen);
+        return edge && { ...edge, kind: 'halfedge' };
+    }
+    const edge = chooseEdge(geometry, seen, screen);
+    return edge && { kind: 'halfedge', from: edge.to, to: edge.from };
+}
+
 function chooseVertex(geometry, seen, screen) {
     const distance = (vertex) =>
         distanceToPoint(
@@ -54,7 +75,7 @@ function chooseVertex(geometry, seen, screen) {
     const corners = edgesUnder(geometry, seen).map(([from]) => from);
     const [vertex] =
         nearest(seen.vertices, distance, Infinity) ?? nearest(corners, distance, Infinity) ?? [];
-    return vertex === undefined ? null : { kind: 'vertex', vertex };
+    return vertex === undefined ? null : { kind: 'vertex', id: vertex };
 }
 
 function edgesUnder(geometry, seen) {
@@ -63,10 +84,6 @@ function edgesUnder(geometry, seen) {
     }
     const { triangles } = geometry;
     return edgesOfTriangles(triangles, trianglesOfFace(triangles, faceOf(triangles, seen.under)));
-}
-
-function pointAt(geometry, slot) {
-    return geometry.vertices.subarray(4 * slot, 4 * slot + 3);
 }
 
 // [candidate, distance] of the nearest within reach, or null.

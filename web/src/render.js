@@ -16,6 +16,7 @@ import {
     LessEqualDepth,
     Mesh,
     NoBlending,
+    NoColorSpace,
     PerspectiveCamera,
     Points,
     RGBAFormat,
@@ -34,8 +35,11 @@ import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 
-import { edgesOfTriangles, trianglesOfFace } from './geometry.js';
+import { arrowOf } from './arrows.js';
+import { edgesOfTriangles, pointAt, trianglesOfFace } from './geometry.js';
 import {
+    ARROW_FRAGMENT,
+    ARROW_VERTEX,
     DOT_FRAGMENT,
     DOT_PICK,
     DOT_VERTEX,
@@ -49,9 +53,19 @@ import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance } from './view.js';
 const BACKGROUND = 0x0e1116;
 const CHOSEN = 0xffb347;
 const CHOSEN_START = 0x7a4a10; // where a selected half-edge begins
+const BOUNDARY = 0x35d0e6;
+// Of half-edges by their role, see around.js; also in style.css.
+const ARROWS = {
+    self: 0xffb347,
+    next: 0x6be675,
+    prev: 0xe27bff,
+    twin: 0x5fa8ff,
+    near: 0xf4f6fa,
+};
 const DOT_SIZE = 7; // CSS pixels, as all sizes here
 const MARK_SIZE = 13;
 const LINE_WIDTH = 4;
+const BOUNDARY_WIDTH = 3;
 const EDGE_WIDTH = 0.75; // on each side of an edge
 
 // Rows of the textures; every WebGL2 has 2048.
@@ -75,6 +89,8 @@ export class Renderer {
     #dots;
     #lines;
     #hiddenLines;
+    #boundary;
+    #arrows;
     #marks;
     #allVertices = false;
     #pickDots;
@@ -82,25 +98,29 @@ export class Renderer {
     #label = null;
     #scheduled = false;
     #onFrame;
+    #onMove;
 
     // Throws NoWebGL. `onFrame(label)` is called after each frame with what show() was given, and
-    // `onLost(lost)` when the graphics context goes and comes back.
-    constructor(canvas, { onFrame, onLost }) {
+    // `onLost(lost)` when the graphics context goes and comes back, `onMove()` after the camera was
+    // moved.
+    constructor(canvas, { onFrame, onLost, onMove }) {
         const context = canvas.getContext('webgl2', { antialias: true, alpha: false });
         if (context === null) {
             throw new NoWebGL();
         }
         this.#canvas = canvas;
         this.#onFrame = onFrame;
+        this.#onMove = onMove;
         this.#renderer = new WebGLRenderer({ canvas, context });
         this.#renderer.setClearColor(BACKGROUND);
         this.#camera.up.set(...UP);
         this.#controls = new OrbitControls(this.#camera, canvas);
         this.#controls.zoomToCursor = true;
-        this.#controls.minDistance = 0.005;
+        this.#controls.minDistance = 1e-4;
         this.#controls.maxDistance = 60;
         this.#controls.listenToKeyEvents(canvas);
         this.#controls.addEventListener('change', () => this.#draw());
+        this.#controls.addEventListener('end', onMove);
         this.#build();
         this.fit();
         canvas.addEventListener('webglcontextlost', () => onLost(true));
@@ -111,8 +131,9 @@ export class Renderer {
         new ResizeObserver(() => this.#resize()).observe(canvas);
     }
 
-    // Show a packed mesh, or nothing (null). `label` is what onFrame will say is shown.
-    show(geometry, label) {
+    // Show a mesh with the edges of its boundary loops, or nothing (null). `label` is what onFrame
+    // will say is shown.
+    show(geometry, boundary, label) {
         this.#shared.vertices.value?.dispose();
         this.#shared.triangles.value?.dispose();
         this.#geometry = geometry;
@@ -128,14 +149,16 @@ export class Renderer {
         this.#surface.geometry.setDrawRange(0, (3 * triangles.length) / 4);
         this.#dots.geometry.setDrawRange(0, vertices.length / 4);
         this.#setDots();
-        this.select([], label);
+        this.#setBoundary(boundary);
+        this.select([], [], label);
     }
 
-    // Mark elements: {kind: 'face', face}, {kind: 'edge' or 'halfedge', from, to} or
-    // {kind: 'vertex', vertex}, in slots. Replaces what was marked before.
-    select(marks, label) {
+    // Mark elements: {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to} or
+    // {kind: 'vertex', id}, and draw half-edges as arrows, see around.js. Replaces what was marked
+    // before.
+    select(marks, halfedges, label) {
         this.#label = label;
-        const faces = marks.filter((mark) => mark.kind === 'face').map((mark) => mark.face);
+        const faces = idsOf(marks, 'face');
         const triangles = this.#geometry?.triangles;
         const edges = faces.flatMap((face) =>
             edgesOfTriangles(triangles, trianglesOfFace(triangles, face)),
@@ -149,7 +172,8 @@ export class Renderer {
         }
         this.#surface.material.uniforms.selected.value = faces.at(-1) ?? -1;
         this.#setLines(edges, directed);
-        this.#setMarks(marks.filter((mark) => mark.kind === 'vertex').map((mark) => mark.vertex));
+        this.#setMarks(idsOf(marks, 'vertex'));
+        this.#setArrows(halfedges);
         this.#draw();
     }
 
@@ -162,18 +186,58 @@ export class Renderer {
 
     // Put the camera where the whole mesh is seen from the usual side.
     fit() {
+        const { center, radius } = this.#geometry ?? { center: [0, 0, 0], radius: 1 };
+        this.#look(center, DIRECTION, radius);
+    }
+
+    // Put the camera nearer or further on the side it is, so that some points are seen with what is
+    // around them.
+    frame(points) {
+        const [low, high] = [Math.min, Math.max].map((pick) =>
+            [0, 1, 2].map((axis) => pick(...points.map((point) => point[axis]))),
+        );
+        const center = low.map((value, axis) => (value + high[axis]) / 2);
+        const radius = Math.max(
+            ...points.map((point) => Math.hypot(...point.map((value, i) => value - center[i]))),
+        );
+        const away = this.#camera.position.clone().sub(this.#controls.target).normalize();
+        this.#look(center, away.toArray(), radius > 0 ? 1.8 * radius : 0.1);
+    }
+
+    #look(center, direction, radius) {
         // Panels that came or went with the mesh have changed the canvas already.
         this.#resize();
-        const distance = fitDistance(this.#camera.aspect) * (this.#geometry?.radius ?? 1);
-        this.#controls.target.set(0, 0, 0);
-        this.#camera.position.set(...DIRECTION).multiplyScalar(distance);
+        const distance = fitDistance(this.#camera.aspect) * radius;
+        this.#controls.target.set(...center);
+        this.#camera.position.set(...direction).multiplyScalar(distance);
+        this.#camera.position.add(this.#controls.target);
+        this.#controls.update();
+        this.#draw();
+        this.#onMove();
+    }
+
+    // Where the camera stands and what it looks at: six numbers.
+    get camera() {
+        return [...this.#camera.position.toArray(), ...this.#controls.target.toArray()];
+    }
+
+    set camera(numbers) {
+        this.#resize();
+        this.#camera.position.fromArray(numbers);
+        this.#controls.target.fromArray(numbers, 3);
         this.#controls.update();
         this.#draw();
     }
 
+    // What is on the screen, as a Blob of image/png.
+    capture() {
+        this.#render();
+        return new Promise((resolve) => this.#canvas.toBlob(resolve, 'image/png'));
+    }
+
     // What is visible within `reach` of a place on the canvas, nearest first:
-    // {under, triangles, vertices}, where `under` is the nearest triangle or -1 and vertices are
-    // those shown as dots.
+    // {under, away, triangles, vertices}, where `under` is the nearest triangle or -1, `away` how
+    // far it is in pixels, and vertices are those shown as dots.
     look(x, y, reach) {
         const ratio = this.#renderer.getPixelRatio();
         const radius = Math.ceil(reach * ratio);
@@ -261,9 +325,23 @@ export class Renderer {
         // What is behind the surface is marked too, faintly.
         this.#lines = new LineSegments2(new LineSegmentsGeometry(), line(LessEqualDepth, 1));
         this.#hiddenLines = new LineSegments2(this.#lines.geometry, line(GreaterDepth, 0.3));
+        this.#boundary = new LineSegments2(new LineSegmentsGeometry(), line(LessEqualDepth, 1));
+        this.#boundary.material.linewidth = BOUNDARY_WIDTH;
+        this.#arrows = new Mesh(
+            new BufferGeometry(),
+            new RawShaderMaterial({
+                glslVersion: GLSL3,
+                vertexShader: ARROW_VERTEX,
+                fragmentShader: ARROW_FRAGMENT,
+                side: DoubleSide,
+                blending: NoBlending,
+            }),
+        );
         this.#add(this.#scene, [
             this.#surface,
+            this.#boundary,
             this.#dots,
+            this.#arrows,
             this.#hiddenLines,
             this.#lines,
             this.#marks,
@@ -273,7 +351,7 @@ export class Renderer {
             new Mesh(this.#surface.geometry, surface(SURFACE_PICK, {})),
             this.#pickDots,
         ]);
-        this.show(null, null);
+        this.show(null, [], null);
     }
 
     // Bounds are not known to three, which sees no positions.
@@ -309,34 +387,61 @@ export class Renderer {
     #setLines(edges, directed) {
         this.#lines.visible = edges.length > 0;
         this.#hiddenLines.visible = edges.length > 0;
-        if (edges.length === 0) {
-            return;
-        }
-        const geometry = new LineSegmentsGeometry();
-        const points = edges.flatMap((ends) => ends.flatMap((slot) => this.#pointAt(slot)));
-        geometry.setPositions(new Float32Array(points));
-        const colors = new Float32Array(points.length);
-        for (let i = 0; i < points.length; i += 3) {
-            const start = directed && i % 6 === 0;
-            new Color(start ? CHOSEN_START : CHOSEN).toArray(colors, i);
-        }
-        geometry.setColors(colors);
+        const geometry = this.#segments(edges, (start) =>
+            directed && start ? CHOSEN_START : CHOSEN,
+        );
         this.#lines.geometry.dispose();
         this.#lines.geometry = geometry;
         this.#hiddenLines.geometry = geometry;
     }
 
+    #setBoundary(edges) {
+        this.#boundary.visible = edges.length > 0;
+        this.#boundary.geometry.dispose();
+        this.#boundary.geometry = this.#segments(edges, () => BOUNDARY);
+    }
+
+    // Lines between pairs of vertices; `colorOf(start)` of either end.
+    #segments(edges, colorOf) {
+        const geometry = new LineSegmentsGeometry();
+        const points = new Float32Array(6 * edges.length);
+        const colors = new Float32Array(6 * edges.length);
+        edges.flat().forEach((vertex, i) => {
+            points.set(pointAt(this.#geometry, vertex), 3 * i);
+            new Color(colorOf(i % 2 === 0)).toArray(colors, 3 * i);
+        });
+        if (edges.length > 0) {
+            geometry.setPositions(points);
+            geometry.setColors(colors);
+        }
+        return geometry;
+    }
+
+    #setArrows(halfedges) {
+        const points = [];
+        const colors = [];
+        for (const halfedge of halfedges) {
+            const arrow = arrowOf(this.#geometry, halfedge);
+            const color = new Color().setHex(ARROWS[halfedge.role], NoColorSpace).toArray();
+            points.push(...arrow.flat());
+            colors.push(...arrow.flatMap(() => color));
+        }
+        const geometry = new BufferGeometry();
+        for (const [name, array] of Object.entries({ position: points, color: colors })) {
+            geometry.setAttribute(name, new BufferAttribute(new Float32Array(array), 3));
+        }
+        this.#arrows.geometry.dispose();
+        this.#arrows.geometry = geometry;
+        this.#arrows.visible = points.length > 0;
+    }
+
     #setMarks(vertices) {
-        const points = vertices.flatMap((slot) => this.#pointAt(slot));
+        const points = vertices.flatMap((vertex) => pointAt(this.#geometry, vertex));
         const geometry = new BufferGeometry();
         geometry.setAttribute('position', new BufferAttribute(new Float32Array(points), 3));
         this.#marks.geometry.dispose();
         this.#marks.geometry = geometry;
         this.#marks.visible = points.length > 0;
-    }
-
-    #pointAt(slot) {
-        return Array.from(this.#geometry.vertices.subarray(4 * slot, 4 * slot + 3));
     }
 
     #resize() {
@@ -355,7 +460,8 @@ export class Renderer {
     // The mesh is within 1 of the origin; a tight range keeps the depth buffer exact.
     #setDepthRange() {
         const distance = this.#camera.position.length();
-        this.#camera.near = Math.max(distance - 1.1, 0.002);
+        const near = 0.02 * this.#controls.getDistance();
+        this.#camera.near = Math.max(distance - 1.1, near);
         this.#camera.far = distance + 1.1;
         this.#camera.updateProjectionMatrix();
         this.#camera.updateMatrixWorld();
@@ -368,10 +474,14 @@ export class Renderer {
         this.#scheduled = true;
         requestAnimationFrame(() => {
             this.#scheduled = false;
-            this.#setDepthRange();
-            this.#renderer.render(this.#scene, this.#camera);
+            this.#render();
             this.#onFrame(this.#label);
         });
+    }
+
+    #render() {
+        this.#setDepthRange();
+        this.#renderer.render(this.#scene, this.#camera);
     }
 }
 
@@ -386,6 +496,10 @@ function line(depthFunc, opacity) {
     });
 }
 
+function idsOf(marks, kind) {
+    return marks.filter((mark) => mark.kind === kind).map(({ id }) => id);
+}
+
 // The ids of a square of pixels, from the middle outwards, each once.
 function sortIds(ids, size) {
     const radius = (size - 1) / 2;
@@ -394,13 +508,19 @@ function sortIds(ids, size) {
         if (ids[4 * i] !== 0) {
             const dx = (i % size) - radius;
             const dy = Math.floor(i / size) - radius;
-            found.push({ kind: ids[4 * i], slot: ids[4 * i + 1], away: dx * dx + dy * dy });
+            found.push({ kind: ids[4 * i], id: ids[4 * i + 1], away: dx * dx + dy * dy });
         }
     }
     found.sort((a, b) => a.away - b.away);
     const unique = (kind) => [
-        ...new Set(found.filter((id) => id.kind === kind).map((id) => id.slot)),
+        ...new Set(found.filter((one) => one.kind === kind).map(({ id }) => id)),
     ];
     const triangles = unique(ID_TRIANGLE);
-    return { under: triangles[0] ?? -1, triangles, vertices: unique(ID_VERTEX) };
+    const nearest = found.find((one) => one.kind === ID_TRIANGLE);
+    return {
+        under: nearest?.id ?? -1,
+        away: Math.sqrt(nearest?.away ?? Infinity),
+        triangles,
+        vertices: unique(ID_VERTEX),
+    };
 }

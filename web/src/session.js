@@ -5,7 +5,8 @@
 // another client has changed in the meantime: then the mesh is read again and the refusal shown.
 
 import * as api from './api.js';
-import { Elements, pack, slotOf } from './geometry.js';
+import { describe } from './around.js';
+import { hasVertex, trianglesOfFace, unpack } from './geometry.js';
 
 // How often a mesh that changes while it is being read is read again.
 const READS = 5;
@@ -13,9 +14,11 @@ const READS = 5;
 export class Session {
     mesh = null; // id, or null when none is open
     summary = null;
-    geometry = null; // packed, see geometry.js
+    geometry = null; // see geometry.js
+    boundary = []; // the half-edges of all boundary loops, as [origin, target]
     history = { undo: 0, redo: 0 };
     selection = []; // {kind, id, element}, the last chosen last
+    around = null; // what describe() says of the last one
     loading = null; // part of the mesh that has been read, 0 to 1, or null
     busy = false; // an edit is under way
 
@@ -34,8 +37,8 @@ export class Session {
         const opening = new AbortController();
         this.#opening = opening;
         try {
-            const content = await this.#read(mesh, null, opening.signal);
-            Object.assign(this, content, { mesh, selection: [] });
+            const content = await this.#read(mesh, opening.signal);
+            Object.assign(this, content, { mesh, selection: [], around: null });
             this.#choice++;
             this.#onChange('mesh');
         } catch (error) {
@@ -53,24 +56,28 @@ export class Session {
     // Read the mesh again as it is now. What is selected stays selected where it still lives.
     async reload() {
         const { mesh } = this;
-        const content = await this.#read(mesh, this.geometry.frame, undefined);
+        const content = await this.#read(mesh, undefined);
         const selection = await refresh(mesh, this.selection);
+        const around = await this.#describe(mesh, selection.at(-1));
         if (this.mesh === mesh) {
-            Object.assign(this, content, { selection });
+            Object.assign(this, content, { selection, around });
             this.#choice++;
             this.#onChange('revision');
         }
     }
 
-    // Select an element; `also` keeps the one selected before it, if it is of the same kind.
+    // Select an element; `also` keeps those selected before it, if they are of the same kind.
     async select(kind, id, also = false) {
         const choice = ++this.#choice;
-        const element = await api.getElement(this.mesh, kind, id);
+        const { mesh } = this;
+        const element = await api.getElement(mesh, kind, id);
+        const around = await this.#describe(mesh, { kind, element });
         if (choice !== this.#choice) {
             return;
         }
         const others = also ? this.selection.filter((s) => s.kind === kind && s.id !== id) : [];
-        this.selection = [...others.slice(-1), { kind, id, element }];
+        this.selection = [...others, { kind, id, element }];
+        this.around = around;
         this.#onChange('selection');
     }
 
@@ -80,47 +87,63 @@ export class Session {
             this.clearSelection();
             return;
         }
-        const { vertexIds, faceIds } = this.geometry;
-        if (chosen.kind === 'face') {
-            await this.select('face', faceIds[chosen.face], also);
-        } else if (chosen.kind === 'vertex') {
-            await this.select('vertex', vertexIds[chosen.vertex], also);
-        } else {
-            const ends = [vertexIds[chosen.from], vertexIds[chosen.to]];
-            const edge = await api.findEdge(this.mesh, ...ends);
-            if (edge !== null) {
-                await this.select('edge', edge, also);
-            }
+        const { kind, id, from, to } = chosen;
+        if (id !== undefined) {
+            await this.select(kind, id, also);
+            return;
         }
+        const halfedge = await api.findHalfedge(this.mesh, from, to);
+        if (halfedge !== null) {
+            // The half-edges of edge e are 2e and 2e + 1.
+            await this.select(kind, kind === 'edge' ? Math.floor(halfedge / 2) : halfedge, also);
+        }
+    }
+
+    // Follow a link of the selected half-edge: 'next', 'prev' or 'twin'.
+    async step(link) {
+        const last = this.selection.at(-1);
+        if (last?.kind === 'halfedge') {
+            await this.select('halfedge', last.element[link]);
+        }
+    }
+
+    async #describe(mesh, chosen) {
+        return chosen === undefined
+            ? null
+            : describe(chosen.kind, chosen.element, (queries) => api.query(mesh, queries));
     }
 
     clearSelection() {
         this.#choice++;
         if (this.selection.length > 0) {
             this.selection = [];
+            this.around = null;
             this.#onChange('selection');
         }
     }
 
-    // The selected elements in slots of `geometry`, for the renderer. What is not in the revision
-    // shown has none.
+    // The selected elements for the renderer, those of the revision shown: {kind: 'face', id},
+    // {kind: 'vertex', id}, or {kind: 'edge' or 'halfedge', from, to}.
     get marks() {
-        return this.selection
-            .map(({ kind, id, element }) => this.#markOf(kind, id, element))
-            .filter((mark) => Object.values(mark).every((value) => value !== -1));
+        return this.selection.map(markOf).filter((mark) => this.#isShown(mark));
     }
 
-    #markOf(kind, id, element) {
-        const { vertexIds, faceIds } = this.geometry;
+    // The half-edges near the last selected element, likewise.
+    get arrows() {
+        return (this.around?.halfedges ?? []).filter(({ origin, target, face, across }) =>
+            this.#isShown({ kind: 'edge', from: origin, to: target }) &&
+            this.#isShown({ kind: 'face', id: face ?? across }),
+        );
+    }
+
+    #isShown({ kind, id, from, to }) {
+        const { geometry } = this;
         if (kind === 'face') {
-            return { kind, face: slotOf(faceIds, id) };
+            return trianglesOfFace(geometry.triangles, id).length > 0;
         }
-        if (kind === 'vertex') {
-            return { kind, vertex: slotOf(vertexIds, id) };
-        }
-        const [from, to] =
-            kind === 'edge' ? element.vertices : [element.origin, element.target];
-        return { kind, from: slotOf(vertexIds, from), to: slotOf(vertexIds, to) };
+        return kind === 'vertex'
+            ? hasVertex(geometry, id)
+            : hasVertex(geometry, from) && hasVertex(geometry, to);
     }
 
     // What Split would do: 'edge_split', 'face_poke', 'face_split' or null.
@@ -150,6 +173,7 @@ export class Session {
         }
     }
 
+    // The face of which two vertices are corners.
     async #sharedFace(a, b) {
         const [ofA, ofB] = await Promise.all(
             [a, b].map((id) => api.getAdjacent(this.mesh, 'vertex', id, 'faces')),
@@ -162,6 +186,11 @@ export class Session {
             });
         }
         return face;
+    }
+
+    // Run an operation of the server's table.
+    run(operation) {
+        return this.#edit((revision) => api.edit(this.mesh, operation, revision));
     }
 
     undo() {
@@ -190,37 +219,28 @@ export class Session {
         }
     }
 
-    // Summary, geometry and history of one revision.
-    async #read(mesh, frame, signal) {
+    // Summary, geometry, boundary and history of one revision.
+    async #read(mesh, signal) {
         for (let i = 0; i < READS; i++) {
-            const summary = await api.getSummary(mesh, signal);
-            const elements = await this.#readElements(mesh, summary.counts, signal);
-            const history = await api.getHistory(mesh, signal);
-            if (history.revision === summary.revision) {
-                return { summary, history, geometry: pack(elements, frame ?? undefined) };
+            const buffer = await api.getGeometry(mesh, (part) => this.#setLoading(part), signal);
+            const geometry = unpack(buffer);
+            const [summary, history] = await Promise.all([
+                api.getSummary(mesh, signal),
+                api.getHistory(mesh, signal),
+            ]);
+            const { revision, loops } =
+                summary.counts.boundary_loops > 0
+                    ? await api.getBoundaries(mesh, signal)
+                    : { revision: summary.revision, loops: [] };
+            const revisions = [summary.revision, history.revision, revision];
+            if (revisions.every((one) => one === geometry.revision)) {
+                return { summary, history, geometry, boundary: loops.flatMap(edgesOfLoop) };
             }
         }
         throw new api.Problem({
             title: 'Mesh too busy',
             detail: 'The mesh changed each time while it was being read.',
         });
-    }
-
-    async #readElements(mesh, counts, signal) {
-        const elements = new Elements();
-        const total = counts.vertices + counts.faces;
-        let count = 0;
-        for (const [kind, add] of [
-            ['vertex', (item) => elements.addVertex(item)],
-            ['face', (item) => elements.addFace(item)],
-        ]) {
-            for await (const items of api.elements(mesh, kind, signal)) {
-                items.forEach(add);
-                count += items.length;
-                this.#setLoading(total > 0 ? Math.min(count / total, 1) : 1);
-            }
-        }
-        return elements;
     }
 
     #setLoading(part) {
@@ -235,6 +255,18 @@ export class Session {
         }
         this.#onChange('state');
     }
+}
+
+function markOf({ kind, id, element }) {
+    if (kind === 'face' || kind === 'vertex') {
+        return { kind, id };
+    }
+    const [from, to] = kind === 'edge' ? element.vertices : [element.origin, element.target];
+    return { kind, from, to };
+}
+
+function edgesOfLoop({ vertices }) {
+    return vertices.map((vertex, i) => [vertex, vertices[(i + 1) % vertices.length]]);
 }
 
 // What still lives of a selection, as it is now.

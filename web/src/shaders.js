@@ -97,7 +97,7 @@ void main() {
 }
 `;
 
-// One point a vertex slot; those not wanted fall outside of the clip volume.
+// One point a vertex row; those not wanted fall outside of the clip volume.
 export const DOT_VERTEX = `${TEXTURES}
 uniform float size;
 uniform bool isolatedOnly;
@@ -153,5 +153,30 @@ void main() {
     vertex = uint(gl_VertexID);
     gl_PointSize = size;
     gl_Position = projectionMatrix * seen;
+}
+`;
+
+// Half-edges: triangles with colours of their own, before the surface they lie on.
+export const ARROW_VERTEX = `
+precision highp float;
+in vec3 position;
+in vec3 color;
+uniform mat4 modelViewMatrix;
+uniform mat4 projectionMatrix;
+out vec3 tint;
+void main() {
+    vec4 seen = modelViewMatrix * vec4(position, 1.0);
+    seen.xyz *= 0.994;
+    tint = color;
+    gl_Position = projectionMatrix * seen;
+}
+`;
+
+export const ARROW_FRAGMENT = `
+precision highp float;
+in vec3 tint;
+out vec4 color;
+void main() {
+    color = vec4(tint, 1.0);
 }
 `;

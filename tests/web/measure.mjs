@@ -1,0 +1,96 @@
+// measure.mjs [FOLDER] - how long meshes of a thousand, a hundred thousand and a million faces take
+// to open, to draw, to pick in and to edit; with FOLDER a screenshot of each. Not a test: what it
+// prints depends on the machine.
+
+import { writeFile } from 'node:fs/promises';
+import path from 'node:path';
+
+import { launch, waitForFrame } from './browser.mjs';
+import { get, post, startDaemon } from './daemon.mjs';
+
+const SIDES = [32, 316, 1000];
+const FRAMES = 5;
+
+const folder = process.argv[2];
+const cleanups = [];
+const lifetime = { after: (act) => cleanups.push(act) };
+
+// Milliseconds from `act` until the page shows what is waited for.
+async function timed(act, wait) {
+    const start = performance.now();
+    await act();
+    await wait();
+    return performance.now() - start;
+}
+
+// The camera is moved a little and the frame awaited.
+async function frameTime(page) {
+    return page.evaluate(async (frames) => {
+        const canvas = document.getElementById('canvas');
+        const gl = canvas.getContext('webgl2');
+        const pixel = new Uint8Array(4);
+        const times = [];
+        for (let i = 0; i < frames; i++) {
+            canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: i % 2 ? 10 : -10 }));
+            const start = performance.now();
+            await new Promise((resolve) => requestAnimationFrame(resolve));
+            // Reading waits until the frame is drawn.
+            gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+            times.push(performance.now() - start);
+        }
+        return times.sort((a, b) => a - b)[Math.floor(frames / 2)];
+    }, FRAMES);
+}
+
+async function measure(browser, daemon, side) {
+    const shape = { shape: 'torus', major_segments: side, minor_segments: side };
+    const { id: mesh, counts } = await post(daemon, '', { name: `torus ${side}`, ...shape });
+    const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+    page.setDefaultTimeout(120000);
+    const open = await timed(
+        () => page.goto(`${daemon.url}/#mesh=${mesh}`),
+        () => waitForFrame(page, { mesh, revision: 1 }),
+    );
+    const frame = await frameTime(page);
+    const { width, height } = await page.locator('#canvas').boundingBox();
+    const pick = await timed(
+        () => page.locator('#canvas').click({ position: { x: width / 2, y: 0.68 * height } }),
+        () => page.locator('#canvas[data-selection^="face"]').waitFor(),
+    );
+    const edit = await timed(
+        () => page.getByRole('button', { name: 'Split' }).click(),
+        () => waitForFrame(page, { revision: 2 }),
+    );
+    const undo = await timed(
+        () => page.locator('#canvas').press('Control+z'),
+        () => waitForFrame(page, { revision: 3 }),
+    );
+    if (folder) {
+        await page.screenshot({ path: path.join(folder, `torus-${side}.png`) });
+        await page.locator('#canvas').press('f');
+        await frameTime(page);
+        await writeFile(path.join(folder, `torus-${side}-near.png`), await page.screenshot());
+    }
+    await page.close();
+    const { counts: after } = await get(daemon, `/${mesh}`);
+    if (after.faces !== counts.faces) {
+        throw new Error(`${after.faces} faces after undo, not ${counts.faces}`);
+    }
+    return [counts.faces, open, frame, pick, edit, undo];
+}
+
+const browser = await launch();
+try {
+    const daemon = await startDaemon(lifetime);
+    const line = (cells) => console.log(cells.map((cell) => `${cell}`.padStart(10)).join(''));
+    line(['faces', 'open', 'frame', 'pick', 'edit', 'undo']);
+    for (const side of SIDES) {
+        const [faces, ...times] = await measure(browser, daemon, side);
+        line([faces, ...times.map((time) => `${time.toFixed(0)} ms`)]);
+    }
+} finally {
+    await browser.close();
+    for (const cleanup of cleanups) {
+        await cleanup();
+    }
+}

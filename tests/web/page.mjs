@@ -1,0 +1,61 @@
+// page.mjs - what a visitor does on the page and reads from it.
+
+import assert from 'node:assert/strict';
+
+import { openPage, waitForFrame } from './browser.mjs';
+import { get, post, startDaemon } from './daemon.mjs';
+
+// A daemon with one mesh, and the page that shows it.
+export async function openMesh(t, browser, document, options) {
+    const daemon = await startDaemon(t);
+    const { id: mesh } = await post(daemon, '', document);
+    const page = await openPage(t, browser, daemon, options);
+    await waitForFrame(page, { mesh, revision: 1 });
+    return { daemon, mesh, page };
+}
+
+// The inspector's members as text, keyed by name.
+export function readMembers(page) {
+    return page.locator('#members').evaluate((list) =>
+        Object.fromEntries(
+            [...list.querySelectorAll('dd')].map((dd) => [
+                dd.dataset.member,
+                [...dd.children].map((child) => child.textContent),
+            ]),
+        ),
+    );
+}
+
+// The same of an element of the API.
+function membersOf(element) {
+    const text = (value) => (value === null ? 'none' : String(value));
+    return Object.fromEntries(
+        Object.entries(element).map(([name, value]) => [
+            name,
+            Array.isArray(value) ? value.map(text) : [text(value)],
+        ]),
+    );
+}
+
+const PLURALS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
+
+export async function checkInspector({ daemon, mesh, page }, kind, id) {
+    await waitForFrame(page, { selection: `${kind}:${id}` });
+    const element = await get(daemon, `/${mesh}/${PLURALS[kind]}/${id}`);
+    assert.deepEqual(await readMembers(page), membersOf(element), `${kind} ${id}`);
+    return element;
+}
+
+export function click(page, position, modifiers = []) {
+    return page.locator('#canvas').click({ position, modifiers });
+}
+
+export async function setMode(page, mode) {
+    await page.getByRole('radio', { name: mode, exact: true }).check();
+}
+
+export async function expectToast(page, pattern) {
+    const toast = page.getByRole('alert').filter({ hasText: pattern });
+    await toast.waitFor();
+    assert.equal(await toast.count(), 1);
+}

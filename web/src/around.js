@@ -1,0 +1,156 @@
+// around.js - what lies around an element and what can be measured there, beyond its own members.
+// Pure but for `ask`, which sends the server a list of questions and gives their answers in order.
+//
+//   rings      [{name, kind, ids}]   in the server's order
+//   measures   [{name, value}]       text
+//   halfedges  [{id, origin, target, face, across, role}]: those drawn as arrows, where role is
+//              'self', 'next', 'prev', 'twin' or 'near'
+
+import { formatMeasure } from './dom.js';
+
+// Arrows of one selection.
+const MOST = 64;
+
+const subtract = (a, b) => a.map((value, i) => value - b[i]);
+const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+const length = (a) => Math.hypot(...a);
+
+function cross(a, b) {
+    return [0, 1, 2].map((i) => {
+        const [u, v] = [(i + 1) % 3, (i + 2) % 3];
+        return a[u] * b[v] - a[v] * b[u];
+    });
+}
+
+// Between two vectors, in degrees.
+export function angleBetween(a, b) {
+    // Longest component 1 first, or products could overflow.
+    const scaled = [a, b].map((v) => v.map((value) => value / (Math.max(...v.map(Math.abs)) || 1)));
+    return (Math.atan2(length(cross(...scaled)), dot(...scaled)) * 180) / Math.PI;
+}
+
+// Between the normals of the faces left and right of an edge: positive on a ridge.
+export function foldAngle(left, right, direction) {
+    const angle = angleBetween(left, right);
+    return dot(cross(left, right), direction) < 0 ? -angle : angle;
+}
+
+const degrees = (value) => `${formatMeasure(value)}\u00b0`;
+
+// A question failed where the mesh has changed meanwhile.
+const lives = (answer) => answer !== undefined && !('status' in answer);
+
+async function ids(ask, relations, of) {
+    const answers = await ask(relations.map((relation) => ({ relation, of })));
+    return answers.map((answer) => (lives(answer) ? answer.ids : []));
+}
+
+// Half-edges by id with their roles, as arrows want them. The face across is that of the twin.
+async function halfedgesOf(ask, roles) {
+    const wanted = [...roles.keys()].slice(0, MOST);
+    const answers = await ask(
+        wanted.flatMap((id) => [{ get: { halfedge: id } }, { get: { halfedge: id ^ 1 } }]),
+    );
+    return wanted
+        .map((id, i) => [answers[2 * i], answers[2 * i + 1], roles.get(id)])
+        .filter(([halfedge, twin]) => lives(halfedge) && lives(twin))
+        .map(([{ id, origin, target, face }, twin, role]) => {
+            return { id, origin, target, face, across: twin.face, role };
+        });
+}
+
+// Ids of one role; the first role an id gets stays.
+function rolesOf(...groups) {
+    const roles = new Map();
+    for (const [role, list] of groups) {
+        for (const id of list) {
+            if (!roles.has(id)) {
+                roles.set(id, role);
+            }
+        }
+    }
+    return roles;
+}
+
+const withTwins = (list) => list.flatMap((id) => [id, id ^ 1]);
+
+const readers = {
+    async vertex({ id }, ask) {
+        const of = { vertex: id };
+        const [outgoing, vertices, faces] = await ids(ask, ['outgoing', 'vertices', 'faces'], of);
+        return {
+            rings: [
+                { name: 'outgoing', kind: 'halfedge', ids: outgoing },
+                { name: 'vertices', kind: 'vertex', ids: vertices },
+                { name: 'faces', kind: 'face', ids: faces },
+            ],
+            measures: [],
+            halfedges: await halfedgesOf(ask, rolesOf(['near', withTwins(outgoing)])),
+        };
+    },
+
+    async halfedge({ id, next, prev, twin, origin, target, edge }, ask) {
+        const of = { halfedge: id };
+        const [loop, ring] = await ids(ask, ['loop', 'ring'], of);
+        const [from, to, before, whole] = await ask([
+            { get: { vertex: origin } },
+            { get: { vertex: target } },
+            { get: { halfedge: prev } },
+            { get: { edge } },
+        ]);
+        const measures = [];
+        if (lives(whole)) {
+            measures.push({ name: 'length', value: formatMeasure(whole.length) });
+        }
+        if ([from, to, before].every(lives)) {
+            const [behind] = await ask([{ get: { vertex: before.origin } }]);
+            const sides = [to, behind].map((v) => subtract(v.position, from.position));
+            measures.push({ name: 'angle', value: degrees(angleBetween(...sides)) });
+        }
+        return {
+            rings: [
+                { name: 'loop', kind: 'halfedge', ids: loop },
+                { name: 'ring', kind: 'halfedge', ids: ring },
+            ],
+            measures,
+            halfedges: await halfedgesOf(
+                ask,
+                rolesOf(['self', [id]], ['next', [next]], ['prev', [prev]], ['twin', [twin]],
+                    ['near', loop]),
+            ),
+        };
+    },
+
+    async edge({ halfedges, vertices, faces }, ask) {
+        const measures = [];
+        if (!faces.includes(null)) {
+            const [left, right, from, to] = await ask([
+                ...faces.map((face) => ({ get: { face } })),
+                ...vertices.map((vertex) => ({ get: { vertex } })),
+            ]);
+            if ([left, right, from, to].every(lives)) {
+                const direction = subtract(to.position, from.position);
+                const fold = foldAngle(left.normal, right.normal, direction);
+                measures.push({ name: 'fold angle', value: degrees(fold) });
+            }
+        }
+        return {
+            rings: [],
+            measures,
+            halfedges: await halfedgesOf(ask, rolesOf(['near', halfedges])),
+        };
+    },
+
+    async face({ id, halfedges }, ask) {
+        const [faces] = await ids(ask, ['faces'], { face: id });
+        return {
+            rings: [{ name: 'faces', kind: 'face', ids: faces }],
+            measures: [],
+            halfedges: await halfedgesOf(ask, rolesOf(['near', withTwins(halfedges)])),
+        };
+    },
+};
+
+export function describe(kind, element, ask) {
+    return readers[kind](element, ask);
+}

@@ -1,0 +1,45 @@
+// keys.js - what keys do while the canvas has the focus, and the list of them that `?` shows. Only
+// there: elsewhere letters are text.
+
+import { make } from './dom.js';
+
+// [keys as shown, key as events name it, what it does, name of the act]
+const KEYS = [
+    ['1', '1', 'Pick vertices', 'pickVertex'],
+    ['2', '2', 'Pick edges', 'pickEdge'],
+    ['3', '3', 'Pick faces', 'pickFace'],
+    ['4', '4', 'Pick half-edges', 'pickHalfedge'],
+    ['N', 'n', 'Next half-edge', 'next'],
+    ['P', 'p', 'Previous half-edge', 'prev'],
+    ['T', 't', 'Twin half-edge', 'twin'],
+    ['F', 'f', 'Frame the selection, or the whole mesh', 'frame'],
+    ['G', 'g', 'Move vertices', 'move'],
+    ['E', 'e', 'Extrude a face', 'extrude'],
+    ['I', 'i', 'Inset a face', 'inset'],
+    ['X', 'x', 'Collapse an edge, delete a face or a vertex', 'remove'],
+    ['Ctrl Z', 'ctrl+z', 'Undo', 'undo'],
+    ['Ctrl Shift Z', 'ctrl+shift+z', 'Redo', 'redo'],
+    ['?', '?', 'This list', 'help'],
+    ['Esc', 'escape', 'Select nothing', 'clear'],
+];
+
+// `acts` has a function for each act.
+export function listenToKeys(canvas, acts) {
+    canvas.addEventListener('keydown', (event) => {
+        const control = event.ctrlKey || event.metaKey;
+        const shift = control && event.shiftKey;
+        const name = `${control ? 'ctrl+' : ''}${shift ? 'shift+' : ''}${event.key.toLowerCase()}`;
+        const row = KEYS.find(([, key]) => key === name);
+        if (row !== undefined && !event.altKey) {
+            event.preventDefault();
+            acts[row[3]]();
+        }
+    });
+}
+
+export function keyList() {
+    return KEYS.flatMap(([keys, , text]) => [
+        make('dt', {}, ...keys.split(' ').map((key) => make('kbd', {}, key))),
+        make('dd', {}, text),
+    ]);
+}
