@@ -216,14 +216,6 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
 
 /* --- writing it --- */
 
-static char *put(const char *text, char *p)
-{
-    while (*text != '\0') {
-        *p++ = *text++;
-    }
-    return p;
-}
-
 static char *put_whole(uint32_t value, size_t bytes, bool big, char *p)
 {
     for (size_t i = 0; i < bytes; i++) {
@@ -278,7 +270,7 @@ static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, 
 
 static char *write_element(const char *name, uint32_t count, char *p)
 {
-    p = put(name, put("element ", p));
+    p = he_export_text(name, he_export_text("element ", p));
     *p++ = ' ';
     p += he_u32_print(count, p);
     *p++ = '\n';
@@ -294,22 +286,23 @@ static char *write_header(ply_writer *w, char *p)
         [HE_PLY_BIG_ENDIAN] = "binary_big_endian",
     };
     if (w->line == 0) {
-        p = put(" 1.0\n", put(names[w->encoding], put("ply\nformat ", p)));
+        p = he_export_text(" 1.0\n",
+                           he_export_text(names[w->encoding], he_export_text("ply\nformat ", p)));
         p = write_element("vertex", he_mesh_vertices(w->mesh), p);
     }
     if (w->line == w->vertex_outputs) {
         p = write_element("face", he_mesh_faces(w->mesh), p);
-        p = put(he_ply_type_name(w->degree), put("property list ", p));
-        p = put(" int vertex_indices\n", p);
+        p = he_export_text(he_ply_type_name(w->degree), he_export_text("property list ", p));
+        p = he_export_text(" int vertex_indices\n", p);
     }
     if (w->line == w->count) {
         w->part = VERTICES;
-        return put("end_header\n", p);
+        return he_export_text("end_header\n", p);
     }
     const output *o = &w->outputs[w->line++];
-    p = put(he_ply_type_name(o->type), put("property ", p));
+    p = he_export_text(he_ply_type_name(o->type), he_export_text("property ", p));
     *p++ = ' ';
-    p = put(o->name, p);
+    p = he_export_text(o->name, p);
     *p++ = '\n';
     return p;
 }

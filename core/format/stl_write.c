@@ -196,14 +196,6 @@ static he_vec3 normal_of(const he_vec3 *p)
     return (he_vec3){n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0}; /* -0 is 0 */
 }
 
-static char *put(const char *text, char *p)
-{
-    while (*text != '\0') {
-        *p++ = *text++;
-    }
-    return p;
-}
-
 /* Positions keep all digits, a normal those of a float. */
 static char *put_numbers(he_vec3 v, bool all, char *p)
 {
@@ -218,12 +210,12 @@ static char *put_numbers(he_vec3 v, bool all, char *p)
 
 static char *write_text(const he_vec3 *corners, char *p)
 {
-    p = put_numbers(normal_of(corners), false, put("facet normal", p));
-    p = put("outer loop\n", p);
+    p = put_numbers(normal_of(corners), false, he_export_text("facet normal", p));
+    p = he_export_text("outer loop\n", p);
     for (unsigned i = 0; i < 3; i++) {
-        p = put_numbers(corners[i], true, put("vertex", p));
+        p = put_numbers(corners[i], true, he_export_text("vertex", p));
     }
-    return put("endloop\nendfacet\n", p);
+    return he_export_text("endloop\nendfacet\n", p);
 }
 
 static char *put_word(uint32_t value, char *p)
@@ -260,12 +252,12 @@ static char *write_binary(const he_vec3 *corners, char *p)
 static char *write_header(const stl_writer *w, char *p)
 {
     if (w->text) {
-        return put("solid\n", p);
+        return he_export_text("solid\n", p);
     }
     const he_content *c = &w->mesh->c;
     uint32_t corners = 2 * c->edges.live - c->boundary_halfedges;
     char *end = p + HEADER_BYTES;
-    p = put("binary STL", p); /* never "solid" */
+    p = he_export_text("binary STL", p); /* never "solid" */
     memset(p, 0, (size_t)(end - p));
     return put_word(corners - 2 * c->faces.live, end);
 }
@@ -292,7 +284,7 @@ static char *write_facets(stl_writer *w, char *p, const char *end)
     while (end - p >= HE_WRITE_ROOM) {
         if (w->row == w->mesh->c.faces.issued) {
             w->part = END;
-            return w->text ? put("endsolid\n", p) : p;
+            return w->text ? he_export_text("endsolid\n", p) : p;
         }
         if (!he_face_is_live(w->mesh, (he_face){w->row})) {
             w->row++;
