@@ -2,6 +2,7 @@
 
 #include "edit/point.h"
 #include "edit/ring.h"
+#include "mesh/marks.h"
 
 void he_bisect_need(he_need *need)
 {
@@ -109,7 +110,17 @@ static he_status check_join(const he_mesh *m, he_vertex v, he_error *err)
                        "edge %u already joins vertices %u and %u", he_edge_of(joined).i,
                        he_target(m, one).i, he_target(m, other).i);
     }
-    return HE_OK;
+    he_marks marks;
+    if (he_marks_find(m, &marks)) {
+        status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
+        for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
+            status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(sides[i]).i, err);
+            if (status == HE_OK) {
+                status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, sides[i]).i, err);
+            }
+        }
+    }
+    return status;
 }
 
 he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err)

@@ -29,7 +29,8 @@ HE_NODISCARD he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_WRONG_DEGREE for another degree;
  * HE_TRIANGLE_SIDE when a face at v is a triangle; HE_DOUBLED_EDGE when an edge joins a and b
- * already. HE_NO_MEMORY. `edge` is the one that stays, and may be NULL. */
+ * already; HE_LOCKED_ELEMENT for v, an edge or a face at it. HE_NO_MEMORY. `edge` is the one that
+ * stays, and may be NULL. */
 HE_NODISCARD he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err);
 
 /* COMMIT of edge_bisect, for edits that check and reserve themselves. `need` grows by what it

@@ -3,6 +3,7 @@
 #include "edit/cut.h"
 #include "edit/point.h"
 #include "edit/ring.h"
+#include "mesh/marks.h"
 
 static he_status refuse(he_error *err, he_halfedge h, const char *rule, const char *kind,
                         uint32_t id)
@@ -89,6 +90,91 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
     return status;
 }
 
+/* Everything about u goes or comes to v. */
+static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
+                             he_error *err)
+{
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    he_status status = he_require_unlocked(marks, HE_VERTEX, u.i, err);
+    if (status == HE_OK && moves) {
+        status = he_require_unlocked(marks, HE_VERTEX, v.i, err);
+    }
+    he_halfedge k = h;
+    do {
+        if (status == HE_OK) {
+            status = he_require_unlocked(marks, HE_EDGE, he_edge_of(k).i, err);
+        }
+        if (status == HE_OK) {
+            status = he_require_unlocked(marks, HE_FACE, he_face_of(m, k).i, err);
+        }
+        k = he_turn_ccw(m, k);
+    } while (status == HE_OK && k.i != h.i);
+    return status;
+}
+
+/* How many feature edges has the origin of h? One of them, other than that of h where it can be,
+ * goes to *which. */
+static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfedge h,
+                               he_edge *which)
+{
+    uint32_t count = 0;
+    he_halfedge k = h;
+    do {
+        if (he_is_feature(marks, he_edge_of(k))) {
+            *which = he_edge_of(k);
+            count++;
+        }
+        k = he_turn_ccw(m, k);
+    } while (k.i != h.i);
+    return count;
+}
+
+/* F1 to F4 of marks.h. */
+static he_status check_features(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
+                                he_error *err)
+{
+    if (marks->feature == NULL) {
+        return HE_OK;
+    }
+    he_halfedge back = he_twin(h);
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    he_edge e = he_edge_of(h), other = e;
+    bool along = he_is_feature(marks, e);
+    uint32_t count = count_features(m, marks, h, &other);
+    if (!along && count > 0) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
+                       "vertex %u would go, but is on feature edge %u", u.i, other.i);
+    }
+    if (along && count != 2) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, e.i,
+                       "vertex %u would go, but %u feature edges meet there", u.i, count);
+    }
+    he_edge left = he_edge_of(he_prev(m, h)), right = he_edge_of(he_next(m, back));
+    if ((is_triangle(m, h) && he_is_feature(marks, left)) ||
+        (is_triangle(m, back) && he_is_feature(marks, right))) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
+                       "feature edge %u would merge into another", other.i);
+    }
+    count = moves ? count_features(m, marks, back, &other) : 0;
+    if (count > 0 && !(along && count == 2)) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
+                       "vertex %u would move, but is on feature edge %u", v.i, other.i);
+    }
+    return HE_OK;
+}
+
+static he_status check_marks(const he_mesh *m, he_halfedge h, he_vec3 place, he_error *err)
+{
+    he_marks marks;
+    if (!he_marks_find(m, &marks)) {
+        return HE_OK;
+    }
+    he_vec3 p = he_position(m, he_target(m, h));
+    bool moves = place.x != p.x || place.y != p.y || place.z != p.z;
+    he_status status = check_locks(m, &marks, h, moves, err);
+    return status != HE_OK ? status : check_features(m, &marks, h, moves, err);
+}
+
 /* The triangle left of h is now a face of the two half-edges kept and gone, of which `gone` goes:
  * `kept` takes the place of its twin, `outer`. */
 static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
@@ -168,6 +254,11 @@ he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *t
         return he_fail(err, HE_NOT_FINITE, HE_HALFEDGE, h.i, "the position must be finite");
     }
     he_vertex u = he_origin(m, h), v = he_target(m, h);
+    he_vec3 place = to != NULL ? *to : he_point_between(he_position(m, u), he_position(m, v), t);
+    status = check_marks(m, h, place, err);
+    if (status != HE_OK) {
+        return status;
+    }
     he_need need = {.deleted_vertices = 1, .deleted_edges = 3, .deleted_faces = 2};
     need.links = (size_t)he_vertex_degree(m, u) + 24 + HE_SETTLE_LINKS;
     need.positions = 1;
@@ -178,7 +269,6 @@ he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *t
         return status;
     }
     /* Nothing below can fail. */
-    he_vec3 place = to != NULL ? *to : he_point_between(he_position(m, u), he_position(m, v), t);
     commit(m, h, place, to != NULL ? 0.5 : t);
     if (vertex != NULL) {
         *vertex = v;

@@ -42,7 +42,8 @@
  * end's; at a boundary edge two open fans are put end to end, and the outer ends stay apart (L3).
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_LINK_CONDITION, which names the part that
- * fails; HE_BAD_VALUE unless 0 <= t <= 1; HE_NOT_FINITE for `to`. HE_NO_MEMORY.
+ * fails; HE_BAD_VALUE unless 0 <= t <= 1; HE_NOT_FINITE for `to`; HE_LOCKED_ELEMENT and
+ * HE_FEATURE_EDGE by the rules of marks.h. HE_NO_MEMORY.
  * `vertex` is v and may be NULL. Costs at most the half-edges of the mesh, and for bounded degrees
  * a constant. */
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,

@@ -1,6 +1,7 @@
 #include "edit/cut.h"
 
 #include "edit/point.h"
+#include "mesh/marks.h"
 
 void he_cut_need(uint32_t corners, he_need *need)
 {
@@ -147,7 +148,17 @@ static he_status check_join(const he_mesh *m, he_edge e, he_error *err)
         return he_fail(err, HE_SHARED_BOUNDARY, HE_VERTEX, v.i,
                        "faces %u and %u share vertex %u besides edge %u", f.i, g.i, v.i, e.i);
     }
-    return HE_OK;
+    he_marks marks;
+    if (he_marks_find(m, &marks)) {
+        status = he_require_unlocked(&marks, HE_EDGE, e.i, err);
+        if (status == HE_OK) {
+            status = he_require_unlocked(&marks, HE_FACE, f.i, err);
+        }
+        if (status == HE_OK) {
+            status = he_require_unlocked(&marks, HE_FACE, g.i, err);
+        }
+    }
+    return status;
 }
 
 he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err)

@@ -36,8 +36,8 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  *           o-------o-------o             o-------o-------o
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_SHARED_BOUNDARY when the
- * faces have another corner in common, at which f would pass twice. HE_NO_MEMORY. `face` is f and
- * may be NULL. */
+ * faces have another corner in common, at which f would pass twice; HE_LOCKED_ELEMENT for the edge
+ * or one of the faces. HE_NO_MEMORY. `face` is f and may be NULL. */
 HE_NODISCARD he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err);
 
 /* COMMIT of face_split, for edits that check and reserve themselves. `need` grows by what cutting

@@ -2,6 +2,7 @@
 
 #include "edit/flip.h"
 #include "edit/list.h"
+#include "mesh/marks.h"
 #include "mesh/write.h"
 #include "query/geometry.h"
 
@@ -10,8 +11,9 @@ static const double PI = 3.14159265358979323846;
 /* One call. */
 typedef struct flipper {
     he_mesh *m;
-    const he_column *feature; /* NULL when there is none */
-    uint32_t *queue;          /* a ring of `room` */
+    bool marked; /* are there marks? */
+    he_marks marks;
+    uint32_t *queue; /* a ring of `room` */
     size_t room, head, waiting;
     uint64_t *queued; /* edges that wait */
     he_ids stuck;     /* edges he_edge_flip refused */
@@ -37,9 +39,13 @@ static he_edge dequeue(flipper *q)
     return (he_edge){e};
 }
 
-static bool is_feature(const he_column *feature, he_edge e)
+/* Would marks forbid the flip of an interior edge? */
+static bool is_held(const flipper *q, he_edge e)
 {
-    return feature != NULL && *he_column_value(feature, e.i) != 0;
+    he_halfedge h = he_edge_halfedge(e, 0);
+    return q->marked && (he_is_feature(&q->marks, e) || he_is_locked(&q->marks, HE_EDGE, e.i) ||
+                         he_is_locked(&q->marks, HE_FACE, he_face_of(q->m, h).i) ||
+                         he_is_locked(&q->marks, HE_FACE, he_face_of(q->m, he_twin(h)).i));
 }
 
 static bool is_triangle(const he_mesh *m, he_halfedge h)
@@ -52,8 +58,7 @@ static bool is_crooked(const flipper *q, he_edge e)
 {
     const he_mesh *m = q->m;
     he_halfedge h = he_edge_halfedge(e, 0), t = he_twin(h);
-    if (he_is_boundary_edge(m, e) || is_feature(q->feature, e) || !is_triangle(m, h) ||
-        !is_triangle(m, t)) {
+    if (he_is_boundary_edge(m, e) || is_held(q, e) || !is_triangle(m, h) || !is_triangle(m, t)) {
         return false;
     }
     double alpha = he_corner_angle(m, he_prev(m, h)), beta = he_corner_angle(m, he_prev(m, t));
@@ -135,10 +140,7 @@ static he_status begin(flipper *q, const uint32_t *edges, size_t count, he_error
     he_mesh *m = q->m;
     q->room = m->c.edges.issued;
     q->limit = HE_DELAUNAY_STEPS * (uint64_t)m->c.edges.live;
-    q->feature = he_mesh_find_column(m, HE_EDGE, "feature");
-    if (q->feature != NULL && (q->feature->type != HE_BOOL || q->feature->components != 1)) {
-        q->feature = NULL;
-    }
+    q->marked = he_marks_find(m, &q->marks);
     q->queue = he_mem_array(NULL, q->room + 1, sizeof *q->queue);
     q->queued = he_bits_new(q->room + 1);
     if (q->queue == NULL || q->queued == NULL) {

@@ -31,9 +31,9 @@ enum { HE_DELAUNAY_STEPS = 512 };
  * which no edge is twice (C. L. Lawson, "Software for C1 surface interpolation", 1977). With a list
  * only its edges wait at first, and flips spread from there; NULL stands for all edges.
  *
- * Edges on the boundary, beside a face of more than three corners, or whose value in the bool
- * column "feature" of edges is true are never flipped. Where he_edge_flip refuses, the edge stays
- * too, and is tried again after other flips. At the end every other edge that was looked at
+ * Edges on the boundary, beside a face of more than three corners, that are features or locked, or
+ * beside a locked face (marks.h) are never flipped. Where he_edge_flip refuses, the edge stays too,
+ * and is tried again after other flips. At the end every other edge that was looked at
  * satisfies the criterion, and, without a list, doing it again changes nothing.
  *
  * It ends. Angles are those of the triangles in space, so a flip across a bent edge changes the

@@ -1,7 +1,9 @@
 #include "edit/erase.h"
 
+#include "edit/cut.h"
 #include "edit/list.h"
 #include "edit/point.h"
+#include "mesh/marks.h"
 #include "mesh/write.h"
 
 static bool edge_would_die(const he_mesh *m, he_halfedge h)
@@ -81,11 +83,90 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     }
 }
 
+/* Is anything locked that goes with face f, erased now? A corner goes when the face is its last. */
+static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover leftover, he_error *err)
+{
+    he_marks marks;
+    if (!he_marks_find(m, &marks)) {
+        return HE_OK;
+    }
+    he_status status = he_require_unlocked(&marks, HE_FACE, f.i, err);
+    he_halfedge first = he_face_halfedge(m, f), h = first;
+    do {
+        he_halfedge before = he_turn_ccw(m, h);
+        if (status == HE_OK && edge_would_die(m, h)) {
+            status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(h).i, err);
+        }
+        if (status == HE_OK && leftover == HE_DROP_ISOLATED && he_turn_ccw(m, before).i == h.i &&
+            edge_would_die(m, h) && he_is_boundary_halfedge(m, before)) {
+            status = he_require_unlocked(&marks, HE_VERTEX, he_origin(m, h).i, err);
+        }
+        h = he_next(m, h);
+    } while (status == HE_OK && h.i != first.i);
+    return status;
+}
+
+/* Has every face on this half-edge's edge, or about its origin, v as a corner, so that it goes with
+ * the faces of v? */
+static bool goes_with(const he_mesh *m, he_halfedge h, he_vertex v)
+{
+    he_face f = he_face_of(m, h);
+    return f.i == HE_NONE || he_face_corner(m, f, v).i != HE_NONE;
+}
+
+static bool origin_goes_with(const he_mesh *m, he_halfedge h, he_vertex v)
+{
+    he_halfedge k = h;
+    do {
+        if (!goes_with(m, k, v)) {
+            return false;
+        }
+        k = he_turn_ccw(m, k);
+    } while (k.i != h.i);
+    return true;
+}
+
+static he_status check_star_locks(const he_mesh *m, he_vertex v, he_leftover leftover,
+                                  he_error *err)
+{
+    he_marks marks;
+    if (!he_marks_find(m, &marks)) {
+        return HE_OK;
+    }
+    he_status status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
+    if (status != HE_OK || he_is_isolated(m, v)) {
+        return status;
+    }
+    he_halfedge first = he_vertex_halfedge(m, v), k = first;
+    do {
+        he_face f = he_face_of(m, k);
+        status = he_require_unlocked(&marks, HE_FACE, f.i, err);
+        for (he_halfedge h = k; status == HE_OK && f.i != HE_NONE;) {
+            if (goes_with(m, he_twin(h), v)) {
+                status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(h).i, err);
+            }
+            if (status == HE_OK && leftover == HE_DROP_ISOLATED &&
+                he_is_locked(&marks, HE_VERTEX, he_origin(m, h).i) && origin_goes_with(m, h, v)) {
+                status = he_require_unlocked(&marks, HE_VERTEX, he_origin(m, h).i, err);
+            }
+            h = he_next(m, h);
+            if (h.i == k.i) {
+                break;
+            }
+        }
+        k = he_turn_ccw(m, k);
+    } while (status == HE_OK && k.i != first.i);
+    return status;
+}
+
 static he_status erase_one(he_mesh *m, he_face f, he_leftover leftover, he_error *err)
 {
     he_need need = {0};
     add_need(m, f, true, &need);
-    he_status status = he_reserve(m, need, err);
+    he_status status = check_face_locks(m, f, leftover, err);
+    if (status == HE_OK) {
+        status = he_reserve(m, need, err);
+    }
     if (status == HE_OK) {
         /* Nothing below can fail. */
         erase_face(m, f, leftover);
@@ -121,6 +202,9 @@ he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover, he_err
     he_ids faces = {0};
     he_need need = {.deleted_vertices = 1};
     he_status status = he_mesh_require(m, HE_VERTEX, v.i, err);
+    if (status == HE_OK) {
+        status = check_star_locks(m, v, leftover, err);
+    }
     if (status != HE_OK) {
         return status;
     }

@@ -13,7 +13,8 @@
  *
  * Vertices left without an edge go too, unless they are to be kept as isolated ones.
  *
- * All may fail with HE_NO_MEMORY; a refusal or failure leaves the mesh as it was. */
+ * All may be refused with HE_LOCKED_ELEMENT for a face, edge or vertex that would go (marks.h), and
+ * fail with HE_NO_MEMORY; a refusal or failure leaves the mesh as it was. */
 #ifndef HE_EDIT_ERASE_H
 #define HE_EDIT_ERASE_H
 

@@ -1,6 +1,7 @@
 #include "edit/flip.h"
 
 #include "edit/cut.h"
+#include "mesh/marks.h"
 
 /* Edges an interior vertex must have to lose one. */
 enum { ENOUGH = 4 };
@@ -22,6 +23,26 @@ static he_status check_end(const he_mesh *m, he_edge e, he_vertex v, he_error *e
                        "vertex %u has degree %u and cannot lose edge %u", v.i, degree, e.i);
     }
     return HE_OK;
+}
+
+static he_status check_marks(const he_mesh *m, he_edge e, he_error *err)
+{
+    he_marks marks;
+    if (!he_marks_find(m, &marks)) {
+        return HE_OK;
+    }
+    if (he_is_feature(&marks, e)) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, e.i, "edge %u is a feature", e.i);
+    }
+    he_halfedge h = he_edge_halfedge(e, 0);
+    he_status status = he_require_unlocked(&marks, HE_EDGE, e.i, err);
+    if (status == HE_OK) {
+        status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, h).i, err);
+    }
+    if (status == HE_OK) {
+        status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, he_twin(h)).i, err);
+    }
+    return status;
 }
 
 static he_status check(const he_mesh *m, he_edge e, he_error *err)
@@ -60,7 +81,7 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
         return he_fail(err, HE_REPEATED_CORNER, HE_FACE, g.i, "face %u would pass vertex %u twice",
                        g.i, c.i);
     }
-    return HE_OK;
+    return check_marks(m, e, err);
 }
 
 /* Move the origin of h, whose face loses that corner, to the corner after the other one's face:

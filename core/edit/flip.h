@@ -23,8 +23,9 @@
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_SAME_ENDS when c = d;
  * HE_LOW_DEGREE when an interior end has degree 3 or less (on the boundary an end of an interior
  * edge has at least 3 and keeps 2); HE_DOUBLED_EDGE when an edge joins c and d; HE_REPEATED_CORNER
- * when d is on f already, or c on g. HE_NO_MEMORY. Costs the corners of both faces and the lesser
- * degree of c and d. */
+ * when d is on f already, or c on g; HE_FEATURE_EDGE; HE_LOCKED_ELEMENT for the edge or one of the
+ * faces (marks.h). HE_NO_MEMORY. Costs the corners of both faces and the lesser degree of c and d.
+ */
 HE_NODISCARD he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err);
 
 #endif

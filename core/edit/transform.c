@@ -2,6 +2,7 @@
 
 #include "edit/list.h"
 #include "edit/point.h"
+#include "mesh/marks.h"
 #include "mesh/write.h"
 
 static he_vec3 apply(const double k[16], he_vec3 p)
@@ -23,6 +24,8 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
             return status;
         }
     }
+    he_marks marks;
+    bool marked = he_marks_find(m, &marks);
     size_t places = vertices != NULL ? count : m->c.vertices.issued, moved = 0;
     for (size_t i = 0; i < places; i++) {
         he_vertex v = {vertices != NULL ? vertices[i] : (uint32_t)i};
@@ -32,6 +35,10 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
         if (!he_point_is_finite(apply(matrix, he_position(m, v)))) {
             return he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i,
                            "vertex %u would have a position that is not finite", v.i);
+        }
+        he_status status = marked ? he_require_unlocked(&marks, HE_VERTEX, v.i, err) : HE_OK;
+        if (status != HE_OK) {
+            return status;
         }
         moved++;
     }

@@ -14,8 +14,8 @@
  *     | 0   0   0   1   |   | 1 |
  *
  * Refused, all or nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT;
- * HE_NOT_FINITE for a result that is not finite; HE_BAD_VALUE for another last row. HE_NO_MEMORY.
- */
+ * HE_NOT_FINITE for a result that is not finite; HE_LOCKED_ELEMENT for a locked vertex, even one
+ * that would come to where it is; HE_BAD_VALUE for another last row. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vertices,
                                     size_t count, he_error *err);
 

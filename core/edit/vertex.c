@@ -2,6 +2,7 @@
 
 #include "edit/list.h"
 #include "edit/point.h"
+#include "mesh/marks.h"
 #include "mesh/write.h"
 
 he_status he_vertex_add(he_mesh *m, he_vec3 position, he_vertex *out, he_error *err)
@@ -50,6 +51,14 @@ he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count, he_
             return he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i,
                            "vertex %u would have a position that is not finite", v.i);
         }
+    }
+    he_marks marks;
+    bool marked = he_marks_find(m, &marks);
+    for (size_t i = 0; marked && status == HE_OK && i < count; i++) {
+        status = he_require_unlocked(&marks, HE_VERTEX, vertices[i], err);
+    }
+    if (status != HE_OK) {
+        return status;
     }
     status = he_reserve(m, (he_need){.positions = count}, err);
     if (status != HE_OK) {

@@ -17,7 +17,8 @@ typedef enum he_move { HE_MOVE_TO, HE_MOVE_BY } he_move;
  * `points` holds one for each vertex, or a single one for all of them.
  *
  * Refused, all or nothing: HE_REPEATED_ELEMENT; HE_BAD_VALUE when there are neither `count` points
- * nor one; HE_NOT_FINITE for a point, or a sum, that is not finite. */
+ * nor one; HE_NOT_FINITE for a point, or a sum, that is not finite; HE_LOCKED_ELEMENT for a locked
+ * vertex (marks.h), even one that would come to where it is. */
 HE_NODISCARD he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count,
                                       he_move how, const he_vec3 *points, size_t point_count,
                                       he_error *err);

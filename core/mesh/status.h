@@ -55,7 +55,10 @@
     X(TRIANGLE_SIDE, "triangle_side", "A face beside the vertex is a triangle")               \
     X(LOW_DEGREE, "low_degree", "An end of the edge would lose too many edges")               \
     X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")               \
-    X(LINK_CONDITION, "link_condition", "The link condition does not hold")
+    X(LINK_CONDITION, "link_condition", "The link condition does not hold")                   \
+    /* what marks forbid (marks.h) */                                                         \
+    X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
+    X(LOCKED_ELEMENT, "locked_element", "The element is locked")
 
 typedef enum he_status {
 #define HE_STATUS_ENUM(constant, slug, title) HE_##constant,

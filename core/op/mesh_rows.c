@@ -75,7 +75,8 @@ const he_op he_mesh_rows[] = {
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_VERTEX,
                     .doc = "What moves; all vertices when not given."}},
-        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_FINITE},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_FINITE,
+                     HE_LOCKED_ELEMENT},
         .change = {0, 0, 0},
         .run = run_transform,
     },
@@ -123,7 +124,8 @@ const he_op he_mesh_rows[] = {
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_EDGE,
                     .doc = "Where to begin, from where flips spread; all edges when not given. "
-                           "Edges whose bool attribute `feature` is true are kept."}},
+                           "Edges whose bool attribute `feature` or `locked` is true are kept, "
+                           "and those beside a locked face."}},
         .results = {{"flips", HE_RESULT_NUMBER, HE_EDGE, "How many."},
                     {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
                      "What was flipped, in order; twice what was flipped twice."}},

@@ -46,6 +46,9 @@ static uint64_t play_vertex_move(const md_call *c, or_mesh *o, const he_mesh *m)
         refused |= OR_BIT(HE_BAD_VALUE);
     }
     for (size_t i = 0; i < v->count && refused == 0; i++) {
+        refused |= o->vertex[v->ids[i]].locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
+    }
+    for (size_t i = 0; i < v->count && refused == 0; i++) {
         he_vec3 p = where->points[where->list ? i : 0];
         if (by->given) {
             he_vec3 at = o->vertex[v->ids[i]].at;

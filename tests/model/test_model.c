@@ -7,6 +7,7 @@
 #include "mesh/delta.h"
 #include "mesh/mem.h"
 #include "model/calls.h"
+#include "model/marks.h"
 #include "model/net.h"
 #include "model/shapes.h"
 
@@ -306,6 +307,7 @@ static void edit(world *w)
     if (delta != NULL && md_chance(&w->random, 5)) {
         rehearse(w, before);
     }
+    md_read_marks(w->oracle, w->mesh);
     uint64_t expected = md_play(&w->call, w->oracle, w->mesh);
     he_results results = {0};
     he_error err = {0};
@@ -377,6 +379,7 @@ static void every_edit_agrees_with_the_oracle(void **state)
         md_shape(w->oracle, &w->random);
         w->mesh = md_build(w->oracle);
         assert_non_null(w->mesh);
+        assert_true(md_mark(w->mesh, &w->random));
         w->call.op = he_op_at(0);
         he_op_defaults(w->call.op, w->call.args);
         if (!or_matches(w->oracle, w->mesh, text)) {

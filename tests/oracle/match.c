@@ -131,7 +131,7 @@ static bool adopt_edges(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
             (o->left[a][b] == OR_NONE && o->left[b][a] == OR_NONE)) {
             return differ(text, "new edge %u joins %u and %u", e, a, b);
         }
-        o->edge[e] = (or_edge){true, a, b};
+        o->edge[e] = (or_edge){.alive = true, .a = a, .b = b};
         o->joined[a][b] = o->joined[b][a] = e;
     }
     o->edges += made;

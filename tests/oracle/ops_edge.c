@@ -53,6 +53,15 @@ uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t)
     return 0;
 }
 
+/* Is the edge locked, or a face beside it? */
+static bool locked_at(const or_mesh *o, uint32_t e)
+{
+    uint32_t f = left_of(o, o->edge[e].a, o->edge[e].b);
+    uint32_t g = left_of(o, o->edge[e].b, o->edge[e].a);
+    return o->edge[e].locked || (f != OR_NONE && o->face[f].locked) ||
+           (g != OR_NONE && o->face[g].locked);
+}
+
 uint64_t or_edge_join(or_mesh *o, uint32_t v)
 {
     uint32_t ends[2];
@@ -68,6 +77,10 @@ uint64_t or_edge_join(or_mesh *o, uint32_t v)
         if (o->face[f].alive && or_place(&o->face[f], v) != OR_NONE && o->face[f].count == 3) {
             refused |= OR_BIT(HE_TRIANGLE_SIDE);
         }
+    }
+    if (o->vertex[v].locked || locked_at(o, o->joined[v][ends[0]]) ||
+        locked_at(o, o->joined[v][ends[1]])) {
+        refused |= OR_BIT(HE_LOCKED_ELEMENT);
     }
     if (refused != 0) {
         return refused;
@@ -155,6 +168,8 @@ uint64_t or_edge_flip(or_mesh *o, uint32_t e)
     if (or_place(&o->face[f], d) != OR_NONE || or_place(&o->face[g], c) != OR_NONE) {
         refused |= OR_BIT(HE_REPEATED_CORNER) | OR_BIT(HE_SHARED_BOUNDARY);
     }
+    refused |= locked_at(o, e) ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
+    refused |= o->edge[e].feature ? OR_BIT(HE_FEATURE_EDGE) : 0;
     if (refused != 0) {
         return refused;
     }
@@ -209,13 +224,47 @@ static uint64_t link_condition(const or_mesh *o, uint32_t u, uint32_t v)
     return holds ? 0 : OR_BIT(HE_LINK_CONDITION);
 }
 
+static uint32_t features_at(const or_mesh *o, uint32_t v)
+{
+    uint32_t n = 0;
+    for (uint32_t e = 0; e < o->edges; e++) {
+        n += o->edge[e].alive && o->edge[e].feature && (o->edge[e].a == v || o->edge[e].b == v);
+    }
+    return n;
+}
+
+/* What locks and feature lines forbid of u going to v. */
+static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves)
+{
+    uint64_t refused = 0;
+    bool locked = o->vertex[u].locked || (moves && o->vertex[v].locked);
+    for (uint32_t e = 0; e < o->edges; e++) {
+        locked |= o->edge[e].alive && (o->edge[e].a == u || o->edge[e].b == u) && locked_at(o, e);
+    }
+    refused |= locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
+
+    bool along = o->edge[o->joined[u][v]].feature;
+    bool spoilt = features_at(o, u) != (along ? 2u : 0u);
+    for (uint32_t x = 0; x < o->vertices; x++) {
+        bool triangle =
+            x != u && x != v && o->joined[u][x] != OR_NONE && o->joined[v][x] != OR_NONE;
+        spoilt |= triangle && o->edge[o->joined[u][x]].feature;
+    }
+    spoilt |= moves && features_at(o, v) > 0 && !(along && features_at(o, v) == 2);
+    return refused | (spoilt ? OR_BIT(HE_FEATURE_EDGE) : 0);
+}
+
 uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to)
 {
     uint64_t refused = link_condition(o, u, v);
+    he_vec3 at = to != NULL ? *to : between(o->vertex[u].at, o->vertex[v].at, t);
+    he_vec3 was = o->vertex[v].at;
+    bool moves = to == NULL ? t != 1 && memcmp(&was, &o->vertex[u].at, sizeof was) != 0
+                            : at.x != was.x || at.y != was.y || at.z != was.z;
+    refused |= marks_about(o, u, v, moves);
     if (refused != 0) {
         return refused;
     }
-    he_vec3 at = to != NULL ? *to : between(o->vertex[u].at, o->vertex[v].at, t);
     o->edge[o->joined[u][v]].alive = false;
     for (uint32_t i = 0; i < o->faces; i++) {
         or_face *face = &o->face[i];

@@ -95,6 +95,9 @@ uint64_t or_face_join(or_mesh *o, uint32_t e)
     if (shared > 2) {
         return OR_BIT(HE_SHARED_BOUNDARY) | OR_BIT(HE_REPEATED_CORNER);
     }
+    if (o->edge[e].locked || keeps->locked || goes->locked) {
+        return OR_BIT(HE_LOCKED_ELEMENT);
+    }
     or_face joined = {.alive = true};
     uint32_t start = or_place(keeps, b);
     for (uint32_t i = 0; i < keeps->count; i++) {

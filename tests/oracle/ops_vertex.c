@@ -46,11 +46,45 @@ static void delete_faces(or_mesh *o, const bool *gone, bool keep_isolated)
     }
 }
 
+static bool would_go(const bool *gone, uint32_t f)
+{
+    return f == OR_NONE || gone[f];
+}
+
+/* Is anything locked among what goes with faces? `alone` goes too. */
+static uint64_t locked_among(const or_mesh *o, const bool *gone, uint32_t alone, bool keep_isolated)
+{
+    bool locked = alone != OR_NONE && o->vertex[alone].locked;
+    for (uint32_t f = 0; f < o->faces; f++) {
+        locked |= o->face[f].alive && gone[f] && o->face[f].locked;
+    }
+    for (uint32_t e = 0; e < o->edges; e++) {
+        uint32_t a = o->edge[e].a;
+        uint32_t b = o->edge[e].b;
+        locked |= o->edge[e].alive && o->edge[e].locked && would_go(gone, o->left[a][b]) &&
+                  would_go(gone, o->left[b][a]);
+    }
+    for (uint32_t v = 0; v < o->vertices && !keep_isolated; v++) {
+        if (o->vertex[v].alive && o->vertex[v].locked && or_degree(o, v) > 0) {
+            bool last = true;
+            for (uint32_t f = 0; f < o->faces; f++) {
+                last &= !o->face[f].alive || or_place(&o->face[f], v) == OR_NONE || gone[f];
+            }
+            locked |= last;
+        }
+    }
+    return locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
+}
+
 uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated)
 {
     bool gone[OR_FACES] = {false};
     for (uint32_t f = 0; f < o->faces; f++) {
         gone[f] = o->face[f].alive && or_place(&o->face[f], v) != OR_NONE;
+    }
+    uint64_t refused = locked_among(o, gone, v, keep_isolated);
+    if (refused != 0) {
+        return refused;
     }
     delete_faces(o, gone, keep_isolated);
     o->vertex[v].alive = false;
@@ -65,6 +99,7 @@ uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep
         refused |= gone[f[i]] ? OR_BIT(HE_REPEATED_ELEMENT) : 0;
         gone[f[i]] = true;
     }
+    refused |= locked_among(o, gone, OR_NONE, keep_isolated);
     if (refused == 0) {
         delete_faces(o, gone, keep_isolated);
     }
@@ -159,8 +194,13 @@ uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, ui
         chosen[v[i]] = true;
     }
     he_vec3 moved[OR_VERTICES];
-    for (uint32_t i = 0; i < o->vertices && refused == 0; i++) {
+    for (uint32_t i = 0; i < o->vertices && (refused & OR_BIT(HE_REPEATED_ELEMENT)) == 0; i++) {
         chosen[i] = o->vertex[i].alive && (count == 0 || chosen[i]);
+        if (chosen[i]) {
+            refused |= o->vertex[i].locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
+        }
+    }
+    for (uint32_t i = 0; i < o->vertices && (refused & ~OR_BIT(HE_LOCKED_ELEMENT)) == 0; i++) {
         if (chosen[i]) {
             he_vec3 at = o->vertex[i].at;
             const double in[4] = {at.x, at.y, at.z, 1};
@@ -200,7 +240,8 @@ void or_compact(or_mesh *o)
     n = 0;
     for (uint32_t e = 0; e < o->edges; e++) {
         if (o->edge[e].alive) {
-            o->edge[n++] = (or_edge){true, name[o->edge[e].a], name[o->edge[e].b]};
+            o->edge[n++] =
+                (or_edge){.alive = true, .a = name[o->edge[e].a], .b = name[o->edge[e].b]};
         }
     }
     o->edges = n;

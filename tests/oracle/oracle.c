@@ -48,6 +48,7 @@ uint32_t or_add_face(or_mesh *o, const uint32_t *v, uint32_t count)
     assert(o->faces + o->fresh < OR_FACES && count <= OR_CORNERS);
     uint32_t f = o->faces + o->fresh;
     o->face[f].alive = true;
+    o->face[f].locked = false;
     o->face[f].count = count;
     memcpy(o->face[f].v, v, count * sizeof *v);
     o->fresh++;

@@ -15,6 +15,8 @@
  * does not order them: or_adopt finds them in hedge's mesh by their corners and ends. Who survives
  * is specified, so ids that were there before are compared by id.
  *
+ * What is locked or a feature is not the oracle's to know: it is told before each operation.
+ *
  * Room is fixed (OR_VERTICES and so on): the model test starts a new mesh before it runs out. */
 #ifndef TESTS_ORACLE_ORACLE_H
 #define TESTS_ORACLE_ORACLE_H
@@ -28,18 +30,19 @@ enum { OR_VERTICES = 320, OR_EDGES = 1500, OR_FACES = 1000, OR_CORNERS = 96, OR_
 
 typedef struct or_vertex {
     bool alive;
+    bool locked;
     bool near;   /* `at` was computed here: compare with a tolerance, then take hedge's */
     bool inside; /* `at` is not specified: anything within low..high will do */
     he_vec3 at, low, high;
 } or_vertex;
 
 typedef struct or_edge {
-    bool alive;
+    bool alive, locked, feature;
     uint32_t a, b;
 } or_edge;
 
 typedef struct or_face {
-    bool alive;
+    bool alive, locked;
     uint32_t count;
     uint32_t v[OR_CORNERS];
 } or_face;

@@ -229,6 +229,35 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
     return status;
 }
 
+/* "locked vertices=1,2": the name, then the kind or its plural with elements. */
+static void mark(he_mesh *m, const char *text)
+{
+    char name[HE_COLUMN_NAME];
+    size_t length = strcspn(text, " "), kind = 0, slot = 0;
+    uint32_t ids[MAX_LIST];
+    const unsigned char set = 1;
+    snprintf(name, sizeof name, "%.*s", (int)length, text);
+    text += length + 1;
+    while (strncmp(text, he_kind_name((he_kind)kind), 4) != 0) {
+        kind++;
+        assert_true(kind < HE_KIND_COUNT);
+    }
+    he_column *column = NULL;
+    if (he_mesh_find_column(m, (he_kind)kind, name) == NULL) {
+        assert_int_equal(he_column_new(name, (he_kind)kind, HE_BOOL, 1, HE_COPY, &column, NULL),
+                         HE_OK);
+        assert_int_equal(he_column_extend(column, he_mesh_issued(m, (he_kind)kind), NULL), HE_OK);
+        assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    }
+    while (he_mesh_column(m, slot) != he_mesh_find_column(m, (he_kind)kind, name)) {
+        slot++;
+    }
+    size_t count = parse_ids(m, (he_kind)kind, text + strcspn(text, "=") + 1, ids);
+    for (size_t i = 0; i < count; i++) {
+        he_set_attribute(m, slot, ids[i], &set);
+    }
+}
+
 void script_prepare(he_mesh *m, const char *script)
 {
     while (script != NULL && *script != '\0') {
@@ -237,7 +266,9 @@ void script_prepare(he_mesh *m, const char *script)
         assert_true(length < sizeof text);
         snprintf(text, sizeof text, "%.*s", (int)length, script);
         he_error err = {.status = HE_OK};
-        if (script_run(m, text, NULL, &err) != HE_OK) {
+        if (strncmp(text, "mark ", 5) == 0) {
+            mark(m, text + 5);
+        } else if (script_run(m, text, NULL, &err) != HE_OK) {
             fail_msg("%s: %s", text, err.text);
         }
         script += length;

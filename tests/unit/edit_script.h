@@ -23,7 +23,8 @@ void script_add_columns(he_mesh *m);
 
 /* Run one operation. `results` may be NULL. */
 he_status script_run(he_mesh *m, const char *operation, he_results *results, he_error *err);
-/* Run all operations of a script; each must succeed. NULL does nothing. */
+/* Run all operations of a script; each must succeed. NULL does nothing. "mark locked face=0" is no
+ * operation: it sets that mark on elements, and adds its column where there is none. */
 void script_prepare(he_mesh *m, const char *script);
 /* The row an operation names. */
 const he_op *script_op(const char *operation);
