@@ -8,6 +8,7 @@
 typedef struct decoder {
     const api_in *object;
     const api_references *references;
+    const he_mesh *mesh; /* NULL while sets are not looked up */
     api_arena *arena;
     const he_op *op;
     api_call *call;
@@ -97,6 +98,27 @@ static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in
     return true;
 }
 
+static bool decode_set(const decoder *d, he_kind kind, const api_in *in, he_arg *arg)
+{
+    static const uint32_t none[1] = {HE_NONE};
+    const char *name;
+    uint32_t *ids;
+    d->call->has_set = true;
+    arg->list = true;
+    arg->ids = none;
+    if (!api_in_set(in, &name)) {
+        return false;
+    }
+    if (d->mesh == NULL) {
+        return true;
+    }
+    if (!api_find_set(in, name, d->mesh, kind, d->arena, &ids, &arg->count)) {
+        return false;
+    }
+    arg->ids = ids;
+    return true;
+}
+
 static bool decode_points(const decoder *d, const he_param *param, const api_in *in, he_arg *arg)
 {
     if (!api_in_array(in, 1, SIZE_MAX)) {
@@ -164,6 +186,9 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_ELEMENT:
         return decode_element(d, param, in, &arg->id);
     case HE_PARAM_ELEMENTS: {
+        if (plural && api_in_is_object(in)) {
+            return decode_set(d, param->kind, in, arg);
+        }
         if (plural) {
             return decode_list(d, param->kind, 1, in, arg);
         }
@@ -302,6 +327,9 @@ static bool check_points(const decoder *d)
 {
     size_t elements = 0;
     bool has_elements = false;
+    if (d->call->has_set && d->mesh == NULL) {
+        return true;
+    }
     for (size_t i = 0; i < he_op_params(d->op); i++) {
         if (d->op->params[i].type == HE_PARAM_ELEMENTS && d->call->args[i].given) {
             elements = d->call->args[i].count;
@@ -321,7 +349,7 @@ static bool check_points(const decoder *d)
 }
 
 bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
-                   api_arena *arena, api_call *out)
+                   const he_mesh *mesh, api_arena *arena, api_call *out)
 {
     api_in name, member;
     const char *text;
@@ -334,7 +362,7 @@ bool api_decode_op(const api_in *object, const char *const *also, const api_refe
         return api_in_fail(&name, API_UNKNOWN_OPERATION, "there is no operation \"%.100s\"", text);
     }
     he_op_defaults(out->op, out->args);
-    decoder d = {object, references, arena, out->op, out};
+    decoder d = {object, references, mesh, arena, out->op, out};
     for (bool more = api_in_first(object, &member); more; more = api_in_next(&member)) {
         if (!decode_member(&d, also, &member)) {
             return false;

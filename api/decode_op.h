@@ -7,13 +7,14 @@
  *
  * In the place of an id a string "$name.result" or "$name.result.N" may stand: the result, or the
  * N-th of a list, of an earlier operation that carries "as":"name". In a list a result that is a
- * list is put in whole. A scope (names.h) knows them. Decoding is cheap and done twice: once
+ * list is put in whole. In the place of a list of elements a set may stand, {"selected":true}: see
+ * element_set.h. A scope (names.h) knows them. Decoding is cheap and done twice: once
  * for all operations before any is run, when references are only checked, and once for each as its
  * turn comes. */
 #ifndef HE_API_DECODE_OP_H
 #define HE_API_DECODE_OP_H
 
-#include "api/json_in.h"
+#include "api/element_set.h"
 #include "op/op.h"
 
 /* Ids a reference stands for; borrowed from the scope. */
@@ -35,12 +36,14 @@ typedef struct api_call {
     const he_op *op;
     he_arg args[HE_OP_PARAMS];
     const char *as; /* NULL when it has none; borrowed from the document */
+    bool has_set;   /* a list was given as a set */
 } api_call;
 
 /* `references` NULL: strings in the place of ids are refused, and so is "as". `also` lists members
- * the object may hold besides (expected_revision beside a single operation), NULL for none. Lists
- * are in the arena, which must outlive the call. */
+ * the object may hold besides (expected_revision beside a single operation), NULL for none. `mesh`
+ * is what sets are looked up in; NULL: not yet, they are empty. Lists are in the arena, which must
+ * outlive the call. */
 bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
-                   api_arena *arena, api_call *out);
+                   const he_mesh *mesh, api_arena *arena, api_call *out);
 
 #endif

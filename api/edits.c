@@ -57,17 +57,17 @@ static void note_name(edits *e, const char *name)
     memcpy(e->ops + used, name, length + 1);
 }
 
-static bool decode(edits *e, const api_in *in, api_call *call)
+static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *call)
 {
     api_arena_empty(&e->scratch);
     return api_decode_op(in, e->is_list ? NULL : beside_op,
-                         e->is_list ? &e->names.references : NULL, &e->scratch, call);
+                         e->is_list ? &e->names.references : NULL, mesh, &e->scratch, call);
 }
 
 static bool note(edits *e, const api_in *in, const api_call *call)
 {
     he_error err = {0};
-    e->whole |= call->op->size == HE_OP_WHOLE;
+    e->whole |= call->op->size == HE_OP_WHOLE || call->has_set;
     note_name(e, call->op->name);
     return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
            api_problem_set_core(in->problem, &err);
@@ -78,14 +78,14 @@ static bool check_ops(edits *e, const api_in *root)
 {
     api_call call;
     if (!e->is_list) {
-        if (!decode(e, root, &call)) {
+        if (!decode(e, root, NULL, &call)) {
             return false;
         }
         return note(e, root, &call);
     }
     api_in op;
     for (bool more = api_in_first(&e->list, &op); more; more = api_in_next(&op)) {
-        if (!decode(e, &op, &call) || !api_names_add(&e->names, &op, &call)) {
+        if (!decode(e, &op, NULL, &call) || !api_names_add(&e->names, &op, &call)) {
             return false;
         }
         e->count++;
@@ -134,7 +134,7 @@ static bool within_limits(edits *e, const he_mesh *mesh, const he_delta *delta, 
         return api_in_fail(in, HE_LIMIT, "the operations before change %zu rows, over %d",
                            delta->count, (int)API_MAX_EDITS_ROWS);
     }
-    if (call->op->size == HE_OP_WHOLE) {
+    if (call->op->size == HE_OP_WHOLE || call->has_set) {
         e->looked_at += issued(mesh);
     }
     for (size_t i = 0; i < he_op_params(call->op); i++) {
@@ -150,7 +150,7 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     api_call call;
     he_results results = {0};
     he_error err = {0};
-    if (!decode(e, in, &call) || !within_limits(e, mesh, delta, in, &call)) {
+    if (!decode(e, in, mesh, &call) || !within_limits(e, mesh, delta, in, &call)) {
         return false;
     }
     if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {

@@ -1,5 +1,6 @@
 #include "api/elements.h"
 
+#include "api/attribute_value.h"
 #include "api/handlers.h"
 #include "mesh/walk.h"
 #include "query/geometry.h"
@@ -16,6 +17,7 @@ uint32_t api_write_vertex(api_out *out, const he_mesh *mesh, he_vertex v)
     api_out_key_u64(out, "degree", degree);
     api_out_key_bool(out, "boundary", he_is_boundary_vertex(mesh, v));
     api_out_key_bool(out, "isolated", he_is_isolated(mesh, v));
+    api_write_attributes(out, mesh, HE_VERTEX, v.i);
     api_out_object_end(out);
     return degree;
 }
@@ -32,6 +34,7 @@ uint32_t api_write_halfedge(api_out *out, const he_mesh *mesh, he_halfedge h)
     api_out_key_id(out, "edge", he_edge_of(h).i);
     api_out_key_id(out, "face", he_face_of(mesh, h).i);
     api_out_key_bool(out, "boundary", he_is_boundary_halfedge(mesh, h));
+    api_write_attributes(out, mesh, HE_HALFEDGE, h.i);
     api_out_object_end(out);
     return 1;
 }
@@ -51,6 +54,7 @@ uint32_t api_write_edge(api_out *out, const he_mesh *mesh, he_edge e)
     api_out_array_end(out);
     api_out_key_number(out, "length", he_edge_length(mesh, e));
     api_out_key_bool(out, "boundary", he_is_boundary_edge(mesh, e));
+    api_write_attributes(out, mesh, HE_EDGE, e.i);
     api_out_object_end(out);
     return 2;
 }
@@ -79,6 +83,7 @@ uint32_t api_write_face(api_out *out, const he_mesh *mesh, he_face f)
     api_out_key_number(out, "area", shape.area);
     api_out_key_vec3(out, "normal", shape.normal);
     api_out_key_vec3(out, "centroid", shape.centroid);
+    api_write_attributes(out, mesh, HE_FACE, f.i);
     api_out_object_end(out);
     return shape.degree;
 }

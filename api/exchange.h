@@ -53,10 +53,11 @@ struct api_exchange {
     const api_route *route; /* NULL where none matched */
     bool head;              /* HEAD: the server sends the headers only */
     const char *mesh_id;    /* of the path, well formed; NULL: none */
-    he_kind kind;           /* of {kind} */
+    he_kind kind;           /* of {kind} or {domain} */
     uint32_t id;            /* of {id} */
     const char *relation;   /* of {relation}, one of api_relations(kind) */
     const char *code;       /* of {code} */
+    const char *attribute;  /* of {name} */
     api_query query;
     const char *media_in;  /* which of route->consumes the body is, NULL without a body */
     const char *media_out; /* which of route->produces is wanted */

@@ -35,6 +35,15 @@ void api_elements_list(api_exchange *x);
 void api_element_get(api_exchange *x);
 void api_relation_get(api_exchange *x);
 
+/* Its attributes: x->kind, x->attribute. */
+void api_attributes_list(api_exchange *x);
+void api_attribute_get(api_exchange *x);
+void api_attribute_put_begin(api_exchange *x);
+void api_attribute_put_body(api_exchange *x, const char *bytes, size_t length);
+void api_attribute_put(api_exchange *x);
+void api_attribute_patch(api_exchange *x);
+void api_attribute_delete(api_exchange *x);
+
 /* Questions. */
 void api_query_post(api_exchange *x);
 void api_traverse_post(api_exchange *x);

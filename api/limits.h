@@ -56,6 +56,15 @@ enum {
     API_COSTLY_EDITS = 2000         /* operations of one list */
 };
 
+/* Attributes. One column has as many bytes as its domain has ids, times at most 128; files bring as
+ * many as they have room for. */
+enum {
+    API_MAX_ATTRIBUTES = 256, /* of one mesh, where a request would add another */
+    API_MAX_LABELS = 100000,  /* of one attribute, in JSON */
+    API_MAX_LABEL = 1024      /* characters of one */
+};
+#define API_MAX_ATTRIBUTE_BYTES ((uint64_t)1 << 30) /* of one column that a request brings */
+
 enum { API_PROBLEM_ELEMENTS = 100 }; /* named one by one in a problem */
 
 #endif

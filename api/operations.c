@@ -53,6 +53,7 @@ static void write_param(api_out *out, const he_param *param)
     api_out_key_string(out, "name", param->name);
     if (param->plural != NULL) {
         api_out_key_string(out, "plural", param->plural);
+        api_out_key_bool(out, "set", true);
     }
     api_out_key_string(out, "type", param_type(param));
     api_out_key_bool(out, "required", (param->flags & HE_REQUIRED) != 0);
@@ -236,7 +237,13 @@ static void write_param_schema(api_out *out, const he_param *param)
     api_out_object_end(out);
     if (param->plural != NULL) {
         api_out_key(out, param->plural);
+        api_out_object_begin(out);
+        api_out_key(out, "anyOf");
+        api_out_array_begin(out);
         write_list_schema(out, 1);
+        api_schema_ref(out, "schemas", "set");
+        api_out_array_end(out);
+        api_out_object_end(out);
     }
 }
 

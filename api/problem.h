@@ -60,6 +60,9 @@
       "The value of a request header does not follow its syntax.")                                 \
     X(BAD_ID, "bad_id", 400, "The id cannot name a mesh",                                          \
       "A mesh id is 1 to 64 of the characters A-Z a-z 0-9 . _ - and neither \".\" nor \"..\".")    \
+    X(RESERVED_NAME, "reserved_name", 400, "The name is not free for attributes",                  \
+      "Positions are built in: they are changed by the operations vertex_move and transform, and " \
+      "read with the vertices.")                                                                   \
     X(BAD_FRAMING, "bad_framing", 400, "The request is ambiguous",                                 \
       "The message has headers that leave open where its body ends or which host it is for. The "  \
       "connection is closed.")                                                                     \
@@ -73,6 +76,9 @@
       "GET /v1/openapi.json lists every path.")                                                    \
     X(NO_SUCH_MESH, "no_such_mesh", 404, "No such mesh",                                           \
       "No mesh has this id, or it was deleted.")                                                   \
+    X(NO_SUCH_ATTRIBUTE, "no_such_attribute", 404, "No such attribute",                            \
+      "The mesh has no attribute of this name in this domain; GET .../attributes lists those it "  \
+      "has. Where a body names one, the status is 422.")                                           \
     X(METHOD_NOT_ALLOWED, "method_not_allowed", 405, "The path does not take this method",         \
       "The Allow header lists the methods it takes.")                                              \
     X(NOT_ACCEPTABLE, "not_acceptable", 406, "No acceptable representation",                       \

@@ -60,6 +60,20 @@ static const api_parameter by = {
     "by", API_PARAM_CHOICE, 0,
     0,    connections,      "Faces are connected across edges, or already by a shared vertex."};
 
+static const api_parameter ids = {"ids",       API_PARAM_TEXT, 1,
+                                  API_MAX_URI, NULL,           "Ids joined by commas."};
+static const char *const types[] = {"bool", "int32", "uint32", "float", "double", NULL};
+static const char *const rules[] = {"copy", "interpolate", "default", NULL};
+static const api_parameter type = {
+    "type", API_PARAM_CHOICE, 0, 0, types, "Type of the numbers, where the body is octets."};
+static const api_parameter components = {
+    "components", API_PARAM_U64, 1,
+    16,           NULL,          "Numbers of one value, where the body is octets; 1 if not said."};
+static const api_parameter rule = {
+    "rule", API_PARAM_CHOICE,
+    0,      0,
+    rules,  "What edits give to new elements, where the body is octets."};
+
 /* --- the table --- */
 
 static const api_route routes[] = {
@@ -213,6 +227,72 @@ static const api_route routes[] = {
      .response = "adjacency",
      .summary = "What is adjacent to an element",
      .doc = "Counter-clockwise from the stored half-edge. Each element once."},
+
+    /* attributes */
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/attributes",
+     .name = "attributes_list",
+     .run = api_attributes_list,
+     .produces = json,
+     .statuses = {200, 304},
+     .response = "attribute_list",
+     .summary = "List the attributes",
+     .doc = "All of them, of every domain, without their values."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_get",
+     .run = api_attribute_get,
+     .flags = API_COSTLY,
+     .produces = octets_too,
+     .parameters = {&limit, &cursor, &ids},
+     .statuses = {200, 304, 410},
+     .response = "attribute_values",
+     .summary = "Values of an attribute",
+     .doc = "A page of live elements in the order of ids, or those that `ids` names. As octets: a "
+            "row for each id ever issued, dead ones hold the default; bool is one byte, the other "
+            "types are 4 or 8, little-endian, without gaps."},
+    {.method = "PUT",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_put",
+     .begin = api_attribute_put_begin,
+     .body = api_attribute_put_body,
+     .run = api_attribute_put,
+     .flags = API_WRITES | API_COSTLY,
+     .body_kind = API_BODY_UPLOAD,
+     .consumes = octets_too,
+     .produces = json,
+     .parameters = {&type, &components, &rule},
+     .statuses = {200, 201, 204, 412, 413, 415, 422},
+     .request = "attribute",
+     .response = "attribute_written",
+     .summary = "Create an attribute, or replace it",
+     .doc = "As a whole, with the values of all elements, one for all, or the default. As octets: "
+            "rows as GET gives them, described by the query; what they say of dead elements is not "
+            "looked at. One revision, which can be undone."},
+    {.method = "PATCH",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_patch",
+     .run = api_attribute_patch,
+     .flags = API_WRITES | API_COSTLY,
+     .body_kind = API_BODY_EDITS,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 204, 412, 413, 415, 422},
+     .request = "attribute_patch",
+     .response = "attribute_written",
+     .summary = "Write values by ids",
+     .doc = "A value for each id, or one for all. One revision, which can be undone; none where "
+            "nothing changes."},
+    {.method = "DELETE",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_delete",
+     .run = api_attribute_delete,
+     .flags = API_WRITES,
+     .produces = json,
+     .statuses = {200, 204, 412},
+     .response = "attribute_written",
+     .summary = "Delete an attribute",
+     .doc = "One revision, which can be undone."},
 
     /* questions */
     {.method = "POST",
@@ -459,8 +539,12 @@ static bool match_variable(const char *variable, const char *segment, api_variab
     case 'c':
         out->code = segment;
         return true;
-    default: /* {kind} */
-        for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
+    case 'n':
+        out->name = segment;
+        return true;
+    default: /* {kind}, {domain} */
+        for (he_kind kind = HE_VERTEX; kind <= (variable[1] == 'd' ? HE_MESH_KIND : HE_FACE);
+             kind++) {
             if (strcmp(segment, he_kind_plural(kind)) == 0) {
                 out->kind = kind;
                 out->has_kind = true;

@@ -5,8 +5,9 @@
  * and the tests' duty to hit every status a row declares.
  *
  * A template is literal segments and variables. {kind} matches vertices, halfedges, edges, faces
- * and nothing else; {id} an element id; {mesh} a mesh id; {relation} one of the kind's relations;
- * {code} any segment; {asset} the rest of the path. */
+ * and nothing else; {domain} these or mesh; {id} an element id; {name} that of an attribute; {mesh}
+ * a mesh id; {relation} one of the kind's relations; {code} any segment; {asset} the rest of the
+ * path. */
 #ifndef HE_API_ROUTES_H
 #define HE_API_ROUTES_H
 
@@ -76,8 +77,8 @@ const int *api_route_common(void);
 typedef struct api_variables {
     const char *mesh; /* as decoded, not yet checked; NULL where the template has none */
     bool has_kind;
-    he_kind kind;
-    const char *id, *relation, *code; /* likewise */
+    he_kind kind;                            /* of {kind} or {domain} */
+    const char *id, *relation, *code, *name; /* likewise */
 } api_variables;
 
 /* The row for a method and path. NULL when there is none: then `allow`, which has room for

@@ -69,6 +69,7 @@ static const member answers[] = {
     {"vertex", "degree", "count", REQUIRED, "Edges."},
     {"vertex", "boundary", "flag", REQUIRED, NULL},
     {"vertex", "isolated", "flag", REQUIRED, NULL},
+    {"vertex", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
 
     {"halfedge", "id", "id", REQUIRED, NULL},
     {"halfedge", "twin", "id", REQUIRED, NULL},
@@ -79,6 +80,7 @@ static const member answers[] = {
     {"halfedge", "edge", "id", REQUIRED, NULL},
     {"halfedge", "face", "id?", REQUIRED, "Null on the boundary."},
     {"halfedge", "boundary", "flag", REQUIRED, NULL},
+    {"halfedge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
 
     {"edge", "id", "id", REQUIRED, NULL},
     {"edge", "halfedges", "*id", REQUIRED, "2 * id and 2 * id + 1."},
@@ -86,6 +88,7 @@ static const member answers[] = {
     {"edge", "faces", "*#id_or_null", REQUIRED, "Beside the two half-edges."},
     {"edge", "length", "number", REQUIRED, NULL},
     {"edge", "boundary", "flag", REQUIRED, NULL},
+    {"edge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
 
     {"face", "id", "id", REQUIRED, NULL},
     {"face", "halfedge", "id", REQUIRED, NULL},
@@ -95,6 +98,37 @@ static const member answers[] = {
     {"face", "area", "number", REQUIRED, "Of the vector (Newell) area."},
     {"face", "normal", "point", REQUIRED, "Zero where the face is degenerate."},
     {"face", "centroid", "point", REQUIRED, NULL},
+    {"face", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+
+    {"attribute_info", "domain", "text", REQUIRED, "vertices, halfedges, edges, faces or mesh."},
+    {"attribute_info", "name", "text", REQUIRED, NULL},
+    {"attribute_info", "type", "text", REQUIRED, "bool, int32, uint32, float or double."},
+    {"attribute_info", "components", "count", REQUIRED, "Numbers of one value."},
+    {"attribute_info", "rule", "text", REQUIRED, "copy, interpolate or default."},
+    {"attribute_info", "default", "any", REQUIRED, "The value where nothing was written."},
+    {"attribute_info", "labels", "*text", OPTIONAL, "What the values index; at most 100000."},
+    {"attribute_info", "bytes", "count", REQUIRED, "Of memory."},
+
+    {"attribute_list", "revision", "count", REQUIRED, NULL},
+    {"attribute_list", "attributes", "*#attribute_info", REQUIRED, NULL},
+
+    {"attribute_values", "revision", "count", REQUIRED, NULL},
+    {"attribute_values", "domain", "text", REQUIRED, NULL},
+    {"attribute_values", "name", "text", REQUIRED, NULL},
+    {"attribute_values", "type", "text", REQUIRED, NULL},
+    {"attribute_values", "components", "count", REQUIRED, NULL},
+    {"attribute_values", "rule", "text", REQUIRED, NULL},
+    {"attribute_values", "default", "any", REQUIRED, NULL},
+    {"attribute_values", "labels", "*text", OPTIONAL, NULL},
+    {"attribute_values", "bytes", "count", REQUIRED, NULL},
+    {"attribute_values", "ids", "*id", REQUIRED, NULL},
+    {"attribute_values", "values", "*any", REQUIRED, "One for each id; arrays of components."},
+    {"attribute_values", "next", "text?", REQUIRED, "The cursor of the next page."},
+
+    {"attribute_written", "revision", "count", REQUIRED, NULL},
+    {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was done."},
+    {"attribute_written", "attribute", "#attribute_info", OPTIONAL, "Unless it was deleted."},
+    {"attribute_written", "modified", "#sets", REQUIRED, "Empty where it came or went whole."},
 
     {"element_page", "revision", "count", REQUIRED, NULL},
     {"element_page", "items", "*#element", REQUIRED, NULL},
@@ -206,6 +240,7 @@ static const member answers[] = {
 
     {"parameter", "name", "text", REQUIRED, NULL},
     {"parameter", "plural", "text", OPTIONAL, "Name of the list that may be given instead."},
+    {"parameter", "set", "flag", OPTIONAL, "A set may stand for the list: {\"selected\":true}."},
     {"parameter", "type", "text", REQUIRED, NULL},
     {"parameter", "required", "flag", REQUIRED, NULL},
     {"parameter", "nullable", "flag", OPTIONAL, NULL},
@@ -255,6 +290,23 @@ static const member requests[] = {
     {"document", "name", "text?", OPTIONAL, NULL},
     {"document", "vertices", "*point", OPTIONAL, NULL},
     {"document", "faces", "**index", OPTIONAL, "Vertices counter-clockwise, counted from 0."},
+
+    {"attribute", "type", "#type_name", REQUIRED, NULL},
+    {"attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
+    {"attribute", "rule", "#rule_name", OPTIONAL,
+     "interpolate for float and double, else copy, if not said."},
+    {"attribute", "default", "any", OPTIONAL, "Zero or false if not said."},
+    {"attribute", "labels", "+#label", OPTIONAL, "Of a uint32: what its values index."},
+    {"attribute", "values", "*any", OPTIONAL, "One for each live element, in the order of ids."},
+    {"attribute", "value", "any", OPTIONAL, "One for all instead."},
+    {"attribute", "expected_revision", "count", OPTIONAL, NULL},
+    {"attribute", "dry_run", "flag", OPTIONAL, NULL},
+
+    {"attribute_patch", "ids", "#ids_or_set", REQUIRED, "Ids, \"all\", or {\"NAME\":true}."},
+    {"attribute_patch", "values", "*any", OPTIONAL, "One for each id."},
+    {"attribute_patch", "value", "any", OPTIONAL, "One for all instead."},
+    {"attribute_patch", "expected_revision", "count", OPTIONAL, NULL},
+    {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
     {"mesh_patch", "name", "text?", OPTIONAL, "null removes it."},
 
@@ -308,6 +360,15 @@ static const struct {
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},
     {"any_object", "{\"type\":\"object\"}"},
+    {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
+    {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
+    {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
+    {"set", "{\"type\":\"object\",\"additionalProperties\":{\"const\":true},"
+            "\"minProperties\":1,\"maxProperties\":1,\"description\":\"The live elements "
+            "whose bool attribute of this name is true; none changes nothing.\"}"},
+    {"ids_or_set", "{\"oneOf\":[{\"type\":\"array\",\"items\":"
+                   "{\"$ref\":\"#/components/schemas/id\"},\"minItems\":1},"
+                   "{\"const\":\"all\"},{\"$ref\":\"#/components/schemas/set\"}]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"
                 "{\"$ref\":\"#/components/schemas/edge\"},"

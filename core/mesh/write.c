@@ -110,6 +110,16 @@ he_status he_reserve(he_mesh *m, he_need need, he_error *err)
     return status;
 }
 
+he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err)
+{
+    he_column *column = m->c.columns[slot];
+    he_status status = reserve_column(column, he_content_issued(&m->c, column->domain), 0, err);
+    if (status == HE_OK && m->delta != NULL) {
+        status = he_delta_reserve(m->delta, rows * row_words(column), 0, err);
+    }
+    return status;
+}
+
 /* Overwrite one row, recording the words that differ. */
 static void set_row(he_mesh *m, uint32_t column, uint32_t row, unsigned char *stored,
                     const void *value, size_t row_bytes)
@@ -235,10 +245,20 @@ void he_delete_face(he_mesh *m, he_face f)
     m->c.faces.live--;
 }
 
+/* A slot that is free, or the one behind the last. */
+static size_t free_slot(const he_content *c)
+{
+    size_t slot = 0;
+    while (slot < c->column_count && c->columns[slot] != NULL) {
+        slot++;
+    }
+    return slot;
+}
+
 static he_status slot_for_column(he_mesh *m, he_error *err)
 {
     he_content *c = &m->c;
-    if (c->column_count == c->column_capacity) {
+    if (free_slot(c) == c->column_capacity) {
         size_t capacity = he_mem_grown(c->column_capacity, c->column_count + 1);
         he_column **columns = he_mem_array(c->columns, capacity, sizeof(he_column *));
         if (columns == NULL) {
@@ -268,7 +288,8 @@ he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    size_t slot = m->c.column_count++;
+    size_t slot = free_slot(&m->c);
+    m->c.column_count += slot == m->c.column_count;
     m->c.columns[slot] = takes;
     if (m->delta != NULL) {
         record_object(m, HE_COL_COLUMN_ADDED, (uint32_t)slot, NULL);

@@ -120,8 +120,12 @@ void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
 /* Are there columns in this domain? Lets a hot edit skip the calls. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 
+/* Make ready for he_set_attribute of so many rows of one column. HE_NO_MEMORY. */
+HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err);
+
 /* Structure of columns, recorded. `takes`: the column belongs to the mesh from success on. It must
- * have as many rows as the domain has issued. */
+ * have as many rows as the domain has issued. It gets the first free slot: history is linear, so a
+ * record that names a slot is only applied while the same column is there. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
 /* Swap the whole content with `takes` (emptied and freed on success), recorded as one replace that

@@ -103,7 +103,7 @@ static bool is_sound(const he_param *param, const he_arg *arg)
     case HE_PARAM_ELEMENT:
         return arg->id != HE_NONE || (param->flags & HE_NULLABLE);
     case HE_PARAM_ELEMENTS:
-        return arg->ids != NULL && arg->count > 0;
+        return arg->ids != NULL;
     case HE_PARAM_CYCLE:
         return arg->ids != NULL || arg->count == 0;
     case HE_PARAM_NUMBER:
@@ -150,6 +150,16 @@ static bool are_sound(const he_op *op, const he_arg *args)
     return true;
 }
 
+static bool has_empty_list(const he_op *op, const he_arg *args)
+{
+    for (size_t i = 0; i < he_op_params(op); i++) {
+        if (op->params[i].type == HE_PARAM_ELEMENTS && args[i].given && args[i].count == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void he_results_clear(he_results *results)
 {
     for (size_t i = 0; i < HE_OP_RESULTS; i++) {
@@ -168,6 +178,9 @@ he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARA
     for (size_t i = 0; i < he_op_results(op); i++) {
         out->present[i] = true;
         out->id[i] = HE_NONE;
+    }
+    if (has_empty_list(op, args)) {
+        return HE_OK;
     }
     he_status status = op->run(mesh, args, out, err);
     assert(he_op_declares(op, status));

@@ -14,7 +14,7 @@
 /* What a parameter holds. */
 typedef enum he_param_type {
     HE_PARAM_ELEMENT,  /* one id of the row's kind */
-    HE_PARAM_ELEMENTS, /* one id under `name`, or a list of at least one under `plural` */
+    HE_PARAM_ELEMENTS, /* one id under `name`, or a list under `plural` */
     HE_PARAM_NUMBER,   /* a finite double, within min and max where the row has a range */
     HE_PARAM_POINT,    /* [x, y, z] */
     HE_PARAM_POINTS,   /* [x, y, z], or a list of those, one for each element */
@@ -118,7 +118,8 @@ bool he_op_declares(const he_op *op, he_status status);
 /* An argument for every parameter with its default and `given` false. */
 void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
 /* Apply one operation. Arguments are those of he_op_defaults with some given; ranges, groups and
- * finiteness were checked by whoever decoded them (asserted here). A refusal changes nothing. */
+ * finiteness were checked by whoever decoded them (asserted here). A refusal changes nothing, and
+ * so does a list of elements that is given and empty: its results are null, 0 and empty lists. */
 HE_NODISCARD he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
                                  he_results *out, he_error *err);
 void he_results_clear(he_results *results);

@@ -1,0 +1,14 @@
+/* attribute_path.h - the attribute a path names: x->kind and x->attribute. */
+#ifndef HE_API_ATTRIBUTE_PATH_H
+#define HE_API_ATTRIBUTE_PATH_H
+
+#include "api/exchange.h"
+#include "mesh/column.h"
+
+/* Built in, and so no attribute's name. */
+#define API_POSITION "position"
+
+/* NULL and no_such_attribute where there is none. */
+const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh);
+
+#endif
