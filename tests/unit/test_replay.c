@@ -76,7 +76,7 @@ static void add_column(he_mesh *m, md_random *random, unsigned serial)
     he_kind domain = domains[md_below(random, 5)];
     char name[16];
     he_column *column;
-    snprintf(name, sizeof name, "c%u", serial);
+    snprintf(name, sizeof name, "late%u", serial);
     assert_int_equal(
         he_column_new(name, domain, HE_FLOAT, 3, (he_rule)md_below(random, 3), &column, NULL),
         HE_OK);
@@ -105,7 +105,7 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     assert_int_equal(he_reserve(m, (he_need){.attributes = 4}, NULL), HE_OK);
     for (int i = 0; i < 4; i++) {
         uint32_t row = md_below(random, rows);
-        float value[3] = {(float)md_below(random, 9), 1, (float)i};
+        unsigned char value[HE_COLUMN_ROW_BYTES] = {(unsigned char)md_below(random, 2), 0, 1};
         if (domain == HE_MESH_KIND || he_mesh_is_live(m, domain, row)) {
             he_set_attribute(m, slot, row, value);
         }
