@@ -79,6 +79,9 @@
     X(NO_SUCH_ATTRIBUTE, "no_such_attribute", 404, "No such attribute",                            \
       "The mesh has no attribute of this name in this domain; GET .../attributes lists those it "  \
       "has. Where a body names one, the status is 422.")                                           \
+    X(NO_SUCH_REVISION, "no_such_revision", 404, "The mesh has no such revision yet",              \
+      "The revision that is named is beyond the present one, which every answer about the mesh "   \
+      "shows.")                                                                                    \
     X(METHOD_NOT_ALLOWED, "method_not_allowed", 405, "The path does not take this method",         \
       "The Allow header lists the methods it takes.")                                              \
     X(NOT_ACCEPTABLE, "not_acceptable", 406, "No acceptable representation",                       \
@@ -90,6 +93,10 @@
       "The undo stack of the mesh is empty.")                                                      \
     X(NOTHING_TO_REDO, "nothing_to_redo", 409, "There is nothing to do again",                     \
       "The redo stack of the mesh is empty: nothing was undone, or an edit followed.")             \
+    X(UNREACHABLE_REVISION, "unreachable_revision", 409, "The stack does not lead there",          \
+      "Undo leads to revisions whose edits are all still done, redo to those that were undone "    \
+      "last. What was undone and then edited over is on neither stack: it can be read with "       \
+      "?revision= while the history holds it.")                                                    \
     X(MESH_BUSY, "mesh_busy", 409, "The mesh is being changed by a long operation",                \
       "Writes are taken again when it has ended; reads go on meanwhile.")                          \
     X(REVISION_GONE, "revision_gone", 410, "The revision is not available any more",               \
