@@ -193,6 +193,9 @@ he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **del
     x->has_info = !x->info.removed;
     bool good = x->has_info || api_fail_store(x, API_STORE_ABSENT);
     if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
+        if (x->claim != NULL) {
+            x->store->write_keyed(x->store->self, x->mesh, x->claim);
+        }
         return mesh;
     }
     x->store->write_end(x->store->self, x->mesh);
