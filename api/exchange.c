@@ -359,3 +359,16 @@ bool api_not_modified(api_exchange *x, const char *representation)
     api_answer_empty(x, 304);
     return true;
 }
+
+bool api_not_modified_yet(api_exchange *x, const char *representation)
+{
+    if (api_header_of(x, "If-None-Match") == NULL) {
+        return false;
+    }
+    if (api_read_begin(x) == NULL) {
+        return true;
+    }
+    bool known = api_not_modified(x, representation);
+    api_read_end(x);
+    return known;
+}

@@ -161,6 +161,9 @@ void api_answer_header_format(api_exchange *x, const char *name, const char *for
 void api_answer_etag(api_exchange *x, const char *representation);
 /* Puts the ETag; true when If-None-Match names it, and then 304 was answered. */
 bool api_not_modified(api_exchange *x, const char *representation);
+/* The same before a snapshot is taken, which a client with the present state does not need. True as
+ * well where the mesh is gone. */
+bool api_not_modified_yet(api_exchange *x, const char *representation);
 
 /* --- refusals: fill x->problem; always false --- */
 bool api_fail(api_exchange *x, int code, const char *format, ...)
