@@ -86,14 +86,20 @@ static void answer_losses(api_exchange *x, const he_notes *notes)
     api_text_clear(&losses);
 }
 
+enum { REPRESENTATION = 40 };
+
+static void name_representation(const he_format *format, size_t encoding, char out[REPRESENTATION])
+{
+    snprintf(out, REPRESENTATION, "%s%s%s", format == NULL ? "json" : format->name,
+             encoding > 0 ? "_" : "", encoding > 0 ? format->encodings[encoding] : "");
+}
+
 static void answer(api_exchange *x, const he_format *format, size_t encoding, content *c,
                    const he_mesh *mesh)
 {
-    char representation[40];
-    const char *name = format == NULL ? "json" : format->name;
+    char representation[REPRESENTATION];
     const char *type = format == NULL ? "application/json" : format->media_types[0];
-    snprintf(representation, sizeof representation, "%s%s%s", name, encoding > 0 ? "_" : "",
-             encoding > 0 ? format->encodings[encoding] : "");
+    name_representation(format, encoding, representation);
     if (api_not_modified(x, representation)) {
         free_content(c);
         return;
@@ -125,6 +131,11 @@ void api_content_get(api_exchange *x)
     const he_mesh *mesh;
     size_t encoding;
     if (!choose(x, &format) || !choose_encoding(x, format, &encoding)) {
+        return;
+    }
+    char representation[REPRESENTATION];
+    name_representation(format, encoding, representation);
+    if (api_not_modified_yet(x, representation)) {
         return;
     }
     content *c = he_mem_zero(1, sizeof *c);

@@ -81,7 +81,7 @@ static bool build(api_exchange *x, made *out)
 static api_store_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
     const char *name = api_upload_name(x);
-    return x->store->create(x->store->self, id, name == NULL ? "" : name, mesh, &x->mesh);
+    return x->store->create(x->store->self, id, name == NULL ? "" : name, mesh, x->claim, &x->mesh);
 }
 
 static void create(api_exchange *x)

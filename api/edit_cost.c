@@ -1,5 +1,6 @@
 #include "api/edit_cost.h"
 
+#include "api/limits.h"
 #include "mesh/walk.h"
 
 void api_edit_cost_clear(api_edit_cost *cost)
@@ -7,6 +8,16 @@ void api_edit_cost_clear(api_edit_cost *cost)
     for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
         he_ids_clear(&cost->named[kind]);
     }
+}
+
+/* Beyond the most that a worker may look at it is enough to know that there are more. */
+static he_status gather(api_edit_cost *cost, he_kind kind, uint32_t id, he_error *err)
+{
+    if (cost->count > API_COSTLY_ELEMENTS) {
+        return HE_OK;
+    }
+    cost->count++;
+    return he_ids_add(&cost->named[kind], id, err);
 }
 
 he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error *err)
@@ -19,10 +30,10 @@ he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error 
             continue;
         }
         if (param->type == HE_PARAM_ELEMENT) {
-            status = he_ids_add(&cost->named[param->kind], arg->id, err);
+            status = gather(cost, param->kind, arg->id, err);
         } else if (param->type == HE_PARAM_ELEMENTS || param->type == HE_PARAM_CYCLE) {
             for (size_t j = 0; j < arg->count && status == HE_OK; j++) {
-                status = he_ids_add(&cost->named[param->kind], arg->ids[j], err);
+                status = gather(cost, param->kind, arg->ids[j], err);
             }
         }
     }
@@ -79,6 +90,9 @@ static uint64_t about(const he_mesh *mesh, he_kind kind, uint32_t id, uint64_t m
 bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint64_t most)
 {
     uint64_t total = 0;
+    if (cost->count > API_COSTLY_ELEMENTS) {
+        return true;
+    }
     for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
         const he_ids *named = &cost->named[kind];
         for (size_t i = 0; i < named->count && total <= most; i++) {

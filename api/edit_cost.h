@@ -11,12 +11,14 @@
 /* Cleared by {0}. What references stand for is not known yet and left out. */
 typedef struct api_edit_cost {
     he_ids named[HE_KIND_COUNT];
+    size_t count;
 } api_edit_cost;
 
 void api_edit_cost_clear(api_edit_cost *cost);
-/* Gather what `call` names; HE_NO_MEMORY. */
+/* Gather what `call` names, until API_COSTLY_ELEMENTS are; HE_NO_MEMORY. */
 HE_NODISCARD he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error *err);
-/* Are there more than `most` half-edges about the named elements? Looks at hardly more. */
+/* Are there more than `most` half-edges about the named elements, or more elements than were
+ * gathered? Looks at hardly more. */
 bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint64_t most);
 
 #endif

@@ -11,6 +11,7 @@
 /* A request between decoding and answer. */
 typedef struct edits {
     api_in list; /* the array of operations; unused when there is one */
+    api_item op; /* of it, the one at hand */
     bool is_list;
     size_t count;
     api_in expected;
@@ -35,6 +36,7 @@ static void free_edits(void *state)
     api_names_clear(&e->names);
     api_edit_cost_clear(&e->cost);
     api_arena_clear(&e->scratch);
+    api_item_clear(&e->op);
     api_text_clear(&e->results);
     he_mem_free(e);
 }
@@ -74,26 +76,30 @@ static bool note(edits *e, const api_in *in, const api_call *call)
 }
 
 /* All that is wrong with the document itself is found before the first operation runs. */
-static bool check_ops(edits *e, const api_in *root)
+static bool check_ops(const api_exchange *x, edits *e)
 {
     api_call call;
     if (!e->is_list) {
-        if (!decode(e, root, NULL, &call)) {
-            return false;
-        }
-        return note(e, root, &call);
+        return decode(e, &x->root, NULL, &call) && note(e, &x->root, &call);
     }
-    api_in op;
-    for (bool more = api_in_first(&e->list, &op); more; more = api_in_next(&op)) {
-        if (!decode(e, &op, NULL, &call) || !api_names_add(&e->names, &op, &call)) {
-            return false;
-        }
-        e->count++;
-        if (!note(e, &op, &call)) {
+    const api_in *op = &e->op.in;
+    for (size_t i = 0; i < e->count; i++) {
+        if (!api_item_read(&x->ops, i, &e->list, &e->op) || !decode(e, op, NULL, &call) ||
+            !api_names_add(&e->names, op, &call) || !note(e, op, &call)) {
             return false;
         }
     }
     return true;
+}
+
+static bool check_count(const api_in *list, size_t count)
+{
+    if (count == 0) {
+        return api_in_fail(list, HE_BAD_VALUE, "the list has no operation");
+    }
+    return count <= API_MAX_OPS ||
+           api_in_fail(list, HE_LIMIT, "the list has %zu operations, at most %d are taken", count,
+                       (int)API_MAX_OPS);
 }
 
 static bool read_request(api_exchange *x, edits *e)
@@ -104,16 +110,16 @@ static bool read_request(api_exchange *x, edits *e)
         return false;
     }
     e->is_list = api_in_find(root, "ops", &e->list);
-    if (e->is_list &&
-        (!api_in_only(root, list_members) || !api_in_array(&e->list, 1, API_MAX_OPS))) {
+    e->count = e->is_list ? x->ops.count : 1;
+    if (e->is_list && (!api_in_only(root, list_members) || !api_in_array(&e->list, 0, 0) ||
+                       !check_count(&e->list, e->count))) {
         return false;
     }
     e->has_expected = api_in_find(root, "expected_revision", &e->expected);
     if (api_in_find(root, "dry_run", &dry) && !api_in_bool(&dry, &e->dry_run)) {
         return false;
     }
-    e->count = e->is_list ? 0 : 1;
-    return check_ops(e, root);
+    return check_ops(x, e);
 }
 
 static uint64_t issued(const he_mesh *mesh)
@@ -171,9 +177,8 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
     if (!e->is_list) {
         return run_op(x, e, mesh, delta, &x->root);
     }
-    api_in op;
-    for (bool more = api_in_first(&e->list, &op); more; more = api_in_next(&op)) {
-        if (!run_op(x, e, mesh, delta, &op)) {
+    for (size_t i = 0; i < e->count; i++) {
+        if (!api_item_read(&x->ops, i, &e->list, &e->op) || !run_op(x, e, mesh, delta, &e->op.in)) {
             return false;
         }
     }
@@ -296,7 +301,7 @@ void api_edits_post(api_exchange *x)
     }
     x->state = e;
     x->free_state = free_edits;
-    api_names_init(&e->names);
+    api_names_init(&e->names, x->store->secret);
     api_out_init(&e->out, &e->results);
     if (!read_request(x, e)) {
         return;

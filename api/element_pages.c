@@ -146,6 +146,9 @@ static int64_t read_lines(void *stream, char *buffer, size_t size)
 static void answer_lines(api_exchange *x)
 {
     const he_mesh *mesh;
+    if (api_not_modified_yet(x, "lines")) {
+        return;
+    }
     api_snapshot *snapshot = api_snapshot_of(x, &mesh);
     if (snapshot == NULL) {
         return;

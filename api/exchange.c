@@ -211,6 +211,9 @@ he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **del
     x->has_info = !x->info.removed;
     bool good = x->has_info || api_fail_store(x, API_STORE_ABSENT);
     if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
+        if (x->claim != NULL) {
+            x->store->write_keyed(x->store->self, x->mesh, x->claim);
+        }
         return mesh;
     }
     x->store->write_end(x->store->self, x->mesh);
@@ -415,4 +418,17 @@ bool api_not_modified(api_exchange *x, const char *representation)
     }
     api_answer_empty(x, 304);
     return true;
+}
+
+bool api_not_modified_yet(api_exchange *x, const char *representation)
+{
+    if (api_header_of(x, "If-None-Match") == NULL) {
+        return false;
+    }
+    if (api_read_begin(x) == NULL) {
+        return true;
+    }
+    bool known = api_not_modified(x, representation);
+    api_read_end(x);
+    return known;
 }

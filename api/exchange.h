@@ -26,6 +26,7 @@
 #include "api/api.h"
 #include "api/cursor.h"
 #include "api/etag.h"
+#include "api/hash.h"
 #include "api/json_in.h"
 #include "api/json_out.h"
 #include "api/limits.h"
@@ -63,13 +64,17 @@ struct api_exchange {
     const char *media_out; /* which of route->produces is wanted */
     bool minimal;          /* Prefer: return=minimal */
     char allow[API_ALLOW]; /* methods of a path that does not take this one */
+    const char *key;       /* Idempotency-Key, NULL without one or where the row takes none */
+    api_hash hash;         /* of a keyed request */
+    api_claim *claim;      /* on the key; NULL: none, or it was settled */
 
     /* --- its body --- */
     api_text body;
     uint64_t received; /* bytes */
     api_document document;
     bool has_root;
-    api_in root; /* of a control document */
+    api_in root;   /* of a control document */
+    api_items ops; /* of an edit list, in `body` */
 
     /* --- the mesh --- */
     api_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
@@ -161,6 +166,9 @@ void api_answer_header_format(api_exchange *x, const char *name, const char *for
 void api_answer_etag(api_exchange *x, const char *representation);
 /* Puts the ETag; true when If-None-Match names it, and then 304 was answered. */
 bool api_not_modified(api_exchange *x, const char *representation);
+/* The same before a snapshot is taken, which a client with the present state does not need. True as
+ * well where the mesh is gone. */
+bool api_not_modified_yet(api_exchange *x, const char *representation);
 
 /* --- refusals: fill x->problem; always false --- */
 bool api_fail(api_exchange *x, int code, const char *format, ...)

@@ -143,6 +143,9 @@ static void answer(api_exchange *x, geometry *g, const he_mesh *mesh)
 void api_geometry_get(api_exchange *x)
 {
     const he_mesh *mesh;
+    if (api_not_modified_yet(x, "geometry")) {
+        return;
+    }
     geometry *g = he_mem_zero(1, sizeof *g);
     if (g == NULL) {
         api_fail_memory(x);

@@ -66,26 +66,67 @@ static bool check_objects(const api_in *in)
     return true;
 }
 
+/* One value, of a text that was scanned; `*end` is where it ends. */
+static bool parse(const char *bytes, size_t length, const api_in *at, api_document *out,
+                  api_in *root, const char **end)
+{
+    api_in in = *at;
+    in.value = out->root = cJSON_ParseWithLengthOpts(bytes, length, end, false);
+    if (out->root == NULL) {
+        /* The text was scanned, so only memory can have failed. */
+        return api_problem_set(at->problem, HE_NO_MEMORY, "no memory to read the body");
+    }
+    if (!check_objects(&in)) {
+        api_document_clear(out);
+        return false;
+    }
+    *root = in;
+    return true;
+}
+
 bool api_document_parse(const char *bytes, size_t length, const api_in_limits *limits,
                         api_document *out, api_in *root, api_problem *problem)
 {
-    if (!api_json_scan(bytes, length, limits, problem)) {
+    const char *end;
+    return api_json_scan(bytes, length, limits, NULL, problem) &&
+           parse(bytes, length, &(api_in){.problem = problem}, out, root, &end);
+}
+
+bool api_document_parse_but(const char *bytes, size_t length, const api_in_limits *limits,
+                            api_items *items, api_document *out, api_in *root, api_problem *problem)
+{
+    const char *end;
+    api_in at = {.problem = problem};
+    if (!api_json_scan(bytes, length, limits, items, problem)) {
         return false;
     }
-    const char *end = NULL;
-    cJSON *value = cJSON_ParseWithLengthOpts(bytes, length, &end, false);
-    if (value == NULL) {
-        /* The text was scanned, so only memory can have failed. */
+    if (items->at == NULL) {
+        return parse(bytes, length, &at, out, root, &end);
+    }
+    size_t before = (size_t)(items->at - bytes), after = (size_t)(bytes + length - items->end);
+    char *rest = he_mem_alloc(before + after);
+    if (rest == NULL) {
         return api_problem_set(problem, HE_NO_MEMORY, "no memory to read the body");
     }
-    api_in at = {.value = value, .problem = problem};
-    if (!check_objects(&at)) {
-        cJSON_Delete(value);
-        return false;
-    }
-    out->root = value;
-    *root = at;
-    return true;
+    memcpy(rest, bytes, before);
+    memcpy(rest + before, items->end, after);
+    bool good = parse(rest, before + after, &at, out, root, &end);
+    he_mem_free(rest);
+    return good;
+}
+
+bool api_item_read(const api_items *items, size_t i, const api_in *list, api_item *item)
+{
+    const char *from = i == 0 ? items->at : item->next + strspn(item->next, " \t\r\n,");
+    api_item_clear(item);
+    return parse(from, (size_t)(items->end - from),
+                 &(api_in){.parent = list, .index = i, .problem = list->problem}, &item->document,
+                 &item->in, &item->next);
+}
+
+void api_item_clear(api_item *item)
+{
+    api_document_clear(&item->document);
 }
 
 void api_document_clear(api_document *document)

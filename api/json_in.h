@@ -40,6 +40,21 @@ typedef struct api_in_limits {
     bool no_offsets; /* byte offsets would mislead: the text is not what the client sent */
 } api_in_limits;
 
+/* The items of an array that is left out of its document, so that they are read one at a time and
+ * a long list costs no more than its text. */
+typedef struct api_items {
+    const char *name;     /* of the member of the root that holds the array */
+    const char *at, *end; /* their text; NULL: the root has no such array */
+    size_t count;
+} api_items;
+
+/* One of them; the next one takes its place. {0} is none. */
+typedef struct api_item {
+    api_document document;
+    api_in in;
+    const char *next; /* what follows it in the text */
+} api_item;
+
 /* Makes cJSON take its memory from mem.h. Once, before threads start; api_service_new does it. */
 void api_in_setup(void);
 
@@ -48,6 +63,15 @@ void api_in_setup(void);
 bool api_document_parse(const char *bytes, size_t length, const api_in_limits *limits,
                         api_document *out, api_in *root, api_problem *problem);
 void api_document_clear(api_document *document);
+/* The same for a document whose array of `items->name` is left empty: `bytes` must outlive its
+ * items, in which a repeated member is found when they are read. */
+bool api_document_parse_but(const char *bytes, size_t length, const api_in_limits *limits,
+                            api_items *items, api_document *out, api_in *root,
+                            api_problem *problem);
+/* The items in their order: for (size_t i = 0; i < items.count && api_item_read(...); i++). `list`
+ * is a cursor at their array. Refusals: duplicate_member, no_memory. */
+bool api_item_read(const api_items *items, size_t i, const api_in *list, api_item *item);
+void api_item_clear(api_item *item);
 
 /* --- shape --- */
 bool api_in_is_null(const api_in *in);

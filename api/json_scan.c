@@ -20,6 +20,8 @@ typedef struct scan {
     const char *begin, *at, *end;
     frame frames[API_MAX_DEPTH];
     size_t depth, values;
+    api_items *items; /* NULL: none are looked for */
+    bool inside;      /* of their array */
     const api_in_limits *limits;
     api_problem *problem;
 } scan;
@@ -192,6 +194,51 @@ static bool scan_string(scan *s)
     return refuse(s, API_MALFORMED_JSON, "the string does not end");
 }
 
+/* Is this a key, as it stands in the text, for a name of ASCII letters? */
+static bool is_key(const frame *f, const char *name)
+{
+    const char *at = f->key, *end = f->key + f->key_length;
+    for (; at < end && *name != '\0'; name++) {
+        int c = (unsigned char)*at++;
+        if (c == '\\') {
+            if (*at != 'u') {
+                return false;
+            }
+            c = scan_hex(at + 1, end);
+            at += 5;
+        }
+        if (c != *name) {
+            return false;
+        }
+    }
+    return at == end && *name == '\0';
+}
+
+/* Past the bracket that opens an array or object. */
+static void open_value(scan *s)
+{
+    bool object = *s->at == '{';
+    if (!object && s->items != NULL && s->items->at == NULL && s->depth == 1 &&
+        s->frames[0].object && is_key(&s->frames[0], s->items->name)) {
+        s->inside = true;
+        s->items->at = s->at + 1;
+    }
+    s->frames[s->depth++] = (frame){.object = object};
+    s->at++;
+}
+
+/* Past the bracket that closes the innermost one. */
+static void close_value(scan *s, bool empty)
+{
+    s->depth--;
+    if (s->inside && s->depth == 1) {
+        s->inside = false;
+        s->items->end = s->at;
+        s->items->count = empty ? 0 : s->frames[1].index + 1;
+    }
+    s->at++;
+}
+
 static bool scan_key(scan *s)
 {
     frame *f = &s->frames[s->depth - 1];
@@ -239,8 +286,7 @@ static bool scan_value(scan *s, bool *opened)
         if (s->depth == API_MAX_DEPTH) {
             return refuse(s, API_MALFORMED_JSON, "nesting is deeper than %d levels", API_MAX_DEPTH);
         }
-        s->frames[s->depth++] = (frame){.object = *s->at == '{'};
-        s->at++;
+        open_value(s);
         *opened = true;
         return true;
     default:
@@ -268,17 +314,20 @@ static bool scan_after(scan *s, bool *more)
         if (s->at == s->end || *s->at != bracket) {
             return refuse(s, API_MALFORMED_JSON, "',' or '%c' is expected here", bracket);
         }
-        s->at++;
-        s->depth--;
+        close_value(s, false);
     }
     return true;
 }
 
-bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits,
+bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits, api_items *items,
                    api_problem *problem)
 {
-    scan s = {
-        .begin = bytes, .at = bytes, .end = bytes + length, .limits = limits, .problem = problem};
+    scan s = {.begin = bytes,
+              .at = bytes,
+              .end = bytes + length,
+              .items = items,
+              .limits = limits,
+              .problem = problem};
     bool more = true;
     while (more) {
         bool opened = false;
@@ -294,8 +343,7 @@ bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits
             if (s.at == s.end || *s.at != bracket) {
                 continue;
             }
-            s.at++;
-            s.depth--;
+            close_value(&s, true);
         }
         if (!scan_after(&s, &more)) {
             return false;

@@ -9,7 +9,8 @@
 
 #include "api/json_in.h"
 
-bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits,
+/* `items` NULL, or with `name` set: the array of that name in the root object is looked for. */
+bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits, api_items *items,
                    api_problem *problem);
 
 #endif

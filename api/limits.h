@@ -5,7 +5,7 @@
 #define HE_API_LIMITS_H
 
 /* Bodies. A parsed control document costs at most API_MAX_*_VALUES * 64 bytes of cJSON nodes beside
- * its strings. */
+ * its strings; of an edit list it is its text and the operation at hand. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
 #define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
 #define API_MAX_EDITS          ((size_t)8 << 20) /* an edit list */
@@ -29,7 +29,8 @@ enum {
     API_MAX_SEGMENTS = 16,   /* of a path */
     API_MAX_SEGMENT = 512,   /* one decoded segment */
     API_MAX_PARAMETERS = 16, /* of a query */
-    API_MAX_REQUEST_ID = 128
+    API_MAX_REQUEST_ID = 128,
+    API_MAX_KEY_LENGTH = 255 /* characters of an Idempotency-Key */
 };
 
 /* What a request may ask for */

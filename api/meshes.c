@@ -173,8 +173,8 @@ void api_mesh_copy(api_exchange *x)
         he_mesh_free(fresh);
         return;
     }
-    api_store_status stored =
-        x->store->create(x->store->self, id, name != NULL ? name : x->info.name, fresh, &made);
+    api_store_status stored = x->store->create(
+        x->store->self, id, name != NULL ? name : x->info.name, fresh, x->claim, &made);
     if (stored != API_STORE_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);

@@ -1,21 +1,15 @@
 #include "api/names.h"
 
+#include "api/hash.h"
+
 #include <assert.h>
 #include <string.h>
 
-static uint32_t hash(const char *text, size_t length)
-{
-    uint32_t h = 2166136261u; /* FNV-1a */
-    for (size_t i = 0; i < length; i++) {
-        h = (h ^ (unsigned char)text[i]) * 16777619u;
-    }
-    return h;
-}
-
-/* The slot where the name is, or where it would be put. The table is never full. */
+/* The slot where the name is, or where it would be put. The table is never full. The key is not
+ * known outside, so that nobody can choose names that meet. */
 static size_t find_slot(const api_names *names, const char *text, size_t length)
 {
-    size_t slot = hash(text, length) & (names->table_size - 1);
+    size_t slot = (size_t)api_hash_of(names->secret, text, length) & (names->table_size - 1);
     while (names->table[slot] != 0) {
         const char *name = names->names[names->table[slot] - 1].name;
         if (strncmp(name, text, length) == 0 && name[length] == '\0') {
@@ -115,9 +109,9 @@ static bool find_reference(void *context, const api_in *at, const char *text, he
                        name->op->name, text);
 }
 
-void api_names_init(api_names *names)
+void api_names_init(api_names *names, const uint64_t secret[2])
 {
-    *names = (api_names){0};
+    *names = (api_names){.secret = {secret[0], secret[1]}};
     names->references = (api_references){.find = find_reference, .context = names};
 }
 
@@ -128,7 +122,8 @@ void api_names_clear(api_names *names)
     }
     he_mem_free(names->names);
     he_mem_free(names->table);
-    api_names_init(names);
+    api_arena_clear(&names->texts);
+    api_names_init(names, names->secret);
 }
 
 /* Keep the table at most half full. */
@@ -173,12 +168,13 @@ bool api_names_add(api_names *names, const api_in *at, const api_call *call)
     if (find_name(names, call->as, length) != NULL) {
         return api_in_fail(&as, API_REPEATED_NAME, "\"%s\" names an earlier operation", call->as);
     }
-    if (!grow(names)) {
+    const char *name = grow(names) ? api_arena_copy(&names->texts, call->as, length) : NULL;
+    if (name == NULL) {
         return api_in_fail(&as, HE_NO_MEMORY, "no memory for a name");
     }
     assert(names->names != NULL && names->table != NULL);
     size_t slot = find_slot(names, call->as, length);
-    names->names[names->count] = (api_name){.name = call->as, .op = call->op};
+    names->names[names->count] = (api_name){.name = name, .op = call->op};
     names->table[slot] = (uint32_t)++names->count;
     return true;
 }

@@ -147,6 +147,10 @@ static void write_success(api_out *out, const api_route *route, int status)
         if (status == 201) {
             write_header(out, "Location", "Where the new mesh is.");
         }
+        if (route->flags & (API_KEYED | API_KEYED_NEW)) {
+            write_header(out, "Idempotency-Replayed",
+                         "true: the answer of the first request with this key.");
+        }
         api_out_object_end(out);
     }
     if (status == 200 || status == 201) {
@@ -202,6 +206,14 @@ static void write_header_parameters(api_out *out, const api_route *route)
     }
     if (answers(route, 204) && answers(route, 200)) {
         write_header_parameter(out, "Prefer", "return=minimal: 204 in place of the answer.");
+    }
+    if (route->flags & (API_KEYED | API_KEYED_NEW)) {
+        write_header_parameter(
+            out, "Idempotency-Key",
+            "1 to 255 visible characters of the client's choice. A request that took effect is "
+            "answered again for a day, with Idempotency-Replayed: true, and not done again; where "
+            "the first answer was too large to keep, with 204 or 201 and no body. The key with "
+            "another request is 422, while the first is under way 409. Refusals are not kept.");
     }
 }
 

@@ -99,6 +99,9 @@
       "?revision= while the history holds it.")                                                    \
     X(MESH_BUSY, "mesh_busy", 409, "The mesh is being changed by a long operation",                \
       "Writes are taken again when it has ended; reads go on meanwhile.")                          \
+    X(IDEMPOTENCY_BUSY, "idempotency_in_progress", 409, "The same request is under way",           \
+      "A request with this Idempotency-Key is being answered. Ask again after Retry-After "        \
+      "seconds: its answer is given then.")                                                        \
     X(REVISION_GONE, "revision_gone", 410, "The revision is not available any more",               \
       "A cursor or parameter names a revision the server no longer holds. Start again without "    \
       "it.")                                                                                       \
@@ -121,6 +124,9 @@
       "cannot reach a local server through a name of its own.")                                    \
     X(HEADERS_TOO_LARGE, "headers_too_large", 431, "The headers are too large",                    \
       "The request's headers exceed the limit.")                                                   \
+    X(IDEMPOTENCY_MISMATCH, "idempotency_mismatch", 422, "The key is of another request",          \
+      "A request that carries the Idempotency-Key of one that was answered within a day must be "  \
+      "the same in method, path, query, Content-Type and body.")                                   \
     X(RATE_LIMIT, "rate_limit", 429, "Too many requests", "Try again after Retry-After seconds.")  \
     X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
       "The request may be fine; the server broke one of its own rules answering it.")              \

@@ -19,7 +19,7 @@ typedef enum api_body_kind {
     API_BODY_NONE,    /* refused when there is one */
     API_BODY_OPTION,  /* a control document or nothing */
     API_BODY_CONTROL, /* a control document, parsed into x->root */
-    API_BODY_EDITS,   /* the same with the cap of an edit list */
+    API_BODY_EDITS,   /* the same with the cap of an edit list, whose `ops` are left in x->ops */
     API_BODY_UPLOAD   /* handed piece by piece to the row's `body` */
 } api_body_kind;
 
@@ -43,7 +43,9 @@ enum {
     API_COSTLY = 2,     /* costs the mesh or the upload: large ones go to the job pool */
     API_MAY_CREATE = 4, /* the mesh need not exist */
     API_OWN_ACCEPT = 8, /* the handler reads Accept itself (?format= comes first) */
-    API_FIXED = 16      /* not under /v1: left out of OpenAPI */
+    API_FIXED = 16,     /* not under /v1: left out of OpenAPI */
+    API_KEYED = 32,     /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
+    API_KEYED_NEW = 64  /* the same of what makes a mesh: kept with the store */
 };
 
 enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_STATUSES = 20 };

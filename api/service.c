@@ -1,6 +1,7 @@
 #include "api/api.h"
 
 #include "api/admit.h"
+#include "api/keyed.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -80,7 +81,8 @@ static void answer_problem(api_exchange *x)
     if (x->problem.code == API_METHOD_NOT_ALLOWED) {
         put_header(x, "Allow", x->allow);
     }
-    if (x->answer.status == 503 || x->problem.code == API_MESH_BUSY) {
+    if (x->answer.status == 503 || x->problem.code == API_MESH_BUSY ||
+        x->problem.code == API_IDEMPOTENCY_BUSY) {
         put_header(x, "Retry-After", "1");
     }
 }
@@ -127,6 +129,7 @@ static api_step finish(api_exchange *x)
         x->answer.mesh = x->mesh;
         x->answer.record = x->info.record;
     }
+    api_keyed_settle(x);
     x->phase = API_PHASE_DONE;
     return API_READY;
 }
@@ -158,7 +161,7 @@ static bool copy_request(api_exchange *x, const api_request *request)
 
 static bool begin(api_exchange *x)
 {
-    if (!api_admit(x)) {
+    if (!api_admit(x) || !api_keyed_begin(x)) {
         return false;
     }
     x->minimal = api_header_has(api_header_of(x, "Prefer"), "return=minimal");
@@ -200,6 +203,7 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length)
     if (length == 0) {
         return API_MORE;
     }
+    api_keyed_body(x, bytes, length);
     if (x->received > api_body_cap(x)) {
         api_refuse_size(x);
     } else if (x->route->body_kind == API_BODY_UPLOAD) {
@@ -226,9 +230,17 @@ static bool parse_body(api_exchange *x)
     }
     api_in_limits limits = {.values = kind == API_BODY_EDITS ? API_MAX_EDITS_VALUES
                                                              : API_MAX_CONTROL_VALUES};
-    x->has_root = api_document_parse(x->body.bytes, x->body.length, &limits, &x->document, &x->root,
-                                     &x->problem);
-    api_text_clear(&x->body);
+    if (kind == API_BODY_EDITS) {
+        x->ops.name = "ops";
+        x->has_root = api_document_parse_but(x->body.bytes, x->body.length, &limits, &x->ops,
+                                             &x->document, &x->root, &x->problem);
+    } else {
+        x->has_root = api_document_parse(x->body.bytes, x->body.length, &limits, &x->document,
+                                         &x->root, &x->problem);
+    }
+    if (x->ops.at == NULL) {
+        api_text_clear(&x->body);
+    }
     return x->has_root;
 }
 
@@ -262,6 +274,9 @@ api_step api_end(api_exchange *x)
 {
     if (x->phase != API_PHASE_BODY) {
         return API_READY;
+    }
+    if (!api_keyed_claim(x)) {
+        return finish(x);
     }
     /* Reading a large document takes its time too. */
     if (x->body.length > API_COSTLY_UPLOAD) {
@@ -309,6 +324,9 @@ void api_free(api_exchange *x)
     api_text_clear(&x->text);
     if (x->past != NULL) {
         x->store->snapshot_release(x->store->self, x->past);
+    }
+    if (x->claim != NULL) {
+        x->store->claim_end(x->store->self, x->claim);
     }
     if (x->mesh != NULL) {
         x->store->release(x->store->self, x->mesh);

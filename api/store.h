@@ -52,15 +52,48 @@ typedef enum api_store_status {
     API_STORE_ELSEWHERE /* the stack does not lead to the revision */
 } api_store_status;
 
+/* A request with an Idempotency-Key, from claim to claim_end. */
+typedef struct api_claim api_claim;
+
+typedef struct api_key {
+    const char *text;
+    uint64_t digest[2]; /* of the request, by api_store.secret */
+} api_key;
+
+typedef enum api_claim_status {
+    API_CLAIM_NEW,   /* go on */
+    API_CLAIM_KEPT,  /* it was answered before */
+    API_CLAIM_BUSY,  /* the same request is under way */
+    API_CLAIM_OTHER, /* the key is that of another request */
+    API_CLAIM_NO_MEMORY
+} api_claim_status;
+
+enum { API_KEPT_TAG = 96 };
+
+/* The answer to a keyed request. */
+typedef struct api_kept {
+    int status;
+    bool changed; /* something: then it is kept even where there is no room for its body */
+    char etag[API_KEPT_TAG];  /* "" for none */
+    char id[API_MESH_ID + 1]; /* of the mesh it shows, which Location names with 201 */
+    uint64_t incarnation, record;
+    const char *body; /* JSON; NULL with a length: left out */
+    size_t length;
+} api_kept;
+
 typedef struct api_store {
     void *self;
+    /* Random. What is hashed with it cannot be foreseen from outside: names in tables, requests
+     * that are remembered. It is kept as long as those are. */
+    uint64_t secret[2];
 
     /* --- the collection --- */
     api_store_status (*find)(void *self, const char *id, api_mesh **out); /* adds a reference */
     void (*release)(void *self, api_mesh *mesh);
-    /* Takes `content` on success. `id` NULL lets the store choose. */
+    /* Takes `content` on success. `id` NULL lets the store choose. `claim` of a keyed request, or
+     * NULL, goes into the record of it. */
     api_store_status (*create)(void *self, const char *id, const char *name, he_mesh *content,
-                               api_mesh **out);
+                               const api_claim *claim, api_mesh **out);
     /* Under the write lock, so that what the caller looked at is what goes. */
     api_store_status (*remove)(void *self, api_mesh *mesh, api_mesh_info *info);
     /* Up to `limit` meshes with ids after `after` ("" from the start), in the order of ids, each
@@ -89,6 +122,8 @@ typedef struct api_store {
      * `delta` for he_changes_find. NULL when memory is out. Every begin is ended by exactly one of
      * write_commit, write_abort and write_end, which give the lock back. */
     he_mesh *(*write_begin)(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta);
+    /* What follows, up to the end of writing, is done for this claim: its record carries it. */
+    void (*write_keyed)(void *self, api_mesh *mesh, const api_claim *claim);
     /* Make what was recorded a revision with one undo step. `ops` names the operations for the
      * history. `barrier` ends the undo stack (compact). The new facts go to `info`. Cannot fail
      * once begin gave the lock: what it needs was reserved there. */
@@ -116,6 +151,17 @@ typedef struct api_store {
     /* PUT and PATCH, under the write lock. replace takes `content`. */
     void (*replace)(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
     void (*rename)(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
+
+    /* --- keyed requests ---
+     * claim is called before a request is tried, without a lock; `mesh` NULL: the key is among
+     * those of the store. With API_CLAIM_NEW all memory that remembering takes is there, so that
+     * keep cannot fail, and with API_CLAIM_KEPT `kept` gives the answer. Both are ended by
+     * claim_end, which forgets the key again unless its answer was kept. Keys of a mesh go with the
+     * mesh, and all after a day or when newer ones need the room. */
+    api_claim_status (*claim)(void *self, api_mesh *mesh, const api_key *key, api_claim **out);
+    const api_kept *(*kept)(const api_claim *claim);
+    void (*keep)(void *self, api_claim *claim, const api_kept *answer);
+    void (*claim_end)(void *self, api_claim *claim);
 
     /* --- the history, under the read lock: newest first; false past the end --- */
     bool (*history)(void *self, api_mesh *mesh, size_t i, struct api_entry *out);

@@ -15,7 +15,7 @@ static void answer_view(api_exchange *x, const char *representation,
                         bool (*write)(api_exchange *x, const he_mesh *mesh))
 {
     api_view view;
-    if (!api_view_begin(x, &view)) {
+    if (api_not_modified_yet(x, representation) || !api_view_begin(x, &view)) {
         return;
     }
     if (!api_not_modified(x, representation)) {

@@ -42,12 +42,12 @@ void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight)
     if (preflight) {
         srv_wire_add(wire, "Access-Control-Allow-Methods", "GET, HEAD, POST, PUT, PATCH, DELETE");
         srv_wire_add(wire, "Access-Control-Allow-Headers",
-                     "Accept, Content-Type, If-Match, If-None-Match, Last-Event-ID, Prefer, "
-                     "X-Request-Id");
+                     "Accept, Content-Type, Idempotency-Key, If-Match, If-None-Match, "
+                     "Last-Event-ID, Prefer, X-Request-Id");
         srv_wire_add(wire, "Access-Control-Max-Age", "600");
     } else {
         srv_wire_add(wire, "Access-Control-Expose-Headers",
-                     "ETag, Link, Location, Retry-After, X-Request-Id");
+                     "ETag, Idempotency-Replayed, Link, Location, Retry-After, X-Request-Id");
     }
 }
 

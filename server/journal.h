@@ -24,6 +24,11 @@ typedef struct srv_record {
     bool undone;            /* the delta was applied backwards */
     bool removed;           /* the mesh was deleted; nothing follows */
     const he_mesh *content; /* the mesh after it, NULL when removed */
+    /* Of the Idempotency-Key it was made for, NULL without one: key, digest, time, and whether the
+     * key is the store's. The answer is written after the change is published; a journal that
+     * brings a key back answers what is kept without a body, 201 or 204, with the revision's tag.
+     * Its digest is good with the secret of api_store only, which is to be kept beside it. */
+    const api_claim *claim;
 } srv_record;
 
 typedef struct srv_journal {

@@ -25,8 +25,15 @@ he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_del
     return mesh->content;
 }
 
+void srv_write_keyed(void *self, api_mesh *mesh, const api_claim *claim)
+{
+    (void)self;
+    mesh->claim = claim;
+}
+
 static void unlock(api_mesh *mesh)
 {
+    mesh->claim = NULL;
     he_mesh *discard = mesh->discard;
     mesh->discard = NULL;
     pthread_rwlock_unlock(&mesh->lock);

@@ -30,7 +30,7 @@ static he_status add(const api_store *store, const char *name, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    switch (store->create(store->self, name, name, content, &mesh)) {
+    switch (store->create(store->self, name, name, content, NULL, &mesh)) {
     case API_STORE_OK:
         store->release(store->self, mesh);
         return HE_OK;

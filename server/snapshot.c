@@ -207,4 +207,5 @@ void srv_mesh_shed(api_mesh *mesh)
         shed(&mesh->past);
         pthread_mutex_unlock(&mesh->past_lock);
     }
+    srv_keys_shed(&mesh->keys);
 }

@@ -1,5 +1,6 @@
 #include "server/store.h"
 
+#include "server/clock.h"
 #include "server/memory.h"
 #include "server/random.h"
 #include "server/stored_mesh.h"
@@ -14,6 +15,8 @@ struct srv_store {
     pthread_rwlock_t lock; /* of the table */
     api_mesh **meshes;     /* in the order of ids, each with a use */
     size_t count, capacity;
+    uint64_t secret[2];
+    srv_keys keys; /* of what makes a mesh */
 };
 
 enum { ID_LENGTH = 10, SHED_BATCH = 64 };
@@ -31,6 +34,9 @@ srv_store *srv_store_new(const srv_store_options *options)
     store->journal = options->journal;
     store->undo_budget = options->undo_budget;
     store->max_meshes = options->max_meshes;
+    store->secret[0] = srv_random();
+    store->secret[1] = srv_random();
+    srv_keys_init(&store->keys, store->secret);
     return store;
 }
 
@@ -43,6 +49,7 @@ void srv_store_free(srv_store *store)
         srv_mesh_release(store->meshes[i]);
     }
     he_mem_free(store->meshes);
+    srv_keys_clear(&store->keys);
     store->journal.close(store->journal.self);
     pthread_rwlock_destroy(&store->lock);
     he_mem_free(store);
@@ -131,9 +138,10 @@ static api_store_status insert(srv_store *store, api_mesh *mesh)
 }
 
 static api_store_status create_as(srv_store *store, const char *id, const char *name,
-                                  he_mesh *content, api_mesh **out)
+                                  he_mesh *content, const api_claim *claim, api_mesh **out)
 {
-    api_mesh *mesh = srv_mesh_new(id, name, content, store->undo_budget, &store->journal);
+    api_mesh *mesh =
+        srv_mesh_new(id, name, content, store->undo_budget, &store->journal, store->secret);
     if (mesh == NULL) {
         return API_STORE_NO_MEMORY;
     }
@@ -144,7 +152,9 @@ static api_store_status create_as(srv_store *store, const char *id, const char *
     pthread_rwlock_unlock(&store->lock);
     if (status == API_STORE_OK) {
         *out = add_use(mesh);
+        mesh->claim = claim;
         srv_mesh_append(mesh, API_REPLACE, NULL, false);
+        mesh->claim = NULL;
     } else {
         mesh->content = NULL; /* still the caller's */
     }
@@ -156,7 +166,7 @@ static api_store_status create_as(srv_store *store, const char *id, const char *
 }
 
 static api_store_status create(void *self, const char *id, const char *name, he_mesh *content,
-                               api_mesh **out)
+                               const api_claim *claim, api_mesh **out)
 {
     srv_store *store = self;
     if (srv_memory_is_full()) {
@@ -166,13 +176,13 @@ static api_store_status create(void *self, const char *id, const char *name, he_
         }
     }
     if (id != NULL) {
-        return create_as(store, id, name, content, out);
+        return create_as(store, id, name, content, claim, out);
     }
     api_store_status status;
     do {
         char made[ID_LENGTH + 1];
         srv_random_id(made, ID_LENGTH);
-        status = create_as(store, made, name, content, out);
+        status = create_as(store, made, name, content, claim, out);
     } while (status == API_STORE_TAKEN);
     return status;
 }
@@ -215,10 +225,39 @@ static size_t list(void *self, const char *after, api_mesh **out, size_t limit)
     return given;
 }
 
+static api_claim_status claim_key(void *self, api_mesh *mesh, const api_key *key, api_claim **out)
+{
+    srv_store *store = self;
+    srv_keys *keys = mesh == NULL ? &store->keys : &mesh->keys;
+    api_claim_status status = srv_keys_claim(keys, key, srv_clock_utc(), out);
+    if (status == API_CLAIM_NEW) {
+        (*out)->of_store = mesh == NULL;
+    }
+    return status;
+}
+
+static const api_kept *kept(const api_claim *claim)
+{
+    return &claim->answer;
+}
+
+static void keep(void *self, api_claim *claim, const api_kept *answer)
+{
+    (void)self;
+    srv_keys_keep(claim, answer);
+}
+
+static void claim_end(void *self, api_claim *claim)
+{
+    (void)self;
+    srv_keys_end(claim);
+}
+
 api_store srv_store_interface(srv_store *store)
 {
     return (api_store){
         .self = store,
+        .secret = {store->secret[0], store->secret[1]},
         .find = find,
         .release = release,
         .create = create,
@@ -233,6 +272,7 @@ api_store srv_store_interface(srv_store *store)
         .cache_get = srv_cache_get,
         .cache_put = srv_cache_put,
         .write_begin = srv_write_begin,
+        .write_keyed = srv_write_keyed,
         .write_commit = srv_write_commit,
         .write_abort = srv_write_abort,
         .tally = srv_tally,
@@ -242,6 +282,10 @@ api_store srv_store_interface(srv_store *store)
         .write_end = srv_write_end,
         .replace = srv_mesh_replace,
         .rename = srv_mesh_rename,
+        .claim = claim_key,
+        .kept = kept,
+        .keep = keep,
+        .claim_end = claim_end,
         .history = srv_history,
         .history_facts = srv_history_facts,
     };
@@ -268,6 +312,7 @@ size_t srv_store_count(srv_store *store)
 
 void srv_store_shed(srv_store *store)
 {
+    srv_keys_shed(&store->keys);
     api_mesh *batch[SHED_BATCH];
     char after[API_MESH_ID + 1] = "";
     size_t count;

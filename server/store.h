@@ -6,6 +6,7 @@
  *     table     the collection, for as long as a search takes
  *     snapshot  the mesh's cached copy
  *     cache     the mesh's cached value
+ *     keys      answers kept for keyed requests, of a mesh or of the store
  * Whoever holds a mesh's lock takes no other mesh's, not even shared and not the same one twice:
  * a waiting writer would stop both. To bring another mesh's content in, take its snapshot first.
  *

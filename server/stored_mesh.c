@@ -33,7 +33,7 @@ static int init_lock(pthread_rwlock_t *lock)
 }
 
 api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint64_t undo_budget,
-                       const srv_journal *journal)
+                       const srv_journal *journal, const uint64_t secret[2])
 {
     api_mesh *mesh = he_mem_zero(1, sizeof *mesh);
     if (mesh == NULL || init_lock(&mesh->lock) != 0) {
@@ -43,6 +43,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     pthread_mutex_init(&mesh->snapshot_lock, NULL);
     pthread_mutex_init(&mesh->past_lock, NULL);
     pthread_mutex_init(&mesh->cache_lock, NULL);
+    srv_keys_init(&mesh->keys, secret);
     atomic_init(&mesh->uses, 1);
     mesh->journal = journal;
     copy_name(mesh->info.id, sizeof mesh->info.id, id);
@@ -67,6 +68,7 @@ void srv_mesh_release(api_mesh *mesh)
     srv_copy_release(mesh->copy);
     srv_copy_release(mesh->past);
     he_mem_free(mesh->cache);
+    srv_keys_clear(&mesh->keys);
     pthread_rwlock_destroy(&mesh->lock);
     pthread_mutex_destroy(&mesh->snapshot_lock);
     pthread_mutex_destroy(&mesh->past_lock);
@@ -95,6 +97,7 @@ void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, b
         .undone = undone,
         .removed = mesh->info.removed,
         .content = mesh->info.removed ? NULL : mesh->content,
+        .claim = mesh->claim,
     };
     mesh->journal->append(mesh->journal->self, &record);
 }

@@ -2,6 +2,7 @@
 #ifndef HE_SERVER_STORED_MESH_H
 #define HE_SERVER_STORED_MESH_H
 
+#include "server/idempotency.h"
 #include "server/journal.h"
 #include "server/revision_log.h"
 
@@ -20,12 +21,13 @@ struct api_mesh {
     _Atomic uint32_t uses;
     const srv_journal *journal;
 
-    pthread_rwlock_t lock; /* of all down to `discard` */
+    pthread_rwlock_t lock; /* of all down to `claim` */
     api_mesh_info info;    /* but for undo and redo, which the log has */
     he_mesh *content;
     srv_revision_log log;
-    he_savepoint mark; /* where the writer began */
-    he_mesh *discard;  /* freed when the writer has given the lock back */
+    he_savepoint mark;      /* where the writer began */
+    he_mesh *discard;       /* freed when the writer has given the lock back */
+    const api_claim *claim; /* whom the writer works for, NULL: for no keyed request */
 
     pthread_mutex_t snapshot_lock;
     srv_copy *copy; /* of the present, NULL: none cached */
@@ -37,15 +39,17 @@ struct api_mesh {
     void *cache;
     size_t cache_size;
     uint64_t cache_revision;
+
+    srv_keys keys;
 };
 
 /* Takes `content`. NULL when memory is out. */
 api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint64_t undo_budget,
-                       const srv_journal *journal);
+                       const srv_journal *journal, const uint64_t secret[2]);
 void srv_mesh_release(api_mesh *mesh);
 /* Under its lock. */
 void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out);
-/* Free the cached copies, unless somebody reads them. */
+/* Free the cached copies and the bodies of kept answers, unless somebody reads them. */
 void srv_mesh_shed(api_mesh *mesh);
 /* Under the exclusive lock: number a change that was made and tell the journal about it. */
 void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone);
@@ -59,6 +63,7 @@ bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
 void srv_history_facts(void *self, api_mesh *mesh, struct api_history *out);
 
 he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta);
+void srv_write_keyed(void *self, api_mesh *mesh, const api_claim *claim);
 void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
                       api_mesh_info *info);
 void srv_write_abort(void *self, api_mesh *mesh);

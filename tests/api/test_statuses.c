@@ -248,6 +248,59 @@ static void take_stale_cursor(api_bench *b, const char *collection)
     take(b, "GET", target, 410, NULL, NULL, 0);
 }
 
+static const char *busy_header(void *context, const char *name)
+{
+    return strcmp(name, "Idempotency-Key") == 0 ? context
+           : strcmp(name, "Content-Type") == 0  ? "application/json"
+                                                : NULL;
+}
+
+/* The same request, with its path for a key, twice at a time, so long that it waits for a thread,
+ * and then another one. */
+static void take_keyed(api_bench *b, const char *method, const char *path, const char *json)
+{
+    enum { LONG = 300 << 10 };
+    const char *const keyed[] = {"Idempotency-Key", path, NULL};
+    char *body = malloc(LONG);
+    assert_non_null(body);
+    memset(body, ' ', LONG);
+    memcpy(body, json, strlen(json));
+    api_step next;
+    api_request request = {.method = method,
+                           .path = path,
+                           .query = "",
+                           .request_id = "r",
+                           .header = busy_header,
+                           .context = (void *)path,
+                           .has_length = true,
+                           .length = LONG,
+                           .has_body = true};
+    api_exchange *x = api_begin(bench_service(b), &request, &next);
+    assert_non_null(x);
+    assert_int_equal(api_body(x, body, LONG), API_MORE);
+    assert_int_equal(api_end(x), API_WORK);
+    take(b, method, path, 409, keyed, body, LONG);
+    api_work(x);
+    int status = api_answer_of(x)->status;
+    assert_true(status == 200 || status == 201);
+    api_free(x);
+    take(b, method, path, status, keyed, body, LONG);
+    take(b, method, path, 422, keyed, body, LONG - 1);
+    free(body);
+}
+
+static void take_keyed_edits(api_bench *b)
+{
+    static const char *const steps_of_keyed[] = {"edits", "undo", "redo"};
+    static const char *const bodies[] = {"{\"op\":\"face_poke\",\"face\":0}", "{}", "{}"};
+    take(b, "PUT", "/v1/meshes/k", 201, NULL, CUBE, sizeof CUBE - 1);
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "/v1/meshes/k/%s", steps_of_keyed[i]);
+        take_keyed(b, "POST", path, bodies[i]);
+    }
+}
+
 static void test_each_declared_status(void **state)
 {
     (void)state;
@@ -265,6 +318,10 @@ static void test_each_declared_status(void **state)
     take_stale_cursor(b, "vertices");
     take_stale_cursor(b, "edits");
     take_stale_cursor(b, "attributes/faces/selected");
+    take_keyed(b, "POST", "/v1/meshes", CUBE);
+    take_keyed(b, "PATCH", "/v1/meshes/m", "{\"name\":\"z\"}");
+    take_keyed(b, "POST", "/v1/meshes/m/copy", "{}");
+    take_keyed_edits(b);
     size_t missing = 0;
     for (size_t i = 0; i < api_route_count(); i++) {
         const api_route *route = api_route_at(i);

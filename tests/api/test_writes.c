@@ -68,27 +68,41 @@ typedef struct write {
     int status;
     const char *body;
     const char *headers[3];
+    enum { ONCE, BEFORE, DRY } how; /* BEFORE: it was done already, with the same key */
 } write;
 
+#define BATCH                                                           \
+    "\"ops\":[{\"op\":\"face_poke\",\"face\":1,\"as\":\"a\"},"          \
+    "{\"op\":\"vertex_move\",\"vertex\":\"$a.vertex\",\"by\":[0,0,1]}," \
+    "{\"op\":\"edge_split\",\"edge\":\"$a.edges.0\",\"as\":\"b\"},"     \
+    "{\"op\":\"face_delete\",\"faces\":[\"$b.faces\",5]}]}"
+#define KEYED "Idempotency-Key", "a-key"
+
 static const write writes[] = {
-    {"POST", "/v1/meshes?id=new", 201, "{\"shape\":\"cube\"}", {NULL}},
-    {"POST", "/v1/meshes", 201, "{\"vertices\":[[0,0,0]],\"faces\":[]}", {NULL}},
-    {"PUT", "/v1/meshes/new", 201, "{\"shape\":\"cube\"}", {NULL}},
-    {"PUT", "/v1/meshes/m", 200, "{\"shape\":\"octahedron\"}", {NULL}},
-    {"PUT", "/v1/meshes/m", 204, "{\"shape\":\"octahedron\"}", {"Prefer", "return=minimal"}},
-    {"PATCH", "/v1/meshes/m", 200, "{\"name\":\"other\"}", {NULL}},
-    {"DELETE", "/v1/meshes/m", 204, NULL, {NULL}},
-    {"POST", "/v1/meshes/m/copy", 201, NULL, {NULL}},
-    {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"face_poke\",\"face\":1}", {NULL}},
-    {"POST",
-     "/v1/meshes/m/edits",
-     204,
-     "{\"ops\":[{\"op\":\"face_poke\",\"face\":1,\"as\":\"a\"},"
-     "{\"op\":\"vertex_move\",\"vertex\":\"$a.vertex\",\"by\":[0,0,1]}]}",
-     {"Prefer", "return=minimal"}},
-    {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"compact\"}", {NULL}},
-    {"POST", "/v1/meshes/m/undo", 200, NULL, {NULL}},
-    {"POST", "/v1/meshes/m/redo", 200, "{}", {NULL}},
+    {"POST", "/v1/meshes?id=new", 201, "{\"shape\":\"cube\"}", {NULL}, ONCE},
+    {"POST", "/v1/meshes", 201, "{\"vertices\":[[0,0,0]],\"faces\":[]}", {NULL}, ONCE},
+    {"PUT", "/v1/meshes/new", 201, "{\"shape\":\"cube\"}", {NULL}, ONCE},
+    {"PUT", "/v1/meshes/m", 200, "{\"shape\":\"octahedron\"}", {NULL}, ONCE},
+    {"PUT", "/v1/meshes/m", 204, "{\"shape\":\"octahedron\"}", {"Prefer", "return=minimal"}, ONCE},
+    {"PATCH", "/v1/meshes/m", 200, "{\"name\":\"other\"}", {NULL}, ONCE},
+    {"DELETE", "/v1/meshes/m", 204, NULL, {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/copy", 201, NULL, {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"face_poke\",\"face\":1}", {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/edits", 204, "{" BATCH, {"Prefer", "return=minimal"}, ONCE},
+    {"POST", "/v1/meshes/m/edits", 200, "{\"dry_run\":true," BATCH, {NULL}, DRY},
+    {"POST", "/v1/meshes/m/edits", 200, "{\"dry_run\":true," BATCH, {KEYED}, DRY},
+    {"POST", "/v1/meshes/m/edits", 200, "{" BATCH, {KEYED}, ONCE},
+    {"POST", "/v1/meshes/m/edits", 200, "{" BATCH, {KEYED}, BEFORE},
+    {"POST", "/v1/meshes", 201, "{\"shape\":\"cube\"}", {KEYED}, ONCE},
+    {"POST", "/v1/meshes", 201, "{\"shape\":\"cube\"}", {KEYED}, BEFORE},
+    {"POST", "/v1/meshes/m/copy", 201, NULL, {KEYED}, ONCE},
+    {"PATCH", "/v1/meshes/m", 200, "{\"name\":\"other\"}", {KEYED}, ONCE},
+    {"POST", "/v1/meshes/m/undo", 200, NULL, {KEYED}, ONCE},
+    {"POST", "/v1/meshes/m/undo", 200, NULL, {KEYED}, BEFORE},
+    {"POST", "/v1/meshes/m/redo", 200, NULL, {KEYED}, BEFORE},
+    {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"compact\"}", {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/undo", 200, NULL, {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/redo", 200, "{}", {NULL}, ONCE},
 };
 
 /* A mesh with something to undo, something to do again, and a dead face. */
@@ -125,23 +139,46 @@ static char *state_of(api_bench *b)
     return state;
 }
 
+/* The client did not get the answer, and asks again now that there is memory. */
+static void expect_done_once(api_bench *b, const write *w, const char *const *headers,
+                             const bench_reply *first)
+{
+    char *before = state_of(b);
+    bench_reply again = bench_send_bytes(b, w->method, w->target, headers, w->body,
+                                         w->body == NULL ? 0 : strlen(w->body));
+    char *after = state_of(b);
+    assert_string_equal(before, after);
+    assert_true(again.status == w->status || again.status == first->status ||
+                (again.status == 204 && w->status == 200));
+    if (w->how != DRY) {
+        assert_string_equal(bench_header(&again, "Idempotency-Replayed"), "true");
+    }
+    assert_string_equal(bench_header(&again, "Location"), bench_header(first, "Location"));
+    bench_reply_free(&again);
+    free(before);
+    free(after);
+}
+
 /* False when the allocation to fail was never reached. */
 static bool try_write(const write *w, long fail_at, bool sticky)
 {
     memory.fail_at = 0;
     api_bench *b = begin();
-    char *before = state_of(b);
     const char *question = strchr(w->target, '?');
     char path[64];
     snprintf(path, sizeof path, "%.*s",
              question == NULL ? (int)strlen(w->target) : (int)(question - w->target), w->target);
     const char *headers[] = {"Content-Type", "application/json", w->headers[0], w->headers[1],
                              NULL};
+    size_t length = w->body == NULL ? 0 : strlen(w->body);
+    if (w->how == BEFORE) {
+        done(bench_send_bytes(b, w->method, w->target, headers, w->body, length));
+    }
+    char *before = state_of(b);
     memory.calls = 0;
     memory.sticky = sticky;
     memory.fail_at = fail_at;
     bench_reply r = {0};
-    size_t length = w->body == NULL ? 0 : strlen(w->body);
     bool sent = bench_try(b, w->method, w->target, headers, w->body, length, &r);
     bool reached = memory.calls >= fail_at;
     memory.fail_at = 0;
@@ -155,8 +192,11 @@ static bool try_write(const write *w, long fail_at, bool sticky)
     } else {
         /* Where memory did not suffice for the answer, its status still tells. */
         bool bare = r.status == (w->status == 201 ? 201 : 204) && r.length == 0;
-        if (same || (r.status != w->status && !bare)) {
+        if (same != (w->how != ONCE) || (r.status != w->status && !bare)) {
             fail_msg("%s %s, allocation %ld: %d", w->method, w->target, fail_at, r.status);
+        }
+        if (w->headers[0] != NULL && strcmp(w->headers[0], "Idempotency-Key") == 0) {
+            expect_done_once(b, w, headers, &r);
         }
         if (r.status == 201) {
             done(expect(200, get(b, bench_header(&r, "Location"))));

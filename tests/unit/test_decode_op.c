@@ -227,7 +227,7 @@ static void references_are_checked_before_anything_runs(void **state)
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         parsed p;
         api_names names;
-        api_names_init(&names);
+        api_names_init(&names, (const uint64_t[2]){1, 2});
         parse(&p, lists[i].body);
         bool good = check_list(&p.root, &names, &p.arena);
         if (good != (lists[i].code == HE_OK) || p.problem.code != lists[i].code ||
@@ -281,7 +281,7 @@ static void references_take_the_values_of_results(void **state)
         api_names names;
         api_call call;
         api_in op;
-        api_names_init(&names);
+        api_names_init(&names, (const uint64_t[2]){1, 2});
         parse(&p, body);
         assert_true(check_list(&p.root, &names, &p.arena));
         assert_true(api_in_first(&p.root, &op));
@@ -327,7 +327,7 @@ static void many_names_are_found(void **state)
     api_text_add_char(&text, '\0');
     parsed p;
     api_names names;
-    api_names_init(&names);
+    api_names_init(&names, (const uint64_t[2]){1, 2});
     parse(&p, text.bytes);
     assert_true(check_list(&p.root, &names, &p.arena));
     assert_int_equal(names.count, MANY);
@@ -347,7 +347,7 @@ static void every_failed_allocation_is_a_problem(void **state)
         parsed p = {0};
         api_names names;
         api_in_limits limits = {.values = 1000};
-        api_names_init(&names);
+        api_names_init(&names, (const uint64_t[2]){1, 2});
         fixture_fail_at(++n);
         good = api_document_parse(body, strlen(body), &limits, &p.document, &p.root, &p.problem) &&
                check_list(&p.root, &names, &p.arena);

@@ -40,7 +40,7 @@ static int teardown(void **state)
 static api_mesh *create(const char *id)
 {
     api_mesh *mesh = NULL;
-    assert_int_equal(api.create(api.self, id, "a name", fixture_mesh("012,023"), &mesh),
+    assert_int_equal(api.create(api.self, id, "a name", fixture_mesh("012,023"), NULL, &mesh),
                      API_STORE_OK);
     return mesh;
 }
@@ -110,7 +110,7 @@ static void test_ids(void **state)
     assert_true(info.incarnation != info_of(a).incarnation);
 
     he_mesh *content = fixture_mesh("012");
-    assert_int_equal(api.create(api.self, "b", NULL, content, &found), API_STORE_TAKEN);
+    assert_int_equal(api.create(api.self, "b", NULL, content, NULL, &found), API_STORE_TAKEN);
     he_mesh_free(content);
     assert_int_equal(api.find(api.self, "c", &found), API_STORE_ABSENT);
     assert_int_equal(api.find(api.self, "b", &found), API_STORE_OK);
@@ -158,8 +158,8 @@ static void test_too_many(void **state)
     open_store(BUDGET, 1);
     api_mesh *mesh = create("m"), *other = NULL;
     he_mesh *content = fixture_mesh("012");
-    assert_int_equal(api.create(api.self, "n", NULL, content, &other), API_STORE_TOO_MANY);
-    assert_int_equal(api.create(api.self, "m", NULL, content, &other), API_STORE_TAKEN);
+    assert_int_equal(api.create(api.self, "n", NULL, content, NULL, &other), API_STORE_TOO_MANY);
+    assert_int_equal(api.create(api.self, "m", NULL, content, NULL, &other), API_STORE_TAKEN);
     he_mesh_free(content);
     api.release(api.self, mesh);
 }
@@ -427,7 +427,7 @@ static void test_every_allocation_may_fail(void **state)
         he_mesh *content = fixture_mesh("012,023");
         bool all = true;
         fixture_fail_at(n);
-        api_store_status status = api.create(api.self, NULL, "x", content, &made);
+        api_store_status status = api.create(api.self, NULL, "x", content, NULL, &made);
         if (status != API_STORE_OK) {
             assert_int_equal(status, API_STORE_NO_MEMORY);
             all = false;
@@ -482,7 +482,7 @@ static void test_memory_budget(void **state)
     he_mesh *content = fixture_mesh("012");
     srv_memory_set_budget(srv_memory_used());
     assert_true(srv_memory_is_full());
-    assert_int_equal(api.create(api.self, "n", NULL, content, &other), API_STORE_BUDGET);
+    assert_int_equal(api.create(api.self, "n", NULL, content, NULL, &other), API_STORE_BUDGET);
     assert_null(he_mem_alloc(1 << 20));
     uint64_t used = srv_memory_used();
     srv_memory_set_budget(0);
@@ -574,7 +574,7 @@ static void *come_and_go(void *context)
         api_mesh *mesh = NULL;
         snprintf(id, sizeof id, "t%d", i % 5);
         he_mesh *content = he_mesh_new();
-        if (api.create(api.self, id, NULL, content, &mesh) != API_STORE_OK) {
+        if (api.create(api.self, id, NULL, content, NULL, &mesh) != API_STORE_OK) {
             he_mesh_free(content);
             if (api.find(api.self, id, &mesh) != API_STORE_OK) {
                 continue;

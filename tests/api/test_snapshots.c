@@ -1,0 +1,144 @@
+/* Who makes a snapshot: never a worker of a large mesh, and nobody for a client that has the present
+ * state. */
+#include "tests/api/request.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const api_store *real;
+static int snapshots;
+
+static api_store_status counted(void *self, api_mesh *mesh, api_snapshot **out)
+{
+    snapshots++;
+    return real->snapshot(self, mesh, out);
+}
+
+typedef struct fixture {
+    api_bench *bench;
+    api_store watched;
+    api_service *service;
+} fixture;
+
+static void begin(fixture *f, const char *shape)
+{
+    f->bench = bench_new();
+    bench_reply r = bench_send(f->bench, "POST", "/v1/meshes?id=m", NULL, shape);
+    assert_int_equal(r.status, 201);
+    bench_reply_free(&r);
+    real = bench_store(f->bench);
+    f->watched = *real;
+    f->watched.snapshot = counted;
+    f->service = api_service_new(&f->watched, &(api_options){.version = "0"});
+    assert_non_null(f->service);
+}
+
+static void end(fixture *f)
+{
+    api_service_free(f->service);
+    bench_free(f->bench);
+}
+
+typedef struct request_headers {
+    const char *accept, *none;
+} request_headers;
+
+static const char *find_header(void *context, const char *name)
+{
+    const request_headers *h = context;
+    return strcmp(name, "Accept") == 0          ? h->accept
+           : strcmp(name, "If-None-Match") == 0 ? h->none
+                                                : NULL;
+}
+
+static const struct {
+    const char *method, *path, *accept;
+    int status;
+} cases[] = {
+    {"GET", "/v1/meshes/m/content", NULL, 200},
+    {"GET", "/v1/meshes/m/content", "model/stl", 200},
+    {"GET", "/v1/meshes/m/geometry", NULL, 200},
+    {"GET", "/v1/meshes/m/faces", "application/x-ndjson", 200},
+    {"GET", "/v1/meshes/m/boundaries", NULL, 200},
+    {"GET", "/v1/meshes/m/components", NULL, 200},
+    {"GET", "/v1/meshes/m/check", NULL, 200},
+    {"POST", "/v1/meshes/m/copy", NULL, 201},
+};
+
+/* The request up to where a worker hands it over. */
+static api_exchange *send(fixture *f, size_t i, request_headers *headers, api_step *step)
+{
+    headers->accept = cases[i].accept;
+    api_request request = {.method = cases[i].method,
+                           .path = cases[i].path,
+                           .query = "",
+                           .request_id = "r",
+                           .header = find_header,
+                           .context = headers};
+    api_exchange *x = api_begin(f->service, &request, step);
+    assert_non_null(x);
+    if (*step == API_MORE) {
+        *step = api_end(x);
+    }
+    return x;
+}
+
+static void a_worker_makes_no_snapshot_of_a_large_mesh(void **state)
+{
+    (void)state;
+    fixture f;
+    begin(&f, "{\"shape\":\"grid\",\"columns\":100,\"rows\":100}");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        request_headers headers = {NULL, NULL};
+        api_step step;
+        snapshots = 0;
+        api_exchange *x = send(&f, i, &headers, &step);
+        assert_int_equal(step, API_WORK);
+        assert_int_equal(snapshots, 0);
+        api_work(x);
+        assert_int_equal(snapshots, 1);
+        assert_int_equal(api_answer_of(x)->status, cases[i].status);
+        api_free(x);
+    }
+    end(&f);
+}
+
+static void nobody_makes_one_for_whom_nothing_changed(void **state)
+{
+    (void)state;
+    static const char *const shapes[] = {"{\"shape\":\"grid\",\"columns\":100,\"rows\":100}",
+                                         "{\"shape\":\"cube\"}"};
+    for (size_t s = 0; s < sizeof shapes / sizeof *shapes; s++) {
+        fixture f;
+        begin(&f, shapes[s]);
+        for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+            request_headers headers = {NULL, "*"};
+            api_step step;
+            if (cases[i].status != 200) {
+                continue;
+            }
+            snapshots = 0;
+            api_exchange *x = send(&f, i, &headers, &step);
+            if (step == API_WORK) {
+                api_work(x);
+            }
+            assert_int_equal(api_answer_of(x)->status, 304);
+            assert_int_equal(snapshots, 0);
+            api_free(x);
+        }
+        end(&f);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_worker_makes_no_snapshot_of_a_large_mesh),
+        cmocka_unit_test(nobody_makes_one_for_whom_nothing_changed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
