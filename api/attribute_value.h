@@ -21,8 +21,9 @@ bool api_read_values(const api_in *in, const he_column *column, unsigned char **
 /* The members type, components, rule, default and labels of an object, as a new column without
  * rows; the other members are the caller's. */
 bool api_read_column(const api_in *object, he_kind domain, const char *name, he_column **out);
-/* "domain" to "labels" and "bytes" in an object that is open. */
-void api_write_column(api_out *out, const he_column *column);
+/* "domain" to "labels" in an object that is open; and "bytes", of all rows, too. */
+void api_write_head(api_out *out, const he_column *column);
+void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column);
 
 /* The member "attributes" of an element, where its mesh has any in the domain. */
 void api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id);

@@ -61,7 +61,7 @@ static bool write_answer(api_exchange *x, const writing *w, const he_mesh *mesh,
     if (column != NULL) {
         api_out_key(out, "attribute");
         api_out_object_begin(out);
-        api_write_column(out, column);
+        api_write_column(out, mesh, column);
         api_out_object_end(out);
     }
     api_write_changes(out, changes);
@@ -82,7 +82,8 @@ static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, cons
     good = good && write_answer(x, w, mesh, &changes, x->info.revision + (effect ? 1 : 0));
     if (good && effect && !w->dry_run) {
         x->store->write_commit(x->store->self, x->mesh, op, false, &x->info);
-        api_publish(x, 204);
+        api_publish(x, status == 201 ? 201 : 204);
+        api_attribute_path(x, x->location);
     } else {
         x->store->write_abort(x->store->self, x->mesh);
     }
@@ -92,6 +93,9 @@ static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, cons
     }
     if (!w->dry_run) {
         api_answer_etag(x, "attribute");
+        if (status == 201) {
+            api_answer_header(x, "Location", x->location);
+        }
     }
     if (!api_answer_minimal(x)) {
         api_answer_json(x, w->dry_run ? 200 : status);
