@@ -85,6 +85,10 @@ void api_write_head(api_out *out, const he_column *column)
     api_out_key_string(out, "rule", he_rule_name(column->rule));
     api_out_key(out, "default");
     api_write_value(out, column, column->fallback);
+}
+
+void api_write_labels(api_out *out, const he_column *column)
+{
     if (column->labels != NULL) {
         size_t count = he_labels_count(column->labels);
         api_out_key(out, "labels");

@@ -400,6 +400,11 @@ static bool patch(api_exchange *x, writing *w, he_mesh *mesh)
         he_fail_plain(&err, HE_BAD_VALUE, "there are %zu values for %zu ids", w->count, count);
         return refuse_values(x, w, &err);
     }
+    if (count > API_MAX_EDITS_ROWS / (column->row_bytes / 4 + 1)) {
+        return api_in_fail(&ids_in, HE_LIMIT,
+                           "%zu values are too many to record one by one: PUT the whole attribute",
+                           count);
+    }
     if (he_attribute_write(mesh, column, ids, count, w->values, w->same, &err) != HE_OK) {
         api_fail_core(x, &err);
         point_at_id(x, &ids_in);

@@ -24,6 +24,7 @@ void api_attributes_list(api_exchange *x)
             if (column != NULL) {
                 api_out_object_begin(out);
                 api_write_column(out, mesh, column);
+                api_write_labels(out, column);
                 api_out_object_end(out);
             }
         }
@@ -177,8 +178,8 @@ static bool read_ids(api_exchange *x, const char *text, uint32_t **out, size_t *
 
 static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *column)
 {
-    uint32_t *ids;
-    size_t count;
+    uint32_t *ids = NULL;
+    size_t count = 0;
     he_error err = {0};
     if (api_param_text(x, "cursor") != NULL || api_param_text(x, "limit") != NULL) {
         api_fail(x, API_BAD_PARAMETER, "\"ids\" are no page: give neither cursor nor limit");

@@ -209,6 +209,7 @@ static void begin_attribute(api_document_out *out, const he_column *column)
     api_out_init(&json, &out->text);
     api_out_object_begin(&json);
     api_write_head(&json, column);
+    api_write_labels(&json, column);
     api_out_key(&json, "values");
     api_text_add_char(&out->text, '[');
     out->listed = true;

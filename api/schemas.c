@@ -106,7 +106,7 @@ static const member answers[] = {
     {"attribute_info", "components", "count", REQUIRED, "Numbers of one value."},
     {"attribute_info", "rule", "text", REQUIRED, "copy, interpolate or default."},
     {"attribute_info", "default", "any", REQUIRED, "The value where nothing was written."},
-    {"attribute_info", "labels", "*text", OPTIONAL, "What the values index; at most 100000."},
+    {"attribute_info", "labels", "*text", OPTIONAL, "In the list: what values index."},
     {"attribute_info", "bytes", "count", REQUIRED, "Of the values as octets."},
 
     {"attribute_list", "revision", "count", REQUIRED, NULL},
@@ -119,7 +119,6 @@ static const member answers[] = {
     {"attribute_values", "components", "count", REQUIRED, NULL},
     {"attribute_values", "rule", "text", REQUIRED, NULL},
     {"attribute_values", "default", "any", REQUIRED, NULL},
-    {"attribute_values", "labels", "*text", OPTIONAL, NULL},
     {"attribute_values", "bytes", "count", REQUIRED, NULL},
     {"attribute_values", "ids", "*id", REQUIRED, NULL},
     {"attribute_values", "values", "*any", REQUIRED, "One for each id; arrays of components."},

@@ -593,8 +593,14 @@ static void sets_stand_for_lists(void **state)
     send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/kind", "{\"type\":\"int32\"}");
     send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/selected",
          "{\"type\":\"bool\",\"default\":true}");
+    send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/none", "{\"type\":\"bool\"}");
+    send(b, 201, "PUT", "/v1/meshes/m/attributes/edges/none", "{\"type\":\"bool\"}");
     uint64_t before = revision_of(b);
     static const char *const nothing[] = {
+        "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1],"
+        "\"vertices\":{\"none\":true}}",
+        "{\"op\":\"vertex_move\",\"by\":[1,1,1],\"vertices\":{\"none\":true}}",
+        "{\"op\":\"delaunay\",\"edges\":{\"none\":true}}",
         "{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}",
         "{\"op\":\"face_triangulate\",\"faces\":{\"selected\":true}}",
         "{\"op\":\"plane_split\",\"point\":[0,0,0],\"normal\":[1,0,0],\"faces\":{\"selected\":true}"

@@ -90,6 +90,11 @@ static void test_vertices(void **state)
         {"0123", "edge_collapse halfedge=2-1 t=0.75", HE_DEFAULT, 1, 10},
         {"012,023", "vertex_split vertex=2 left=0 right=null to=0,0,0", HE_INTERPOLATE, 4, 20},
         {"0123", "hole_fill halfedge=1-0 method=fan", HE_INTERPOLATE, 4, 15},
+        {"0123", "plane_split point=0.5,0,0 normal=1,0,0", HE_INTERPOLATE, 4, 5},
+        {"0123", "plane_split point=0.5,0,0 normal=1,0,0", HE_COPY, 4, 0},
+        {"0123", "plane_split point=0.5,0,0 normal=1,0,0", HE_DEFAULT, 4, -1},
+        {"012,103", "edge_flip edge=#0", HE_INTERPOLATE, 0, 0},
+        {"012,103", "transform matrix=2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1", HE_INTERPOLATE, 3, 30},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         he_mesh *m = after(cases[i].mesh, HE_VERTEX, cases[i].rule, cases[i].script);
@@ -131,6 +136,24 @@ static void test_edges_and_faces(void **state)
         assert_value(m, HE_FACE, 2, -1);
         he_mesh_free(m);
     }
+    m = after("0123", HE_FACE, HE_COPY, "plane_split point=0.5,0,0 normal=1,0,0");
+    assert_value(m, HE_FACE, 1, 0);
+    he_mesh_free(m);
+    m = after("012,023", HE_FACE, HE_INTERPOLATE, "face_join edge=0-2");
+    assert_value(m, HE_FACE, 0, 0);
+    assert_value(m, HE_FACE, 1, -1); /* dead */
+    he_mesh_free(m);
+    m = after("012,103,214", HE_EDGE, HE_COPY, "face_delete face=2;edge_flip edge=0-1;compact");
+    assert_value(m, HE_EDGE, edge_between(m, 3, 2).i, 0);
+    assert_value(m, HE_EDGE, edge_between(m, 1, 2).i, 10);
+    he_mesh_free(m);
+    m = after("012,023,034,045,056,061", HE_EDGE, HE_COPY,
+              "vertex_split vertex=0 left=1 right=4 to=0,0,1");
+    assert_value(m, HE_EDGE, edge_between(m, 7, 0).i, -1);
+    assert_value(m, HE_EDGE, edge_between(m, 7, 1).i,
+                 value_at(m, HE_EDGE, edge_between(m, 0, 1).i));
+    he_mesh_free(m);
+
     m = after("456,0123", HE_FACE, HE_COPY, "hole_fill halfedge=1-0");
     assert_value(m, HE_FACE, 2, -1);
     he_mesh_free(m);
