@@ -39,6 +39,7 @@ static writing *begin(api_exchange *x)
     if (w == NULL) {
         api_fail_memory(x);
     } else {
+        w->dry_run = api_param_flag(x, "dry_run");
         x->state = w;
         x->free_state = free_writing;
     }

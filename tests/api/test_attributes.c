@@ -649,6 +649,12 @@ static void what_changes_nothing_makes_no_revision(void **state)
     send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/a",
          "{\"ids\":[1],\"value\":3,\"dry_run\":true}");
     send(b, 200, "PUT", "/v1/meshes/m/attributes/faces/b", "{\"type\":\"bool\",\"dry_run\":true}");
+    send(b, 200, "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL);
+    const char *const headers[] = {"Content-Type", OCTETS, NULL};
+    bench_reply octets = expect(
+        200, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/faces/b?type=bool&dry_run=true",
+                              headers, "\0\1\0\1\0\1", 6));
+    bench_reply_free(&octets);
     assert_int_equal(revision_of(b), before);
     send(b, 404, "GET", "/v1/meshes/m/attributes/faces/b", NULL);
     bench_reply r = bench_send(b, "GET", "/v1/meshes/m/attributes/faces/a?ids=1", NULL, NULL);
