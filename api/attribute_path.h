@@ -11,4 +11,7 @@
 /* NULL and no_such_attribute where there is none. */
 const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh);
 
+/* The path itself, with everything escaped that may need it. */
+void api_attribute_path(const api_exchange *x, char out[API_LOCATION]);
+
 #endif

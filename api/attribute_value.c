@@ -76,7 +76,7 @@ void api_write_value(api_out *out, const he_column *column, const unsigned char 
     api_out_array_end(out);
 }
 
-void api_write_column(api_out *out, const he_column *column)
+void api_write_head(api_out *out, const he_column *column)
 {
     api_out_key_string(out, "domain", he_kind_plural(column->domain));
     api_out_key_string(out, "name", column->name);
@@ -85,6 +85,10 @@ void api_write_column(api_out *out, const he_column *column)
     api_out_key_string(out, "rule", he_rule_name(column->rule));
     api_out_key(out, "default");
     api_write_value(out, column, column->fallback);
+}
+
+void api_write_labels(api_out *out, const he_column *column)
+{
     if (column->labels != NULL) {
         size_t count = he_labels_count(column->labels);
         api_out_key(out, "labels");
@@ -94,7 +98,13 @@ void api_write_column(api_out *out, const he_column *column)
         }
         api_out_array_end(out);
     }
-    api_out_key_u64(out, "bytes", he_column_bytes(column));
+}
+
+void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column)
+{
+    api_write_head(out, column);
+    api_out_key_u64(out, "bytes",
+                    (uint64_t)he_mesh_issued(mesh, column->domain) * column->row_bytes);
 }
 
 void api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id)

@@ -21,8 +21,11 @@ bool api_read_values(const api_in *in, const he_column *column, unsigned char **
 /* The members type, components, rule, default and labels of an object, as a new column without
  * rows; the other members are the caller's. */
 bool api_read_column(const api_in *object, he_kind domain, const char *name, he_column **out);
-/* "domain" to "labels" and "bytes" in an object that is open. */
-void api_write_column(api_out *out, const he_column *column);
+/* "domain" to "default" in an object that is open; "labels" of one that has any, which may be long;
+ * "domain" to "default" and "bytes", of all rows. */
+void api_write_head(api_out *out, const he_column *column);
+void api_write_labels(api_out *out, const he_column *column);
+void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column);
 
 /* The member "attributes" of an element, where its mesh has any in the domain. */
 void api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id);

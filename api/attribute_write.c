@@ -39,6 +39,7 @@ static writing *begin(api_exchange *x)
     if (w == NULL) {
         api_fail_memory(x);
     } else {
+        w->dry_run = api_param_flag(x, "dry_run");
         x->state = w;
         x->free_state = free_writing;
     }
@@ -61,7 +62,7 @@ static bool write_answer(api_exchange *x, const writing *w, const he_mesh *mesh,
     if (column != NULL) {
         api_out_key(out, "attribute");
         api_out_object_begin(out);
-        api_write_column(out, column);
+        api_write_column(out, mesh, column);
         api_out_object_end(out);
     }
     api_write_changes(out, changes);
@@ -82,7 +83,8 @@ static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, cons
     good = good && write_answer(x, w, mesh, &changes, x->info.revision + (effect ? 1 : 0));
     if (good && effect && !w->dry_run) {
         x->store->write_commit(x->store->self, x->mesh, op, false, &x->info);
-        api_publish(x, 204);
+        api_publish(x, status == 201 ? 201 : 204);
+        api_attribute_path(x, x->location);
     } else {
         x->store->write_abort(x->store->self, x->mesh);
     }
@@ -92,6 +94,9 @@ static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, cons
     }
     if (!w->dry_run) {
         api_answer_etag(x, "attribute");
+        if (status == 201) {
+            api_answer_header(x, "Location", x->location);
+        }
     }
     if (!api_answer_minimal(x)) {
         api_answer_json(x, w->dry_run ? 200 : status);
@@ -395,6 +400,11 @@ static bool patch(api_exchange *x, writing *w, he_mesh *mesh)
     if (!w->same && w->count != count) {
         he_fail_plain(&err, HE_BAD_VALUE, "there are %zu values for %zu ids", w->count, count);
         return refuse_values(x, w, &err);
+    }
+    if (count > API_MAX_EDITS_ROWS / (column->row_bytes / 4 + 1)) {
+        return api_in_fail(&ids_in, HE_LIMIT,
+                           "%zu values are too many to record one by one: PUT the whole attribute",
+                           count);
     }
     if (he_attribute_write(mesh, column, ids, count, w->values, w->same, &err) != HE_OK) {
         api_fail_core(x, &err);

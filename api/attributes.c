@@ -4,6 +4,7 @@
 #include "api/attribute_path.h"
 #include "api/attribute_value.h"
 
+#include <stdio.h>
 #include <string.h>
 
 void api_attributes_list(api_exchange *x)
@@ -22,7 +23,8 @@ void api_attributes_list(api_exchange *x)
             const he_column *column = he_mesh_column(mesh, i);
             if (column != NULL) {
                 api_out_object_begin(out);
-                api_write_column(out, column);
+                api_write_column(out, mesh, column);
+                api_write_labels(out, column);
                 api_out_object_end(out);
             }
         }
@@ -45,37 +47,6 @@ const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
     return column;
 }
 
-/* --- as JSON --- */
-
-static uint32_t next_live(const he_mesh *mesh, he_kind kind, uint64_t from)
-{
-    uint32_t issued = he_mesh_issued(mesh, kind);
-    for (uint64_t id = from; id < issued; id++) {
-        if (he_mesh_is_live(mesh, kind, (uint32_t)id)) {
-            return (uint32_t)id;
-        }
-    }
-    return HE_NONE;
-}
-
-static void begin_values(api_exchange *x, const he_column *column)
-{
-    api_out_object_begin(&x->out);
-    api_out_key_u64(&x->out, "revision", x->info.revision);
-    api_write_column(&x->out, column);
-}
-
-static void write_rows(api_out *out, const he_column *column, const uint32_t *ids, size_t count)
-{
-    api_out_key_ids(out, "ids", ids, count);
-    api_out_key(out, "values");
-    api_out_array_begin(out);
-    for (size_t i = 0; i < count; i++) {
-        api_write_value(out, column, he_column_value(column, ids[i]));
-    }
-    api_out_array_end(out);
-}
-
 /* Everything but letters, digits and a few marks is escaped. */
 static void write_segment(const char *name, char *out)
 {
@@ -95,6 +66,45 @@ static void write_segment(const char *name, char *out)
     *out = '\0';
 }
 
+void api_attribute_path(const api_exchange *x, char out[API_LOCATION])
+{
+    char segment[3 * HE_COLUMN_NAME + 1];
+    write_segment(x->attribute, segment);
+    snprintf(out, API_LOCATION, "/v1/meshes/%s/attributes/%s/%s", x->mesh_id,
+             he_kind_plural(x->kind), segment);
+}
+
+/* --- as JSON --- */
+
+static uint32_t next_live(const he_mesh *mesh, he_kind kind, uint64_t from)
+{
+    uint32_t issued = he_mesh_issued(mesh, kind);
+    for (uint64_t id = from; id < issued; id++) {
+        if (he_mesh_is_live(mesh, kind, (uint32_t)id)) {
+            return (uint32_t)id;
+        }
+    }
+    return HE_NONE;
+}
+
+static void begin_values(api_exchange *x, const he_mesh *mesh, const he_column *column)
+{
+    api_out_object_begin(&x->out);
+    api_out_key_u64(&x->out, "revision", x->info.revision);
+    api_write_column(&x->out, mesh, column);
+}
+
+static void write_rows(api_out *out, const he_column *column, const uint32_t *ids, size_t count)
+{
+    api_out_key_ids(out, "ids", ids, count);
+    api_out_key(out, "values");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < count; i++) {
+        api_write_value(out, column, he_column_value(column, ids[i]));
+    }
+    api_out_array_end(out);
+}
+
 static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
 {
     api_out_key(&x->out, "next");
@@ -102,13 +112,12 @@ static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
         api_out_null(&x->out);
         return;
     }
-    char cursor[API_CURSOR], segment[3 * HE_COLUMN_NAME + 1];
+    char cursor[API_CURSOR], path[API_LOCATION];
     api_cursor_write("attribute", &x->info, id, cursor);
     api_out_string(&x->out, cursor);
-    write_segment(x->attribute, segment);
-    api_answer_header_format(
-        x, "Link", "</v1/meshes/%s/attributes/%s/%s?limit=%llu&cursor=%s>; rel=\"next\"",
-        x->mesh_id, he_kind_plural(x->kind), segment, (unsigned long long)limit, cursor);
+    api_attribute_path(x, path);
+    api_answer_header_format(x, "Link", "<%s?limit=%llu&cursor=%s>; rel=\"next\"", path,
+                             (unsigned long long)limit, cursor);
 }
 
 static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *column)
@@ -131,7 +140,7 @@ static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *c
     for (; count < limit && id != HE_NONE; id = next_live(mesh, x->kind, (uint64_t)id + 1)) {
         ids[count++] = id;
     }
-    begin_values(x, column);
+    begin_values(x, mesh, column);
     write_rows(&x->out, column, ids, count);
     write_next(x, id, limit);
     api_out_object_end(&x->out);
@@ -169,8 +178,8 @@ static bool read_ids(api_exchange *x, const char *text, uint32_t **out, size_t *
 
 static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *column)
 {
-    uint32_t *ids;
-    size_t count;
+    uint32_t *ids = NULL;
+    size_t count = 0;
     he_error err = {0};
     if (api_param_text(x, "cursor") != NULL || api_param_text(x, "limit") != NULL) {
         api_fail(x, API_BAD_PARAMETER, "\"ids\" are no page: give neither cursor nor limit");
@@ -188,7 +197,7 @@ static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *c
     if (api_not_modified(x, "values")) {
         return;
     }
-    begin_values(x, column);
+    begin_values(x, mesh, column);
     write_rows(&x->out, column, ids, count);
     api_out_key_null(&x->out, "next");
     api_out_object_end(&x->out);

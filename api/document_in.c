@@ -1,5 +1,6 @@
 #include "api/document_in.h"
 
+#include "api/attributes_in.h"
 #include "api/limits.h"
 #include "format/number.h"
 
@@ -17,6 +18,7 @@ typedef enum state {
     INSIDE_KEY,          /* up to the closing quote */
     EXPECT_COLON,        /* then open_member decides */
     INSIDE_OTHER,        /* a value that is gathered */
+    INSIDE_ATTRIBUTES,   /* read by attributes_in.c */
     EXPECT_LIST,         /* the '[' of vertices or faces */
     EXPECT_ITEM_OR_END,  /* after that '[' */
     EXPECT_ITEM,         /* after ',' between items */
@@ -48,6 +50,8 @@ struct api_document_in {
     size_t key_length;
     bool escaped; /* the last byte of a string was a backslash */
 
+    api_attributes_in *attributes; /* NULL without any */
+
     /* Other members: "{" and then each as it came. */
     api_text rest;
     size_t rest_depth;
@@ -70,6 +74,7 @@ void api_document_in_free(api_document_in *in)
 {
     if (in != NULL) {
         he_soup_clear(&in->soup);
+        api_attributes_in_free(in->attributes);
         api_text_clear(&in->rest);
         api_document_clear(&in->document);
         he_mem_free(in);
@@ -102,6 +107,7 @@ static void point(api_document_in *in)
     case INSIDE_KEY:
     case EXPECT_COLON:
     case INSIDE_OTHER:
+    case INSIDE_ATTRIBUTES:
     case AFTER_MEMBER:
     case AFTER_DOCUMENT:
         api_problem_set_pointer(in->problem, "%s", "");
@@ -366,12 +372,17 @@ static bool key_is(const api_document_in *in, const char *name)
     return in->key_length == length + 2 && memcmp(in->key + 1, name, length) == 0;
 }
 
-/* Which list the key names: 'v', 'f' or 0. A key may be spelled with escapes. */
+static char list_of(bool vertices, bool faces, bool attributes)
+{
+    return vertices ? 'v' : faces ? 'f' : attributes ? 'a' : '\0';
+}
+
+/* Which list the key names: 'v', 'f', 'a' or 0. A key may be spelled with escapes. */
 static bool find_list(api_document_in *in, char *list)
 {
     *list = '\0';
     if (memchr(in->key, '\\', in->key_length) == NULL) {
-        *list = key_is(in, "vertices") ? 'v' : key_is(in, "faces") ? 'f' : '\0';
+        *list = list_of(key_is(in, "vertices"), key_is(in, "faces"), key_is(in, "attributes"));
         return true;
     }
     api_document document = {0};
@@ -382,7 +393,8 @@ static bool find_list(api_document_in *in, char *list)
         api_document_parse(in->key, in->key_length, &limits, &document, &root, in->problem) &&
         api_in_string(&root, API_MAX_KEY, &name);
     if (good) {
-        *list = strcmp(name, "vertices") == 0 ? 'v' : strcmp(name, "faces") == 0 ? 'f' : '\0';
+        *list = list_of(strcmp(name, "vertices") == 0, strcmp(name, "faces") == 0,
+                        strcmp(name, "attributes") == 0);
     }
     api_document_clear(&document);
     return good;
@@ -393,6 +405,14 @@ static bool open_member(api_document_in *in)
     char list;
     if (!find_list(in, &list)) {
         return false;
+    }
+    if (list == 'a') {
+        if (in->attributes != NULL) {
+            return refuse(in, API_DUPLICATE_MEMBER, "\"attributes\" is given twice");
+        }
+        in->attributes = api_attributes_in_new();
+        in->state = INSIDE_ATTRIBUTES;
+        return in->attributes != NULL || refuse(in, HE_NO_MEMORY, "no memory for the document");
     }
     if (list != '\0') {
         bool *has = list == 'f' ? &in->has_faces : &in->has_vertices;
@@ -561,10 +581,23 @@ static bool step(api_document_in *in)
         return refuse(in, API_MALFORMED_JSON, "something follows the document");
     case INSIDE_KEY:
     case INSIDE_OTHER:
+    case INSIDE_ATTRIBUTES:
     case INSIDE_NUMBER:
         break; /* gathered by run */
     }
     in->at++;
+    return true;
+}
+
+static bool gather_attributes(api_document_in *in)
+{
+    bool done;
+    if (!api_attributes_in_feed(in->attributes, &in->at, in->end, &done, in->problem)) {
+        return false;
+    }
+    if (done) {
+        in->state = AFTER_MEMBER;
+    }
     return true;
 }
 
@@ -576,6 +609,8 @@ static bool run(api_document_in *in)
             good = gather_key(in);
         } else if (in->state == INSIDE_OTHER) {
             good = gather_other(in);
+        } else if (in->state == INSIDE_ATTRIBUTES) {
+            good = gather_attributes(in);
         } else if (in->state == INSIDE_NUMBER) {
             good = gather_number(in);
         } else {
@@ -629,6 +664,10 @@ bool api_document_in_has_vertices(const api_document_in *in)
 bool api_document_in_has_faces(const api_document_in *in)
 {
     return in->has_faces;
+}
+bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, api_problem *problem)
+{
+    return in->attributes == NULL || api_attributes_in_apply(in->attributes, mesh, problem);
 }
 const api_in *api_document_in_rest(const api_document_in *in)
 {

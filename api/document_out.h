@@ -9,6 +9,9 @@
  * and face ids. A face begins at the origin of its stored half-edge, which the new mesh stores too.
  * Positions read back bit for bit. Edge ids follow the faces, as in every create.
  *
+ * Attributes of every domain follow, where there are any, in the order attributes_in.h reads; their
+ * values read back bit for bit too.
+ *
  * The text is made as it is pulled, from a mesh that must not change meanwhile. */
 #ifndef HE_API_DOCUMENT_OUT_H
 #define HE_API_DOCUMENT_OUT_H
@@ -18,7 +21,8 @@
 typedef struct api_document_out api_document_out;
 
 /* Borrows `mesh`; copies `name`. NULL when memory is out (a map of 4 bytes an issued vertex where
- * some are dead, and a buffer). */
+ * some are dead, one of 4 bytes an edge where edges or half-edges have attributes, and a buffer).
+ */
 api_document_out *api_document_out_new(const he_mesh *mesh, const char *name);
 void api_document_out_free(api_document_out *out);
 /* Up to `size` bytes, 0 at the end, -1 on failure: the shape of api_answer.read. */

@@ -249,6 +249,49 @@ static const api_example examples[] = {
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},"
                  "\"undo\":1,\"redo\":0}"},
+    {.route = "attribute_put",
+     .target = "/v1/meshes/kite/attributes/faces/selected",
+     .consumes = "application/json",
+     .request = "{\"type\":\"bool\"}",
+     .status = 201,
+     .produces = "application/json",
+     .response = "{\"revision\":5,\"attribute\":{\"domain\":\"faces\",\"name\":\"selected\","
+                 "\"type\":\"bool\",\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":"
+                 "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
+                 "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
+                 "\"edges\":[],\"faces\":[]},\"parents\":{},\"merged\":{}}"},
+    {.route = "attribute_patch",
+     .target = "/v1/meshes/kite/attributes/faces/selected",
+     .consumes = "application/json",
+     .request = "{\"ids\":[0,3],\"value\":true}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":6,\"attribute\":{\"domain\":\"faces\",\"name\":\"selected\","
+                 "\"type\":\"bool\",\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":"
+                 "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
+                 "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
+                 "\"edges\":[],\"faces\":[0,3]},\"parents\":{},\"merged\":{}}"},
+    {.route = "attributes_list",
+     .target = "/v1/meshes/kite/attributes",
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"revision\":6,\"attributes\":[{\"domain\":\"faces\",\"name\":\"selected\",\"type\":"
+         "\"bool\",\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":4}]}"},
+    {.route = "attribute_get",
+     .target = "/v1/meshes/kite/attributes/faces/selected",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":6,\"domain\":\"faces\",\"name\":\"selected\",\"type\":\"bool\","
+                 "\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":4,\"ids\":[0,1,2,"
+                 "3],\"values\":[true,false,false,true],\"next\":null}"},
+    {.route = "attribute_delete",
+     .target = "/v1/meshes/kite/attributes/faces/selected",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":7,\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},"
+                 "\"deleted\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{"
+                 "\"vertices\":[],\"edges\":[],\"faces\":[]},\"parents\":{},\"merged\":{}}"},
 };
 
 enum { EXAMPLES = sizeof examples / sizeof *examples };

@@ -57,6 +57,14 @@ static const struct {
     [HE_DOUBLED_EDGE] = {422, "Two vertices are joined by at most one edge."},
     [HE_CLOSED_FAN] = {422, "The faces about a vertex form one closed fan, or any number of open "
                             "ones: a closed fan shares its vertex with no other."},
+    [HE_FEATURE_EDGE] = {422,
+                         "Edges whose bool attribute `feature` is true are lines that keep their "
+                         "shape: such an edge is not flipped, and a collapse may only shorten a "
+                         "line along itself or draw onto it what is beside it."},
+    [HE_LOCKED_ELEMENT] = {422,
+                           "An element whose bool attribute `locked` is true is not taken away; a "
+                           "vertex keeps its place, an edge its ends and a face its corners. "
+                           "Cutting it is allowed. Write false to unlock it."},
     [HE_LINK_CONDITION] = {422,
                            "Collapsing the edge would make an edge with three faces, a doubled "
                            "edge or a face without area: the common neighbours of its ends "

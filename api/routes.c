@@ -74,6 +74,8 @@ static const api_parameter type = {
 static const api_parameter components = {
     "components", API_PARAM_U64, 1,
     16,           NULL,          "Numbers of one value, where the body is octets; 1 if not said."};
+static const api_parameter dry_run = {
+    "dry_run", API_PARAM_FLAG, 0, 0, NULL, "Do nothing, and answer as if; members say it in JSON."};
 static const api_parameter rule = {
     "rule", API_PARAM_CHOICE,
     0,      0,
@@ -270,7 +272,7 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = octets_too,
      .produces = json,
-     .parameters = {&type, &components, &rule},
+     .parameters = {&type, &components, &rule, &dry_run},
      .statuses = {200, 201, 204, 412, 413, 415, 422},
      .request = "attribute",
      .response = "attribute_written",
@@ -298,6 +300,7 @@ static const api_route routes[] = {
      .run = api_attribute_delete,
      .flags = API_WRITES,
      .produces = json,
+     .parameters = {&dry_run},
      .statuses = {200, 204, 412},
      .response = "attribute_written",
      .summary = "Delete an attribute",

@@ -106,8 +106,8 @@ static const member answers[] = {
     {"attribute_info", "components", "count", REQUIRED, "Numbers of one value."},
     {"attribute_info", "rule", "text", REQUIRED, "copy, interpolate or default."},
     {"attribute_info", "default", "any", REQUIRED, "The value where nothing was written."},
-    {"attribute_info", "labels", "*text", OPTIONAL, "What the values index; at most 100000."},
-    {"attribute_info", "bytes", "count", REQUIRED, "Of memory."},
+    {"attribute_info", "labels", "*text", OPTIONAL, "In the list: what values index."},
+    {"attribute_info", "bytes", "count", REQUIRED, "Of the values as octets."},
 
     {"attribute_list", "revision", "count", REQUIRED, NULL},
     {"attribute_list", "attributes", "*#attribute_info", REQUIRED, NULL},
@@ -119,7 +119,6 @@ static const member answers[] = {
     {"attribute_values", "components", "count", REQUIRED, NULL},
     {"attribute_values", "rule", "text", REQUIRED, NULL},
     {"attribute_values", "default", "any", REQUIRED, NULL},
-    {"attribute_values", "labels", "*text", OPTIONAL, NULL},
     {"attribute_values", "bytes", "count", REQUIRED, NULL},
     {"attribute_values", "ids", "*id", REQUIRED, NULL},
     {"attribute_values", "values", "*any", REQUIRED, "One for each id; arrays of components."},
@@ -304,6 +303,18 @@ static const member requests[] = {
     {"document", "name", "text?", OPTIONAL, NULL},
     {"document", "vertices", "*point", OPTIONAL, NULL},
     {"document", "faces", "**index", OPTIONAL, "Vertices counter-clockwise, counted from 0."},
+    {"document", "attributes", "*#document_attribute", OPTIONAL, "Of any domain."},
+
+    {"document_attribute", "domain", "#domain", REQUIRED, NULL},
+    {"document_attribute", "name", "text", REQUIRED, NULL},
+    {"document_attribute", "type", "#type_name", REQUIRED, NULL},
+    {"document_attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
+    {"document_attribute", "rule", "#rule_name", OPTIONAL, NULL},
+    {"document_attribute", "default", "any", OPTIONAL, NULL},
+    {"document_attribute", "labels", "+#label", OPTIONAL, NULL},
+    {"document_attribute", "values", "*any", OPTIONAL,
+     "One for each element, or none. Edges come as the faces run along them first, half-edges by "
+     "edges, that of the first face before its twin."},
 
     {"attribute", "type", "#type_name", REQUIRED, NULL},
     {"attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
@@ -376,6 +387,7 @@ static const struct {
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},
     {"any_object", "{\"type\":\"object\"}"},
+    {"domain", "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
     {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
     {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
     {"label", "{\"type\":\"string\",\"maxLength\":1024}"},

@@ -277,6 +277,10 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     if (status != HE_OK) {
         return refuse(x, u, &err);
     }
+    if (u->document != NULL && !api_document_in_attributes(u->document, mesh, &x->problem)) {
+        he_mesh_free(mesh);
+        return false;
+    }
     if (he_bowties_find(mesh, &u->bowties, &err) != HE_OK) {
         he_mesh_free(mesh);
         return api_fail_core(x, &err);

@@ -1,6 +1,7 @@
 #include "edit/transform.h"
 
 #include "edit/list.h"
+#include "edit/normals.h"
 #include "edit/point.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
@@ -42,8 +43,14 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
         }
         moved++;
     }
-    he_status status = he_reserve(m, (he_need){.positions = moved}, err);
+    he_normals normals;
+    he_need need = {.positions = moved};
+    he_status status = he_normals_init(&normals, m, matrix, vertices, count, &need.links, err);
+    if (status == HE_OK) {
+        status = he_reserve(m, need, err);
+    }
     if (status != HE_OK) {
+        he_normals_clear(&normals);
         return status;
     }
     /* Nothing below can fail. */
@@ -53,5 +60,7 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
             he_set_position(m, v, apply(matrix, he_position(m, v)));
         }
     }
+    he_normals_commit(&normals);
+    he_normals_clear(&normals);
     return HE_OK;
 }

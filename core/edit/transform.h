@@ -6,7 +6,8 @@
 
 /* transform: no element comes or goes. Each listed vertex p goes to the first three rows of
  * matrix * (p, 1); `matrix` is row-major and its last row must be 0 0 0 1. A NULL list means every
- * live vertex. Attributes are left alone, and a mirroring matrix does not reverse faces.
+ * live vertex. Attributes `normal` turn along (normals.h), others are left alone, and a mirroring
+ * matrix does not reverse faces.
  *
  *     | m0  m1  m2  m3  |   | x |
  *     | m4  m5  m6  m7  | * | y |

@@ -64,7 +64,7 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
 const he_op he_mesh_rows[] = {
     {
         .name = "transform",
-        .doc = "Apply an affine map to vertices.",
+        .doc = "Apply an affine map to vertices, and to attributes `normal`.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "matrix",
                     .type = HE_PARAM_MATRIX,

@@ -85,6 +85,44 @@ static const write writes[] = {
     {"PUT", "/v1/meshes/m", 200, "{\"shape\":\"octahedron\"}", {NULL}, ONCE},
     {"PUT", "/v1/meshes/m", 204, "{\"shape\":\"octahedron\"}", {"Prefer", "return=minimal"}, ONCE},
     {"PATCH", "/v1/meshes/m", 200, "{\"name\":\"other\"}", {NULL}, ONCE},
+    {"PUT",
+     "/v1/meshes/m/attributes/faces/a",
+     201,
+     "{\"type\":\"float\",\"value\":2}",
+     {NULL},
+     ONCE},
+    {"PUT",
+     "/v1/meshes/m/attributes/faces/a",
+     204,
+     "{\"type\":\"bool\"}",
+     {"Prefer", "return=minimal"},
+     ONCE},
+    {"PUT",
+     "/v1/meshes/m/attributes/faces/kind",
+     200,
+     "{\"type\":\"uint32\",\"labels\":[\"x\",\"y\"],\"values\":[0,1,0,1,0,1,1,1,1,1,1,1,1,1,0]}",
+     {NULL},
+     ONCE},
+    {"PATCH",
+     "/v1/meshes/m/attributes/faces/kind",
+     200,
+     "{\"ids\":[0,2,4],\"values\":[5,6,7]}",
+     {NULL},
+     ONCE},
+    {"PATCH",
+     "/v1/meshes/m/attributes/faces/kind",
+     200,
+     "{\"ids\":\"all\",\"value\":9}",
+     {NULL},
+     ONCE},
+    {"DELETE", "/v1/meshes/m/attributes/faces/kind", 200, NULL, {NULL}, ONCE},
+    {"POST",
+     "/v1/meshes?id=new",
+     201,
+     "{\"vertices\":[[0,0,0]],\"faces\":[],\"attributes\":[{\"domain\":\"vertices\",\"name\":\"a\","
+     "\"type\":\"uint32\",\"labels\":[\"x\",\"y\"],\"values\":[1]}]}",
+     {NULL},
+     ONCE},
     {"DELETE", "/v1/meshes/m", 204, NULL, {NULL}, ONCE},
     {"POST", "/v1/meshes/m/copy", 201, NULL, {NULL}, ONCE},
     {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"face_poke\",\"face\":1}", {NULL}, ONCE},
@@ -115,6 +153,9 @@ static api_bench *begin(void)
         snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", face);
         done(expect(200, post(b, "/v1/meshes/m/edits", body)));
     }
+    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m/attributes/faces/kind", NULL,
+                                "{\"type\":\"float\",\"default\":1}")));
+    done(expect(200, post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":5}")));
     done(expect(200, post(b, "/v1/meshes/m/undo", NULL)));
     return b;
 }
@@ -122,8 +163,9 @@ static api_bench *begin(void)
 /* All that a client can see. */
 static char *state_of(api_bench *b)
 {
-    static const char *const targets[] = {"/v1/meshes", "/v1/meshes/m", "/v1/meshes/m/edits",
-                                          "/v1/meshes/m/content", "/v1/meshes/m/faces"};
+    static const char *const targets[] = {"/v1/meshes",         "/v1/meshes/m",
+                                          "/v1/meshes/m/edits", "/v1/meshes/m/content",
+                                          "/v1/meshes/m/faces", "/v1/meshes/m/attributes"};
     char *state = calloc(1, 1 << 16);
     assert_non_null(state);
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
@@ -319,10 +361,10 @@ static void a_stale_write_shows_a_state(void **state)
     (void)state;
     api_bench *b = begin();
     bench_reply r = expect(412, post(b, "/v1/meshes/m/undo", "{\"expected_revision\":2}"));
-    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 5);
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 7);
     assert_non_null(strstr(text_of(&r, "detail"), "not at revision 2"));
     assert_non_null(api_answer_of(r.exchange)->mesh);
-    assert_true(api_answer_of(r.exchange)->record >= 5);
+    assert_true(api_answer_of(r.exchange)->record >= 7);
     bench_reply_free(&r);
     bench_free(b);
 }

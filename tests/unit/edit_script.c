@@ -82,6 +82,9 @@ void script_add_columns(he_mesh *m)
     for (unsigned i = 0; i < 12; i++) {
         char name[16];
         snprintf(name, sizeof name, "c%u", i);
+        if (i == 5 || i == 11) { /* of half-edges and faces */
+            snprintf(name, sizeof name, "normal");
+        }
         he_column *column = NULL;
         assert_int_equal(he_column_new(name, domains[i % 4], i % 2 ? HE_DOUBLE : HE_UINT32,
                                        1 + i % 3, (he_rule)(i / 4), &column, NULL),

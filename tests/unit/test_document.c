@@ -53,6 +53,18 @@ static const struct {
      "-"},
     {"{\"f\\u0061ces\":[[0,1,2]],\"vertices\":[]}", HE_OK, "-"},
     {"{\"shape\":\"cube\",\"size\":2}", HE_OK, "-"},
+    {"{\"attributes\":[{\"domain\":\"mesh\",\"name\":\"a\\\\\\\"]}\",\"type\":\"double\","
+     "\"values\":[-1.5e-7]},{\"values\":[[1,2.25],[3,4]],\"components\":2,\"default\":[ 7 , 8 ],"
+     "\"type\":\"float\",\"labels\":1,\"name\":\"b\",\"domain\":\"vertices\"}]}",
+     HE_BAD_VALUE, "/attributes/1/labels"},
+    {"{\"attribut\\u0065s\":[{\"domain\":\"faces\",\"name\":\"a\",\"type\":\"bool\","
+     "\"values\":[true, false,true ]}, {\"type\":\"int32\",\"domain\":\"edges\",\"name\":\"a\"} ] "
+     "}",
+     HE_OK, "-"},
+    {"{\"attributes\":[],\"attributes\":[]}", API_DUPLICATE_MEMBER, ""},
+    {"{\"attributes\":[{\"domain\":\"faces\",\"name\":\"a\",\"type\":\"bool\",\"values\":[tru]}]}",
+     API_MALFORMED_JSON, "/attributes/0/values/0"},
+    {"{\"attributes\":[{\"values\":[1,2", API_MALFORMED_JSON, ""},
     {"{\"a\":{\"x\":[1,{\"]\":\"}\\\"],\"}]},\"vertices\":[[1,2,3]]}", HE_OK, "-"},
     {"{\"vertices\":[[1.0,-0,1e5]],\"faces\":[[1.0,2e0,-0]]}", HE_OK, "-"},
     {"{\"faces\":[[]]}", HE_OK, "-"},

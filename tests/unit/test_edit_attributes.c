@@ -90,6 +90,11 @@ static void test_vertices(void **state)
         {"0123", "edge_collapse halfedge=2-1 t=0.75", HE_DEFAULT, 1, 10},
         {"012,023", "vertex_split vertex=2 left=0 right=null to=0,0,0", HE_INTERPOLATE, 4, 20},
         {"0123", "hole_fill halfedge=1-0 method=fan", HE_INTERPOLATE, 4, 15},
+        {"0123", "plane_split point=0.5,0,0 normal=1,0,0", HE_INTERPOLATE, 4, 5},
+        {"0123", "plane_split point=0.5,0,0 normal=1,0,0", HE_COPY, 4, 0},
+        {"0123", "plane_split point=0.5,0,0 normal=1,0,0", HE_DEFAULT, 4, -1},
+        {"012,103", "edge_flip edge=#0", HE_INTERPOLATE, 0, 0},
+        {"012,103", "transform matrix=2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1", HE_INTERPOLATE, 3, 30},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         he_mesh *m = after(cases[i].mesh, HE_VERTEX, cases[i].rule, cases[i].script);
@@ -131,6 +136,24 @@ static void test_edges_and_faces(void **state)
         assert_value(m, HE_FACE, 2, -1);
         he_mesh_free(m);
     }
+    m = after("0123", HE_FACE, HE_COPY, "plane_split point=0.5,0,0 normal=1,0,0");
+    assert_value(m, HE_FACE, 1, 0);
+    he_mesh_free(m);
+    m = after("012,023", HE_FACE, HE_INTERPOLATE, "face_join edge=0-2");
+    assert_value(m, HE_FACE, 0, 0);
+    assert_value(m, HE_FACE, 1, -1); /* dead */
+    he_mesh_free(m);
+    m = after("012,103,214", HE_EDGE, HE_COPY, "face_delete face=2;edge_flip edge=0-1;compact");
+    assert_value(m, HE_EDGE, edge_between(m, 3, 2).i, 0);
+    assert_value(m, HE_EDGE, edge_between(m, 1, 2).i, 10);
+    he_mesh_free(m);
+    m = after("012,023,034,045,056,061", HE_EDGE, HE_COPY,
+              "vertex_split vertex=0 left=1 right=4 to=0,0,1");
+    assert_value(m, HE_EDGE, edge_between(m, 7, 0).i, -1);
+    assert_value(m, HE_EDGE, edge_between(m, 7, 1).i,
+                 value_at(m, HE_EDGE, edge_between(m, 0, 1).i));
+    he_mesh_free(m);
+
     m = after("456,0123", HE_FACE, HE_COPY, "hole_fill halfedge=1-0");
     assert_value(m, HE_FACE, 2, -1);
     he_mesh_free(m);
@@ -201,6 +224,133 @@ static void test_corners(void **state)
     he_mesh_free(m);
 }
 
+/* --- normals under transform --- */
+
+static void add_normals(he_mesh *m, he_kind domain, he_type type)
+{
+    he_column *column = NULL;
+    assert_int_equal(he_column_new("normal", domain, type, 3, HE_COPY, &column, NULL), HE_OK);
+    size_t rows = he_mesh_issued(m, domain);
+    assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
+    const double number[3] = {0, 3, 4};
+    const float single[3] = {0, 3, 4};
+    for (size_t i = 1; i < rows; i++) { /* the first is zero */
+        memcpy(he_column_row(column, i),
+               type == HE_FLOAT ? (const void *)single : (const void *)number, column->row_bytes);
+    }
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+static void assert_normal(const he_mesh *m, he_kind domain, uint32_t row, double x, double y,
+                          double z)
+{
+    const he_column *column = he_mesh_find_column(m, domain, "normal");
+    const double expected[3] = {x, y, z};
+    for (int i = 0; i < 3; i++) {
+        double number;
+        float single;
+        if (column->type == HE_FLOAT) {
+            memcpy(&single, he_column_value(column, row) + 4 * i, sizeof single);
+            number = (double)single;
+        } else {
+            memcpy(&number, he_column_value(column, row) + 8 * i, sizeof number);
+        }
+        if (!(fabs(number - expected[i]) < 1e-7)) {
+            fail_msg("%s %u, component %d: %g, not %g", he_kind_name(domain), row, i, number,
+                     expected[i]);
+        }
+    }
+}
+
+static void test_normals(void **state)
+{
+    (void)state;
+    /* Twice as high: a normal of slope 3:4 becomes one of 3:2. */
+    static const char HIGHER[] = "transform matrix=1,0,0,5,0,1,0,0,0,0,2,0,0,0,0,1";
+    static const char MIRROR[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1";
+    static const char FLAT[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1";
+    static const char SHIFT[] = "transform matrix=1,0,0,7,0,1,0,0,0,0,1,0,0,0,0,1";
+    const double far = sqrt(13);
+    static const he_kind domains[] = {HE_VERTEX, HE_HALFEDGE, HE_FACE};
+    for (unsigned i = 0; i < 6; i++) {
+        he_kind domain = domains[i % 3];
+        he_type type = i < 3 ? HE_FLOAT : HE_DOUBLE;
+        he_mesh *m = script_mesh("012,023,324", NULL);
+        add_normals(m, domain, type);
+        script_prepare(m, SHIFT);
+        assert_normal(m, domain, 1, 0, 3, 4);
+        script_prepare(m, HIGHER);
+        assert_normal(m, domain, 0, 0, 0, 0);
+        assert_normal(m, domain, 1, 0, 3 / far, 2 / far);
+        assert_normal(m, domain, 2, 0, 3 / far, 2 / far);
+        script_prepare(m, MIRROR);
+        assert_normal(m, domain, 2, 0, 3 / far, -2 / far);
+        script_prepare(m, FLAT);
+        assert_normal(m, domain, 2, 0, 0, -1);
+        he_mesh_free(m);
+    }
+    /* Of some vertices: their rows, their corners, faces that move whole. */
+    he_mesh *m = script_mesh("012,023,324", NULL);
+    add_normals(m, HE_VERTEX, HE_DOUBLE);
+    add_normals(m, HE_HALFEDGE, HE_FLOAT);
+    add_normals(m, HE_FACE, HE_DOUBLE);
+    he_mesh *start = copy_of(m);
+    he_delta *delta = he_delta_new();
+    assert_non_null(delta);
+    he_mesh_record(m, delta);
+    script_prepare(m, "transform matrix=1,0,0,5,0,1,0,0,0,0,2,0,0,0,0,1 vertices=2,3,4");
+    he_mesh_record(m, NULL);
+    assert_normal(m, HE_VERTEX, 1, 0, 3, 4);
+    assert_normal(m, HE_VERTEX, 2, 0, 3 / far, 2 / far);
+    assert_normal(m, HE_FACE, 1, 0, 3, 4);
+    assert_normal(m, HE_FACE, 2, 0, 3 / far, 2 / far);
+    assert_normal(m, HE_HALFEDGE, halfedge_between(m, 2, 0).i, 0, 3 / far, 2 / far);
+    assert_normal(m, HE_HALFEDGE, halfedge_between(m, 1, 2).i, 0, 3, 4);
+    assert_normal(m, HE_HALFEDGE, halfedge_between(m, 3, 4).i, 0, 3 / far, 2 / far);
+    he_delta_undo(delta, m);
+    assert_equal(m, start);
+    he_delta_free(delta);
+    he_mesh_free(start);
+    he_mesh_free(m);
+}
+
+/* --- marks --- */
+
+static bool marked(const he_mesh *m, he_kind kind, const char *name, uint32_t id)
+{
+    return *he_column_value(he_mesh_find_column(m, kind, name), id) != 0;
+}
+
+/* Both parts of what is cut have the mark; what is new has not. */
+static void test_marks_are_copied(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("012,103", NULL);
+    script_prepare(m, "mark feature edge=0-1;mark locked face=0;mark selected face=1;"
+                      "edge_split edge=0-1");
+    assert_true(marked(m, HE_EDGE, "feature", edge_between(m, 0, 4).i));
+    assert_true(marked(m, HE_EDGE, "feature", edge_between(m, 4, 1).i));
+    assert_false(marked(m, HE_EDGE, "feature", edge_between(m, 4, 2).i));
+    assert_true(marked(m, HE_FACE, "locked", 0) && marked(m, HE_FACE, "locked", 2));
+    assert_false(marked(m, HE_FACE, "locked", 1) || marked(m, HE_FACE, "locked", 3));
+    assert_true(marked(m, HE_FACE, "selected", 1) && marked(m, HE_FACE, "selected", 3));
+    script_prepare(m, "mark locked face=0;face_poke face=0");
+    for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+        assert_int_equal(marked(m, HE_FACE, "locked", f), f != 1 && f != 3);
+    }
+    /* A column of another type under the name is no mark. */
+    he_mesh_free(m);
+    m = script_mesh("012,023", NULL);
+    he_column *column = NULL;
+    assert_int_equal(he_column_new("feature", HE_EDGE, HE_UINT32, 1, HE_COPY, &column, NULL),
+                     HE_OK);
+    assert_int_equal(he_column_extend(column, 5, NULL), HE_OK);
+    memset(column->data, 1, 20);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    script_prepare(m, "edge_flip edge=0-2");
+    he_mesh_free(m);
+}
+
 static void test_bad_values(void **state)
 {
     (void)state;
@@ -260,6 +410,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_vertices),          cmocka_unit_test(test_edges_and_faces),
+        cmocka_unit_test(test_normals),           cmocka_unit_test(test_marks_are_copied),
         cmocka_unit_test(test_corners),           cmocka_unit_test(test_bad_values),
         cmocka_unit_test(test_extreme_positions),
     };

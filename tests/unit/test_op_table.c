@@ -176,6 +176,7 @@ static const scenario scenarios[] = {
     {"face_delete faces=0,1,2,3,4,5", QCUBE, NULL, HE_OK, {-8, -12, -6}},
     {"face_delete faces=0,1,2,3,4,5 keep_isolated=1", QCUBE, NULL, HE_OK, {0, -12, -6}},
     {"face_delete faces=1,0", STRANGE, NULL, HE_OK, {-4, -6, -2}},
+    {"face_delete faces=", "012", NULL, HE_OK, {0, 0, 0}},
     {"face_delete face=1", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
     {"face_delete faces=1,0", "012,034", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
     {"face_delete faces=0,1,0", "012,034", NULL, HE_REPEATED_ELEMENT, {0}},
