@@ -21,7 +21,7 @@ typedef enum condition { NONE, EXPECTED, IF_MATCH, KEYED } condition;
 static int edits_each(void)
 {
     const char *text = getenv("EDITS");
-    int edits = text == NULL ? 0 : atoi(text);
+    int edits = text == NULL ? 0 : (int)strtol(text, NULL, 10);
     return edits > 0 ? edits : DEFAULT_EDITS;
 }
 
