@@ -82,6 +82,9 @@ typedef struct api_options {
     void *asset_context;
     bool (*ready)(void *context); /* for /readyz; NULL: always */
     void *ready_context;
+    /* Bytes the process holds by its own count, and how many it may hold, 0 for as many as there
+     * are; NULL: not told. */
+    void (*memory)(uint64_t *used, uint64_t *budget);
 } api_options;
 
 /* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */

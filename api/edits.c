@@ -110,6 +110,7 @@ static bool read_request(api_exchange *x, edits *e)
         return false;
     }
     e->is_list = api_in_find(root, "ops", &e->list);
+    /* The array is empty here: its items were left in the text. */
     e->count = e->is_list ? x->ops.count : 1;
     if (e->is_list && (!api_in_only(root, list_members) || !api_in_array(&e->list, 0, 0) ||
                        !check_count(&e->list, e->count))) {

@@ -33,6 +33,17 @@ static void write_item(api_exchange *x, api_mesh *mesh, api_mesh_info *info)
     x->store->read_end(x->store->self, mesh);
 }
 
+/* Of the whole server: it is here that a client sees what to delete. */
+static void write_memory(api_exchange *x)
+{
+    uint64_t used, budget;
+    if (x->service->options.memory != NULL) {
+        x->service->options.memory(&used, &budget);
+        api_out_key_u64(&x->out, "memory_bytes", used);
+        api_out_key_u64(&x->out, "memory_budget", budget);
+    }
+}
+
 void api_meshes_list(api_exchange *x)
 {
     const char *after;
@@ -69,6 +80,7 @@ void api_meshes_list(api_exchange *x)
     } else {
         api_out_null(out);
     }
+    write_memory(x);
     api_out_object_end(out);
     api_answer_json(x, 200);
 }

@@ -118,6 +118,12 @@ static bool load_page(daemon_parts *parts, const srv_config *config)
     return message[0] == '\0' || config->web[0] == '\0' || fail(message);
 }
 
+static void count_memory(uint64_t *used, uint64_t *budget)
+{
+    *used = srv_memory_used();
+    *budget = srv_memory_budget();
+}
+
 static bool open_service(daemon_parts *parts, const srv_config *config)
 {
     parts->service = api_service_new(&parts->interface, &(api_options){
@@ -127,6 +133,7 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
                                                             .asset_context = parts->assets,
                                                             .ready = is_ready,
                                                             .ready_context = parts,
+                                                            .memory = count_memory,
                                                         });
     parts->jobs =
         srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);

@@ -628,13 +628,14 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     }
 }
 
-/* Beyond even those that are answered 503. */
+/* Nobody beyond even those that are answered 503, and nobody once the server stops. */
 static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer, socklen_t length)
 {
     (void)peer;
     (void)length;
     const srv_http *http = context;
-    return srv_deadlines_count(http->deadlines) < http->options.max_sockets ? MHD_YES : MHD_NO;
+    bool room = srv_deadlines_count(http->deadlines) < http->options.max_sockets;
+    return room && !atomic_load(&http->stopping) ? MHD_YES : MHD_NO;
 }
 
 static struct MHD_Daemon *start_daemon(srv_http *http)
@@ -739,11 +740,10 @@ bool srv_http_stop(srv_http *http, unsigned millis)
     if (http == NULL) {
         return true;
     }
+    /* From here on accept_policy lets nobody in. MHD_quiesce_daemon is not called for that: it
+     * takes the listening socket out of the workers' epoll sets while they may do so themselves,
+     * and the library aborts where both try. */
     atomic_store(&http->stopping, true);
-    MHD_socket listening = MHD_quiesce_daemon(http->daemon);
-    if (listening != MHD_INVALID_SOCKET) {
-        close(listening);
-    }
     srv_held_abandon(http->held);
     if (!wait_for_end(http, millis)) {
         return false;

@@ -19,7 +19,7 @@
 #include <pthread.h>
 
 enum {
-    SRV_KEPT_KEYS = 4096,      /* answers of one table; the oldest go first */
+    SRV_KEPT_KEYS = 16384,     /* answers of one table; the oldest go first */
     SRV_KEPT_BYTES = 16 << 20, /* of one table, entries and bodies */
     SRV_KEPT_BODY = 4 << 20,   /* of one answer */
     SRV_KEPT_SECONDS = 24 * 3600

@@ -1,13 +1,18 @@
 #include "server/stored_mesh.h"
 
 #include "server/clock.h"
+#include "server/memory.h"
+#include "server/store.h"
 
 #include <assert.h>
 #include <string.h>
 
 he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta)
 {
-    (void)self;
+    /* What is only kept for later makes room for what is done now. */
+    if (srv_memory_is_full()) {
+        srv_store_shed(self);
+    }
     pthread_rwlock_wrlock(&mesh->lock);
     he_delta *recording = srv_log_reserve(&mesh->log);
     if (recording == NULL) {

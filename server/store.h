@@ -39,7 +39,7 @@ bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context);
 
 size_t srv_store_count(srv_store *store);
-/* Free the cached copies nobody reads. */
+/* Free the cached copies and bodies of kept answers that nobody reads. Without a lock. */
 void srv_store_shed(srv_store *store);
 
 #endif

@@ -85,12 +85,19 @@ he_status he_column_copy(const he_column *column, he_column **out, he_error *err
     return HE_OK;
 }
 
+size_t he_rows_grown(size_t capacity, size_t rows)
+{
+    enum { MANY = 1 << 17 };
+    size_t grown = capacity + capacity / 8;
+    return capacity < MANY || grown < rows ? he_mem_grown(capacity, rows) : grown;
+}
+
 he_status he_column_reserve(he_column *column, size_t rows, he_error *err)
 {
     if (rows <= column->capacity) {
         return HE_OK;
     }
-    size_t capacity = column->rows == 0 ? rows : he_mem_grown(column->capacity, rows);
+    size_t capacity = column->rows == 0 ? rows : he_rows_grown(column->capacity, rows);
     unsigned char *data = he_mem_array(column->data, capacity, column->row_bytes);
     if (data == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu rows of attribute %s", rows,

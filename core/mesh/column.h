@@ -47,6 +47,10 @@ HE_NODISCARD he_status he_column_new(const char *name, he_kind domain, he_type t
                                      he_error *err);
 void he_column_free(he_column *column);
 HE_NODISCARD he_status he_column_copy(const he_column *column, he_column **out, he_error *err);
+/* The capacity to grow to so that `rows` fit: half as much again while there are few, an eighth
+ * where there are many, since a mesh keeps its slack and large blocks are moved by their page
+ * tables. */
+size_t he_rows_grown(size_t capacity, size_t rows);
 /* Make room for `rows` rows in all. */
 HE_NODISCARD he_status he_column_reserve(he_column *column, size_t rows, he_error *err);
 /* Append rows that hold the default. */

@@ -24,7 +24,7 @@ static bool resize(void *column, size_t rows, size_t size)
 /* Exactly `rows` at first, amortised afterwards: a built mesh carries no slack. */
 static size_t grown(const he_rows *table, size_t rows)
 {
-    size_t capacity = table->issued == 0 ? rows : he_mem_grown(table->capacity, rows);
+    size_t capacity = table->issued == 0 ? rows : he_rows_grown(table->capacity, rows);
     return capacity > HE_MAX_ROWS ? HE_MAX_ROWS : capacity;
 }
 

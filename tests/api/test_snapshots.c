@@ -1,5 +1,5 @@
-/* Who makes a snapshot: never a worker of a large mesh, and nobody for a client that has the present
- * state. */
+/* Who makes a snapshot: never a worker of a large mesh, and nobody for a client that has the
+ * present state. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>

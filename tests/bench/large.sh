@@ -1,5 +1,5 @@
 #!/bin/sh
-# A million quads through the daemon: upload, questions, an edit and its undo, export; seconds as a
+# A million quads through the daemon: upload, questions, edits and their undo, export; seconds as a
 # client sees them, and the daemon's memory.
 #
 #   large.sh HEDGED [SIDE]      SIDE x SIDE quads (1024)
@@ -44,6 +44,20 @@ step "the same again" 200 "$meshes/m/vertices/5000/faces"
 step "split an edge" 200 -H "$json" "$meshes/m/edits" -d '{"op":"edge_split","edge":300}'
 step "undo" 200 -X POST "$meshes/m/undo"
 step "split another edge" 200 -H "$json" "$meshes/m/edits" -d '{"op":"edge_split","edge":777}'
+step "undo" 200 -X POST "$meshes/m/undo"
+# Each splits an edge that the one before made.
+batch() {
+    awk -v head="${1-}" 'BEGIN { printf "{%s\"ops\":[{\"op\":\"edge_split\",\"edge\":0,\"as\":\"s0\"}", head
+        for (i = 1; i < 10000; i++)
+            printf ",{\"op\":\"edge_split\",\"edge\":\"$s%d.edges.0\",\"as\":\"s%d\"}", i - 1, i
+        print "]}" }' >"$work/batch"
+}
+batch '"dry_run":true,'
+step "10,000 edits in one request, dry" 200 -H "$json" "$meshes/m/edits" -d "@$work/batch"
+batch
+step "the same, made" 200 -H "$json" "$meshes/m/edits" -H 'Idempotency-Key: one' -d "@$work/batch"
+step "the same, asked for again" 200 -H "$json" "$meshes/m/edits" -H 'Idempotency-Key: one' \
+    -d "@$work/batch"
 step "undo" 200 -X POST "$meshes/m/undo"
 step "summary, computed" 200 "$meshes/m"
 step "summary, kept" 200 "$meshes/m"

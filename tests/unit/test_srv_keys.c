@@ -184,7 +184,7 @@ static void keeping_cannot_fail(void **state)
     he_mem_set_hook(&(he_mem_hook){fail_later, NULL});
     for (long n = 0; n < 4; n++) {
         api_claim *c = NULL;
-        char text[8];
+        char text[32];
         snprintf(text, sizeof text, "%ld", n);
         left = n;
         api_claim_status status = claim(text, 1, 0, &c);

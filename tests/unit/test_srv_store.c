@@ -484,6 +484,21 @@ static void test_memory_budget(void **state)
     assert_true(srv_memory_is_full());
     assert_int_equal(api.create(api.self, "n", NULL, content, NULL, &other), API_STORE_BUDGET);
     assert_null(he_mem_alloc(1 << 20));
+    /* A writer has what is only kept for later freed. */
+    srv_memory_set_budget(0);
+    api_snapshot *snapshot = NULL;
+    assert_int_equal(api.snapshot(api.self, mesh, &snapshot), API_STORE_OK);
+    api.snapshot_release(api.self, snapshot);
+    void *filling = he_mem_alloc(1 << 20);
+    uint64_t with_copy = srv_memory_used();
+    srv_memory_set_budget(with_copy + with_copy / 32);
+    assert_true(srv_memory_is_full());
+    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
+    api.write_abort(api.self, mesh);
+    uint64_t without = srv_memory_used();
+    srv_store_shed(store);
+    assert_true(srv_memory_used() == without);
+    he_mem_free(filling);
     uint64_t used = srv_memory_used();
     srv_memory_set_budget(0);
     void *block = he_mem_alloc(100000);

@@ -1,0 +1,159 @@
+/* What the daemon counts is what it takes, and what it may not take it refuses. */
+#include "tests/e2e/client.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static reply expect(long status, reply r)
+{
+    if (r.status != status) {
+        fail_msg("status %ld instead of %ld: %.300s", r.status, status, r.body);
+    }
+    return r;
+}
+
+static void done(reply r)
+{
+    reply_free(&r);
+}
+
+static double counted(client *c, const char *member)
+{
+    reply r = expect(200, client_get(c, "/v1/meshes"));
+    double value = reply_number(&r, member);
+    reply_free(&r);
+    return value;
+}
+
+static void put_grid(client *c, const char *path, int side, long status)
+{
+    char body[128];
+    int length =
+        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
+    done(expect(status, client_send(c, "PUT", path, body, (size_t)length, NULL)));
+}
+
+static const char lift[] = "{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]}";
+
+/* A sanitizer's own memory is not the daemon's. */
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+
+static double resident(const daemon_process *d)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/proc/%d/statm", daemon_pid(d));
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    long size, pages;
+    assert_int_equal(fscanf(file, "%ld %ld", &size, &pages), 2);
+    fclose(file);
+    return (double)pages * (double)sysconf(_SC_PAGESIZE);
+}
+
+static void compare(client *c, const daemon_process *d, const double start[2], const char *what)
+{
+    double count = counted(c, "memory_bytes") - start[0], real = resident(d) - start[1];
+    print_message("note: %s: counted %.1f MB, resident %.1f MB\n", what, count / 1e6, real / 1e6);
+    assert_true(count > 0.85 * real && count < 1.15 * real);
+}
+
+static void what_is_counted_is_what_is_taken(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
+    client *c = client_new(d);
+    const double start[2] = {counted(c, "memory_bytes"), resident(d)};
+    put_grid(c, "/v1/meshes/m", 1000, 201);
+    compare(c, d, start, "a million quads");
+    done(expect(200, client_get(c, "/v1/meshes/m/content?format=stl")));
+    compare(c, d, start, "with a snapshot");
+    for (int i = 0; i < 3; i++) {
+        done(expect(200, client_post(c, "/v1/meshes/m/edits", lift)));
+    }
+    compare(c, d, start, "with three revisions of each vertex");
+    for (int i = 0; i < 2000; i++) {
+        char body[80];
+        snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", 100 * i);
+        done(expect(200, client_post(c, "/v1/meshes/m/edits", body)));
+    }
+    compare(c, d, start, "with 2,000 faces poked");
+    done(expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
+    put_grid(c, "/v1/meshes/m", 700, 200);
+    compare(c, d, start, "replaced by half as many");
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+#endif
+
+enum { MANY = 400, SIDE = 100 };
+
+static void what_does_not_fit_the_budget_is_refused(void **state)
+{
+    (void)state;
+    daemon_process *d =
+        daemon_start((const char *const[]){"--log", "off", "--memory-budget", "40M", NULL});
+    client *c = client_new(d);
+    assert_true(counted(c, "memory_budget") == 40 << 20);
+    int made = 0;
+    long status = 201;
+    for (; made < MANY && status == 201; made++) {
+        char path[64], body[64];
+        snprintf(path, sizeof path, "/v1/meshes/g%d", made);
+        int length = snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}",
+                              SIDE, SIDE);
+        reply r = client_send(c, "PUT", path, body, (size_t)length, NULL);
+        status = r.status;
+        reply_free(&r);
+    }
+    assert_int_equal(status, 507);
+    assert_true(made > 3 && made < MANY);
+
+    /* Full, it refuses edits that take more, whole, and answers all else. */
+    reply before = expect(200, client_get(c, "/v1/meshes/g0/content"));
+    for (int i = 0; i < MANY && status != 200; i++) {
+        reply r = client_post(c, "/v1/meshes/g0/edits", lift);
+        status = r.status == 507 ? 200 : 0;
+        assert_true(r.status == 200 || r.status == 507);
+        if (r.status == 200) {
+            reply_free(&before);
+            before = expect(200, client_get(c, "/v1/meshes/g0/content"));
+        }
+        reply_free(&r);
+    }
+    assert_int_equal(status, 200);
+    reply after = expect(200, client_get(c, "/v1/meshes/g0/content"));
+    assert_string_equal(before.body, after.body);
+    assert_true(counted(c, "memory_bytes") <= counted(c, "memory_budget"));
+    done(expect(200, client_get(c, "/v1/meshes/g0/vertices/5/faces")));
+    done(expect(200, client_get(c, "/v1/meshes/g0/check")));
+    for (int i = 1; i < made - 1; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "/v1/meshes/g%d", i);
+        done(expect(204, client_send(c, "DELETE", path, NULL, 0, NULL)));
+    }
+    put_grid(c, "/v1/meshes/again", SIDE, 201);
+    done(expect(200, client_post(c, "/v1/meshes/g0/edits", lift)));
+    reply_free(&before);
+    reply_free(&after);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+        cmocka_unit_test(what_is_counted_is_what_is_taken),
+#endif
+        cmocka_unit_test(what_does_not_fit_the_budget_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

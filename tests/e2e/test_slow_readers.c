@@ -1,0 +1,153 @@
+/* Clients that take a large mesh slowly keep nobody waiting: neither who edits it nor who reads it.
+ */
+#include "tests/e2e/client.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* SIDE x SIDE quads: a million, and less where a sanitizer is slow. */
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+enum { SIDE = 500 };
+#else
+enum { SIDE = 1000 };
+#endif
+
+enum { SLOW = 4, RECEIVE_BUFFER = 1 << 16, FIRST = 1024, EDITS = 20 };
+
+static reply expect(long status, reply r)
+{
+    if (r.status != status) {
+        fail_msg("status %ld instead of %ld: %.300s", r.status, status, r.body);
+    }
+    return r;
+}
+
+static void done(reply r)
+{
+    reply_free(&r);
+}
+
+typedef struct slow_client {
+    int fd;
+    char first[FIRST];
+} slow_client;
+
+/* Ask, take the first KiB, and then nothing. */
+static void begin_slowly(slow_client *s, const daemon_process *d, const char *path)
+{
+    char request[256];
+    int length = snprintf(request, sizeof request,
+                          "GET %s HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n", path);
+    s->fd = client_connect(d, RECEIVE_BUFFER);
+    assert_int_equal(send(s->fd, request, (size_t)length, MSG_NOSIGNAL), length);
+    assert_int_equal(recv(s->fd, s->first, FIRST, MSG_WAITALL), FIRST);
+    assert_memory_equal(s->first, "HTTP/1.1 200", 12);
+}
+
+static bool next_byte(int fd, char *buffer, size_t *at, size_t *got, size_t size, char *out)
+{
+    if (*at == *got) {
+        ssize_t n = recv(fd, buffer, size, 0);
+        assert_true(n >= 0);
+        *at = 0;
+        *got = (size_t)n;
+    }
+    if (*got == 0) {
+        return false;
+    }
+    *out = buffer[(*at)++];
+    return true;
+}
+
+/* The rest of a chunked answer, which must be `whole` to its last byte. */
+static void end_quickly(slow_client *s, const char *whole, size_t length)
+{
+    enum { SIZE = 1 << 16 };
+    char *buffer = malloc(SIZE), line[64], c;
+    assert_non_null(buffer);
+    char *body = strstr(s->first, "\r\n\r\n");
+    assert_non_null(body);
+    assert_non_null(strstr(s->first, "chunked"));
+    size_t got = (size_t)(s->first + FIRST - (body + 4)), at = 0, read = 0;
+    memcpy(buffer, body + 4, got);
+    for (;;) {
+        size_t used = 0;
+        while (next_byte(s->fd, buffer, &at, &got, SIZE, &c) && c != '\n' && used < 60) {
+            line[used++] = c;
+        }
+        line[used] = '\0';
+        size_t chunk = (size_t)strtoull(line, NULL, 16);
+        if (chunk == 0) {
+            break;
+        }
+        for (size_t i = 0; i < chunk; i++) {
+            assert_true(next_byte(s->fd, buffer, &at, &got, SIZE, &c));
+            assert_true(read < length && whole[read] == c);
+            read++;
+        }
+        assert_true(next_byte(s->fd, buffer, &at, &got, SIZE, &c) && c == '\r');
+        assert_true(next_byte(s->fd, buffer, &at, &got, SIZE, &c) && c == '\n');
+    }
+    assert_int_equal(read, length);
+    close(s->fd);
+    free(buffer);
+}
+
+/* Everything between begin and end is answered while the slow clients take nothing: that it comes
+ * to its end is the test. More of them than there are workers. */
+static void slow_downloads_delay_nobody(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(
+        (const char *const[]){"--log", "off", "--workers", "2", "--body-grace", "600", NULL});
+    client *c = client_new(d);
+    char body[128];
+    int length =
+        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE, SIDE);
+    done(expect(201, client_send(c, "PUT", "/v1/meshes/m", body, (size_t)length, NULL)));
+    reply before = expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
+
+    static slow_client slow[SLOW];
+    for (int i = 0; i < SLOW; i++) {
+        begin_slowly(&slow[i], d, "/v1/meshes/m/content?format=off");
+    }
+    for (int i = 0; i < EDITS; i++) {
+        snprintf(body, sizeof body, "{\"op\":\"vertex_move\",\"vertex\":%d,\"by\":[0,0,1]}", i);
+        done(expect(200, client_post(c, "/v1/meshes/m/edits", body)));
+        snprintf(body, sizeof body, "/v1/meshes/m/vertices/%d", i);
+        reply r = expect(200, client_get(c, body));
+        assert_true(reply_number(&r, "position.2") == 1);
+        reply_free(&r);
+        done(expect(200, client_get(c, "/v1/meshes/m/faces/0/edges")));
+    }
+    done(expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
+    done(expect(200, client_get(c, "/v1/meshes/m")));
+    reply after = expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
+    assert_true(after.length != before.length ||
+                memcmp(after.body, before.body, after.length) != 0);
+    done(expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL)));
+
+    /* And each of them gets the mesh as it was when it asked. */
+    for (int i = 0; i < SLOW; i++) {
+        end_quickly(&slow[i], before.body, before.length);
+    }
+    reply_free(&after);
+    reply_free(&before);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(slow_downloads_delay_nobody)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
