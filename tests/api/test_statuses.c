@@ -142,6 +142,7 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/boundaries?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/components?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/check?revision=1", 410, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/copy?revision=1", 410, NULL, {NULL}},
 
     {"GET", "/v1/operations", 200, NULL, {NULL}},
     {"GET", "/v1/openapi.json", 200, NULL, {NULL}},
