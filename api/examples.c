@@ -226,8 +226,12 @@ static const api_example examples[] = {
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":2,\"entries\":[{\"revision\":2,\"action\":\"edit\","
-                 "\"ops\":[\"edge_split\",\"vertex_move\"],\"undoable\":true,\"bytes\":952,"
-                 "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"next\":null}"},
+                 "\"ops\":[\"edge_split\",\"vertex_move\"],\"created\":{\"vertices\":1,"
+                 "\"edges\":3,\"faces\":2},\"deleted\":{\"vertices\":0,\"edges\":0,"
+                 "\"faces\":0},\"modified\":{\"vertices\":1,\"edges\":3,\"faces\":2},"
+                 "\"undoable\":true,\"bytes\":952,"
+                 "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"oldest\":1,"
+                 "\"dropped\":0,\"bytes\":1135,\"budget\":268435456,\"next\":null}"},
     {.route = "undo_post",
      .target = "/v1/meshes/kite/undo",
      .consumes = "application/json",
@@ -249,13 +253,29 @@ static const api_example examples[] = {
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},"
                  "\"undo\":1,\"redo\":0}"},
+    {.route = "undo_post",
+     .target = "/v1/meshes/kite/undo",
+     .consumes = "application/json",
+     .request = "{\"to_revision\":1}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":5,\"results\":[],\"created\":{\"vertices\":[],\"edges\":[],"
+                 "\"faces\":[]},\"deleted\":{\"vertices\":[4],\"edges\":[5,6,7],\"faces\":[2,3]},"
+                 "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
+                 "\"parents\":{},\"merged\":{},\"undo\":0,\"redo\":1}"},
+    {.route = "relation_get",
+     .target = "/v1/meshes/kite/vertices/4/faces?revision=4",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":4,\"of\":{\"vertex\":4},\"relation\":\"faces\","
+                 "\"ids\":[2,0,1,3]}"},
     {.route = "attribute_put",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .consumes = "application/json",
      .request = "{\"type\":\"bool\"}",
      .status = 201,
      .produces = "application/json",
-     .response = "{\"revision\":5,\"attribute\":{\"domain\":\"faces\",\"name\":\"selected\","
+     .response = "{\"revision\":6,\"attribute\":{\"domain\":\"faces\",\"name\":\"selected\","
                  "\"type\":\"bool\",\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":"
                  "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
                  "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
@@ -263,33 +283,33 @@ static const api_example examples[] = {
     {.route = "attribute_patch",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .consumes = "application/json",
-     .request = "{\"ids\":[0,3],\"value\":true}",
+     .request = "{\"ids\":[0,1],\"value\":true}",
      .status = 200,
      .produces = "application/json",
-     .response = "{\"revision\":6,\"attribute\":{\"domain\":\"faces\",\"name\":\"selected\","
+     .response = "{\"revision\":7,\"attribute\":{\"domain\":\"faces\",\"name\":\"selected\","
                  "\"type\":\"bool\",\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":"
                  "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
                  "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
-                 "\"edges\":[],\"faces\":[0,3]},\"parents\":{},\"merged\":{}}"},
+                 "\"edges\":[],\"faces\":[0,1]},\"parents\":{},\"merged\":{}}"},
     {.route = "attributes_list",
      .target = "/v1/meshes/kite/attributes",
      .status = 200,
      .produces = "application/json",
      .response =
-         "{\"revision\":6,\"attributes\":[{\"domain\":\"faces\",\"name\":\"selected\",\"type\":"
+         "{\"revision\":7,\"attributes\":[{\"domain\":\"faces\",\"name\":\"selected\",\"type\":"
          "\"bool\",\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":4}]}"},
     {.route = "attribute_get",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .status = 200,
      .produces = "application/json",
-     .response = "{\"revision\":6,\"domain\":\"faces\",\"name\":\"selected\",\"type\":\"bool\","
-                 "\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":4,\"ids\":[0,1,2,"
-                 "3],\"values\":[true,false,false,true],\"next\":null}"},
+     .response = "{\"revision\":7,\"domain\":\"faces\",\"name\":\"selected\",\"type\":\"bool\","
+                 "\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":4,\"ids\":[0,1],"
+                 "\"values\":[true,true],\"next\":null}"},
     {.route = "attribute_delete",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .status = 200,
      .produces = "application/json",
-     .response = "{\"revision\":7,\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},"
+     .response = "{\"revision\":8,\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},"
                  "\"deleted\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{"
                  "\"vertices\":[],\"edges\":[],\"faces\":[]},\"parents\":{},\"merged\":{}}"},
 };

@@ -199,11 +199,13 @@ static const api_route routes[] = {
      .body_kind = API_BODY_OPTION,
      .consumes = json,
      .produces = json,
-     .statuses = {201, 409, 412, 413, 415, 422},
+     .parameters = {&revision},
+     .statuses = {201, 409, 410, 412, 413, 415, 422},
      .request = "copy",
      .response = "summary",
      .summary = "Copy a mesh",
-     .doc = "An independent mesh with the same ids and attributes and a history of its own."},
+     .doc = "An independent mesh with the same ids and attributes and a history of its own; of an "
+            "earlier revision where one is named."},
 
     /* its elements */
     {.method = "GET",

@@ -16,10 +16,15 @@ struct api_bench {
 
 api_bench *bench_new(void)
 {
+    return bench_new_within(64 << 20);
+}
+
+api_bench *bench_new_within(uint64_t undo_budget)
+{
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
     b->meshes = srv_store_new(&(srv_store_options){
-        .undo_budget = 64 << 20, .max_meshes = 1000, .journal = srv_journal_memory()});
+        .undo_budget = undo_budget, .max_meshes = 1000, .journal = srv_journal_memory()});
     assert_non_null(b->meshes);
     b->store = srv_store_interface(b->meshes);
     b->service =

@@ -140,7 +140,10 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, NULL, {KEYED}, BEFORE},
     {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"compact\"}", {NULL}, ONCE},
     {"POST", "/v1/meshes/m/undo", 200, NULL, {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/undo", 200, "{\"steps\":2}", {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/undo", 200, "{\"to_revision\":1}", {NULL}, ONCE},
     {"POST", "/v1/meshes/m/redo", 200, "{}", {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":4}", {NULL}, ONCE},
 };
 
 /* A mesh with something to undo, something to do again, and a dead face. */
