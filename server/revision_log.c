@@ -374,6 +374,16 @@ bool srv_log_entry(const srv_revision_log *log, size_t i, api_entry *out)
     return true;
 }
 
+const he_delta *srv_log_delta(const srv_revision_log *log, uint64_t revision)
+{
+    uint64_t oldest = log->count == 0 ? UINT64_MAX : entry_at(log, 0)->revision;
+    if (revision < oldest || revision - oldest >= log->count) {
+        return NULL;
+    }
+    const srv_step *step = entry_at(log, (size_t)(revision - oldest))->step;
+    return step == NULL ? NULL : step->delta;
+}
+
 he_status srv_log_replay(const srv_revision_log *log, uint64_t from, size_t most, he_mesh *copy,
                          const uint32_t issued[HE_KIND_COUNT])
 {

@@ -61,6 +61,9 @@ void srv_log_settle(srv_revision_log *log);
 /* The i-th newest entry; false past the end. */
 bool srv_log_entry(const srv_revision_log *log, size_t i, api_entry *out);
 
+/* The delta that led to a revision, forwards or backwards; NULL when it is not kept. */
+const he_delta *srv_log_delta(const srv_revision_log *log, uint64_t revision);
+
 /* Bring `copy` from revision `from` to the newest one, whose high-water marks are `issued`.
  * HE_UNSUPPORTED when the log does not reach back that far or holds more than row changes, or when
  * the records would cost more than `most` bytes to replay; HE_NO_MEMORY. Then the copy may have

@@ -68,14 +68,13 @@ static srv_copy *present_copy(api_mesh *mesh)
     return mesh->copy;
 }
 
-api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
+api_store_status srv_snapshot_held(void *self, api_mesh *mesh, api_snapshot **out)
 {
     (void)self;
     api_snapshot *snapshot = he_mem_zero(1, sizeof *snapshot);
     if (snapshot == NULL) {
         return API_STORE_NO_MEMORY;
     }
-    pthread_rwlock_rdlock(&mesh->lock);
     pthread_mutex_lock(&mesh->snapshot_lock);
     snapshot->copy = present_copy(mesh);
     if (snapshot->copy != NULL) {
@@ -83,13 +82,20 @@ api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
         srv_mesh_info(mesh, &snapshot->info);
     }
     pthread_mutex_unlock(&mesh->snapshot_lock);
-    pthread_rwlock_unlock(&mesh->lock);
     if (snapshot->copy == NULL) {
         he_mem_free(snapshot);
         return srv_memory_is_full() ? API_STORE_BUDGET : API_STORE_NO_MEMORY;
     }
     *out = snapshot;
     return API_STORE_OK;
+}
+
+api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
+{
+    pthread_rwlock_rdlock(&mesh->lock);
+    api_store_status status = srv_snapshot_held(self, mesh, out);
+    pthread_rwlock_unlock(&mesh->lock);
+    return status;
 }
 
 const he_mesh *srv_snapshot_content(const api_snapshot *snapshot, api_mesh_info *info)
@@ -109,7 +115,7 @@ void srv_snapshot_release(void *self, api_snapshot *snapshot)
     }
 }
 
-void srv_mesh_shed(api_mesh *mesh)
+void srv_copy_shed(api_mesh *mesh)
 {
     pthread_mutex_lock(&mesh->snapshot_lock);
     if (mesh->copy != NULL && is_cached_alone(mesh->copy)) {

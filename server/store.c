@@ -215,6 +215,12 @@ static size_t list(void *self, const char *after, api_mesh **out, size_t limit)
     return given;
 }
 
+static uint64_t random_number(void *self)
+{
+    (void)self;
+    return srv_random();
+}
+
 api_store srv_store_interface(srv_store *store)
 {
     return (api_store){
@@ -227,10 +233,15 @@ api_store srv_store_interface(srv_store *store)
         .read_begin = srv_read_begin,
         .read_end = srv_read_end,
         .snapshot = srv_snapshot,
+        .snapshot_held = srv_snapshot_held,
         .snapshot_content = srv_snapshot_content,
         .snapshot_release = srv_snapshot_release,
         .cache_get = srv_cache_get,
         .cache_put = srv_cache_put,
+        .derived_begin = srv_derived_begin,
+        .derived_end = srv_derived_end,
+        .revision_delta = srv_revision_delta,
+        .random = random_number,
         .write_begin = srv_write_begin,
         .write_commit = srv_write_commit,
         .write_abort = srv_write_abort,

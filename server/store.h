@@ -5,6 +5,7 @@
  *     table     the collection, for as long as a search takes
  *     snapshot  the mesh's cached copy
  *     cache     the mesh's cached value
+ *     derived   what a handler derived from it
  * Whoever holds a mesh's lock takes no other mesh's, not even shared and not the same one twice:
  * a waiting writer would stop both. To bring another mesh's content in, take its snapshot first.
  *
@@ -37,7 +38,7 @@ bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context);
 
 size_t srv_store_count(srv_store *store);
-/* Free the cached copies nobody reads. */
+/* Free the cached copies nobody reads, and what was derived from meshes. */
 void srv_store_shed(srv_store *store);
 
 #endif
