@@ -4,6 +4,9 @@
 #ifndef HE_API_LIMITS_H
 #define HE_API_LIMITS_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 /* Bodies. A parsed control document costs at most API_MAX_*_VALUES * 64 bytes of cJSON nodes beside
  * its strings. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
@@ -55,6 +58,8 @@ enum {
     API_COSTLY_UPLOAD = 256 * 1024, /* bytes received */
     API_COSTLY_EDITS = 2000         /* operations of one list */
 };
+
+#define API_MAX_EXACT ((uint64_t)1 << 53) /* up to here every reader of JSON counts right */
 
 enum { API_PROBLEM_ELEMENTS = 100 }; /* named one by one in a problem */
 
