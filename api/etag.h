@@ -8,7 +8,7 @@
 
 #include "api/store.h"
 
-enum { API_ETAG = 96 };
+enum { API_ETAG = 128 };
 
 void api_etag_write(const api_mesh_info *info, const char *representation, char out[API_ETAG]);
 

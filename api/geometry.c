@@ -1,161 +1,320 @@
-/* GET .../geometry: the arrays from which a renderer draws a mesh, made as they are pulled from a
- * snapshot. All values are little-endian.
+/* GET .../geometry: the arrays from which a renderer draws a mesh, or what changed in them; see
+ * geometry_rows.h for their bytes.
  *
- *     0   4   "HEDG"
- *     4   u32 version of this layout, 1
- *     8   u64 revision
- *     16  u64 revision that these rows are a change of, 0: of none, they are all
- *     24  u64 bytes of vertices, then u64 bytes of triangles
- *     40  u32 rows of vertices, then u32 rows of triangles
- *     48  f64 x 3 origin, f64 scale: (position - origin) * scale is what a vertex holds
- *     80  u64 zero, twice
- *     96  vertices, f32 x 4, then triangles, u32 x 4: see query/drawing.h
- *
- * Each part begins at a multiple of 16. */
+ * The slots of a mesh's triangles are derived from it when they are first asked for, kept with it,
+ * and brought forward by whoever asks next. What few rows an edit changed are drawn under the read
+ * lock; all of them, and many, from a snapshot. */
 #include "api/handlers.h"
 
-#include "query/drawing.h"
+#include "api/geometry_rows.h"
 
-#include <string.h>
+#include <inttypes.h>
+#include <stdio.h>
 
-enum { HEADER = 96, VERSION = 1, ROW = 16, ROWS = 1024 };
+/* Two who ask first at the same time both make slots, and one of them asks again; more can only
+ * come of the content being replaced meanwhile. */
+enum { ATTEMPTS = 3 };
 
-/* A snapshot with what is drawn of it; freed with the exchange. */
 typedef struct geometry {
+    api_exchange *x;
     const api_store *store;
     api_snapshot *snapshot;
-    he_drawing drawing;
-    uint32_t vertices, next; /* rows, and the one to come */
-    he_drawing_walk walk;
-    size_t begin, end; /* of what is not sent yet in the buffer */
-    unsigned char buffer[ROWS * ROW];
+    api_rows rows;
 } geometry;
+
+/* What became of the slots that are kept. */
+typedef enum geometry_step {
+    TAKEN,   /* g->rows is known */
+    MISSING, /* there are none */
+    LATER,   /* too much for a worker */
+    ANSWERED /* or refused */
+} geometry_step;
 
 static void free_geometry(void *stream)
 {
     geometry *g = stream;
-    he_drawing_clear(&g->drawing);
+    api_rows_clear(&g->rows);
     if (g->snapshot != NULL) {
         g->store->snapshot_release(g->store->self, g->snapshot);
     }
     he_mem_free(g);
 }
 
-static void put_u32(geometry *g, uint32_t value)
+static void free_slots(void *value)
 {
-    for (unsigned i = 0; i < 4; i++) {
-        g->buffer[g->end++] = (unsigned char)(value >> 8 * i);
-    }
+    he_slots_free(value);
 }
 
-static void put_u64(geometry *g, uint64_t value)
+static bool is_working(const api_exchange *x)
 {
-    put_u32(g, (uint32_t)value);
-    put_u32(g, (uint32_t)(value >> 32));
+    return x->phase == API_PHASE_WORK;
 }
 
-static void put_double(geometry *g, double value)
-{
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_u64(g, bits);
-}
+/* --- the slots --- */
 
-static void put_header(geometry *g, uint64_t revision)
+/* HE_LIMIT on a worker, where it is left to another thread. There the way forward may take a while,
+ * but less than making the slots anew, which costs the rows. */
+static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_mesh *mesh,
+                               he_error *err)
 {
-    const he_frame *frame = &g->drawing.frame;
-    memcpy(g->buffer, "HEDG", 4);
-    g->end = 4;
-    put_u32(g, VERSION);
-    put_u64(g, revision);
-    put_u64(g, 0);
-    put_u64(g, (uint64_t)g->vertices * ROW);
-    put_u64(g, (uint64_t)g->drawing.triangles * ROW);
-    put_u32(g, g->vertices);
-    put_u32(g, g->drawing.triangles);
-    put_double(g, frame->origin.x);
-    put_double(g, frame->origin.y);
-    put_double(g, frame->origin.z);
-    put_double(g, frame->scale);
-    put_u64(g, 0);
-    put_u64(g, 0);
-}
-
-static bool put_vertex(geometry *g)
-{
-    float row[HE_DRAWN_ROW];
-    if (g->next == g->vertices) {
-        return false;
-    }
-    he_drawing_vertex(&g->drawing, g->next++, row);
-    for (unsigned i = 0; i < HE_DRAWN_ROW; i++) {
-        uint32_t bits;
-        memcpy(&bits, &row[i], sizeof bits);
-        put_u32(g, bits);
-    }
-    return true;
-}
-
-static bool put_triangle(geometry *g)
-{
-    uint32_t row[HE_DRAWN_ROW];
-    if (!he_drawing_next(&g->drawing, &g->walk, row)) {
-        return false;
-    }
-    for (unsigned i = 0; i < HE_DRAWN_ROW; i++) {
-        put_u32(g, row[i]);
-    }
-    return true;
-}
-
-static int64_t read_geometry(void *stream, char *buffer, size_t size)
-{
-    geometry *g = stream;
-    if (g->begin == g->end) {
-        g->begin = g->end = 0;
-        while (g->end < sizeof g->buffer && (put_vertex(g) || put_triangle(g))) {
+    uint64_t most = API_COSTLY_ELEMENTS;
+    most += is_working(x) ? ((uint64_t)slots->vertices + slots->count) / 4 : 0;
+    he_touched touched = {0};
+    uint64_t records = 0;
+    he_status status = HE_OK;
+    for (uint64_t r = slots->revision + 1; r <= x->info.revision && status == HE_OK; r++) {
+        const he_delta *delta = x->store->revision_delta(x->store->self, x->mesh, r);
+        records += delta == NULL ? 0 : delta->count + 1;
+        if (delta == NULL) {
+            status = he_fail_plain(err, HE_UNSUPPORTED, "the history does not reach back");
+        } else if (records > most) {
+            status = he_fail_plain(err, HE_LIMIT, "the way forward is too long");
+        } else {
+            status = he_touched_add(&touched, mesh, delta, err);
         }
     }
-    size_t length = g->end - g->begin < size ? g->end - g->begin : size;
-    memcpy(buffer, g->buffer + g->begin, length);
-    g->begin += length;
-    return (int64_t)length;
+    if (status == HE_OK && slots->revision != x->info.revision) {
+        status = he_slots_advance(slots, mesh, &touched, x->info.revision, most, err);
+    }
+    he_touched_clear(&touched);
+    return status == HE_LIMIT && is_working(x) ? HE_UNSUPPORTED : status;
 }
 
-static void answer(api_exchange *x, geometry *g, const he_mesh *mesh)
+static bool is_not_modified(api_exchange *x, const he_slots *slots, uint64_t base)
+{
+    char representation[64];
+    int used = snprintf(representation, sizeof representation, "geometry-%" PRIx64, slots->layout);
+    if (base != 0) {
+        snprintf(representation + used, sizeof representation - (size_t)used, "-%" PRIu64, base);
+    }
+    return api_not_modified(x, representation);
+}
+
+static geometry_step fail(api_exchange *x, const he_error *err)
+{
+    api_fail_core(x, err);
+    return ANSWERED;
+}
+
+static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_slots *slots)
 {
     he_error err = {0};
-    if (api_not_modified(x, "geometry")) {
-        free_geometry(g);
-        return;
+    if (is_not_modified(g->x, slots, 0)) {
+        return ANSWERED;
     }
-    if (he_drawing_init(&g->drawing, mesh, &err) != HE_OK) {
+    if (api_is_large(g->x, mesh)) {
+        return LATER;
+    }
+    return api_rows_take_all(&g->rows, slots, &err) == HE_OK ? TAKEN : fail(g->x, &err);
+}
+
+/* From slots at the present revision. */
+static geometry_step take(geometry *g, const he_mesh *mesh, const he_slots *slots)
+{
+    api_exchange *x = g->x;
+    uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);
+    he_error err = {0};
+    if (since == 0 || layout != slots->layout) {
+        return take_all(g, mesh, slots);
+    }
+    if (since > slots->revision) {
+        api_fail(x, API_BAD_PARAMETER, "`since` is %" PRIu64 ", the mesh is at revision %" PRIu64,
+                 since, slots->revision);
+        return ANSWERED;
+    }
+    uint64_t most = is_working(x) ? UINT64_MAX : API_COSTLY_ELEMENTS;
+    he_status status = api_rows_take_changes(&g->rows, slots, since, most, &err);
+    if (status == HE_UNSUPPORTED) {
+        return take_all(g, mesh, slots);
+    }
+    if (status == HE_LIMIT) {
+        return LATER;
+    }
+    if (status != HE_OK) {
+        return fail(x, &err);
+    }
+    return is_not_modified(x, slots, since) ? ANSWERED : TAKEN;
+}
+
+/* Under the read lock. Slots that cannot be brought forward are dropped. */
+static geometry_step take_kept(geometry *g, const he_mesh *mesh)
+{
+    api_exchange *x = g->x;
+    he_error err = {0};
+    geometry_step outcome = MISSING;
+    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh);
+    if (kept->value != NULL) {
+        he_status status = bring_forward(x, kept->value, mesh, &err);
+        if (status == HE_OK) {
+            outcome = take(g, mesh, kept->value);
+        } else if (status == HE_LIMIT) {
+            outcome = LATER;
+        } else if (status == HE_UNSUPPORTED) {
+            he_slots_free(kept->value);
+            kept->value = NULL;
+        } else {
+            outcome = fail(x, &err);
+        }
+    }
+    x->store->derived_end(x->store->self, x->mesh);
+    return outcome;
+}
+
+/* Keep them, unless somebody was faster: then they are freed. */
+static bool keep(api_exchange *x, he_slots *slots)
+{
+    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh);
+    bool first = kept->value == NULL;
+    if (first) {
+        *kept = (api_derived){slots, free_slots};
+    }
+    x->store->derived_end(x->store->self, x->mesh);
+    if (!first) {
+        he_slots_free(slots);
+    }
+    return first;
+}
+
+/* --- answers --- */
+
+static int64_t read_rows(void *stream, char *buffer, size_t size)
+{
+    geometry *g = stream;
+    return (int64_t)api_rows_read(&g->rows, buffer, size);
+}
+
+static void answer_stream(api_exchange *x, geometry *g)
+{
+    he_error err = {0};
+    const he_mesh *mesh = x->store->snapshot_content(g->snapshot, NULL);
+    if (api_rows_draw(&g->rows, mesh, UINT64_MAX, &err) != HE_OK) {
         free_geometry(g);
         api_fail_core(x, &err);
         return;
     }
-    g->vertices = he_mesh_issued(mesh, HE_VERTEX);
-    put_header(g, x->info.revision);
-    int64_t length = HEADER + ((int64_t)g->vertices + g->drawing.triangles) * ROW;
-    api_answer_stream(x, 200, "application/octet-stream", length, read_geometry, g, free_geometry);
+    api_answer_stream(x, 200, "application/octet-stream", api_rows_bytes(&g->rows), read_rows, g,
+                      free_geometry);
+}
+
+/* Changed rows, drawn under the read lock while they are few. */
+static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
+{
+    api_exchange *x = g->x;
+    he_error err = {0};
+    if (api_rows_count(&g->rows) > API_COSTLY_ELEMENTS) {
+        return LATER;
+    }
+    he_status status = api_rows_draw(&g->rows, mesh, API_COSTLY_ELEMENTS, &err);
+    if (status != HE_OK) {
+        return status == HE_LIMIT ? LATER : fail(x, &err);
+    }
+    size_t length = (size_t)api_rows_bytes(&g->rows);
+    char *bytes = api_text_room(&x->text, length);
+    if (bytes == NULL) {
+        api_fail_memory(x);
+        return ANSWERED;
+    }
+    for (size_t n; (n = api_rows_read(&g->rows, bytes, length)) > 0; length -= n) {
+        bytes += n;
+        x->text.length += n;
+    }
+    api_answer_text(x, 200, "application/octet-stream");
+    return ANSWERED;
+}
+
+/* Under the read lock, which is given back. */
+static bool take_snapshot(geometry *g)
+{
+    api_exchange *x = g->x;
+    api_store_status status = x->store->snapshot_held(x->store->self, x->mesh, &g->snapshot);
+    api_read_end(x);
+    return status == API_STORE_OK || api_fail_store(x, status);
+}
+
+/* With a snapshot: slots of its revision. False when somebody else's are kept by now. */
+static bool make_slots(geometry *g, geometry_step *outcome)
+{
+    api_exchange *x = g->x;
+    const he_mesh *mesh = x->store->snapshot_content(g->snapshot, NULL);
+    he_error err = {0};
+    he_slots *slots = NULL;
+    /* A number that JSON's readers can hold. */
+    uint64_t layout = x->store->random(x->store->self) >> 11 | 1;
+    if (he_slots_new(mesh, layout, x->info.revision, &slots, &err) != HE_OK) {
+        *outcome = fail(x, &err);
+        return true;
+    }
+    *outcome = take_all(g, mesh, slots);
+    return keep(x, slots);
+}
+
+/* With nothing known yet. LATER and ANSWERED leave that so; on false it is done once more. */
+static bool attempt(geometry *g, geometry_step *outcome)
+{
+    api_exchange *x = g->x;
+    const he_mesh *mesh = api_read_begin(x);
+    *outcome = ANSWERED;
+    if (mesh == NULL) {
+        return true;
+    }
+    *outcome = take_kept(g, mesh);
+    bool missing = *outcome == MISSING;
+    if (missing && api_is_large(x, mesh)) {
+        *outcome = LATER;
+    } else if (*outcome == TAKEN && g->rows.base != 0) {
+        *outcome = answer_changes(g, mesh);
+        if (*outcome == LATER && is_working(x)) {
+            *outcome = TAKEN;
+        }
+    }
+    if (*outcome == LATER || *outcome == ANSWERED) {
+        api_read_end(x);
+        return true;
+    }
+    if (!take_snapshot(g)) {
+        *outcome = ANSWERED;
+        return true;
+    }
+    return !missing || make_slots(g, outcome);
+}
+
+static geometry *geometry_new(api_exchange *x)
+{
+    geometry *g = he_mem_zero(1, sizeof *g);
+    if (g == NULL) {
+        api_fail_memory(x);
+        return NULL;
+    }
+    g->x = x;
+    g->store = x->store;
+    return g;
 }
 
 void api_geometry_get(api_exchange *x)
 {
-    const he_mesh *mesh;
-    if (api_not_modified_yet(x, "geometry")) {
+    if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
+        api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
         return;
     }
-    geometry *g = he_mem_zero(1, sizeof *g);
-    if (g == NULL) {
-        api_fail_memory(x);
+    geometry_step outcome = MISSING;
+    geometry *g = NULL;
+    bool done = false;
+    for (int i = 0; i < ATTEMPTS && !done; i++) {
+        if (g != NULL) {
+            free_geometry(g);
+        }
+        g = geometry_new(x);
+        if (g == NULL) {
+            return;
+        }
+        done = attempt(g, &outcome) || outcome == ANSWERED;
+    }
+    if (outcome == TAKEN) {
+        answer_stream(x, g);
         return;
     }
-    g->store = x->store;
-    g->snapshot = api_snapshot_of(x, &mesh);
-    if (g->snapshot == NULL) {
-        free_geometry(g);
-        return;
+    free_geometry(g);
+    if (outcome == LATER) {
+        api_defer(x, api_geometry_get);
     }
-    answer(x, g, mesh);
 }

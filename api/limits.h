@@ -4,6 +4,9 @@
 #ifndef HE_API_LIMITS_H
 #define HE_API_LIMITS_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 /* Bodies. A parsed control document costs at most API_MAX_*_VALUES * 64 bytes of cJSON nodes beside
  * its strings; of an edit list it is its text and the operation at hand. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
@@ -66,6 +69,7 @@ enum {
     API_MAX_LABEL = 1024      /* characters of one */
 };
 #define API_MAX_ATTRIBUTE_BYTES ((uint64_t)1 << 30) /* of one column that a request brings */
+#define API_MAX_EXACT ((uint64_t)1 << 53) /* up to here every reader of JSON counts right */
 
 enum { API_PROBLEM_ELEMENTS = 100 }; /* named one by one in a problem */
 

@@ -48,6 +48,12 @@ static const api_parameter revision = {
     0x1p53,     NULL,          "An earlier revision that the history still holds."};
 static const api_parameter since = {"since", API_PARAM_U64, 1,
                                     0x1p53,  NULL,          "Only what came after this revision."};
+static const api_parameter drawn = {
+    "since", API_PARAM_U64,
+    1,       API_MAX_EXACT,
+    NULL,    "The revision of the arrays there are: send what changed. With `layout`."};
+static const api_parameter layout = {
+    "layout", API_PARAM_U64, 1, API_MAX_EXACT, NULL, "The layout of the arrays there are."};
 static const api_parameter turning = {
     "cw", API_PARAM_FLAG, 0,
     0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
@@ -180,17 +186,22 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "geometry_get",
      .run = api_geometry_get,
-     .flags = API_COSTLY,
      .produces = octets,
-     .parameters = {&revision},
-     .statuses = {200, 304, 410},
+     .parameters = {&drawn, &layout},
+     .statuses = {200, 304},
      .summary = "Arrays to draw a mesh from",
-     .doc = "Little-endian: a header of 96 bytes (\"HEDG\", u32 version 1, u64 revision, u64 base, "
-            "u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x 3 "
-            "origin, f64 scale, 16 bytes of zeros); then for each vertex id f32 x 4, (position - "
-            "origin) * scale and 0 dead, 1 used or 2 isolated; then for each triangle u32 x 4, "
-            "three vertices and the face's id with bits 29 to 31 for the sides that are edges of "
-            "the face. The base is 0: these are all rows."},
+     .doc =
+         "Little-endian: a header of 96 bytes (\"HEDG\", u32 version 2, u64 revision, u64 base, "
+         "u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x 3 "
+         "origin, f64 scale, u64 layout, u32 rows of vertices and u32 of triangles in this "
+         "answer); then for each vertex id f32 x 4, (position - origin) * scale and 0 dead, 1 "
+         "used or 2 isolated; then for each slot u32 x 4, three vertices and the face's id with "
+         "bits 29 to 31 for the sides that are edges of the face, or four zeros where the slot "
+         "is free. With `since` and `layout` of an answer before, the rows that changed: of the "
+         "vertices, then of the triangles, u32 places, zeros up to a multiple of 16 bytes, and "
+         "the rows for them. The arrays are first grown with zeros to the vertices and triangles "
+         "of the header. A base of 0 says that all rows are there and the arrays begin afresh: "
+         "the server may answer so at any time, and does where the layout is another."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/copy",
      .name = "mesh_copy",

@@ -30,6 +30,12 @@ typedef struct api_mesh_info {
     bool removed;
 } api_mesh_info;
 
+/* Something a handler derives from a mesh, keeps with it, and brings forward as it changes. */
+typedef struct api_derived {
+    void *value; /* NULL: nothing is kept */
+    void (*destroy)(void *value);
+} api_derived;
+
 /* What a revision did; kept in the log. */
 typedef enum api_action { API_EDIT, API_UNDO, API_REDO, API_REPLACE } api_action;
 
@@ -111,12 +117,24 @@ typedef struct api_store {
      * for `revision` and `modified`. */
     api_store_status (*snapshot_at)(void *self, api_mesh *mesh, uint64_t revision,
                                     api_snapshot **out);
+    /* The same under the read lock: at the revision that its holder sees. */
+    api_store_status (*snapshot_held)(void *self, api_mesh *mesh, api_snapshot **out);
     const he_mesh *(*snapshot_content)(const api_snapshot *snapshot, api_mesh_info *info);
     void (*snapshot_release)(void *self, api_snapshot *snapshot);
     /* A value derived from one revision, such as its summary: kept until the revision changes.
      * get copies it out and is false when there is none; put replaces it. Under the read lock. */
     bool (*cache_get)(void *self, api_mesh *mesh, void *value, size_t size);
     void (*cache_put)(void *self, api_mesh *mesh, const void *value, size_t size);
+
+    /* The place of the one derived object a mesh has, for its holder alone until derived_end: taken
+     * after the read lock or without it, and never for longer than a worker may take. The store
+     * destroys what is in it when memory is short, and with the mesh. */
+    api_derived *(*derived_begin)(void *self, api_mesh *mesh);
+    void (*derived_end)(void *self, api_mesh *mesh);
+    /* What the revision changed, in either direction; NULL when that is not kept. Under the read
+     * lock. */
+    const he_delta *(*revision_delta)(void *self, api_mesh *mesh, uint64_t revision);
+    uint64_t (*random)(void *self);
 
     /* --- writing --- exclusive lock with a recording delta attached, which is lent through
      * `delta` for he_changes_find. NULL when memory is out. Every begin is ended by exactly one of

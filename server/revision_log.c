@@ -468,3 +468,12 @@ bool srv_log_entry(const srv_revision_log *log, size_t i, api_entry *out)
     memcpy(out->ops, entry->ops, strlen(entry->ops) + 1);
     return true;
 }
+
+const he_delta *srv_log_delta(const srv_revision_log *log, uint64_t revision)
+{
+    if (log->count == 0 || revision <= log->oldest || revision > srv_log_head(log)) {
+        return NULL;
+    }
+    const srv_step *step = srv_entry_of(log, revision)->step;
+    return step == NULL ? NULL : step->delta;
+}

@@ -117,5 +117,7 @@ srv_step *srv_log_hold(const srv_revision_log *log, uint64_t revision, api_actio
 /* Only its words may be read without the mesh's lock. */
 const he_delta *srv_step_delta(const srv_step *step);
 void srv_step_release(srv_step *step); /* takes NULL */
+/* The delta that led to a revision, forwards or backwards; NULL when it is not kept. */
+const he_delta *srv_log_delta(const srv_revision_log *log, uint64_t revision);
 
 #endif

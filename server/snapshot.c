@@ -71,14 +71,13 @@ static srv_copy *present_copy(api_mesh *mesh)
     return mesh->copy;
 }
 
-api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
+api_store_status srv_snapshot_held(void *self, api_mesh *mesh, api_snapshot **out)
 {
     (void)self;
     api_snapshot *snapshot = he_mem_zero(1, sizeof *snapshot);
     if (snapshot == NULL) {
         return API_STORE_NO_MEMORY;
     }
-    pthread_rwlock_rdlock(&mesh->lock);
     pthread_mutex_lock(&mesh->snapshot_lock);
     snapshot->copy = present_copy(mesh);
     if (snapshot->copy != NULL) {
@@ -86,13 +85,20 @@ api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
         srv_mesh_info(mesh, &snapshot->info);
     }
     pthread_mutex_unlock(&mesh->snapshot_lock);
-    pthread_rwlock_unlock(&mesh->lock);
     if (snapshot->copy == NULL) {
         he_mem_free(snapshot);
         return srv_memory_is_full() ? API_STORE_BUDGET : API_STORE_NO_MEMORY;
     }
     *out = snapshot;
     return API_STORE_OK;
+}
+
+api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
+{
+    pthread_rwlock_rdlock(&mesh->lock);
+    api_store_status status = srv_snapshot_held(self, mesh, out);
+    pthread_rwlock_unlock(&mesh->lock);
+    return status;
 }
 
 /* The cached copy of an earlier revision, made or moved there. Under the past lock. */
@@ -197,7 +203,7 @@ static void shed(srv_copy **copy)
     }
 }
 
-void srv_mesh_shed(api_mesh *mesh)
+void srv_copy_shed(api_mesh *mesh)
 {
     pthread_mutex_lock(&mesh->snapshot_lock);
     shed(&mesh->copy);
@@ -207,5 +213,4 @@ void srv_mesh_shed(api_mesh *mesh)
         shed(&mesh->past);
         pthread_mutex_unlock(&mesh->past_lock);
     }
-    srv_keys_shed(&mesh->keys);
 }

@@ -253,6 +253,12 @@ static void claim_end(void *self, api_claim *claim)
     srv_keys_end(claim);
 }
 
+static uint64_t random_number(void *self)
+{
+    (void)self;
+    return srv_random();
+}
+
 api_store srv_store_interface(srv_store *store)
 {
     return (api_store){
@@ -267,10 +273,15 @@ api_store srv_store_interface(srv_store *store)
         .read_end = srv_read_end,
         .snapshot = srv_snapshot,
         .snapshot_at = srv_snapshot_at,
+        .snapshot_held = srv_snapshot_held,
         .snapshot_content = srv_snapshot_content,
         .snapshot_release = srv_snapshot_release,
         .cache_get = srv_cache_get,
         .cache_put = srv_cache_put,
+        .derived_begin = srv_derived_begin,
+        .derived_end = srv_derived_end,
+        .revision_delta = srv_revision_delta,
+        .random = random_number,
         .write_begin = srv_write_begin,
         .write_keyed = srv_write_keyed,
         .write_commit = srv_write_commit,

@@ -7,6 +7,7 @@
  *     snapshot  the mesh's cached copy
  *     cache     the mesh's cached value
  *     keys      answers kept for keyed requests, of a mesh or of the store
+ *     derived   what a handler derived from it
  * Whoever holds a mesh's lock takes no other mesh's, not even shared and not the same one twice:
  * a waiting writer would stop both. To bring another mesh's content in, take its snapshot first.
  *
@@ -39,7 +40,8 @@ bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context);
 
 size_t srv_store_count(srv_store *store);
-/* Free the cached copies and bodies of kept answers that nobody reads. Without a lock. */
+/* Free the cached copies and bodies of kept answers that nobody reads, and what was derived from
+ * meshes. Without a lock. */
 void srv_store_shed(srv_store *store);
 
 #endif

@@ -44,6 +44,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     pthread_mutex_init(&mesh->past_lock, NULL);
     pthread_mutex_init(&mesh->cache_lock, NULL);
     srv_keys_init(&mesh->keys, secret);
+    pthread_mutex_init(&mesh->derived_lock, NULL);
     atomic_init(&mesh->uses, 1);
     mesh->journal = journal;
     copy_name(mesh->info.id, sizeof mesh->info.id, id);
@@ -58,6 +59,14 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     return mesh;
 }
 
+static void drop_derived(api_mesh *mesh)
+{
+    if (mesh->derived.value != NULL) {
+        mesh->derived.destroy(mesh->derived.value);
+        mesh->derived = (api_derived){NULL, NULL};
+    }
+}
+
 void srv_mesh_release(api_mesh *mesh)
 {
     if (mesh == NULL || atomic_fetch_sub_explicit(&mesh->uses, 1, memory_order_acq_rel) > 1) {
@@ -69,10 +78,12 @@ void srv_mesh_release(api_mesh *mesh)
     srv_copy_release(mesh->past);
     he_mem_free(mesh->cache);
     srv_keys_clear(&mesh->keys);
+    drop_derived(mesh);
     pthread_rwlock_destroy(&mesh->lock);
     pthread_mutex_destroy(&mesh->snapshot_lock);
     pthread_mutex_destroy(&mesh->past_lock);
     pthread_mutex_destroy(&mesh->cache_lock);
+    pthread_mutex_destroy(&mesh->derived_lock);
     he_mem_free(mesh);
 }
 
@@ -160,4 +171,32 @@ void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size)
         mesh->cache_revision = mesh->info.revision;
     }
     pthread_mutex_unlock(&mesh->cache_lock);
+}
+
+api_derived *srv_derived_begin(void *self, api_mesh *mesh)
+{
+    (void)self;
+    pthread_mutex_lock(&mesh->derived_lock);
+    return &mesh->derived;
+}
+
+void srv_derived_end(void *self, api_mesh *mesh)
+{
+    (void)self;
+    pthread_mutex_unlock(&mesh->derived_lock);
+}
+
+const he_delta *srv_revision_delta(void *self, api_mesh *mesh, uint64_t revision)
+{
+    (void)self;
+    return srv_log_delta(&mesh->log, revision);
+}
+
+void srv_mesh_shed(api_mesh *mesh)
+{
+    srv_copy_shed(mesh);
+    srv_keys_shed(&mesh->keys);
+    pthread_mutex_lock(&mesh->derived_lock);
+    drop_derived(mesh);
+    pthread_mutex_unlock(&mesh->derived_lock);
 }

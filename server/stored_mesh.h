@@ -41,6 +41,8 @@ struct api_mesh {
     uint64_t cache_revision;
 
     srv_keys keys;
+    pthread_mutex_t derived_lock;
+    api_derived derived;
 };
 
 /* Takes `content`. NULL when memory is out. */
@@ -49,7 +51,8 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
 void srv_mesh_release(api_mesh *mesh);
 /* Under its lock. */
 void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out);
-/* Free the cached copies and the bodies of kept answers, unless somebody reads them. */
+/* Free the cached copies and the bodies of kept answers, unless somebody reads them, and what was
+ * derived. */
 void srv_mesh_shed(api_mesh *mesh);
 /* Under the exclusive lock: number a change that was made and tell the journal about it. */
 void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone);
@@ -59,6 +62,9 @@ const he_mesh *srv_read_begin(void *self, api_mesh *mesh, api_mesh_info *info);
 void srv_read_end(void *self, api_mesh *mesh);
 bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size);
 void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size);
+api_derived *srv_derived_begin(void *self, api_mesh *mesh);
+void srv_derived_end(void *self, api_mesh *mesh);
+const he_delta *srv_revision_delta(void *self, api_mesh *mesh, uint64_t revision);
 bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
 void srv_history_facts(void *self, api_mesh *mesh, struct api_history *out);
 
@@ -79,8 +85,11 @@ void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info
 
 api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out);
 api_store_status srv_snapshot_at(void *self, api_mesh *mesh, uint64_t revision, api_snapshot **out);
+api_store_status srv_snapshot_held(void *self, api_mesh *mesh, api_snapshot **out);
 const he_mesh *srv_snapshot_content(const api_snapshot *snapshot, api_mesh_info *info);
 void srv_snapshot_release(void *self, api_snapshot *snapshot);
 void srv_copy_release(srv_copy *copy);
+/* Free the cached copy, unless somebody reads it. */
+void srv_copy_shed(api_mesh *mesh);
 
 #endif

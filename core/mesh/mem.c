@@ -104,6 +104,70 @@ void he_ids_reverse(he_ids *list)
     }
 }
 
+/* Up to this many are sorted by insertion, more by radix. */
+enum { FEW = 96 };
+
+static void sort_few(uint32_t *ids, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        uint32_t id = ids[i];
+        size_t k = i;
+        for (; k > 0 && ids[k - 1] > id; k--) {
+            ids[k] = ids[k - 1];
+        }
+        ids[k] = id;
+    }
+}
+
+static he_status sort_many(he_ids *list, he_error *err)
+{
+    uint32_t *from = list->ids, *to = he_mem_array(NULL, list->capacity, sizeof *to);
+    if (to == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu ids", list->count);
+    }
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+        size_t starts[257] = {0};
+        for (size_t i = 0; i < list->count; i++) {
+            starts[(from[i] >> shift & 255) + 1]++;
+        }
+        for (size_t b = 1; b < 257; b++) {
+            starts[b] += starts[b - 1];
+        }
+        for (size_t i = 0; i < list->count; i++) {
+            to[starts[from[i] >> shift & 255]++] = from[i];
+        }
+        uint32_t *swap = from;
+        from = to;
+        to = swap;
+    }
+    he_mem_free(to);
+    list->ids = from;
+    return HE_OK;
+}
+
+he_status he_ids_sort(he_ids *list, he_error *err)
+{
+    if (list->count < 2) {
+        return HE_OK;
+    }
+    if (list->count <= FEW) {
+        sort_few(list->ids, list->count);
+    } else {
+        he_status status = sort_many(list, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    size_t kept = 1;
+    for (size_t i = 1; i < list->count; i++) {
+        if (list->ids[i] != list->ids[kept - 1]) {
+            list->ids[kept++] = list->ids[i];
+        }
+    }
+    list->count = kept;
+    return HE_OK;
+}
+
 void he_ids_clear(he_ids *list)
 {
     he_mem_free(list->ids);

@@ -134,7 +134,7 @@ static uint32_t side(uint32_t a, uint32_t b, uint32_t n, unsigned bit)
 }
 
 /* HE_LIMIT leaves the face to be drawn as a fan. */
-static he_status cut(he_drawing *d, uint32_t face, size_t *capacity, he_error *err)
+static he_status cut(he_drawing *d, uint32_t face, he_error *err)
 {
     he_triangulation t;
     he_status status =
@@ -144,15 +144,15 @@ static he_status cut(he_drawing *d, uint32_t face, size_t *capacity, he_error *e
     }
     uint32_t n = t.flat.n;
     size_t need = d->cut_rows + n - 2;
-    if (need > *capacity) {
-        size_t grown = he_mem_grown(*capacity, need);
+    if (need > d->cut_capacity) {
+        size_t grown = he_mem_grown(d->cut_capacity, need);
         uint32_t *rows = he_mem_array(d->cut, grown, HE_DRAWN_ROW * sizeof *rows);
         if (rows == NULL) {
             he_triangulation_clear(&t);
             return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles of a face");
         }
         d->cut = rows;
-        *capacity = grown;
+        d->cut_capacity = grown;
     }
     for (uint32_t k = 0; k + 2 < n; k++) {
         const uint32_t *corner = t.corners + 3 * (size_t)k;
@@ -175,34 +175,67 @@ void he_drawing_clear(he_drawing *drawing)
     *drawing = (he_drawing){.mesh = NULL};
 }
 
-he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, he_error *err)
+/* Cut the face unless it is a fan, and take what that costs from `*most`. */
+static he_status prepare(he_drawing *d, uint32_t face, uint64_t *most, he_error *err)
 {
-    he_drawing d = {.mesh = m, .frame = he_frame_of(m)};
+    const uint32_t *next = d->mesh->c.next;
+    uint32_t first = d->mesh->c.face_halfedge[face], degree;
+    uint32_t fourth = next[next[next[first]]];
+    if (fourth == first || next[fourth] == first) {
+        return HE_OK; /* triangles and quadrilaterals always are */
+    }
+    he_vec3 normal = normal_of(d, first, &degree);
+    if (is_fan(d, first, normal)) {
+        return HE_OK;
+    }
+    uint64_t cost = (uint64_t)degree * degree;
+    if (cost > *most) {
+        return he_fail(err, HE_LIMIT, HE_FACE, face, "face %u has %u corners", face, degree);
+    }
+    *most -= cost;
+    return cut(d, face, err);
+}
+
+static he_status check_ids(const he_mesh *m, he_error *err)
+{
     uint32_t faces = m->c.faces.issued;
     if (faces > (uint32_t)1 << HE_DRAWN_SIDES) {
         return he_fail(err, HE_IDS_EXHAUSTED, HE_FACE, faces - 1,
                        "face %u has an id of more than %d bits", faces - 1, HE_DRAWN_SIDES);
     }
-    d.triangles = 2 * m->c.edges.live - m->c.boundary_halfedges - 2 * m->c.faces.live;
-    size_t capacity = 0;
-    for (uint32_t f = 0; f < faces; f++) {
-        uint32_t first = m->c.face_halfedge[f], degree;
-        if (first == HE_DEAD) {
-            continue;
+    return HE_OK;
+}
+
+he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, const he_frame *frame,
+                          he_error *err)
+{
+    he_drawing d = {.mesh = m, .frame = *frame};
+    he_status status = check_ids(m, err);
+    uint64_t most = UINT64_MAX;
+    for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
+        if (m->c.face_halfedge[f] != HE_DEAD) {
+            status = prepare(&d, f, &most, err);
         }
-        uint32_t fourth = m->c.next[m->c.next[m->c.next[first]]];
-        if (fourth == first || m->c.next[fourth] == first) {
-            continue;
-        }
-        he_vec3 normal = normal_of(&d, first, &degree);
-        if (is_fan(&d, first, normal)) {
-            continue;
-        }
-        he_status status = cut(&d, f, &capacity, err);
-        if (status != HE_OK) {
-            he_drawing_clear(&d);
-            return status;
-        }
+    }
+    if (status != HE_OK) {
+        he_drawing_clear(&d);
+        return status;
+    }
+    *drawing = d;
+    return HE_OK;
+}
+
+he_status he_drawing_init_faces(he_drawing *drawing, const he_mesh *m, const he_frame *frame,
+                                const uint32_t *faces, size_t count, uint64_t most, he_error *err)
+{
+    he_drawing d = {.mesh = m, .frame = *frame};
+    he_status status = check_ids(m, err);
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        status = prepare(&d, faces[i], &most, err);
+    }
+    if (status != HE_OK) {
+        he_drawing_clear(&d);
+        return status;
     }
     *drawing = d;
     return HE_OK;
@@ -223,33 +256,43 @@ void he_drawing_vertex(const he_drawing *d, uint32_t id, float out[HE_DRAWN_ROW]
     out[3] = halfedge == HE_NONE ? HE_DRAWN_ISOLATED : HE_DRAWN_USED;
 }
 
-/* Turn to the next live face; false after the last. */
-static bool begin_face(const he_drawing *d, he_drawing_walk *walk)
+/* The first row of a face among those that were cut, NULL where it is a fan. */
+static const uint32_t *find_cut(const he_drawing *d, uint32_t face)
+{
+    const uint32_t mask = ((uint32_t)1 << HE_DRAWN_SIDES) - 1;
+    size_t low = 0, high = d->cut_rows;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if ((d->cut[HE_DRAWN_ROW * middle + 3] & mask) < face) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    bool found = low < d->cut_rows && (d->cut[HE_DRAWN_ROW * low + 3] & mask) == face;
+    return found ? d->cut + HE_DRAWN_ROW * low : NULL;
+}
+
+void he_drawing_begin(const he_drawing *d, uint32_t face, he_drawing_walk *walk)
 {
     const he_content *c = &d->mesh->c;
-    while (walk->face < c->faces.issued && c->face_halfedge[walk->face] == HE_DEAD) {
-        walk->face++;
-    }
-    if (walk->face == c->faces.issued) {
-        return false;
-    }
-    uint32_t face = walk->face++, first = c->face_halfedge[face];
+    uint32_t first = c->face_halfedge[face];
+    walk->face = face;
     walk->left = he_face_degree(d->mesh, (he_face){face}) - 2;
-    walk->is_cut = walk->cut < d->cut_rows && (d->cut[HE_DRAWN_ROW * walk->cut + 3] &
-                                               (((uint32_t)1 << HE_DRAWN_SIDES) - 1)) == face;
+    walk->cut = walk->left > 2 ? find_cut(d, face) : NULL;
     walk->apex = walk->left == 2 ? apex_of_quad(d, first) : first;
     walk->at = c->next[walk->apex];
-    return true;
 }
 
 bool he_drawing_next(const he_drawing *d, he_drawing_walk *walk, uint32_t out[HE_DRAWN_ROW])
 {
-    if (walk->left == 0 && !begin_face(d, walk)) {
+    if (walk->left == 0) {
         return false;
     }
     walk->left--;
-    if (walk->is_cut) {
-        memcpy(out, d->cut + HE_DRAWN_ROW * walk->cut++, HE_DRAWN_ROW * sizeof *out);
+    if (walk->cut != NULL) {
+        memcpy(out, walk->cut, HE_DRAWN_ROW * sizeof *out);
+        walk->cut += HE_DRAWN_ROW;
         return true;
     }
     const he_content *c = &d->mesh->c;
@@ -257,7 +300,7 @@ bool he_drawing_next(const he_drawing *d, he_drawing_walk *walk, uint32_t out[HE
     out[0] = c->origin[walk->apex];
     out[1] = c->origin[from];
     out[2] = c->origin[to];
-    out[3] = (walk->face - 1) | (uint32_t)1 << (HE_DRAWN_SIDES + 1);
+    out[3] = walk->face | (uint32_t)1 << (HE_DRAWN_SIDES + 1);
     out[3] |= (uint32_t)(c->next[walk->apex] == from) << HE_DRAWN_SIDES;
     out[3] |= (uint32_t)(c->next[to] == walk->apex) << (HE_DRAWN_SIDES + 2);
     walk->at = to;

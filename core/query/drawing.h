@@ -3,8 +3,7 @@
  * VERTICES, one row an id ever issued, so that a vertex's place is its id: x, y, z, state. The
  * state is HE_DRAWN_USED, HE_DRAWN_ISOLATED, or HE_DRAWN_DEAD in a row that is otherwise zero.
  *
- * TRIANGLES, of the live faces in the order of their ids, degree - 2 each: three vertices and a
- * word
+ * TRIANGLES, degree - 2 of each live face: three vertices and a word
  *
  *            c              bits 0-28: the face's id
  *           / \             bit 29: a -> b is an edge of the polygon
@@ -14,9 +13,9 @@
  * A side whose bit is clear is a diagonal. Sides that are edges run as the face does.
  *
  * A vertex's row depends on that vertex and the frame, a face's triangles on the face, the order of
- * its corners from the stored half-edge, and their positions: an edit changes the rows of what it
- * touches and no others. Since each triangle names its face, whoever keeps the array may give a
- * face's triangles any places and exchange them alone.
+ * its corners from the stored half-edge, their positions unless it is a triangle, and the frame: an
+ * edit changes the rows of what it touches and no others. Which places the triangles have is left
+ * to whoever keeps the array: see slots.h.
  *
  * A face whose corners are all seen from its first one is the fan about it; a quadrilateral is cut
  * along the diagonal that turns no triangle over, the shorter one where both do not; others are cut
@@ -45,28 +44,36 @@ enum { HE_DRAWN_SIDES = 29, HE_DRAWN_ROW = 4 }; /* shift of the bits; words a ro
 typedef struct he_drawing {
     const he_mesh *mesh;
     he_frame frame;
-    uint32_t triangles;
     uint32_t *cut; /* rows of the faces that are no fan, in the order of faces */
     size_t cut_rows;
+    size_t cut_capacity;
 } he_drawing;
 
-/* Borrows the mesh, which must not change while it is drawn. HE_NO_MEMORY; HE_IDS_EXHAUSTED where a
- * face's id does not fit its bits. he_drawing_clear frees. */
-HE_NODISCARD he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, he_error *err);
+/* Prepare to draw all faces. Borrows the mesh, which must not change while it is drawn, and whose
+ * live vertices `frame` must keep in the ball. HE_NO_MEMORY; HE_IDS_EXHAUSTED where a face's id
+ * does not fit its bits. he_drawing_clear frees. */
+HE_NODISCARD he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, const he_frame *frame,
+                                       he_error *err);
+/* The same to draw some live faces only, in rising order. HE_LIMIT when the squared corners of
+ * those that are no fan, which cost about that, come to more than `most`. */
+HE_NODISCARD he_status he_drawing_init_faces(he_drawing *drawing, const he_mesh *m,
+                                             const he_frame *frame, const uint32_t *faces,
+                                             size_t count, uint64_t most, he_error *err);
 void he_drawing_clear(he_drawing *drawing);
 
 /* Any issued row. */
 void he_drawing_vertex(const he_drawing *drawing, uint32_t id, float out[HE_DRAWN_ROW]);
 
-/* Where a walk over all triangles is: {0} before the first. */
+/* Where a walk over the triangles of a face is. {0} is after the last. */
 typedef struct he_drawing_walk {
-    uint32_t face, left; /* the next face; triangles left of the one before it */
+    uint32_t face, left; /* triangles to come */
     uint32_t apex, at;   /* half-edges: what leaves the fan's middle, the outer side to come */
-    size_t cut;          /* rows of `cut` passed */
-    bool is_cut;
+    const uint32_t *cut; /* the row to come where the face is no fan, else NULL */
 } he_drawing_walk;
 
-/* False after the last. Cannot fail: what needs memory was done in init. */
+/* Begin with a face that was prepared for. The triangles come in one order, whenever they are asked
+ * for. Neither can fail: what needs memory was done in init. False after the last one. */
+void he_drawing_begin(const he_drawing *drawing, uint32_t face, he_drawing_walk *walk);
 bool he_drawing_next(const he_drawing *drawing, he_drawing_walk *walk, uint32_t out[HE_DRAWN_ROW]);
 
 #endif

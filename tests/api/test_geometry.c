@@ -35,7 +35,7 @@ static float float_at(const char *p)
 /* An answer taken apart. */
 typedef struct arrays {
     bench_reply reply;
-    uint64_t revision;
+    uint64_t revision, layout;
     uint32_t vertices, triangles;
     double origin[3], scale;
     const char *vertex, *triangle;
@@ -49,7 +49,7 @@ static arrays fetch(api_bench *b)
     assert_string_equal(bench_header(&a.reply, "Content-Type"), "application/octet-stream");
     assert_true(a.reply.length >= HEADER);
     assert_memory_equal(body, "HEDG", 4);
-    assert_int_equal(u32_at(body + 4), 1);
+    assert_int_equal(u32_at(body + 4), 2);
     a.revision = u64_at(body + 8);
     assert_true(u64_at(body + 16) == 0);
     a.vertices = u32_at(body + 40);
@@ -61,7 +61,9 @@ static arrays fetch(api_bench *b)
         a.origin[i] = double_at(body + 48 + 8 * i);
     }
     a.scale = double_at(body + 72);
-    assert_true(u64_at(body + 80) == 0 && u64_at(body + 88) == 0);
+    a.layout = u64_at(body + 80);
+    assert_true(a.layout > 0 && a.layout < (uint64_t)1 << 53);
+    assert_true(u32_at(body + 88) == a.vertices && u32_at(body + 92) == a.triangles);
     a.vertex = body + HEADER;
     a.triangle = a.vertex + (size_t)a.vertices * ROW;
     return a;

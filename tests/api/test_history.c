@@ -517,7 +517,6 @@ static void elements_are_those_of_the_revision(void **state)
         {"/v1/meshes/m/boundaries?revision=3", 200},
         {"/v1/meshes/m/components?revision=3&by=edge", 200},
         {"/v1/meshes/m/check?revision=3", 200},
-        {"/v1/meshes/m/geometry?revision=3", 200},
         {"/v1/meshes/m/content?revision=3&format=ply", 200},
         {"/v1/meshes/m?revision=5", 404},
         {"/v1/meshes/m?revision=0", 400},

@@ -184,7 +184,6 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m?revision=99", 404, NULL, {NULL}},
     {"GET", "/v1/meshes/m?revision=0", 400, NULL, {NULL}},
     {"GET", "/v1/meshes/m/content?revision=1", 410, NULL, {NULL}},
-    {"GET", "/v1/meshes/m/geometry?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/vertices?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/boundaries?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/components?revision=1", 410, NULL, {NULL}},

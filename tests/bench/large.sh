@@ -80,5 +80,16 @@ step "summary, computed" 200 "$meshes/m"
 step "summary, kept" 200 "$meshes/m"
 step "all neighbours as octets" 200 -H "$json" -H 'Accept: application/octet-stream' \
     "$meshes/m/query" -d '{"queries":[{"relation":"vertices","of":{"vertices":"all"}}]}'
+# word OFFSET: a number of eight bytes in the last answer
+word() { od -An -tu8 -j "$1" -N 8 "$work/answer" | tr -d ' '; }
+step "arrays to draw, first" 200 "$meshes/m/geometry"
+step "arrays to draw, again" 200 "$meshes/m/geometry"
+query="since=$(word 8)&layout=$(word 80)"
+step "split an edge" 200 -H "$json" "$meshes/m/edits" -d '{"op":"edge_split","edge":4242}'
+step "what that changed in the arrays" 200 "$meshes/m/geometry?$query"
+printf '%-34s %8d bytes\n' "" "$(wc -c <"$work/answer")"
+step "undo" 200 -X POST "$meshes/m/undo"
+step "what both changed" 200 "$meshes/m/geometry?$query"
+printf '%-34s %8d bytes\n' "" "$(wc -c <"$work/answer")"
 step "check" 200 "$meshes/m/check"
 step "export JSON" 200 "$meshes/m/content"

@@ -19,21 +19,27 @@ typedef struct rows {
 static rows draw(const he_mesh *m, he_frame *frame)
 {
     he_drawing d;
-    he_drawing_walk walk = {0};
-    uint32_t words[HE_DRAWN_ROW];
-    assert_int_equal(he_drawing_init(&d, m, NULL), HE_OK);
-    rows all = {calloc(d.triangles + 1, sizeof *all.row), 0};
+    uint32_t words[HE_DRAWN_ROW], most = 2 * m->c.edges.live - m->c.boundary_halfedges;
+    rows all = {calloc(most + 1, sizeof *all.row), 0};
+    he_frame own = he_frame_of(m);
     assert_non_null(all.row);
-    while (he_drawing_next(&d, &walk, words)) {
-        assert_true(all.count < d.triangles);
-        row *r = &all.row[all.count++];
-        memcpy(r->corner, words, sizeof r->corner);
-        r->face = words[3] & ((1u << HE_DRAWN_SIDES) - 1);
-        r->sides = words[3] >> HE_DRAWN_SIDES;
+    assert_int_equal(he_drawing_init(&d, m, &own, NULL), HE_OK);
+    for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        he_drawing_walk walk = {0};
+        if (he_face_is_live(m, (he_face){f})) {
+            he_drawing_begin(&d, f, &walk);
+        }
+        while (he_drawing_next(&d, &walk, words)) {
+            assert_true(all.count < most);
+            row *r = &all.row[all.count++];
+            memcpy(r->corner, words, sizeof r->corner);
+            r->face = words[3] & ((1u << HE_DRAWN_SIDES) - 1);
+            r->sides = words[3] >> HE_DRAWN_SIDES;
+        }
     }
-    assert_int_equal(all.count, d.triangles);
+    assert_int_equal(all.count, most - 2 * m->c.faces.live);
     if (frame != NULL) {
-        *frame = d.frame;
+        *frame = own;
     }
     he_drawing_clear(&d);
     return all;
@@ -118,7 +124,8 @@ static void check_drawing(const he_mesh *m, promise promised)
 static void check_vertices(const he_mesh *m)
 {
     he_drawing d;
-    assert_int_equal(he_drawing_init(&d, m, NULL), HE_OK);
+    he_frame own = he_frame_of(m);
+    assert_int_equal(he_drawing_init(&d, m, &own, NULL), HE_OK);
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         float drawn[HE_DRAWN_ROW];
         he_drawing_vertex(&d, v, drawn);
@@ -370,13 +377,14 @@ static void test_each_allocation_failing(void **state)
     (void)state;
     static double ell[][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
     he_mesh *m = face_of(&(polygon){ell, 6}, 1, 1, 0);
+    he_frame frame = he_frame_of(m);
     long n = 0;
     he_status status;
     do {
         he_drawing d;
         he_error err = {0};
         fixture_fail_at(++n);
-        status = he_drawing_init(&d, m, &err);
+        status = he_drawing_init(&d, m, &frame, &err);
         fixture_memory_back();
         if (status == HE_OK) {
             he_drawing_clear(&d);
@@ -386,6 +394,31 @@ static void test_each_allocation_failing(void **state)
         }
     } while (status != HE_OK);
     assert_true(n > 3);
+    he_mesh_free(m);
+}
+
+/* The same triangles as among all; and what would take long is told before it is begun. */
+static void test_one_face_alone(void **state)
+{
+    (void)state;
+    static double ell[][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
+    he_mesh *m = face_of(&(polygon){ell, 6}, 1, 1, 0);
+    he_frame frame = he_frame_of(m);
+    rows all = draw(m, NULL);
+    const uint32_t face = 0;
+    he_drawing d;
+    he_drawing_walk walk;
+    uint32_t words[HE_DRAWN_ROW];
+    assert_int_equal(he_drawing_init_faces(&d, m, &frame, &face, 1, 35, NULL), HE_LIMIT);
+    assert_int_equal(he_drawing_init_faces(&d, m, &frame, &face, 1, 36, NULL), HE_OK);
+    he_drawing_begin(&d, face, &walk);
+    for (uint32_t i = 0; i < all.count; i++) {
+        assert_true(he_drawing_next(&d, &walk, words));
+        assert_memory_equal(words, all.row[i].corner, sizeof all.row[i].corner);
+    }
+    assert_false(he_drawing_next(&d, &walk, words));
+    he_drawing_clear(&d);
+    free(all.row);
     he_mesh_free(m);
 }
 
@@ -401,6 +434,7 @@ int main(void)
         cmocka_unit_test(test_dead_rows),
         cmocka_unit_test(test_moving_a_vertex_changes_only_faces_at_it),
         cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_one_face_alone),
         cmocka_unit_test(test_each_allocation_failing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -520,6 +520,70 @@ static void test_memory_budget(void **state)
 enum { ROUNDS = 300, WRITERS = 2, READERS = 2 };
 static _Atomic bool broken;
 
+/* --- what is derived --- */
+
+static atomic_int destroyed;
+
+static void destroy(void *value)
+{
+    he_mem_free(value);
+    atomic_fetch_add(&destroyed, 1);
+}
+
+static void derive(api_mesh *mesh)
+{
+    api_derived *kept = api.derived_begin(api.self, mesh);
+    assert_null(kept->value);
+    *kept = (api_derived){he_mem_alloc(1000), destroy};
+    api.derived_end(api.self, mesh);
+}
+
+static void test_what_is_derived_goes_with_shedding_and_the_mesh(void **state)
+{
+    (void)state;
+    atomic_store(&destroyed, 0);
+    api_mesh *mesh = create("a");
+    derive(mesh);
+    move(mesh, 1, false, NULL);
+    api_derived *kept = api.derived_begin(api.self, mesh);
+    assert_non_null(kept->value);
+    api.derived_end(api.self, mesh);
+    srv_store_shed(store);
+    assert_int_equal(atomic_load(&destroyed), 1);
+    derive(mesh);
+    assert_int_equal(take_away(mesh), API_STORE_OK);
+    assert_int_equal(atomic_load(&destroyed), 1);
+    api.release(api.self, mesh);
+    assert_int_equal(atomic_load(&destroyed), 2);
+}
+
+/* Each revision has its delta while the history is kept; a barrier ends what was before. */
+static void test_deltas_by_revision(void **state)
+{
+    (void)state;
+    api_mesh *mesh = create("a");
+    move(mesh, 1, false, NULL);
+    move(mesh, 2, false, NULL);
+    assert_int_equal(step(mesh, API_UNDO), API_STORE_OK);
+    api.read_begin(api.self, mesh, NULL);
+    assert_null(api.revision_delta(api.self, mesh, 0));
+    assert_null(api.revision_delta(api.self, mesh, 1));
+    const he_delta *third = api.revision_delta(api.self, mesh, 3);
+    assert_non_null(api.revision_delta(api.self, mesh, 2));
+    assert_true(third != NULL && third != api.revision_delta(api.self, mesh, 2));
+    assert_ptr_equal(api.revision_delta(api.self, mesh, 4), third);
+    assert_null(api.revision_delta(api.self, mesh, 5));
+    assert_null(api.revision_delta(api.self, mesh, UINT64_MAX));
+    api.read_end(api.self, mesh);
+    move(mesh, 3, true, NULL);
+    api.read_begin(api.self, mesh, NULL);
+    for (uint64_t revision = 0; revision < 8; revision++) {
+        assert_null(api.revision_delta(api.self, mesh, revision));
+    }
+    api.read_end(api.self, mesh);
+    api.release(api.self, mesh);
+}
+
 static void *write_some(void *context)
 {
     api_mesh *mesh = context;
@@ -648,6 +712,8 @@ int main(void)
         TEST(test_cache),
         TEST(test_every_allocation_may_fail),
         TEST(test_memory_budget),
+        TEST(test_what_is_derived_goes_with_shedding_and_the_mesh),
+        TEST(test_deltas_by_revision),
         TEST(test_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

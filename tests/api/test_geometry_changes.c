@@ -1,0 +1,777 @@
+/* Arrays kept up to date by the changes of GET .../geometry?since=, against all rows fetched anew.
+ *
+ * EDITS (3000) and SEED (from the clock) come from the environment. */
+#include "tests/api/request.h"
+
+#include "mesh/walk.h"
+#include "model/random.h"
+#include "op/op.h"
+#include "query/drawing.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+enum { HEADER = 96, ROW = 16, VERTEX_PART = 0, TRIANGLE_PART = 1 };
+
+static uint32_t u32_at(const char *p)
+{
+    const unsigned char *b = (const unsigned char *)p;
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static uint64_t u64_at(const char *p)
+{
+    return u32_at(p) | (uint64_t)u32_at(p + 4) << 32;
+}
+
+/* --- a client --- */
+
+typedef struct client {
+    uint64_t revision, layout; /* 0: nothing yet */
+    char *rows[2];
+    uint32_t count[2];
+    char frame[32];
+    uint64_t whole, changes, bytes; /* answers so far, and the bytes of changes */
+} client;
+
+static void forget(client *c)
+{
+    free(c->rows[VERTEX_PART]);
+    free(c->rows[TRIANGLE_PART]);
+    *c = (client){0};
+}
+
+static void grow(client *c, int part, uint32_t count)
+{
+    assert_true(count >= c->count[part]);
+    c->rows[part] = realloc(c->rows[part], (size_t)count * ROW + 1);
+    assert_non_null(c->rows[part]);
+    memset(c->rows[part] + (size_t)c->count[part] * ROW, 0, (size_t)(count - c->count[part]) * ROW);
+    c->count[part] = count;
+}
+
+static void put_part(client *c, int part, const char *at, uint64_t base, uint32_t sent)
+{
+    if (base == 0) {
+        assert_int_equal(sent, c->count[part]);
+        memcpy(c->rows[part], at, (size_t)sent * ROW);
+        return;
+    }
+    const char *row = at + (size_t)(sent + 3) / 4 * ROW;
+    for (uint32_t i = 0; i < sent; i++) {
+        uint32_t place = u32_at(at + 4 * (size_t)i);
+        assert_true(place < c->count[part]);
+        assert_true(i == 0 || place > u32_at(at + 4 * (size_t)(i - 1)));
+        memcpy(c->rows[part] + (size_t)place * ROW, row + (size_t)i * ROW, ROW);
+    }
+    for (size_t i = sent; i % 4 != 0; i++) {
+        assert_int_equal(u32_at(at + 4 * i), 0);
+    }
+}
+
+static void apply(client *c, const char *body, size_t length)
+{
+    assert_true(length >= HEADER);
+    assert_memory_equal(body, "HEDG", 4);
+    assert_int_equal(u32_at(body + 4), 2);
+    uint64_t base = u64_at(body + 16), layout = u64_at(body + 80);
+    uint64_t part[2] = {u64_at(body + 24), u64_at(body + 32)};
+    assert_true(length == HEADER + part[0] + part[1]);
+    if (base == 0) {
+        client fresh = {.whole = c->whole + 1, .changes = c->changes, .bytes = c->bytes};
+        forget(c);
+        *c = fresh;
+        c->layout = layout;
+        memcpy(c->frame, body + 48, sizeof c->frame);
+    } else {
+        assert_true(base == c->revision && layout == c->layout);
+        assert_memory_equal(c->frame, body + 48, sizeof c->frame);
+        c->changes++;
+        c->bytes += length;
+    }
+    const char *at = body + HEADER;
+    for (int i = 0; i < 2; i++) {
+        uint32_t sent = u32_at(body + 88 + 4 * i);
+        grow(c, i, u32_at(body + 40 + 4 * i));
+        assert_true(part[i] ==
+                    (base == 0 ? 0 : (uint64_t)(sent + 3) / 4 * ROW) + (uint64_t)sent * ROW);
+        put_part(c, i, at, base, sent);
+        at += part[i];
+    }
+    c->revision = u64_at(body + 8);
+}
+
+static bench_reply ask(api_bench *b, const char *mesh, const client *c)
+{
+    char target[200];
+    int used = snprintf(target, sizeof target, "/v1/meshes/%s/geometry", mesh);
+    if (c->layout != 0) {
+        snprintf(target + used, sizeof target - (size_t)used, "?since=%" PRIu64 "&layout=%" PRIu64,
+                 c->revision, c->layout);
+    }
+    return bench_send(b, "GET", target, NULL, NULL);
+}
+
+static void update(api_bench *b, const char *mesh, client *c)
+{
+    bench_reply r = ask(b, mesh, c);
+    if (r.status != 200) {
+        fail_msg("%d %s", r.status, r.body);
+    }
+    apply(c, r.body, r.length);
+    bench_reply_free(&r);
+}
+
+static void assert_same(const client *a, const client *b)
+{
+    assert_true(a->revision == b->revision && a->layout == b->layout);
+    assert_memory_equal(a->frame, b->frame, sizeof a->frame);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(a->count[i], b->count[i]);
+        assert_memory_equal(a->rows[i], b->rows[i], (size_t)a->count[i] * ROW);
+    }
+}
+
+/* Each live face's triangles in order in one run, and nothing else but zeros; each vertex its
+ * row. */
+static void check_rows(const client *c, const he_mesh *m)
+{
+    he_frame frame;
+    memcpy(&frame, c->frame, sizeof frame);
+    he_drawing d;
+    he_drawing_walk walk = {0};
+    uint32_t faces = 0;
+    assert_int_equal(he_drawing_init(&d, m, &frame, NULL), HE_OK);
+    bool *seen = calloc(m->c.faces.issued + 1, sizeof *seen);
+    assert_non_null(seen);
+    for (uint32_t slot = 0; slot < c->count[TRIANGLE_PART]; slot++) {
+        const char *row = c->rows[TRIANGLE_PART] + (size_t)slot * ROW;
+        uint32_t words[4] = {u32_at(row), u32_at(row + 4), u32_at(row + 8), u32_at(row + 12)};
+        if (words[0] == words[1]) {
+            assert_true((words[0] | words[2] | words[3]) == 0 && walk.left == 0);
+            continue;
+        }
+        uint32_t face = words[3] & ((1u << HE_DRAWN_SIDES) - 1), wanted[HE_DRAWN_ROW];
+        if (walk.left == 0) {
+            assert_true(he_face_is_live(m, (he_face){face}) && !seen[face]);
+            seen[face] = true;
+            faces++;
+            he_drawing_begin(&d, face, &walk);
+        }
+        assert_true(he_drawing_next(&d, &walk, wanted));
+        assert_memory_equal(wanted, words, sizeof words);
+    }
+    assert_true(walk.left == 0);
+    assert_int_equal(faces, he_mesh_faces(m));
+    assert_int_equal(c->count[VERTEX_PART], he_mesh_issued(m, HE_VERTEX));
+    for (uint32_t v = 0; v < c->count[VERTEX_PART]; v++) {
+        float row[HE_DRAWN_ROW];
+        he_drawing_vertex(&d, v, row);
+        assert_memory_equal(row, c->rows[VERTEX_PART] + (size_t)v * ROW, ROW);
+        assert_true(row[0] * row[0] + row[1] * row[1] + row[2] * row[2] <= 1.000001f);
+    }
+    free(seen);
+    he_drawing_clear(&d);
+}
+
+/* --- random edits --- */
+
+typedef struct world {
+    api_bench *b;
+    const api_store *store;
+    api_mesh *mesh;
+    md_random r;
+    uint64_t done, refused, stepped;
+} world;
+
+enum { MANY = 5, ROOM = 600 };
+
+static uint32_t any(world *w, const he_mesh *m, he_kind kind)
+{
+    uint32_t issued = he_mesh_issued(m, kind), id = 0;
+    for (int i = 0; i < 20 && issued > 0; i++) {
+        id = md_below(&w->r, issued);
+        if (he_mesh_is_live(m, kind, id)) {
+            break;
+        }
+    }
+    return id;
+}
+
+static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg *arg,
+                          uint32_t ids[MANY], he_vec3 *point)
+{
+    double span = md_chance(&w->r, 3) ? 40 : 0.7;
+    arg->given = true;
+    switch (p->type) {
+    case HE_PARAM_ELEMENT:
+        arg->id = (p->flags & HE_NULLABLE) && md_chance(&w->r, 30) ? HE_NONE : any(w, m, p->kind);
+        break;
+    case HE_PARAM_ELEMENTS:
+    case HE_PARAM_CYCLE:
+        arg->count = p->type == HE_PARAM_CYCLE ? md_from(&w->r, 3, MANY)
+                                               : (md_chance(&w->r, 70) ? 1 : md_from(&w->r, 1, 3));
+        arg->list = arg->count > 1;
+        for (size_t i = 0; i < arg->count; i++) {
+            ids[i] = any(w, m, p->kind);
+        }
+        arg->ids = ids;
+        arg->id = ids[0];
+        break;
+    case HE_PARAM_NUMBER:
+        arg->number = p->flags & HE_RANGE && p->max < 1e6
+                          ? p->min + (0.1 + 0.8 * md_unit(&w->r)) * (p->max - p->min)
+                          : 0.05 + md_unit(&w->r);
+        break;
+    case HE_PARAM_POINT:
+    case HE_PARAM_POINTS:
+        *point = (he_vec3){span * (md_unit(&w->r) - 0.5), span * (md_unit(&w->r) - 0.5),
+                           span * (md_unit(&w->r) - 0.5)};
+        arg->points = point;
+        arg->count = 1;
+        break;
+    case HE_PARAM_FLAG:
+        arg->flag = md_chance(&w->r, 50);
+        break;
+    case HE_PARAM_CHOICE:
+        arg->choice = 0;
+        break;
+    case HE_PARAM_MATRIX:
+        for (int i = 0; i < 16; i++) {
+            arg->matrix[i] = i % 5 == 0 ? 1 : 0;
+        }
+        arg->matrix[0] = md_chance(&w->r, 20) ? 0.01 : 0.9 + 0.2 * md_unit(&w->r);
+        arg->matrix[3] = 0.2 * md_unit(&w->r) - 0.1;
+        break;
+    }
+}
+
+/* One random operation with random arguments; most that are refused need a place of their own. */
+static bool run_one(world *w, he_mesh *m, bool *barrier)
+{
+    const he_op *op = he_op_at(md_below(&w->r, (uint32_t)he_op_count()));
+    he_arg args[HE_OP_PARAMS];
+    uint32_t ids[HE_OP_PARAMS][MANY];
+    he_vec3 points[HE_OP_PARAMS];
+    he_results results = {0};
+    he_error err = {0};
+    bool is_compact = strcmp(op->name, "compact") == 0;
+    if ((is_compact && !md_chance(&w->r, 5)) ||
+        (op->size == HE_OP_WHOLE && !is_compact &&
+         (he_mesh_faces(m) > ROOM / 2 || !md_chance(&w->r, 15)))) {
+        return false;
+    }
+    he_op_defaults(op, args);
+    for (size_t i = 0; i < he_op_params(op); i++) {
+        const he_param *p = &op->params[i];
+        bool first = true;
+        for (size_t k = 0; k < i && p->group != 0; k++) {
+            first = first && op->params[k].group != p->group;
+        }
+        if (first && ((p->flags & HE_REQUIRED) || md_chance(&w->r, 40))) {
+            fill_argument(w, m, p, &args[i], ids[i], &points[i]);
+        }
+    }
+    he_status status = he_op_run(op, m, args, &results, &err);
+    he_results_clear(&results);
+    *barrier = *barrier || (status == HE_OK && is_compact);
+    return status == HE_OK;
+}
+
+static void edit(world *w)
+{
+    const api_store *s = w->store;
+    bool barrier = false;
+    he_delta *delta = NULL;
+    he_mesh *m = s->write_begin(s->self, w->mesh, NULL, &delta);
+    assert_non_null(m);
+    uint32_t batch = md_chance(&w->r, 70) ? 1 : md_from(&w->r, 2, 6);
+    for (uint32_t i = 0; i < batch && !barrier; i++) {
+        bool good = run_one(w, m, &barrier);
+        w->done += good;
+        w->refused += !good;
+    }
+    if (delta->count == 0) {
+        s->write_abort(s->self, w->mesh);
+    } else {
+        s->write_commit(s->self, w->mesh, "random", barrier, NULL);
+    }
+}
+
+static void step(world *w, api_action which)
+{
+    const api_store *s = w->store;
+    he_delta *delta = NULL;
+    assert_non_null(s->write_begin(s->self, w->mesh, NULL, &delta));
+    w->stepped += s->step(s->self, w->mesh, which, &delta, NULL) == API_STORE_OK;
+    s->write_end(s->self, w->mesh);
+}
+
+static void put(api_bench *b, const char *body)
+{
+    bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL, body);
+    if (r.status != 200 && r.status != 201) {
+        fail_msg("%s: %d %s", body, r.status, r.body);
+    }
+    bench_reply_free(&r);
+}
+
+static const char *const starts[] = {
+    "{\"shape\":\"cube\"}", "{\"shape\":\"torus\",\"major_segments\":12,\"minor_segments\":8}",
+    "{\"shape\":\"grid\"}", "{\"shape\":\"dodecahedron\"}", "{\"shape\":\"disk\"}"};
+enum { STARTS = sizeof starts / sizeof *starts };
+
+static uint32_t faces_of(world *w)
+{
+    uint32_t faces = he_mesh_faces(w->store->read_begin(w->store->self, w->mesh, NULL));
+    w->store->read_end(w->store->self, w->mesh);
+    return faces;
+}
+
+static uint64_t from_environment(const char *name, uint64_t fallback)
+{
+    const char *text = getenv(name);
+    return text == NULL ? fallback : strtoull(text, NULL, 10);
+}
+
+static world begin(uint64_t seed)
+{
+    world w = {.b = bench_new(), .r = {seed}};
+    w.store = bench_store(w.b);
+    put(w.b, starts[1]);
+    assert_int_equal(w.store->find(w.store->self, "m", &w.mesh), API_STORE_OK);
+    return w;
+}
+
+static void end(world *w)
+{
+    w->store->release(w->store->self, w->mesh);
+    bench_free(w->b);
+}
+
+/* Two clients, one that asks often and one that asks seldom. */
+static void test_patched_arrays_equal_fresh_ones(void **state)
+{
+    (void)state;
+    uint64_t seed = from_environment("SEED", (uint64_t)time(NULL));
+    uint64_t edits = from_environment("EDITS", 3000);
+    printf("note: SEED=%" PRIu64 "\n", seed);
+    world w = begin(seed);
+    client often = {0}, seldom = {0}, fresh = {0};
+    while (w.done < edits) {
+        uint32_t dice = md_below(&w.r, 100);
+        if (dice < 75) {
+            edit(&w);
+        } else if (dice < 99) {
+            for (uint32_t n = md_from(&w.r, 1, 4); n > 0; n--) {
+                step(&w, dice < 90 ? API_UNDO : API_REDO);
+            }
+        }
+        if (faces_of(&w) > ROOM || faces_of(&w) < 2) {
+            put(w.b, starts[md_below(&w.r, STARTS)]);
+        }
+        if (md_chance(&w.r, 40)) {
+            update(w.b, "m", &often);
+        }
+        if (md_chance(&w.r, 4)) {
+            update(w.b, "m", &seldom);
+            update(w.b, "m", &often);
+            forget(&fresh);
+            update(w.b, "m", &fresh);
+            assert_same(&often, &fresh);
+            assert_same(&seldom, &fresh);
+            check_rows(&fresh, w.store->read_begin(w.store->self, w.mesh, NULL));
+            w.store->read_end(w.store->self, w.mesh);
+        }
+    }
+    assert_true(often.changes > 2 * often.whole);
+    assert_true(seldom.changes > 0);
+    printf("note: %" PRIu64 " edits, %" PRIu64 " undone or redone: %" PRIu64 " changes of %" PRIu64
+           " bytes, %" PRIu64 " fetched whole; seldom %" PRIu64 " and %" PRIu64 "\n",
+           w.done, w.stepped, often.changes, often.bytes / often.changes, often.whole,
+           seldom.changes, seldom.whole);
+    forget(&often);
+    forget(&seldom);
+    forget(&fresh);
+    end(&w);
+}
+
+/* --- single requests --- */
+
+static void post(api_bench *b, const char *target, const char *body)
+{
+    bench_reply r = bench_send(b, "POST", target, NULL, body);
+    if (r.status != 200) {
+        fail_msg("%s %s: %d %s", target, body == NULL ? "" : body, r.status, r.body);
+    }
+    bench_reply_free(&r);
+}
+
+static void poke(api_bench *b, int face)
+{
+    char body[64];
+    snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", face);
+    post(b, "/v1/meshes/m/edits", body);
+}
+
+static void test_nothing_changed_is_a_header(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0};
+    update(w.b, "m", &c);
+    bench_reply r = ask(w.b, "m", &c);
+    assert_int_equal(r.length, HEADER);
+    assert_true(u64_at(r.body + 16) == c.revision);
+    bench_reply_free(&r);
+    forget(&c);
+    end(&w);
+}
+
+static void test_an_edit_costs_what_it_touched(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0};
+    update(w.b, "m", &c);
+    post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":5}");
+    bench_reply r = ask(w.b, "m", &c);
+    /* A vertex, and two quadrilaterals that became pentagons: four slots freed, six taken. */
+    assert_int_equal(u32_at(r.body + 88), 1);
+    assert_true(u32_at(r.body + 92) <= 10);
+    assert_true(r.length <= HEADER + 16 + 16 + 48 + 160);
+    bench_reply_free(&r);
+    forget(&c);
+    end(&w);
+}
+
+/* The tag names the revision, the layout, and where the changes begin. */
+static void test_tags(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0};
+    bench_reply whole = ask(w.b, "m", &c);
+    apply(&c, whole.body, whole.length);
+    bench_reply none = ask(w.b, "m", &c);
+    assert_string_not_equal(bench_header(&whole, "ETag"), bench_header(&none, "ETag"));
+    const char *const headers[] = {"If-None-Match", bench_header(&whole, "ETag"), NULL};
+    bench_reply same = bench_send(w.b, "GET", "/v1/meshes/m/geometry", headers, NULL);
+    assert_int_equal(same.status, 304);
+    poke(w.b, 3);
+    bench_reply other = bench_send(w.b, "GET", "/v1/meshes/m/geometry", headers, NULL);
+    assert_int_equal(other.status, 200);
+    char target[200];
+    snprintf(target, sizeof target, "/v1/meshes/m/geometry?since=%" PRIu64 "&layout=%" PRIu64,
+             c.revision, c.layout);
+    bench_reply changes = bench_send(w.b, "GET", target, headers, NULL);
+    assert_int_equal(changes.status, 200);
+    const char *const again[] = {"If-None-Match", bench_header(&changes, "ETag"), NULL};
+    bench_reply unchanged = bench_send(w.b, "GET", target, again, NULL);
+    assert_int_equal(unchanged.status, 304);
+    bench_reply *all[] = {&whole, &none, &same, &other, &changes, &unchanged};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        bench_reply_free(all[i]);
+    }
+    forget(&c);
+    end(&w);
+}
+
+static void test_hostile_parameters(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0};
+    update(w.b, "m", &c);
+    char target[200];
+    static const char *const bad[] = {"since=1",
+                                      "layout=1",
+                                      "since=0&layout=1",
+                                      "since=1&layout=0",
+                                      "since=-1&layout=1",
+                                      "since=1&layout=18014398509481984",
+                                      "since=18446744073709551616&layout=1",
+                                      "since=&layout=",
+                                      "since=1&layout=x",
+                                      "since=1&since=1&layout=1"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        snprintf(target, sizeof target, "/v1/meshes/m/geometry?%s", bad[i]);
+        bench_reply r = bench_send(w.b, "GET", target, NULL, NULL);
+        assert_int_equal(r.status, 400);
+        bench_reply_free(&r);
+    }
+    /* A revision that is still to come is refused; of another layout nothing is known. */
+    client ahead = {.revision = c.revision + 1, .layout = c.layout};
+    bench_reply r = ask(w.b, "m", &ahead);
+    assert_int_equal(r.status, 400);
+    bench_reply_free(&r);
+    ahead.layout ^= 2;
+    r = ask(w.b, "m", &ahead);
+    assert_int_equal(r.status, 200);
+    assert_true(u64_at(r.body + 16) == 0 && u64_at(r.body + 80) == c.layout);
+    bench_reply_free(&r);
+    /* What was before the slots were made is not remembered. */
+    poke(w.b, 0);
+    poke(w.b, 1);
+    put(w.b, starts[1]);
+    client before = {0};
+    update(w.b, "m", &before);
+    assert_true(before.layout != c.layout);
+    before.revision--;
+    r = ask(w.b, "m", &before);
+    assert_true(r.status == 200 && u64_at(r.body + 16) == 0);
+    assert_true(u64_at(r.body + 80) == before.layout);
+    bench_reply_free(&r);
+    forget(&before);
+    forget(&c);
+    end(&w);
+}
+
+/* --- when a layout ends --- */
+
+static uint64_t layout_after(world *w, client *c, const char *body)
+{
+    post(w->b, "/v1/meshes/m/edits", body);
+    update(w->b, "m", c);
+    return c->layout;
+}
+
+static void test_a_layout_ends_when_it_must(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0};
+    update(w.b, "m", &c);
+    uint64_t first = c.layout;
+    /* Faces that come and go, steps, a vertex that stays inside. */
+    assert_true(layout_after(&w, &c, "{\"op\":\"face_delete\",\"faces\":[1,2,3,4,5]}") == first);
+    post(w.b, "/v1/meshes/m/undo", NULL);
+    update(w.b, "m", &c);
+    assert_true(c.layout == first);
+    assert_true(layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,0.01]}") ==
+                first);
+    assert_true(c.whole == 1);
+    /* One that leaves the ball. */
+    uint64_t second =
+        layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,100]}");
+    assert_true(second != first);
+    /* More than half of the vertices, to where another frame is better. */
+    uint64_t third = layout_after(
+        &w, &c, "{\"op\":\"transform\",\"matrix\":[0.01,0,0,0,0,0.01,0,0,0,0,0.01,0,0,0,0,1]}");
+    assert_true(third != second);
+    /* Renumbering, and a replacement. */
+    uint64_t fourth = layout_after(&w, &c, "{\"op\":\"compact\"}");
+    assert_true(fourth != third);
+    put(w.b, starts[1]);
+    update(w.b, "m", &c);
+    uint64_t fifth = c.layout;
+    assert_true(fifth != fourth);
+    /* More than half of the slots without a face. */
+    for (int face = 0; face < 48; face += 12) {
+        char body[200];
+        int used = snprintf(body, sizeof body, "{\"op\":\"face_delete\",\"faces\":[%d", face);
+        for (int i = 1; i < 12; i++) {
+            used += snprintf(body + used, sizeof body - (size_t)used, ",%d", face + i);
+        }
+        snprintf(body + used, sizeof body - (size_t)used, "]}");
+        assert_true(layout_after(&w, &c, body) == fifth);
+    }
+    assert_true(layout_after(&w, &c, "{\"op\":\"face_delete\",\"face\":50}") != fifth);
+    assert_int_equal(c.count[TRIANGLE_PART], 2 * 47);
+    forget(&c);
+    end(&w);
+}
+
+/* A mesh too large for a worker: what is sent is the same. */
+static void test_a_large_mesh(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0}, fresh = {0};
+    put(w.b, "{\"shape\":\"torus\",\"major_segments\":100,\"minor_segments\":60}");
+    update(w.b, "m", &c);
+    poke(w.b, 77);
+    update(w.b, "m", &c);
+    assert_true(c.whole == 1 && c.changes == 1 && c.bytes < 300);
+    /* Many rows, but not most. */
+    post(w.b, "/v1/meshes/m/edits",
+         "{\"op\":\"transform\",\"matrix\":[1,0,0,0.001,0,1,0,0,0,0,1,0,0,0,0,1]}");
+    update(w.b, "m", &c);
+    update(w.b, "m", &fresh);
+    assert_same(&c, &fresh);
+    forget(&c);
+    forget(&fresh);
+    end(&w);
+}
+
+/* A face whose triangles take long is drawn by another thread, from a snapshot. */
+static void test_a_face_of_many_corners(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0}, fresh = {0};
+    size_t capacity = 400 * 30, used = 0;
+    char *body = malloc(capacity);
+    assert_non_null(body);
+    used += (size_t)snprintf(body, capacity, "{\"vertices\":[[400,0,0]");
+    for (int i = 398; i >= 0; i--) {
+        used +=
+            (size_t)snprintf(body + used, capacity - used, ",[%d,%d,0]", i, i % 2 == 0 ? 1 : 50);
+    }
+    used += (size_t)snprintf(body + used, capacity - used, "],\"faces\":[[0");
+    for (int i = 1; i < 400; i++) {
+        used += (size_t)snprintf(body + used, capacity - used, ",%d", i);
+    }
+    snprintf(body + used, capacity - used, "]]}");
+    put(w.b, body);
+    free(body);
+    update(w.b, "m", &c);
+    post(w.b, "/v1/meshes/m/edits", "{\"op\":\"vertex_move\",\"vertex\":7,\"by\":[0,0.5,0]}");
+    update(w.b, "m", &c);
+    update(w.b, "m", &fresh);
+    assert_same(&c, &fresh);
+    check_rows(&c, w.store->read_begin(w.store->self, w.mesh, NULL));
+    w.store->read_end(w.store->self, w.mesh);
+    forget(&c);
+    forget(&fresh);
+    end(&w);
+}
+
+/* --- memory --- */
+
+static long allocations, failing;
+
+static void *fail_one(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    return ++allocations == failing ? NULL : realloc(memory, size);
+}
+
+/* Each allocation in turn fails: the answer is whole or a refusal, and the slots go on to serve. */
+static void test_each_allocation_failing(void **state)
+{
+    (void)state;
+    world w = begin(1);
+    client c = {0}, fresh = {0};
+    unsigned refused = 0;
+    update(w.b, "m", &c);
+    for (long n = 1, before = -1; before != (long)refused || n < 10; n++) {
+        before = refused;
+        post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":7}");
+        post(w.b, "/v1/meshes/m/undo", NULL);
+        poke(w.b, (int)n);
+        char target[200];
+        snprintf(target, sizeof target, "/v1/meshes/m/geometry?since=%" PRIu64 "&layout=%" PRIu64,
+                 c.revision, c.layout);
+        static const he_mem_hook hook = {fail_one, NULL};
+        bench_reply r = {0};
+        allocations = 0;
+        failing = n;
+        he_mem_set_hook(&hook);
+        bool answered = bench_try(w.b, "GET", target, NULL, NULL, 0, &r);
+        he_mem_set_hook(NULL);
+        if (answered && r.status == 200) {
+            apply(&c, r.body, r.length);
+        } else {
+            assert_true(!answered || r.status == 507 || r.status == 500);
+            refused++;
+        }
+        if (answered) {
+            bench_reply_free(&r);
+        }
+        update(w.b, "m", &c);
+        forget(&fresh);
+        update(w.b, "m", &fresh);
+        assert_same(&c, &fresh);
+    }
+    assert_true(refused > 5);
+    assert_true(c.whole == 1);
+    forget(&c);
+    forget(&fresh);
+    end(&w);
+}
+
+/* --- threads --- */
+
+typedef struct crowd {
+    world *w;
+    atomic_int writing;
+} crowd;
+
+static void *follow(void *context)
+{
+    crowd *all = context;
+    client c = {0};
+    do {
+        update(all->w->b, "m", &c);
+    } while (atomic_load(&all->writing));
+    update(all->w->b, "m", &c);
+    client *last = malloc(sizeof *last);
+    assert_non_null(last);
+    *last = c;
+    return last;
+}
+
+static void test_many_bring_forward_at_once(void **state)
+{
+    (void)state;
+    enum { READERS = 3, WRITES = 300 };
+    world w = begin(5);
+    crowd all = {.w = &w};
+    pthread_t reader[READERS];
+    client fresh = {0};
+    atomic_init(&all.writing, 1);
+    for (int i = 0; i < READERS; i++) {
+        assert_int_equal(pthread_create(&reader[i], NULL, follow, &all), 0);
+    }
+    for (int i = 0; i < WRITES; i++) {
+        edit(&w);
+        if (i % 3 == 0) {
+            step(&w, API_UNDO);
+        }
+        if (i % 100 == 50) {
+            put(w.b, starts[1]);
+        }
+    }
+    atomic_store(&all.writing, 0);
+    update(w.b, "m", &fresh);
+    for (int i = 0; i < READERS; i++) {
+        void *last = NULL;
+        assert_int_equal(pthread_join(reader[i], &last), 0);
+        assert_same(last, &fresh);
+        forget(last);
+        free(last);
+    }
+    forget(&fresh);
+    end(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_patched_arrays_equal_fresh_ones),
+        cmocka_unit_test(test_nothing_changed_is_a_header),
+        cmocka_unit_test(test_an_edit_costs_what_it_touched),
+        cmocka_unit_test(test_tags),
+        cmocka_unit_test(test_hostile_parameters),
+        cmocka_unit_test(test_a_layout_ends_when_it_must),
+        cmocka_unit_test(test_a_large_mesh),
+        cmocka_unit_test(test_a_face_of_many_corners),
+        cmocka_unit_test(test_each_allocation_failing),
+        cmocka_unit_test(test_many_bring_forward_at_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

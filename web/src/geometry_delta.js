@@ -1,0 +1,105 @@
+// geometry_delta.js - what changed in the arrays of geometry.js, as GET .../geometry?since=&layout=
+// sends it, put into them. Pure: no page, no network, no WebGL.
+//
+//   0   "HEDG", u32 version         40  u32 vertexCount, u32 triangleCount after the change
+//   8   u64 revision                80  u64 layout, below 2^53
+//   16  u64 base                    88  u32 rows of vertices, u32 rows of triangles that follow
+//   24  u64 bytes of each part      96  the two parts
+//
+// A part is u32 places in rising order, zeros up to a multiple of 16 bytes, and as many rows. Within
+// a layout a triangle keeps its slot, counts never fall, and a slot without a face is four zeros.
+// A face's triangles lie side by side.
+
+const HEADER_BYTES = 96;
+const VERSION = 2;
+const ROW_BYTES = 16;
+
+// {revision, base, layout, vertexCount, triangleCount} of an answer, an ArrayBuffer. A base of 0
+// says that it holds all rows. Throws a RangeError where it is no answer.
+export function headerOf(buffer) {
+    const view = new DataView(buffer);
+    const text = String.fromCharCode(...new Uint8Array(buffer, 0, 4));
+    if (text !== 'HEDG' || view.getUint32(4, true) !== VERSION) {
+        throw new RangeError('The server sent no geometry this page can read.');
+    }
+    const [revision, base, , , layout] = [8, 16, 24, 32, 80].map((at) =>
+        Number(view.getBigUint64(at, true)),
+    );
+    const [vertexCount, triangleCount] = [40, 44].map((at) => view.getUint32(at, true));
+    return { revision, base, layout, vertexCount, triangleCount };
+}
+
+// Put the changes into `geometry`: {revision, layout, vertices, vertexCount, triangles,
+// triangleCount}, whose arrays may be longer than their counts say. An array that is too short is
+// replaced by one with room for an eighth more, a multiple of `rowTexels` rows.
+//
+// Returns {vertices, triangles, grown}: the places of the rows that changed, as Uint32Arrays, and
+// whether an array was replaced. Null, with nothing done, where the answer holds all rows and the
+// geometry must be made of it afresh. Throws a RangeError, with nothing done, where it is no change
+// of this geometry: then everything must be fetched.
+export function applyDelta(geometry, buffer, rowTexels = 2048) {
+    const header = headerOf(buffer);
+    if (header.base === 0) {
+        return null;
+    }
+    if (header.base !== geometry.revision || header.layout !== geometry.layout) {
+        throw new RangeError('The changes are of other arrays.');
+    }
+    const view = new DataView(buffer);
+    const [vertexRows, triangleRows] = [88, 92].map((at) => view.getUint32(at, true));
+    const vertices = partAt(buffer, HEADER_BYTES, vertexRows, Float32Array);
+    const triangles = partAt(buffer, vertices.end, triangleRows, Uint32Array);
+    if (
+        triangles.end !== buffer.byteLength ||
+        !fits(vertices.places, geometry.vertexCount, header.vertexCount) ||
+        !fits(triangles.places, geometry.triangleCount, header.triangleCount)
+    ) {
+        throw new RangeError('The changes of the geometry do not fit.');
+    }
+    const before = [geometry.vertices, geometry.triangles];
+    geometry.vertices = grown(geometry.vertices, header.vertexCount, rowTexels);
+    geometry.triangles = grown(geometry.triangles, header.triangleCount, rowTexels);
+    putRows(geometry.vertices, vertices);
+    putRows(geometry.triangles, triangles);
+    geometry.vertexCount = header.vertexCount;
+    geometry.triangleCount = header.triangleCount;
+    geometry.revision = header.revision;
+    return {
+        vertices: vertices.places,
+        triangles: triangles.places,
+        grown: before[0] !== geometry.vertices || before[1] !== geometry.triangles,
+    };
+}
+
+function partAt(buffer, at, count, Row) {
+    const rowsAt = at + Math.ceil(count / 4) * ROW_BYTES;
+    const end = rowsAt + count * ROW_BYTES;
+    if (end > buffer.byteLength) {
+        throw new RangeError('The changes of the geometry were cut short.');
+    }
+    return {
+        places: new Uint32Array(buffer, at, count),
+        rows: new Row(buffer, rowsAt, 4 * count),
+        end,
+    };
+}
+
+function fits(places, before, after) {
+    return after >= before && places.every((place) => place < after);
+}
+
+function grown(array, count, rowTexels) {
+    if (4 * count <= array.length) {
+        return array;
+    }
+    const texels = Math.ceil((count + count / 8) / rowTexels) * rowTexels;
+    const longer = new array.constructor(4 * texels);
+    longer.set(array);
+    return longer;
+}
+
+function putRows(array, { places, rows }) {
+    for (let i = 0; i < places.length; i++) {
+        array.set(rows.subarray(4 * i, 4 * i + 4), 4 * places[i]);
+    }
+}
