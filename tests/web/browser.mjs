@@ -71,10 +71,8 @@ export async function openPage(
     if (init) {
         await page.addInitScript(init);
     }
-    t.after(async () => {
-        await context.close();
-        assert.deepEqual(wrong, []);
-    });
+    daemon.closers.push(() => context.close());
+    t.after(() => assert.deepEqual(wrong, []));
     await page.goto(daemon.url + path);
     return page;
 }

@@ -75,6 +75,7 @@ const MARK_SIZE = 13;
 const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
 const EDGE_WIDTH = 0.75; // on each side of an edge
+const RAISED = 0.996; // of the distance, as dots in shaders.js
 
 const ZOOM = 0.8; // of the distance, a step of the keyboard
 
@@ -296,8 +297,9 @@ export class Renderer {
                 uniforms: { ...this.#shared, ...uniforms },
                 side: DoubleSide,
                 blending: NoBlending,
-                // Behind the lines and dots that lie on it, see #resize().
+                // Behind what lies on it.
                 polygonOffset: true,
+                polygonOffsetFactor: 1,
                 polygonOffsetUnits: 1,
             });
         const dots = (fragment, uniforms) =>
@@ -354,6 +356,8 @@ export class Renderer {
                 blending: NoBlending,
             }),
         );
+        this.#chosen.material.polygonOffsetFactor = 0.5;
+        this.#chosen.material.polygonOffsetUnits = 0.5;
         this.#add(this.#scene, [
             this.#surface,
             this.#chosen,
@@ -470,10 +474,6 @@ export class Renderer {
         this.#camera.updateProjectionMatrix();
         this.#dots.material.uniforms.size.value = DOT_SIZE * ratio;
         this.#marks.material.uniforms.size.value = MARK_SIZE * ratio;
-        // A line is flat and the surface below it may rise by its slope on each pixel of its width.
-        const behind = 1 + (LINE_WIDTH / 2) * ratio;
-        this.#surface.material.polygonOffsetFactor = behind;
-        this.#chosen.material.polygonOffsetFactor = behind - 0.5;
         this.#edgeWidth.value = EDGE_WIDTH * ratio;
         this.#pixel.value = pixelAtOne(Math.max(clientHeight, 1));
         this.#draw();
@@ -501,8 +501,18 @@ export class Renderer {
         });
     }
 
+    // A line is flat, and a surface that slopes would cut it: shrink it towards the camera, where it
+    // is seen at the same place.
+    #raiseLines() {
+        for (const lines of [this.#lines, this.#hiddenLines, this.#boundary]) {
+            lines.scale.setScalar(RAISED);
+            lines.position.copy(this.#camera.position).multiplyScalar(1 - RAISED);
+        }
+    }
+
     #render() {
         this.#setDepthRange();
+        this.#raiseLines();
         this.#renderer.render(this.#scene, this.#camera);
     }
 }

@@ -58,9 +58,14 @@ export class Tools {
         this.#build();
     }
 
-    // Fill in what is selected: {kind, id, element}, the last chosen last.
+    // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the same,
+    // what was typed in its place stays too.
     setSelection(selection) {
+        const isSame = keyOf(selection) === keyOf(this.#selection);
         this.#selection = selection;
+        if (isSame) {
+            return;
+        }
         const fitting = this.#operations.find((operation) => this.#fits(operation));
         if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#operation)) {
             this.#select.value = fitting.name;
@@ -182,6 +187,10 @@ export class Tools {
         }
         return operation;
     }
+}
+
+function keyOf(selection) {
+    return selection.map(({ kind, id }) => `${kind}:${id}`).join();
 }
 
 function othersOf(params, { name, group }) {
