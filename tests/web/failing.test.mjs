@@ -30,7 +30,7 @@ const REFUSALS = [
     [409, { title: 'Mesh busy', detail: 'a long operation is running on it' }],
     [412, { title: 'Stale', detail: 'the mesh is at revision 9' }],
     [413, { title: 'Too large', detail: 'the body has 9 bytes more than are allowed' }],
-    [422, { title: 'Refused', detail: 'face 3 would be a face of two corners', pointer: '/ops/0/face' }],
+    [422, { title: 'Refused', detail: 'face 3 has two corners', pointer: '/ops/0/face' }],
     [429, { title: 'Too many requests', detail: 'try again in a second' }],
     [500, { title: 'Internal error', detail: 'an invariant does not hold' }],
     [503, { title: 'Not now', detail: 'the memory budget is used up' }],

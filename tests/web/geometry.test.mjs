@@ -158,7 +158,7 @@ test('an arrow lies beside its edge, on the side of its face, and points to the 
         assert.ok(Math.abs(distance(thin) - distance(thick) / 2) < 1e-9);
         const lengths = [1, 0.5].map((scale) => {
             const [start, , , , , , , tip] = pointsOf(arrow, scale);
-            return Math.abs((tip[0] - start[0]) * side[1]) + Math.abs((tip[1] - start[1]) * side[0]);
+            return Math.abs((tip[0] - start[0]) * side[1] - (tip[1] - start[1]) * side[0]);
         });
         assert.ok(Math.abs(lengths[0] - lengths[1]) < 1e-9, `${lengths}`);
     }

@@ -220,7 +220,8 @@ test('the page is dark, its controls too', async (t) => {
 
 test('each pick mode and the hint for dropping are accessible', async (t) => {
     const { page } = await openMesh(t, BOW_TIE);
-    for (const [mode, kind] of [['Edge', 'edge'], ['Vertex', 'vertex'], ['Half-edge', 'halfedge']]) {
+    const modes = { Edge: 'edge', Vertex: 'vertex', 'Half-edge': 'halfedge' };
+    for (const [mode, kind] of Object.entries(modes)) {
         await setMode(page, mode);
         await goTo(page, kind, 1);
         await checkAccessible(page, mode);

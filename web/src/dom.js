@@ -30,7 +30,8 @@ export function formatAbout(value) {
     return value < 100000 ? formatCount(value) : about.format(value);
 }
 
-// So many significant digits at most, for what is measured. JSON has null where a double overflowed.
+// So many significant digits at most, for what is measured. JSON has null where a double
+// overflowed.
 export function formatMeasure(value, digits = 6) {
     if (value === null) {
         return 'too large';

@@ -1,7 +1,8 @@
 // pick.js - from what the id buffer shows around the pointer to one element. Pure.
 //
-// The renderer reads which triangles and vertices are visible near the pointer. Kinds are never mixed: in edge mode only an edge can be picked, and so on. Near
-// the pointer what is seen counts; else an edge or a corner of the face under the pointer does.
+// The renderer reads which triangles and vertices are visible near the pointer. Kinds are never
+// mixed: in edge mode only an edge can be picked, and so on. Near the pointer what is seen counts;
+// else an edge or a corner of the face under the pointer does.
 
 import { edgesOfTriangles, faceOf, pointAt, trianglesOfFace } from './geometry.js';
 import { distanceToPoint, distanceToSegment } from './view.js';
@@ -14,8 +15,8 @@ const TRIANGLE = 1;
 const VERTEX = 2;
 
 // What a square of `size` x `size` pixels of the id buffer shows, nearest to its middle first:
-// {under, away, triangles, vertices}, where `under` is the nearest triangle or -1, `away` how far it
-// is in pixels. `ids` holds kind, id, 0, 0 of each pixel.
+// {under, away, triangles, vertices}, where `under` is the nearest triangle or -1, `away` how far
+// it is in pixels. `ids` holds kind, id, 0, 0 of each pixel.
 export function readSquare(ids, size) {
     const radius = (size - 1) / 2;
     const found = [];

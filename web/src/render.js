@@ -103,6 +103,7 @@ export class Renderer {
     #pickDots;
     #geometry = null;
     #label = null;
+    #size = '';
     #scheduled = false;
     #onFrame;
     #onMove;
@@ -139,8 +140,8 @@ export class Renderer {
     }
 
     // Show a mesh with the edges of its boundary loops, pairs of vertices one after another, or
-    // nothing (null). `label` is what onFrame will say is shown. Throws a RangeError, and shows what
-    // it did before, when the mesh is larger than a texture can be.
+    // nothing (null). `label` is what onFrame will say is shown. Throws a RangeError, and shows
+    // what it did before, when the mesh is larger than a texture can be.
     show(geometry, boundary, label) {
         const vertices = geometry?.vertices ?? new Float32Array(4 * ROW);
         const triangles = geometry?.triangles ?? new Uint32Array(4 * ROW);
@@ -444,10 +445,9 @@ export class Renderer {
             }
         }
         const geometry = new BufferGeometry();
-        for (const [name, array, count] of [
-            ['position', position, 3], ['spread', spread, 3], ['size', size, 1], ['color', color, 3],
-        ]) {
-            geometry.setAttribute(name, new BufferAttribute(new Float32Array(array), count));
+        for (const [name, array] of Object.entries({ position, spread, size, color })) {
+            const values = new BufferAttribute(new Float32Array(array), array === size ? 1 : 3);
+            geometry.setAttribute(name, values);
         }
         this.#replace(this.#arrows, geometry, size.length > 0);
     }
@@ -466,16 +466,22 @@ export class Renderer {
     }
 
     #resize() {
-        const { clientWidth, clientHeight } = this.#canvas;
+        const width = Math.max(this.#canvas.clientWidth, 1);
+        const height = Math.max(this.#canvas.clientHeight, 1);
         const ratio = window.devicePixelRatio;
+        const size = `${width} ${height} ${ratio}`;
+        if (size === this.#size) {
+            return; // a frame of a large mesh is dear
+        }
+        this.#size = size;
         this.#renderer.setPixelRatio(ratio);
-        this.#renderer.setSize(Math.max(clientWidth, 1), Math.max(clientHeight, 1), false);
-        this.#camera.aspect = Math.max(clientWidth, 1) / Math.max(clientHeight, 1);
+        this.#renderer.setSize(width, height, false);
+        this.#camera.aspect = width / height;
         this.#camera.updateProjectionMatrix();
         this.#dots.material.uniforms.size.value = DOT_SIZE * ratio;
         this.#marks.material.uniforms.size.value = MARK_SIZE * ratio;
         this.#edgeWidth.value = EDGE_WIDTH * ratio;
-        this.#pixel.value = pixelAtOne(Math.max(clientHeight, 1));
+        this.#pixel.value = pixelAtOne(height);
         this.#draw();
     }
 
@@ -501,8 +507,8 @@ export class Renderer {
         });
     }
 
-    // A line is flat, and a surface that slopes would cut it: shrink it towards the camera, where it
-    // is seen at the same place.
+    // A line is flat, and a surface that slopes would cut it: shrink it towards the camera, where
+    // it is seen at the same place.
     #raiseLines() {
         for (const lines of [this.#lines, this.#hiddenLines, this.#boundary]) {
             lines.scale.setScalar(RAISED);

@@ -58,8 +58,8 @@ export class Tools {
         this.#build();
     }
 
-    // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the same,
-    // what was typed in its place stays too.
+    // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the
+    // same, what was typed in its place stays too.
     setSelection(selection) {
         const isSame = keyOf(selection) === keyOf(this.#selection);
         this.#selection = selection;
@@ -87,8 +87,8 @@ export class Tools {
         }
     }
 
-    // An operation on what is selected: on all of it where the server's table says it takes several,
-    // else on the last.
+    // An operation on what is selected: on all of it where the server's table says it takes
+    // several, else on the last.
     operationOn(name, selection) {
         const { kind, id } = selection.at(-1);
         const row = this.#operations.find((operation) => operation.name === name);
