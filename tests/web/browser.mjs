@@ -5,10 +5,11 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 
 import { PerspectiveCamera, Vector3 } from '../../web/node_modules/three/build/three.module.js';
-import { middleOf } from '../../web/src/arrows.js';
+import { MOST_PIXELS, arrowOf, middleOf } from '../../web/src/arrows.js';
 import { pointAt, unpack } from '../../web/src/geometry.js';
-import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance } from '../../web/src/view.js';
+import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance, pixelAtOne } from '../../web/src/view.js';
 import { get, getGeometry } from './daemon.mjs';
+import { readPng } from './png.mjs';
 
 // The packages are the page's: they live in web/node_modules.
 const require = createRequire(new URL('../../web/package.json', import.meta.url));
@@ -70,10 +71,8 @@ export async function openPage(
     if (init) {
         await page.addInitScript(init);
     }
-    t.after(async () => {
-        await context.close();
-        assert.deepEqual(wrong, []);
-    });
+    daemon.closers.push(() => context.close());
+    t.after(() => assert.deepEqual(wrong, []));
     await page.goto(daemon.url + path);
     return page;
 }
@@ -127,7 +126,10 @@ export async function projector(page, daemon, mesh) {
         async arrow(id) {
             const halfedge = await get(daemon, `/${mesh}/halfedges/${id}`);
             const { face: across } = await get(daemon, `/${mesh}/halfedges/${halfedge.twin}`);
-            return toCanvas(new Vector3(...middleOf(geometry, { ...halfedge, across })));
+            const drawn = arrowOf(geometry, { ...halfedge, across });
+            const depth = -placeOf(halfedge.origin).applyMatrix4(camera.matrixWorldInverse).z;
+            const scale = (MOST_PIXELS * pixelAtOne(height) * depth) / drawn.size;
+            return toCanvas(new Vector3(...middleOf(drawn, Math.min(scale, 1))));
         },
         // Does a face of a convex mesh turn its front to the camera?
         isSeen({ vertices: ids }) {
@@ -138,50 +140,41 @@ export async function projector(page, daemon, mesh) {
     };
 }
 
-// A page of a context that decodes pictures: the viewer's policy allows no such thing.
-const decoders = new WeakMap();
-
-async function decode(context, png) {
-    if (!decoders.has(context)) {
-        decoders.set(context, await context.newPage());
-    }
-    const { width, data } = await decoders.get(context).evaluate(async (base64) => {
-        const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-        const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
-        const canvas = new OffscreenCanvas(image.width, image.height);
-        const context2d = canvas.getContext('2d');
-        context2d.drawImage(image, 0, 0);
-        const pixels = context2d.getImageData(0, 0, image.width, image.height).data;
-        let text = '';
-        for (let i = 0; i < pixels.length; i += 32768) {
-            text += String.fromCharCode(...pixels.subarray(i, i + 32768));
-        }
-        return { width: image.width, data: btoa(text) };
-    }, png.toString('base64'));
-    return { width, pixels: Buffer.from(data, 'base64') };
-}
-
 // What the canvas shows: colour(x, y) -> [red, green, blue].
 export async function readCanvas(page) {
     const clip = await page.locator('#canvas').boundingBox();
-    const { width, pixels } = await decode(page.context(), await page.screenshot({ clip }));
+    return readPicture(await page.screenshot({ clip }));
+}
+
+// The same of any picture.
+export function readPicture(png) {
+    const { width, channels, pixels } = readPng(png);
+    const count = pixels.length / channels;
+    const colourOf = (pixel) => [...pixels.subarray(channels * pixel, channels * pixel + 3)];
     return {
-        count: pixels.length / 4,
+        count,
         colour(x, y) {
-            const at = 4 * (Math.round(y) * width + Math.round(x));
-            return [...pixels.subarray(at, at + 3)];
+            return colourOf(Math.round(y) * width + Math.round(x));
         },
         // Of how many pixels a test of [red, green, blue] is true.
         countOf(test) {
-            const colour = [0, 0, 0];
-            let count = 0;
-            for (let at = 0; at < pixels.length; at += 4) {
-                colour[0] = pixels[at];
-                colour[1] = pixels[at + 1];
-                colour[2] = pixels[at + 2];
-                count += test(colour) ? 1 : 0;
+            let found = 0;
+            for (let pixel = 0; pixel < count; pixel++) {
+                found += test(colourOf(pixel)) ? 1 : 0;
             }
-            return count;
+            return found;
+        },
+        // The mean of the places where a test is true.
+        centreOf(test) {
+            const sum = { x: 0, y: 0, count: 0 };
+            for (let pixel = 0; pixel < count; pixel++) {
+                if (test(colourOf(pixel))) {
+                    sum.x += pixel % width;
+                    sum.y += Math.floor(pixel / width);
+                    sum.count++;
+                }
+            }
+            return { x: sum.x / sum.count, y: sum.y / sum.count };
         },
     };
 }

@@ -12,7 +12,8 @@ const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..')
 const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
 const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
 
-// {url, stop()}; `t` is the context of the test.
+// {url, stop(), closers}; `t` is the context of the test. When it ends the closers are called, then
+// the daemon is stopped: a page that is open would miss it.
 export async function startDaemon(t) {
     const child = spawn(program, ['--listen', '127.0.0.1:0', '--web', page], {
         stdio: ['ignore', 'ignore', 'pipe'],
@@ -25,7 +26,11 @@ export async function startDaemon(t) {
         child.kill('SIGTERM');
         await ended;
     };
-    t.after(stop);
+    const closers = [];
+    t.after(async () => {
+        await Promise.all(closers.map((close) => close()));
+        await stop();
+    });
     const lines = createInterface({ input: child.stderr });
     const ready = new Promise((resolve) => {
         lines.on('line', (line) => {
@@ -39,7 +44,7 @@ export async function startDaemon(t) {
     if (typeof url !== 'string') {
         throw new Error(`${program} ended before it listened: ${url}`);
     }
-    return { url, stop };
+    return { url, stop, closers };
 }
 
 async function call(url, options) {

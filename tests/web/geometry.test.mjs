@@ -4,9 +4,10 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { angleBetween, describe, foldAngle } from '../../web/src/around.js';
-import { arrowOf, middleOf } from '../../web/src/arrows.js';
+import { arrowOf, middleOf, pointsOf } from '../../web/src/arrows.js';
 import {
     HEADER_BYTES,
+    ROW,
     VERTEX_ISOLATED,
     VERTEX_USED,
     edgesOfTriangles,
@@ -20,8 +21,15 @@ import {
     unpack,
 } from '../../web/src/geometry.js';
 import { formatLink, parseLink } from '../../web/src/link.js';
-import { choose } from '../../web/src/pick.js';
-import { distanceToPoint, distanceToSegment, fitDistance } from '../../web/src/view.js';
+import { choose, readSquare } from '../../web/src/pick.js';
+import {
+    distanceToPoint,
+    distanceToSegment,
+    fitDistance,
+    middleOf as middleOfPoints,
+    reachFrom,
+    turnTo,
+} from '../../web/src/view.js';
 
 // What a server would send: points are [x, y, z, state], triangles [a, b, c, face, sides].
 function answer(points, triangles, { revision = 1n, frame = [0, 0, 0, 1] } = {}) {
@@ -52,16 +60,18 @@ const POINTS = [
 ];
 const TRIANGLES = [[0, 1, 2, 1, 3], [0, 2, 3, 1, 6], [1, 4, 2, 7, 7]];
 
-test('an answer is unpacked without a copy', () => {
+test('an answer is unpacked into whole rows of textures', () => {
     const buffer = answer(POINTS, TRIANGLES, { revision: 2n ** 40n, frame: [1e300, -2, 3, 0.25] });
     assert.equal(lengthOf(buffer), buffer.byteLength);
-    const { revision, frame, vertices, triangles, hasIsolated, center, radius } = unpack(buffer);
+    const geometry = unpack(buffer);
+    const { revision, frame, vertices, triangles, hasIsolated, center, radius } = geometry;
     assert.equal(revision, 2 ** 40);
     assert.deepEqual(frame, { origin: [1e300, -2, 3], scale: 0.25 });
-    assert.equal(vertices.buffer, buffer);
-    assert.equal(triangles.buffer, buffer);
-    assert.equal(vertices.length, 28);
-    assert.equal(triangles.length, 12);
+    assert.deepEqual([geometry.vertexCount, geometry.triangleCount], [7, 3]);
+    for (const array of [vertices, triangles]) {
+        assert.equal(array.length, 4 * ROW);
+        assert.ok(array.subarray(28).every((value) => value === 0));
+    }
     assert.ok(hasIsolated);
     // The dead vertex at the origin is in no box.
     assert.ok(Math.abs(center[0] - 0.45) < 1e-6 && Math.abs(center[1] - 0.25) < 1e-6);
@@ -93,7 +103,7 @@ test('faces and vertices are found by their ids', () => {
     const geometry = unpack(answer(POINTS, TRIANGLES));
     const { triangles } = geometry;
     assert.deepEqual([0, 1, 2].map((i) => faceOf(triangles, i)), [1, 1, 7]);
-    const found = [0, 1, 2, 6, 7, 8].map((face) => trianglesOfFace(triangles, face));
+    const found = [0, 1, 2, 6, 7, 8].map((face) => trianglesOfFace(geometry, face));
     assert.deepEqual(found, [[], [0, 1], [], [], [2], []]);
     assert.deepEqual([0, 5, 6, 7].map((id) => hasVertex(geometry, id)), [true, true, false, false]);
     assert.deepEqual(pointAt(geometry, 4), [0.75, 0, 0]);
@@ -127,7 +137,8 @@ test('an arrow lies beside its edge, on the side of its face, and points to the 
         [{ origin: 1, target: 2, face: 1, across: 7 }, [-1, 0]],
     ];
     for (const [halfedge, side] of cases) {
-        const points = arrowOf(geometry, halfedge);
+        const arrow = arrowOf(geometry, halfedge);
+        const points = pointsOf(arrow, 1);
         assert.equal(points.length, 9);
         const from = pointAt(geometry, halfedge.origin);
         const to = pointAt(geometry, halfedge.target);
@@ -140,14 +151,22 @@ test('an arrow lies beside its edge, on the side of its face, and points to the 
         // The tip is nearer to the target than anything else.
         const away = points.map((p) => Math.hypot(p[0] - to[0], p[1] - to[1]));
         assert.equal(away.indexOf(Math.min(...away)), 7);
-        assert.ok(middleOf(geometry, halfedge));
+        // Half as thick it is as long, and nearer to the edge.
+        const distance = (point) =>
+            Math.abs((point[0] - middle[0]) * side[0] + (point[1] - middle[1]) * side[1]);
+        const [thick, thin] = [1, 0.5].map((scale) => middleOf(arrow, scale));
+        assert.ok(Math.abs(distance(thin) - distance(thick) / 2) < 1e-9);
+        const lengths = [1, 0.5].map((scale) => {
+            const [start, , , , , , , tip] = pointsOf(arrow, scale);
+            return Math.abs((tip[0] - start[0]) * side[1] - (tip[1] - start[1]) * side[0]);
+        });
+        assert.ok(Math.abs(lengths[0] - lengths[1]) < 1e-9, `${lengths}`);
     }
 });
 
 test('where there is no plane there is no arrow', () => {
     const flat = unpack(answer([[0, 0, 0, 1], [1, 0, 0, 1], [2, 0, 0, 1]], [[0, 1, 2, 0, 7]]));
-    assert.deepEqual(arrowOf(flat, { origin: 0, target: 1, face: 0, across: null }), []);
-    assert.equal(middleOf(flat, { origin: 0, target: 1, face: 0, across: null }), null);
+    assert.equal(arrowOf(flat, { origin: 0, target: 1, face: 0, across: null }), null);
 });
 
 // --- measures ---
@@ -177,7 +196,10 @@ test('an element that went away meanwhile is left out of what is around', async 
 test('a link says what is shown and is read back', () => {
     const camera = [1.5, -2, 0.000001, 0, 0, 0.123456];
     for (const [shown, text] of [
-        [{ mesh: 'm1', kind: 'face', id: 3, camera }, '#mesh=m1&face=3&camera=1.5,-2,0.000001,0,0,0.123456'],
+        [
+            { mesh: 'm1', kind: 'face', id: 3, camera },
+            '#mesh=m1&face=3&camera=1.5,-2,0.000001,0,0,0.123456',
+        ],
         [{ mesh: 'a&b=c', kind: null, id: null, camera: null }, '#mesh=a%26b%3Dc'],
     ]) {
         assert.equal(formatLink(shown), text);
@@ -257,4 +279,37 @@ test('distances on the screen stop at the ends of a segment and at the camera', 
 test('a narrow canvas needs more distance', () => {
     assert.ok(fitDistance(0.5) > fitDistance(1));
     assert.equal(fitDistance(2), fitDistance(1));
+});
+
+test('a camera turns to what looks away from it, and else stays where it is', () => {
+    const front = [0, -1, 0];
+    assert.deepEqual(turnTo(front, null), front);
+    assert.deepEqual(turnTo(front, [0, -1, 0]), front);
+    assert.deepEqual(turnTo(front, [0.6, -0.8, 0]), front);
+    for (const normal of [[0, 1, 0], [1, 0, 0], [0, 0, -1], [0.8, 0.6, 0]]) {
+        const turned = turnTo(front, normal);
+        const seen = turned.reduce((sum, value, i) => sum + value * normal[i], 0);
+        assert.ok(seen > 0.8, `${normal}: ${turned}`);
+        assert.ok(Math.abs(Math.hypot(...turned) - 1) < 1e-9);
+    }
+});
+
+test('points have a middle and reach some way from it', () => {
+    const points = [[0, 0, 0], [2, 0, 0], [2, 4, 0]];
+    assert.deepEqual(middleOfPoints(points), [1, 2, 0]);
+    assert.ok(Math.abs(reachFrom([1, 2, 0], points) - Math.hypot(1, 2)) < 1e-9);
+    assert.equal(reachFrom([1, 2, 3], [[1, 2, 3]]), 0);
+    assert.equal(reachFrom([1, 2, 3], []), 0);
+});
+
+test('a square of the id buffer is read from its middle outwards', () => {
+    const ids = new Uint32Array(4 * 25);
+    const put = (x, y, kind, id) => ids.set([kind, id], 4 * (5 * y + x));
+    put(0, 0, 1, 7);
+    put(3, 2, 1, 4);
+    put(2, 4, 1, 4);
+    put(1, 1, 2, 9);
+    assert.deepEqual(readSquare(ids, 5), { under: 4, away: 1, triangles: [4, 7], vertices: [9] });
+    const nothing = { under: -1, away: Infinity, triangles: [], vertices: [] };
+    assert.deepEqual(readSquare(new Uint32Array(4), 1), nothing);
 });

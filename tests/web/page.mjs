@@ -20,7 +20,7 @@ export function readMembers(page) {
         Object.fromEntries(
             [...list.querySelectorAll('dd')].map((dd) => [
                 dd.dataset.member,
-                [...dd.children].map((child) => child.textContent),
+                [...dd.children].map((child) => child.title || child.textContent),
             ]),
         ),
     );
@@ -48,6 +48,18 @@ export async function checkInspector({ daemon, mesh, page }, kind, id) {
 
 export function click(page, position, modifiers = []) {
     return page.locator('#canvas').click({ position, modifiers });
+}
+
+export async function press(page, key) {
+    await page.locator('#canvas').press(key);
+}
+
+// Select by the form for ids.
+export async function goTo(page, kind, id) {
+    await page.locator('#goto-kind').selectOption(kind);
+    await page.locator('#goto-id').fill(`${id}`);
+    await page.getByRole('button', { name: 'Go', exact: true }).click();
+    await waitForFrame(page, { selection: `${kind}:${id}` });
 }
 
 export async function setMode(page, mode) {

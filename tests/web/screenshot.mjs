@@ -1,11 +1,12 @@
 // screenshot.mjs - the README's picture, web/screenshot.png: a torus in the viewer with one of its
-// faces chosen.
+// half-edges chosen.
 
 import { statSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 import { launch, openPage, projector, waitForFrame } from './browser.mjs';
 import { getAll, post, startDaemon } from './daemon.mjs';
+import { setMode } from './page.mjs';
 
 const file = fileURLToPath(new URL('../../web/screenshot.png', import.meta.url));
 const MOST_BYTES = 100 * 1024;
@@ -18,25 +19,29 @@ try {
     const browser = await launch();
     run.after(() => browser.close());
     await post(daemon, '?id=cube', { name: 'cube', shape: 'cube' });
-    const torus = { name: 'torus', shape: 'torus', major_segments: 24, minor_segments: 12 };
+    const torus = { name: 'torus', shape: 'torus', major_segments: 20, minor_segments: 9 };
     const { id: mesh } = await post(daemon, '?id=torus', torus);
-    const page = await openPage(run, browser, daemon, { viewport: { width: 880, height: 520 } });
+    const page = await openPage(run, browser, daemon, { viewport: { width: 960, height: 540 } });
     await page.locator('#meshes button').filter({ hasText: 'torus' }).click();
     await waitForFrame(page, { mesh, revision: 1 });
-    // The face that is nearest to a point of the ring's near side.
+    await setMode(page, 'Half-edge');
+    // A half-edge of the face that is nearest to a point of the ring's near side.
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     const projected = await projector(page, daemon, mesh);
-    const [place] = (await getAll(daemon, mesh, 'faces'))
-        .filter((face) => projected.isSeen(face))
-        .map(({ vertices }) => projected.at(vertices))
+    const distance = ({ vertices }) => {
+        const at = projected.at(vertices);
+        return Math.hypot(at.x - 0.4 * width, at.y - 0.6 * height);
+    };
+    const [face] = (await getAll(daemon, mesh, 'faces'))
+        .filter((one) => projected.isSeen(one))
         .sort((a, b) => distance(a) - distance(b));
-    function distance(at) {
-        return Math.hypot(at.x - 0.4 * width, at.y - 0.62 * height);
-    }
+    const place = await projected.arrow(face.halfedge);
     await page.mouse.click(x + place.x, y + place.y);
-    await page.waitForFunction(() =>
-        document.getElementById('canvas').dataset.selection.startsWith('face:'),
-    );
+    await waitForFrame(page, { selection: `halfedge:${face.halfedge}` });
+    // Nearer, and the address says when it is drawn.
+    const address = page.url();
+    await page.mouse.wheel(0, -500);
+    await page.waitForURL((url) => `${url}` !== address);
     await page.screenshot({ path: file });
     const { size } = statSync(file);
     if (size > MOST_BYTES) {

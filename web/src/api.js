@@ -160,7 +160,9 @@ export async function getGeometry(mesh, onProgress, signal) {
         }
         rest = take(rest);
         if (rest.length > 0) {
-            break;
+            reader.cancel();
+            const detail = 'The geometry of the mesh is longer than it says.';
+            throw new Problem({ title: 'Answer too long', detail });
         }
         onProgress(at / whole.length);
     }

@@ -3,17 +3,25 @@
 //        from o----------------o to         body: two triangles; head: one
 //                 ======>
 //              (the face)
+//
+// An arrow is as long as its edge, but its thickness stops growing where the edge is long on the
+// screen. So each point is a place on the edge and a `spread` from there, which is drawn at a scale
+// from 0 to 1.
 
 import { normalOfFace, pointAt } from './geometry.js';
 
-// Along the edge in parts of its length; what is across in those too, or less where the face is thin.
-const OFFSET = 0.11;
+// Along the edge in parts of its length.
 const START = 0.16;
 const END = 0.84;
-const HEAD = 0.16;
-const BODY_WIDTH = 0.028;
-const HEAD_WIDTH = 0.08;
+// The rest in parts of that too, or of less where the face is thin.
+const OFFSET = 0.1;
+const HEAD = 0.15;
+const BODY_WIDTH = 0.022;
+const HEAD_WIDTH = 0.068;
 const THIN = 2.2; // of the face's mean width
+
+// Arrows are no thicker than that of an edge of so many pixels.
+export const MOST_PIXELS = 130;
 
 const subtract = (a, b) => a.map((value, i) => value - b[i]);
 const along = (a, b, t) => a.map((value, i) => value + t * b[i]);
@@ -30,9 +38,9 @@ function unit(a) {
     return length > 0 ? a.map((value) => value / length) : null;
 }
 
-// Nine points a half-edge, three triangles. `halfedge` is {origin, target, face, across}, where
-// `across` is the face of its twin: a boundary half-edge lies in that one's plane. Empty where there
-// is no length or no plane.
+// Nine points a half-edge, three triangles, as {size, places, spreads}; null where there is no
+// length or no plane. `halfedge` is {origin, target, face, across}, where `across` is the face of
+// its twin: a boundary half-edge lies in that one's plane.
 export function arrowOf(geometry, { origin, target, face, across }) {
     const from = pointAt(geometry, origin);
     const edge = subtract(pointAt(geometry, target), from);
@@ -40,27 +48,42 @@ export function arrowOf(geometry, { origin, target, face, across }) {
     const normal = unit(area);
     const left = normal && unit(cross(normal, edge));
     if (!left) {
-        return [];
+        return null;
     }
     const length = Math.hypot(...edge);
     const size = Math.min(length, (THIN * Math.hypot(...area)) / 2 / length);
-    const at = (t, side) => along(along(from, edge, t), left, size * (OFFSET + side));
-    const neck = END - (HEAD * size) / length;
+    const [start, end] = [START, END].map((t) => along(from, edge, t));
+    const spread = (back, side) =>
+        along(
+            edge.map((value) => (-back * size * value) / length),
+            left,
+            (OFFSET + side) * size,
+        );
     const body = [
-        at(START, -BODY_WIDTH),
-        at(neck, -BODY_WIDTH),
-        at(neck, BODY_WIDTH),
-        at(START, BODY_WIDTH),
+        [start, spread(0, -BODY_WIDTH)],
+        [end, spread(HEAD, -BODY_WIDTH)],
+        [end, spread(HEAD, BODY_WIDTH)],
+        [start, spread(0, BODY_WIDTH)],
     ];
-    return [
-        body[0], body[1], body[2],
-        body[0], body[2], body[3],
-        at(neck, -HEAD_WIDTH), at(END, 0), at(neck, HEAD_WIDTH),
+    const points = [
+        ...[body[0], body[1], body[2]],
+        ...[body[0], body[2], body[3]],
+        ...[[end, spread(HEAD, -HEAD_WIDTH)], [end, spread(0, 0)], [end, spread(HEAD, HEAD_WIDTH)]],
     ];
+    return {
+        size,
+        places: points.map(([place]) => place),
+        spreads: points.map(([, away]) => away),
+    };
+}
+
+// The points of an arrow at a scale.
+export function pointsOf({ places, spreads }, scale) {
+    return places.map((place, i) => along(place, spreads[i], scale));
 }
 
 // Where the middle of an arrow's body is, for whoever looks for its colour.
-export function middleOf(geometry, halfedge) {
-    const points = arrowOf(geometry, halfedge);
-    return points.length === 0 ? null : along(points[0], subtract(points[2], points[0]), 0.5);
+export function middleOf(arrow, scale) {
+    const [first, , third] = pointsOf(arrow, scale);
+    return along(first, subtract(third, first), 0.5);
 }

@@ -40,8 +40,13 @@ function example(body) {
     return make('pre', { tabIndex: 0 }, code(flat.trimEnd()));
 }
 
+// Words between backticks are code.
+function prose(text) {
+    return text.split('`').map((part, i) => (i % 2 === 1 ? code(part) : part));
+}
+
 function note(text) {
-    return text === undefined ? [] : [make('p', {}, text)];
+    return text === undefined ? [] : [make('p', {}, ...prose(text))];
 }
 
 function membersTable({ properties, required = [] }) {
@@ -50,7 +55,7 @@ function membersTable({ properties, required = [] }) {
             'td',
             [code(name), required.includes(name) ? ' (required)' : ''],
             typeNodes(schema),
-            [schema.description ?? ''],
+            prose(schema.description ?? ''),
         ),
     );
     return table(['Member', 'Type', 'Meaning'], rows);
@@ -91,7 +96,7 @@ function parametersTable(parameters) {
             [code(parameter.name), parameter.required ? ' (required)' : ''],
             [parameter.in],
             typeNodes(parameter.schema),
-            [parameter.description ?? ''],
+            prose(parameter.description ?? ''),
         ),
     );
     return table(['Parameter', 'In', 'Type', 'Meaning'], rows);

@@ -23,10 +23,18 @@ export function formatCount(value) {
     return counts.format(value);
 }
 
-// Six significant digits at most, for what is measured. JSON has null where a double overflowed.
-export function formatMeasure(value) {
+const about = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
+
+// 12,345 or 1.2M, where room is short.
+export function formatAbout(value) {
+    return value < 100000 ? formatCount(value) : about.format(value);
+}
+
+// So many significant digits at most, for what is measured. JSON has null where a double
+// overflowed.
+export function formatMeasure(value, digits = 6) {
     if (value === null) {
         return 'too large';
     }
-    return String(Number(value.toPrecision(6)));
+    return String(Number(value.toPrecision(digits)));
 }

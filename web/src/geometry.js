@@ -4,17 +4,23 @@
 //   vertices   4 floats each:  x, y, z, state (0 dead, VERTEX_USED or VERTEX_ISOLATED)
 //   triangles  4 words each:   corners a, b, c, and face | sides << 29
 //
+// Both arrays are as long as a texture of ROW texels across: the renderer uploads them as they are.
+// What lies beyond vertexCount and triangleCount is zero.
+//
 //            c              bit 29: a -> b is an edge of the polygon
 //           / \             bit 30: b -> c
 //          a---b            bit 31: c -> a
 //                           a bit that is clear marks a diagonal, which is not drawn
 //
 // A vertex's place is its id. Triangles are in the order of their faces. The server has moved and
-// scaled positions into the unit ball ("view coordinates") before it rounded them to floats, so that
-// a mesh far from the origin or of any size draws the same; `frame` says how.
+// scaled positions into the unit ball ("view coordinates") before it rounded them to floats, so
+// that a mesh far from the origin or of any size draws the same; `frame` says how.
 
 export const VERTEX_USED = 1;
 export const VERTEX_ISOLATED = 2;
+
+// Texels in a row of a texture; every WebGL2 has 2048.
+export const ROW = 2048;
 
 export const HEADER_BYTES = 96;
 const VERSION = 1;
@@ -31,15 +37,16 @@ export function lengthOf(header) {
     return HEADER_BYTES + Number(view.getBigUint64(24, true) + view.getBigUint64(32, true));
 }
 
-// An answer of the server, an ArrayBuffer, as {revision, frame, vertices, triangles, center, radius,
-// hasIsolated}. The arrays are views of it. Throws a RangeError where it is not what it should be.
+// An answer of the server, an ArrayBuffer, as {revision, frame, vertices, vertexCount, triangles,
+// triangleCount, center, radius, hasIsolated}. Throws a RangeError where it is not what it should
+// be.
 export function unpack(buffer) {
     const view = new DataView(buffer);
     if (lengthOf(buffer) !== buffer.byteLength) {
         throw new RangeError('The geometry of the mesh was cut short.');
     }
     const [vertexBytes, triangleBytes] = [24, 32].map((at) => Number(view.getBigUint64(at, true)));
-    const vertices = new Float32Array(buffer, HEADER_BYTES, vertexBytes / 4);
+    const vertices = wholeRows(new Float32Array(buffer, HEADER_BYTES, vertexBytes / 4));
     const triangles = new Uint32Array(buffer, HEADER_BYTES + vertexBytes, triangleBytes / 4);
     return {
         revision: Number(view.getBigUint64(8, true)),
@@ -48,10 +55,20 @@ export function unpack(buffer) {
             scale: view.getFloat64(72, true),
         },
         vertices,
-        triangles,
+        vertexCount: vertexBytes / 16,
+        triangles: wholeRows(triangles),
+        triangleCount: triangleBytes / 16,
         ...ballOf(vertices),
         hasIsolated: hasIsolated(vertices),
     };
+}
+
+// A copy that fills the rows of a texture, of which there is one at least.
+function wholeRows(array) {
+    const rows = Math.max(Math.ceil(array.length / (4 * ROW)), 1);
+    const whole = new array.constructor(4 * ROW * rows);
+    whole.set(array);
+    return whole;
 }
 
 // A ball around all live vertices: the middle of their box, and how far they reach from it. Never
@@ -71,17 +88,15 @@ function ballOf(vertices) {
         return { center: [0, 0, 0], radius: 1 };
     }
     const center = low.map((value, axis) => (value + high[axis]) / 2);
-    let radius = 0;
+    const [x, y, z] = center;
+    let square = 0;
     for (let i = 0; i < vertices.length; i += 4) {
         if (vertices[i + 3] !== 0) {
-            radius = Math.max(radius, distance(vertices, i, center));
+            const [dx, dy, dz] = [vertices[i] - x, vertices[i + 1] - y, vertices[i + 2] - z];
+            square = Math.max(square, dx * dx + dy * dy + dz * dz);
         }
     }
-    return { center, radius: radius > 0 ? radius : 1 };
-}
-
-function distance(vertices, i, [x, y, z]) {
-    return Math.hypot(vertices[i] - x, vertices[i + 1] - y, vertices[i + 2] - z);
+    return { center, radius: square > 0 ? Math.sqrt(square) : 1 };
 }
 
 function hasIsolated(vertices) {
@@ -129,9 +144,9 @@ export function edgesOfTriangles(triangles, which) {
 }
 
 // The triangles of a face, none when it does not live.
-export function trianglesOfFace(triangles, face) {
+export function trianglesOfFace({ triangles, triangleCount }, face) {
     let low = 0;
-    let high = triangles.length / 4;
+    let high = triangleCount;
     while (low < high) {
         const middle = (low + high) >>> 1;
         if (faceOf(triangles, middle) < face) {
@@ -141,16 +156,17 @@ export function trianglesOfFace(triangles, face) {
         }
     }
     const found = [];
-    for (; 4 * low < triangles.length && faceOf(triangles, low) === face; low++) {
+    for (; low < triangleCount && faceOf(triangles, low) === face; low++) {
         found.push(low);
     }
     return found;
 }
 
 // The direction a face looks to; not of length 1, and zero where it has no area.
-export function normalOfFace({ vertices, triangles }, face) {
+export function normalOfFace(geometry, face) {
+    const { vertices, triangles } = geometry;
     const normal = [0, 0, 0];
-    for (const triangle of trianglesOfFace(triangles, face)) {
+    for (const triangle of trianglesOfFace(geometry, face)) {
         const [a, b, c] = [0, 1, 2].map((i) => 4 * triangles[4 * triangle + i]);
         for (let axis = 0; axis < 3; axis++) {
             const u = (axis + 1) % 3;

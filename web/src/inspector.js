@@ -1,6 +1,6 @@
 // inspector.js - all that the server says of one element, its links to follow.
 
-import { make } from './dom.js';
+import { formatMeasure, make } from './dom.js';
 
 // Members whose values are ids, and of what.
 const LINKS = {
@@ -23,6 +23,9 @@ const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'F
 
 // Ids of one member shown before a button offers the others.
 const MOST = 16;
+
+// Of a measure, so that three fit a line.
+const DIGITS = 5;
 
 export class Inspector {
     #title;
@@ -57,7 +60,7 @@ export class Inspector {
     }
 
     #showAround({ rings, measures }) {
-        this.#around.hidden = rings.length + measures.length === 0;
+        this.#around.parentElement.hidden = rings.length + measures.length === 0;
         this.#around.replaceChildren(
             ...measures.flatMap(({ name, value }) => {
                 const description = make('dd', {}, value);
@@ -68,7 +71,7 @@ export class Inspector {
                 const description = this.#description(name, ids, kind);
                 delete description.dataset.member;
                 description.dataset.ring = name;
-                return [make('dt', {}, `${name} around`), description];
+                return [make('dt', {}, name), description];
             }),
         );
     }
@@ -108,7 +111,7 @@ export class Inspector {
             return make('span', { className: 'none' }, 'none');
         }
         if (kind === undefined) {
-            return make('span', {}, typeof value === 'object' ? JSON.stringify(value) : `${value}`);
+            return plainValue(value);
         }
         return make(
             'button',
@@ -121,6 +124,14 @@ export class Inspector {
             `${value}`,
         );
     }
+}
+
+// A value that is no link. Measures are rounded, with all their digits on hovering.
+function plainValue(value) {
+    if (typeof value === 'number' && !Number.isInteger(value)) {
+        return make('span', { title: `${value}` }, formatMeasure(value, DIGITS));
+    }
+    return make('span', {}, typeof value === 'object' ? JSON.stringify(value) : `${value}`);
 }
 
 function hintFor(selection) {

@@ -13,6 +13,8 @@ const KEYS = [
     ['P', 'p', 'Previous half-edge', 'prev'],
     ['T', 't', 'Twin half-edge', 'twin'],
     ['F', 'f', 'Frame the selection, or the whole mesh', 'frame'],
+    ['+', '+', 'Nearer', 'zoomIn'],
+    ['-', '-', 'Further', 'zoomOut'],
     ['G', 'g', 'Move vertices', 'move'],
     ['E', 'e', 'Extrude a face', 'extrude'],
     ['I', 'i', 'Inset a face', 'inset'],

@@ -1,5 +1,5 @@
-// link.js - what is shown, as the fragment of the page's address: #mesh=cube&face=3&camera=1,2,3,...
-// Pure.
+// link.js - what is shown, as the fragment of the page's address, such as
+// #mesh=cube&face=3&camera=1,2,3,... Pure.
 
 const KINDS = ['vertex', 'halfedge', 'edge', 'face'];
 const CAMERA_NUMBERS = 6;

@@ -1,6 +1,6 @@
 // list.js - the list of meshes.
 
-import { formatCount, make } from './dom.js';
+import { formatAbout, make } from './dom.js';
 
 export class MeshList {
     #list;
@@ -73,7 +73,7 @@ export class MeshList {
             make(
                 'span',
                 { className: 'mesh-counts' },
-                `${formatCount(counts.vertices)} vertices, ${formatCount(counts.faces)} faces`,
+                `${formatAbout(counts.vertices)} vertices, ${formatAbout(counts.faces)} faces`,
             ),
         );
         button.dataset.mesh = id;

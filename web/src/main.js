@@ -2,7 +2,7 @@
 
 import * as api from './api.js';
 import { make } from './dom.js';
-import { pointAt } from './geometry.js';
+import { framing } from './framing.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
 import { formatLink, parseLink } from './link.js';
@@ -17,6 +17,9 @@ import { Uploads } from './upload.js';
 
 // A pointer that moved further than this between down and up was orbiting.
 const CLICK_PIXELS = 4;
+
+// Browsers refuse an address that changes often: this long after the camera's last move.
+const LINK_DELAY = 250;
 
 const SPLIT_TITLES = {
     edge_split: 'Split the edge and the faces beside it',
@@ -50,7 +53,7 @@ const list = new MeshList(
 );
 const tools = new Tools(
     { select: page('operation'), form: page('parameters') },
-    { onRun: (operation) => session.run(operation).catch(fail), onError: fail },
+    { onRun: run, onError: fail },
 );
 new Uploads(
     {
@@ -70,6 +73,10 @@ new Uploads(
 );
 const renderer = makeRenderer();
 
+function run(operation) {
+    session.run(operation).catch(fail);
+}
+
 function makeRenderer() {
     try {
         return new Renderer(canvas, {
@@ -77,7 +84,7 @@ function makeRenderer() {
             onLost: (lost) => {
                 page('context-lost').hidden = !lost;
             },
-            onMove: writeLink,
+            onMove: writeLinkSoon,
         });
     } catch (error) {
         page('no-webgl').hidden = false;
@@ -100,12 +107,12 @@ function markFrame(shown) {
 }
 
 function shown() {
-    const { mesh, summary, selection } = session;
-    return mesh === null
+    const { mesh, shown: content, selection } = session;
+    return content === null
         ? null
         : {
               mesh,
-              revision: summary.revision,
+              revision: content.revision,
               selection: selection.map(({ kind, id }) => `${kind}:${id}`).join(' '),
           };
 }
@@ -113,7 +120,7 @@ function shown() {
 // The session changed: see Session for what.
 function update(what) {
     if (what === 'mesh' || what === 'revision') {
-        renderer?.show(session.geometry, session.boundary, shown());
+        drawMesh();
         showMesh();
     }
     if (what === 'mesh') {
@@ -128,8 +135,18 @@ function update(what) {
     showState();
 }
 
+function drawMesh() {
+    const { geometry, boundary } = session.shown;
+    try {
+        renderer?.show(geometry, boundary, shown());
+    } catch (error) {
+        renderer.show(null, [], shown());
+        fail(error);
+    }
+}
+
 function showMesh() {
-    const { mesh, summary } = session;
+    const { mesh, summary } = session.shown;
     const name = summary.name || mesh;
     page('mesh-title').textContent = name;
     document.title = `${name} \u2013 hedge`;
@@ -145,7 +162,8 @@ function showMesh() {
 }
 
 function showState() {
-    const { mesh, loading, busy, history, split } = session;
+    const { mesh, loading, busy, split } = session;
+    const history = session.shown?.history;
     const ready = mesh !== null && !busy;
     page('split').disabled = !ready || split === null;
     page('split').title = SPLIT_TITLES[split] ?? 'Select a face, an edge or two vertices to split';
@@ -185,7 +203,7 @@ canvas.addEventListener('pointerup', (event) => {
     const y = event.clientY - box.top;
     const screen = { matrix: renderer.matrix, width: box.width, height: box.height, x, y };
     const seen = renderer.look(x, y, REACH);
-    const chosen = choose(pickMode(), session.geometry, seen, screen);
+    const chosen = choose(pickMode(), session.shown.geometry, seen, screen);
     session.pick(chosen, event.shiftKey).catch(fail);
 });
 
@@ -194,27 +212,14 @@ function setPickMode(mode) {
     renderer?.showVertices(mode === 'vertex');
 }
 
-// The vertices of the selection and, where it is one vertex, those around it.
+// The selection, or the whole mesh where there is none.
 function frameSelection() {
-    const ids = session.marks.flatMap(({ kind, id, from, to }) => {
-        if (kind === 'vertex') {
-            return [id];
-        }
-        return kind === 'face' ? cornersOf(id) : [from, to];
-    });
-    if (ids.length === 1) {
-        ids.push(...session.arrows.map(({ target }) => target));
-    }
-    if (ids.length === 0) {
+    const found = session.shown === null ? null : framing(session.shown.geometry, session);
+    if (found === null) {
         renderer?.fit();
     } else {
-        renderer?.frame(ids.map((id) => pointAt(session.geometry, id)));
+        renderer?.frame(found);
     }
-}
-
-function cornersOf(face) {
-    const chosen = session.selection.find(({ kind, id }) => kind === 'face' && id === face);
-    return chosen.element.vertices;
 }
 
 function openTool(name) {
@@ -223,7 +228,7 @@ function openTool(name) {
     }
 }
 
-// What X does to the last selected element.
+// What X does to what is selected: to the last one where the operation takes only one.
 function removeSelection() {
     const last = session.selection.at(-1);
     const operations = {
@@ -233,14 +238,22 @@ function removeSelection() {
         face: 'face_delete',
     };
     if (last !== undefined) {
-        session.run({ op: operations[last.kind], [last.kind]: last.id }).catch(fail);
+        run(tools.operationOn(operations[last.kind], session.selection));
     }
 }
 
 // --- the address ---
 
+let linkTimer = 0;
+
+function writeLinkSoon() {
+    clearTimeout(linkTimer);
+    linkTimer = setTimeout(writeLink, LINK_DELAY);
+}
+
 // Moving the camera makes no entry in the browser's history.
 function writeLink() {
+    clearTimeout(linkTimer);
     const { mesh, selection } = session;
     if (mesh !== null) {
         const { kind, id } = selection.at(-1) ?? {};
@@ -270,8 +283,8 @@ async function followLink() {
 async function saveScreenshot() {
     const blob = await renderer.capture();
     const address = URL.createObjectURL(blob);
-    const link = make('a', { href: address, download: `${session.summary.name || session.mesh}.png` });
-    link.click();
+    const name = session.shown.summary.name || session.mesh;
+    make('a', { href: address, download: `${name}.png` }).click();
     URL.revokeObjectURL(address);
 }
 
@@ -293,6 +306,8 @@ listenToKeys(canvas, {
     prev: () => session.step('prev').catch(fail),
     twin: () => session.step('twin').catch(fail),
     frame: frameSelection,
+    zoomIn: () => renderer?.zoom(true),
+    zoomOut: () => renderer?.zoom(false),
     move: () => openTool('vertex_move'),
     extrude: () => openTool('face_extrude'),
     inset: () => openTool('face_inset'),

@@ -1,19 +1,44 @@
 // pick.js - from what the id buffer shows around the pointer to one element. Pure.
 //
-// The renderer says which triangles and vertices are visible near the pointer, nearest first (see
-// Renderer.look). Kinds are never mixed: in edge mode only an edge can be picked, and so on. Near
-// the pointer what is seen counts; else an edge or a corner of the face under the pointer does.
+// The renderer reads which triangles and vertices are visible near the pointer. Kinds are never
+// mixed: in edge mode only an edge can be picked, and so on. Near the pointer what is seen counts;
+// else an edge or a corner of the face under the pointer does.
 
-import {
-    edgesOfTriangles,
-    faceOf,
-    pointAt,
-    trianglesOfFace,
-} from './geometry.js';
+import { edgesOfTriangles, faceOf, pointAt, trianglesOfFace } from './geometry.js';
 import { distanceToPoint, distanceToSegment } from './view.js';
 
 // CSS pixels around the pointer in which a visible edge or vertex is meant.
 export const REACH = 8;
+
+// Kinds in the id buffer, see shaders.js.
+const TRIANGLE = 1;
+const VERTEX = 2;
+
+// What a square of `size` x `size` pixels of the id buffer shows, nearest to its middle first:
+// {under, away, triangles, vertices}, where `under` is the nearest triangle or -1, `away` how far
+// it is in pixels. `ids` holds kind, id, 0, 0 of each pixel.
+export function readSquare(ids, size) {
+    const radius = (size - 1) / 2;
+    const found = [];
+    for (let i = 0; i < size * size; i++) {
+        if (ids[4 * i] !== 0) {
+            const dx = (i % size) - radius;
+            const dy = Math.floor(i / size) - radius;
+            found.push({ kind: ids[4 * i], id: ids[4 * i + 1], away: dx * dx + dy * dy });
+        }
+    }
+    found.sort((a, b) => a.away - b.away);
+    const unique = (kind) => [
+        ...new Set(found.filter((one) => one.kind === kind).map(({ id }) => id)),
+    ];
+    const nearestOne = found.find(({ kind }) => kind === TRIANGLE);
+    return {
+        under: nearestOne?.id ?? -1,
+        away: Math.sqrt(nearestOne?.away ?? Infinity),
+        triangles: unique(TRIANGLE),
+        vertices: unique(VERTEX),
+    };
+}
 
 // Returns {kind: 'face', id}, {kind: 'vertex', id}, {kind: 'edge', from, to} or {kind: 'halfedge',
 // from, to}, or null when there is nothing. `seen` is {under, triangles, vertices}; `screen` is
@@ -53,8 +78,7 @@ function chooseEdge(geometry, seen, screen) {
 // nearest visible edge which runs along the hole, or the other face's.
 function chooseHalfedge(geometry, seen, screen) {
     if (seen.under >= 0 && seen.away === 0) {
-        const { triangles } = geometry;
-        const face = trianglesOfFace(triangles, faceOf(triangles, seen.under));
+        const face = trianglesOfFace(geometry, faceOf(geometry.triangles, seen.under));
         const edge = chooseEdge(geometry, { under: seen.under, triangles: face }, screen);
         return edge && { ...edge, kind: 'halfedge' };
     }
@@ -83,7 +107,7 @@ function edgesUnder(geometry, seen) {
         return [];
     }
     const { triangles } = geometry;
-    return edgesOfTriangles(triangles, trianglesOfFace(triangles, faceOf(triangles, seen.under)));
+    return edgesOfTriangles(triangles, trianglesOfFace(geometry, faceOf(triangles, seen.under)));
 }
 
 // [candidate, distance] of the nearest within reach, or null.

@@ -1,6 +1,6 @@
 // render.js - the only module that knows WebGL and three.
 //
-// The arrays of geometry.js become two textures; one draw call gives fill, polygon edges and flat
+// The arrays of geometry.js are two textures; one draw call gives fill, polygon edges and flat
 // shading. Nothing is drawn until something changed. After each frame `onFrame` gets what it shows,
 // so that a test can wait for a frame instead of for a time.
 
@@ -35,8 +35,9 @@ import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 
-import { arrowOf } from './arrows.js';
-import { edgesOfTriangles, pointAt, trianglesOfFace } from './geometry.js';
+import { MOST_PIXELS, arrowOf } from './arrows.js';
+import { ROW, edgesOfTriangles, pointAt, trianglesOfFace } from './geometry.js';
+import { readSquare } from './pick.js';
 import {
     ARROW_FRAGMENT,
     ARROW_VERTEX,
@@ -48,7 +49,14 @@ import {
     SURFACE_PICK,
     SURFACE_VERTEX,
 } from './shaders.js';
-import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance } from './view.js';
+import {
+    DIRECTION,
+    FIELD_OF_VIEW,
+    UP,
+    fitDistance,
+    pixelAtOne,
+    turnTo,
+} from './view.js';
 
 const BACKGROUND = 0x0e1116;
 const CHOSEN = 0xffb347;
@@ -67,13 +75,9 @@ const MARK_SIZE = 13;
 const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
 const EDGE_WIDTH = 0.75; // on each side of an edge
+const RAISED = 0.996; // of the distance, as dots in shaders.js
 
-// Rows of the textures; every WebGL2 has 2048.
-const TEXTURE_WIDTH = 2048;
-
-// What the id buffer holds: see the fragment shaders.
-const ID_TRIANGLE = 1;
-const ID_VERTEX = 2;
+const ZOOM = 0.8; // of the distance, a step of the keyboard
 
 export class NoWebGL extends Error {}
 
@@ -85,7 +89,10 @@ export class Renderer {
     #scene = new Scene();
     #pickScene = new Scene();
     #shared = { vertices: { value: null }, triangles: { value: null } };
+    #pixel = { value: 1 };
+    #edgeWidth = { value: EDGE_WIDTH };
     #surface;
+    #chosen;
     #dots;
     #lines;
     #hiddenLines;
@@ -96,6 +103,7 @@ export class Renderer {
     #pickDots;
     #geometry = null;
     #label = null;
+    #size = '';
     #scheduled = false;
     #onFrame;
     #onMove;
@@ -131,23 +139,23 @@ export class Renderer {
         new ResizeObserver(() => this.#resize()).observe(canvas);
     }
 
-    // Show a mesh with the edges of its boundary loops, or nothing (null). `label` is what onFrame
-    // will say is shown.
+    // Show a mesh with the edges of its boundary loops, pairs of vertices one after another, or
+    // nothing (null). `label` is what onFrame will say is shown. Throws a RangeError, and shows
+    // what it did before, when the mesh is larger than a texture can be.
     show(geometry, boundary, label) {
+        const vertices = geometry?.vertices ?? new Float32Array(4 * ROW);
+        const triangles = geometry?.triangles ?? new Uint32Array(4 * ROW);
+        const rows = Math.max(vertices.length, triangles.length) / (4 * ROW);
+        if (rows > this.#renderer.capabilities.maxTextureSize) {
+            throw new RangeError('This mesh is larger than the graphics memory can hold.');
+        }
         this.#shared.vertices.value?.dispose();
         this.#shared.triangles.value?.dispose();
         this.#geometry = geometry;
-        this.#label = label;
-        const vertices = geometry?.vertices ?? new Float32Array(0);
-        const triangles = geometry?.triangles ?? new Uint32Array(0);
-        this.#shared.vertices.value = this.#texture(vertices, RGBAFormat, FloatType);
-        this.#shared.triangles.value = this.#texture(
-            triangles,
-            RGBAIntegerFormat,
-            UnsignedIntType,
-        );
-        this.#surface.geometry.setDrawRange(0, (3 * triangles.length) / 4);
-        this.#dots.geometry.setDrawRange(0, vertices.length / 4);
+        this.#shared.vertices.value = textureOf(vertices, RGBAFormat, FloatType);
+        this.#shared.triangles.value = textureOf(triangles, RGBAIntegerFormat, UnsignedIntType);
+        this.#surface.geometry.setDrawRange(0, 3 * (geometry?.triangleCount ?? 0));
+        this.#dots.geometry.setDrawRange(0, geometry?.vertexCount ?? 0);
         this.#setDots();
         this.#setBoundary(boundary);
         this.select([], [], label);
@@ -158,11 +166,12 @@ export class Renderer {
     // before.
     select(marks, halfedges, label) {
         this.#label = label;
-        const faces = idsOf(marks, 'face');
-        const triangles = this.#geometry?.triangles;
-        const edges = faces.flatMap((face) =>
-            edgesOfTriangles(triangles, trianglesOfFace(triangles, face)),
-        );
+        if (this.#geometry === null) {
+            [marks, halfedges] = [[], []];
+        }
+        const geometry = this.#geometry;
+        const triangles = idsOf(marks, 'face').flatMap((face) => trianglesOfFace(geometry, face));
+        const edges = edgesOfTriangles(geometry?.triangles, triangles);
         let directed = false;
         for (const mark of marks) {
             if (mark.kind === 'edge' || mark.kind === 'halfedge') {
@@ -170,8 +179,8 @@ export class Renderer {
                 directed ||= mark.kind === 'halfedge';
             }
         }
-        this.#surface.material.uniforms.selected.value = faces.at(-1) ?? -1;
-        this.#setLines(edges, directed);
+        this.#setChosen(triangles);
+        this.#setLines(edges.flat(), directed);
         this.#setMarks(idsOf(marks, 'vertex'));
         this.#setArrows(halfedges);
         this.#draw();
@@ -190,18 +199,25 @@ export class Renderer {
         this.#look(center, DIRECTION, radius);
     }
 
-    // Put the camera nearer or further on the side it is, so that some points are seen with what is
-    // around them.
-    frame(points) {
-        const [low, high] = [Math.min, Math.max].map((pick) =>
-            [0, 1, 2].map((axis) => pick(...points.map((point) => point[axis]))),
-        );
-        const center = low.map((value, axis) => (value + high[axis]) / 2);
-        const radius = Math.max(
-            ...points.map((point) => Math.hypot(...point.map((value, i) => value - center[i]))),
-        );
+    // Put the camera where a ball is seen with what is around it; `normal` is where what is in it
+    // looks to, null where that is nowhere. A camera behind it goes around the mesh, another stays
+    // on its side.
+    frame({ center, radius, normal }) {
         const away = this.#camera.position.clone().sub(this.#controls.target).normalize();
-        this.#look(center, away.toArray(), radius > 0 ? 1.8 * radius : 0.1);
+        const direction = turnTo(away.toArray(), normal);
+        this.#look(center, direction, radius > 0 ? 1.8 * radius : 0.1);
+    }
+
+    // Nearer (true) or further by a step.
+    zoom(nearer) {
+        const { target, minDistance, maxDistance } = this.#controls;
+        const away = this.#camera.position.clone().sub(target);
+        const distance = away.length() * (nearer ? ZOOM : 1 / ZOOM);
+        away.setLength(Math.min(Math.max(distance, minDistance), maxDistance));
+        this.#camera.position.copy(target).add(away);
+        this.#controls.update();
+        this.#draw();
+        this.#onMove();
     }
 
     #look(center, direction, radius) {
@@ -235,9 +251,8 @@ export class Renderer {
         return new Promise((resolve) => this.#canvas.toBlob(resolve, 'image/png'));
     }
 
-    // What is visible within `reach` of a place on the canvas, nearest first:
-    // {under, away, triangles, vertices}, where `under` is the nearest triangle or -1, `away` how
-    // far it is in pixels, and vertices are those shown as dots.
+    // What is visible within `reach` of a place on the canvas, as readSquare() of pick.js says;
+    // vertices are those shown as dots.
     look(x, y, reach) {
         const ratio = this.#renderer.getPixelRatio();
         const radius = Math.ceil(reach * ratio);
@@ -262,7 +277,7 @@ export class Renderer {
         this.#renderer.setClearColor(BACKGROUND, 1);
         this.#camera.clearViewOffset();
         target.dispose();
-        return sortIds(ids, size);
+        return readSquare(ids, size);
     }
 
     // View and projection, column-major, as view.js wants it.
@@ -283,7 +298,7 @@ export class Renderer {
                 uniforms: { ...this.#shared, ...uniforms },
                 side: DoubleSide,
                 blending: NoBlending,
-                // Behind the lines and dots that lie on it.
+                // Behind what lies on it.
                 polygonOffset: true,
                 polygonOffsetFactor: 1,
                 polygonOffsetUnits: 1,
@@ -303,10 +318,12 @@ export class Renderer {
         };
         this.#surface = new Mesh(
             new BufferGeometry(),
-            surface(SURFACE_FRAGMENT, {
-                selected: { value: -1 },
-                edgeWidth: { value: EDGE_WIDTH },
-            }),
+            surface(SURFACE_FRAGMENT, { chosen: { value: false }, edgeWidth: this.#edgeWidth }),
+        );
+        // The same triangles again, a little nearer.
+        this.#chosen = new Mesh(
+            new BufferGeometry(),
+            surface(SURFACE_FRAGMENT, { chosen: { value: true }, edgeWidth: this.#edgeWidth }),
         );
         this.#dots = new Points(new BufferGeometry(), dots(DOT_FRAGMENT, dotUniforms));
         this.#marks = new Points(
@@ -327,18 +344,24 @@ export class Renderer {
         this.#hiddenLines = new LineSegments2(this.#lines.geometry, line(GreaterDepth, 0.3));
         this.#boundary = new LineSegments2(new LineSegmentsGeometry(), line(LessEqualDepth, 1));
         this.#boundary.material.linewidth = BOUNDARY_WIDTH;
+        this.#boundary.material.vertexColors = false;
+        this.#boundary.material.color.set(BOUNDARY);
         this.#arrows = new Mesh(
             new BufferGeometry(),
             new RawShaderMaterial({
                 glslVersion: GLSL3,
                 vertexShader: ARROW_VERTEX,
                 fragmentShader: ARROW_FRAGMENT,
+                uniforms: { pixel: this.#pixel, mostPixels: { value: MOST_PIXELS } },
                 side: DoubleSide,
                 blending: NoBlending,
             }),
         );
+        this.#chosen.material.polygonOffsetFactor = 0.5;
+        this.#chosen.material.polygonOffsetUnits = 0.5;
         this.#add(this.#scene, [
             this.#surface,
+            this.#chosen,
             this.#boundary,
             this.#dots,
             this.#arrows,
@@ -363,20 +386,6 @@ export class Renderer {
         });
     }
 
-    #texture(array, format, type) {
-        const rows = Math.max(Math.ceil(array.length / 4 / TEXTURE_WIDTH), 1);
-        if (rows > this.#renderer.capabilities.maxTextureSize) {
-            throw new RangeError('This mesh is larger than the graphics memory can hold.');
-        }
-        const whole = new array.constructor(4 * TEXTURE_WIDTH * rows);
-        whole.set(array);
-        const texture = new DataTexture(whole, TEXTURE_WIDTH, rows, format, type);
-        texture.minFilter = NearestFilter;
-        texture.magFilter = NearestFilter;
-        texture.needsUpdate = true;
-        return texture;
-    }
-
     #setDots() {
         const visible = this.#allVertices || (this.#geometry?.hasIsolated ?? false);
         this.#dots.material.uniforms.isolatedOnly.value = !this.#allVertices;
@@ -384,76 +393,95 @@ export class Renderer {
         this.#pickDots.visible = visible;
     }
 
-    #setLines(edges, directed) {
-        this.#lines.visible = edges.length > 0;
-        this.#hiddenLines.visible = edges.length > 0;
-        const geometry = this.#segments(edges, (start) =>
-            directed && start ? CHOSEN_START : CHOSEN,
-        );
-        this.#lines.geometry.dispose();
-        this.#lines.geometry = geometry;
-        this.#hiddenLines.geometry = geometry;
+    #setChosen(triangles) {
+        const corners = triangles.flatMap((one) => [3 * one, 3 * one + 1, 3 * one + 2]);
+        const geometry = new BufferGeometry();
+        geometry.setIndex(new BufferAttribute(new Uint32Array(corners), 1));
+        this.#replace(this.#chosen, geometry, corners.length > 0);
     }
 
-    #setBoundary(edges) {
-        this.#boundary.visible = edges.length > 0;
-        this.#boundary.geometry.dispose();
-        this.#boundary.geometry = this.#segments(edges, () => BOUNDARY);
-    }
-
-    // Lines between pairs of vertices; `colorOf(start)` of either end.
-    #segments(edges, colorOf) {
-        const geometry = new LineSegmentsGeometry();
-        const points = new Float32Array(6 * edges.length);
-        const colors = new Float32Array(6 * edges.length);
-        edges.flat().forEach((vertex, i) => {
-            points.set(pointAt(this.#geometry, vertex), 3 * i);
-            new Color(colorOf(i % 2 === 0)).toArray(colors, 3 * i);
-        });
-        if (edges.length > 0) {
-            geometry.setPositions(points);
+    #setLines(ends, directed) {
+        const geometry = this.#segments(ends);
+        if (ends.length > 0) {
+            const [chosen, start] = [CHOSEN, CHOSEN_START].map((hex) => new Color(hex).toArray());
+            const colors = ends.flatMap((_, i) => (directed && i % 2 === 0 ? start : chosen));
             geometry.setColors(colors);
+        }
+        this.#replace(this.#lines, geometry, ends.length > 0);
+        this.#hiddenLines.geometry = geometry;
+        this.#hiddenLines.visible = ends.length > 0;
+    }
+
+    #setBoundary(ends) {
+        this.#replace(this.#boundary, this.#segments(ends), ends.length > 0);
+    }
+
+    // Lines between pairs of vertices.
+    #segments(ends) {
+        const geometry = new LineSegmentsGeometry();
+        if (ends.length > 0) {
+            const { vertices } = this.#geometry;
+            const points = new Float32Array(3 * ends.length);
+            for (let i = 0; i < ends.length; i++) {
+                for (let axis = 0; axis < 3; axis++) {
+                    points[3 * i + axis] = vertices[4 * ends[i] + axis];
+                }
+            }
+            geometry.setPositions(points);
         }
         return geometry;
     }
 
     #setArrows(halfedges) {
-        const points = [];
-        const colors = [];
+        const [position, spread, size, color] = [[], [], [], []];
         for (const halfedge of halfedges) {
             const arrow = arrowOf(this.#geometry, halfedge);
-            const color = new Color().setHex(ARROWS[halfedge.role], NoColorSpace).toArray();
-            points.push(...arrow.flat());
-            colors.push(...arrow.flatMap(() => color));
+            const tint = new Color().setHex(ARROWS[halfedge.role], NoColorSpace).toArray();
+            for (let i = 0; i < (arrow?.places.length ?? 0); i++) {
+                position.push(...arrow.places[i]);
+                spread.push(...arrow.spreads[i]);
+                size.push(arrow.size);
+                color.push(...tint);
+            }
         }
         const geometry = new BufferGeometry();
-        for (const [name, array] of Object.entries({ position: points, color: colors })) {
-            geometry.setAttribute(name, new BufferAttribute(new Float32Array(array), 3));
+        for (const [name, array] of Object.entries({ position, spread, size, color })) {
+            const values = new BufferAttribute(new Float32Array(array), array === size ? 1 : 3);
+            geometry.setAttribute(name, values);
         }
-        this.#arrows.geometry.dispose();
-        this.#arrows.geometry = geometry;
-        this.#arrows.visible = points.length > 0;
+        this.#replace(this.#arrows, geometry, size.length > 0);
     }
 
     #setMarks(vertices) {
         const points = vertices.flatMap((vertex) => pointAt(this.#geometry, vertex));
         const geometry = new BufferGeometry();
         geometry.setAttribute('position', new BufferAttribute(new Float32Array(points), 3));
-        this.#marks.geometry.dispose();
-        this.#marks.geometry = geometry;
-        this.#marks.visible = points.length > 0;
+        this.#replace(this.#marks, geometry, points.length > 0);
+    }
+
+    #replace(object, geometry, visible) {
+        object.geometry.dispose();
+        object.geometry = geometry;
+        object.visible = visible;
     }
 
     #resize() {
-        const { clientWidth, clientHeight } = this.#canvas;
+        const width = Math.max(this.#canvas.clientWidth, 1);
+        const height = Math.max(this.#canvas.clientHeight, 1);
         const ratio = window.devicePixelRatio;
+        const size = `${width} ${height} ${ratio}`;
+        if (size === this.#size) {
+            return; // a frame of a large mesh is dear
+        }
+        this.#size = size;
         this.#renderer.setPixelRatio(ratio);
-        this.#renderer.setSize(Math.max(clientWidth, 1), Math.max(clientHeight, 1), false);
-        this.#camera.aspect = Math.max(clientWidth, 1) / Math.max(clientHeight, 1);
+        this.#renderer.setSize(width, height, false);
+        this.#camera.aspect = width / height;
         this.#camera.updateProjectionMatrix();
         this.#dots.material.uniforms.size.value = DOT_SIZE * ratio;
         this.#marks.material.uniforms.size.value = MARK_SIZE * ratio;
-        this.#surface.material.uniforms.edgeWidth.value = EDGE_WIDTH * ratio;
+        this.#edgeWidth.value = EDGE_WIDTH * ratio;
+        this.#pixel.value = pixelAtOne(height);
         this.#draw();
     }
 
@@ -479,8 +507,18 @@ export class Renderer {
         });
     }
 
+    // A line is flat, and a surface that slopes would cut it: shrink it towards the camera, where
+    // it is seen at the same place.
+    #raiseLines() {
+        for (const lines of [this.#lines, this.#hiddenLines, this.#boundary]) {
+            lines.scale.setScalar(RAISED);
+            lines.position.copy(this.#camera.position).multiplyScalar(1 - RAISED);
+        }
+    }
+
     #render() {
         this.#setDepthRange();
+        this.#raiseLines();
         this.#renderer.render(this.#scene, this.#camera);
     }
 }
@@ -500,27 +538,11 @@ function idsOf(marks, kind) {
     return marks.filter((mark) => mark.kind === kind).map(({ id }) => id);
 }
 
-// The ids of a square of pixels, from the middle outwards, each once.
-function sortIds(ids, size) {
-    const radius = (size - 1) / 2;
-    const found = [];
-    for (let i = 0; i < size * size; i++) {
-        if (ids[4 * i] !== 0) {
-            const dx = (i % size) - radius;
-            const dy = Math.floor(i / size) - radius;
-            found.push({ kind: ids[4 * i], id: ids[4 * i + 1], away: dx * dx + dy * dy });
-        }
-    }
-    found.sort((a, b) => a.away - b.away);
-    const unique = (kind) => [
-        ...new Set(found.filter((one) => one.kind === kind).map(({ id }) => id)),
-    ];
-    const triangles = unique(ID_TRIANGLE);
-    const nearest = found.find((one) => one.kind === ID_TRIANGLE);
-    return {
-        under: nearest?.id ?? -1,
-        away: Math.sqrt(nearest?.away ?? Infinity),
-        triangles,
-        vertices: unique(ID_VERTEX),
-    };
+// A texture that has an array of whole rows for its pixels.
+function textureOf(array, format, type) {
+    const texture = new DataTexture(array, ROW, array.length / (4 * ROW), format, type);
+    texture.minFilter = NearestFilter;
+    texture.magFilter = NearestFilter;
+    texture.needsUpdate = true;
+    return texture;
 }

@@ -6,17 +6,11 @@
 
 import * as api from './api.js';
 import { describe } from './around.js';
-import { hasVertex, trianglesOfFace, unpack } from './geometry.js';
-
-// How often a mesh that changes while it is being read is read again.
-const READS = 5;
+import { hasVertex, trianglesOfFace } from './geometry.js';
+import { readRevision } from './revision.js';
 
 export class Session {
-    mesh = null; // id, or null when none is open
-    summary = null;
-    geometry = null; // see geometry.js
-    boundary = []; // the half-edges of all boundary loops, as [origin, target]
-    history = { undo: 0, redo: 0 };
+    shown = null; // see revision.js; null when no mesh is open
     selection = []; // {kind, id, element}, the last chosen last
     around = null; // what describe() says of the last one
     loading = null; // part of the mesh that has been read, 0 to 1, or null
@@ -31,14 +25,19 @@ export class Session {
         this.#onChange = onChange;
     }
 
+    // The id of the open mesh or null.
+    get mesh() {
+        return this.shown?.mesh ?? null;
+    }
+
     // Open a mesh and show it once all of it is there. A later call overtakes an earlier one.
     async open(mesh) {
         this.#opening?.abort();
         const opening = new AbortController();
         this.#opening = opening;
         try {
-            const content = await this.#read(mesh, opening.signal);
-            Object.assign(this, content, { mesh, selection: [], around: null });
+            const shown = await this.#read(mesh, opening.signal);
+            Object.assign(this, { shown, selection: [], around: null });
             this.#choice++;
             this.#onChange('mesh');
         } catch (error) {
@@ -56,11 +55,11 @@ export class Session {
     // Read the mesh again as it is now. What is selected stays selected where it still lives.
     async reload() {
         const { mesh } = this;
-        const content = await this.#read(mesh, undefined);
+        const shown = await this.#read(mesh, undefined);
         const selection = await refresh(mesh, this.selection);
         const around = await this.#describe(mesh, selection.at(-1));
         if (this.mesh === mesh) {
-            Object.assign(this, content, { selection, around });
+            Object.assign(this, { shown, selection, around });
             this.#choice++;
             this.#onChange('revision');
         }
@@ -137,9 +136,9 @@ export class Session {
     }
 
     #isShown({ kind, id, from, to }) {
-        const { geometry } = this;
+        const { geometry } = this.shown;
         if (kind === 'face') {
-            return trianglesOfFace(geometry.triangles, id).length > 0;
+            return trianglesOfFace(geometry, id).length > 0;
         }
         return kind === 'vertex'
             ? hasVertex(geometry, id)
@@ -207,7 +206,7 @@ export class Session {
         }
         this.#setBusy(true);
         try {
-            await send(this.summary.revision);
+            await send(this.shown.revision);
             await this.reload();
         } catch (error) {
             if (error.status === 412) {
@@ -219,28 +218,8 @@ export class Session {
         }
     }
 
-    // Summary, geometry, boundary and history of one revision.
-    async #read(mesh, signal) {
-        for (let i = 0; i < READS; i++) {
-            const buffer = await api.getGeometry(mesh, (part) => this.#setLoading(part), signal);
-            const geometry = unpack(buffer);
-            const [summary, history] = await Promise.all([
-                api.getSummary(mesh, signal),
-                api.getHistory(mesh, signal),
-            ]);
-            const { revision, loops } =
-                summary.counts.boundary_loops > 0
-                    ? await api.getBoundaries(mesh, signal)
-                    : { revision: summary.revision, loops: [] };
-            const revisions = [summary.revision, history.revision, revision];
-            if (revisions.every((one) => one === geometry.revision)) {
-                return { summary, history, geometry, boundary: loops.flatMap(edgesOfLoop) };
-            }
-        }
-        throw new api.Problem({
-            title: 'Mesh too busy',
-            detail: 'The mesh changed each time while it was being read.',
-        });
+    #read(mesh, signal) {
+        return readRevision(mesh, (part) => this.#setLoading(part), signal);
     }
 
     #setLoading(part) {
@@ -263,10 +242,6 @@ function markOf({ kind, id, element }) {
     }
     const [from, to] = kind === 'edge' ? element.vertices : [element.origin, element.target];
     return { kind, from, to };
-}
-
-function edgesOfLoop({ vertices }) {
-    return vertices.map((vertex, i) => [vertex, vertices[(i + 1) % vertices.length]]);
 }
 
 // What still lives of a selection, as it is now.

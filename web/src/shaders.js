@@ -26,7 +26,6 @@ uvec4 triangleAt(int index) {
 // left to the fragments' derivatives: all three corners here would be fetched three times.
 export const SURFACE_VERTEX = `${TEXTURES}
 flat out uint triangle;
-flat out uint face;
 flat out uint sides;
 out vec3 bary;
 out vec3 eye;
@@ -37,7 +36,6 @@ void main() {
     uvec4 words = triangleAt(index);
     vec4 seen = modelViewMatrix * vec4(vertexAt(int(words[corner])).xyz, 1.0);
     triangle = uint(index);
-    face = words.w & 0x1fffffffu;
     sides = words.w >> 29;
     bary = vec3(corner == 0, corner == 1, corner == 2);
     eye = -seen.xyz;
@@ -45,16 +43,14 @@ void main() {
 }
 `;
 
-// Fill, polygon edges and the tint of a selected face in one pass.
+// Fill and polygon edges in one pass; `chosen` is true for the faces that are selected.
 export const SURFACE_FRAGMENT = `
 precision highp float;
 precision highp int;
-flat in uint triangle;
-flat in uint face;
 flat in uint sides;
 in vec3 bary;
 in vec3 eye;
-uniform int selected;
+uniform bool chosen;
 uniform float edgeWidth;
 out vec4 color;
 
@@ -72,7 +68,7 @@ void main() {
     vec3 fill = gl_FrontFacing ? FRONT : BACK;
     fill *= light;
     // Chosen stays chosen in the shade.
-    fill = int(face) == selected ? mix(fill, CHOSEN * (0.5 + 0.5 * light), 0.8) : fill;
+    fill = chosen ? mix(fill, CHOSEN * (0.5 + 0.5 * light), 0.8) : fill;
 
     // Pixels from each side: a -> b is across from the corner of bary.z, and so on.
     vec3 dx = dFdx(bary);
@@ -156,16 +152,23 @@ void main() {
 }
 `;
 
-// Half-edges: triangles with colours of their own, before the surface they lie on.
+// Half-edges: triangles with colours of their own, before the surface they lie on. See arrows.js;
+// `pixel` is the length of a CSS pixel at depth 1.
 export const ARROW_VERTEX = `
 precision highp float;
 in vec3 position;
+in vec3 spread;
+in float size;
 in vec3 color;
 uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
+uniform float pixel;
+uniform float mostPixels;
 out vec3 tint;
 void main() {
-    vec4 seen = modelViewMatrix * vec4(position, 1.0);
+    float depth = -(modelViewMatrix * vec4(position, 1.0)).z;
+    float scale = min(1.0, mostPixels * pixel * depth / size);
+    vec4 seen = modelViewMatrix * vec4(position + scale * spread, 1.0);
     seen.xyz *= 0.994;
     tint = color;
     gl_Position = projectionMatrix * seen;

@@ -15,7 +15,9 @@ export class Toasts {
     show(error) {
         const title = error.title || 'Something went wrong';
         const detail = error.detail || error.message || String(error);
-        const where = error.pointer ? ` (at ${error.pointer})` : '';
+        // The page sends one operation at a time: that it is the first says nothing.
+        const pointer = error.pointer?.replace(/^\/ops\/0/, '');
+        const where = pointer ? ` (at ${pointer})` : '';
         const toast = make(
             'div',
             { className: 'toast', role: 'alert' },

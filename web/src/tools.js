@@ -1,6 +1,7 @@
-// tools.js - a form for each operation of the server's table, its elements taken from the selection.
-// Nothing here knows any operation: a new row of the table appears by itself.
+// tools.js - a form for each operation of the server's table, its elements taken from the
+// selection. Nothing here knows any operation: a new row of the table appears by itself.
 
+import { Problem } from './api.js';
 import { make } from './dom.js';
 
 const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
@@ -9,7 +10,7 @@ const KINDS = Object.values(PLURALS);
 const HINTS = {
     point: 'x y z',
     points: 'x y z, one or more',
-    matrix: '16 numbers, row by row',
+    matrix: '16 numbers',
 };
 
 // What an element that is selected says of elements of other kinds.
@@ -26,6 +27,7 @@ export class Tools {
     #onRun;
     #operations = [];
     #selection = [];
+    #isEnabled = true;
     #isChosen = false; // an operation was chosen, and is kept whatever is selected
     #fields = new Map(); // parameter's name -> {param, read(), input}
 
@@ -56,9 +58,14 @@ export class Tools {
         this.#build();
     }
 
-    // Fill in what is selected: {kind, id, element}, the last chosen last.
+    // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the
+    // same, what was typed in its place stays too.
     setSelection(selection) {
+        const isSame = keyOf(selection) === keyOf(this.#selection);
         this.#selection = selection;
+        if (isSame) {
+            return;
+        }
         const fitting = this.#operations.find((operation) => this.#fits(operation));
         if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#operation)) {
             this.#select.value = fitting.name;
@@ -74,9 +81,20 @@ export class Tools {
     }
 
     setEnabled(enabled) {
+        this.#isEnabled = enabled;
         for (const button of this.#form.querySelectorAll('button')) {
             button.disabled = !enabled;
         }
+    }
+
+    // An operation on what is selected: on all of it where the server's table says it takes
+    // several, else on the last.
+    operationOn(name, selection) {
+        const { kind, id } = selection.at(-1);
+        const row = this.#operations.find((operation) => operation.name === name);
+        const { plural } = row?.params.find(({ type }) => type === kind) ?? {};
+        const ids = selection.map((chosen) => chosen.id);
+        return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: id };
     }
 
     // Show the form of an operation with the focus in its first field that is empty. False when the
@@ -105,7 +123,11 @@ export class Tools {
         this.#form.replaceChildren(
             make('p', { className: 'small' }, operation?.doc ?? ''),
             ...rows,
-            make('button', { type: 'submit', className: 'wide' }, 'Apply'),
+            make(
+                'button',
+                { type: 'submit', className: 'wide', disabled: !this.#isEnabled },
+                'Apply',
+            ),
         );
         this.#form.hidden = operation === undefined;
         this.#fill();
@@ -117,7 +139,8 @@ export class Tools {
         input.id = `param-${param.name}`;
         input.title = param.doc;
         this.#fields.set(param.name, { param, input });
-        const marks = [...others.map(({ name }) => `or ${name}`), !param.required && 'optional'];
+        const isOptional = !param.required && param.type !== 'flag';
+        const marks = [...others.map(({ name }) => `or ${name}`), isOptional && 'optional'];
         return make(
             'div',
             { className: 'field' },
@@ -166,6 +189,10 @@ export class Tools {
     }
 }
 
+function keyOf(selection) {
+    return selection.map(({ kind, id }) => `${kind}:${id}`).join();
+}
+
 function othersOf(params, { name, group }) {
     return group === undefined
         ? []
@@ -183,12 +210,16 @@ function inputFor(param) {
         return select;
     }
     const input = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
-    if (param.type === 'number' && param.default !== undefined) {
-        input.placeholder = `${param.default}`;
-    } else {
-        input.placeholder = HINTS[param.type] ?? (param.nullable ? 'id or none' : 'id');
-    }
+    input.placeholder = hintFor(param);
     return input;
+}
+
+// What stands in an empty field. A number that is left out is the server's to choose.
+function hintFor({ type, default: usual, required, nullable }) {
+    if (type === 'number') {
+        return usual === undefined ? (required ? 'number' : 'left out') : `${usual}`;
+    }
+    return HINTS[type] ?? (nullable ? 'id or none' : 'id');
 }
 
 // [member, value] of a field; undefined where it is left out. The server judges what is missing or
@@ -208,7 +239,10 @@ function readField(param, input) {
     if (param.nullable && text === 'none') {
         return [name, null];
     }
-    const numbers = text.split(/[\s,;]+/).filter((word) => word !== '').map(toNumber);
+    const numbers = text
+        .split(/[\s,;]+/)
+        .filter((word) => word !== '')
+        .map((word) => toNumber(word, name));
     if (type === 'points') {
         const points = [];
         for (let i = 0; i < numbers.length; i += 3) {
@@ -219,13 +253,26 @@ function readField(param, input) {
     if (type === 'point' || type === 'matrix' || type in PLURALS) {
         return [name, numbers];
     }
-    return numbers.length > 1 && param.plural ? [param.plural, numbers] : [name, numbers[0]];
+    if (numbers.length === 1) {
+        return [name, numbers[0]];
+    }
+    if (param.plural === undefined) {
+        throw new Problem({
+            title: 'One number',
+            detail: `${name} is one number, not \u201c${text}\u201d.`,
+        });
+    }
+    return [param.plural, numbers];
 }
 
-function toNumber(word) {
-    const value = Number(word);
-    if (Number.isNaN(value)) {
-        throw new TypeError(`\u201c${word}\u201d is not a number.`);
+// Digits as people write them: what else JavaScript reads, such as 0x10, is a slip.
+function toNumber(word, name) {
+    const value = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(word) ? Number(word) : NaN;
+    if (!Number.isFinite(value)) {
+        throw new Problem({
+            title: 'Not a number',
+            detail: `${name}: \u201c${word}\u201d is not a number.`,
+        });
     }
     return value;
 }

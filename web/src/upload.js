@@ -39,11 +39,17 @@ export class Uploads {
                 this.#setDepth(Math.max(this.#depth - 1, 0));
             }
         });
-        document.addEventListener('dragover', (event) => event.preventDefault());
+        document.addEventListener('dragover', (event) => {
+            if (hasFiles(event)) {
+                event.preventDefault();
+            }
+        });
         document.addEventListener('drop', (event) => {
-            event.preventDefault();
-            this.#setDepth(0);
-            this.#add([...(event.dataTransfer?.files ?? [])]);
+            if (hasFiles(event)) {
+                event.preventDefault();
+                this.#setDepth(0);
+                this.#add([...event.dataTransfer.files]);
+            }
         });
     }
 

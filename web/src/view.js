@@ -21,6 +21,40 @@ export function fitDistance(aspect) {
     return 1.1 / Math.sin(narrow);
 }
 
+// How long a CSS pixel of a canvas of a height is at distance 1 of the camera.
+export function pixelAtOne(height) {
+    return (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360)) / height;
+}
+
+// The middle of the box of some points.
+export function middleOf(points) {
+    const [low, high] = [Math.min, Math.max].map((pick) =>
+        [0, 1, 2].map((axis) => pick(...points.map((point) => point[axis]))),
+    );
+    return low.map((value, axis) => (value + high[axis]) / 2);
+}
+
+// How far some points reach from a place; 0 where there are none.
+export function reachFrom(place, points) {
+    const away = (point) => Math.hypot(...point.map((value, i) => value - place[i]));
+    return Math.max(0, ...points.map(away));
+}
+
+// Less of the side that looks along `normal` than this is too little to see: cosine of the angle.
+const LEAST_SEEN = 0.3;
+
+// From where to look, both of length 1: `direction` itself where a side that looks along `normal`
+// is seen from there or there is no normal, else one near the normal on the same side of the mesh.
+export function turnTo(direction, normal) {
+    if (normal === null) {
+        return direction;
+    }
+    const seen = direction.reduce((sum, value, i) => sum + value * normal[i], 0);
+    return seen >= LEAST_SEEN
+        ? direction
+        : unit(normal.map((value, i) => value + 0.5 * (direction[i] - seen * normal[i])));
+}
+
 // Clip coordinates [x, y, z, w] of a point; `matrix` is view and projection, column-major.
 function toClip(matrix, point) {
     const clip = [0, 0, 0, 0];

@@ -1,0 +1,58 @@
+// The torus of a million quads: it opens, is picked in, edited and undone.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+
+import { isChosen, isSurface, launch, openPage, readCanvas, waitForFrame } from './browser.mjs';
+import { get, post, startDaemon } from './daemon.mjs';
+import { checkInspector, click, goTo, press, setMode } from './page.mjs';
+
+const SIDE = 1000;
+
+let browser;
+before(async () => {
+    browser = await launch();
+});
+after(() => browser?.close());
+
+test('a torus of a million quads opens, is picked in, edited and undone', async (t) => {
+    const daemon = await startDaemon(t);
+    const shape = { shape: 'torus', major_segments: SIDE, minor_segments: SIDE };
+    const { id: mesh, counts } = await post(daemon, '', { name: 'torus', ...shape });
+    assert.equal(counts.faces, SIDE * SIDE);
+    const page = await openPage(t, browser, daemon, { path: `/#mesh=${mesh}` });
+    page.setDefaultTimeout(120000);
+    await waitForFrame(page, { mesh, revision: 1 });
+    assert.ok((await readCanvas(page)).countOf(isSurface) > 50000);
+
+    const { width, height } = await page.locator('#canvas').boundingBox();
+    const place = { x: width / 2, y: 0.68 * height };
+    const picked = async (kind) => {
+        await click(page, place);
+        await page.locator(`#canvas[data-selection^="${kind}"]`).waitFor();
+        const selection = await page.locator('#canvas').getAttribute('data-selection');
+        const id = Number(selection.slice(kind.length + 1));
+        await checkInspector({ daemon, mesh, page }, kind, id);
+        return id;
+    };
+    const face = await picked('face');
+    await press(page, 'f');
+    await page.locator('#canvas').blur();
+    const canvas = await readCanvas(page);
+    assert.ok(isChosen(canvas.colour(width / 2, height / 2)));
+    assert.ok(canvas.countOf(isChosen) > 1000);
+
+    await page.getByRole('button', { name: 'Split' }).click();
+    await waitForFrame(page, { revision: 2 });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.faces, counts.faces + 3);
+    // The last of the new faces is where the server has it.
+    const made = counts.faces + 2;
+    await goTo(page, 'face', made);
+    await checkInspector({ daemon, mesh, page }, 'face', made);
+    await press(page, 'Control+z');
+    await waitForFrame(page, { revision: 3, selection: '' });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.faces, counts.faces);
+    await goTo(page, 'face', face);
+    await setMode(page, 'Edge');
+    await picked('edge');
+});

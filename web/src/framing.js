@@ -1,0 +1,50 @@
+// framing.js - where the camera should go to show what is selected. Pure.
+
+import { normalOfFace, pointAt } from './geometry.js';
+import { middleOf, reachFrom } from './view.js';
+
+// A sum of unit normals shorter than this has no direction: they look to all sides.
+const NOWHERE = 1e-3;
+
+// {center, radius, normal} of the selected elements, with what is around it where that is a single
+// vertex; null where nothing is selected. `selection`, `marks` and `arrows` are those of a Session.
+// The normal is where the selected faces look to, or those beside what is selected, null where that
+// is nowhere.
+export function framing(geometry, { selection, marks, arrows }) {
+    const placeOf = (id) => pointAt(geometry, id);
+    const ids = marks.flatMap(({ kind, id, from, to }) => {
+        if (kind === 'vertex') {
+            return [id];
+        }
+        return kind === 'face' ? cornersOf(selection, id) : [from, to];
+    });
+    if (ids.length === 0) {
+        return null;
+    }
+    const around = ids.length === 1 ? arrows.map(({ target }) => target) : ids;
+    const center = middleOf(ids.map(placeOf));
+    const faces = marks.filter(({ kind }) => kind === 'face').map(({ id }) => id);
+    const beside = arrows.map(({ face }) => face).filter((face) => face !== null);
+    return {
+        center,
+        radius: reachFrom(center, around.map(placeOf)),
+        normal: meanNormal(geometry, new Set(faces.length > 0 ? faces : beside)),
+    };
+}
+
+function cornersOf(selection, face) {
+    return selection.find(({ kind, id }) => kind === 'face' && id === face).element.vertices;
+}
+
+function meanNormal(geometry, faces) {
+    const sum = [0, 0, 0];
+    for (const face of faces) {
+        const normal = normalOfFace(geometry, face);
+        const length = Math.hypot(...normal);
+        normal.forEach((value, axis) => {
+            sum[axis] += length > 0 ? value / length : 0;
+        });
+    }
+    const length = Math.hypot(...sum);
+    return length > NOWHERE ? sum.map((value) => value / length) : null;
+}
