@@ -8,6 +8,8 @@ import path from 'node:path';
 import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 
+import { recorded } from './traffic.mjs';
+
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
 const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
 const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
@@ -21,9 +23,11 @@ export async function startDaemon(t) {
         child.on('exit', resolve);
         child.on('error', resolve);
     });
+    let proxy;
     const stop = async () => {
         child.kill('SIGTERM');
         await ended;
+        proxy?.close();
     };
     t.after(stop);
     const lines = createInterface({ input: child.stderr });
@@ -39,7 +43,8 @@ export async function startDaemon(t) {
     if (typeof url !== 'string') {
         throw new Error(`${program} ended before it listened: ${url}`);
     }
-    return { url, stop };
+    proxy = await recorded(url);
+    return { url: proxy.url, stop };
 }
 
 async function call(url, options) {
