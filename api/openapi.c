@@ -82,8 +82,27 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
     api_out_object_end(out);
 }
 
-/* Media types with the schema of those that are JSON. `example` gives a body of one for `route`. */
+/* Lines are of a component schema, but for the last. */
+static void write_line_schema(api_out *out, const char *line)
+{
+    static const char end[] =
+        "{\"type\":\"object\",\"properties\":{\"end\":{\"const\":true},"
+        "\"count\":{\"type\":\"integer\",\"minimum\":0,\"description\":\"Of the lines before.\"}},"
+        "\"required\":[\"end\",\"count\"]}";
+    api_out_key(out, "x-item-schema");
+    api_out_object_begin(out);
+    api_out_key(out, "oneOf");
+    api_out_array_begin(out);
+    api_schema_ref(out, "schemas", line);
+    api_out_raw(out, end, sizeof end - 1);
+    api_out_array_end(out);
+    api_out_object_end(out);
+}
+
+/* Media types with the schema of those that are JSON; that of a line is an extension, since OpenAPI
+ * has a word for it (itemSchema) only from 3.2 on. `example` gives a body of one for `route`. */
 static void write_content(api_out *out, const char *const *types, const char *schema,
+                          const char *line,
                           const char *(*example)(const char *route, const char *media),
                           const char *route)
 {
@@ -93,10 +112,12 @@ static void write_content(api_out *out, const char *const *types, const char *sc
         api_out_key(out, *types);
         api_out_object_begin(out);
         size_t length = strlen(*types);
-        bool json = length >= 4 && strcmp(*types + length - 4, "json") == 0 &&
-                    strcmp(*types, "application/x-ndjson") != 0;
+        bool lines = strcmp(*types, "application/x-ndjson") == 0;
+        bool json = length >= 4 && strcmp(*types + length - 4, "json") == 0 && !lines;
         if (json && schema != NULL) {
             api_schema_ref_key(out, "schema", schema);
+        } else if (lines && line != NULL) {
+            write_line_schema(out, line);
         }
         const char *body = example(route, *types);
         if (body != NULL && json) {
@@ -110,11 +131,14 @@ static void write_content(api_out *out, const char *const *types, const char *sc
     api_out_object_end(out);
 }
 
-static void write_header(api_out *out, const char *name, const char *doc)
+static void write_header(api_out *out, const char *name, const char *doc, bool required)
 {
     api_out_key(out, name);
     api_out_object_begin(out);
     api_out_key_string(out, "description", doc);
+    if (required) {
+        api_out_key_bool(out, "required", true);
+    }
     api_out_key(out, "schema");
     api_out_object_begin(out);
     api_out_key_string(out, "type", "string");
@@ -131,32 +155,69 @@ static bool answers(const api_route *route, int status)
     return *at == status;
 }
 
+static void write_success_headers(api_out *out, const api_route *route, int status)
+{
+    bool writes = (route->flags & API_WRITES) != 0;
+    bool tagged = answers(route, 304) || (writes && answers(route, status == 204 ? 200 : status));
+    if (!tagged && route->headers[0] == NULL) {
+        return;
+    }
+    api_out_key(out, "headers");
+    api_out_object_begin(out);
+    if (tagged) {
+        /* A dry run made no state. Neither knows one what published, but could not say more. */
+        bool always = status != 204 && route->body_kind != API_BODY_EDITS;
+        write_header(out, "ETag", "Names the state that is shown.", always);
+    }
+    if (status == 201) {
+        write_header(out, "Location", "Where the new mesh is.", true);
+    }
+    if (route->flags & (API_KEYED | API_KEYED_NEW)) {
+        write_header(out, "Idempotency-Replayed",
+                     "true: the answer of the first request with this key.", false);
+    }
+    for (size_t i = 0; status == 200 && route->headers[i] != NULL; i++) {
+        write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
+    }
+    api_out_object_end(out);
+}
+
 static void write_success(api_out *out, const api_route *route, int status)
 {
-    const char *what = status == 201   ? "Created."
+    const char *what = status == 201   ? "Created. Only where memory ran out right after does it "
+                                         "come without a body and tag."
                        : status == 204 ? "Done; nothing is returned."
                        : status == 304 ? "The client's copy is the present one."
                                        : "Success.";
-    bool tagged = answers(route, 304) || (status < 204 && (route->flags & API_WRITES));
     api_out_object_begin(out);
     api_out_key_string(out, "description", what);
-    if (tagged) {
-        api_out_key(out, "headers");
-        api_out_object_begin(out);
-        write_header(out, "ETag", "Names the state that is shown.");
-        if (status == 201) {
-            write_header(out, "Location", "Where the new mesh is.");
-        }
-        if (route->flags & (API_KEYED | API_KEYED_NEW)) {
-            write_header(out, "Idempotency-Replayed",
-                         "true: the answer of the first request with this key.");
-        }
-        api_out_object_end(out);
-    }
+    write_success_headers(out, route, status);
     if (status == 200 || status == 201) {
-        write_content(out, route->produces, route->response, api_example_response, route->name);
+        write_content(out, route->produces, route->response, route->line, api_example_response,
+                      route->name);
     }
     api_out_object_end(out);
+}
+
+/* Refusals with a header of their own; all others are a "problem". */
+static const struct {
+    int status;
+    const char *name, *header, *doc;
+    bool required;
+} headed_problems[] = {
+    {405, "not_allowed", "Allow", "The methods of the path.", true},
+    {409, "conflict", "Retry-After", "Seconds, where waiting helps.", false},
+    {503, "unavailable", "Retry-After", "Seconds.", true},
+};
+enum { HEADED_PROBLEMS = sizeof headed_problems / sizeof *headed_problems };
+
+static void write_refusal(api_out *out, int status)
+{
+    const char *name = "problem";
+    for (size_t i = 0; i < HEADED_PROBLEMS; i++) {
+        name = headed_problems[i].status == status ? headed_problems[i].name : name;
+    }
+    api_schema_ref(out, "responses", name);
 }
 
 static void write_responses(api_out *out, const api_route *route)
@@ -170,13 +231,13 @@ static void write_responses(api_out *out, const api_route *route)
         if (*status < 400) {
             write_success(out, route, *status);
         } else {
-            api_schema_ref(out, "responses", "problem");
+            write_refusal(out, *status);
         }
     }
     for (const int *status = api_route_common(); *status != 0; status++) {
         snprintf(code, sizeof code, "%d", *status);
         api_out_key(out, code);
-        api_schema_ref(out, "responses", "problem");
+        write_refusal(out, *status);
     }
     api_out_object_end(out);
 }
@@ -242,7 +303,7 @@ static void write_operation(api_out *out, const api_route *route)
         api_out_key(out, "requestBody");
         api_out_object_begin(out);
         api_out_key_bool(out, "required", route->body_kind != API_BODY_OPTION);
-        write_content(out, route->consumes, route->request, api_example_request, route->name);
+        write_content(out, route->consumes, route->request, NULL, api_example_request, route->name);
         api_out_object_end(out);
     }
     write_responses(out, route);
@@ -256,7 +317,7 @@ static bool is_first_of_path(size_t i)
             return false;
         }
     }
-    return !(api_route_at(i)->flags & API_FIXED);
+    return true;
 }
 
 static void write_paths(api_out *out)
@@ -288,9 +349,25 @@ static const char *example_problem(const char *route, const char *media)
     return api_example_problem();
 }
 
-static void write_components(api_out *out)
+static void write_problem(api_out *out, const char *name, const char *header, const char *doc,
+                          bool required)
 {
     static const char *const problem[] = {"application/problem+json", NULL};
+    api_out_key(out, name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
+    if (header != NULL) {
+        api_out_key(out, "headers");
+        api_out_object_begin(out);
+        write_header(out, header, doc, required);
+        api_out_object_end(out);
+    }
+    write_content(out, problem, "problem", NULL, example_problem, NULL);
+    api_out_object_end(out);
+}
+
+static void write_components(api_out *out)
+{
     api_out_key(out, "components");
     api_out_object_begin(out);
     api_out_key(out, "schemas");
@@ -301,11 +378,11 @@ static void write_components(api_out *out)
     api_out_object_end(out);
     api_out_key(out, "responses");
     api_out_object_begin(out);
-    api_out_key(out, "problem");
-    api_out_object_begin(out);
-    api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
-    write_content(out, problem, "problem", example_problem, NULL);
-    api_out_object_end(out);
+    write_problem(out, "problem", NULL, NULL, false);
+    for (size_t i = 0; i < HEADED_PROBLEMS; i++) {
+        write_problem(out, headed_problems[i].name, headed_problems[i].header,
+                      headed_problems[i].doc, headed_problems[i].required);
+    }
     api_out_object_end(out);
     api_out_object_end(out);
 }

@@ -351,11 +351,89 @@ static void write_any_op(api_out *out, const char *name, const char *beside)
     api_out_object_end(out);
 }
 
+static void write_nullable_id(api_out *out)
+{
+    api_schema_ref(out, "schemas", "id_or_null");
+}
+
+static void write_id(api_out *out)
+{
+    api_schema_ref(out, "schemas", "id");
+}
+
+static void write_array(api_out *out, void (*write_item)(api_out *out))
+{
+    api_out_key_string(out, "type", "array");
+    api_out_key(out, "items");
+    write_item(out);
+}
+
+static void write_result_schema(api_out *out, const he_result_row *result)
+{
+    api_out_key(out, result->name);
+    api_out_object_begin(out);
+    if (result->doc != NULL) {
+        api_out_key_string(out, "description", result->doc);
+    }
+    switch (result->type) {
+    case HE_RESULT_ELEMENT:
+        api_out_key(out, "allOf");
+        api_out_array_begin(out);
+        write_nullable_id(out);
+        api_out_array_end(out);
+        break;
+    case HE_RESULT_ELEMENTS:
+        write_array(out, write_id);
+        break;
+    case HE_RESULT_NUMBER:
+        api_out_key_string(out, "type", "number");
+        break;
+    case HE_RESULT_MAP:
+        write_array(out, write_nullable_id);
+        break;
+    }
+    api_out_object_end(out);
+}
+
+/* What an operation gives back: its name, and those of its results that the call had. */
+static void write_done_schema(api_out *out, const he_op *op)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "object");
+    api_out_key(out, "properties");
+    api_out_object_begin(out);
+    api_out_key(out, "op");
+    api_out_object_begin(out);
+    api_out_key_string(out, "const", op->name);
+    api_out_object_end(out);
+    for (size_t i = 0; i < he_op_results(op); i++) {
+        write_result_schema(out, &op->results[i]);
+    }
+    api_out_object_end(out);
+    api_out_key(out, "required");
+    api_out_raw(out, "[\"op\"]", 6);
+    api_out_object_end(out);
+}
+
+static void write_any_done(api_out *out)
+{
+    api_out_key(out, "done");
+    api_out_object_begin(out);
+    api_out_key(out, "oneOf");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < he_op_count(); i++) {
+        write_done_schema(out, he_op_at(i));
+    }
+    api_out_array_end(out);
+    api_out_object_end(out);
+}
+
 void api_operation_schemas_write(api_out *out)
 {
     for (size_t i = 0; i < he_op_count(); i++) {
         write_op_schema(out, he_op_at(i));
     }
+    write_any_done(out);
     write_any_op(out, "operation",
                  "{\"as\":{\"type\":\"string\",\"maxLength\":64,"
                  "\"pattern\":\"^[A-Za-z_][A-Za-z0-9_]*$\"}}");

@@ -7,7 +7,7 @@
 /* The body of GET /v1/operations. */
 void api_operations_write(api_out *out);
 /* Into an open components.schemas: op_NAME for each row, `operation` for any of them in a list,
- * `edit_one` for one that is an edit by itself. */
+ * `edit_one` for one that is an edit by itself, `done` for what any of them gives back. */
 void api_operation_schemas_write(api_out *out);
 
 #endif

@@ -87,6 +87,11 @@ static const api_parameter rule = {
     0,      0,
     rules,  "What edits give to new elements, where the body is octets."};
 
+/* --- headers --- */
+
+static const api_told_header next_page = {"Link", "The next page, where there is one."};
+static const api_told_header warnings = {"Export-Warnings", "What the format could not carry."};
+
 /* --- the table --- */
 
 static const api_route routes[] = {
@@ -97,6 +102,7 @@ static const api_route routes[] = {
      .run = api_meshes_list,
      .produces = json,
      .parameters = {&limit, &cursor},
+     .headers = {&next_page},
      .statuses = {200},
      .response = "mesh_page",
      .summary = "List the meshes",
@@ -177,6 +183,7 @@ static const api_route routes[] = {
      .flags = API_COSTLY | API_OWN_ACCEPT,
      .produces = mesh_out,
      .parameters = {&revision, &format, &encoding},
+     .headers = {&warnings},
      .statuses = {200, 304, 410},
      .response = "document",
      .summary = "Export a mesh",
@@ -225,8 +232,10 @@ static const api_route routes[] = {
      .run = api_elements_list,
      .produces = lines_too,
      .parameters = {&revision, &limit, &cursor},
+     .headers = {&next_page},
      .statuses = {200, 304, 410},
      .response = "element_page",
+     .line = "element",
      .summary = "List elements of a kind",
      .doc = "A page in the order of ids, or all of them as lines of JSON that end in "
             "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while the "
@@ -400,6 +409,7 @@ static const api_route routes[] = {
      .run = api_edits_list,
      .produces = json,
      .parameters = {&limit, &cursor, &since},
+     .headers = {&next_page},
      .statuses = {200, 304, 410},
      .response = "history",
      .summary = "History of a mesh",
@@ -453,7 +463,7 @@ static const api_route routes[] = {
      .run = api_openapi_get,
      .produces = json,
      .statuses = {200},
-     .response = "any_object",
+     .response = "description",
      .summary = "This document",
      .doc = "The API as OpenAPI 3.1."},
 
@@ -465,7 +475,9 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = json,
      .statuses = {200},
-     .summary = "Is the process alive?"},
+     .response = "health",
+     .summary = "Is the process alive?",
+     .doc = "It answers, whatever else is wrong."},
     {.method = "GET",
      .path = "/readyz",
      .name = "ready_get",
@@ -473,7 +485,9 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = json,
      .statuses = {200},
-     .summary = "Does the server take requests?"},
+     .response = "health",
+     .summary = "Does the server take requests?",
+     .doc = "503 while it starts and stops."},
     {.method = "GET",
      .path = "/version",
      .name = "version_get",
@@ -481,7 +495,9 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = json,
      .statuses = {200},
-     .summary = "Version of the server"},
+     .response = "version",
+     .summary = "Version of the server",
+     .doc = "Its name, and its version as in \"info\" of this document."},
     {.method = "GET",
      .path = "/problems/{code}",
      .name = "problem_get",
@@ -489,7 +505,8 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = html,
      .statuses = {200},
-     .summary = "What a problem means"},
+     .summary = "What a problem means",
+     .doc = "Where `type` of a problem leads: a page about its code."},
     {.method = "GET",
      .path = "/",
      .name = "page_get",
@@ -497,7 +514,8 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = html,
      .statuses = {200, 304},
-     .summary = "The viewer"},
+     .summary = "The viewer",
+     .doc = "A page to look at meshes, to edit them and to see what they are made of."},
     {.method = "GET",
      .path = "/docs",
      .name = "docs_get",
@@ -505,7 +523,8 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = html,
      .statuses = {200, 304},
-     .summary = "The manual of the API"},
+     .summary = "The manual of the API",
+     .doc = "This document as a page."},
     {.method = "GET",
      .path = "/assets/{asset}",
      .name = "asset_get",
@@ -513,7 +532,8 @@ static const api_route routes[] = {
      .flags = API_FIXED | API_OWN_ACCEPT,
      .produces = anything,
      .statuses = {200, 304},
-     .summary = "Files of the viewer"},
+     .summary = "Files of the viewer",
+     .doc = "Scripts and styles of the two pages."},
 };
 
 size_t api_route_count(void)

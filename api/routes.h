@@ -43,12 +43,17 @@ enum {
     API_COSTLY = 2,     /* costs the mesh or the upload: large ones go to the job pool */
     API_MAY_CREATE = 4, /* the mesh need not exist */
     API_OWN_ACCEPT = 8, /* the handler reads Accept itself (?format= comes first) */
-    API_FIXED = 16,     /* not under /v1: left out of OpenAPI */
+    API_FIXED = 16,     /* not under /v1: the same whatever the version */
     API_KEYED = 32,     /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
     API_KEYED_NEW = 64  /* the same of what makes a mesh: kept with the store */
 };
 
-enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_STATUSES = 20 };
+/* A header that only some of a route's answers with 200 have. */
+typedef struct api_told_header {
+    const char *name, *doc;
+} api_told_header;
+
+enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_HEADERS = 3, API_ROUTE_STATUSES = 20 };
 
 typedef struct api_route {
     const char *method; /* GET rows answer HEAD too */
@@ -63,11 +68,13 @@ typedef struct api_route {
     const char *const *consumes; /* media types of the body, NULL for none */
     const char *const *produces; /* of a success, the first is the default */
     const api_parameter *parameters[API_ROUTE_PARAMETERS]; /* ends in NULL */
+    const api_told_header *headers[API_ROUTE_HEADERS];     /* likewise; beside ETag and Location */
     int statuses[API_ROUTE_STATUSES]; /* all it answers, besides those of api_route_common; 0 ends
                                        */
     const char *request, *response;   /* component schemas of OpenAPI, NULL: not JSON or nothing */
-    const char *summary;              /* a few words */
-    const char *doc;                  /* a sentence or two */
+    const char *line;    /* the same of a line, where application/x-ndjson is produced */
+    const char *summary; /* a few words */
+    const char *doc;     /* a sentence or two */
 } api_route;
 
 size_t api_route_count(void);

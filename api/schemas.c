@@ -1,14 +1,15 @@
 #include "api/schemas.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
 /* One member of one schema; rows of a schema stand together. A schema without a row for a member
  * may have it all the same in answers ("others may be added beside them"), but not in requests.
  *
- * Types: id, count, number, flag, text, point, box, time, any, #other for a schema by name; a star
- * before makes it an array (**id: arrays of ids), a plus one that is not empty, a question mark
- * behind lets the whole be null. */
+ * Types: id, count, number, flag, text, point, time, nothing (an empty array), #other for a schema
+ * by name; a star before makes it an array (**id: arrays of ids), a plus one that is not empty, a
+ * question mark behind lets the whole be null. */
 typedef struct member {
     const char *schema, *name, *type;
     bool required;
@@ -48,7 +49,7 @@ static const member answers[] = {
     {"summary", "genus", "integer?", REQUIRED, "Null where a bow-tie makes it meaningless."},
     {"summary", "closed", "flag", REQUIRED, NULL},
     {"summary", "manifold", "flag", REQUIRED, "No bow-tie."},
-    {"summary", "degrees", "any", REQUIRED, "How many faces have each degree."},
+    {"summary", "degrees", "#degrees", REQUIRED, "How many faces have each degree."},
     {"summary", "bbox", "#box?", REQUIRED, NULL},
     {"summary", "area", "number", REQUIRED, NULL},
     {"summary", "volume", "number?", REQUIRED, "Null unless closed."},
@@ -59,9 +60,16 @@ static const member answers[] = {
     {"import", "format", "text", REQUIRED, NULL},
     {"import", "vertices", "count", REQUIRED, NULL},
     {"import", "faces", "count", REQUIRED, NULL},
-    {"import", "repairs", "*any", REQUIRED, NULL},
-    {"import", "warnings", "*any", REQUIRED, NULL},
+    {"import", "repairs", "nothing", REQUIRED, "Files are taken as they are or refused."},
+    {"import", "warnings", "*#warning", REQUIRED, NULL},
     {"import", "more_warnings", "count", OPTIONAL, "How many are not listed."},
+
+    {"warning", "code", "text", REQUIRED, NULL},
+    {"warning", "detail", "text", REQUIRED, NULL},
+    {"warning", "count", "count", REQUIRED, "How often."},
+    {"warning", "line", "count", OPTIONAL, "Where first, in a text."},
+    {"warning", "byte", "count", OPTIONAL, "Where first, in a binary file."},
+    {"warning", "vertices", "*id", OPTIONAL, "bowtie: the first 100."},
 
     {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
 
@@ -85,9 +93,9 @@ static const member answers[] = {
     {"halfedge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
 
     {"edge", "id", "id", REQUIRED, NULL},
-    {"edge", "halfedges", "*id", REQUIRED, "2 * id and 2 * id + 1."},
-    {"edge", "vertices", "*id", REQUIRED, "Origins of the two half-edges."},
-    {"edge", "faces", "*#id_or_null", REQUIRED, "Beside the two half-edges."},
+    {"edge", "halfedges", "#pair", REQUIRED, "2 * id and 2 * id + 1."},
+    {"edge", "vertices", "#pair", REQUIRED, "Origins of the two half-edges."},
+    {"edge", "faces", "#sides", REQUIRED, "Beside the two half-edges."},
     {"edge", "length", "number", REQUIRED, NULL},
     {"edge", "boundary", "flag", REQUIRED, NULL},
     {"edge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
@@ -156,16 +164,16 @@ static const member answers[] = {
     {"component", "face", "id", REQUIRED, "One of its faces."},
 
     {"components", "revision", "count", REQUIRED, NULL},
-    {"components", "by", "text", REQUIRED, "edge or vertex."},
+    {"components", "by", "#connection", REQUIRED, NULL},
     {"components", "components", "*#component", REQUIRED, NULL},
 
     {"broken", "rule", "text", REQUIRED, "I1 to I12."},
-    {"broken", "kind", "text", REQUIRED, NULL},
+    {"broken", "kind", "#element_kind", REQUIRED, NULL},
     {"broken", "id", "id", REQUIRED, NULL},
     {"broken", "detail", "text", REQUIRED, NULL},
 
     {"defect", "code", "text", REQUIRED, NULL},
-    {"defect", "kind", "text", REQUIRED, NULL},
+    {"defect", "kind", "#element_kind", REQUIRED, NULL},
     {"defect", "id", "id", REQUIRED, NULL},
     {"defect", "detail", "text", REQUIRED, NULL},
 
@@ -173,23 +181,23 @@ static const member answers[] = {
     {"check", "valid", "flag", REQUIRED, NULL},
     {"check", "problems", "*#broken", REQUIRED, "Broken invariants."},
     {"check", "defects", "*#defect", REQUIRED, "What a valid mesh may have, such as a bow-tie."},
-    {"check", "totals", "any", REQUIRED, "How many there are of each; 100 of each are listed."},
+    {"check", "totals", "#totals", REQUIRED, "How many there are of each; 100 of each are listed."},
 
     {"sets", "vertices", "*id", REQUIRED, NULL},
     {"sets", "edges", "*id", REQUIRED, "Half-edges of edge e are 2e and 2e + 1."},
     {"sets", "faces", "*id", REQUIRED, NULL},
 
-    {"parents", "vertices", "**id", OPTIONAL, "Pairs: child, parent."},
-    {"parents", "edges", "**id", OPTIONAL, NULL},
-    {"parents", "faces", "**id", OPTIONAL, NULL},
+    {"parents", "vertices", "*#pair", OPTIONAL, "Pairs: child, parent."},
+    {"parents", "edges", "*#pair", OPTIONAL, NULL},
+    {"parents", "faces", "*#pair", OPTIONAL, NULL},
 
-    {"merged", "vertices", "**id", OPTIONAL, "Pairs: what went, what it became part of."},
-    {"merged", "edges", "**id", OPTIONAL, NULL},
-    {"merged", "faces", "**id", OPTIONAL, NULL},
+    {"merged", "vertices", "*#pair", OPTIONAL, "Pairs: what went, what it became part of."},
+    {"merged", "edges", "*#pair", OPTIONAL, NULL},
+    {"merged", "faces", "*#pair", OPTIONAL, NULL},
 
     {"edited", "revision", "count", REQUIRED, NULL},
     {"edited", "dry_run", "flag", OPTIONAL, "Nothing was done: the revision and ids are to be."},
-    {"edited", "results", "*any", REQUIRED, "One object an operation: `op` and its results."},
+    {"edited", "results", "*#done", REQUIRED, "One object an operation: `op` and its results."},
     {"edited", "created", "#sets", REQUIRED, NULL},
     {"edited", "deleted", "#sets", REQUIRED, NULL},
     {"edited", "modified", "#sets", REQUIRED, "Live before and after, with another link or value."},
@@ -207,7 +215,7 @@ static const member answers[] = {
     {"counted", "faces", "count", REQUIRED, NULL},
 
     {"entry", "revision", "count", REQUIRED, NULL},
-    {"entry", "action", "text", REQUIRED, "edit, undo, redo or replace."},
+    {"entry", "action", "#action", REQUIRED, NULL},
     {"entry", "inverts", "count", OPTIONAL, "Revision it undid or did again."},
     {"entry", "ops", "*text", REQUIRED, NULL},
     {"entry", "created", "#counted", OPTIONAL, "How many elements, where that is known."},
@@ -233,7 +241,7 @@ static const member answers[] = {
     {"query_results", "results", "*#answer", REQUIRED, "In the order of the questions."},
 
     {"walked", "revision", "count", REQUIRED, NULL},
-    {"walked", "walk", "text", REQUIRED, NULL},
+    {"walked", "walk", "#walk_name", REQUIRED, NULL},
     {"walked", "from", "#of", REQUIRED, NULL},
     {"walked", "to", "#of", OPTIONAL, "shortest_path"},
     {"walked", "path", "*#step_name", OPTIONAL, "path"},
@@ -260,7 +268,7 @@ static const member answers[] = {
     {"parameter", "required", "flag", REQUIRED, NULL},
     {"parameter", "nullable", "flag", OPTIONAL, NULL},
     {"parameter", "group", "text", OPTIONAL, "Of parameters of one group one is given."},
-    {"parameter", "default", "any", OPTIONAL, NULL},
+    {"parameter", "default", "#scalar", OPTIONAL, NULL},
     {"parameter", "min", "number", OPTIONAL, NULL},
     {"parameter", "max", "number", OPTIONAL, NULL},
     {"parameter", "exclusive", "flag", OPTIONAL, "min and max are not in the range."},
@@ -273,15 +281,20 @@ static const member answers[] = {
 
     {"operation_row", "name", "text", REQUIRED, NULL},
     {"operation_row", "doc", "text", REQUIRED, NULL},
-    {"operation_row", "size", "text", REQUIRED, "local or whole."},
+    {"operation_row", "size", "#op_size", REQUIRED, "local or whole."},
     {"operation_row", "params", "*#parameter", REQUIRED, NULL},
     {"operation_row", "results", "*#result", REQUIRED, NULL},
     {"operation_row", "refusals", "*text", REQUIRED, NULL},
-    {"operation_row", "change", "*integer?", REQUIRED, "In V, E, F; null where it varies."},
+    {"operation_row", "change", "#triple?", REQUIRED, "In V, E, F; null where it varies."},
 
     {"operations", "operations", "*#operation_row", REQUIRED, NULL},
 
-    {"problem_element", "kind", "text", REQUIRED, NULL},
+    {"health", "status", "#health_name", REQUIRED, NULL},
+
+    {"version", "name", "text", REQUIRED, NULL},
+    {"version", "version", "text", REQUIRED, NULL},
+
+    {"problem_element", "kind", "#element_kind", REQUIRED, NULL},
     {"problem_element", "id", "id", REQUIRED, NULL},
     {"problem_element", "code", "text", OPTIONAL, NULL},
     {"problem_element", "detail", "text", OPTIONAL, NULL},
@@ -399,6 +412,34 @@ static const struct {
     {"ids_or_set", "{\"oneOf\":[{\"type\":\"array\",\"items\":"
                    "{\"$ref\":\"#/components/schemas/id\"},\"minItems\":1},"
                    "{\"const\":\"all\"},{\"$ref\":\"#/components/schemas/set\"}]}"},
+    {"pair", "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id\"},\"minItems"
+             "\":2,\"maxItems\":2}"},
+    {"sides", "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id_or_null\"},\"m"
+              "inItems\":2,\"maxItems\":2}"},
+    {"triple", "{\"type\":\"array\",\"items\":{\"type\":\"integer\"},\"minItems\":3,\"maxItems\""
+               ":3}"},
+    {"scalar", "{\"type\":[\"number\",\"boolean\",\"string\"]}"},
+    {"degrees", "{\"type\":\"object\",\"propertyNames\":{\"pattern\":\"^[0-9]+$\"},\"additionalPr"
+                "operties\":{\"type\":\"integer\",\"minimum\":1}}"},
+    {"totals", "{\"type\":\"object\",\"properties\":{\"problems\":{\"type\":\"integer\",\"minimu"
+               "m\":0}},\"required\":[\"problems\"],\"additionalProperties\":{\"type\":\"integer"
+               "\",\"minimum\":0}}"},
+    {"element_kind", "{\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\",\"mesh\"]}"},
+    {"op_size", "{\"enum\":[\"local\",\"whole\"]}"},
+    {"action", "{\"enum\":[\"edit\",\"undo\",\"redo\",\"replace\"]}"},
+    {"connection", "{\"enum\":[\"edge\",\"vertex\"]}"},
+    {"description",
+     "{\"type\":\"object\",\"required\":[\"openapi\",\"info\",\"servers\",\"security\""
+     ",\"paths\",\"components\"],\"properties\":{\"openapi\":{\"const\":\"3.1.0\"},\"i"
+     "nfo\":{\"$ref\":\"#/components/schemas/any_members\"},\"servers\":{\"type\":\"ar"
+     "ray\",\"items\":{\"$ref\":\"#/components/schemas/any_members\"},\"minItems\":1},"
+     "\"security\":{\"type\":\"array\",\"maxItems\":0},\"paths\":{\"$ref\":\"#/compone"
+     "nts/schemas/any_members\"},\"components\":{\"$ref\":\"#/components/schemas/any_m"
+     "embers\"}}}"},
+    {"any_members",
+     "{\"type\":\"object\",\"additionalProperties\":true,\"minProperties\":1,\"descrip"
+     "tion\":\"As OpenAPI 3.1 says.\"}"},
+    {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"
                 "{\"$ref\":\"#/components/schemas/edge\"},"
@@ -475,6 +516,7 @@ static void write_base(api_out *out, const char *type, size_t length)
         {"flag", "\"type\":\"boolean\""},
         {"text", "\"type\":\"string\""},
         {"time", "\"type\":\"string\",\"format\":\"date-time\""},
+        {"nothing", "\"type\":\"array\",\"maxItems\":0"},
     };
     for (size_t i = 0; i < sizeof bases / sizeof bases[0]; i++) {
         if (strlen(bases[i].name) == length && memcmp(bases[i].name, type, length) == 0) {
@@ -490,7 +532,7 @@ static void write_base(api_out *out, const char *type, size_t length)
         api_schema_ref(out, "schemas", name);
         return;
     }
-    api_out_raw(out, "{}", 2);
+    assert(!"a type of the table");
 }
 
 static void write_type(api_out *out, const char *type, size_t length, const char *doc)

@@ -1,5 +1,7 @@
 #include "tests/e2e/client.h"
 
+#include "tests/traffic.h"
+
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -86,6 +88,20 @@ static struct curl_slist *header_list(const char *const *headers, bool has_body)
     return list;
 }
 
+static void record(const char *method, const char *path, const struct curl_slist *list,
+                   const char *body, size_t length, const reply *r)
+{
+    bytes head = {0};
+    add(&head, "", 0);
+    for (; list != NULL; list = list->next) {
+        add(&head, list->data, strlen(list->data));
+        add(&head, "\r\n", 2);
+    }
+    traffic_record(method, path, &(traffic_message){head.data, body == NULL ? "" : body, length},
+                   r->status, &(traffic_message){r->headers, r->body, r->length});
+    free(head.data);
+}
+
 reply client_send(client *c, const char *method, const char *path, const void *body, size_t length,
                   const char *const *headers)
 {
@@ -119,6 +135,9 @@ reply client_send(client *c, const char *method, const char *path, const void *b
         print_error("%s %s: %s\n", method, path, curl_easy_strerror(code));
     }
     curl_easy_getinfo(c->curl, CURLINFO_RESPONSE_CODE, &r.status);
+    if (code == CURLE_OK) {
+        record(method, path, list, body, length, &r);
+    }
     curl_slist_free_all(list);
     r.json = cJSON_ParseWithLength(r.body, r.length);
     return r;
@@ -236,6 +255,28 @@ static int count_answers(const char *data, size_t length)
     return count;
 }
 
+/* The first answer to bytes that are, as far as the end of the header, a request that reaches the
+ * server's own code: libmicrohttpd answers one without Host by itself. Its body is not told from
+ * the framing, which is what such tests are about. */
+static void record_raw(const char *request, size_t length, const char *answer)
+{
+    char method[16], target[8192];
+    char *text = strndup(request, length);
+    assert_non_null(text);
+    const char *body = strstr(answer, "\r\n\r\n");
+    if (sscanf(text, "%15[A-Z] %8191s HTTP/1.1\r\n", method, target) == 2 &&
+        strstr(text, "\r\nHost:") != NULL && strstr(text, "\r\n\r\n") != NULL && body != NULL) {
+        bytes head = {0};
+        add(&head, answer, (size_t)(body + 2 - answer));
+        strstr(text, "\r\n\r\n")[2] = '\0';
+        bool chunked = strstr(head.data, "chunked") != NULL;
+        traffic_record(method, target, &(traffic_message){.head = text}, client_raw_status(answer),
+                       &(traffic_message){head.data, chunked ? NULL : body + 4, strlen(body + 4)});
+        free(head.data);
+    }
+    free(text);
+}
+
 char *client_raw(const daemon_process *d, const char *data, size_t length, int answers,
                  bool half_close)
 {
@@ -266,6 +307,9 @@ char *client_raw(const daemon_process *d, const char *data, size_t length, int a
         add(&received, buffer, (size_t)n);
     }
     close(fd);
+    if (answers == 1) {
+        record_raw(data, length, received.data);
+    }
     return received.data;
 }
 

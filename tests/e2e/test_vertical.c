@@ -194,6 +194,38 @@ static void test_atomic_list(void **state)
     reply_free(&r);
 }
 
+static void expect_no_effect(const char *mesh, const char *edit)
+{
+    static const char *const kinds[] = {"vertices", "edges", "faces"};
+    static const char *const sets[] = {"created", "deleted", "modified", "parents", "merged"};
+    reply r = expect(200, client_post(http, below(mesh, "/edits"), edit));
+    assert_int_equal((int)reply_number(&r, "revision"), 1);
+    for (size_t i = 0; i < 5; i++) {
+        for (size_t j = 0; j < 3; j++) {
+            const cJSON *set = reply_find(&r, sets[i]);
+            assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(set, kinds[j])), 0);
+        }
+    }
+    reply_free(&r);
+    r = expect(200, client_get(http, below(mesh, "/edits")));
+    assert_int_equal((int)reply_number(&r, "revision"), 1);
+    assert_int_equal(cJSON_GetArraySize(reply_find(&r, "entries")), 0);
+    reply_free(&r);
+    done(expect(409, client_post(http, below(mesh, "/undo"), NULL)));
+}
+
+static void test_edits_without_effect_make_no_revision(void **state)
+{
+    (void)state;
+    char mesh[128];
+    create("{\"shape\":\"tetrahedron\"}", mesh);
+    /* The plane misses it, and no edge of it is to be flipped. */
+    expect_no_effect(mesh, "{\"op\":\"plane_split\",\"point\":[0,0,9],\"normal\":[0,0,1]}");
+    expect_no_effect(mesh, "{\"op\":\"delaunay\"}");
+    expect_no_effect(mesh, "{\"ops\":[{\"op\":\"delaunay\"},{\"op\":\"plane_split\","
+                           "\"point\":[0,0,-9],\"normal\":[1,1,1]}]}");
+}
+
 static void test_file_in_and_out(void **state)
 {
     (void)state;
@@ -319,6 +351,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_document_edit_walk_undo),
         cmocka_unit_test(test_atomic_list),
+        cmocka_unit_test(test_edits_without_effect_make_no_revision),
         cmocka_unit_test(test_file_in_and_out),
         cmocka_unit_test(test_every_other_route),
     };

@@ -8,6 +8,8 @@ import path from 'node:path';
 import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 
+import { recorded } from './traffic.mjs';
+
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
 const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
 const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
@@ -22,9 +24,11 @@ export async function startDaemon(t) {
         child.on('exit', resolve);
         child.on('error', resolve);
     });
+    let proxy;
     const stop = async () => {
         child.kill('SIGTERM');
         await ended;
+        proxy?.close();
     };
     const closers = [];
     t.after(async () => {
@@ -44,7 +48,8 @@ export async function startDaemon(t) {
     if (typeof url !== 'string') {
         throw new Error(`${program} ended before it listened: ${url}`);
     }
-    return { url, stop, closers };
+    proxy = await recorded(url);
+    return { url: proxy.url, stop, closers };
 }
 
 async function call(url, options) {

@@ -99,5 +99,6 @@ test('types are words', () => {
         '3 of ',
         { ref: 'id' },
     ]);
+    assert.deepEqual(typeOf({ type: 'array', maxItems: 0 }), ['empty array']);
     assert.deepEqual(typeOf({}), ['anything']);
 });

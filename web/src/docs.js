@@ -83,10 +83,18 @@ function schemaNodes(schema) {
 }
 
 function contentNodes(content = {}) {
-    return Object.entries(content).flatMap(([media, { schema, example: body }]) => [
-        make('p', {}, code(media), ...(schema ? [': ', ...typeNodes(schema)] : [])),
-        ...(body === undefined ? [] : [example(body)]),
-    ]);
+    return Object.entries(content).flatMap(
+        ([media, { schema, 'x-item-schema': line, example: body }]) => [
+            make(
+                'p',
+                {},
+                code(media),
+                ...(schema ? [': ', ...typeNodes(schema)] : []),
+                ...(line ? [', each line: ', ...typeNodes(line)] : []),
+            ),
+            ...(body === undefined ? [] : [example(body)]),
+        ],
+    );
 }
 
 function parametersTable(parameters) {

@@ -30,6 +30,9 @@ function range({ minimum, maximum, exclusiveMinimum, exclusiveMaximum }) {
 }
 
 function arrayOf({ items, minItems = 0, maxItems }) {
+    if (maxItems === 0) {
+        return ['empty array'];
+    }
     if (minItems === maxItems) {
         return [`${minItems} of `, ...typeOf(items)];
     }

@@ -1,0 +1,417 @@
+// contract.mjs - does an exchange say what an OpenAPI document promises? Compiled with Ajv from the
+// document itself: paths, parameters, statuses, headers, media types, and bodies.
+//
+// Answers are held to more than clients may rely on: a member without a place in its schema is one
+// that nobody documented, so every object is closed here, though a later version may add to it.
+
+import { createRequire } from 'node:module';
+
+const require = createRequire(new URL('../../web/package.json', import.meta.url));
+const Ajv = require('ajv/dist/2020').default;
+const addFormats = require('ajv-formats').default;
+
+// Headers that an answer has only where the document lists them.
+const LISTED = ['etag', 'location', 'link', 'allow', 'retry-after', 'export-warnings'];
+// What may be found wrong before the path is looked at.
+const BEFORE_ROUTING = [400, 403, 414, 421, 431, 503];
+const PROBLEM = 'application/problem+json';
+
+// --- closed schemas ---
+
+// A part of an allOf sees only its own members, so the whole is closed and its parts stay open.
+function closed(schema, open) {
+    if (Array.isArray(schema)) {
+        return schema.map((each) => closed(each, open));
+    }
+    if (schema === null || typeof schema !== 'object') {
+        return schema;
+    }
+    const result = {};
+    for (const [key, value] of Object.entries(schema)) {
+        if (key === '$ref') {
+            result.$ref = open ? value.replace('/schemas/', '/open/') : value;
+        } else if (key === 'allOf') {
+            result.allOf = closed(value, true);
+        } else if ((key === 'oneOf' || key === 'anyOf') && schema.properties !== undefined) {
+            result[key] = closed(value, true);
+        } else if (key === 'properties') {
+            const members = Object.entries(value).map(([name, each]) => [name, closed(each, false)]);
+            result.properties = Object.fromEntries(members);
+        } else if (['oneOf', 'anyOf'].includes(key)) {
+            result[key] = closed(value, open);
+        } else if (['items', 'additionalProperties'].includes(key)) {
+            result[key] = closed(value, false);
+        } else if (key !== 'example' && key !== 'description') {
+            result[key] = value;
+        }
+    }
+    const lists = result.properties !== undefined || result.allOf !== undefined;
+    const free = ['additionalProperties', 'unevaluatedProperties'].every((key) => !(key in result));
+    if (!open && lists && free) {
+        result.unevaluatedProperties = false;
+    }
+    return result;
+}
+
+function each(object, change) {
+    return Object.fromEntries(Object.entries(object).map(([k, value]) => [k, change(value)]));
+}
+
+function newAjv({ components }) {
+    const ajv = new Ajv({ allErrors: false, strict: false, discriminator: false });
+    addFormats(ajv);
+    const { schemas } = components;
+    const root = {
+        schemas: each(schemas, (schema) => closed(schema, false)),
+        open: each(schemas, (schema) => closed(schema, true)),
+    };
+    ajv.addSchema({ $id: 'hedge', components: root });
+    return ajv;
+}
+
+// --- messages ---
+
+// The headers of a message by name in small letters; only the last of several start lines counts.
+function parseHead(head) {
+    const block = head.trimEnd().split('\r\n\r\n').at(-1);
+    const headers = new Map();
+    for (const line of block.split('\r\n')) {
+        const [, name, value] = /^([^\s:]+):[ \t]*(.*)$/.exec(line) ?? [];
+        if (name !== undefined) {
+            headers.set(name.toLowerCase(), value);
+        }
+    }
+    return headers;
+}
+
+function parseMessage({ head, body, length }) {
+    const headers = parseHead(head);
+    const bytes = Buffer.from(body ?? '', 'base64');
+    return {
+        headers,
+        known: body !== undefined,
+        whole: body !== undefined && bytes.length === length,
+        bytes,
+        media: headers.get('content-type')?.split(';')[0].trim().toLowerCase(),
+    };
+}
+
+const utf8 = new TextDecoder('utf-8', { fatal: true });
+
+function isJson(media) {
+    return media === 'application/json' || media.endsWith('+json');
+}
+
+// --- the contract ---
+
+export class Contract {
+    constructor(document) {
+        this.document = document;
+        this.ajv = newAjv(document);
+        this.compiled = new Map();
+        this.operations = [];
+        this.paths = Object.entries(document.paths).map(([template, item]) => {
+            const { parameters = [], ...methods } = item;
+            const path = { template, parameters, methods: {} };
+            for (const [method, operation] of Object.entries(methods)) {
+                const found = { name: `${method.toUpperCase()} ${template}`, operation, hits: 0 };
+                path.methods[method] = found;
+                this.operations.push(found);
+            }
+            return path;
+        });
+        // Literal segments win over variables.
+        this.paths.sort((a, b) => variables(a) - variables(b));
+    }
+
+    // Operations that no exchange reached with success.
+    unreached() {
+        return this.operations.filter(({ hits }) => hits === 0).map(({ name }) => name);
+    }
+
+    // What an exchange is an example of, such as "GET /v1/meshes 200", and everything that is wrong
+    // with it, as sentences.
+    check(exchange) {
+        const { method, target, status } = exchange;
+        const [path, query] = target.split(/\?(.*)/s);
+        const route = this.match(path);
+        const name = `${method} ${route?.template ?? 'elsewhere'} ${status}`;
+        return { name, wrong: this.findWrong(exchange, route, path, query) };
+    }
+
+    findWrong(exchange, route, path, query) {
+        const wrong = [];
+        const { method, status } = exchange;
+        const request = parseMessage(exchange.request);
+        const answer = parseMessage(exchange.answer);
+        if (route === undefined) {
+            if (status !== 404 && !BEFORE_ROUTING.includes(status)) {
+                wrong.push(`the document has no such path, and the status is ${status}`);
+            }
+            this.checkProblem(exchange, answer, wrong);
+            return wrong;
+        }
+        const found = route.methods[method === 'HEAD' ? 'get' : method.toLowerCase()];
+        if (found === undefined) {
+            this.checkMethods(exchange, route, answer, wrong);
+            return wrong;
+        }
+        const response = this.resolve(found.operation.responses[status]);
+        if (response === undefined) {
+            wrong.push(`status ${status} is not declared`);
+            return wrong;
+        }
+        this.checkHeaders(response, answer, wrong);
+        this.checkBody(exchange, response, answer, wrong);
+        if (status < 300 || status === 304) {
+            found.hits += 1;
+            this.checkParameters(route, found.operation, path, query, request, wrong);
+            this.checkRequest(found.operation, request, answer, wrong);
+        }
+        return wrong;
+    }
+
+    match(path) {
+        return this.paths.find(({ template, parameters }) => {
+            const values = variablesOf(template, path);
+            return values !== null && parameters.every((p) => allowed(p, values[p.name]));
+        });
+    }
+
+    resolve(value) {
+        return value?.$ref === undefined
+            ? value
+            : value.$ref.slice(2).split('/').reduce((at, name) => at[name], this.document);
+    }
+
+    // What is wrong with a value, or null.
+    validate(schema, value) {
+        const key = JSON.stringify(schema);
+        if (!this.compiled.has(key)) {
+            const rooted = JSON.parse(key.replaceAll('"#/', '"hedge#/'));
+            this.compiled.set(key, this.ajv.compile(closed(rooted, false)));
+        }
+        const check = this.compiled.get(key);
+        return check(value) ? null : this.ajv.errorsText(check.errors, { dataVar: '' });
+    }
+
+    checkProblem({ method, status }, { media, whole, bytes }, wrong) {
+        if (media !== PROBLEM) {
+            wrong.push(`a refusal is ${PROBLEM}, not ${media}`);
+        } else if (whole && method !== 'HEAD') {
+            this.checkJson({ $ref: '#/components/schemas/problem' }, bytes, wrong, (problem) =>
+                statusOf(problem, status),
+            );
+        }
+    }
+
+    checkMethods(exchange, { template, methods }, answer, wrong) {
+        const { method, status } = exchange;
+        if (status !== 405 && method === 'OPTIONS' && status === 204) {
+            const preflight = answer.headers.has('access-control-allow-methods');
+            if (!preflight && !answer.headers.has('allow')) {
+                wrong.push('no Allow');
+            }
+            return;
+        }
+        if (status !== 405 && !BEFORE_ROUTING.includes(status)) {
+            wrong.push(`${template} has no ${method}, and the status is ${status}`);
+        }
+        const names = Object.keys(methods).map((name) => name.toUpperCase());
+        const wanted = [...names, ...(names.includes('GET') ? ['HEAD'] : []), 'OPTIONS'].sort();
+        const allow = answer.headers.get('allow')?.split(/, */).sort().join();
+        if (status === 405 && allow !== wanted.join()) {
+            wrong.push(`Allow is ${allow} and not ${wanted}`);
+        }
+        this.checkProblem(exchange, answer, wrong);
+    }
+
+    checkHeaders({ headers = {} }, answer, wrong) {
+        const names = Object.keys(headers).map((name) => name.toLowerCase());
+        for (const [name, header] of Object.entries(headers)) {
+            const value = answer.headers.get(name.toLowerCase());
+            if (value === undefined && header.required) {
+                wrong.push(`no header ${name}`);
+            } else if (value !== undefined && this.validate(header.schema, value) !== null) {
+                wrong.push(`${name}: ${this.validate(header.schema, value)}`);
+            }
+        }
+        for (const name of LISTED) {
+            if (answer.headers.has(name) && !names.includes(name)) {
+                wrong.push(`header ${name} is not declared`);
+            }
+        }
+    }
+
+    checkBody({ method, status }, response, { media, whole, bytes, headers }, wrong) {
+        const { content } = response;
+        if (content === undefined) {
+            if (bytes.length > 0) {
+                wrong.push(`a body of ${media}, and none is declared`);
+            }
+            return;
+        }
+        if (content[media] === undefined) {
+            wrong.push(`media type ${media} is not declared`);
+            return;
+        }
+        const { schema, 'x-item-schema': item } = content[media];
+        if (isJson(media) && schema === undefined) {
+            wrong.push(`${media} is declared without a schema`);
+        } else if (method === 'HEAD') {
+            if (bytes.length > 0) {
+                wrong.push('an answer to HEAD has a body');
+            }
+        } else if (isJson(media) && whole) {
+            this.checkJson(schema, bytes, wrong, (value) => besides(value, status, response, headers));
+        } else if (item !== undefined) {
+            this.checkLines(item, bytes, whole, wrong);
+        }
+    }
+
+    checkJson(schema, bytes, wrong, more = () => null) {
+        let value;
+        try {
+            value = JSON.parse(utf8.decode(bytes));
+        } catch (error) {
+            wrong.push(`the body is not JSON: ${error.message}`);
+            return;
+        }
+        const error = this.validate(schema, value) ?? more(value);
+        if (error !== null) {
+            wrong.push(`body: ${error}`);
+        }
+    }
+
+    checkLines(schema, bytes, whole, wrong) {
+        const lines = bytes.toString().split('\n');
+        const last = lines.pop(); // what is after the last end of a line, or was cut
+        if (whole && last !== '') {
+            wrong.push('the last line has no end');
+        }
+        for (const [i, line] of lines.entries()) {
+            this.checkJson(schema, Buffer.from(line), wrong, (value) =>
+                !whole || (value.end === true) === (i === lines.length - 1)
+                    ? null
+                    : `the end is not in line ${i + 1}`,
+            );
+        }
+    }
+
+    // Of a request that was taken.
+    checkParameters({ template, parameters }, operation, path, query, { headers }, wrong) {
+        const values = variablesOf(template, path);
+        for (const { name, schema } of parameters) {
+            this.checkText(`{${name}}`, schema, values[name], wrong);
+        }
+        const declared = operation.parameters.filter((each) => each.in === 'query');
+        for (const [name, value] of new URLSearchParams(query ?? '')) {
+            const parameter = declared.find((p) => p.name === name);
+            if (parameter === undefined) {
+                wrong.push(`query parameter ${name} is not declared`);
+            } else {
+                this.checkText(name, parameter.schema, value, wrong);
+            }
+        }
+        for (const name of ['If-Match', 'If-None-Match', 'Prefer']) {
+            const known = operation.parameters.some((p) => p.in === 'header' && p.name === name);
+            if (headers.has(name.toLowerCase()) && !known && operation.requestBody !== undefined) {
+                wrong.push(`header ${name} of the request is not declared`);
+            }
+        }
+    }
+
+    checkText(name, schema, text, wrong) {
+        const number = this.resolve(schema).type === 'integer';
+        const error = this.validate(schema, number && text !== '' ? Number(text) : text);
+        if (error !== null) {
+            wrong.push(`${name}=${text}: ${error}`);
+        }
+    }
+
+    checkRequest({ requestBody }, { known, whole, bytes, media }, answer, wrong) {
+        if (!known) {
+            return;
+        }
+        if (bytes.length === 0) {
+            if (requestBody?.required) {
+                wrong.push('the body is required, and was taken without');
+            }
+            return;
+        }
+        const content = requestBody?.content[media];
+        if (content === undefined) {
+            wrong.push(`a body of ${media} is not declared, and was taken`);
+        } else if (isJson(media) && whole) {
+            const { schema } = content;
+            const taken = schema.$ref.endsWith('/query') ? takenOf(bytes, answer) : bytes;
+            this.checkJson(schema, taken, wrong);
+        }
+    }
+}
+
+// What a schema cannot say: a header that goes with a member.
+function besides(value, status, response, headers) {
+    const paged = response.headers?.Link !== undefined;
+    if (paged && (value.next !== null) !== headers.has('link')) {
+        return `next is ${value.next} and Link is ${headers.get('link')}`;
+    }
+    if (status >= 400) {
+        return statusOf(value, status);
+    }
+    if (value.results !== undefined && value.created !== undefined && !value.dry_run) {
+        return headers.has('etag') ? null : 'no ETag of what an edit made';
+    }
+    return null;
+}
+
+// A bad question among many is answered by a problem in its place: the others are what was taken.
+function takenOf(bytes, { media, whole, bytes: answer }) {
+    if (media !== 'application/json' || !whole) {
+        return bytes;
+    }
+    const { queries, ...rest } = JSON.parse(utf8.decode(bytes));
+    const { results } = JSON.parse(utf8.decode(answer));
+    const taken = queries.filter((_, i) => !(results[i]?.status >= 400));
+    return Buffer.from(JSON.stringify({ queries: taken, ...rest }));
+}
+
+function statusOf(problem, status) {
+    return problem.status === status ? null : `its status says ${problem.status}`;
+}
+
+function variables({ template }) {
+    return template.split('{').length;
+}
+
+// The values of a template's variables, null where a path is not of it.
+function variablesOf(template, path) {
+    const wanted = template.split('/');
+    const given = path.split('/');
+    if (wanted.length !== given.length) {
+        return null;
+    }
+    const values = {};
+    for (const [i, part] of wanted.entries()) {
+        const text = decode(given[i]);
+        if (part.startsWith('{') && text !== '') {
+            values[part.slice(1, -1)] = text;
+        } else if (part !== text) {
+            return null;
+        }
+    }
+    return values;
+}
+
+function decode(text) {
+    try {
+        return decodeURIComponent(text);
+    } catch {
+        return text;
+    }
+}
+
+// A choice is a part of the path; other values are looked at later.
+function allowed({ schema }, value) {
+    return schema.enum === undefined || schema.enum.includes(value);
+}

@@ -1,0 +1,90 @@
+// traffic.mjs - a proxy before a daemon that keeps what passes, for the last step of `make test`:
+// check-traffic.mjs compares it with the served OpenAPI document.
+//
+// Browsers, generated clients and the commands of the README then need no recorder of their own.
+// Lines are those of tests/traffic.h.
+
+import { appendFileSync } from 'node:fs';
+import { Agent, createServer, request as send } from 'node:http';
+import path from 'node:path';
+
+// Of a body; what is not JSON is not looked into.
+const JSON_BYTES = 1024 * 1024;
+const OTHER_BYTES = 4 * 1024;
+
+// Headers of one connection, which are not the other's.
+const OWN = new Set(['connection', 'keep-alive']);
+
+// An object and no list, with which node would make a request without a body a chunked one.
+function forwarded(rawHeaders) {
+    const kept = {};
+    for (let i = 0; i < rawHeaders.length; i += 2) {
+        const [name, value] = [rawHeaders[i], rawHeaders[i + 1]];
+        if (!OWN.has(name.toLowerCase())) {
+            kept[name] = kept[name] === undefined ? value : [kept[name], value].flat();
+        }
+    }
+    return kept;
+}
+
+// Collects the message of a stream as it passes by.
+function collect(stream) {
+    const json = stream.headers['content-type']?.includes('json');
+    const most = json ? JSON_BYTES : OTHER_BYTES;
+    const parts = [];
+    let kept = 0;
+    let length = 0;
+    stream.on('data', (part) => {
+        length += part.length;
+        if (kept < most) {
+            parts.push(part.subarray(0, most - kept));
+            kept += parts.at(-1).length;
+        }
+    });
+    return () => {
+        const { rawHeaders: raw } = stream;
+        const lines = raw.flatMap((name, i) => (i % 2 ? [] : [`${name}: ${raw[i + 1]}\r\n`]));
+        return { head: lines.join(''), body: Buffer.concat(parts).toString('base64'), length };
+    };
+}
+
+// {url, close()} of a proxy that records into the folder TRAFFIC; without it the daemon's own.
+export async function recorded(url) {
+    const folder = process.env.TRAFFIC;
+    if (folder === undefined) {
+        return { url, close() {} };
+    }
+    const { hostname, port } = new URL(url);
+    const file = path.join(folder, `web-${process.pid}.ndjson`);
+    const agent = new Agent({ keepAlive: true });
+    const server = createServer((asked, answered) => {
+        const { method, url: target } = asked;
+        const headers = forwarded(asked.rawHeaders);
+        const request = collect(asked);
+        const onward = send({ hostname, port, method, path: target, headers, agent });
+        onward.on('response', (upstream) => {
+            const answer = collect(upstream);
+            upstream.on('end', () => {
+                const { statusCode: status } = upstream;
+                const line = { method, target, request: request(), status, answer: answer() };
+                appendFileSync(file, `${JSON.stringify(line)}\n`);
+            });
+            upstream.on('error', () => answered.destroy());
+            answered.writeHead(upstream.statusCode, forwarded(upstream.rawHeaders));
+            upstream.pipe(answered);
+        });
+        // Where the daemon says nothing, its client hears nothing.
+        onward.on('error', () => asked.socket.destroy());
+        answered.on('close', () => onward.destroy());
+        asked.pipe(onward);
+    });
+    await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+    return {
+        url: `http://127.0.0.1:${server.address().port}`,
+        close() {
+            server.close();
+            server.closeAllConnections();
+            agent.destroy();
+        },
+    };
+}
