@@ -107,9 +107,10 @@ void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column
                     (uint64_t)he_mesh_issued(mesh, column->domain) * column->row_bytes);
 }
 
-void api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id)
+uint32_t api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id)
 {
     bool open = false;
+    uint32_t numbers = 0;
     for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
         const he_column *column = he_mesh_column(mesh, i);
         if (column == NULL || column->domain != kind) {
@@ -122,10 +123,12 @@ void api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint3
         }
         api_out_key(out, column->name);
         api_write_value(out, column, he_column_value(column, id));
+        numbers += column->components;
     }
     if (open) {
         api_out_object_end(out);
     }
+    return numbers;
 }
 
 /* --- reading --- */

@@ -27,8 +27,9 @@ void api_write_head(api_out *out, const he_column *column);
 void api_write_labels(api_out *out, const he_column *column);
 void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column);
 
-/* The member "attributes" of an element, where its mesh has any in the domain. */
-void api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id);
+/* The member "attributes" of an element, where its mesh has any in the domain. Returns how many
+ * numbers that are. */
+uint32_t api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id);
 
 /* Texts of he_type and he_rule in their order; end in NULL. */
 const char *const *api_type_names(void);

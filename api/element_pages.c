@@ -46,7 +46,7 @@ static void write_page(api_exchange *x, const he_mesh *mesh, uint64_t from)
     api_out_key(&x->out, "items");
     api_out_array_begin(&x->out);
     uint32_t id = next_live(mesh, x->kind, from);
-    for (uint64_t i = 0; i < limit && id != HE_NONE; i++) {
+    for (uint64_t i = 0; i < limit && id != HE_NONE && x->text.length < API_MAX_PAGE_BYTES; i++) {
         api_write_element(&x->out, mesh, x->kind, id);
         id = next_live(mesh, x->kind, (uint64_t)id + 1);
     }

@@ -17,9 +17,9 @@ uint32_t api_write_vertex(api_out *out, const he_mesh *mesh, he_vertex v)
     api_out_key_u64(out, "degree", degree);
     api_out_key_bool(out, "boundary", he_is_boundary_vertex(mesh, v));
     api_out_key_bool(out, "isolated", he_is_isolated(mesh, v));
-    api_write_attributes(out, mesh, HE_VERTEX, v.i);
+    uint32_t numbers = api_write_attributes(out, mesh, HE_VERTEX, v.i);
     api_out_object_end(out);
-    return degree;
+    return degree + numbers;
 }
 
 uint32_t api_write_halfedge(api_out *out, const he_mesh *mesh, he_halfedge h)
@@ -34,9 +34,9 @@ uint32_t api_write_halfedge(api_out *out, const he_mesh *mesh, he_halfedge h)
     api_out_key_id(out, "edge", he_edge_of(h).i);
     api_out_key_id(out, "face", he_face_of(mesh, h).i);
     api_out_key_bool(out, "boundary", he_is_boundary_halfedge(mesh, h));
-    api_write_attributes(out, mesh, HE_HALFEDGE, h.i);
+    uint32_t numbers = api_write_attributes(out, mesh, HE_HALFEDGE, h.i);
     api_out_object_end(out);
-    return 1;
+    return 1 + numbers;
 }
 
 uint32_t api_write_edge(api_out *out, const he_mesh *mesh, he_edge e)
@@ -54,9 +54,9 @@ uint32_t api_write_edge(api_out *out, const he_mesh *mesh, he_edge e)
     api_out_array_end(out);
     api_out_key_number(out, "length", he_edge_length(mesh, e));
     api_out_key_bool(out, "boundary", he_is_boundary_edge(mesh, e));
-    api_write_attributes(out, mesh, HE_EDGE, e.i);
+    uint32_t numbers = api_write_attributes(out, mesh, HE_EDGE, e.i);
     api_out_object_end(out);
-    return 2;
+    return 2 + numbers;
 }
 
 uint32_t api_write_face(api_out *out, const he_mesh *mesh, he_face f)
@@ -83,9 +83,9 @@ uint32_t api_write_face(api_out *out, const he_mesh *mesh, he_face f)
     api_out_key_number(out, "area", shape.area);
     api_out_key_vec3(out, "normal", shape.normal);
     api_out_key_vec3(out, "centroid", shape.centroid);
-    api_write_attributes(out, mesh, HE_FACE, f.i);
+    uint32_t numbers = api_write_attributes(out, mesh, HE_FACE, f.i);
     api_out_object_end(out);
-    return shape.degree;
+    return shape.degree + numbers;
 }
 
 uint32_t api_write_element(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id)

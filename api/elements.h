@@ -1,7 +1,7 @@
 /* elements.h - one element as a JSON object, with all its links.
  *
- * The element lives; nothing is checked. Each writer returns how many half-edges it looked at,
- * which is what it cost: a vertex or a face may have as many as the mesh. */
+ * The element lives; nothing is checked. Each writer returns how many half-edges and values it
+ * wrote, which is what it cost: a vertex or a face may have as many as the mesh. */
 #ifndef HE_API_ELEMENTS_H
 #define HE_API_ELEMENTS_H
 

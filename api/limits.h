@@ -40,7 +40,8 @@ enum {
 enum {
     API_DEFAULT_PAGE = 1000, /* items */
     API_MAX_PAGE = 10000,
-    API_MAX_OPS = 65536, /* operations of one edit list */
+    API_MAX_PAGE_BYTES = 1 << 26, /* a page of elements ends after the one that passes this */
+    API_MAX_OPS = 65536,          /* operations of one edit list */
     /* What the operations of one list may look at and change before the next one is refused: ids
      * named, elements of the mesh for each operation on the whole of it; rows of the delta. The
      * mesh is locked meanwhile, and a row takes 16 bytes. */

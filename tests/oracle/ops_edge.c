@@ -254,13 +254,17 @@ static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves
     return refused | (spoilt ? OR_BIT(HE_FEATURE_EDGE) : 0);
 }
 
+static bool same_point(he_vec3 a, he_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to)
 {
     uint64_t refused = link_condition(o, u, v);
     he_vec3 at = to != NULL ? *to : between(o->vertex[u].at, o->vertex[v].at, t);
-    he_vec3 was = o->vertex[v].at;
-    bool moves = to == NULL ? t != 1 && memcmp(&was, &o->vertex[u].at, sizeof was) != 0
-                            : at.x != was.x || at.y != was.y || at.z != was.z;
+    bool together = same_point(o->vertex[u].at, o->vertex[v].at);
+    bool moves = to == NULL ? t != 1 && !together : !same_point(at, o->vertex[v].at);
     refused |= marks_about(o, u, v, moves);
     if (refused != 0) {
         return refused;
