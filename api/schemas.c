@@ -79,7 +79,7 @@ static const member answers[] = {
     {"vertex", "degree", "count", REQUIRED, "Edges."},
     {"vertex", "boundary", "flag", REQUIRED, NULL},
     {"vertex", "isolated", "flag", REQUIRED, NULL},
-    {"vertex", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"vertex", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
     {"halfedge", "id", "id", REQUIRED, NULL},
     {"halfedge", "twin", "id", REQUIRED, NULL},
@@ -90,7 +90,7 @@ static const member answers[] = {
     {"halfedge", "edge", "id", REQUIRED, NULL},
     {"halfedge", "face", "id?", REQUIRED, "Null on the boundary."},
     {"halfedge", "boundary", "flag", REQUIRED, NULL},
-    {"halfedge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"halfedge", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
     {"edge", "id", "id", REQUIRED, NULL},
     {"edge", "halfedges", "#pair", REQUIRED, "2 * id and 2 * id + 1."},
@@ -98,7 +98,7 @@ static const member answers[] = {
     {"edge", "faces", "#sides", REQUIRED, "Beside the two half-edges."},
     {"edge", "length", "number", REQUIRED, NULL},
     {"edge", "boundary", "flag", REQUIRED, NULL},
-    {"edge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"edge", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
     {"face", "id", "id", REQUIRED, NULL},
     {"face", "halfedge", "id", REQUIRED, NULL},
@@ -108,14 +108,14 @@ static const member answers[] = {
     {"face", "area", "number", REQUIRED, "Of the vector (Newell) area."},
     {"face", "normal", "point", REQUIRED, "Zero where the face is degenerate."},
     {"face", "centroid", "point", REQUIRED, NULL},
-    {"face", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"face", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
-    {"attribute_info", "domain", "text", REQUIRED, "vertices, halfedges, edges, faces or mesh."},
+    {"attribute_info", "domain", "#domain", REQUIRED, NULL},
     {"attribute_info", "name", "text", REQUIRED, NULL},
-    {"attribute_info", "type", "text", REQUIRED, "bool, int32, uint32, float or double."},
+    {"attribute_info", "type", "#type_name", REQUIRED, NULL},
     {"attribute_info", "components", "count", REQUIRED, "Numbers of one value."},
-    {"attribute_info", "rule", "text", REQUIRED, "copy, interpolate or default."},
-    {"attribute_info", "default", "any", REQUIRED, "The value where nothing was written."},
+    {"attribute_info", "rule", "#rule_name", REQUIRED, NULL},
+    {"attribute_info", "default", "#value", REQUIRED, "The value where nothing was written."},
     {"attribute_info", "labels", "*text", OPTIONAL, "In the list: what values index."},
     {"attribute_info", "bytes", "count", REQUIRED, "Of the values as octets."},
 
@@ -123,15 +123,15 @@ static const member answers[] = {
     {"attribute_list", "attributes", "*#attribute_info", REQUIRED, NULL},
 
     {"attribute_values", "revision", "count", REQUIRED, NULL},
-    {"attribute_values", "domain", "text", REQUIRED, NULL},
+    {"attribute_values", "domain", "#domain", REQUIRED, NULL},
     {"attribute_values", "name", "text", REQUIRED, NULL},
-    {"attribute_values", "type", "text", REQUIRED, NULL},
+    {"attribute_values", "type", "#type_name", REQUIRED, NULL},
     {"attribute_values", "components", "count", REQUIRED, NULL},
-    {"attribute_values", "rule", "text", REQUIRED, NULL},
-    {"attribute_values", "default", "any", REQUIRED, NULL},
+    {"attribute_values", "rule", "#rule_name", REQUIRED, NULL},
+    {"attribute_values", "default", "#value", REQUIRED, NULL},
     {"attribute_values", "bytes", "count", REQUIRED, NULL},
     {"attribute_values", "ids", "*id", REQUIRED, NULL},
-    {"attribute_values", "values", "*any", REQUIRED, "One for each id; arrays of components."},
+    {"attribute_values", "values", "*#value", REQUIRED, "One for each id; arrays of components."},
     {"attribute_values", "next", "text?", REQUIRED, "The cursor of the next page."},
 
     {"attribute_written", "revision", "count", REQUIRED, NULL},
@@ -325,9 +325,9 @@ static const member requests[] = {
     {"document_attribute", "type", "#type_name", REQUIRED, NULL},
     {"document_attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
     {"document_attribute", "rule", "#rule_name", OPTIONAL, NULL},
-    {"document_attribute", "default", "any", OPTIONAL, NULL},
+    {"document_attribute", "default", "#value", OPTIONAL, NULL},
     {"document_attribute", "labels", "+#label", OPTIONAL, NULL},
-    {"document_attribute", "values", "*any", OPTIONAL,
+    {"document_attribute", "values", "*#value", OPTIONAL,
      "One for each element, or none. Edges come as the faces run along them first, half-edges by "
      "edges, that of the first face before its twin."},
 
@@ -335,16 +335,16 @@ static const member requests[] = {
     {"attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
     {"attribute", "rule", "#rule_name", OPTIONAL,
      "interpolate for float and double, else copy, if not said."},
-    {"attribute", "default", "any", OPTIONAL, "Zero or false if not said."},
+    {"attribute", "default", "#value", OPTIONAL, "Zero or false if not said."},
     {"attribute", "labels", "+#label", OPTIONAL, "Of a uint32: what its values index."},
-    {"attribute", "values", "*any", OPTIONAL, "One for each live element, in the order of ids."},
-    {"attribute", "value", "any", OPTIONAL, "One for all instead."},
+    {"attribute", "values", "*#value", OPTIONAL, "One for each live element, in the order of ids."},
+    {"attribute", "value", "#value", OPTIONAL, "One for all instead."},
     {"attribute", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute", "dry_run", "flag", OPTIONAL, NULL},
 
     {"attribute_patch", "ids", "#ids_or_set", REQUIRED, "Ids, \"all\", or {\"NAME\":true}."},
-    {"attribute_patch", "values", "*any", OPTIONAL, "One for each id."},
-    {"attribute_patch", "value", "any", OPTIONAL, "One for all instead."},
+    {"attribute_patch", "values", "*#value", OPTIONAL, "One for each id."},
+    {"attribute_patch", "value", "#value", OPTIONAL, "One for all instead."},
     {"attribute_patch", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
@@ -401,7 +401,12 @@ static const struct {
                "\"items\":{\"$ref\":\"#/components/schemas/point\"},\"minItems\":1}]}"},
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},
-    {"any_object", "{\"type\":\"object\"}"},
+    {"value", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/plain\"},{\"type\":\"array\","
+              "\"items\":{\"$ref\":\"#/components/schemas/plain\"},\"minItems\":2,"
+              "\"maxItems\":16}]}"},
+    {"plain", "{\"type\":[\"number\",\"boolean\"]}"},
+    {"values_by_name", "{\"type\":\"object\",\"additionalProperties\":"
+                       "{\"$ref\":\"#/components/schemas/value\"},\"minProperties\":1}"},
     {"domain", "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
     {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
     {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},

@@ -333,9 +333,9 @@ static void test_each_declared_status(void **state)
         size_t length = is_big ? TOO_BIG : s->body == NULL ? 0 : strlen(s->body);
         take(b, s->method, s->target, s->status, s->headers, is_big ? big : s->body, length);
     }
+    take_stale_cursor(b, "attributes/faces/selected");
     take_stale_cursor(b, "vertices");
     take_stale_cursor(b, "edits");
-    take_stale_cursor(b, "attributes/faces/selected");
     take_keyed(b, "POST", "/v1/meshes", CUBE);
     take_keyed(b, "PATCH", "/v1/meshes/m", "{\"name\":\"z\"}");
     take_keyed(b, "POST", "/v1/meshes/m/copy", "{}");
