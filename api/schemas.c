@@ -292,7 +292,7 @@ static const member requests[] = {
     {"document", "attributes", "*#document_attribute", OPTIONAL, "Of any domain."},
 
     {"document_attribute", "domain", "#domain", REQUIRED, NULL},
-    {"document_attribute", "name", "text", REQUIRED, NULL},
+    {"document_attribute", "name", "#attribute_name", REQUIRED, NULL},
     {"document_attribute", "type", "#type_name", REQUIRED, NULL},
     {"document_attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
     {"document_attribute", "rule", "#rule_name", OPTIONAL, NULL},
@@ -372,6 +372,8 @@ static const struct {
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},
     {"any_object", "{\"type\":\"object\"}"},
     {"domain", "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
+    {"attribute_name", "{\"type\":\"string\",\"minLength\":1,\"maxLength\":63,\"description\":"
+                       "\"At most 63 bytes of UTF-8; `position` is built in.\"}"},
     {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
     {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
     {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
