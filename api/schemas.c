@@ -127,7 +127,11 @@ static const member answers[] = {
     {"attribute_written", "revision", "count", REQUIRED, NULL},
     {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was done."},
     {"attribute_written", "attribute", "#attribute_info", OPTIONAL, "Unless it was deleted."},
+    {"attribute_written", "created", "#sets", REQUIRED, "Empty."},
+    {"attribute_written", "deleted", "#sets", REQUIRED, "Empty."},
     {"attribute_written", "modified", "#sets", REQUIRED, "Empty where it came or went whole."},
+    {"attribute_written", "parents", "#parents", REQUIRED, "Empty."},
+    {"attribute_written", "merged", "#merged", REQUIRED, "Empty."},
 
     {"element_page", "revision", "count", REQUIRED, NULL},
     {"element_page", "items", "*#element", REQUIRED, NULL},
