@@ -20,6 +20,10 @@ static void write_path_parameter(api_out *out, const char *name)
     api_out_key(out, "schema");
     if (strcmp(name, "id") == 0) {
         api_schema_ref(out, "schemas", "id");
+    } else if (strcmp(name, "domain") == 0) {
+        api_schema_ref(out, "schemas", "domain");
+    } else if (strcmp(name, "name") == 0) {
+        api_schema_ref(out, "schemas", "attribute_name");
     } else {
         api_out_object_begin(out);
         api_out_key_string(out, "type", "string");

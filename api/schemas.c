@@ -137,7 +137,11 @@ static const member answers[] = {
     {"attribute_written", "revision", "count", REQUIRED, NULL},
     {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was done."},
     {"attribute_written", "attribute", "#attribute_info", OPTIONAL, "Unless it was deleted."},
+    {"attribute_written", "created", "#sets", REQUIRED, "Empty."},
+    {"attribute_written", "deleted", "#sets", REQUIRED, "Empty."},
     {"attribute_written", "modified", "#sets", REQUIRED, "Empty where it came or went whole."},
+    {"attribute_written", "parents", "#parents", REQUIRED, "Empty."},
+    {"attribute_written", "merged", "#merged", REQUIRED, "Empty."},
 
     {"element_page", "revision", "count", REQUIRED, NULL},
     {"element_page", "items", "*#element", REQUIRED, NULL},
@@ -321,7 +325,7 @@ static const member requests[] = {
     {"document", "attributes", "*#document_attribute", OPTIONAL, "Of any domain."},
 
     {"document_attribute", "domain", "#domain", REQUIRED, NULL},
-    {"document_attribute", "name", "text", REQUIRED, NULL},
+    {"document_attribute", "name", "#attribute_name", REQUIRED, NULL},
     {"document_attribute", "type", "#type_name", REQUIRED, NULL},
     {"document_attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
     {"document_attribute", "rule", "#rule_name", OPTIONAL, NULL},
@@ -408,6 +412,8 @@ static const struct {
     {"values_by_name", "{\"type\":\"object\",\"additionalProperties\":"
                        "{\"$ref\":\"#/components/schemas/value\"},\"minProperties\":1}"},
     {"domain", "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
+    {"attribute_name", "{\"type\":\"string\",\"minLength\":1,\"maxLength\":63,\"description\":"
+                       "\"At most 63 bytes of UTF-8; `position` is built in.\"}"},
     {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
     {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
     {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
