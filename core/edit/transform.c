@@ -23,9 +23,11 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
             return status;
         }
     }
+    he_status status = he_watch_phase(m->watch, "checking", 0.3, err);
     size_t places = vertices != NULL ? count : m->c.vertices.issued, moved = 0;
-    for (size_t i = 0; i < places; i++) {
+    for (size_t i = 0; i < places && status == HE_OK; i++) {
         he_vertex v = {vertices != NULL ? vertices[i] : (uint32_t)i};
+        status = he_watch_at(m->watch, i, places, err);
         if (!he_vertex_is_live(m, v)) {
             continue;
         }
@@ -35,13 +37,19 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
         }
         moved++;
     }
-    he_status status = he_reserve(m, (he_need){.positions = moved}, err);
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "moving", 1, err);
+    }
+    if (status == HE_OK) {
+        status = he_reserve(m, (he_need){.positions = moved}, err);
+    }
     if (status != HE_OK) {
         return status;
     }
     /* Nothing below can fail. */
     for (size_t i = 0; i < places; i++) {
         he_vertex v = {vertices != NULL ? vertices[i] : (uint32_t)i};
+        he_watch_note(m->watch, i, places);
         if (he_vertex_is_live(m, v)) {
             he_set_position(m, v, apply(matrix, he_position(m, v)));
         }

@@ -32,7 +32,7 @@ static void sort_few(word_record *records, size_t count)
 
 enum { FEW = 96 };
 
-static he_status sort_records(word_record **records, size_t count, he_error *err)
+static he_status sort_records(word_record **records, size_t count, he_watch *watch, he_error *err)
 {
     if (count <= FEW) {
         sort_few(*records, count);
@@ -46,10 +46,12 @@ static he_status sort_records(word_record **records, size_t count, he_error *err
     for (size_t i = 1; i < count; i++) {
         differs |= from[i].key ^ from[0].key;
     }
-    for (unsigned shift = 0; shift < 64; shift += 8) {
+    he_status status = HE_OK;
+    for (unsigned shift = 0; shift < 64 && status == HE_OK; shift += 8) {
         if ((differs >> shift & 255) == 0) {
             continue;
         }
+        status = he_watch_step(watch, shift, 128, err);
         size_t starts[257] = {0};
         for (size_t i = 0; i < count; i++) {
             starts[(from[i].key >> shift & 255) + 1]++;
@@ -66,7 +68,7 @@ static he_status sort_records(word_record **records, size_t count, he_error *err
     }
     he_mem_free(to);
     *records = from;
-    return HE_OK;
+    return status;
 }
 
 static he_status sort_ids(he_ids *list, he_error *err)
@@ -213,8 +215,9 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-static he_status gather(const he_delta *delta, size_t from, size_t to, bool undone,
-                        word_record **out, size_t *count, he_changes *found, he_error *err)
+static he_status gather(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
+                        bool undone, word_record **out, size_t *count, he_changes *found,
+                        he_error *err)
 {
     word_record *records = he_mem_array(NULL, to - from, sizeof *records);
     if (records == NULL) {
@@ -232,7 +235,7 @@ static he_status gather(const he_delta *delta, size_t from, size_t to, bool undo
             found->others = true;
         }
     }
-    he_status status = sort_records(&records, n, err);
+    he_status status = sort_records(&records, n, mesh->watch, err);
     if (status != HE_OK) {
         he_mem_free(records);
         return status;
@@ -246,7 +249,7 @@ static he_status note_all(const he_mesh *mesh, const word_record *records, size_
                           he_changes *out, he_error *err)
 {
     he_status status = HE_OK;
-    for (size_t i = 0; i < count && status == HE_OK;) {
+    for (size_t i = 0, noted = 0; i < count && status == HE_OK; noted++) {
         size_t last = i;
         while (last + 1 < count && records[last + 1].key == records[i].key) {
             last++;
@@ -255,6 +258,9 @@ static he_status note_all(const he_mesh *mesh, const word_record *records, size_
             status =
                 note_word(mesh, out, (uint32_t)(records[i].key >> 40), (uint32_t)records[i].key,
                           records[i].before, records[last].after, err);
+        }
+        if (status == HE_OK && noted % HE_WATCH_STRIDE == 0) {
+            status = he_watch_step(mesh->watch, count + i, 2 * (uint64_t)count, err);
         }
         i = last + 1;
     }
@@ -307,7 +313,10 @@ he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t fro
     he_changes found = {0};
     word_record *records = NULL;
     size_t count = 0;
-    he_status status = gather(delta, from, to, undone, &records, &count, &found, err);
+    he_status status = he_watch_phase(mesh->watch, "listing changes", 1, err);
+    if (status == HE_OK) {
+        status = gather(mesh, delta, from, to, undone, &records, &count, &found, err);
+    }
     if (status != HE_OK || found.replaced) {
         goto out;
     }
