@@ -104,6 +104,7 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
         x->relation = *relation;
     }
     x->code = variables->code;
+    x->job_id = variables->job;
     return true;
 }
 

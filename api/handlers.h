@@ -13,6 +13,11 @@ void api_problem_get(api_exchange *x);
 void api_operations_get(api_exchange *x);
 void api_openapi_get(api_exchange *x);
 
+/* Jobs: x->job_id. */
+void api_jobs_list(api_exchange *x);
+void api_job_get(api_exchange *x);
+void api_job_delete(api_exchange *x);
+
 /* The collection. */
 void api_meshes_list(api_exchange *x);
 void api_meshes_create_begin(api_exchange *x);

@@ -73,6 +73,8 @@
       "GET /v1/openapi.json lists every path.")                                                    \
     X(NO_SUCH_MESH, "no_such_mesh", 404, "No such mesh",                                           \
       "No mesh has this id, or it was deleted.")                                                   \
+    X(NO_SUCH_JOB, "no_such_job", 404, "No such job",                                              \
+      "No job has this id, or it ended so long ago that it was forgotten.")                        \
     X(METHOD_NOT_ALLOWED, "method_not_allowed", 405, "The path does not take this method",         \
       "The Allow header lists the methods it takes.")                                              \
     X(NOT_ACCEPTABLE, "not_acceptable", 406, "No acceptable representation",                       \
@@ -115,6 +117,8 @@
       "It is starting or stopping. Try again later.")                                              \
     X(OVERLOADED, "overloaded", 503, "Too many connections",                                       \
       "The server is at its limit of connections. Try again after Retry-After seconds.")           \
+    X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
+      "The queue of jobs is full. Try again after Retry-After seconds.")                           \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
       "What the request would store does not fit the configured budget. Delete a mesh and try "    \
       "again.")                                                                                    \

@@ -6,7 +6,7 @@
  *
  * A template is literal segments and variables. {kind} matches vertices, halfedges, edges, faces
  * and nothing else; {id} an element id; {mesh} a mesh id; {relation} one of the kind's relations;
- * {code} any segment; {asset} the rest of the path. */
+ * {code} and {job} any segment; {asset} the rest of the path. */
 #ifndef HE_API_ROUTES_H
 #define HE_API_ROUTES_H
 
@@ -42,7 +42,9 @@ enum {
     API_COSTLY = 2,     /* costs the mesh or the upload: large ones go to the job pool */
     API_MAY_CREATE = 4, /* the mesh need not exist */
     API_OWN_ACCEPT = 8, /* the handler reads Accept itself (?format= comes first) */
-    API_FIXED = 16      /* not under /v1: left out of OpenAPI */
+    API_FIXED = 16,     /* not under /v1: left out of OpenAPI */
+    API_LONG = 32,      /* may become a job: Prefer is read, and 202 may be the answer */
+    API_INTERRUPTS = 64 /* is not kept out by a long edit of the mesh */
 };
 
 enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_STATUSES = 20 };
@@ -77,7 +79,7 @@ typedef struct api_variables {
     const char *mesh; /* as decoded, not yet checked; NULL where the template has none */
     bool has_kind;
     he_kind kind;
-    const char *id, *relation, *code; /* likewise */
+    const char *id, *relation, *code, *job; /* likewise */
 } api_variables;
 
 /* The row for a method and path. NULL when there is none: then `allow`, which has room for

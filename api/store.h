@@ -27,6 +27,7 @@ typedef struct api_mesh_info {
     double created, modified;     /* seconds since 1970 UTC */
     uint32_t undo, redo;          /* steps on the stacks */
     bool removed;
+    bool busy; /* claimed by a long edit, see `claim` */
 } api_mesh_info;
 
 /* What a revision did; kept in the log. */
@@ -39,7 +40,8 @@ typedef enum api_store_status {
     API_STORE_NO_MEMORY,
     API_STORE_BUDGET,   /* the configured memory budget */
     API_STORE_TOO_MANY, /* meshes */
-    API_STORE_NOTHING   /* to undo or redo */
+    API_STORE_NOTHING,  /* to undo or redo */
+    API_STORE_BUSY      /* the mesh is claimed already */
 } api_store_status;
 
 typedef struct api_store {
@@ -72,7 +74,8 @@ typedef struct api_store {
 
     /* --- writing --- exclusive lock with a recording delta attached, which is lent through
      * `delta` for he_changes_find. NULL when memory is out. Every begin is ended by exactly one of
-     * write_commit, write_abort and write_end, which give the lock back. */
+     * write_commit, write_abort and write_end, which give the lock back. Where info->busy only
+     * remove may be called, and write_end. */
     he_mesh *(*write_begin)(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta);
     /* Make what was recorded a revision with one undo step. `ops` names the operations for the
      * history. `barrier` ends the undo stack (compact). The new facts go to `info`. Cannot fail
@@ -89,6 +92,19 @@ typedef struct api_store {
     /* PUT and PATCH, under the write lock. replace takes `content`. */
     void (*replace)(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
     void (*rename)(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
+
+    /* --- a long edit --- works without a lock on a copy of its own, which takes the place of the
+     * content at once. Before that it claims the mesh: until the claim ends nobody else can write,
+     * so that the content stands still and is lent, to be copied. `delta` is for all that is then
+     * done to the copy. API_STORE_BUSY, API_STORE_ABSENT, API_STORE_NO_MEMORY. */
+    api_store_status (*claim)(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
+                              api_mesh_info *info);
+    /* Ends the claim as write_commit does, with the copy as the content: it is taken. Or ends it
+     * with API_STORE_ABSENT, where the mesh was removed meanwhile: it is not. */
+    api_store_status (*publish)(void *self, api_mesh *mesh, he_mesh *takes, const char *ops,
+                                bool barrier, api_mesh_info *info);
+    /* Ends the claim with nothing done; what was recorded is forgotten. */
+    void (*unclaim)(void *self, api_mesh *mesh);
 
     /* --- the history, under the read lock: newest first; false past the end --- */
     bool (*history)(void *self, api_mesh *mesh, size_t i, struct api_entry *out);

@@ -2,6 +2,7 @@
 
 #include "server/assets.h"
 #include "server/http.h"
+#include "server/job_board.h"
 #include "server/memory.h"
 #include "server/samples.h"
 
@@ -25,6 +26,8 @@ typedef struct daemon_parts {
     srv_assets *assets;
     api_service *service;
     srv_jobs *jobs;
+    srv_board *board;
+    api_jobs board_interface;
     srv_access_log *log;
     srv_http *http;
     srv_policy policy;
@@ -118,8 +121,21 @@ static bool load_page(daemon_parts *parts, const srv_config *config)
     return message[0] == '\0' || config->web[0] == '\0' || fail(message);
 }
 
+static bool submit_job(void *pool, void (*work)(void *context), void *context)
+{
+    return srv_jobs_submit(pool, work, context);
+}
+
 static bool open_service(daemon_parts *parts, const srv_config *config)
 {
+    parts->jobs =
+        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
+    parts->board = srv_board_new(&(srv_board_options){
+        .store = parts->store, .submit = submit_job, .pool = parts->jobs, .keep = SRV_JOB_SECONDS});
+    if (parts->jobs == NULL || parts->board == NULL) {
+        return fail("no memory or threads to start");
+    }
+    parts->board_interface = srv_board_interface(parts->board);
     parts->service = api_service_new(&parts->interface, &(api_options){
                                                             .max_upload = config->max_upload,
                                                             .version = SRV_VERSION,
@@ -127,14 +143,12 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
                                                             .asset_context = parts->assets,
                                                             .ready = is_ready,
                                                             .ready_context = parts,
+                                                            .jobs = &parts->board_interface,
                                                         });
-    parts->jobs =
-        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
     if (config->log == SRV_LOG_ACCESS) {
         parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
     }
-    return (parts->service != NULL && parts->jobs != NULL &&
-            (parts->log != NULL || config->log == SRV_LOG_OFF)) ||
+    return (parts->service != NULL && (parts->log != NULL || config->log == SRV_LOG_OFF)) ||
            fail("no memory or threads to start");
 }
 
@@ -209,6 +223,7 @@ int srv_daemon_run(const srv_config *config)
     if (started) {
         wait_for_stop(&signals);
         atomic_store(&parts.ready, false);
+        srv_board_stop(parts.board);
         if (!srv_http_stop(parts.http, STOP_MILLIS)) {
             /* A long operation is in the middle of its work, on memory that must stay. */
             srv_access_log_free(parts.log);
@@ -216,6 +231,7 @@ int srv_daemon_run(const srv_config *config)
         }
     }
     srv_jobs_free(parts.jobs);
+    srv_board_free(parts.board);
     api_service_free(parts.service);
     srv_store_free(parts.store);
     srv_assets_free(parts.assets);

@@ -389,10 +389,23 @@ static enum MHD_Result answer_held(request *r)
     return send_answer(r);
 }
 
+/* The exchange has become a job: the client is answered by another one. */
+static void detach(request *r)
+{
+    api_exchange *answer = api_detach(r->exchange);
+    if (answer == NULL) {
+        refuse(r, HE_NO_MEMORY, "no memory for the request");
+    } else {
+        r->exchange = answer;
+    }
+}
+
 static void do_job(void *context)
 {
     request *r = context;
-    api_work(r->exchange);
+    if (api_work(r->exchange) == API_JOB) {
+        detach(r);
+    }
     MHD_resume_connection(r->connection);
 }
 
@@ -565,6 +578,9 @@ static enum MHD_Result end_body(request *r)
     if (r->step == API_MORE) {
         srv_connection_enter(r->socket, SRV_STAGE_WORK, srv_clock_micros());
         r->step = api_end(r->exchange);
+    }
+    if (r->step == API_JOB) {
+        detach(r);
     }
     return r->step == API_WORK ? begin_work(r) : answer_when_durable(r);
 }

@@ -76,6 +76,7 @@ void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out)
     *out = mesh->info;
     out->undo = mesh->log.undo_count;
     out->redo = mesh->log.redo_count;
+    out->busy = mesh->claimed;
 }
 
 void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone)

@@ -25,6 +25,7 @@ struct api_mesh {
     srv_revision_log log;
     he_savepoint mark; /* where the writer began */
     he_mesh *discard;  /* freed when the writer has given the lock back */
+    bool claimed;      /* the log's reserve is lent to a long edit */
 
     pthread_mutex_t snapshot_lock;
     srv_copy *copy; /* NULL: none cached */
@@ -60,6 +61,11 @@ void srv_write_abort(void *self, api_mesh *mesh);
 api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, he_delta **delta,
                                 api_mesh_info *info);
 void srv_write_end(void *self, api_mesh *mesh);
+api_store_status srv_claim(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
+                           api_mesh_info *info);
+api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const char *ops,
+                             bool barrier, api_mesh_info *info);
+void srv_unclaim(void *self, api_mesh *mesh);
 void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
 void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
 

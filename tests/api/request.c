@@ -1,5 +1,7 @@
 #include "tests/api/request.h"
 
+#include "server/job_board.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -8,11 +10,46 @@
 
 #include <cmocka.h>
 
+typedef struct piece {
+    void (*work)(void *context);
+    void *context;
+} piece;
+
 struct api_bench {
     srv_store *meshes;
     api_store store;
+    srv_board *board;
+    api_jobs jobs;
+    piece waiting[BENCH_JOBS];
+    size_t waits, most;
     api_service *service;
 };
+
+/* A pool without threads. */
+static bool submit(void *pool, void (*work)(void *context), void *context)
+{
+    api_bench *b = pool;
+    if (b->waits == b->most) {
+        return false;
+    }
+    b->waiting[b->waits++] = (piece){work, context};
+    return true;
+}
+
+void bench_run_jobs(api_bench *b, size_t most)
+{
+    for (; b->waits > 0 && most > 0; most--) {
+        piece next = b->waiting[0];
+        b->waits--;
+        memmove(b->waiting, b->waiting + 1, b->waits * sizeof *b->waiting);
+        next.work(next.context);
+    }
+}
+
+void bench_limit_jobs(api_bench *b, size_t most)
+{
+    b->most = most;
+}
 
 api_bench *bench_new(void)
 {
@@ -22,14 +59,23 @@ api_bench *bench_new(void)
         .undo_budget = 64 << 20, .max_meshes = 1000, .journal = srv_journal_memory()});
     assert_non_null(b->meshes);
     b->store = srv_store_interface(b->meshes);
-    b->service =
-        api_service_new(&b->store, &(api_options){.version = "0.0.0-test", .max_upload = 8 << 20});
+    b->most = BENCH_JOBS;
+    b->board = srv_board_new(&(srv_board_options){
+        .store = b->meshes, .submit = submit, .pool = b, .keep = SRV_JOB_SECONDS});
+    assert_non_null(b->board);
+    b->jobs = srv_board_interface(b->board);
+    b->service = api_service_new(
+        &b->store,
+        &(api_options){.version = "0.0.0-test", .max_upload = 8 << 20, .jobs = &b->jobs});
     assert_non_null(b->service);
     return b;
 }
 
 void bench_free(api_bench *b)
 {
+    srv_board_stop(b->board);
+    bench_run_jobs(b, BENCH_JOBS);
+    srv_board_free(b->board);
     api_service_free(b->service);
     srv_store_free(b->meshes);
     free(b);

@@ -13,6 +13,11 @@ api_bench *bench_new(void);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 const api_store *bench_store(api_bench *b);
+/* Jobs wait until this runs them: without threads, in their order, up to `most`. */
+void bench_run_jobs(api_bench *b, size_t most);
+/* How many may wait; BENCH_JOBS at first. */
+enum { BENCH_JOBS = 16 };
+void bench_limit_jobs(api_bench *b, size_t most);
 
 typedef struct bench_reply {
     int status;

@@ -1,0 +1,388 @@
+#include "server/job_board.h"
+
+#include "server/clock.h"
+#include "server/random.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <string.h>
+
+/* A job, in the list of its board. The lock of the board is for all but the atomics, and `work`
+ * while it runs. */
+typedef struct job {
+    srv_board *board;
+    api_job facts;      /* but for phase and progress while it runs; `body` is owned */
+    api_exchange *work; /* NULL when it has ended */
+    uint32_t uses;      /* by the list and the pool */
+    bool listed;
+    char *body;
+    struct job *next, *previous; /* in the order of numbers */
+
+    _Atomic bool stop;
+    _Atomic(const char *) phase;
+    _Atomic double progress;
+} job;
+
+struct srv_board {
+    srv_board_options options;
+    pthread_mutex_t lock;
+    job *first, *last;
+    size_t count;
+    size_t bytes; /* of bodies */
+    uint64_t submitted;
+    bool stopped;
+};
+
+srv_board *srv_board_new(const srv_board_options *options)
+{
+    srv_board *board = he_mem_zero(1, sizeof *board);
+    if (board != NULL) {
+        board->options = *options;
+        pthread_mutex_init(&board->lock, NULL);
+    }
+    return board;
+}
+
+/* --- the list, under the lock --- */
+
+static bool has_ended(const job *j)
+{
+    return j->facts.state >= API_JOB_DONE;
+}
+
+static void release(job *j)
+{
+    if (--j->uses == 0) {
+        api_free(j->work);
+        he_mem_free(j->body);
+        he_mem_free(j);
+    }
+}
+
+static void append(srv_board *board, job *j)
+{
+    j->previous = board->last;
+    if (board->last != NULL) {
+        board->last->next = j;
+    } else {
+        board->first = j;
+    }
+    board->last = j;
+    board->count++;
+    j->listed = true;
+}
+
+static void forget(srv_board *board, job *j)
+{
+    if (j->previous != NULL) {
+        j->previous->next = j->next;
+    } else {
+        board->first = j->next;
+    }
+    if (j->next != NULL) {
+        j->next->previous = j->previous;
+    } else {
+        board->last = j->previous;
+    }
+    board->count--;
+    board->bytes -= j->body == NULL ? 0 : j->facts.length;
+    j->listed = false;
+    release(j);
+}
+
+/* The one that ended first; NULL when none has. */
+static job *ended_first(const srv_board *board)
+{
+    job *found = NULL;
+    for (job *j = board->first; j != NULL; j = j->next) {
+        if (has_ended(j) && (found == NULL || j->facts.finished < found->facts.finished)) {
+            found = j;
+        }
+    }
+    return found;
+}
+
+/* Forget what is too old, and as many more as it takes for `room` jobs; the newest answer stays
+ * however large it is. */
+static void tidy(srv_board *board, size_t room)
+{
+    double now = srv_clock_utc();
+    job *j = ended_first(board);
+    while (j != NULL &&
+           (now - j->facts.finished >= board->options.keep || board->count + room > SRV_JOBS_KEPT ||
+            (board->bytes > SRV_JOBS_BYTES && board->bytes > j->facts.length))) {
+        forget(board, j);
+        j = ended_first(board);
+    }
+}
+
+static job *find_job(const srv_board *board, const char *id)
+{
+    job *j = board->first;
+    while (j != NULL && strcmp(j->facts.id, id) != 0) {
+        j = j->next;
+    }
+    return j;
+}
+
+/* --- running --- */
+
+static bool tell(void *context, const char *phase, double done)
+{
+    job *j = context;
+    atomic_store_explicit(&j->phase, phase, memory_order_relaxed);
+    atomic_store_explicit(&j->progress, done, memory_order_relaxed);
+    return !atomic_load_explicit(&j->stop, memory_order_relaxed);
+}
+
+/* What the exchange would have answered. Without memory the body is not kept. */
+static void keep_answer(job *j)
+{
+    const api_answer *answer = api_answer_of(j->work);
+    j->facts.status = answer->status;
+    for (size_t i = 0; i < answer->header_count; i++) {
+        const char *value = answer->headers[i].value;
+        if (strcmp(answer->headers[i].name, "Location") == 0 &&
+            strlen(value) < sizeof j->facts.location) {
+            memcpy(j->facts.location, value, strlen(value) + 1);
+        }
+    }
+    if (answer->read == NULL && answer->length > 0) {
+        j->facts.length = (size_t)answer->length;
+        j->body = he_mem_alloc(j->facts.length);
+        if (j->body != NULL) {
+            memcpy(j->body, answer->bytes, j->facts.length);
+        }
+    }
+    j->facts.body = j->body;
+    j->facts.length = j->body == NULL ? 0 : j->facts.length;
+}
+
+static bool is_durable(const job *j)
+{
+    const api_answer *answer = api_answer_of(j->work);
+    return answer->mesh == NULL ||
+           srv_store_is_durable(j->board->options.store, answer->mesh, answer->record);
+}
+
+static void show_end(job *j)
+{
+    const char *slash = strrchr(j->facts.location, '/');
+    if (slash != NULL && strlen(slash + 1) <= API_MESH_ID) {
+        memcpy(j->facts.mesh, slash + 1, strlen(slash + 1) + 1);
+    }
+    if (j->facts.status < 400) {
+        j->facts.state = API_JOB_DONE;
+        j->facts.progress = 1;
+    } else {
+        bool stopped = atomic_load(&j->stop);
+        j->facts.state = stopped ? API_JOB_CANCELLED : API_JOB_FAILED;
+        j->facts.progress = atomic_load(&j->progress);
+    }
+    j->facts.phase = atomic_load(&j->phase);
+    j->facts.finished = srv_clock_utc();
+    j->board->bytes += j->listed ? j->facts.length : 0;
+}
+
+/* D1: the end is not shown before it is durable. Under the lock. */
+static void settle(job *j)
+{
+    if (j->facts.state == API_JOB_RUNNING && j->facts.status != 0 && j->work != NULL &&
+        is_durable(j)) {
+        api_free(j->work);
+        j->work = NULL;
+        show_end(j);
+    }
+}
+
+static void run(void *context)
+{
+    job *j = context;
+    srv_board *board = j->board;
+    pthread_mutex_lock(&board->lock);
+    bool wanted = j->facts.state == API_JOB_QUEUED;
+    if (wanted) {
+        j->facts.state = API_JOB_RUNNING;
+        j->facts.started = srv_clock_utc();
+    }
+    pthread_mutex_unlock(&board->lock);
+    api_exchange *over = NULL;
+    if (wanted) {
+        api_watch(j->work, tell, j);
+        api_work(j->work);
+    }
+    pthread_mutex_lock(&board->lock);
+    if (wanted) {
+        keep_answer(j);
+        if (is_durable(j)) {
+            over = j->work;
+            j->work = NULL;
+        } else {
+            atomic_store(&j->phase, "storing");
+        }
+    }
+    pthread_mutex_unlock(&board->lock);
+    /* Its memory is back before the end shows. */
+    api_free(over);
+    pthread_mutex_lock(&board->lock);
+    if (over != NULL) {
+        show_end(j);
+        tidy(board, 0);
+    }
+    release(j);
+    pthread_mutex_unlock(&board->lock);
+}
+
+/* --- what api asks for --- */
+
+static const api_job *present(job *j)
+{
+    settle(j);
+    if (!has_ended(j)) {
+        j->facts.phase = atomic_load(&j->phase);
+        j->facts.progress = atomic_load(&j->progress);
+    }
+    return &j->facts;
+}
+
+static job *job_new(srv_board *board, api_exchange *work, const char *operation, const char *mesh)
+{
+    job *j = he_mem_zero(1, sizeof *j);
+    if (j == NULL) {
+        return NULL;
+    }
+    j->board = board;
+    j->work = work;
+    j->uses = 2;
+    srv_random_id(j->facts.id, API_JOB_ID);
+    j->facts.operation = operation;
+    memcpy(j->facts.mesh, mesh, strnlen(mesh, API_MESH_ID));
+    j->facts.created = srv_clock_utc();
+    atomic_init(&j->phase, "");
+    atomic_init(&j->progress, 0);
+    atomic_init(&j->stop, false);
+    return j;
+}
+
+static bool submit(void *self, api_exchange *work, const char *operation, const char *mesh,
+                   api_job *out)
+{
+    srv_board *board = self;
+    job *j = job_new(board, work, operation, mesh);
+    if (j == NULL) {
+        return false;
+    }
+    pthread_mutex_lock(&board->lock);
+    tidy(board, 1);
+    bool accepted = !board->stopped && board->count < SRV_JOBS_KEPT;
+    if (accepted) {
+        j->facts.number = ++board->submitted;
+        *out = *present(j);
+        append(board, j);
+        /* It cannot run before the lock is given back. */
+        accepted = board->options.submit(board->options.pool, run, j);
+        if (!accepted) {
+            forget(board, j);
+        }
+    }
+    pthread_mutex_unlock(&board->lock);
+    if (!accepted) {
+        he_mem_free(j);
+    }
+    return accepted;
+}
+
+static bool find(void *self, const char *id, void (*show)(void *context, const api_job *job),
+                 void *context)
+{
+    srv_board *board = self;
+    pthread_mutex_lock(&board->lock);
+    tidy(board, 0);
+    job *j = find_job(board, id);
+    if (j != NULL) {
+        show(context, present(j));
+    }
+    pthread_mutex_unlock(&board->lock);
+    return j != NULL;
+}
+
+static bool list(void *self, uint64_t after, size_t limit,
+                 void (*show)(void *context, const api_job *job), void *context)
+{
+    srv_board *board = self;
+    size_t given = 0;
+    pthread_mutex_lock(&board->lock);
+    tidy(board, 0);
+    job *j = board->first;
+    for (; j != NULL && given < limit; j = j->next) {
+        if (j->facts.number > after) {
+            show(context, present(j));
+            given++;
+        }
+    }
+    pthread_mutex_unlock(&board->lock);
+    return j != NULL;
+}
+
+/* Under the lock; what is left of one that waited is to be freed without it. */
+static api_exchange *cancel(job *j)
+{
+    api_exchange *work = NULL;
+    atomic_store(&j->stop, true);
+    if (j->facts.state == API_JOB_QUEUED) {
+        work = j->work;
+        j->work = NULL;
+        j->facts.state = API_JOB_CANCELLED;
+        j->facts.finished = srv_clock_utc();
+    }
+    return work;
+}
+
+static bool remove_job(void *self, const char *id, bool *forgotten,
+                       void (*show)(void *context, const api_job *job), void *context)
+{
+    srv_board *board = self;
+    api_exchange *over = NULL;
+    pthread_mutex_lock(&board->lock);
+    tidy(board, 0);
+    job *j = find_job(board, id);
+    if (j != NULL) {
+        *forgotten = present(j)->state >= API_JOB_DONE;
+        if (*forgotten) {
+            forget(board, j);
+        } else {
+            over = cancel(j);
+            show(context, present(j));
+        }
+    }
+    pthread_mutex_unlock(&board->lock);
+    api_free(over);
+    return j != NULL;
+}
+
+api_jobs srv_board_interface(srv_board *board)
+{
+    return (api_jobs){
+        .self = board, .submit = submit, .find = find, .list = list, .remove = remove_job};
+}
+
+void srv_board_stop(srv_board *board)
+{
+    pthread_mutex_lock(&board->lock);
+    board->stopped = true;
+    for (job *j = board->first; j != NULL; j = j->next) {
+        api_free(cancel(j));
+    }
+    pthread_mutex_unlock(&board->lock);
+}
+
+void srv_board_free(srv_board *board)
+{
+    if (board != NULL) {
+        while (board->first != NULL) {
+            forget(board, board->first);
+        }
+        pthread_mutex_destroy(&board->lock);
+        he_mem_free(board);
+    }
+}
