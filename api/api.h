@@ -11,7 +11,8 @@
  *           |         API_WORK:  long; call api_work on a thread that may block, not on a worker
  *       api_work
  *           |
- *       api_answer -- status, headers, and a body as bytes or as a reader to pull from
+ *       api_answer -- status, headers, and a body as bytes, as a reader to pull from, or as a
+ *           |         source that may have to be waited for (live.h)
  *           |
  *       api_free
  *
@@ -20,6 +21,7 @@
 #ifndef HE_API_API_H
 #define HE_API_API_H
 
+#include "api/live.h"
 #include "api/store.h"
 
 #include <stdbool.h>
@@ -62,6 +64,10 @@ typedef struct api_answer {
     int64_t length; /* -1: unknown, only with read */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
+    /* Instead of both: an answer that goes on, and what to send now and then when it has nothing.
+     * NULL: it is none. */
+    const api_source *live;
+    const char *idle;
     bool close; /* the connection must not be used again */
     /* Hold the answer until this mesh is durable up to this record (api_mesh_info); mesh NULL: do
      * not. */

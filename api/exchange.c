@@ -337,6 +337,18 @@ void api_answer_stream(api_exchange *x, int status, const char *type, int64_t le
     x->free_stream = free_stream;
 }
 
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
+                     const char *idle)
+{
+    api_answer_bytes(x, status, type, NULL, 0);
+    x->live = *source;
+    x->answer.length = -1;
+    x->answer.live = &x->live;
+    x->answer.idle = idle;
+    x->stream = source->self;
+    x->free_stream = source->free;
+}
+
 void api_answer_etag(api_exchange *x, const char *representation)
 {
     char etag[API_ETAG];
