@@ -114,6 +114,8 @@ bool api_fail_store(api_exchange *x, api_store_status status)
         return api_fail(x, API_TOO_MANY_MESHES, "the server holds as many meshes as it may");
     case API_STORE_NOTHING:
         return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
+    case API_STORE_LISTENERS:
+        return api_fail(x, API_OVERLOADED, "as many clients listen as may");
     }
     return api_fail(x, API_INTERNAL, "the store refused without a reason");
 }

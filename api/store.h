@@ -7,8 +7,11 @@
 #ifndef HE_API_STORE_H
 #define HE_API_STORE_H
 
+#include "api/live.h"
 #include "mesh/delta.h"
 #include "mesh/mesh.h"
+
+#include <stdbool.h>
 
 typedef struct api_mesh api_mesh;         /* a stored mesh; the server defines it */
 typedef struct api_snapshot api_snapshot; /* an immutable copy at one revision; likewise */
@@ -39,8 +42,16 @@ typedef enum api_store_status {
     API_STORE_NO_MEMORY,
     API_STORE_BUDGET,   /* the configured memory budget */
     API_STORE_TOO_MANY, /* meshes */
-    API_STORE_NOTHING   /* to undo or redo */
+    API_STORE_NOTHING,  /* to undo or redo */
+    API_STORE_LISTENERS /* as many listen as may */
 } api_store_status;
+
+/* Where a listener wants to go on. */
+typedef struct api_since {
+    bool given;
+    bool has_incarnation;
+    uint64_t incarnation, revision;
+} api_since;
 
 typedef struct api_store {
     void *self;
@@ -89,6 +100,11 @@ typedef struct api_store {
     /* PUT and PATCH, under the write lock. replace takes `content`. */
     void (*replace)(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
     void (*rename)(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
+
+    /* --- listening --- The changes of a mesh as messages of events.h, from after `since`, or from
+     * the present revision, whose facts go to `info`. The caller frees the source. */
+    api_store_status (*follow)(void *self, api_mesh *mesh, const api_since *since,
+                               api_mesh_info *info, api_source *out);
 
     /* --- the history, under the read lock: newest first; false past the end --- */
     bool (*history)(void *self, api_mesh *mesh, size_t i, struct api_entry *out);

@@ -68,6 +68,8 @@ void srv_feed_clear(srv_feed *feed);
 bool srv_feed_is_followed(srv_feed *feed);
 /* Add a message; its bytes are copied. NULL bytes, or no memory: who reads up to here is behind. */
 void srv_feed_add(srv_feed *feed, srv_place place, const char *bytes, size_t length);
+/* The newest stamp. */
+uint64_t srv_feed_newest(srv_feed *feed);
 /* Messages up to this stamp may be read: wakes who waits. */
 void srv_feed_allow(srv_feed *feed, uint64_t stamp);
 /* Nothing will be added any more. */
@@ -85,8 +87,8 @@ void srv_feed_wake(srv_listener *listener, void (*wake)(void *context), void *co
 void srv_feed_leave(srv_listener *listener);
 
 typedef enum srv_feed_step {
-    SRV_FEED_BYTES, /* *got of them */
-    SRV_FEED_WAIT,  /* nothing now; `wake` will be called */
+    SRV_FEED_GOT,  /* *got of them */
+    SRV_FEED_WAIT, /* nothing now; `wake` will be called */
     SRV_FEED_BEHIND,
     SRV_FEED_ENDED
 } srv_feed_step;

@@ -42,6 +42,7 @@ static he_status add(const api_store *store, const char *name, he_error *err)
     case API_STORE_BUDGET:
     case API_STORE_TOO_MANY:
     case API_STORE_NOTHING:
+    case API_STORE_LISTENERS:
         break;
     }
     he_mesh_free(content);

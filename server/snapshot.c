@@ -117,4 +117,5 @@ void srv_mesh_shed(api_mesh *mesh)
         mesh->copy = NULL;
     }
     pthread_mutex_unlock(&mesh->snapshot_lock);
+    srv_feed_shed(&mesh->feed);
 }

@@ -1,6 +1,7 @@
 #include "server/stored_mesh.h"
 
 #include "server/clock.h"
+#include "server/mesh_events.h"
 #include "server/random.h"
 
 #include <string.h>
@@ -53,6 +54,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     mesh->info.modified = mesh->info.created;
     mesh->content = content;
     srv_log_init(&mesh->log, undo_budget);
+    srv_feed_init(&mesh->feed, (srv_place){.stamp = 0, .key = 0});
     return mesh;
 }
 
@@ -62,6 +64,7 @@ void srv_mesh_release(api_mesh *mesh)
         return;
     }
     srv_log_clear(&mesh->log);
+    srv_feed_clear(&mesh->feed);
     he_mesh_free(mesh->content);
     srv_copy_release(mesh->copy);
     he_mem_free(mesh->cache);
@@ -94,6 +97,7 @@ void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, b
         .content = mesh->info.removed ? NULL : mesh->content,
     };
     mesh->journal->append(mesh->journal->self, &record);
+    srv_events_publish(mesh, &record);
 }
 
 const he_mesh *srv_read_begin(void *self, api_mesh *mesh, api_mesh_info *info)

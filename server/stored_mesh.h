@@ -2,6 +2,8 @@
 #ifndef HE_SERVER_STORED_MESH_H
 #define HE_SERVER_STORED_MESH_H
 
+#include "server/feed.h"
+#include "server/held.h"
 #include "server/journal.h"
 #include "server/revision_log.h"
 
@@ -18,6 +20,7 @@ typedef struct srv_copy {
 struct api_mesh {
     _Atomic uint32_t uses;
     const srv_journal *journal;
+    struct srv_events *events;
 
     pthread_rwlock_t lock; /* of all down to `discard` */
     api_mesh_info info;    /* but for undo and redo, which the log has */
@@ -25,6 +28,11 @@ struct api_mesh {
     srv_revision_log log;
     he_savepoint mark; /* where the writer began */
     he_mesh *discard;  /* freed when the writer has given the lock back */
+
+    /* See mesh_events.h. */
+    srv_feed feed;
+    srv_hold hold; /* of the newest message that is not yet durable */
+    _Atomic bool holding;
 
     pthread_mutex_t snapshot_lock;
     srv_copy *copy; /* NULL: none cached */

@@ -69,54 +69,6 @@ static he_status sort_records(word_record **records, size_t count, he_error *err
     return HE_OK;
 }
 
-static he_status sort_ids(he_ids *list, he_error *err)
-{
-    if (list->count < 2) {
-        return HE_OK;
-    }
-    uint32_t *from = list->ids;
-    if (list->count <= FEW) {
-        for (size_t i = 1; i < list->count; i++) {
-            uint32_t id = from[i];
-            size_t k = i;
-            for (; k > 0 && from[k - 1] > id; k--) {
-                from[k] = from[k - 1];
-            }
-            from[k] = id;
-        }
-    } else {
-        uint32_t *to = he_mem_array(NULL, list->capacity, sizeof *to);
-        if (to == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu ids", list->count);
-        }
-        for (unsigned shift = 0; shift < 32; shift += 8) {
-            size_t starts[257] = {0};
-            for (size_t i = 0; i < list->count; i++) {
-                starts[(from[i] >> shift & 255) + 1]++;
-            }
-            for (size_t b = 1; b < 257; b++) {
-                starts[b] += starts[b - 1];
-            }
-            for (size_t i = 0; i < list->count; i++) {
-                to[starts[from[i] >> shift & 255]++] = from[i];
-            }
-            uint32_t *swap = from;
-            from = to;
-            to = swap;
-        }
-        he_mem_free(to);
-        list->ids = from;
-    }
-    size_t kept = 1;
-    for (size_t i = 1; i < list->count; i++) {
-        if (list->ids[i] != list->ids[kept - 1]) {
-            list->ids[kept++] = list->ids[i];
-        }
-    }
-    list->count = kept;
-    return HE_OK;
-}
-
 static bool contains(const he_ids *sorted, uint32_t id)
 {
     size_t low = 0, high = sorted->count;
@@ -314,12 +266,12 @@ he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t fro
     status = note_all(mesh, records, count, &found, err);
     for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
         he_kind kind = published[i];
-        status = sort_ids(&found.created[kind], err);
+        status = he_ids_sort(&found.created[kind], err);
         if (status == HE_OK) {
-            status = sort_ids(&found.deleted[kind], err);
+            status = he_ids_sort(&found.deleted[kind], err);
         }
         if (status == HE_OK) {
-            status = sort_ids(&found.modified[kind], err);
+            status = he_ids_sort(&found.modified[kind], err);
         }
         if (status == HE_OK) {
             keep_modified(mesh, &found, kind);
