@@ -116,6 +116,12 @@ bool api_fail_store(api_exchange *x, api_store_status status)
         return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
     case API_STORE_LISTENERS:
         return api_fail(x, API_OVERLOADED, "as many clients listen as may");
+    case API_STORE_AHEAD:
+        return api_fail(x, API_NO_SUCH_REVISION, "the revision is still to come");
+    case API_STORE_GONE:
+        return api_fail(x, API_REVISION_GONE, "the history does not reach back to the revision");
+    case API_STORE_ELSEWHERE:
+        return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
     }
     return api_fail(x, API_INTERNAL, "the store refused without a reason");
 }

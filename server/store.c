@@ -243,6 +243,7 @@ api_store srv_store_interface(srv_store *store)
         .read_begin = srv_read_begin,
         .read_end = srv_read_end,
         .snapshot = srv_snapshot,
+        .snapshot_at = srv_snapshot_at,
         .snapshot_content = srv_snapshot_content,
         .snapshot_release = srv_snapshot_release,
         .cache_get = srv_cache_get,
@@ -250,12 +251,16 @@ api_store srv_store_interface(srv_store *store)
         .write_begin = srv_write_begin,
         .write_commit = srv_write_commit,
         .write_abort = srv_write_abort,
+        .tally = srv_tally,
+        .undoable = srv_undoable,
+        .steps_to = srv_steps_to,
         .step = srv_step_apply,
         .write_end = srv_write_end,
         .replace = srv_mesh_replace,
         .rename = srv_mesh_rename,
         .follow = srv_follow,
         .history = srv_history,
+        .history_facts = srv_history_facts,
     };
 }
 

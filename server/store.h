@@ -1,6 +1,7 @@
 /* store.h - the meshes a daemon holds: by id, locked, revised. Fills in api/store.h.
  *
  * Locks, in the order in which they are taken:
+ *     past      the mesh's cached copy of an earlier revision; not on a worker
  *     mesh      one mesh, shared by readers or held by one writer; writers come first
  *     table     the collection, for as long as a search takes
  *     snapshot  the mesh's cached copy

@@ -42,6 +42,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
         return NULL;
     }
     pthread_mutex_init(&mesh->snapshot_lock, NULL);
+    pthread_mutex_init(&mesh->past_lock, NULL);
     pthread_mutex_init(&mesh->cache_lock, NULL);
     atomic_init(&mesh->uses, 1);
     mesh->journal = journal;
@@ -53,8 +54,8 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     mesh->info.created = srv_clock_utc();
     mesh->info.modified = mesh->info.created;
     mesh->content = content;
-    srv_log_init(&mesh->log, undo_budget);
     srv_feed_init(&mesh->feed, (srv_place){.stamp = 0, .key = 0});
+    srv_log_init(&mesh->log, undo_budget, content, mesh->info.created);
     return mesh;
 }
 
@@ -67,9 +68,11 @@ void srv_mesh_release(api_mesh *mesh)
     srv_feed_clear(&mesh->feed);
     he_mesh_free(mesh->content);
     srv_copy_release(mesh->copy);
+    srv_copy_release(mesh->past);
     he_mem_free(mesh->cache);
     pthread_rwlock_destroy(&mesh->lock);
     pthread_mutex_destroy(&mesh->snapshot_lock);
+    pthread_mutex_destroy(&mesh->past_lock);
     pthread_mutex_destroy(&mesh->cache_lock);
     he_mem_free(mesh);
 }
@@ -120,6 +123,14 @@ bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out)
 {
     (void)self;
     return srv_log_entry(&mesh->log, i, out);
+}
+
+void srv_history_facts(void *self, api_mesh *mesh, struct api_history *out)
+{
+    (void)self;
+    const srv_revision_log *log = &mesh->log;
+    *out = (api_history){
+        .oldest = log->oldest, .dropped = log->dropped, .bytes = log->bytes, .budget = log->budget};
 }
 
 bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size)
