@@ -14,7 +14,8 @@
  *           |
  *       api_detach: the exchange is a job's from now on (jobs.h), the client is answered by another
  *           |
- *       api_answer -- status, headers, and a body as bytes or as a reader to pull from
+ *       api_answer -- status, headers, and a body as bytes, as a reader to pull from, or as a
+ *           |         source that may have to be waited for (live.h)
  *           |
  *       api_free
  *
@@ -24,6 +25,7 @@
 #define HE_API_API_H
 
 #include "api/jobs.h"
+#include "api/live.h"
 #include "api/store.h"
 #include "mesh/watch.h"
 
@@ -67,6 +69,10 @@ typedef struct api_answer {
     int64_t length; /* -1: unknown, only with read */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
+    /* Instead of both: an answer that goes on, and what to send now and then when it has nothing.
+     * NULL: it is none. */
+    const api_source *live;
+    const char *idle;
     bool close; /* the connection must not be used again */
     /* Hold the answer until this mesh is durable up to this record (api_mesh_info); mesh NULL: do
      * not. */

@@ -116,6 +116,14 @@ bool api_fail_store(api_exchange *x, api_store_status status)
         return api_fail(x, API_MESH_BUSY, "a long operation changes the mesh");
     case API_STORE_NOTHING:
         return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
+    case API_STORE_LISTENERS:
+        return api_fail(x, API_OVERLOADED, "as many clients listen as may");
+    case API_STORE_AHEAD:
+        return api_fail(x, API_NO_SUCH_REVISION, "the revision is still to come");
+    case API_STORE_GONE:
+        return api_fail(x, API_REVISION_GONE, "the history does not reach back to the revision");
+    case API_STORE_ELSEWHERE:
+        return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
     }
     return api_fail(x, API_INTERNAL, "the store refused without a reason");
 }
@@ -366,6 +374,18 @@ void api_answer_stream(api_exchange *x, int status, const char *type, int64_t le
     x->answer.context = stream;
     x->stream = stream;
     x->free_stream = free_stream;
+}
+
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
+                     const char *idle)
+{
+    api_answer_bytes(x, status, type, NULL, 0);
+    x->live = *source;
+    x->answer.length = -1;
+    x->answer.live = &x->live;
+    x->answer.idle = idle;
+    x->stream = source->self;
+    x->free_stream = source->free;
 }
 
 void api_answer_etag(api_exchange *x, const char *representation)

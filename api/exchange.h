@@ -98,6 +98,7 @@ struct api_exchange {
     api_answer answer;
     void *stream;
     void (*free_stream)(void *stream);
+    api_source live;
 };
 
 /* --- query parameters: checked against the row already, so these cannot fail --- */
@@ -161,6 +162,9 @@ bool api_answer_minimal(api_exchange *x);
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
                        int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
                        void (*free_stream)(void *stream));
+/* An answer that goes on: takes `source`, freed with the exchange. `idle` is a literal. */
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
+                     const char *idle);
 /* A header of the answer, in place of one of this name; `value` is copied. Before or after the
  * answer. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);

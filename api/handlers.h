@@ -52,5 +52,6 @@ void api_edits_post(api_exchange *x);
 void api_edits_list(api_exchange *x);
 void api_undo_post(api_exchange *x);
 void api_redo_post(api_exchange *x);
+void api_events_get(api_exchange *x);
 
 #endif

@@ -43,12 +43,13 @@ static void step(api_exchange *x, api_action which)
         }
         has_expected = api_in_find(&x->root, "expected_revision", &expected);
     }
-    he_delta *delta = NULL;
-    he_mesh *mesh = api_write_begin(x, has_expected ? &expected : NULL, &delta);
+    const he_delta *delta = NULL;
+    he_delta *recording;
+    he_mesh *mesh = api_write_begin(x, has_expected ? &expected : NULL, &recording);
     if (mesh == NULL) {
         return;
     }
-    api_store_status status = store->step(store->self, x->mesh, which, &delta, &x->info);
+    api_store_status status = store->step(store->self, x->mesh, which, 1, &delta, &x->info);
     if (status == API_STORE_NOTHING) {
         api_fail(x, which == API_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
                  "no edit is left to %s at revision %llu", which == API_UNDO ? "undo" : "do again",

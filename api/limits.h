@@ -70,6 +70,9 @@ enum {
     API_CLAIM_ELEMENTS = 200000,
     API_DEFAULT_JOBS = 100 /* of one page of the list */
 };
+/* Of an event: bytes of its data, and rows of the delta it is made from, under the mesh's lock.
+ * Beyond either it only says that there was one. */
+enum { API_MAX_EVENT = 64 * 1024, API_MAX_EVENT_ROWS = 1 << 15 };
 
 enum { API_PROBLEM_ELEMENTS = 100 }; /* named one by one in a problem */
 

@@ -75,6 +75,9 @@
       "No mesh has this id, or it was deleted.")                                                   \
     X(NO_SUCH_JOB, "no_such_job", 404, "No such job",                                              \
       "No job has this id, or it ended so long ago that it was forgotten.")                        \
+    X(NO_SUCH_REVISION, "no_such_revision", 404, "The mesh has no such revision yet",              \
+      "The revision that is named is beyond the present one, which every answer about the mesh "   \
+      "shows.")                                                                                    \
     X(METHOD_NOT_ALLOWED, "method_not_allowed", 405, "The path does not take this method",         \
       "The Allow header lists the methods it takes.")                                              \
     X(NOT_ACCEPTABLE, "not_acceptable", 406, "No acceptable representation",                       \
@@ -86,6 +89,10 @@
       "The undo stack of the mesh is empty.")                                                      \
     X(NOTHING_TO_REDO, "nothing_to_redo", 409, "There is nothing to do again",                     \
       "The redo stack of the mesh is empty: nothing was undone, or an edit followed.")             \
+    X(UNREACHABLE_REVISION, "unreachable_revision", 409, "The stack does not lead there",          \
+      "Undo leads to revisions whose edits are all still done, redo to those that were undone "    \
+      "last. What was undone and then edited over is on neither stack: it can be read with "       \
+      "?revision= while the history holds it.")                                                    \
     X(MESH_BUSY, "mesh_busy", 409, "The mesh is being changed by a long operation",                \
       "Writes are taken again when it has ended; reads go on meanwhile.")                          \
     X(REVISION_GONE, "revision_gone", 410, "The revision is not available any more",               \

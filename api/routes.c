@@ -21,6 +21,7 @@ static const char *const mesh_in[] = {"application/json",
                                       NULL};
 static const char *const mesh_out[] = {"application/json", "model/obj", "model/x-off",
                                        "model/ply",        "model/stl", NULL};
+static const char *const event_stream[] = {"text/event-stream", NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
                                        "text/javascript",
@@ -46,6 +47,8 @@ static const api_parameter cursor = {
 static const api_parameter turning = {
     "cw", API_PARAM_FLAG, 0,
     0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
+static const api_parameter since = {
+    "since", API_PARAM_TEXT, 0, 64, NULL, "Go on after this: an event's id, or a revision."};
 static const api_parameter format = {
     "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
 static const api_parameter encoding = {
@@ -323,6 +326,19 @@ static const api_route routes[] = {
      .response = "edited",
      .summary = "Do again what was undone",
      .doc = "As a new revision, with the ids it had."},
+
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/events",
+     .name = "events_get",
+     .run = api_events_get,
+     .produces = event_stream,
+     .parameters = {&since},
+     .statuses = {200},
+     .summary = "Every change as it happens",
+     .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
+            "link for link; `metadata` a new name; `resync` says to fetch the mesh anew, `bye` "
+            "that the stream ends. Last-Event-ID or `since` goes on where a client was cut off, "
+            "or gives one `resync` where the history does not reach."},
 
     /* jobs */
     {.method = "GET",

@@ -7,12 +7,16 @@
 #ifndef HE_API_STORE_H
 #define HE_API_STORE_H
 
+#include "api/live.h"
 #include "mesh/delta.h"
 #include "mesh/mesh.h"
+
+#include <stdbool.h>
 
 typedef struct api_mesh api_mesh;         /* a stored mesh; the server defines it */
 typedef struct api_snapshot api_snapshot; /* an immutable copy at one revision; likewise */
 struct api_entry;                         /* one line of the history, below */
+struct api_history;
 
 enum { API_MESH_ID = 64, API_MESH_NAME = 256 };
 
@@ -33,16 +37,33 @@ typedef struct api_mesh_info {
 /* What a revision did; kept in the log. */
 typedef enum api_action { API_EDIT, API_UNDO, API_REDO, API_REPLACE } api_action;
 
+/* How many elements a revision created, deleted and modified: vertices, edges, faces. */
+typedef struct api_tally {
+    bool known;
+    uint32_t created[3], deleted[3], modified[3];
+} api_tally;
+
 typedef enum api_store_status {
     API_STORE_OK,
     API_STORE_ABSENT,
     API_STORE_TAKEN, /* the id is in use */
     API_STORE_NO_MEMORY,
-    API_STORE_BUDGET,   /* the configured memory budget */
-    API_STORE_TOO_MANY, /* meshes */
-    API_STORE_NOTHING,  /* to undo or redo */
-    API_STORE_BUSY      /* the mesh is claimed already */
+    API_STORE_BUDGET,    /* the configured memory budget */
+    API_STORE_TOO_MANY,  /* meshes */
+    API_STORE_NOTHING,   /* to undo or redo */
+    API_STORE_LISTENERS, /* as many listen as may */
+    API_STORE_AHEAD,     /* no such revision yet */
+    API_STORE_GONE,      /* the revision is no longer in the history */
+    API_STORE_ELSEWHERE, /* the stack does not lead to the revision */
+    API_STORE_BUSY       /* the mesh is claimed already */
 } api_store_status;
+
+/* Where a listener wants to go on. */
+typedef struct api_since {
+    bool given;
+    bool has_incarnation;
+    uint64_t incarnation, revision;
+} api_since;
 
 typedef struct api_store {
     void *self;
@@ -65,6 +86,11 @@ typedef struct api_store {
     /* An immutable copy of the present revision, shared with everybody who asks for the same one.
      * May copy the mesh: not on a worker thread for large ones. */
     api_store_status (*snapshot)(void *self, api_mesh *mesh, api_snapshot **out);
+    /* The same of an earlier revision: API_STORE_AHEAD, or API_STORE_GONE when the history does not
+     * reach back to it. May replay the history: not on a worker thread. The info is that of now but
+     * for `revision` and `modified`. */
+    api_store_status (*snapshot_at)(void *self, api_mesh *mesh, uint64_t revision,
+                                    api_snapshot **out);
     const he_mesh *(*snapshot_content)(const api_snapshot *snapshot, api_mesh_info *info);
     void (*snapshot_release)(void *self, api_snapshot *snapshot);
     /* A value derived from one revision, such as its summary: kept until the revision changes.
@@ -83,10 +109,22 @@ typedef struct api_store {
     void (*write_commit)(void *self, api_mesh *mesh, const char *ops, bool barrier,
                          api_mesh_info *info);
     void (*write_abort)(void *self, api_mesh *mesh); /* rolls back */
-    /* Step back or forward, under the write lock: applies the inverse as a new revision, whose
-     * delta is lent until write_end. API_STORE_NOTHING when the stack is empty. */
-    api_store_status (*step)(void *self, api_mesh *mesh, api_action which, he_delta **delta,
-                             api_mesh_info *info);
+    /* For the history: what the change did that will be committed, or nothing is said there. */
+    void (*tally)(void *self, api_mesh *mesh, const api_tally *tally);
+    /* Could what was recorded so far be undone if it were committed? False when it is larger than
+     * the undo budget: committing it ends the history. */
+    bool (*undoable)(void *self, api_mesh *mesh);
+    /* How many steps undo (redo) takes to the content of a revision, 0 when it is there, and the
+     * bytes of all their deltas. `revision` 0: for that many `steps`, which is read. Under either
+     * lock. API_STORE_NOTHING when the stack has fewer steps; AHEAD, GONE, ELSEWHERE. */
+    api_store_status (*steps_to)(void *self, api_mesh *mesh, api_action which, uint64_t revision,
+                                 uint32_t *steps, uint64_t *bytes);
+    /* Take that many steps, at least one, back or forward, under the write lock: each applies an
+     * inverse as a new revision. Their deltas are lent until write_end through `deltas`, which has
+     * a place for each, in the order they were applied. API_STORE_NOTHING or API_STORE_NO_MEMORY,
+     * and nothing has changed. */
+    api_store_status (*step)(void *self, api_mesh *mesh, api_action which, uint32_t steps,
+                             const he_delta **deltas, api_mesh_info *info);
     /* After step, replace, rename, remove or nothing. */
     void (*write_end)(void *self, api_mesh *mesh);
     /* PUT and PATCH, under the write lock. replace takes `content`. */
@@ -106,8 +144,14 @@ typedef struct api_store {
     /* Ends the claim with nothing done; what was recorded is forgotten. */
     void (*unclaim)(void *self, api_mesh *mesh);
 
+    /* --- listening --- The changes of a mesh as messages of events.h, from after `since`, or from
+     * the present revision, whose facts go to `info`. The caller frees the source. */
+    api_store_status (*follow)(void *self, api_mesh *mesh, const api_since *since,
+                               api_mesh_info *info, api_source *out);
+
     /* --- the history, under the read lock: newest first; false past the end --- */
     bool (*history)(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
+    void (*history_facts)(void *self, api_mesh *mesh, struct api_history *out);
 } api_store;
 
 enum { API_ENTRY_OPS = 256 };
@@ -120,6 +164,13 @@ typedef struct api_entry {
     bool undoable;
     size_t bytes;
     double time;
+    api_tally tally;
 } api_entry;
+
+typedef struct api_history {
+    uint64_t oldest;        /* revision that can be read */
+    uint64_t dropped;       /* entries, to stay within the budget */
+    uint64_t bytes, budget; /* that entries and deltas take, and may take */
+} api_history;
 
 #endif

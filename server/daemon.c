@@ -91,12 +91,22 @@ static bool fail(const char *why)
     return false;
 }
 
+static bool open_jobs(daemon_parts *parts, const srv_config *config)
+{
+    parts->jobs =
+        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
+    return parts->jobs != NULL || fail("no memory or threads to start");
+}
+
 static bool open_store(daemon_parts *parts, const srv_config *config)
 {
     parts->store = srv_store_new(&(srv_store_options){
         .undo_budget = config->undo_budget,
         .max_meshes = config->max_meshes,
         .journal = srv_journal_memory(),
+        .listeners = config->max_listeners,
+        .mesh_listeners = config->max_mesh_listeners,
+        .jobs = parts->jobs,
     });
     if (parts->store == NULL) {
         return fail("no memory to start");
@@ -172,6 +182,7 @@ static bool open_http(daemon_parts *parts, const srv_config *config)
         .jobs = parts->jobs,
         .log = parts->log,
         .policy = &parts->policy,
+        .heartbeat_micros = config->heartbeat * 1000000,
     };
     if (!srv_address_parse(config->listen, &options.address)) {
         return fail("no address to listen on");
@@ -218,8 +229,9 @@ int srv_daemon_run(const srv_config *config)
     uint64_t budget = config->memory_budget;
     srv_memory_set_budget(budget == 0 ? srv_memory_default_budget() : budget);
 
-    bool started = open_store(&parts, config) && load_page(&parts, config) &&
-                   open_service(&parts, config) && open_http(&parts, config);
+    bool started = open_jobs(&parts, config) && open_store(&parts, config) &&
+                   load_page(&parts, config) && open_service(&parts, config) &&
+                   open_http(&parts, config);
     if (started) {
         wait_for_stop(&signals);
         atomic_store(&parts.ready, false);

@@ -50,9 +50,9 @@ static void commit(api_mesh *mesh, const he_delta *delta, const char *ops, bool 
     double now = revise(mesh);
     srv_mesh_append(mesh, barrier ? API_REPLACE : API_EDIT, barrier ? NULL : delta, false);
     if (barrier) {
-        srv_log_add_barrier(&mesh->log, mesh->info.revision, API_EDIT, ops, now);
+        srv_log_add_barrier(&mesh->log, mesh->info.revision, API_EDIT, ops, now, mesh->content);
     } else {
-        srv_log_add_edit(&mesh->log, mesh->info.revision, ops, now);
+        srv_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content);
     }
     if (info != NULL) {
         srv_mesh_info(mesh, info);
@@ -138,27 +138,64 @@ void srv_write_abort(void *self, api_mesh *mesh)
     unlock(mesh);
 }
 
-api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, he_delta **delta,
-                                api_mesh_info *info)
+void srv_tally(void *self, api_mesh *mesh, const api_tally *tally)
 {
     (void)self;
-    assert(which == API_UNDO || which == API_REDO);
-    he_delta *step = srv_log_next(&mesh->log, which);
-    if (step == NULL) {
+    mesh->log.tally = *tally;
+}
+
+bool srv_undoable(void *self, api_mesh *mesh)
+{
+    (void)self;
+    return srv_log_fits(&mesh->log);
+}
+
+api_store_status srv_steps_to(void *self, api_mesh *mesh, api_action which, uint64_t revision,
+                              uint32_t *steps, uint64_t *bytes)
+{
+    (void)self;
+    const srv_revision_log *log = &mesh->log;
+    api_store_status status = API_STORE_OK;
+    if (revision != 0) {
+        status = srv_log_steps_to(log, which, revision, steps);
+    } else if (*steps > (which == API_UNDO ? log->undo_count : log->redo_count)) {
+        status = API_STORE_NOTHING;
+    }
+    if (status == API_STORE_OK) {
+        *bytes = srv_log_steps_bytes(log, which, *steps);
+    }
+    return status;
+}
+
+static const he_delta *take_step(api_mesh *mesh, api_action which)
+{
+    he_delta *delta = srv_log_next(&mesh->log, which);
+    if (which == API_UNDO) {
+        he_delta_undo(delta, mesh->content);
+    } else {
+        he_delta_redo(delta, mesh->content);
+    }
+    double now = revise(mesh);
+    srv_log_add_step(&mesh->log, mesh->info.revision, which, now, mesh->content);
+    srv_mesh_append(mesh, which, delta, which == API_UNDO);
+    return delta;
+}
+
+api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, uint32_t steps,
+                                const he_delta **deltas, api_mesh_info *info)
+{
+    (void)self;
+    assert((which == API_UNDO || which == API_REDO) && steps > 0);
+    if (steps > (which == API_UNDO ? mesh->log.undo_count : mesh->log.redo_count)) {
         return API_STORE_NOTHING;
+    }
+    if (!srv_log_reserve_steps(&mesh->log, which, steps)) {
+        return API_STORE_NO_MEMORY;
     }
     /* A step makes a revision by itself: it may not be recorded into another. */
     roll_back(mesh);
-    if (which == API_UNDO) {
-        he_delta_undo(step, mesh->content);
-    } else {
-        he_delta_redo(step, mesh->content);
-    }
-    double now = revise(mesh);
-    srv_log_add_step(&mesh->log, mesh->info.revision, which, now);
-    srv_mesh_append(mesh, which, step, which == API_UNDO);
-    if (delta != NULL) {
-        *delta = step;
+    for (uint32_t i = 0; i < steps; i++) {
+        deltas[i] = take_step(mesh, which);
     }
     if (info != NULL) {
         srv_mesh_info(mesh, info);
@@ -175,7 +212,7 @@ void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_inf
     mesh->content = content;
     he_mesh_record(content, NULL);
     double now = revise(mesh);
-    srv_log_add_barrier(&mesh->log, mesh->info.revision, API_REPLACE, "replace", now);
+    srv_log_add_barrier(&mesh->log, mesh->info.revision, API_REPLACE, "replace", now, content);
     srv_mesh_append(mesh, API_REPLACE, NULL, false);
     if (info != NULL) {
         srv_mesh_info(mesh, info);

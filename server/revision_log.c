@@ -1,56 +1,66 @@
 #include "server/revision_log.h"
 
+#include "server/revision_entry.h"
+
 #include <assert.h>
 #include <string.h>
 
 /* A reserved delta that grew beyond this is freed rather than kept for the next edit. */
 enum { SPARE_BYTES = 64 * 1024 };
 
-typedef enum place { NOWHERE, ON_UNDO, ON_REDO } place;
+/* The ring is at least a quarter full, but for these. */
+enum { FEWEST_PLACES = 8 };
 
-struct srv_step {
-    he_delta *delta;
-    size_t bytes;
-    uint64_t revision; /* of the edit */
-    uint64_t applied;  /* of the entry that applied it last */
-    uint32_t uses;     /* by entries and a stack */
-    place place;
-    srv_step *below, *above; /* on its stack */
-};
-
-struct srv_revision {
-    uint64_t revision, inverts;
-    api_action action;
-    bool forward; /* the delta was applied forwards */
-    size_t delta_bytes;
-    size_t size; /* of this block */
-    double time;
-    srv_step *step; /* NULL: its delta is not kept */
-    char ops[];
-};
-
-void srv_log_init(srv_revision_log *log, uint64_t budget)
+static void note_marks(srv_point *point, const he_mesh *content)
 {
-    *log = (srv_revision_log){.budget = budget};
+    for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
+        point->issued[kind] = he_mesh_issued(content, (he_kind)kind);
+    }
 }
 
-static srv_revision *entry_at(const srv_revision_log *log, size_t i)
+void srv_log_init(srv_revision_log *log, uint64_t budget, const he_mesh *content, double time)
 {
-    return log->ring[(log->first + i) & (log->capacity - 1)];
+    *log = (srv_revision_log){.budget = budget, .oldest = 1, .bottom = 1};
+    log->before = (srv_point){.revision = 1, .state = 1, .time = time};
+    note_marks(&log->before, content);
 }
 
 static void release_step(srv_revision_log *log, srv_step *step)
 {
     if (--step->uses == 0) {
         log->bytes -= step->bytes;
-        he_delta_free(step->delta);
-        he_mem_free(step);
+        srv_step_release(step);
     }
+}
+
+static bool move_ring(srv_revision_log *log, size_t capacity)
+{
+    srv_revision **ring = he_mem_array(NULL, capacity, sizeof(srv_revision *));
+    if (ring == NULL) {
+        return false;
+    }
+    for (size_t i = 0; i < log->count; i++) {
+        ring[i] = srv_entry_at(log, i);
+    }
+    he_mem_free(log->ring);
+    log->ring = ring;
+    log->capacity = capacity;
+    log->first = 0;
+    return true;
+}
+
+static bool reserve_places(srv_revision_log *log, size_t more)
+{
+    size_t capacity = log->capacity == 0 ? FEWEST_PLACES : log->capacity;
+    while (capacity < log->count + more) {
+        capacity *= 2;
+    }
+    return capacity == log->capacity || move_ring(log, capacity);
 }
 
 static void push_undo(srv_revision_log *log, srv_step *step)
 {
-    step->place = ON_UNDO;
+    step->place = SRV_ON_UNDO;
     step->above = NULL;
     step->below = log->undo_top;
     if (log->undo_top != NULL) {
@@ -64,7 +74,7 @@ static void push_undo(srv_revision_log *log, srv_step *step)
 
 static void push_redo(srv_revision_log *log, srv_step *step)
 {
-    step->place = ON_REDO;
+    step->place = SRV_ON_REDO;
     step->above = NULL;
     step->below = log->redo_top;
     log->redo_top = step;
@@ -81,7 +91,7 @@ static srv_step *pop_undo(srv_revision_log *log)
         log->undo_bottom = NULL;
     }
     log->undo_count--;
-    step->place = NOWHERE;
+    step->place = SRV_NOWHERE;
     return step;
 }
 
@@ -90,7 +100,7 @@ static srv_step *pop_redo(srv_revision_log *log)
     srv_step *step = log->redo_top;
     log->redo_top = step->below;
     log->redo_count--;
-    step->place = NOWHERE;
+    step->place = SRV_NOWHERE;
     return step;
 }
 
@@ -103,20 +113,11 @@ static void forget_delta(srv_revision_log *log, srv_revision *entry)
     }
 }
 
-/* A step that can no longer be done again still serves those who follow the log, unless it holds
- * objects (columns, contents): they are large and cannot be replayed from a borrowed delta. */
+/* A step that can no longer be done again still serves those who travel along the log. */
 static void clear_redo(srv_revision_log *log)
 {
     while (log->redo_top != NULL) {
-        srv_step *step = pop_redo(log);
-        if (step->delta->object_count > 0) {
-            for (size_t i = log->count; i > 0 && step->uses > 1; i--) {
-                if (entry_at(log, i - 1)->step == step) {
-                    forget_delta(log, entry_at(log, i - 1));
-                }
-            }
-        }
-        release_step(log, step);
+        release_step(log, pop_redo(log));
     }
 }
 
@@ -128,12 +129,17 @@ static void clear_stacks(srv_revision_log *log)
     }
 }
 
-/* Entries stay as history; what they changed is gone. */
+/* Entries stay as history; what they changed is gone, and only the newest can be read. */
 static void forget_deltas(srv_revision_log *log)
 {
     clear_stacks(log);
     for (size_t i = 0; i < log->count; i++) {
-        forget_delta(log, entry_at(log, i));
+        forget_delta(log, srv_entry_at(log, i));
+    }
+    if (log->count > 0) {
+        const srv_point *newest = &srv_entry_at(log, log->count - 1)->point;
+        log->oldest = newest->revision;
+        log->bottom = newest->state;
     }
 }
 
@@ -142,11 +148,12 @@ static void forget_deltas(srv_revision_log *log)
  * its bottom. On the redo stack it is at the top, and nothing above it can be reached without. */
 static void drop_oldest(srv_revision_log *log)
 {
-    srv_revision *entry = entry_at(log, 0);
+    srv_revision *entry = srv_entry_at(log, 0);
     srv_step *step = entry->step;
-    if (step != NULL && step->revision == entry->revision) {
-        if (step->place == ON_UNDO) {
+    if (step != NULL && step->revision == entry->point.revision) {
+        if (step->place == SRV_ON_UNDO) {
             assert(step == log->undo_bottom);
+            log->bottom = step->revision;
             log->undo_bottom = step->above;
             if (step->above != NULL) {
                 step->above->below = NULL;
@@ -154,17 +161,30 @@ static void drop_oldest(srv_revision_log *log)
                 log->undo_top = NULL;
             }
             log->undo_count--;
-            step->place = NOWHERE;
+            step->place = SRV_NOWHERE;
             release_step(log, step);
-        } else if (step->place == ON_REDO) {
+        } else if (step->place == SRV_ON_REDO) {
             clear_redo(log);
         }
     }
     forget_delta(log, entry);
+    log->before = entry->point;
+    if (log->oldest < entry->point.revision) {
+        log->oldest = entry->point.revision;
+    }
     log->bytes -= entry->size;
     he_mem_free(entry);
     log->first = (log->first + 1) & (log->capacity - 1);
     log->count--;
+    log->dropped++;
+}
+
+/* Few entries in the place of many: give the places back, if there is memory to move. */
+static void shrink_ring(srv_revision_log *log)
+{
+    if (log->capacity > FEWEST_PLACES && log->count < log->capacity / 4) {
+        (void)move_ring(log, log->capacity / 2);
+    }
 }
 
 void srv_log_settle(srv_revision_log *log)
@@ -173,6 +193,11 @@ void srv_log_settle(srv_revision_log *log)
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
     }
+    /* A step can have grown by what it took out of the mesh. */
+    if (log->bytes > log->budget && log->count == 1) {
+        forget_deltas(log);
+    }
+    shrink_ring(log);
 }
 
 static void drop_spare_step(srv_revision_log *log)
@@ -181,6 +206,15 @@ static void drop_spare_step(srv_revision_log *log)
         he_delta_free(log->spare_step->delta);
         he_mem_free(log->spare_step);
         log->spare_step = NULL;
+    }
+}
+
+static void drop_step_entries(srv_revision_log *log)
+{
+    while (log->steps != NULL) {
+        srv_revision *entry = log->steps;
+        log->steps = entry->next;
+        he_mem_free(entry);
     }
 }
 
@@ -194,28 +228,9 @@ void srv_log_clear(srv_revision_log *log)
     }
     he_mem_free(log->ring);
     he_mem_free(log->spare);
+    drop_step_entries(log);
     drop_spare_step(log);
     *log = (srv_revision_log){0};
-}
-
-static bool reserve_place(srv_revision_log *log)
-{
-    if (log->count < log->capacity) {
-        return true;
-    }
-    size_t capacity = log->capacity == 0 ? 8 : 2 * log->capacity;
-    srv_revision **ring = he_mem_array(NULL, capacity, sizeof(srv_revision *));
-    if (ring == NULL) {
-        return false;
-    }
-    for (size_t i = 0; i < log->count; i++) {
-        ring[i] = entry_at(log, i);
-    }
-    he_mem_free(log->ring);
-    log->ring = ring;
-    log->capacity = capacity;
-    log->first = 0;
-    return true;
 }
 
 static srv_step *step_new(void)
@@ -229,12 +244,13 @@ static srv_step *step_new(void)
         he_mem_free(step);
         return NULL;
     }
+    atomic_init(&step->holders, 1);
     return step;
 }
 
 he_delta *srv_log_reserve(srv_revision_log *log)
 {
-    if (!reserve_place(log)) {
+    if (!reserve_places(log, 1)) {
         return NULL;
     }
     if (log->spare == NULL) {
@@ -251,6 +267,26 @@ void srv_log_unreserve(srv_revision_log *log)
     if (log->spare_step != NULL && he_delta_bytes(log->spare_step->delta) > SPARE_BYTES) {
         drop_spare_step(log);
     }
+    log->tally = (api_tally){0};
+}
+
+/* Bytes of the step that the reserved delta would become. */
+static size_t spare_bytes(const srv_revision_log *log)
+{
+    const he_delta *delta = log->spare_step->delta;
+    size_t slack = (delta->capacity - delta->count) * sizeof *delta->records;
+    return sizeof *log->spare_step + he_delta_bytes(delta) - slack;
+}
+
+static size_t entry_size(size_t ops)
+{
+    /* A ring that grows is half empty. */
+    return sizeof(srv_revision) + ops + 1 + 2 * sizeof(srv_revision *);
+}
+
+bool srv_log_fits(const srv_revision_log *log)
+{
+    return spare_bytes(log) + entry_size(API_ENTRY_OPS) <= log->budget;
 }
 
 /* Cut at a name's end, so that the reader sees whole names and then "...". */
@@ -269,30 +305,41 @@ static void copy_ops(char out[API_ENTRY_OPS], const char *ops)
     memcpy(out + end, end == 0 ? "..." : ",...", end == 0 ? sizeof "..." : sizeof ",...");
 }
 
-/* The reserved entry becomes the newest one. */
-static srv_revision *add_entry(srv_revision_log *log, uint64_t revision, api_action action,
-                               const char *ops, double time)
+/* The entry becomes the newest one. */
+static void add_entry(srv_revision_log *log, srv_revision *entry)
 {
-    assert(log->spare != NULL && log->count < log->capacity);
-    srv_revision *entry = log->spare;
-    log->spare = NULL;
-    *entry = (srv_revision){
-        .revision = revision, .action = action, .forward = action != API_UNDO, .time = time};
-    copy_ops(entry->ops, ops);
-    entry->size = sizeof *entry + strlen(entry->ops) + 1;
-    srv_revision *shrunk = he_mem_resize(entry, entry->size);
-    if (shrunk != NULL) {
-        entry = shrunk;
-    }
+    assert(log->count < log->capacity);
     log->ring[(log->first + log->count) & (log->capacity - 1)] = entry;
     log->count++;
     log->bytes += entry->size;
+}
+
+/* The reserved entry, of content that differs from all before. */
+static srv_revision *add_spare(srv_revision_log *log, uint64_t revision, api_action action,
+                               const char *ops, double time, const he_mesh *content)
+{
+    srv_revision *entry = log->spare;
+    assert(entry != NULL);
+    log->spare = NULL;
+    *entry = (srv_revision){.action = action, .forward = true, .tally = log->tally};
+    entry->point = (srv_point){.revision = revision, .state = revision, .time = time};
+    note_marks(&entry->point, content);
+    log->tally = (api_tally){0};
+    copy_ops(entry->ops, ops);
+    entry->size = entry_size(strlen(entry->ops));
+    srv_revision *shrunk = he_mem_resize(entry, sizeof *entry + strlen(entry->ops) + 1);
+    if (shrunk != NULL) {
+        entry = shrunk;
+    }
+    add_entry(log, entry);
     return entry;
 }
 
-void srv_log_add_edit(srv_revision_log *log, uint64_t revision, const char *ops, double time)
+void srv_log_add_edit(srv_revision_log *log, uint64_t revision, const char *ops, double time,
+                      const he_mesh *content)
 {
-    srv_revision *entry = add_entry(log, revision, API_EDIT, ops, time);
+    bool fits = srv_log_fits(log);
+    srv_revision *entry = add_spare(log, revision, API_EDIT, ops, time, content);
     srv_step *step = log->spare_step;
     log->spare_step = NULL;
     he_delta_trim(step->delta);
@@ -301,10 +348,9 @@ void srv_log_add_edit(srv_revision_log *log, uint64_t revision, const char *ops,
     step->applied = revision;
     entry->delta_bytes = step->bytes;
     clear_redo(log);
-    if (step->bytes + entry->size > log->budget) {
+    if (!fits) {
         forget_deltas(log);
-        he_delta_free(step->delta);
-        he_mem_free(step);
+        srv_step_release(step);
     } else {
         step->uses = 2;
         entry->step = step;
@@ -315,9 +361,9 @@ void srv_log_add_edit(srv_revision_log *log, uint64_t revision, const char *ops,
 }
 
 void srv_log_add_barrier(srv_revision_log *log, uint64_t revision, api_action action,
-                         const char *ops, double time)
+                         const char *ops, double time, const he_mesh *content)
 {
-    srv_revision *entry = add_entry(log, revision, action, ops, time);
+    srv_revision *entry = add_spare(log, revision, action, ops, time, content);
     forget_deltas(log);
     if (log->spare_step != NULL) {
         entry->delta_bytes = he_delta_bytes(log->spare_step->delta);
@@ -332,27 +378,74 @@ he_delta *srv_log_next(const srv_revision_log *log, api_action which)
     return step == NULL ? NULL : step->delta;
 }
 
-/* The text an undo shows is that of the edit, where the log still has it. */
-static const char *ops_of(const srv_revision_log *log, uint64_t revision)
+/* An edit on a stack has its entry still: the two are dropped together. */
+static srv_revision *step_entry(const srv_revision_log *log, const srv_step *step)
 {
-    uint64_t oldest = entry_at(log, 0)->revision;
-    return revision < oldest ? "" : entry_at(log, (size_t)(revision - oldest))->ops;
+    const srv_revision *edit = srv_entry_of(log, step->revision);
+    size_t length = strlen(edit->ops);
+    srv_revision *entry = he_mem_alloc(sizeof *entry + length + 1);
+    if (entry == NULL) {
+        return NULL;
+    }
+    *entry = (srv_revision){.inverts = step->revision, .size = entry_size(length)};
+    entry->tally = edit->tally;
+    memcpy(entry->ops, edit->ops, length + 1);
+    return entry;
 }
 
-void srv_log_add_step(srv_revision_log *log, uint64_t revision, api_action which, double time)
+bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t steps)
 {
+    assert(log->steps == NULL);
+    srv_revision **end = &log->steps;
+    const srv_step *step = which == API_UNDO ? log->undo_top : log->redo_top;
+    bool reserved = reserve_places(log, steps);
+    for (uint32_t i = 0; i < steps && reserved; i++, step = step->below) {
+        *end = step_entry(log, step);
+        reserved = *end != NULL;
+        end = reserved ? &(*end)->next : end;
+    }
+    if (!reserved) {
+        drop_step_entries(log);
+    }
+    return reserved;
+}
+
+/* What an undo created is what the edit deleted. */
+static void turn_tally(api_tally *tally)
+{
+    api_tally edit = *tally;
+    memcpy(tally->created, edit.deleted, sizeof tally->created);
+    memcpy(tally->deleted, edit.created, sizeof tally->deleted);
+}
+
+void srv_log_add_step(srv_revision_log *log, uint64_t revision, api_action which, double time,
+                      const he_mesh *content)
+{
+    srv_revision *entry = log->steps;
+    assert(entry != NULL);
+    log->steps = entry->next;
     srv_step *step = which == API_UNDO ? pop_undo(log) : pop_redo(log);
-    srv_revision *entry = add_entry(log, revision, which, ops_of(log, step->revision), time);
-    entry->inverts = step->revision;
+    assert(step->revision == entry->inverts);
+    /* Columns and contents have changed sides, and with them who holds their bytes. */
+    log->bytes -= step->bytes;
+    step->bytes = sizeof *step + he_delta_bytes(step->delta);
+    log->bytes += step->bytes;
+    entry->action = which;
+    entry->forward = which == API_REDO;
     entry->delta_bytes = step->bytes;
     entry->step = step;
     step->uses++;
     step->applied = revision;
     if (which == API_UNDO) {
+        turn_tally(&entry->tally);
         push_redo(log, step);
     } else {
         push_undo(log, step);
     }
+    entry->point = (srv_point){.revision = revision, .time = time};
+    entry->point.state = log->undo_top == NULL ? log->bottom : log->undo_top->revision;
+    note_marks(&entry->point, content);
+    add_entry(log, entry);
 }
 
 bool srv_log_entry(const srv_revision_log *log, size_t i, api_entry *out)
@@ -360,44 +453,17 @@ bool srv_log_entry(const srv_revision_log *log, size_t i, api_entry *out)
     if (i >= log->count) {
         return false;
     }
-    const srv_revision *entry = entry_at(log, log->count - 1 - i);
+    const srv_revision *entry = srv_entry_at(log, log->count - 1 - i);
     *out = (api_entry){
-        .revision = entry->revision,
+        .revision = entry->point.revision,
         .inverts = entry->inverts,
         .action = entry->action,
-        .undoable = entry->step != NULL && entry->step->place == ON_UNDO &&
-                    entry->step->applied == entry->revision,
+        .undoable = entry->step != NULL && entry->step->place == SRV_ON_UNDO &&
+                    entry->step->applied == entry->point.revision,
         .bytes = entry->delta_bytes,
-        .time = entry->time,
+        .time = entry->point.time,
+        .tally = entry->tally,
     };
     memcpy(out->ops, entry->ops, strlen(entry->ops) + 1);
     return true;
-}
-
-he_status srv_log_replay(const srv_revision_log *log, uint64_t from, size_t most, he_mesh *copy,
-                         const uint32_t issued[HE_KIND_COUNT])
-{
-    if (log->count == 0 || from + 1 < entry_at(log, 0)->revision) {
-        return HE_UNSUPPORTED;
-    }
-    size_t start = (size_t)(from + 1 - entry_at(log, 0)->revision);
-    size_t cost = 0;
-    for (size_t i = start; i < log->count; i++) {
-        const srv_step *step = entry_at(log, i)->step;
-        if (step == NULL || step->delta->object_count > 0) {
-            return HE_UNSUPPORTED;
-        }
-        cost += step->bytes;
-        if (cost > most) {
-            return HE_UNSUPPORTED;
-        }
-    }
-    for (size_t i = start; i < log->count; i++) {
-        const srv_revision *entry = entry_at(log, i);
-        he_status status = he_delta_replay(entry->step->delta, copy, issued, !entry->forward, NULL);
-        if (status != HE_OK) {
-            return status;
-        }
-    }
-    return HE_OK;
 }

@@ -1,6 +1,7 @@
 #include "server/stored_mesh.h"
 
 #include "server/memory.h"
+#include "server/replay_walk.h"
 
 /* What one caller holds: a copy that many may share, and the facts as they were when it asked. */
 struct api_snapshot {
@@ -11,7 +12,7 @@ struct api_snapshot {
 void srv_copy_release(srv_copy *copy)
 {
     if (copy != NULL && atomic_fetch_sub_explicit(&copy->uses, 1, memory_order_acq_rel) == 1) {
-        he_mesh_free(copy->content);
+        he_replay_free(copy->replay);
         he_mem_free(copy);
     }
 }
@@ -24,14 +25,16 @@ static bool is_cached_alone(const srv_copy *copy)
 
 /* Replaying costs about a random access a record, copying a stream: above half the mesh's bytes
  * the copy is cheaper. */
+static bool is_near(const api_mesh *mesh, uint64_t from, uint64_t to)
+{
+    return srv_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
+}
+
 static bool bring_forward(const api_mesh *mesh, srv_copy *copy)
 {
-    uint32_t issued[HE_KIND_COUNT];
-    for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
-        issued[kind] = he_mesh_issued(mesh->content, (he_kind)kind);
-    }
-    return srv_log_replay(&mesh->log, copy->revision, he_mesh_bytes(mesh->content) / 2,
-                          copy->content, issued) == HE_OK;
+    uint64_t head = mesh->info.revision;
+    return is_near(mesh, copy->revision, head) &&
+           srv_log_walk(&mesh->log, copy->replay, &copy->revision, head, UINT64_MAX) == HE_OK;
 }
 
 static srv_copy *copy_new(const api_mesh *mesh)
@@ -40,7 +43,7 @@ static srv_copy *copy_new(const api_mesh *mesh)
     if (copy == NULL) {
         return NULL;
     }
-    if (he_mesh_copy(mesh->content, &copy->content, NULL) != HE_OK) {
+    if (he_replay_new(mesh->content, &copy->replay, NULL) != HE_OK) {
         he_mem_free(copy);
         return NULL;
     }
@@ -92,12 +95,89 @@ api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
     return API_STORE_OK;
 }
 
+/* The cached copy of an earlier revision, made or moved there. Under the past lock. */
+static api_store_status past_copy(api_mesh *mesh, uint64_t revision)
+{
+    srv_copy *copy = mesh->past;
+    if (copy != NULL && copy->revision == revision) {
+        return API_STORE_OK;
+    }
+    mesh->past = NULL;
+    if (copy != NULL) {
+        pthread_rwlock_rdlock(&mesh->lock);
+        bool near = is_near(mesh, copy->revision, revision);
+        pthread_rwlock_unlock(&mesh->lock);
+        if (!is_cached_alone(copy) || !near) {
+            srv_copy_release(copy);
+            copy = NULL;
+        }
+    }
+    if (copy == NULL) {
+        copy = he_mem_zero(1, sizeof *copy);
+        if (copy == NULL) {
+            return API_STORE_NO_MEMORY;
+        }
+        atomic_init(&copy->uses, 1);
+    }
+    api_store_status status = srv_replay_to(mesh, &copy->replay, &copy->revision, revision);
+    if (status != API_STORE_OK) {
+        srv_copy_release(copy);
+        return status;
+    }
+    mesh->past = copy;
+    return API_STORE_OK;
+}
+
+/* The facts of now, but for the revision and its time. */
+static api_store_status past_info(api_mesh *mesh, uint64_t revision, api_mesh_info *out)
+{
+    srv_point point;
+    pthread_rwlock_rdlock(&mesh->lock);
+    bool there = revision >= mesh->log.oldest;
+    if (there) {
+        srv_mesh_info(mesh, out);
+        srv_log_point(&mesh->log, revision, &point);
+        out->revision = revision;
+        out->modified = point.time;
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+    return there ? API_STORE_OK : API_STORE_GONE;
+}
+
+api_store_status srv_snapshot_at(void *self, api_mesh *mesh, uint64_t revision, api_snapshot **out)
+{
+    (void)self;
+    api_snapshot *snapshot = he_mem_zero(1, sizeof *snapshot);
+    if (snapshot == NULL) {
+        return API_STORE_NO_MEMORY;
+    }
+    pthread_mutex_lock(&mesh->past_lock);
+    api_store_status status = past_copy(mesh, revision);
+    if (status == API_STORE_OK) {
+        status = past_info(mesh, revision, &snapshot->info);
+    }
+    if (status == API_STORE_OK) {
+        snapshot->copy = mesh->past;
+        atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
+    } else {
+        srv_copy_release(mesh->past);
+        mesh->past = NULL;
+    }
+    pthread_mutex_unlock(&mesh->past_lock);
+    if (status != API_STORE_OK) {
+        he_mem_free(snapshot);
+        return status;
+    }
+    *out = snapshot;
+    return API_STORE_OK;
+}
+
 const he_mesh *srv_snapshot_content(const api_snapshot *snapshot, api_mesh_info *info)
 {
     if (info != NULL) {
         *info = snapshot->info;
     }
-    return snapshot->copy->content;
+    return he_replay_mesh(snapshot->copy->replay);
 }
 
 void srv_snapshot_release(void *self, api_snapshot *snapshot)
@@ -109,12 +189,23 @@ void srv_snapshot_release(void *self, api_snapshot *snapshot)
     }
 }
 
+static void shed(srv_copy **copy)
+{
+    if (*copy != NULL && is_cached_alone(*copy)) {
+        srv_copy_release(*copy);
+        *copy = NULL;
+    }
+}
+
 void srv_mesh_shed(api_mesh *mesh)
 {
     pthread_mutex_lock(&mesh->snapshot_lock);
-    if (mesh->copy != NULL && is_cached_alone(mesh->copy)) {
-        srv_copy_release(mesh->copy);
-        mesh->copy = NULL;
-    }
+    shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
+    srv_feed_shed(&mesh->feed);
+    /* Held for as long as a copy is being made; that one is wanted. */
+    if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
+        shed(&mesh->past);
+        pthread_mutex_unlock(&mesh->past_lock);
+    }
 }

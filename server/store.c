@@ -1,6 +1,8 @@
 #include "server/store.h"
 
+#include "server/held.h"
 #include "server/memory.h"
+#include "server/mesh_events.h"
 #include "server/random.h"
 #include "server/stored_mesh.h"
 
@@ -11,6 +13,7 @@ struct srv_store {
     srv_journal journal;
     uint64_t undo_budget;
     uint64_t max_meshes;
+    srv_events events;
     pthread_rwlock_t lock; /* of the table */
     api_mesh **meshes;     /* in the order of ids, each with a use */
     size_t count, capacity;
@@ -31,6 +34,17 @@ srv_store *srv_store_new(const srv_store_options *options)
     store->journal = options->journal;
     store->undo_budget = options->undo_budget;
     store->max_meshes = options->max_meshes;
+    store->events = (srv_events){
+        .most = options->listeners,
+        .most_of_mesh = options->mesh_listeners,
+        .jobs = options->jobs,
+        .held = srv_held_new(store),
+    };
+    if (store->events.held == NULL) {
+        pthread_rwlock_destroy(&store->lock);
+        he_mem_free(store);
+        return NULL;
+    }
     return store;
 }
 
@@ -43,6 +57,7 @@ void srv_store_free(srv_store *store)
         srv_mesh_release(store->meshes[i]);
     }
     he_mem_free(store->meshes);
+    srv_held_free(store->events.held);
     store->journal.close(store->journal.self);
     pthread_rwlock_destroy(&store->lock);
     he_mem_free(store);
@@ -137,6 +152,7 @@ static api_store_status create_as(srv_store *store, const char *id, const char *
     if (mesh == NULL) {
         return API_STORE_NO_MEMORY;
     }
+    mesh->events = &store->events;
     /* Whoever finds it waits until the journal has its first record. */
     pthread_rwlock_wrlock(&mesh->lock);
     pthread_rwlock_wrlock(&store->lock);
@@ -227,6 +243,7 @@ api_store srv_store_interface(srv_store *store)
         .read_begin = srv_read_begin,
         .read_end = srv_read_end,
         .snapshot = srv_snapshot,
+        .snapshot_at = srv_snapshot_at,
         .snapshot_content = srv_snapshot_content,
         .snapshot_release = srv_snapshot_release,
         .cache_get = srv_cache_get,
@@ -234,6 +251,9 @@ api_store srv_store_interface(srv_store *store)
         .write_begin = srv_write_begin,
         .write_commit = srv_write_commit,
         .write_abort = srv_write_abort,
+        .tally = srv_tally,
+        .undoable = srv_undoable,
+        .steps_to = srv_steps_to,
         .step = srv_step_apply,
         .write_end = srv_write_end,
         .claim = srv_claim,
@@ -241,7 +261,9 @@ api_store srv_store_interface(srv_store *store)
         .unclaim = srv_unclaim,
         .replace = srv_mesh_replace,
         .rename = srv_mesh_rename,
+        .follow = srv_follow,
         .history = srv_history,
+        .history_facts = srv_history_facts,
     };
 }
 
@@ -254,6 +276,11 @@ bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context)
 {
     store->journal.listen(store->journal.self, notify, context);
+}
+
+srv_held *srv_store_held(srv_store *store)
+{
+    return store->events.held;
 }
 
 size_t srv_store_count(srv_store *store)

@@ -1,6 +1,7 @@
 #include "server/stored_mesh.h"
 
 #include "server/clock.h"
+#include "server/mesh_events.h"
 #include "server/random.h"
 
 #include <string.h>
@@ -41,6 +42,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
         return NULL;
     }
     pthread_mutex_init(&mesh->snapshot_lock, NULL);
+    pthread_mutex_init(&mesh->past_lock, NULL);
     pthread_mutex_init(&mesh->cache_lock, NULL);
     atomic_init(&mesh->uses, 1);
     mesh->journal = journal;
@@ -52,7 +54,8 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     mesh->info.created = srv_clock_utc();
     mesh->info.modified = mesh->info.created;
     mesh->content = content;
-    srv_log_init(&mesh->log, undo_budget);
+    srv_feed_init(&mesh->feed, (srv_place){.stamp = 0, .key = 0});
+    srv_log_init(&mesh->log, undo_budget, content, mesh->info.created);
     return mesh;
 }
 
@@ -62,11 +65,14 @@ void srv_mesh_release(api_mesh *mesh)
         return;
     }
     srv_log_clear(&mesh->log);
+    srv_feed_clear(&mesh->feed);
     he_mesh_free(mesh->content);
     srv_copy_release(mesh->copy);
+    srv_copy_release(mesh->past);
     he_mem_free(mesh->cache);
     pthread_rwlock_destroy(&mesh->lock);
     pthread_mutex_destroy(&mesh->snapshot_lock);
+    pthread_mutex_destroy(&mesh->past_lock);
     pthread_mutex_destroy(&mesh->cache_lock);
     he_mem_free(mesh);
 }
@@ -95,6 +101,7 @@ void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, b
         .content = mesh->info.removed ? NULL : mesh->content,
     };
     mesh->journal->append(mesh->journal->self, &record);
+    srv_events_publish(mesh, &record);
 }
 
 const he_mesh *srv_read_begin(void *self, api_mesh *mesh, api_mesh_info *info)
@@ -117,6 +124,14 @@ bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out)
 {
     (void)self;
     return srv_log_entry(&mesh->log, i, out);
+}
+
+void srv_history_facts(void *self, api_mesh *mesh, struct api_history *out)
+{
+    (void)self;
+    const srv_revision_log *log = &mesh->log;
+    *out = (api_history){
+        .oldest = log->oldest, .dropped = log->dropped, .bytes = log->bytes, .budget = log->budget};
 }
 
 bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size)

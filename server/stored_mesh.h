@@ -2,22 +2,26 @@
 #ifndef HE_SERVER_STORED_MESH_H
 #define HE_SERVER_STORED_MESH_H
 
+#include "server/feed.h"
+#include "server/held.h"
 #include "server/journal.h"
 #include "server/revision_log.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* An immutable copy at a revision, counted by the cache and by each snapshot. */
+/* A copy at a revision, counted by the cache and by each snapshot: it stays there while there is a
+ * snapshot of it. */
 typedef struct srv_copy {
     _Atomic uint32_t uses;
     uint64_t revision;
-    he_mesh *content;
+    he_replay *replay;
 } srv_copy;
 
 struct api_mesh {
     _Atomic uint32_t uses;
     const srv_journal *journal;
+    struct srv_events *events;
 
     pthread_rwlock_t lock; /* of all down to `discard` */
     api_mesh_info info;    /* but for undo and redo, which the log has */
@@ -27,8 +31,16 @@ struct api_mesh {
     he_mesh *discard;  /* freed when the writer has given the lock back */
     bool claimed;      /* the log's reserve is lent to a long edit */
 
+    /* See mesh_events.h. */
+    srv_feed feed;
+    srv_hold hold; /* of the newest message that is not yet durable */
+    _Atomic bool holding;
+
     pthread_mutex_t snapshot_lock;
-    srv_copy *copy; /* NULL: none cached */
+    srv_copy *copy; /* of the present, NULL: none cached */
+
+    pthread_mutex_t past_lock;
+    srv_copy *past; /* of an earlier revision, likewise */
 
     pthread_mutex_t cache_lock;
     void *cache;
@@ -42,7 +54,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
 void srv_mesh_release(api_mesh *mesh);
 /* Under its lock. */
 void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out);
-/* Free the cached copy, unless somebody reads it. */
+/* Free the cached copies, unless somebody reads them. */
 void srv_mesh_shed(api_mesh *mesh);
 /* Under the exclusive lock: number a change that was made and tell the journal about it. */
 void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone);
@@ -53,13 +65,18 @@ void srv_read_end(void *self, api_mesh *mesh);
 bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size);
 void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size);
 bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
+void srv_history_facts(void *self, api_mesh *mesh, struct api_history *out);
 
 he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta);
 void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
                       api_mesh_info *info);
 void srv_write_abort(void *self, api_mesh *mesh);
-api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, he_delta **delta,
-                                api_mesh_info *info);
+void srv_tally(void *self, api_mesh *mesh, const api_tally *tally);
+bool srv_undoable(void *self, api_mesh *mesh);
+api_store_status srv_steps_to(void *self, api_mesh *mesh, api_action which, uint64_t revision,
+                              uint32_t *steps, uint64_t *bytes);
+api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, uint32_t steps,
+                                const he_delta **deltas, api_mesh_info *info);
 void srv_write_end(void *self, api_mesh *mesh);
 api_store_status srv_claim(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
                            api_mesh_info *info);
@@ -70,6 +87,7 @@ void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_inf
 void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
 
 api_store_status srv_snapshot(void *self, api_mesh *mesh, api_snapshot **out);
+api_store_status srv_snapshot_at(void *self, api_mesh *mesh, uint64_t revision, api_snapshot **out);
 const he_mesh *srv_snapshot_content(const api_snapshot *snapshot, api_mesh_info *info);
 void srv_snapshot_release(void *self, api_snapshot *snapshot);
 void srv_copy_release(srv_copy *copy);

@@ -1,4 +1,4 @@
-/* What a delta did to elements, net: he_changes of delta.h. */
+/* What deltas did to elements, net: he_changes of delta.h. */
 #include "mesh/delta.h"
 
 #include "mesh/walk.h"
@@ -69,54 +69,6 @@ static he_status sort_records(word_record **records, size_t count, he_watch *wat
     he_mem_free(to);
     *records = from;
     return status;
-}
-
-static he_status sort_ids(he_ids *list, he_error *err)
-{
-    if (list->count < 2) {
-        return HE_OK;
-    }
-    uint32_t *from = list->ids;
-    if (list->count <= FEW) {
-        for (size_t i = 1; i < list->count; i++) {
-            uint32_t id = from[i];
-            size_t k = i;
-            for (; k > 0 && from[k - 1] > id; k--) {
-                from[k] = from[k - 1];
-            }
-            from[k] = id;
-        }
-    } else {
-        uint32_t *to = he_mem_array(NULL, list->capacity, sizeof *to);
-        if (to == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu ids", list->count);
-        }
-        for (unsigned shift = 0; shift < 32; shift += 8) {
-            size_t starts[257] = {0};
-            for (size_t i = 0; i < list->count; i++) {
-                starts[(from[i] >> shift & 255) + 1]++;
-            }
-            for (size_t b = 1; b < 257; b++) {
-                starts[b] += starts[b - 1];
-            }
-            for (size_t i = 0; i < list->count; i++) {
-                to[starts[from[i] >> shift & 255]++] = from[i];
-            }
-            uint32_t *swap = from;
-            from = to;
-            to = swap;
-        }
-        he_mem_free(to);
-        list->ids = from;
-    }
-    size_t kept = 1;
-    for (size_t i = 1; i < list->count; i++) {
-        if (list->ids[i] != list->ids[kept - 1]) {
-            list->ids[kept++] = list->ids[i];
-        }
-    }
-    list->count = kept;
-    return HE_OK;
 }
 
 static bool contains(const he_ids *sorted, uint32_t id)
@@ -215,25 +167,39 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-static he_status gather(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
-                        bool undone, word_record **out, size_t *count, he_changes *found,
-                        he_error *err)
+/* Append the records of one part in the order in which they took effect. */
+static size_t gather_part(const he_change_part *part, word_record *records, he_changes *found)
 {
-    word_record *records = he_mem_array(NULL, to - from, sizeof *records);
-    if (records == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %zu changes", to - from);
-    }
     size_t n = 0;
-    for (size_t i = from; i < to; i++) {
-        const he_record *r = &delta->records[undone ? to - 1 - (i - from) : i];
+    for (size_t i = part->from; i < part->to; i++) {
+        const he_record *r =
+            &part->delta->records[part->undone ? part->to - 1 - (i - part->from) : i];
         if (is_word(r)) {
-            records[n++] = (word_record){key_of(r), undone ? r->after : r->before,
-                                         undone ? r->before : r->after};
+            records[n++] = (word_record){key_of(r), part->undone ? r->after : r->before,
+                                         part->undone ? r->before : r->after};
         } else if (r->column == HE_COL_REPLACED) {
             found->replaced = true;
         } else if (r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED) {
             found->others = true;
         }
+    }
+    return n;
+}
+
+static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t part_count,
+                        word_record **out, size_t *count, he_changes *found, he_error *err)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < part_count; i++) {
+        total += parts[i].to - parts[i].from;
+    }
+    word_record *records = he_mem_array(NULL, total, sizeof *records);
+    if (records == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %zu changes", total);
+    }
+    size_t n = 0;
+    for (size_t i = 0; i < part_count; i++) {
+        n += gather_part(&parts[i], records + n, found);
     }
     he_status status = sort_records(&records, n, mesh->watch, err);
     if (status != HE_OK) {
@@ -281,12 +247,11 @@ static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
     list->count = kept;
 }
 
-static he_status note_lineage(const he_delta *delta, size_t from, size_t to, he_changes *out,
-                              he_error *err)
+static he_status note_lineage(const he_change_part *part, he_changes *out, he_error *err)
 {
     he_status status = HE_OK;
-    for (size_t i = from; i < to && status == HE_OK; i++) {
-        const he_record *r = &delta->records[i];
+    for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
+        const he_record *r = &part->delta->records[i];
         he_kind kind = (he_kind)r->word;
         he_ids *pairs = NULL;
         if (r->column == HE_COL_PARENT && contains(&out->created[kind], r->row)) {
@@ -310,12 +275,18 @@ static const he_kind published[] = {HE_VERTEX, HE_EDGE, HE_FACE};
 he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
                           bool undone, he_changes *out, he_error *err)
 {
+    return he_changes_sum(mesh, &(he_change_part){delta, from, to, undone}, 1, out, err);
+}
+
+he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_t part_count,
+                         he_changes *out, he_error *err)
+{
     he_changes found = {0};
     word_record *records = NULL;
     size_t count = 0;
     he_status status = he_watch_phase(mesh->watch, "listing changes", 1, err);
     if (status == HE_OK) {
-        status = gather(mesh, delta, from, to, undone, &records, &count, &found, err);
+        status = gather(mesh, parts, part_count, &records, &count, &found, err);
     }
     if (status != HE_OK || found.replaced) {
         goto out;
@@ -323,19 +294,21 @@ he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t fro
     status = note_all(mesh, records, count, &found, err);
     for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
         he_kind kind = published[i];
-        status = sort_ids(&found.created[kind], err);
+        status = he_ids_sort(&found.created[kind], err);
         if (status == HE_OK) {
-            status = sort_ids(&found.deleted[kind], err);
+            status = he_ids_sort(&found.deleted[kind], err);
         }
         if (status == HE_OK) {
-            status = sort_ids(&found.modified[kind], err);
+            status = he_ids_sort(&found.modified[kind], err);
         }
         if (status == HE_OK) {
             keep_modified(mesh, &found, kind);
         }
     }
-    if (status == HE_OK && !undone) {
-        status = note_lineage(delta, from, to, &found, err);
+    for (size_t i = 0; i < part_count && status == HE_OK; i++) {
+        if (!parts[i].undone) {
+            status = note_lineage(&parts[i], &found, err);
+        }
     }
 out:
     he_mem_free(records);

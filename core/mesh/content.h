@@ -25,4 +25,13 @@ void he_content_clear_vertex(he_content *c, uint32_t v);
 void he_content_clear_edge(he_content *c, uint32_t e);
 void he_content_clear_face(he_content *c, uint32_t f);
 
+/* Apply records `from` and later of a delta, forwards or (`undo`) backwards. Columns and contents
+ * are exchanged with `objects`, indexed like the delta's own; NULL when it has none. */
+void he_content_apply(he_content *c, const he_delta *delta, size_t from, bool undo, void **objects);
+/* Issue dead rows up to the high-water marks, indexed by kind. After HE_NO_MEMORY some may be. */
+HE_NODISCARD he_status he_content_issue(he_content *c, const uint32_t issued[HE_KIND_COUNT],
+                                        he_error *err);
+/* Take rows above the marks back. They are dead, or about to be forgotten. */
+void he_content_withdraw(he_content *c, const uint32_t issued[HE_KIND_COUNT]);
+
 #endif

@@ -75,15 +75,6 @@ he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
 void he_delta_undo(he_delta *delta, he_mesh *mesh);
 void he_delta_redo(he_delta *delta, he_mesh *mesh);
 
-/* Bring a copy of the mesh forward: `copy` is equal to the mesh as it was before `delta`, and
- * `issued` are the mesh's high-water marks now (indexed by kind), up to which the copy is filled
- * with dead rows first. The delta is only read, so it must hold no objects: HE_UNSUPPORTED
- * otherwise. On HE_NO_MEMORY the copy may have more dead rows than before, and is otherwise
- * unchanged. */
-HE_NODISCARD he_status he_delta_replay(const he_delta *delta, he_mesh *copy,
-                                       const uint32_t issued[HE_KIND_COUNT], bool undo,
-                                       he_error *err);
-
 /* Only while recording. */
 he_savepoint he_delta_mark(const he_mesh *mesh);
 void he_delta_rollback(he_mesh *mesh, he_savepoint to);
@@ -107,6 +98,15 @@ typedef struct he_changes {
  * half-edges follow their edges. */
 HE_NODISCARD he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from,
                                        size_t to, bool undone, he_changes *out, he_error *err);
+/* The same of several deltas, or parts of them, in the order in which they were applied, with
+ * `mesh` in the state after the last: what is done by one and undone by another does not show. */
+typedef struct he_change_part {
+    const he_delta *delta;
+    size_t from, to;
+    bool undone;
+} he_change_part;
+HE_NODISCARD he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts,
+                                      size_t count, he_changes *out, he_error *err);
 void he_changes_clear(he_changes *changes);
 /* Nothing at all happened? Then no revision is made. */
 bool he_changes_none(const he_changes *changes);

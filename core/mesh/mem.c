@@ -114,3 +114,53 @@ uint64_t *he_bits_new(size_t count)
 {
     return he_mem_zero(count / 64 + 1, sizeof(uint64_t));
 }
+
+/* Insertion for a few, else by radix. */
+he_status he_ids_sort(he_ids *list, he_error *err)
+{
+    if (list->count < 2) {
+        return HE_OK;
+    }
+    uint32_t *from = list->ids;
+    enum { FEW = 96 };
+    if (list->count <= FEW) {
+        for (size_t i = 1; i < list->count; i++) {
+            uint32_t id = from[i];
+            size_t k = i;
+            for (; k > 0 && from[k - 1] > id; k--) {
+                from[k] = from[k - 1];
+            }
+            from[k] = id;
+        }
+    } else {
+        uint32_t *to = he_mem_array(NULL, list->capacity, sizeof *to);
+        if (to == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu ids", list->count);
+        }
+        for (unsigned shift = 0; shift < 32; shift += 8) {
+            size_t starts[257] = {0};
+            for (size_t i = 0; i < list->count; i++) {
+                starts[(from[i] >> shift & 255) + 1]++;
+            }
+            for (size_t b = 1; b < 257; b++) {
+                starts[b] += starts[b - 1];
+            }
+            for (size_t i = 0; i < list->count; i++) {
+                to[starts[from[i] >> shift & 255]++] = from[i];
+            }
+            uint32_t *swap = from;
+            from = to;
+            to = swap;
+        }
+        he_mem_free(to);
+        list->ids = from;
+    }
+    size_t kept = 1;
+    for (size_t i = 1; i < list->count; i++) {
+        if (list->ids[i] != list->ids[kept - 1]) {
+            list->ids[kept++] = list->ids[i];
+        }
+    }
+    list->count = kept;
+    return HE_OK;
+}

@@ -40,6 +40,8 @@ typedef struct he_ids {
 HE_NODISCARD he_status he_ids_reserve(he_ids *list, size_t extra, he_error *err);
 HE_NODISCARD he_status he_ids_add(he_ids *list, uint32_t id, he_error *err);
 void he_ids_reverse(he_ids *list);
+/* Ascending and without repeats. HE_NO_MEMORY leaves it as it was. */
+HE_NODISCARD he_status he_ids_sort(he_ids *list, he_error *err);
 void he_ids_clear(he_ids *list); /* frees */
 
 /* A set of bits, all zero at first. NULL when memory is out. */

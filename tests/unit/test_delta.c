@@ -1,4 +1,4 @@
-/* Recording, undo, redo, rollback, replay, changes, columns and compact, on writes made by hand
+/* Recording, undo, redo, rollback, changes, columns and compact, on writes made by hand
  * through write.h. The operations' own deltas are tested with the operations. */
 #include "fixture.h"
 
@@ -127,31 +127,6 @@ static void test_rollback_takes_ids_back(void **state)
     assert_null(he_mesh_record(m, NULL));
     he_mesh_free(m);
     he_mesh_free(start);
-}
-
-static void test_replay_brings_a_copy_forward(void **state)
-{
-    (void)state;
-    he_mesh *m = mesh_with_columns(), *copy = copy_of(m);
-    he_delta *d = he_delta_new();
-    he_mesh_record(m, d);
-    assert_int_equal(add_triangle(m, NULL), HE_OK);
-    assert_int_equal(add_triangle(m, NULL), HE_OK);
-    assert_int_equal(remove_triangle(m, (he_face){2}, NULL), HE_OK);
-    he_mesh_record(m, NULL);
-    uint32_t issued[HE_KIND_COUNT];
-    for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
-        issued[kind] = he_mesh_issued(m, (he_kind)kind);
-    }
-    assert_int_equal(he_delta_replay(d, copy, issued, false, NULL), HE_OK);
-    assert_true(he_mesh_equal(m, copy));
-    he_delta_undo(d, m);
-    assert_int_equal(he_delta_replay(d, copy, issued, true, NULL), HE_OK);
-    assert_true(he_mesh_equal(m, copy));
-    fixture_check(copy);
-    he_delta_free(d);
-    he_mesh_free(m);
-    he_mesh_free(copy);
 }
 
 static void expect_ids(const he_ids *list, size_t count, const uint32_t *ids)
@@ -444,7 +419,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_undo_and_redo),
         cmocka_unit_test(test_rollback_takes_ids_back),
-        cmocka_unit_test(test_replay_brings_a_copy_forward),
         cmocka_unit_test(test_changes_are_net),
         cmocka_unit_test(test_changes_of_many_rows),
         cmocka_unit_test(test_columns_are_recorded),

@@ -85,9 +85,9 @@ static api_store_status take_away(api_mesh *mesh)
 
 static api_store_status step(api_mesh *mesh, api_action which)
 {
-    he_delta *delta = NULL;
+    const he_delta *delta = NULL;
     assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api_store_status status = api.step(api.self, mesh, which, &delta, NULL);
+    api_store_status status = api.step(api.self, mesh, which, 1, &delta, NULL);
     if (status == API_STORE_OK) {
         assert_true(delta->count > 0);
     }
@@ -517,8 +517,9 @@ static void *write_some(void *context)
             break;
         }
         if (i % 7 == 3) {
+            const he_delta *lent;
             api_store_status status =
-                api.step(api.self, mesh, i % 2 ? API_UNDO : API_REDO, NULL, NULL);
+                api.step(api.self, mesh, i % 2 ? API_UNDO : API_REDO, 1, &lent, NULL);
             (void)status;
             api.write_end(api.self, mesh);
         } else if (he_vertex_move(content, vertices, 2, HE_MOVE_TO, &point, 1, NULL) != HE_OK) {

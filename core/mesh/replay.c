@@ -1,0 +1,194 @@
+#include "mesh/replay.h"
+
+#include "mesh/content.h"
+
+/* What one delta's crossing took out of the copy, in the order of the delta's objects. */
+typedef struct other_side {
+    uint64_t key;
+    void **objects;
+    bool *contents; /* which of them are he_content and not he_column */
+    size_t count;
+    struct other_side *next;
+} other_side;
+
+struct he_replay {
+    he_mesh *mesh;
+    other_side *sides;
+};
+
+static void free_content(he_content *content)
+{
+    if (content != NULL) {
+        he_content_clear(content);
+        he_mem_free(content);
+    }
+}
+
+static void free_side(other_side *side)
+{
+    for (size_t i = 0; i < side->count; i++) {
+        if (side->contents[i]) {
+            free_content(side->objects[i]);
+        } else {
+            he_column_free(side->objects[i]);
+        }
+    }
+    he_mem_free(side->objects);
+    he_mem_free(side->contents);
+    he_mem_free(side);
+}
+
+he_status he_replay_new(const he_mesh *mesh, he_replay **out, he_error *err)
+{
+    he_replay *replay = he_mem_zero(1, sizeof *replay);
+    if (replay == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a copy of the mesh");
+    }
+    he_status status = he_mesh_copy(mesh, &replay->mesh, err);
+    if (status != HE_OK) {
+        he_mem_free(replay);
+        return status;
+    }
+    *out = replay;
+    return HE_OK;
+}
+
+void he_replay_free(he_replay *replay)
+{
+    if (replay == NULL) {
+        return;
+    }
+    while (replay->sides != NULL) {
+        other_side *side = replay->sides;
+        replay->sides = side->next;
+        free_side(side);
+    }
+    he_mesh_free(replay->mesh);
+    he_mem_free(replay);
+}
+
+const he_mesh *he_replay_mesh(const he_replay *replay)
+{
+    return replay->mesh;
+}
+
+size_t he_replay_bytes(const he_replay *replay)
+{
+    size_t bytes = sizeof *replay + he_mesh_bytes(replay->mesh);
+    for (const other_side *side = replay->sides; side != NULL; side = side->next) {
+        bytes += sizeof *side + side->count * (sizeof *side->objects + sizeof *side->contents);
+        for (size_t i = 0; i < side->count; i++) {
+            if (side->objects[i] != NULL) {
+                bytes += side->contents[i] ? he_content_bytes(side->objects[i])
+                                           : he_column_bytes(side->objects[i]);
+            }
+        }
+    }
+    return bytes;
+}
+
+static he_status copy_object(const void *object, bool content, void **out, he_error *err)
+{
+    if (object == NULL) {
+        return HE_OK;
+    }
+    if (!content) {
+        he_column *column = NULL;
+        he_status status = he_column_copy(object, &column, err);
+        *out = column;
+        return status;
+    }
+    he_content *copy = he_mem_zero(1, sizeof *copy);
+    if (copy == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the content before");
+    }
+    *out = copy;
+    return he_content_copy(object, NULL, copy, err);
+}
+
+/* Copies of what the delta holds. */
+static he_status side_of(const he_delta *delta, uint64_t key, other_side **out, he_error *err)
+{
+    other_side *side = he_mem_zero(1, sizeof *side);
+    if (side == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the other side of an edit");
+    }
+    side->key = key;
+    side->objects = he_mem_zero(delta->object_count, sizeof *side->objects);
+    side->contents = he_mem_zero(delta->object_count, sizeof *side->contents);
+    he_status status = HE_OK;
+    if (side->objects == NULL || side->contents == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the other side of an edit");
+        goto out;
+    }
+    side->count = delta->object_count;
+    for (size_t i = 0; i < delta->count; i++) {
+        const he_record *r = &delta->records[i];
+        if (r->column == HE_COL_REPLACED) {
+            side->contents[r->before] = true;
+        }
+    }
+    for (size_t i = 0; i < side->count && status == HE_OK; i++) {
+        status = copy_object(delta->objects[i], side->contents[i], &side->objects[i], err);
+    }
+out:
+    if (status != HE_OK) {
+        free_side(side);
+        return status;
+    }
+    *out = side;
+    return HE_OK;
+}
+
+static other_side *find_side(const he_replay *replay, uint64_t key)
+{
+    other_side *side = replay->sides;
+    while (side != NULL && side->key != key) {
+        side = side->next;
+    }
+    return side;
+}
+
+/* The objects that crossing will exchange with the copy; NULL where the delta has none. */
+static he_status require_side(he_replay *replay, const he_crossing *crossing, void ***objects,
+                              he_error *err)
+{
+    *objects = NULL;
+    if (crossing->delta->object_count == 0) {
+        return HE_OK;
+    }
+    other_side *side = find_side(replay, crossing->key);
+    if (side == NULL && !crossing->held) {
+        return he_fail_plain(err, HE_UNSUPPORTED, "the delta does not hold the side it leads to");
+    }
+    if (side == NULL) {
+        he_status status = side_of(crossing->delta, crossing->key, &side, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        side->next = replay->sides;
+        replay->sides = side;
+    }
+    *objects = side->objects;
+    return HE_OK;
+}
+
+he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_error *err)
+{
+    he_content *c = &replay->mesh->c;
+    void **objects;
+    he_status status = require_side(replay, crossing, &objects, err);
+    if (status == HE_OK && !crossing->undo) {
+        status = he_content_issue(c, crossing->issued, err);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    he_content_apply(c, crossing->delta, 0, crossing->undo, objects);
+    /* A content that was brought in has the marks it had when it was taken out. */
+    status = he_content_issue(c, crossing->issued, err);
+    if (status == HE_OK) {
+        he_content_withdraw(c, crossing->issued);
+    }
+    return status;
+}
