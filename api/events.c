@@ -59,6 +59,11 @@ void api_event_metadata(api_text *text, const api_mesh_info *info)
     api_text_clear(&data);
 }
 
+void api_event_job(api_text *text, const api_text *data)
+{
+    add_event(text, "job", data);
+}
+
 void api_event_bye(api_text *text, const char *reason)
 {
     api_text data = {0};

@@ -5,6 +5,7 @@
  *     edit     a revision as a delta, exact: see event_values.h        the revision's
  *     metadata {"revision":n,"name":"..."}                             (none)
  *     resync   {"revision":n,"reason":"..."}: fetch the mesh anew      present
+ *     job      what GET of a job gives                                  (none)
  *     bye      {"reason":"..."}: the stream ends                       (none)
  *
  * An id is INCARNATION.REVISION, the incarnation as an ETag spells it. An edit of more than
@@ -35,7 +36,9 @@ void api_event_stale(api_text *text, const api_mesh_info *info);
 void api_event_metadata(api_text *text, const api_mesh_info *info);
 /* Reasons: "replaced", "gap", "incarnation", "future". */
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
-/* Reasons: "deleted", "stopping". */
+/* A job, as GET shows it: `data`. */
+void api_event_job(api_text *text, const api_text *data);
+/* Reasons: "deleted", "stopping", and of a job's stream "ended". */
 void api_event_bye(api_text *text, const char *reason);
 
 /* An id, or a bare revision. False when it is neither. */

@@ -249,6 +249,47 @@ static const api_example examples[] = {
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},"
                  "\"undo\":1,\"redo\":0}"},
+    {.route = "jobs_list",
+     .target = "/v1/jobs",
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"items\":[{\"id\":\"" API_EXAMPLE_JOB
+         "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
+         "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
+         "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
+         "\"status\":201,\"location\":\"/v1/meshes/disk\"},{\"id\":\"" API_EXAMPLE_WAITING
+         "\",\"operation\":\"mesh_put\",\"state\":\"queued\",\"phase\":null,\"progress\":0,"
+         "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
+         "\"finished\":null,\"status\":null,\"location\":null}],\"next\":null}"},
+    {.route = "job_get",
+     .target = "/v1/jobs/" API_EXAMPLE_JOB,
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"id\":\"" API_EXAMPLE_JOB
+         "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
+         "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
+         "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
+         "\"status\":201,\"location\":\"/v1/meshes/disk\",\"result\":{\"id\":\"disk\","
+         "\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":4,\"halfedges\":12,\"edges\":6,"
+         "\"faces\":3,\"boundary_loops\":1,\"isolated_vertices\":0,\"components\":1,"
+         "\"components_by_edge\":1},\"euler\":1,\"genus\":0,\"closed\":false,\"manifold\":true,"
+         "\"degrees\":{\"3\":3},\"bbox\":{\"min\":[-0.5,-0.8660254037844386,0],\"max\":[1,"
+         "0.8660254037844386,0]},\"area\":1.299038105676658,\"volume\":null,\"memory_bytes\":408,"
+         "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000Z\","
+         "\"import\":{\"format\":\"shape\",\"vertices\":4,\"faces\":3,\"repairs\":[],"
+         "\"warnings\":[]}}}"},
+    {.route = "job_delete",
+     .target = "/v1/jobs/" API_EXAMPLE_WAITING,
+     .status = 202,
+     .produces = "application/json",
+     .response =
+         "{\"id\":\"" API_EXAMPLE_WAITING
+         "\",\"operation\":\"mesh_put\",\"state\":\"cancelled\",\"phase\":null,\"progress\":0,"
+         "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
+         "\"finished\":\"2026-01-01T12:00:00.000Z\",\"status\":null,\"location\":null,"
+         "\"problem\":null}"},
 };
 
 enum { EXAMPLES = sizeof examples / sizeof *examples };

@@ -1,6 +1,7 @@
 /* GET and DELETE /v1/jobs: what has become of work that was answered 202. */
 #include "api/handlers.h"
 
+#include "api/events.h"
 #include "api/job_out.h"
 #include "format/number.h"
 
@@ -38,6 +39,37 @@ void api_job_delete(api_exchange *x)
         api_answer_empty(x, 204);
     } else {
         api_answer_json(x, 202);
+    }
+}
+
+/* The result comes along where an event may be as large; it is always at the job itself. */
+static void write_event(const api_job *job, bool bye, api_text *text)
+{
+    api_text data = {0};
+    api_out out;
+    if (bye) {
+        api_event_bye(text, job->state >= API_JOB_DONE ? "ended" : "stopping");
+        return;
+    }
+    api_out_init(&out, &data);
+    api_write_job(&out, job, job->length <= API_MAX_EVENT);
+    api_event_job(text, &data);
+    api_text_clear(&data);
+}
+
+void api_job_events(api_exchange *x)
+{
+    const api_jobs *jobs = x->service->options.jobs;
+    api_source source;
+    api_store_status status =
+        jobs == NULL ? API_STORE_ABSENT : jobs->follow(jobs->self, x->job_id, write_event, &source);
+    if (status == API_STORE_ABSENT) {
+        fail_absent(x);
+    } else if (status != API_STORE_OK) {
+        api_fail_store(x, status);
+    } else {
+        api_answer_live(x, 200, "text/event-stream", &source, API_EVENT_IDLE);
+        api_answer_header(x, "X-Accel-Buffering", "no");
     }
 }
 

@@ -15,7 +15,9 @@
 #ifndef HE_API_JOBS_H
 #define HE_API_JOBS_H
 
+#include "api/live.h"
 #include "api/store.h"
+#include "api/text.h"
 
 struct api_exchange; /* api.h */
 
@@ -61,6 +63,12 @@ typedef struct api_jobs {
      * `*forgotten` set. False when there is none of this id. */
     bool (*remove)(void *self, const char *id, bool *forgotten,
                    void (*show)(void *context, const api_job *job), void *context);
+    /* What becomes of a job, in messages that `write` appends: whenever there is news, and `bye`
+     * after the last, or when the server stops. API_STORE_ABSENT, API_STORE_LISTENERS,
+     * API_STORE_NO_MEMORY. The caller frees the source. */
+    api_store_status (*follow)(void *self, const char *id,
+                               void (*write)(const api_job *job, bool bye, api_text *text),
+                               api_source *out);
 } api_jobs;
 
 #endif

@@ -131,13 +131,16 @@ static bool answers(const api_route *route, int status)
     return *at == status;
 }
 
+static const char *const job_media[] = {"application/json", NULL};
+
 static void write_success(api_out *out, const api_route *route, int status)
 {
     const char *what = status == 201   ? "Created."
+                       : status == 202 ? "Not ended yet: a job."
                        : status == 204 ? "Done; nothing is returned."
                        : status == 304 ? "The client's copy is the present one."
                                        : "Success.";
-    bool tagged = answers(route, 304) || (status < 204 && (route->flags & API_WRITES));
+    bool tagged = answers(route, 304) || (status < 202 && (route->flags & API_WRITES));
     api_out_object_begin(out);
     api_out_key_string(out, "description", what);
     if (tagged) {
@@ -148,6 +151,14 @@ static void write_success(api_out *out, const api_route *route, int status)
             write_header(out, "Location", "Where the new mesh is.");
         }
         api_out_object_end(out);
+    }
+    if (status == 202) {
+        api_out_key(out, "headers");
+        api_out_object_begin(out);
+        write_header(out, "Location", "Where the job is.");
+        write_header(out, "Preference-Applied", "respond-async, where the client asked for it.");
+        api_out_object_end(out);
+        write_content(out, job_media, "job", api_example_response, "job_delete");
     }
     if (status == 200 || status == 201) {
         write_content(out, route->produces, route->response, api_example_response, route->name);
@@ -200,7 +211,15 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(out, "If-Match", "ETag of the state the request was made for.");
         write_header_parameter(out, "If-None-Match", "ETag of a state it must not meet, or *.");
     }
-    if (answers(route, 204) && answers(route, 200)) {
+    bool minimal = answers(route, 204) && answers(route, 200);
+    if (route->flags & API_LONG) {
+        write_header_parameter(out, "Prefer",
+                               minimal ? "respond-async: a job and 202. wait=N: the answer itself, "
+                                         "if it will take N seconds at most. return=minimal: 204 "
+                                         "in place of the answer."
+                                       : "respond-async: a job and 202. wait=N: the answer itself, "
+                                         "if it will take N seconds at most.");
+    } else if (minimal) {
         write_header_parameter(out, "Prefer", "return=minimal: 204 in place of the answer.");
     }
 }

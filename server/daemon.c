@@ -138,12 +138,10 @@ static bool submit_job(void *pool, void (*work)(void *context), void *context)
 
 static bool open_service(daemon_parts *parts, const srv_config *config)
 {
-    parts->jobs =
-        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
     parts->board = srv_board_new(&(srv_board_options){
         .store = parts->store, .submit = submit_job, .pool = parts->jobs, .keep = SRV_JOB_SECONDS});
-    if (parts->jobs == NULL || parts->board == NULL) {
-        return fail("no memory or threads to start");
+    if (parts->board == NULL) {
+        return fail("no memory to start");
     }
     parts->board_interface = srv_board_interface(parts->board);
     parts->service = api_service_new(&parts->interface, &(api_options){

@@ -1,37 +1,11 @@
 #include "server/job_board.h"
 
 #include "server/clock.h"
+#include "server/job.h"
 #include "server/random.h"
 
-#include <pthread.h>
-#include <stdatomic.h>
+#include <stddef.h>
 #include <string.h>
-
-/* A job, in the list of its board. The lock of the board is for all but the atomics, and `work`
- * while it runs. */
-typedef struct job {
-    srv_board *board;
-    api_job facts;      /* but for phase and progress while it runs; `body` is owned */
-    api_exchange *work; /* NULL when it has ended */
-    uint32_t uses;      /* by the list and the pool */
-    bool listed;
-    char *body;
-    struct job *next, *previous; /* in the order of numbers */
-
-    _Atomic bool stop;
-    _Atomic(const char *) phase;
-    _Atomic double progress;
-} job;
-
-struct srv_board {
-    srv_board_options options;
-    pthread_mutex_t lock;
-    job *first, *last;
-    size_t count;
-    size_t bytes; /* of bodies */
-    uint64_t submitted;
-    bool stopped;
-};
 
 srv_board *srv_board_new(const srv_board_options *options)
 {
@@ -45,12 +19,7 @@ srv_board *srv_board_new(const srv_board_options *options)
 
 /* --- the list, under the lock --- */
 
-static bool has_ended(const job *j)
-{
-    return j->facts.state >= API_JOB_DONE;
-}
-
-static void release(job *j)
+void srv_job_release(srv_job *j)
 {
     if (--j->uses == 0) {
         api_free(j->work);
@@ -59,7 +28,7 @@ static void release(job *j)
     }
 }
 
-static void append(srv_board *board, job *j)
+static void append(srv_board *board, srv_job *j)
 {
     j->previous = board->last;
     if (board->last != NULL) {
@@ -72,7 +41,7 @@ static void append(srv_board *board, job *j)
     j->listed = true;
 }
 
-static void forget(srv_board *board, job *j)
+static void forget(srv_board *board, srv_job *j)
 {
     if (j->previous != NULL) {
         j->previous->next = j->next;
@@ -87,15 +56,15 @@ static void forget(srv_board *board, job *j)
     board->count--;
     board->bytes -= j->body == NULL ? 0 : j->facts.length;
     j->listed = false;
-    release(j);
+    srv_job_release(j);
 }
 
 /* The one that ended first; NULL when none has. */
-static job *ended_first(const srv_board *board)
+static srv_job *ended_first(const srv_board *board)
 {
-    job *found = NULL;
-    for (job *j = board->first; j != NULL; j = j->next) {
-        if (has_ended(j) && (found == NULL || j->facts.finished < found->facts.finished)) {
+    srv_job *found = NULL;
+    for (srv_job *j = board->first; j != NULL; j = j->next) {
+        if (srv_job_has_ended(j) && (found == NULL || j->facts.finished < found->facts.finished)) {
             found = j;
         }
     }
@@ -107,7 +76,7 @@ static job *ended_first(const srv_board *board)
 static void tidy(srv_board *board, size_t room)
 {
     double now = srv_clock_utc();
-    job *j = ended_first(board);
+    srv_job *j = ended_first(board);
     while (j != NULL &&
            (now - j->facts.finished >= board->options.keep || board->count + room > SRV_JOBS_KEPT ||
             (board->bytes > SRV_JOBS_BYTES && board->bytes > j->facts.length))) {
@@ -116,9 +85,9 @@ static void tidy(srv_board *board, size_t room)
     }
 }
 
-static job *find_job(const srv_board *board, const char *id)
+srv_job *srv_job_find(const srv_board *board, const char *id)
 {
-    job *j = board->first;
+    srv_job *j = board->first;
     while (j != NULL && strcmp(j->facts.id, id) != 0) {
         j = j->next;
     }
@@ -127,16 +96,25 @@ static job *find_job(const srv_board *board, const char *id)
 
 /* --- running --- */
 
+/* Progress that listeners are woken for. */
+static const double WORTH = 0.005;
+
 static bool tell(void *context, const char *phase, double done)
 {
-    job *j = context;
+    srv_job *j = context;
     atomic_store_explicit(&j->phase, phase, memory_order_relaxed);
     atomic_store_explicit(&j->progress, done, memory_order_relaxed);
+    if (atomic_load_explicit(&j->awaited, memory_order_relaxed) &&
+        done >= atomic_load_explicit(&j->shown, memory_order_relaxed) + WORTH) {
+        pthread_mutex_lock(&j->board->lock);
+        srv_job_wake(j);
+        pthread_mutex_unlock(&j->board->lock);
+    }
     return !atomic_load_explicit(&j->stop, memory_order_relaxed);
 }
 
 /* What the exchange would have answered. Without memory the body is not kept. */
-static void keep_answer(job *j)
+static void keep_answer(srv_job *j)
 {
     const api_answer *answer = api_answer_of(j->work);
     j->facts.status = answer->status;
@@ -158,96 +136,90 @@ static void keep_answer(job *j)
     j->facts.length = j->body == NULL ? 0 : j->facts.length;
 }
 
-static bool is_durable(const job *j)
+/* Frees the work first: its memory is back before the end shows. */
+static void end(srv_job *j)
 {
-    const api_answer *answer = api_answer_of(j->work);
-    return answer->mesh == NULL ||
-           srv_store_is_durable(j->board->options.store, answer->mesh, answer->record);
-}
-
-static void show_end(job *j)
-{
+    srv_board *board = j->board;
+    api_free(j->work);
+    pthread_mutex_lock(&board->lock);
+    j->work = NULL;
     const char *slash = strrchr(j->facts.location, '/');
     if (slash != NULL && strlen(slash + 1) <= API_MESH_ID) {
         memcpy(j->facts.mesh, slash + 1, strlen(slash + 1) + 1);
     }
-    if (j->facts.status < 400) {
-        j->facts.state = API_JOB_DONE;
-        j->facts.progress = 1;
-    } else {
-        bool stopped = atomic_load(&j->stop);
-        j->facts.state = stopped ? API_JOB_CANCELLED : API_JOB_FAILED;
-        j->facts.progress = atomic_load(&j->progress);
-    }
+    j->facts.state = j->facts.status < 400   ? API_JOB_DONE
+                     : atomic_load(&j->stop) ? API_JOB_CANCELLED
+                                             : API_JOB_FAILED;
+    j->facts.progress = j->facts.state == API_JOB_DONE ? 1 : atomic_load(&j->progress);
     j->facts.phase = atomic_load(&j->phase);
     j->facts.finished = srv_clock_utc();
-    j->board->bytes += j->listed ? j->facts.length : 0;
+    board->bytes += j->facts.length;
+    srv_job_wake(j);
+    tidy(board, 0);
+    srv_job_release(j);
+    pthread_mutex_unlock(&board->lock);
 }
 
-/* D1: the end is not shown before it is durable. Under the lock. */
-static void settle(job *j)
+static void resume(srv_hold *hold)
 {
-    if (j->facts.state == API_JOB_RUNNING && j->facts.status != 0 && j->work != NULL &&
-        is_durable(j)) {
-        api_free(j->work);
-        j->work = NULL;
-        show_end(j);
+    end((srv_job *)((char *)hold - offsetof(srv_job, hold)));
+}
+
+/* D1: the end is not shown before it is durable. */
+static void end_when_durable(srv_job *j)
+{
+    const api_answer *answer = api_answer_of(j->work);
+    srv_store *store = j->board->options.store;
+    if (answer->mesh != NULL && !srv_store_is_durable(store, answer->mesh, answer->record)) {
+        atomic_store(&j->phase, "storing");
+        j->hold = (srv_hold){.mesh = answer->mesh, .record = answer->record, .resume = resume};
+        if (srv_held_add(srv_store_held(store), &j->hold)) {
+            return;
+        }
     }
+    end(j);
 }
 
 static void run(void *context)
 {
-    job *j = context;
+    srv_job *j = context;
     srv_board *board = j->board;
     pthread_mutex_lock(&board->lock);
     bool wanted = j->facts.state == API_JOB_QUEUED;
     if (wanted) {
         j->facts.state = API_JOB_RUNNING;
         j->facts.started = srv_clock_utc();
+        srv_job_wake(j);
+    } else {
+        srv_job_release(j);
     }
     pthread_mutex_unlock(&board->lock);
-    api_exchange *over = NULL;
-    if (wanted) {
-        api_watch(j->work, tell, j);
-        api_work(j->work);
+    if (!wanted) {
+        return;
     }
+    api_watch(j->work, tell, j);
+    api_work(j->work);
     pthread_mutex_lock(&board->lock);
-    if (wanted) {
-        keep_answer(j);
-        if (is_durable(j)) {
-            over = j->work;
-            j->work = NULL;
-        } else {
-            atomic_store(&j->phase, "storing");
-        }
-    }
+    keep_answer(j);
     pthread_mutex_unlock(&board->lock);
-    /* Its memory is back before the end shows. */
-    api_free(over);
-    pthread_mutex_lock(&board->lock);
-    if (over != NULL) {
-        show_end(j);
-        tidy(board, 0);
-    }
-    release(j);
-    pthread_mutex_unlock(&board->lock);
+    end_when_durable(j);
 }
 
 /* --- what api asks for --- */
 
-static const api_job *present(job *j)
+const api_job *srv_job_facts(srv_job *j)
 {
-    settle(j);
-    if (!has_ended(j)) {
+    if (!srv_job_has_ended(j)) {
         j->facts.phase = atomic_load(&j->phase);
         j->facts.progress = atomic_load(&j->progress);
     }
     return &j->facts;
 }
 
-static job *job_new(srv_board *board, api_exchange *work, const char *operation, const char *mesh)
+static srv_job *job_new(srv_board *board, api_exchange *work, const char *operation,
+                        const char *mesh)
 {
-    job *j = he_mem_zero(1, sizeof *j);
+    srv_job *j = he_mem_zero(1, sizeof *j);
     if (j == NULL) {
         return NULL;
     }
@@ -261,6 +233,8 @@ static job *job_new(srv_board *board, api_exchange *work, const char *operation,
     atomic_init(&j->phase, "");
     atomic_init(&j->progress, 0);
     atomic_init(&j->stop, false);
+    atomic_init(&j->awaited, false);
+    atomic_init(&j->shown, 0);
     return j;
 }
 
@@ -268,7 +242,7 @@ static bool submit(void *self, api_exchange *work, const char *operation, const 
                    api_job *out)
 {
     srv_board *board = self;
-    job *j = job_new(board, work, operation, mesh);
+    srv_job *j = job_new(board, work, operation, mesh);
     if (j == NULL) {
         return false;
     }
@@ -277,7 +251,7 @@ static bool submit(void *self, api_exchange *work, const char *operation, const 
     bool accepted = !board->stopped && board->count < SRV_JOBS_KEPT;
     if (accepted) {
         j->facts.number = ++board->submitted;
-        *out = *present(j);
+        *out = *srv_job_facts(j);
         append(board, j);
         /* It cannot run before the lock is given back. */
         accepted = board->options.submit(board->options.pool, run, j);
@@ -298,9 +272,9 @@ static bool find(void *self, const char *id, void (*show)(void *context, const a
     srv_board *board = self;
     pthread_mutex_lock(&board->lock);
     tidy(board, 0);
-    job *j = find_job(board, id);
+    srv_job *j = srv_job_find(board, id);
     if (j != NULL) {
-        show(context, present(j));
+        show(context, srv_job_facts(j));
     }
     pthread_mutex_unlock(&board->lock);
     return j != NULL;
@@ -313,10 +287,10 @@ static bool list(void *self, uint64_t after, size_t limit,
     size_t given = 0;
     pthread_mutex_lock(&board->lock);
     tidy(board, 0);
-    job *j = board->first;
+    srv_job *j = board->first;
     for (; j != NULL && given < limit; j = j->next) {
         if (j->facts.number > after) {
-            show(context, present(j));
+            show(context, srv_job_facts(j));
             given++;
         }
     }
@@ -325,7 +299,7 @@ static bool list(void *self, uint64_t after, size_t limit,
 }
 
 /* Under the lock; what is left of one that waited is to be freed without it. */
-static api_exchange *cancel(job *j)
+static api_exchange *cancel(srv_job *j)
 {
     api_exchange *work = NULL;
     atomic_store(&j->stop, true);
@@ -334,6 +308,7 @@ static api_exchange *cancel(job *j)
         j->work = NULL;
         j->facts.state = API_JOB_CANCELLED;
         j->facts.finished = srv_clock_utc();
+        srv_job_wake(j);
     }
     return work;
 }
@@ -345,14 +320,14 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
     api_exchange *over = NULL;
     pthread_mutex_lock(&board->lock);
     tidy(board, 0);
-    job *j = find_job(board, id);
+    srv_job *j = srv_job_find(board, id);
     if (j != NULL) {
-        *forgotten = present(j)->state >= API_JOB_DONE;
+        *forgotten = srv_job_facts(j)->state >= API_JOB_DONE;
         if (*forgotten) {
             forget(board, j);
         } else {
             over = cancel(j);
-            show(context, present(j));
+            show(context, srv_job_facts(j));
         }
     }
     pthread_mutex_unlock(&board->lock);
@@ -362,15 +337,19 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
 
 api_jobs srv_board_interface(srv_board *board)
 {
-    return (api_jobs){
-        .self = board, .submit = submit, .find = find, .list = list, .remove = remove_job};
+    return (api_jobs){.self = board,
+                      .submit = submit,
+                      .find = find,
+                      .list = list,
+                      .remove = remove_job,
+                      .follow = srv_job_follow};
 }
 
 void srv_board_stop(srv_board *board)
 {
     pthread_mutex_lock(&board->lock);
     board->stopped = true;
-    for (job *j = board->first; j != NULL; j = j->next) {
+    for (srv_job *j = board->first; j != NULL; j = j->next) {
         api_free(cancel(j));
     }
     pthread_mutex_unlock(&board->lock);

@@ -17,11 +17,12 @@ typedef struct srv_board srv_board;
 enum {
     SRV_JOBS_KEPT = 1000,      /* jobs, those that wait and run included */
     SRV_JOBS_BYTES = 64 << 20, /* of answers */
-    SRV_JOB_SECONDS = 3600     /* how long one that has ended is kept */
+    SRV_JOB_SECONDS = 3600,    /* how long one that has ended is kept */
+    SRV_JOB_LISTENERS = 1000   /* clients that listen to jobs */
 };
 
 typedef struct srv_board_options {
-    const srv_store *store; /* tells what is durable */
+    srv_store *store; /* tells what is durable */
     /* Run work(context) on another thread, or later; false when too much waits already. */
     bool (*submit)(void *pool, void (*work)(void *context), void *context);
     void *pool;
