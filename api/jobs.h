@@ -49,9 +49,10 @@ typedef struct api_job {
 
 typedef struct api_jobs {
     void *self;
-    /* Takes `work` and fills in what is known of the job. False when too many wait. */
-    bool (*submit)(void *self, struct api_exchange *work, const char *operation, const char *mesh,
-                   api_job *out);
+    /* Takes `work` and fills in what is known of the job; or API_STORE_TOO_MANY when too many wait,
+     * API_STORE_NO_MEMORY. */
+    api_store_status (*submit)(void *self, struct api_exchange *work, const char *operation,
+                               const char *mesh, api_job *out);
     /* Calls show with the job. False when there is none of this id. */
     bool (*find)(void *self, const char *id, void (*show)(void *context, const api_job *job),
                  void *context);

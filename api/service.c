@@ -231,11 +231,17 @@ api_exchange *api_detach(api_exchange *x)
     answer->prefer = x->prefer;
     api_job job;
     const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
-    if (jobs->submit(jobs->self, x, x->route->name, mesh == NULL ? "" : mesh, &job)) {
+    api_store_status status =
+        jobs->submit(jobs->self, x, x->route->name, mesh == NULL ? "" : mesh, &job);
+    if (status == API_STORE_OK) {
         api_answer_job(answer, &job);
     } else {
         api_free(x);
+    }
+    if (status == API_STORE_TOO_MANY) {
         api_fail(answer, API_TOO_MANY_JOBS, "as many jobs wait as may");
+    } else if (status != API_STORE_OK) {
+        api_fail_store(answer, status);
     }
     finish(answer);
     return answer;

@@ -238,13 +238,13 @@ static srv_job *job_new(srv_board *board, api_exchange *work, const char *operat
     return j;
 }
 
-static bool submit(void *self, api_exchange *work, const char *operation, const char *mesh,
-                   api_job *out)
+static api_store_status submit(void *self, api_exchange *work, const char *operation,
+                               const char *mesh, api_job *out)
 {
     srv_board *board = self;
     srv_job *j = job_new(board, work, operation, mesh);
     if (j == NULL) {
-        return false;
+        return API_STORE_NO_MEMORY;
     }
     pthread_mutex_lock(&board->lock);
     tidy(board, 1);
@@ -263,7 +263,7 @@ static bool submit(void *self, api_exchange *work, const char *operation, const 
     if (!accepted) {
         he_mem_free(j);
     }
-    return accepted;
+    return accepted ? API_STORE_OK : API_STORE_TOO_MANY;
 }
 
 static bool find(void *self, const char *id, void (*show)(void *context, const api_job *job),
