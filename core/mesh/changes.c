@@ -59,7 +59,8 @@ static he_status sort_records(word_record **records, size_t count, he_watch *wat
         for (size_t b = 1; b < 257; b++) {
             starts[b] += starts[b - 1];
         }
-        for (size_t i = 0; i < count; i++) {
+        for (size_t i = 0; i < count && status == HE_OK; i++) {
+            status = he_watch_at(watch, i, 128 * (uint64_t)count, err);
             to[starts[from[i].key >> shift & 255]++] = from[i];
         }
         word_record *swap = from;
