@@ -16,7 +16,7 @@ const api_store *bench_store(api_bench *b);
 
 typedef struct bench_reply {
     int status;
-    char *body; /* ends in NUL; streams are read to their end */
+    char *body; /* ends in NUL; streams are read to their end, and ended where they would wait */
     size_t length;
     cJSON *json;       /* NULL when the body is none */
     const char *route; /* template, "-" when none matched */

@@ -128,6 +128,13 @@ static const step steps[] = {
     {"POST", "/v1/meshes/m/redo", 200, NULL, {NULL}},
     {"POST", "/v1/meshes/m/redo", 204, NULL, {MINIMAL}},
 
+    {"GET", "/v1/meshes/m/events", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events?since=1", 200, NULL, {NULL}},
+    {"HEAD", "/v1/meshes/m/events", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events?since=x", 400, NULL, {NULL}},
+    {"GET", "/v1/meshes/none/events", 404, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events", 406, NULL, {"Accept", "application/json"}},
+
     {"GET", "/v1/operations", 200, NULL, {NULL}},
     {"GET", "/v1/openapi.json", 200, NULL, {NULL}},
     {"GET", "/livez", 200, NULL, {NULL}},

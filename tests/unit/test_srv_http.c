@@ -85,14 +85,17 @@ static int start(void **state)
     (void)state;
     slow.appended = 0;
     slow.durable = 0;
+    jobs = srv_jobs_new(1, 1);
     store = srv_store_new(&(srv_store_options){
         .undo_budget = 1 << 20,
         .max_meshes = 100,
         .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
+        .listeners = 10,
+        .mesh_listeners = 10,
+        .jobs = jobs,
     });
     interface = srv_store_interface(store);
     service = api_service_new(&interface, &(api_options){.version = "test"});
-    jobs = srv_jobs_new(1, 1);
     srv_http_options options = {
         .service = service,
         .store = store,
@@ -105,6 +108,7 @@ static int start(void **state)
                       .min_rate = 1,
                       .max_connections = CONNECTIONS},
         .max_sockets = CONNECTIONS + 4,
+        .heartbeat_micros = 100000,
         .workers = 1,
     };
     char message[256];
