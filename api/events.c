@@ -52,7 +52,6 @@ void api_event_metadata(api_text *text, const api_mesh_info *info)
     api_out out;
     api_out_init(&out, &data);
     api_out_object_begin(&out);
-    api_out_key_u64(&out, "revision", info->revision);
     api_out_key_string(&out, "name", info->name);
     api_out_object_end(&out);
     add_event(text, "metadata", &data);

@@ -3,7 +3,7 @@
  *     event    data                                                    id
  *     (none)   the beginning: `retry`, and where the stream begins     present
  *     edit     a revision as a delta, exact: see event_values.h        the revision's
- *     metadata {"revision":n,"name":"..."}                             (none)
+ *     metadata {"name":"..."}                                          (none)
  *     resync   {"revision":n,"reason":"..."}: fetch the mesh anew      present
  *     job      what GET of a job gives                                  (none)
  *     bye      {"reason":"..."}: the stream ends                       (none)
@@ -34,7 +34,9 @@ void api_event_edit(api_text *text, const api_mesh_info *info, api_action action
 /* The same of a revision that cannot be said. */
 void api_event_stale(api_text *text, const api_mesh_info *info);
 void api_event_metadata(api_text *text, const api_mesh_info *info);
-/* Reasons: "replaced", "gap", "incarnation", "future". */
+/* Reasons: "replaced" (the content as a whole, or a compact), "gap" (neither the listener's speed
+ * nor the history reach), "busy" (too many listeners are being brought forward), "incarnation" and
+ * "future" (of what the client said it has). */
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
 /* A job, as GET shows it: `data`. */
 void api_event_job(api_text *text, const api_text *data);

@@ -10,6 +10,6 @@ enum { SRV_FEED_MESSAGES = 1024, SRV_FEED_BYTES = 1 << 20 };
 enum { SRV_FEED_LINGER = 30 * 1000 * 1000 };
 
 /* Listeners that are brought forward from the history at once, each with a copy of its mesh. */
-enum { SRV_MAX_REPLAYS = 8 };
+enum { SRV_MAX_CATCH_UPS = 8 };
 
 #endif

@@ -1,6 +1,7 @@
 #include "server/mesh_events.h"
 
 #include "api/events.h"
+#include "server/catch_up.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -94,7 +95,9 @@ typedef struct stream {
     api_mesh *mesh; /* a use */
     srv_listener listener;
     uint64_t incarnation;
-    api_text text; /* to be sent before anything else */
+    srv_catch_up *missed; /* NULL: nothing, or no more */
+    uint64_t caught_up;   /* the last revision of it */
+    api_text text;        /* to be sent before anything else */
     size_t sent;
     bool finishing; /* the server stops */
     bool ended;     /* nothing comes after `text` */
@@ -104,6 +107,9 @@ static void start(void *self, void (*wake)(void *context), void *context)
 {
     stream *s = self;
     srv_feed_wake(&s->listener, wake, context);
+    if (s->missed != NULL) {
+        srv_catch_up_wake(s->missed, wake, context);
+    }
 }
 
 static size_t copy_text(stream *s, char *buffer, size_t size)
@@ -119,34 +125,61 @@ static size_t copy_text(stream *s, char *buffer, size_t size)
     return length;
 }
 
+enum { IN_TEXT = -3 }; /* there is something to be sent in `text` */
+
+/* What cannot be had is left out, and said. */
+static int64_t read_missed(stream *s)
+{
+    switch (srv_catch_up_take(s->missed, &s->text)) {
+    case SRV_CATCH_UP_TEXT:
+        return IN_TEXT;
+    case SRV_CATCH_UP_WAIT:
+        return API_READ_WAIT;
+    case SRV_CATCH_UP_FAILED:
+        api_event_resync(&s->text, s->incarnation, s->caught_up, "gap");
+        break;
+    case SRV_CATCH_UP_DONE:
+        break;
+    }
+    srv_catch_up_free(s->missed);
+    s->missed = NULL;
+    return IN_TEXT;
+}
+
+static int64_t read_feed(stream *s, char *buffer, size_t size)
+{
+    size_t got = 0;
+    switch (srv_feed_read(&s->listener, buffer, size, &got)) {
+    case SRV_FEED_GOT:
+        return (int64_t)got;
+    case SRV_FEED_WAIT:
+        return API_READ_WAIT;
+    case SRV_FEED_ENDED:
+        return 0;
+    case SRV_FEED_BEHIND:
+        break;
+    }
+    api_event_resync(&s->text, s->incarnation, srv_feed_skip(&s->listener).key, "gap");
+    return IN_TEXT;
+}
+
+/* In turn: what was prepared, what it missed, what happens. A stop waits for none of them. */
 static int64_t read_stream(void *self, char *buffer, size_t size)
 {
     stream *s = self;
-    for (;;) {
-        if (s->text.failed) {
-            return -1;
-        }
-        if (s->text.length > 0) {
-            return (int64_t)copy_text(s, buffer, size);
-        }
-        size_t got = 0;
-        switch (s->ended ? SRV_FEED_ENDED : srv_feed_read(&s->listener, buffer, size, &got)) {
-        case SRV_FEED_GOT:
-            return (int64_t)got;
-        case SRV_FEED_ENDED:
+    while (s->text.length == 0 && !s->text.failed) {
+        if (s->ended) {
             return 0;
-        case SRV_FEED_BEHIND:
-            api_event_resync(&s->text, s->incarnation, srv_feed_skip(&s->listener).key, "gap");
-            break;
-        case SRV_FEED_WAIT:
-            if (!s->finishing) {
-                return API_READ_WAIT;
-            }
+        }
+        int64_t got = s->missed != NULL ? read_missed(s) : read_feed(s, buffer, size);
+        if (got == API_READ_WAIT && s->finishing) {
             api_event_bye(&s->text, "stopping");
             s->ended = true;
-            break;
+        } else if (got != IN_TEXT) {
+            return got;
         }
     }
+    return s->text.failed ? -1 : (int64_t)copy_text(s, buffer, size);
 }
 
 static void finish(void *self)
@@ -159,10 +192,25 @@ static void free_stream(void *self)
 {
     stream *s = self;
     srv_feed_leave(&s->listener);
+    srv_catch_up_free(s->missed);
     atomic_fetch_sub(&s->events->count, 1);
     srv_mesh_release(s->mesh);
     api_text_clear(&s->text);
     he_mem_free(s);
+}
+
+/* Of what is not a revision the history knows nothing: the name is told as it is. */
+static void begin_with_history(stream *s, const api_mesh_info *info, uint64_t since)
+{
+    api_mesh_info from = *info;
+    from.revision = since;
+    s->caught_up = info->revision;
+    s->missed = srv_catch_up_new(s->mesh, &from, info->revision);
+    if (s->missed == NULL) {
+        api_event_resync(&s->text, info->incarnation, info->revision, "busy");
+    } else {
+        api_event_metadata(&s->text, info);
+    }
 }
 
 /* Where the listener goes on, and what it is told first. Under the mesh's lock. */
@@ -178,7 +226,7 @@ static void begin(stream *s, const api_mesh_info *info, const api_since *since)
         api_event_resync(&s->text, info->incarnation, info->revision,
                          foreign ? "incarnation" : "future");
     } else if (!srv_feed_rewind(&s->listener, since->revision)) {
-        api_event_resync(&s->text, info->incarnation, info->revision, "gap");
+        begin_with_history(s, info, since->revision);
     }
 }
 

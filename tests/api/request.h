@@ -21,7 +21,7 @@ void bench_limit_jobs(api_bench *b, size_t most);
 
 typedef struct bench_reply {
     int status;
-    char *body; /* ends in NUL; streams are read to their end */
+    char *body; /* ends in NUL; streams are read to their end, and ended where they would wait */
     size_t length;
     cJSON *json;       /* NULL when the body is none */
     const char *route; /* template, "-" when none matched */

@@ -414,20 +414,39 @@ static size_t read_some(const api_source *live, char *text, size_t size, int64_t
     return length;
 }
 
+static const char *no_header(void *context, const char *name)
+{
+    (void)context;
+    (void)name;
+    return NULL;
+}
+
+/* Begin to listen to a job; the exchange is the caller's. */
+static api_exchange *listen_to(const char *job, const api_source **live)
+{
+    char path[80];
+    snprintf(path, sizeof path, "%s/events", job);
+    api_request request = {
+        .method = "GET", .path = path, .query = "", .request_id = "test", .header = no_header};
+    api_exchange *x = api_handle(bench_service(bench), &request, NULL, 0);
+    assert_non_null(x);
+    assert_int_equal(api_answer_of(x)->status, 200);
+    *live = api_answer_of(x)->live;
+    assert_non_null(*live);
+    (*live)->start((*live)->self, note_wake, NULL);
+    return x;
+}
+
 static void a_listener_hears_of_each_state_and_then_the_end(void **state)
 {
     (void)state;
-    char path[64], events[80];
+    char path[64];
     static char text[100000];
     int64_t last;
+    const api_source *live;
     submit("POST", "/v1/meshes?id=m", CUBE, path);
-    snprintf(events, sizeof events, "%s/events", path);
-    bench_reply r = expect(200, "GET", events, NULL, NULL);
-    assert_string_equal(bench_header(&r, "Content-Type"), "text/event-stream");
-    const api_source *live = api_answer_of(r.exchange)->live;
-    assert_non_null(live);
+    api_exchange *x = listen_to(path, &live);
     wakes = 0;
-    live->start(live->self, note_wake, NULL);
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, API_READ_WAIT);
     assert_memory_equal(text, "event: job\ndata: {", 18);
@@ -440,26 +459,32 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "\"state\":\"done\""));
     assert_non_null(strstr(text, "\"result\":{\"id\":\"m\""));
     assert_non_null(strstr(text, "event: bye\ndata: {\"reason\":\"ended\"}"));
-    bench_reply_free(&r);
+    api_free(x);
 
-    /* Who comes late hears the end at once; who is there when the server stops is told so. */
-    r = expect(200, "GET", events, NULL, NULL);
-    live = api_answer_of(r.exchange)->live;
-    live->start(live->self, note_wake, NULL);
+    /* Who comes late hears the end at once. */
+    x = listen_to(path, &live);
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
-    bench_reply_free(&r);
+    api_free(x);
+}
+
+static void a_listener_is_told_that_the_server_stops(void **state)
+{
+    (void)state;
+    char path[64];
+    static char text[100000];
+    int64_t last;
+    const api_source *live;
     submit("POST", "/v1/meshes?id=n", CUBE, path);
-    snprintf(events, sizeof events, "%s/events", path);
-    r = expect(200, "GET", events, NULL, NULL);
-    live = api_answer_of(r.exchange)->live;
-    live->start(live->self, note_wake, NULL);
+    api_exchange *x = listen_to(path, &live);
     read_some(live, text, sizeof text, &last);
+    assert_int_equal(last, API_READ_WAIT);
     live->finish(live->self);
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "stopping"));
-    bench_reply_free(&r);
+    api_free(x);
+    bench_run_jobs(bench, 1); /* nobody is woken who has left */
 }
 
 /* --- without memory --- */
@@ -564,6 +589,7 @@ int main(void)
         JOB_TEST(a_dry_run_changes_nothing_as_a_job_either),
         JOB_TEST(what_is_estimated_above_a_second_becomes_a_job),
         JOB_TEST(a_listener_hears_of_each_state_and_then_the_end),
+        JOB_TEST(a_listener_is_told_that_the_server_stops),
         cmocka_unit_test(preferences_are_read),
         cmocka_unit_test(jobs_without_memory),
     };

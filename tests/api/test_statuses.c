@@ -130,6 +130,13 @@ static const step steps[] = {
     {"POST", "/v1/meshes/m/redo", 200, NULL, {NULL}},
     {"POST", "/v1/meshes/m/redo", 204, NULL, {MINIMAL}},
 
+    {"GET", "/v1/meshes/m/events", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events?since=1", 200, NULL, {NULL}},
+    {"HEAD", "/v1/meshes/m/events", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events?since=x", 400, NULL, {NULL}},
+    {"GET", "/v1/meshes/none/events", 404, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events", 406, NULL, {"Accept", "application/json"}},
+
     {"POST", "/v1/meshes?id=job", 202, CUBE, {ASYNC}},
     {"PUT", "/v1/meshes/job", 202, CUBE, {ASYNC}},
     {"POST", "/v1/meshes/m/copy", 202, NULL, {ASYNC}},

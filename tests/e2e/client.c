@@ -196,7 +196,7 @@ bool reply_is_null(const reply *r, const char *path)
     return cJSON_IsNull(reply_find(r, path));
 }
 
-static int connect_to(const daemon_process *d)
+int client_connect(const daemon_process *d)
 {
     struct sockaddr_in address = {.sin_family = AF_INET,
                                   .sin_port = htons((uint16_t)daemon_port(d)),
@@ -236,7 +236,7 @@ static int count_answers(const char *data, size_t length)
 char *client_raw(const daemon_process *d, const char *data, size_t length, int answers,
                  bool half_close)
 {
-    int fd = connect_to(d);
+    int fd = client_connect(d);
     size_t sent = 0;
     while (sent < length) {
         ssize_t n = send(fd, data + sent, length - sent, MSG_NOSIGNAL);

@@ -38,6 +38,8 @@ reply client_send(client *c, const char *method, const char *path, const void *b
 reply client_get(client *c, const char *path);
 reply client_post(client *c, const char *path, const char *json);
 
+/* A socket to it; the caller closes. */
+int client_connect(const daemon_process *d);
 /* Send bytes as they are on a connection of their own and read until the server closes it, or until
  * `answers` whole answers came. What came is the caller's to free. `half_close` ends our side after
  * sending. */
