@@ -44,8 +44,8 @@ void api_mesh_put_begin(api_exchange *x)
 {
     bool good = false;
     if (x->mesh != NULL && api_read_begin(x) != NULL) {
-        good = (!x->info.busy || api_fail_store(x, API_STORE_BUSY)) &&
-               api_preconditions_hold(x, NULL);
+        good =
+            (!x->info.busy || api_fail_store(x, API_STORE_BUSY)) && api_preconditions_hold(x, NULL);
         api_read_end(x);
     } else if (x->mesh == NULL || forget_removed(x)) {
         good = api_precondition_absent(x);

@@ -1,7 +1,8 @@
 /* GET and DELETE /v1/jobs: what has become of work that was answered 202. */
-#include "api/handlers.h"
+#include "api/jobs.h"
 
 #include "api/events.h"
+#include "api/handlers.h"
 #include "api/job_out.h"
 #include "format/number.h"
 
