@@ -111,8 +111,8 @@ int main(int argc, char **argv)
     if (argc != 5) {
         stop("usage: listeners PORT PID LISTENERS ROUNDS");
     }
-    int port = atoi(argv[1]);
-    long pid = atol(argv[2]);
+    int port = (int)strtol(argv[1], NULL, 10);
+    long pid = strtol(argv[2], NULL, 10);
     size_t listeners = strtoul(argv[3], NULL, 10), rounds = strtoul(argv[4], NULL, 10);
     struct rlimit files;
     getrlimit(RLIMIT_NOFILE, &files);
