@@ -226,8 +226,12 @@ static const api_example examples[] = {
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":2,\"entries\":[{\"revision\":2,\"action\":\"edit\","
-                 "\"ops\":[\"edge_split\",\"vertex_move\"],\"undoable\":true,\"bytes\":952,"
-                 "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"next\":null}"},
+                 "\"ops\":[\"edge_split\",\"vertex_move\"],\"created\":{\"vertices\":1,"
+                 "\"edges\":3,\"faces\":2},\"deleted\":{\"vertices\":0,\"edges\":0,"
+                 "\"faces\":0},\"modified\":{\"vertices\":1,\"edges\":3,\"faces\":2},"
+                 "\"undoable\":true,\"bytes\":952,"
+                 "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"oldest\":1,"
+                 "\"dropped\":0,\"bytes\":1135,\"budget\":268435456,\"next\":null}"},
     {.route = "undo_post",
      .target = "/v1/meshes/kite/undo",
      .consumes = "application/json",
@@ -273,6 +277,22 @@ static const api_example examples[] = {
          "event: bye\n"
          "data: {\"reason\":\"stopping\"}\n"
          "\n"},
+    {.route = "undo_post",
+     .target = "/v1/meshes/kite/undo",
+     .consumes = "application/json",
+     .request = "{\"to_revision\":1}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":5,\"results\":[],\"created\":{\"vertices\":[],\"edges\":[],"
+                 "\"faces\":[]},\"deleted\":{\"vertices\":[4],\"edges\":[5,6,7],\"faces\":[2,3]},"
+                 "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
+                 "\"parents\":{},\"merged\":{},\"undo\":0,\"redo\":1}"},
+    {.route = "relation_get",
+     .target = "/v1/meshes/kite/vertices/4/faces?revision=4",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":4,\"of\":{\"vertex\":4},\"relation\":\"faces\","
+                 "\"ids\":[2,0,1,3]}"},
 };
 
 enum { EXAMPLES = sizeof examples / sizeof *examples };

@@ -307,6 +307,9 @@ void api_free(api_exchange *x)
     api_document_clear(&x->document);
     api_text_clear(&x->body);
     api_text_clear(&x->text);
+    if (x->past != NULL) {
+        x->store->snapshot_release(x->store->self, x->past);
+    }
     if (x->mesh != NULL) {
         x->store->release(x->store->self, x->mesh);
     }

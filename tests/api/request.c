@@ -18,11 +18,16 @@ struct api_bench {
 
 api_bench *bench_new(void)
 {
+    return bench_new_within(64 << 20);
+}
+
+api_bench *bench_new_within(uint64_t undo_budget)
+{
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
     b->jobs = srv_jobs_new(1, 64);
     assert_non_null(b->jobs);
-    b->meshes = srv_store_new(&(srv_store_options){.undo_budget = 64 << 20,
+    b->meshes = srv_store_new(&(srv_store_options){.undo_budget = undo_budget,
                                                    .max_meshes = 1000,
                                                    .journal = srv_journal_memory(),
                                                    .listeners = 3,

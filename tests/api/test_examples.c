@@ -34,7 +34,7 @@ static bool is_one_of(const char *name, const char *const *names)
 static void settle(cJSON *answer, const cJSON *example)
 {
     static const char *const times[] = {"created", "modified", "time", NULL};
-    static const char *const sizes[] = {"memory_bytes", "bytes", NULL};
+    static const char *const sizes[] = {"budget", "memory_bytes", "bytes", NULL};
     for (cJSON *a = answer->child; a != NULL && example != NULL; a = a->next) {
         const cJSON *e = example->child;
         while (e != NULL && a->string != NULL && strcmp(a->string, e->string) != 0) {
