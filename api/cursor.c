@@ -27,29 +27,56 @@ static bool read_number(const char **at, uint64_t *out)
     return true;
 }
 
+typedef struct parts {
+    size_t collection;       /* characters of its name */
+    const char *incarnation; /* 16 digits */
+    uint64_t revision, position;
+} parts;
+
+enum { DIGITS = 16 };
+
+static bool split(const char *text, parts *out)
+{
+    *out = (parts){.collection = strcspn(text, ".")};
+    const char *at = text + out->collection;
+    if (*at != '.' || strspn(at + 1, "0123456789abcdef") != DIGITS || at[1 + DIGITS] != '.') {
+        return false;
+    }
+    out->incarnation = at + 1;
+    at += 1 + DIGITS + 1;
+    return read_number(&at, &out->revision) && at[-1] == '.' && read_number(&at, &out->position) &&
+           *at == '\0' && at[-1] != '.';
+}
+
+static bool is_of(const parts *cursor, const api_mesh_info *info)
+{
+    char incarnation[DIGITS + 4];
+    snprintf(incarnation, sizeof incarnation, "%016" PRIx64, info->incarnation);
+    return memcmp(incarnation, cursor->incarnation, DIGITS) == 0;
+}
+
+bool api_cursor_pins(const char *text, const api_mesh_info *info, uint64_t *revision)
+{
+    parts cursor;
+    if (!split(text, &cursor) || !is_of(&cursor, info)) {
+        return false;
+    }
+    *revision = cursor.revision;
+    return true;
+}
+
 bool api_cursor_read(const char *text, const char *collection, const api_mesh_info *info,
                      uint64_t *position, api_problem *problem)
 {
-    char incarnation[20];
-    size_t name = strlen(collection), digits = 16;
-    uint64_t revision, place;
-    const char *at = text;
-    bool known = strncmp(text, collection, name) == 0 && text[name] == '.' &&
-                 strspn(text + name + 1, "0123456789abcdef") == digits &&
-                 text[name + 1 + digits] == '.';
-    if (known) {
-        at = text + name + 1 + digits + 1;
-    }
-    if (!known || !read_number(&at, &revision) || at[-1] != '.' || !read_number(&at, &place) ||
-        *at != '\0' || at[-1] == '.') {
+    parts cursor;
+    if (!split(text, &cursor) || strlen(collection) != cursor.collection ||
+        memcmp(text, collection, cursor.collection) != 0) {
         return api_problem_set(problem, API_BAD_CURSOR, "the cursor is not one of %s", collection);
     }
-    snprintf(incarnation, sizeof incarnation, "%016" PRIx64, info->incarnation);
-    if (memcmp(incarnation, text + name + 1, digits) != 0 || revision != info->revision) {
+    if (!is_of(&cursor, info)) {
         return api_problem_set(problem, API_REVISION_GONE,
-                               "the cursor is of revision %" PRIu64 ", the mesh is at %" PRIu64,
-                               revision, info->revision);
+                               "the cursor is of another mesh that had this id");
     }
-    *position = place;
+    *position = cursor.position;
     return true;
 }

@@ -15,7 +15,9 @@ enum { API_CURSOR = 96 };
 /* `collection` is a short word of lower case letters, such as "vertices". */
 void api_cursor_write(const char *collection, const api_mesh_info *info, uint64_t position,
                       char out[API_CURSOR]);
-/* bad_cursor; revision_gone where the mesh has moved on. */
+/* The revision a cursor pins. False when it is none of this mesh. */
+bool api_cursor_pins(const char *text, const api_mesh_info *info, uint64_t *revision);
+/* bad_cursor; revision_gone where it is of another mesh that had the id before. */
 bool api_cursor_read(const char *text, const char *collection, const api_mesh_info *info,
                      uint64_t *position, api_problem *problem);
 

@@ -193,7 +193,7 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
 
 /* The whole answer is written before anything is published, so that no failure follows it. */
 static void write_answer(api_exchange *x, const edits *e, const he_changes *changes,
-                         uint64_t revision)
+                         uint64_t revision, bool undoable)
 {
     api_out *out = &x->out;
     api_out_object_begin(out);
@@ -204,6 +204,9 @@ static void write_answer(api_exchange *x, const edits *e, const he_changes *chan
     api_out_key(out, "results");
     api_out_raw(out, e->results.bytes, e->results.length);
     api_write_changes(out, changes);
+    if (!undoable) {
+        api_out_key_bool(out, "undoable", false);
+    }
     api_out_object_end(out);
 }
 
@@ -215,6 +218,19 @@ static void answer(api_exchange *x, const edits *e)
     if (!api_answer_minimal(x)) {
         api_answer_json(x, 200);
     }
+}
+
+/* For the history; a replace has no sets to count. */
+static void note_tally(api_exchange *x, const he_changes *changes)
+{
+    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    api_tally tally = {.known = !changes->replaced};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        tally.created[i] = (uint32_t)changes->created[kinds[i]].count;
+        tally.deleted[i] = (uint32_t)changes->deleted[kinds[i]].count;
+        tally.modified[i] = (uint32_t)changes->modified[kinds[i]].count;
+    }
+    x->store->tally(x->store->self, x->mesh, &tally);
 }
 
 /* What the operations make of the mesh. True when that is to be published, with the answer written;
@@ -239,11 +255,15 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
     }
     /* An edit without effect makes no revision, unless it used up ids that its answer names. */
     bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
-    write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0));
+    bool undoable = !changes.replaced && x->store->undoable(x->store->self, x->mesh);
+    write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0), undoable || !effect);
     if (x->text.failed) {
         api_fail_memory(x);
     } else {
         publish = effect && !e->dry_run;
+    }
+    if (publish) {
+        note_tally(x, &changes);
     }
     *barrier = changes.replaced;
     he_changes_clear(&changes);

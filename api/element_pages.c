@@ -165,9 +165,9 @@ static void answer_lines(api_exchange *x)
 void api_elements_list(api_exchange *x)
 {
     bool whole = strcmp(x->media_out, "application/x-ndjson") == 0;
-    if (whole && x->query.count > 0) {
-        api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: lines are all there is",
-                 x->query.pairs[0].name);
+    const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";
+    if (whole && api_param_text(x, of_pages) != NULL) {
+        api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: lines are all there is", of_pages);
         return;
     }
     const he_mesh *mesh = api_read_begin(x);

@@ -226,8 +226,12 @@ static const api_example examples[] = {
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":2,\"entries\":[{\"revision\":2,\"action\":\"edit\","
-                 "\"ops\":[\"edge_split\",\"vertex_move\"],\"undoable\":true,\"bytes\":952,"
-                 "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"next\":null}"},
+                 "\"ops\":[\"edge_split\",\"vertex_move\"],\"created\":{\"vertices\":1,"
+                 "\"edges\":3,\"faces\":2},\"deleted\":{\"vertices\":0,\"edges\":0,"
+                 "\"faces\":0},\"modified\":{\"vertices\":1,\"edges\":3,\"faces\":2},"
+                 "\"undoable\":true,\"bytes\":952,"
+                 "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"oldest\":1,"
+                 "\"dropped\":0,\"bytes\":1135,\"budget\":268435456,\"next\":null}"},
     {.route = "undo_post",
      .target = "/v1/meshes/kite/undo",
      .consumes = "application/json",
@@ -249,6 +253,46 @@ static const api_example examples[] = {
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},"
                  "\"undo\":1,\"redo\":0}"},
+    {.route = "events_get",
+     .target = "/v1/meshes/kite/events?since=3",
+     .status = 200,
+     .produces = "text/event-stream",
+     .response =
+         "retry: 3000\n"
+         "\n"
+         "event: metadata\n"
+         "data: {\"name\":\"Kite\"}\n"
+         "\n"
+         "id: 5d1b27c0e4a9f386.4\n"
+         "event: edit\n"
+         "data: {\"base\":3,\"revision\":4,\"action\":\"redo\",\"created\":{\"vertices\":[4]"
+         ",\"edges\":[5,6,7],\"faces\":[2,3]},\"deleted\":{\"vertices\":[],\"edges\":[],\"f"
+         "aces\":[]},\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},\"p"
+         "arents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},\"values\":{"
+         "\"vertices\":[[1,1,0,0.25,1],[4,0.5,0.5,0,10]],\"halfedges\":[[0,13,10,0,2"
+         "],[2,4,12,1,0],[4,12,2,2,0],[5,6,14,4,1],[6,14,5,2,1],[8,11,15,3,3],[1"
+         "0,0,13,4,2],[11,15,8,0,3],[12,2,4,4,0],[13,10,0,1,2],[14,5,6,3,1],[15,"
+         "8,11,4,3]],\"faces\":[[0,12],[1,14],[2,10],[3,8]],\"attributes\":{}}}\n"
+         "\n"
+         "event: bye\n"
+         "data: {\"reason\":\"stopping\"}\n"
+         "\n"},
+    {.route = "undo_post",
+     .target = "/v1/meshes/kite/undo",
+     .consumes = "application/json",
+     .request = "{\"to_revision\":1}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":5,\"results\":[],\"created\":{\"vertices\":[],\"edges\":[],"
+                 "\"faces\":[]},\"deleted\":{\"vertices\":[4],\"edges\":[5,6,7],\"faces\":[2,3]},"
+                 "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
+                 "\"parents\":{},\"merged\":{},\"undo\":0,\"redo\":1}"},
+    {.route = "relation_get",
+     .target = "/v1/meshes/kite/vertices/4/faces?revision=4",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":4,\"of\":{\"vertex\":4},\"relation\":\"faces\","
+                 "\"ids\":[2,0,1,3]}"},
     {.route = "jobs_list",
      .target = "/v1/jobs",
      .status = 200,

@@ -1,5 +1,7 @@
 #include "api/exchange.h"
 
+#include "api/past.h"
+
 #include "format/number.h"
 
 #include <assert.h>
@@ -145,11 +147,19 @@ bool api_fail_accept(api_exchange *x)
 
 const he_mesh *api_read_begin(api_exchange *x)
 {
+    uint64_t revision;
+    if (x->past != NULL) {
+        return x->store->snapshot_content(x->past, &x->info);
+    }
     const he_mesh *mesh = x->store->read_begin(x->store->self, x->mesh, &x->info);
     if (x->info.removed) {
         x->store->read_end(x->store->self, x->mesh);
         api_fail_store(x, API_STORE_ABSENT);
         return NULL;
+    }
+    if (api_past_wanted(x, &revision)) {
+        x->store->read_end(x->store->self, x->mesh);
+        return api_past_begin(x, revision) ? api_read_begin(x) : NULL;
     }
     x->has_info = true;
     return mesh;
@@ -157,7 +167,9 @@ const he_mesh *api_read_begin(api_exchange *x)
 
 void api_read_end(api_exchange *x)
 {
-    x->store->read_end(x->store->self, x->mesh);
+    if (x->past == NULL) {
+        x->store->read_end(x->store->self, x->mesh);
+    }
 }
 
 static bool refuse_stale(api_exchange *x, const char *what)
@@ -212,7 +224,8 @@ he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **del
     return NULL;
 }
 
-api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
+/* Of the present, with x->info; NULL with the problem filled. */
+static api_snapshot *present_snapshot(api_exchange *x)
 {
     api_snapshot *snapshot = NULL;
     api_store_status status = x->store->snapshot(x->store->self, x->mesh, &snapshot);
@@ -220,13 +233,54 @@ api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
         api_fail_store(x, status);
         return NULL;
     }
-    *content = x->store->snapshot_content(snapshot, &x->info);
+    x->store->snapshot_content(snapshot, &x->info);
     if (x->info.removed) {
         x->store->snapshot_release(x->store->self, snapshot);
         api_fail_store(x, API_STORE_ABSENT);
         return NULL;
     }
+    return snapshot;
+}
+
+/* A reader of the present looks whether it is the present it is asked about, before it copies. */
+static bool is_past(api_exchange *x)
+{
+    if (x->past == NULL && api_param_text(x, "revision") == NULL) {
+        return false;
+    }
+    if (api_read_begin(x) != NULL) {
+        api_read_end(x);
+    }
+    return x->past != NULL;
+}
+
+api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
+{
+    api_snapshot *snapshot = NULL;
+    uint64_t revision;
+    if (!is_past(x)) {
+        if (x->problem.code != HE_OK || x->deferred != NULL) {
+            return NULL;
+        }
+        snapshot = present_snapshot(x);
+        if (snapshot == NULL) {
+            return NULL;
+        }
+        /* It may have moved on in between. */
+        if (api_past_wanted(x, &revision)) {
+            x->store->snapshot_release(x->store->self, snapshot);
+            snapshot = NULL;
+            if (!api_past_begin(x, revision)) {
+                return NULL;
+            }
+        }
+    }
+    if (snapshot == NULL) {
+        snapshot = x->past;
+        x->past = NULL;
+    }
     x->has_info = true;
+    *content = x->store->snapshot_content(snapshot, &x->info);
     return snapshot;
 }
 

@@ -77,7 +77,8 @@ struct api_exchange {
     api_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
     api_mesh_info info; /* filled by read_begin, write_begin and what the handler passes on */
     bool has_info;
-    bool claimed; /* x->mesh is, by this exchange: see api_store.claim */
+    bool claimed;       /* x->mesh is, by this exchange: see api_store.claim */
+    api_snapshot *past; /* the earlier revision the request is about; NULL: the present, or taken */
 
     /* --- the handler's own, freed by `free_state` with the exchange --- */
     void *state;
@@ -112,7 +113,9 @@ bool api_param_has_choice(const api_exchange *x, const char *name, const char *c
 const char *api_header_of(const api_exchange *x, const char *name);
 
 /* --- locks --- */
-/* Under the shared lock, with x->info filled; NULL (and 404) when the mesh was removed. */
+/* Under the shared lock, with x->info filled; NULL (and 404) when the mesh was removed. Where the
+ * request names an earlier revision (past.h) that one, and NULL without a problem when the handler
+ * has to run again in api_work. */
 const he_mesh *api_read_begin(api_exchange *x);
 void api_read_end(api_exchange *x);
 /* The same for writing: exclusive, preconditions checked (If-Match, If-None-Match). `expected` is
@@ -121,8 +124,9 @@ void api_read_end(api_exchange *x);
 he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **delta);
 /* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
-/* An immutable copy of the present revision with x->info filled; 404 or 507 on NULL. Released by
- * the caller through the store. Not on a worker thread for large meshes: see api_defer. */
+/* An immutable copy of the present revision, or of the one api_read_begin would give, with x->info
+ * filled; 404, 410, 507 or no problem on NULL. Released by the caller through the store. Not on a
+ * worker thread for large meshes: see api_defer. */
 api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content);
 
 /* If-None-Match: * or If-Match while the mesh of a PUT is absent. */

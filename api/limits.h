@@ -53,7 +53,8 @@ enum {
 enum {
     API_COSTLY_ELEMENTS = 20000,    /* vertices, half-edges and faces together */
     API_COSTLY_UPLOAD = 256 * 1024, /* bytes received */
-    API_COSTLY_EDITS = 2000         /* operations of one list */
+    API_COSTLY_EDITS = 2000,        /* operations of one list */
+    API_COSTLY_STEPS = 1 << 20      /* bytes of deltas undone or done again */
 };
 
 /* Long work. A client that said nothing waits for API_PATIENCE seconds; what will take longer

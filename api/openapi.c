@@ -211,6 +211,10 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(out, "If-Match", "ETag of the state the request was made for.");
         write_header_parameter(out, "If-None-Match", "ETag of a state it must not meet, or *.");
     }
+    if (route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0) {
+        write_header_parameter(out, "Last-Event-ID",
+                               "Id of the last event the client has seen; wins over `since`.");
+    }
     bool minimal = answers(route, 204) && answers(route, 200);
     if (route->flags & API_LONG) {
         write_header_parameter(out, "Prefer",

@@ -44,10 +44,15 @@ static const api_parameter limit = {
     "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "How many items a page has at most."};
 static const api_parameter cursor = {
     "cursor", API_PARAM_TEXT, 0, API_MAX_URI, NULL, "Where to go on: `next` of the page before."};
+static const api_parameter revision = {
+    "revision", API_PARAM_U64, 1,
+    0x1p53,     NULL,          "An earlier revision that the history still holds."};
+static const api_parameter since = {"since", API_PARAM_U64, 1,
+                                    0x1p53,  NULL,          "Only what came after this revision."};
 static const api_parameter turning = {
     "cw", API_PARAM_FLAG, 0,
     0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
-static const api_parameter since = {
+static const api_parameter last_seen = {
     "since", API_PARAM_TEXT, 0, 64, NULL, "Go on after this: an event's id, or a revision."};
 static const api_parameter format = {
     "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
@@ -101,10 +106,11 @@ static const api_route routes[] = {
      .name = "mesh_get",
      .run = api_mesh_get,
      .produces = json,
-     .statuses = {200, 304},
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
      .response = "summary",
      .summary = "Summary of a mesh",
-     .doc = "Counts, topology and measures of the present revision."},
+     .doc = "Counts, topology and measures of the present revision, or of the one that is named."},
     {.method = "PATCH",
      .path = "/v1/meshes/{mesh}",
      .name = "mesh_patch",
@@ -151,8 +157,8 @@ static const api_route routes[] = {
      .run = api_content_get,
      .flags = API_COSTLY | API_OWN_ACCEPT,
      .produces = mesh_out,
-     .parameters = {&format, &encoding},
-     .statuses = {200, 304},
+     .parameters = {&revision, &format, &encoding},
+     .statuses = {200, 304, 410},
      .response = "document",
      .summary = "Export a mesh",
      .doc = "In the format that `format` or Accept asks for. What the format cannot carry is named "
@@ -163,7 +169,8 @@ static const api_route routes[] = {
      .run = api_geometry_get,
      .flags = API_COSTLY,
      .produces = octets,
-     .statuses = {200, 304},
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
      .summary = "Arrays to draw a mesh from",
      .doc = "Little-endian: a header of 96 bytes (\"HEDG\", u32 version 1, u64 revision, u64 base, "
             "u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x 3 "
@@ -179,11 +186,13 @@ static const api_route routes[] = {
      .body_kind = API_BODY_OPTION,
      .consumes = json,
      .produces = json,
-     .statuses = {201, 202, 409, 412, 413, 415},
+     .parameters = {&revision},
+     .statuses = {201, 202, 409, 410, 412, 413, 415},
      .request = "copy",
      .response = "summary",
      .summary = "Copy a mesh",
-     .doc = "An independent mesh with the same ids and attributes and a history of its own."},
+     .doc = "An independent mesh with the same ids and attributes and a history of its own; of an "
+            "earlier revision where one is named."},
 
     /* its elements */
     {.method = "GET",
@@ -191,17 +200,19 @@ static const api_route routes[] = {
      .name = "elements_list",
      .run = api_elements_list,
      .produces = lines_too,
-     .parameters = {&limit, &cursor},
+     .parameters = {&revision, &limit, &cursor},
      .statuses = {200, 304, 410},
      .response = "element_page",
      .summary = "List elements of a kind",
      .doc = "A page in the order of ids, or all of them as lines of JSON that end in "
-            "{\"end\":true,\"count\":n}."},
+            "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while the "
+            "history holds it."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/{kind}/{id}",
      .name = "element_get",
      .run = api_element_get,
      .produces = json,
+     .parameters = {&revision},
      .statuses = {200, 304, 410},
      .response = "element",
      .summary = "One element with all its links",
@@ -211,7 +222,7 @@ static const api_route routes[] = {
      .name = "relation_get",
      .run = api_relation_get,
      .produces = json,
-     .parameters = {&turning},
+     .parameters = {&revision, &turning},
      .statuses = {200, 304, 410},
      .response = "adjacency",
      .summary = "What is adjacent to an element",
@@ -249,7 +260,8 @@ static const api_route routes[] = {
      .run = api_boundaries_get,
      .flags = API_COSTLY,
      .produces = json,
-     .statuses = {200, 304},
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
      .response = "boundaries",
      .summary = "Boundary loops",
      .doc = "Each boundary half-edge is in one loop."},
@@ -259,8 +271,8 @@ static const api_route routes[] = {
      .run = api_components_get,
      .flags = API_COSTLY,
      .produces = json,
-     .parameters = {&by},
-     .statuses = {200, 304},
+     .parameters = {&revision, &by},
+     .statuses = {200, 304, 410},
      .response = "components",
      .summary = "Connected components",
      .doc = "Isolated vertices are left out."},
@@ -270,7 +282,8 @@ static const api_route routes[] = {
      .run = api_check_get,
      .flags = API_COSTLY,
      .produces = json,
-     .statuses = {200, 304},
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
      .response = "check",
      .summary = "Check a mesh",
      .doc = "Every broken invariant by its number, and every defect a valid mesh may have."},
@@ -295,11 +308,13 @@ static const api_route routes[] = {
      .name = "edits_list",
      .run = api_edits_list,
      .produces = json,
-     .parameters = {&limit, &cursor},
+     .parameters = {&limit, &cursor, &since},
      .statuses = {200, 304, 410},
      .response = "history",
      .summary = "History of a mesh",
-     .doc = "Newest first."},
+     .doc =
+         "What each revision did, newest first. `oldest` can still be read and undone to; entries "
+         "before were dropped to keep within the undo budget, `dropped` of them."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/undo",
      .name = "undo_post",
@@ -308,11 +323,13 @@ static const api_route routes[] = {
      .body_kind = API_BODY_OPTION,
      .consumes = json,
      .produces = json,
-     .statuses = {200, 204, 409, 412, 413, 415},
+     .statuses = {200, 204, 409, 410, 412, 413, 415, 422},
      .request = "step",
      .response = "edited",
      .summary = "Undo the last edit",
-     .doc = "As a new revision."},
+     .doc =
+         "The last edit, the last `steps`, or all that were done since revision `to_revision`: at "
+         "once, each as a new revision, or not at all. The sets are what all of it comes to."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/redo",
      .name = "redo_post",
@@ -321,18 +338,20 @@ static const api_route routes[] = {
      .body_kind = API_BODY_OPTION,
      .consumes = json,
      .produces = json,
-     .statuses = {200, 204, 409, 412, 413, 415},
+     .statuses = {200, 204, 409, 410, 412, 413, 415, 422},
      .request = "step",
      .response = "edited",
      .summary = "Do again what was undone",
-     .doc = "As a new revision, with the ids it had."},
+     .doc =
+         "What was undone last, the last `steps`, or as far as revision `to_revision` was: each as "
+         "a new revision, with the ids it had."},
 
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/events",
      .name = "events_get",
      .run = api_events_get,
      .produces = event_stream,
-     .parameters = {&since},
+     .parameters = {&last_seen},
      .statuses = {200},
      .summary = "Every change as it happens",
      .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "

@@ -179,14 +179,24 @@ static const member answers[] = {
     {"edited", "parents", "#parents", REQUIRED, NULL},
     {"edited", "merged", "#merged", REQUIRED, NULL},
     {"edited", "replaced", "flag", OPTIONAL, "All ids are new; `results` has the maps."},
+    {"edited", "undoable", "flag", OPTIONAL,
+     "Only when false: the edit is larger than the undo budget, or a compact. It cannot be undone, "
+     "and neither can what came before."},
     {"edited", "undo", "count", OPTIONAL, "After undo and redo: steps that can be undone."},
     {"edited", "redo", "count", OPTIONAL, "After undo and redo: steps that can be done again."},
+
+    {"counted", "vertices", "count", REQUIRED, NULL},
+    {"counted", "edges", "count", REQUIRED, NULL},
+    {"counted", "faces", "count", REQUIRED, NULL},
 
     {"entry", "revision", "count", REQUIRED, NULL},
     {"entry", "action", "text", REQUIRED, "edit, undo, redo or replace."},
     {"entry", "inverts", "count", OPTIONAL, "Revision it undid or did again."},
     {"entry", "ops", "*text", REQUIRED, NULL},
-    {"entry", "undoable", "flag", REQUIRED, NULL},
+    {"entry", "created", "#counted", OPTIONAL, "How many elements, where that is known."},
+    {"entry", "deleted", "#counted", OPTIONAL, NULL},
+    {"entry", "modified", "#counted", OPTIONAL, NULL},
+    {"entry", "undoable", "flag", REQUIRED, "Is it on the undo stack?"},
     {"entry", "bytes", "count", REQUIRED, "What undoing it keeps in memory."},
     {"entry", "time", "time", REQUIRED, NULL},
 
@@ -194,6 +204,10 @@ static const member answers[] = {
     {"history", "entries", "*#entry", REQUIRED, "Newest first."},
     {"history", "undo", "count", REQUIRED, "Steps that can be undone."},
     {"history", "redo", "count", REQUIRED, "Steps that can be done again."},
+    {"history", "oldest", "count", REQUIRED, "Revision that can still be read and undone to."},
+    {"history", "dropped", "count", REQUIRED, "Entries, to keep within the undo budget."},
+    {"history", "bytes", "count", REQUIRED, "What entries and their deltas take."},
+    {"history", "budget", "count", REQUIRED, "What they may take: the flag --undo-budget."},
     {"history", "next", "text?", REQUIRED, "The cursor of the next page."},
 
     {"found", "halfedge", "id?", REQUIRED, "From the first vertex to the second."},
@@ -280,6 +294,8 @@ static const member requests[] = {
     {"copy", "name", "text", OPTIONAL, NULL},
 
     {"step", "expected_revision", "count", OPTIONAL, NULL},
+    {"step", "steps", "count", OPTIONAL, "How many; 1 without."},
+    {"step", "to_revision", "count", OPTIONAL, "As many as lead to its content, or none."},
 
     {"relation_query", "relation", "text", REQUIRED, NULL},
     {"relation_query", "of", "#of_any", REQUIRED, NULL},

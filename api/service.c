@@ -399,6 +399,9 @@ void api_free(api_exchange *x)
     if (x->claimed) {
         x->store->unclaim(x->store->self, x->mesh);
     }
+    if (x->past != NULL) {
+        x->store->snapshot_release(x->store->self, x->past);
+    }
     if (x->mesh != NULL) {
         x->store->release(x->store->self, x->mesh);
     }

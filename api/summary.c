@@ -196,14 +196,15 @@ void api_answer_summary(api_exchange *x)
         return;
     }
     api_summary summary;
-    bool cached = x->store->cache_get(x->store->self, x->mesh, &summary, sizeof summary);
+    bool past = x->past != NULL;
+    bool cached = !past && x->store->cache_get(x->store->self, x->mesh, &summary, sizeof summary);
     if (!cached && api_is_large(x, mesh)) {
         api_read_end(x);
         api_defer(x, answer_from_snapshot);
         return;
     }
     if (cached || api_summary_find(x, mesh, &summary)) {
-        if (!cached) {
+        if (!cached && !past) {
             x->store->cache_put(x->store->self, x->mesh, &summary, sizeof summary);
         }
         write_answer(x, &summary, 200, NULL);

@@ -58,6 +58,9 @@ static void commit(api_mesh *mesh, const he_delta *delta, const char *ops, bool 
         srv_mesh_info(mesh, info);
     }
     unlock(mesh);
+    if (barrier) {
+        srv_mesh_shed(mesh);
+    }
 }
 
 void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
@@ -243,5 +246,10 @@ void srv_write_end(void *self, api_mesh *mesh)
         roll_back(mesh);
     }
     srv_log_settle(&mesh->log);
+    bool cut_off = mesh->discard != NULL;
     unlock(mesh);
+    /* No copy can travel across a replace. */
+    if (cut_off) {
+        srv_mesh_shed(mesh);
+    }
 }

@@ -18,10 +18,11 @@ static void note_marks(srv_point *point, const he_mesh *content)
     }
 }
 
-void srv_log_init(srv_revision_log *log, uint64_t budget, const he_mesh *content, double time)
+void srv_log_init(srv_revision_log *log, uint64_t budget, uint64_t revision, const he_mesh *content,
+                  double time)
 {
-    *log = (srv_revision_log){.budget = budget, .oldest = 1, .bottom = 1};
-    log->before = (srv_point){.revision = 1, .state = 1, .time = time};
+    *log = (srv_revision_log){.budget = budget, .oldest = revision, .bottom = revision};
+    log->before = (srv_point){.revision = revision, .state = revision, .time = time};
     note_marks(&log->before, content);
 }
 
@@ -308,7 +309,7 @@ static void copy_ops(char out[API_ENTRY_OPS], const char *ops)
 /* The entry becomes the newest one. */
 static void add_entry(srv_revision_log *log, srv_revision *entry)
 {
-    assert(log->count < log->capacity);
+    assert(log->count < log->capacity && entry->point.revision == srv_log_head(log) + 1);
     log->ring[(log->first + log->count) & (log->capacity - 1)] = entry;
     log->count++;
     log->bytes += entry->size;

@@ -54,8 +54,9 @@ typedef struct srv_revision_log {
     api_tally tally;      /* of the next edit */
 } srv_revision_log;
 
-/* The history of a mesh whose content at revision 1 is this. */
-void srv_log_init(srv_revision_log *log, uint64_t budget, const he_mesh *content, double time);
+/* The history of a mesh that begins with this revision and content. */
+void srv_log_init(srv_revision_log *log, uint64_t budget, uint64_t revision, const he_mesh *content,
+                  double time);
 void srv_log_clear(srv_revision_log *log);
 
 /* Make sure that one entry can be added without allocating, and lend the empty delta it would

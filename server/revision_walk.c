@@ -29,24 +29,18 @@ api_store_status srv_log_steps_to(const srv_revision_log *log, api_action which,
         return API_STORE_GONE;
     }
     uint64_t wanted = point_of(log, revision)->state;
-    uint32_t count = 0;
+    bool undo = which == API_UNDO;
     if (point_of(log, srv_log_head(log))->state == wanted) {
         *steps = 0;
         return API_STORE_OK;
     }
-    if (which == API_REDO) {
-        const srv_step *step = log->redo_top;
-        for (count = 1; step != NULL && step->revision != wanted; step = step->below) {
-            count++;
-        }
-        *steps = count;
-        return step == NULL ? API_STORE_ELSEWHERE : API_STORE_OK;
-    }
-    const srv_step *step = log->undo_top;
+    /* Undo arrives when the wanted edit is on top, redo when it has passed it. */
+    uint32_t count = undo ? 0 : 1;
+    const srv_step *step = undo ? log->undo_top : log->redo_top;
     for (; step != NULL && step->revision != wanted; step = step->below) {
         count++;
     }
-    if (step == NULL && wanted != log->bottom) {
+    if (step == NULL && !(undo && wanted == log->bottom)) {
         return wanted < log->bottom ? API_STORE_GONE : API_STORE_ELSEWHERE;
     }
     *steps = count;

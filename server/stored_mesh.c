@@ -54,8 +54,8 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     mesh->info.created = srv_clock_utc();
     mesh->info.modified = mesh->info.created;
     mesh->content = content;
-    srv_feed_init(&mesh->feed, (srv_place){.stamp = 0, .key = 0});
-    srv_log_init(&mesh->log, undo_budget, content, mesh->info.created);
+    srv_log_init(&mesh->log, undo_budget, mesh->info.revision, content, mesh->info.created);
+    srv_feed_init(&mesh->feed, (srv_place){.stamp = mesh->info.record, .key = mesh->info.revision});
     return mesh;
 }
 

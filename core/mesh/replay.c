@@ -106,32 +106,39 @@ static he_status copy_object(const void *object, bool content, void **out, he_er
     return he_content_copy(object, NULL, copy, err);
 }
 
+/* Room for copies of that many objects; NULL when memory is out. */
+static other_side *side_new(uint64_t key, size_t count)
+{
+    other_side *side = he_mem_alloc(sizeof *side);
+    void **objects = he_mem_zero(count, sizeof *objects);
+    bool *contents = he_mem_zero(count, sizeof *contents);
+    if (side == NULL || objects == NULL || contents == NULL) {
+        he_mem_free(side);
+        he_mem_free(objects);
+        he_mem_free(contents);
+        return NULL;
+    }
+    *side = (other_side){key, objects, contents, count, NULL};
+    return side;
+}
+
 /* Copies of what the delta holds. */
 static he_status side_of(const he_delta *delta, uint64_t key, other_side **out, he_error *err)
 {
-    other_side *side = he_mem_zero(1, sizeof *side);
+    other_side *side = side_new(key, delta->object_count);
     if (side == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the other side of an edit");
     }
-    side->key = key;
-    side->objects = he_mem_zero(delta->object_count, sizeof *side->objects);
-    side->contents = he_mem_zero(delta->object_count, sizeof *side->contents);
-    he_status status = HE_OK;
-    if (side->objects == NULL || side->contents == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the other side of an edit");
-        goto out;
-    }
-    side->count = delta->object_count;
     for (size_t i = 0; i < delta->count; i++) {
         const he_record *r = &delta->records[i];
         if (r->column == HE_COL_REPLACED) {
             side->contents[r->before] = true;
         }
     }
+    he_status status = HE_OK;
     for (size_t i = 0; i < side->count && status == HE_OK; i++) {
         status = copy_object(delta->objects[i], side->contents[i], &side->objects[i], err);
     }
-out:
     if (status != HE_OK) {
         free_side(side);
         return status;

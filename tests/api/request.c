@@ -2,6 +2,7 @@
 
 #include "server/job_board.h"
 
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -54,11 +55,16 @@ void bench_limit_jobs(api_bench *b, size_t most)
 
 api_bench *bench_new(void)
 {
+    return bench_new_within(64 << 20);
+}
+
+api_bench *bench_new_within(uint64_t undo_budget)
+{
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
     b->pool = srv_jobs_new(1, 64);
     assert_non_null(b->pool);
-    b->meshes = srv_store_new(&(srv_store_options){.undo_budget = 64 << 20,
+    b->meshes = srv_store_new(&(srv_store_options){.undo_budget = undo_budget,
                                                    .max_meshes = 1000,
                                                    .journal = srv_journal_memory(),
                                                    .listeners = 3,
@@ -110,17 +116,48 @@ static const char *find_header(void *context, const char *name)
     return NULL;
 }
 
-static void wake_nobody(void *context)
+typedef struct signal {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    bool set;
+} signal;
+
+static void set_signal(void *context)
 {
-    (void)context;
+    signal *s = context;
+    pthread_mutex_lock(&s->lock);
+    s->set = true;
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
 }
 
-/* What is there now and the goodbye. */
-static void read_live(const api_source *live, bench_reply *r)
+static bool take_signal(signal *s, bool wait)
 {
+    pthread_mutex_lock(&s->lock);
+    while (wait && !s->set) {
+        pthread_cond_wait(&s->changed, &s->lock);
+    }
+    bool set = s->set;
+    s->set = false;
+    pthread_mutex_unlock(&s->lock);
+    return set;
+}
+
+/* One thread does the jobs in their order. */
+static void wait_for_jobs(api_bench *b)
+{
+    signal done = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
+    assert_true(srv_jobs_submit(b->pool, set_signal, &done));
+    (void)take_signal(&done, true);
+}
+
+/* What is there now, what the jobs have in hand, and the goodbye. */
+static void read_live(api_bench *b, const api_source *live, bench_reply *r)
+{
+    signal woken = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
     bool finished = false;
     int64_t got;
-    live->start(live->self, wake_nobody, NULL);
+    live->start(live->self, set_signal, &woken);
     do {
         r->body = realloc(r->body, r->length + 4097);
         assert_non_null(r->body);
@@ -128,18 +165,21 @@ static void read_live(const api_source *live, bench_reply *r)
         r->length += got > 0 ? (size_t)got : 0;
         if (got == API_READ_WAIT) {
             assert_false(finished);
-            finished = true;
-            live->finish(live->self);
+            wait_for_jobs(b);
+            finished = !take_signal(&woken, false);
+            if (finished) {
+                live->finish(live->self);
+            }
         }
     } while (got > 0 || got == API_READ_WAIT);
     assert_int_equal(got, 0);
 }
 
-static void read_all(const api_answer *answer, bench_reply *r)
+static void read_all(api_bench *b, const api_answer *answer, bench_reply *r)
 {
     size_t capacity = 0;
     if (answer->live != NULL) {
-        read_live(answer->live, r);
+        read_live(b, answer->live, r);
     } else if (answer->read == NULL) {
         r->length = answer->length < 0 ? 0 : (size_t)answer->length;
         r->body = malloc(r->length + 1);
@@ -198,7 +238,7 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
     r.route = answer->route;
     memcpy(r.headers, answer->headers, sizeof r.headers);
     r.header_count = answer->header_count;
-    read_all(answer, &r);
+    read_all(b, answer, &r);
     *out = r;
     return true;
 }

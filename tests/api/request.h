@@ -10,6 +10,7 @@
 typedef struct api_bench api_bench; /* a service over an empty store */
 
 api_bench *bench_new(void);
+api_bench *bench_new_within(uint64_t undo_budget);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 const api_store *bench_store(api_bench *b);

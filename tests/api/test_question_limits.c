@@ -350,8 +350,26 @@ static void a_cursor_is_of_its_revision(void **state)
     r = bench_send(b, "GET", target, NULL, NULL);
     items = cJSON_GetObjectItemCaseSensitive(r.json, "items");
     assert_int_equal(number_of(cJSON_GetArrayItem(items, 0), "id"), 3);
+    int revision = (int)number_of(r.json, "revision");
+    int degree = (int)number_of(cJSON_GetArrayItem(items, 0), "degree");
     bench_reply_free(&r);
-    edit(b, "{\"op\":\"vertex_move\",\"vertex\":1,\"to\":[2,0,0]}");
+    /* Edits change nothing about the page, which goes on at its revision. */
+    edit(b, "{\"op\":\"face_poke\",\"face\":3}");
+    r = bench_send(b, "GET", target, NULL, NULL);
+    assert_int_equal(r.status, 200);
+    assert_int_equal(number_of(r.json, "revision"), revision);
+    items = cJSON_GetObjectItemCaseSensitive(r.json, "items");
+    assert_int_equal(number_of(cJSON_GetArrayItem(items, 0), "id"), 3);
+    assert_int_equal(number_of(cJSON_GetArrayItem(items, 0), "degree"), degree);
+    bench_reply_free(&r);
+    char twice[340];
+    snprintf(twice, sizeof twice, "%s&revision=%d", target, revision + 1);
+    r = bench_send(b, "GET", twice, NULL, NULL);
+    assert_int_equal(r.status, 400);
+    assert_string_equal(text_of(r.json, "code"), "bad_cursor");
+    bench_reply_free(&r);
+    /* Until the history is cut off behind it. */
+    edit(b, "{\"op\":\"compact\"}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 410);
     assert_string_equal(text_of(r.json, "code"), "revision_gone");

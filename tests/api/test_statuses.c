@@ -122,11 +122,15 @@ static const step steps[] = {
     {"POST", "/v1/meshes/m/undo", 412, NULL, {STALE}},
     {"POST", "/v1/meshes/m/undo", 413, BIG, {NULL}},
     {"POST", "/v1/meshes/m/undo", 415, "{}", {TEXT}},
+    {"POST", "/v1/meshes/m/undo", 410, "{\"to_revision\":1}", {NULL}},
+    {"POST", "/v1/meshes/m/undo", 422, "{\"to_revision\":99}", {NULL}},
     {"POST", "/v1/meshes/m/undo", 200, NULL, {NULL}},
     {"POST", "/v1/meshes/m/undo", 204, "{}", {MINIMAL}},
     {"POST", "/v1/meshes/m/redo", 412, NULL, {STALE}},
     {"POST", "/v1/meshes/m/redo", 413, BIG, {NULL}},
     {"POST", "/v1/meshes/m/redo", 415, "{}", {TEXT}},
+    {"POST", "/v1/meshes/m/redo", 410, "{\"to_revision\":1}", {NULL}},
+    {"POST", "/v1/meshes/m/redo", 422, "{\"to_revision\":99}", {NULL}},
     {"POST", "/v1/meshes/m/redo", 200, NULL, {NULL}},
     {"POST", "/v1/meshes/m/redo", 204, NULL, {MINIMAL}},
 
@@ -136,6 +140,17 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/events?since=x", 400, NULL, {NULL}},
     {"GET", "/v1/meshes/none/events", 404, NULL, {NULL}},
     {"GET", "/v1/meshes/m/events", 406, NULL, {"Accept", "application/json"}},
+    /* Revision 1 was there before the mesh was replaced. */
+    {"GET", "/v1/meshes/m?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m?revision=99", 404, NULL, {NULL}},
+    {"GET", "/v1/meshes/m?revision=0", 400, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/content?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/geometry?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/vertices?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/boundaries?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/components?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/check?revision=1", 410, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/copy?revision=1", 410, NULL, {NULL}},
 
     {"POST", "/v1/meshes?id=job", 202, CUBE, {ASYNC}},
     {"PUT", "/v1/meshes/job", 202, CUBE, {ASYNC}},
@@ -209,7 +224,7 @@ static void take(api_bench *b, const char *method, const char *target, int statu
     bench_reply_free(&r);
 }
 
-/* A cursor that was good and whose revision is gone by now. */
+/* A cursor that was good and of a mesh that had the id before. */
 static void take_stale_cursor(api_bench *b, const char *collection)
 {
     char target[300];
@@ -220,8 +235,11 @@ static void take_stale_cursor(api_bench *b, const char *collection)
     assert_true(cJSON_IsString(next));
     snprintf(target, sizeof target, "/v1/meshes/m/%s?cursor=%s", collection, next->valuestring);
     bench_reply_free(&r);
+    take(b, "DELETE", "/v1/meshes/m", 204, NULL, NULL, 0);
+    take(b, "PUT", "/v1/meshes/m", 201, NULL, CUBE, sizeof CUBE - 1);
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
     take(b, "POST", "/v1/meshes/m/edits", 200, NULL, poke, sizeof poke - 1);
+    take(b, "POST", "/v1/meshes/m/undo", 200, NULL, NULL, 0);
     take(b, "GET", target, 410, NULL, NULL, 0);
 }
 

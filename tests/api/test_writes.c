@@ -88,7 +88,10 @@ static const write writes[] = {
      {"Prefer", "return=minimal"}},
     {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"compact\"}", {NULL}},
     {"POST", "/v1/meshes/m/undo", 200, NULL, {NULL}},
+    {"POST", "/v1/meshes/m/undo", 200, "{\"steps\":2}", {NULL}},
+    {"POST", "/v1/meshes/m/undo", 200, "{\"to_revision\":1}", {NULL}},
     {"POST", "/v1/meshes/m/redo", 200, "{}", {NULL}},
+    {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":4}", {NULL}},
 };
 
 /* A mesh with something to undo, something to do again, and a dead face. */

@@ -238,8 +238,15 @@ static void cursors_come_back_or_are_refused(void **state)
         assert_false(api_cursor_read(bad[i], "vertices", &facts, &position, &problem));
         assert_int_equal(problem.code, API_BAD_CURSOR);
     }
+    /* Edits leave it what it was, of the revision it pins; another mesh of the id does not. */
     api_mesh_info later = facts;
+    uint64_t pinned = 0;
     later.revision++;
+    assert_true(api_cursor_pins(text, &later, &pinned));
+    assert_int_equal(pinned, facts.revision);
+    later.incarnation++;
+    assert_false(api_cursor_pins(text, &later, &pinned));
+    assert_false(api_cursor_pins("vertices", &facts, &pinned));
     problem = (api_problem){0};
     assert_false(api_cursor_read(text, "vertices", &later, &position, &problem));
     assert_int_equal(problem.code, API_REVISION_GONE);

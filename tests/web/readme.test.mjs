@@ -33,13 +33,13 @@ test('the curl lines work as pasted', async (t) => {
     const [block] = blocks('sh', url).filter((code) => code.includes('curl'));
     const lines = block.replaceAll('\\\n', '').split('\n');
     const commands = lines.filter((line) => line !== '' && !line.startsWith('#'));
-    assert.equal(commands.length, 5);
+    assert.equal(commands.length, 7);
     const answers = [];
     for (const command of commands) {
         assert.match(command, /^curl /);
         answers.push(JSON.parse(await run('sh', ['-c', `${command} -sS --fail-with-body`])));
     }
-    const [made, halfedge, faces, edited, undone] = answers;
+    const [made, halfedge, faces, edited, undone, history, before] = answers;
     assert.equal(made.counts.faces, 2);
     assert.deepEqual(Object.keys(halfedge).slice(1, 8), [
         ...['twin', 'next', 'prev', 'origin', 'target', 'edge', 'face'],
@@ -49,6 +49,9 @@ test('the curl lines work as pasted', async (t) => {
     const more = (kind) => created[kind].length - deleted[kind].length;
     assert.deepEqual(['vertices', 'edges', 'faces'].map(more), [1, 3, 2]);
     assert.equal(undone.redo, 1);
+    assert.deepEqual(history.entries.map((entry) => entry.action), ['undo', 'edit']);
+    assert.equal(before.revision, 2);
+    assert.equal(before.items.length, made.counts.vertices + 1);
 });
 
 test('the lines about jobs work as pasted', async (t) => {

@@ -1,0 +1,761 @@
+/* The history of a mesh: undo, redo and steps to a revision, earlier revisions read as they were,
+ * and what is said when the budget cuts the history short. */
+#include "tests/api/request.h"
+
+#include "mesh/walk.h"
+#include "tests/model/random.h"
+
+#include <inttypes.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+enum { MOST = 400, BODY = 160, TARGET = 200 };
+
+static uint64_t seed_of_run(void)
+{
+    const char *given = getenv("SEED");
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
+                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
+    printf("note: SEED=%" PRIu64 "\n", seed);
+    return seed;
+}
+
+static bench_reply expect(int status, bench_reply r)
+{
+    if (r.status != status) {
+        fail_msg("%d instead of %d: %s", r.status, status, r.body);
+    }
+    return r;
+}
+
+static bench_reply get(api_bench *b, const char *target)
+{
+    return bench_send(b, "GET", target, NULL, NULL);
+}
+
+static bench_reply post(api_bench *b, const char *what, const char *body)
+{
+    char target[TARGET];
+    snprintf(target, sizeof target, "/v1/meshes/m/%s", what);
+    return bench_send(b, "POST", target, NULL, body);
+}
+
+static void done(bench_reply r)
+{
+    bench_reply_free(&r);
+}
+
+static double number_of(const cJSON *object, const char *name)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+    assert_true(cJSON_IsNumber(item));
+    return item->valuedouble;
+}
+
+static const char *code_of(const bench_reply *r)
+{
+    return cJSON_GetObjectItemCaseSensitive(r->json, "code")->valuestring;
+}
+
+static uint64_t head_of(api_bench *b)
+{
+    bench_reply r = expect(200, get(b, "/v1/meshes/m/edits?limit=1"));
+    uint64_t revision = (uint64_t)number_of(r.json, "revision");
+    done(r);
+    return revision;
+}
+
+/* Every element with all its links and values, and the document. `revision` 0 is the present. */
+static char *dump(api_bench *b, uint64_t revision)
+{
+    static const char *const parts[] = {"vertices", "halfedges", "edges", "faces", "content"};
+    static const char *const lines[] = {"Accept", "application/x-ndjson", NULL};
+    static const char *const document[] = {"Accept", "application/json", NULL};
+    char *text = calloc(1, 1);
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        char target[TARGET];
+        snprintf(target, sizeof target, "/v1/meshes/m/%s", parts[i]);
+        if (revision != 0) {
+            snprintf(target, sizeof target, "/v1/meshes/m/%s?revision=%" PRIu64, parts[i],
+                     revision);
+        }
+        const char *const *accept = i == 4 ? document : lines;
+        bench_reply r = expect(200, bench_send(b, "GET", target, accept, NULL));
+        text = realloc(text, length + r.length + 1);
+        assert_non_null(text);
+        memcpy(text + length, r.body, r.length + 1);
+        length += r.length;
+        done(r);
+    }
+    return text;
+}
+
+static he_mesh *content_of(api_bench *b)
+{
+    const api_store *store = bench_store(b);
+    api_mesh *mesh;
+    he_mesh *copy;
+    assert_int_equal(store->find(store->self, "m", &mesh), API_STORE_OK);
+    const he_mesh *content = store->read_begin(store->self, mesh, NULL);
+    assert_int_equal(he_mesh_copy(content, &copy, NULL), HE_OK);
+    store->read_end(store->self, mesh);
+    store->release(store->self, mesh);
+    return copy;
+}
+
+static uint32_t some(const he_mesh *mesh, md_random *random, he_kind kind)
+{
+    return md_below(random, he_mesh_issued(mesh, kind) + 1);
+}
+
+static void random_op(const he_mesh *m, md_random *random, char body[BODY])
+{
+    switch (md_below(random, 6)) {
+    case 0:
+        snprintf(body, BODY, "{\"op\":\"face_poke\",\"face\":%u}", some(m, random, HE_FACE));
+        return;
+    case 1:
+        snprintf(body, BODY, "{\"op\":\"edge_split\",\"edge\":%u,\"t\":0.3}",
+                 some(m, random, HE_EDGE));
+        return;
+    case 2:
+        snprintf(body, BODY, "{\"op\":\"face_delete\",\"face\":%u}", some(m, random, HE_FACE));
+        return;
+    case 3:
+        snprintf(body, BODY, "{\"op\":\"edge_collapse\",\"edge\":%u}", some(m, random, HE_EDGE));
+        return;
+    case 4:
+        snprintf(body, BODY, "{\"op\":\"edge_flip\",\"edge\":%u}", some(m, random, HE_EDGE));
+        return;
+    default:
+        snprintf(body, BODY, "{\"op\":\"vertex_move\",\"vertex\":%u,\"to\":[0.1,%u,7]}",
+                 some(m, random, HE_VERTEX), md_below(random, 1000));
+        return;
+    }
+}
+
+/* --- net sets --- */
+
+static bool holds(const cJSON *list, uint32_t id)
+{
+    const cJSON *item;
+    cJSON_ArrayForEach(item, list)
+    {
+        if (item->valuedouble == id) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static const cJSON *set_of(const bench_reply *r, const char *set, he_kind kind)
+{
+    const cJSON *sets = cJSON_GetObjectItemCaseSensitive(r->json, set);
+    return cJSON_GetObjectItemCaseSensitive(sets, he_kind_plural(kind));
+}
+
+/* Created and deleted are exactly the elements that live on one side only; a vertex that moved is
+ * among the modified. */
+static void check_sets(const bench_reply *r, const he_mesh *before, const he_mesh *after)
+{
+    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    for (size_t k = 0; k < 3; k++) {
+        he_kind kind = kinds[k];
+        uint32_t issued = he_mesh_issued(after, kind);
+        for (uint32_t id = 0; id < issued; id++) {
+            bool was = id < he_mesh_issued(before, kind) && he_mesh_is_live(before, kind, id);
+            bool is = he_mesh_is_live(after, kind, id);
+            assert_int_equal(holds(set_of(r, "created", kind), id), is && !was);
+            assert_int_equal(holds(set_of(r, "deleted", kind), id), was && !is);
+            if (holds(set_of(r, "modified", kind), id)) {
+                assert_true(was && is);
+            }
+            if (kind == HE_VERTEX && was && is) {
+                he_vec3 p = he_position(before, (he_vertex){id});
+                he_vec3 q = he_position(after, (he_vertex){id});
+                bool moved = p.x != q.x || p.y != q.y || p.z != q.z;
+                assert_true(!moved || holds(set_of(r, "modified", kind), id));
+            }
+        }
+    }
+}
+
+/* --- random histories --- */
+
+/* What the server should know: the edits done and undone, by the revision that made them. */
+typedef struct model {
+    uint64_t head;
+    uint64_t done[MOST], undone[MOST];
+    size_t done_count, undone_count;
+    uint64_t state[MOST]; /* of each revision: the edit on top, 1 for none */
+    char *dumps[MOST];
+} model;
+
+static uint64_t top(const model *m)
+{
+    return m->done_count == 0 ? 1 : m->done[m->done_count - 1];
+}
+
+static void note_head(api_bench *b, model *m)
+{
+    m->state[m->head] = top(m);
+    m->dumps[m->head] = dump(b, 0);
+}
+
+static void undo_one(model *m)
+{
+    m->undone[m->undone_count++] = m->done[--m->done_count];
+    m->state[++m->head] = top(m);
+}
+
+static void redo_one(model *m)
+{
+    m->done[m->done_count++] = m->undone[--m->undone_count];
+    m->state[++m->head] = top(m);
+}
+
+/* How many steps lead to a state; -1: none do. */
+static int steps_to(const model *m, bool undo, uint64_t state)
+{
+    if (state == top(m)) {
+        return 0;
+    }
+    for (size_t i = 0; undo && i < m->done_count; i++) {
+        uint64_t below = m->done_count - 1 - i == 0 ? 1 : m->done[m->done_count - 2 - i];
+        if (below == state) {
+            return (int)i + 1;
+        }
+    }
+    for (size_t i = 0; !undo && i < m->undone_count; i++) {
+        if (m->undone[m->undone_count - 1 - i] == state) {
+            return (int)i + 1;
+        }
+    }
+    return -1;
+}
+
+/* The revisions a request made between are seen only when they are asked for. */
+static void take_steps(api_bench *b, model *m, bool undo, int steps, bench_reply r,
+                       const he_mesh *before)
+{
+    uint64_t from = m->head;
+    for (int i = 0; i < steps; i++) {
+        if (undo) {
+            undo_one(m);
+        } else {
+            redo_one(m);
+        }
+    }
+    assert_int_equal(number_of(r.json, "revision"), m->head);
+    assert_int_equal(number_of(r.json, "undo"), m->done_count);
+    assert_int_equal(number_of(r.json, "redo"), m->undone_count);
+    for (uint64_t revision = from + 1; revision <= m->head; revision++) {
+        m->dumps[revision] = dump(b, revision);
+        assert_string_equal(m->dumps[revision], m->dumps[m->state[revision]]);
+    }
+    he_mesh *after = content_of(b);
+    check_sets(&r, before, after);
+    he_mesh_free(after);
+    done(r);
+}
+
+static void step_by_count(api_bench *b, model *m, md_random *random, bool undo)
+{
+    char body[BODY];
+    size_t left = undo ? m->done_count : m->undone_count;
+    uint32_t steps = md_from(random, 1, 4);
+    he_mesh *before = content_of(b);
+    snprintf(body, sizeof body, "{\"steps\":%u}", steps);
+    bench_reply r = post(b, undo ? "undo" : "redo", steps == 1 ? NULL : body);
+    if (steps > left) {
+        assert_int_equal(r.status, 409);
+        assert_string_equal(code_of(&r), undo ? "nothing_to_undo" : "nothing_to_redo");
+        done(r);
+    } else {
+        take_steps(b, m, undo, (int)steps, expect(200, r), before);
+    }
+    he_mesh_free(before);
+}
+
+static void step_to_revision(api_bench *b, model *m, md_random *random, bool undo)
+{
+    char body[BODY];
+    uint64_t revision = md_from(random, 1, (uint32_t)m->head);
+    int steps = steps_to(m, undo, m->state[revision]);
+    he_mesh *before = content_of(b);
+    snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", revision);
+    bench_reply r = post(b, undo ? "undo" : "redo", body);
+    if (steps < 0) {
+        assert_int_equal(r.status, 409);
+        assert_string_equal(code_of(&r), "unreachable_revision");
+        done(r);
+    } else {
+        take_steps(b, m, undo, steps, expect(200, r), before);
+    }
+    he_mesh_free(before);
+    char *now = dump(b, 0);
+    assert_string_equal(now, m->dumps[steps < 0 ? m->head : revision]);
+    free(now);
+}
+
+static void edit_once(api_bench *b, model *m, md_random *random)
+{
+    char body[BODY];
+    he_mesh *before = content_of(b);
+    random_op(before, random, body);
+    bench_reply r = post(b, "edits", body);
+    assert_true(r.status == 200 || r.status == 422);
+    if (r.status == 200 && number_of(r.json, "revision") > (double)m->head) {
+        m->done[m->done_count++] = ++m->head;
+        m->undone_count = 0;
+        note_head(b, m);
+        he_mesh *after = content_of(b);
+        check_sets(&r, before, after);
+        he_mesh_free(after);
+    }
+    done(r);
+    he_mesh_free(before);
+}
+
+static void random_step(api_bench *b, model *m, md_random *random)
+{
+    uint32_t what = md_below(random, 24);
+    bool undo = md_below(random, 2) == 0;
+    if (what < 18) {
+        edit_once(b, m, random);
+    } else if (what < 23) {
+        step_by_count(b, m, random, undo);
+    } else {
+        step_to_revision(b, m, random, undo);
+    }
+}
+
+static void every_revision_stays_what_it_was(void **state)
+{
+    (void)state;
+    md_random random = {seed_of_run()};
+    api_bench *b = bench_new();
+    model *m = calloc(1, sizeof *m);
+    assert_non_null(m);
+    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                                "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
+    m->head = 1;
+    note_head(b, m);
+    while (m->head < MOST - 60) {
+        random_step(b, m, &random);
+    }
+    /* All the way back, all the way forward, each depth compared inside. */
+    he_mesh *end = content_of(b);
+    size_t deepest = m->done_count + m->undone_count;
+    while (m->undone_count > 0 && m->head < MOST - 40) {
+        step_by_count(b, m, &random, false);
+    }
+    char *last = dump(b, 0);
+    done(expect(200, post(b, "undo", "{\"to_revision\":1}")));
+    char *first = dump(b, 0);
+    assert_string_equal(first, m->dumps[1]);
+    uint64_t steps = m->done_count;
+    char body[BODY];
+    snprintf(body, sizeof body, "{\"steps\":%" PRIu64 "}", steps);
+    done(expect(200, post(b, "redo", body)));
+    char *again = dump(b, 0);
+    assert_string_equal(again, last);
+    printf("note: %" PRIu64 " revisions, %zu steps deep\n", m->head, deepest);
+    /* In any order, what was read then is read now. */
+    for (uint64_t i = 0; i < m->head; i++) {
+        uint64_t revision = 1 + (i * 37 + 11) % m->head;
+        char *then = dump(b, revision);
+        assert_string_equal(then, m->dumps[revision]);
+        free(then);
+    }
+    for (uint64_t revision = 1; revision <= m->head; revision++) {
+        free(m->dumps[revision]);
+    }
+    he_mesh_free(end);
+    free(first);
+    free(again);
+    free(last);
+    free(m);
+    bench_free(b);
+}
+
+/* --- a small budget --- */
+
+static void the_history_stays_within_its_budget_and_says_so(void **state)
+{
+    (void)state;
+    enum { BUDGET = 6000, EDITS = 300 };
+    md_random random = {seed_of_run()};
+    api_bench *b = bench_new_within(BUDGET);
+    char *dumps[EDITS + 2] = {NULL}, body[BODY], target[TARGET];
+    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                                "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
+    dumps[1] = dump(b, 0);
+    uint64_t head = 1, dropped = 0;
+    for (int i = 0; i < EDITS; i++) {
+        bool step = md_below(&random, 4) == 0;
+        he_mesh *mesh = content_of(b);
+        random_op(mesh, &random, body);
+        he_mesh_free(mesh);
+        done(step ? post(b, md_below(&random, 2) ? "undo" : "redo", NULL) : post(b, "edits", body));
+        uint64_t now = head_of(b);
+        if (now == head) {
+            continue;
+        }
+        head = now;
+        dumps[head] = dump(b, 0);
+        bench_reply r = expect(200, get(b, "/v1/meshes/m/edits"));
+        assert_true(number_of(r.json, "bytes") <= BUDGET);
+        assert_int_equal(number_of(r.json, "budget"), BUDGET);
+        assert_true(number_of(r.json, "dropped") >= (double)dropped);
+        dropped = (uint64_t)number_of(r.json, "dropped");
+        uint64_t oldest = (uint64_t)number_of(r.json, "oldest");
+        const cJSON *entries = cJSON_GetObjectItemCaseSensitive(r.json, "entries");
+        assert_int_equal(cJSON_GetArraySize(entries) + (int)dropped, head - 1);
+        assert_true(oldest >= 1 + dropped);
+        done(r);
+        char *then = dump(b, oldest);
+        assert_string_equal(then, dumps[oldest]);
+        free(then);
+        if (oldest > 1) {
+            snprintf(target, sizeof target, "/v1/meshes/m?revision=%" PRIu64, oldest - 1);
+            r = expect(410, get(b, target));
+            assert_string_equal(code_of(&r), "revision_gone");
+            done(r);
+            snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", oldest - 1);
+            r = post(b, "undo", body);
+            assert_true(r.status == 410 || r.status == 200);
+            if (r.status == 200) { /* its content is there again, and under another revision too */
+                char *same = dump(b, 0);
+                assert_string_equal(same, dumps[oldest - 1]);
+                free(same);
+                head = head_of(b);
+                free(dumps[head]);
+                dumps[head] = dump(b, 0);
+            }
+            done(r);
+        }
+    }
+    assert_true(dropped > 0);
+    printf("note: %" PRIu64 " of %" PRIu64 " entries were dropped\n", dropped, head - 1);
+    for (size_t i = 0; i < sizeof dumps / sizeof *dumps; i++) {
+        free(dumps[i]);
+    }
+    bench_free(b);
+}
+
+static void an_edit_beyond_the_budget_says_that_the_history_ends(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new_within(4000);
+    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                                "{\"shape\":\"icosphere\",\"subdivisions\":2}")));
+    bench_reply r = expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":1}"));
+    assert_null(cJSON_GetObjectItem(r.json, "undoable"));
+    done(r);
+    static const char large[] =
+        "{\"op\":\"transform\",\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]%s}";
+    char body[BODY];
+    snprintf(body, sizeof body, large, ",\"dry_run\":true");
+    r = expect(200, post(b, "edits", body));
+    assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
+    done(r);
+    done(expect(200, get(b, "/v1/meshes/m?revision=1")));
+    snprintf(body, sizeof body, large, "");
+    r = expect(200, post(b, "edits", body));
+    assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
+    done(r);
+    r = expect(200, get(b, "/v1/meshes/m/edits"));
+    assert_int_equal(number_of(r.json, "oldest"), 3);
+    assert_int_equal(number_of(r.json, "undo"), 0);
+    const cJSON *newest = cJSON_GetObjectItem(r.json, "entries")->child;
+    assert_true(cJSON_IsFalse(cJSON_GetObjectItem(newest, "undoable")));
+    assert_true(number_of(newest, "bytes") > 4000);
+    done(r);
+    done(expect(410, get(b, "/v1/meshes/m?revision=2")));
+    done(expect(409, post(b, "undo", NULL)));
+    bench_free(b);
+}
+
+/* --- reading what was --- */
+
+static api_bench *poked(void)
+{
+    api_bench *b = bench_new();
+    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":0}")));
+    done(expect(200, post(b, "edits", "{\"op\":\"face_delete\",\"face\":1}")));
+    done(expect(200, post(b, "undo", NULL)));
+    return b;
+}
+
+static void elements_are_those_of_the_revision(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *target;
+        int status;
+    } rows[] = {
+        {"/v1/meshes/m/vertices/8", 200},
+        {"/v1/meshes/m/vertices/8?revision=1", 404}, /* made by the next revision */
+        {"/v1/meshes/m/vertices/8?revision=2", 200},
+        {"/v1/meshes/m/faces/1?revision=2", 200},
+        {"/v1/meshes/m/faces/1?revision=3", 410},
+        {"/v1/meshes/m/faces/1?revision=4", 200},
+        {"/v1/meshes/m/faces/1/edges?revision=3", 410},
+        {"/v1/meshes/m/vertices/8/faces?revision=3&cw=true", 200},
+        {"/v1/meshes/m/vertices?revision=3&limit=2", 200},
+        {"/v1/meshes/m/boundaries?revision=3", 200},
+        {"/v1/meshes/m/components?revision=3&by=edge", 200},
+        {"/v1/meshes/m/check?revision=3", 200},
+        {"/v1/meshes/m/geometry?revision=3", 200},
+        {"/v1/meshes/m/content?revision=3&format=ply", 200},
+        {"/v1/meshes/m?revision=5", 404},
+        {"/v1/meshes/m?revision=0", 400},
+        {"/v1/meshes/m?revision=x", 400},
+        {"/v1/meshes/m/edits?revision=2", 400},
+    };
+    api_bench *b = poked();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        done(expect(rows[i].status, get(b, rows[i].target)));
+    }
+    bench_reply r = expect(404, get(b, "/v1/meshes/m?revision=5"));
+    assert_string_equal(code_of(&r), "no_such_revision");
+    done(r);
+    r = expect(200, get(b, "/v1/meshes/m?revision=3"));
+    const cJSON *counts = cJSON_GetObjectItem(r.json, "counts");
+    assert_int_equal(number_of(r.json, "revision"), 3);
+    assert_int_equal(number_of(counts, "faces"), 8);
+    assert_int_equal(number_of(counts, "boundary_loops"), 1);
+    done(r);
+    /* The summary that is kept is that of the present. */
+    r = expect(200, get(b, "/v1/meshes/m"));
+    assert_int_equal(number_of(cJSON_GetObjectItem(r.json, "counts"), "faces"), 9);
+    done(r);
+    bench_free(b);
+}
+
+static void a_tag_names_the_revision_that_was_read(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {"?revision=2", "/vertices/8?revision=2",
+                                          "/faces?limit=2&revision=2", "/content?revision=2",
+                                          "/boundaries?revision=2"};
+    api_bench *b = poked();
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        char target[TARGET], etag[100];
+        snprintf(target, sizeof target, "/v1/meshes/m%s", targets[i]);
+        bench_reply r = expect(200, get(b, target));
+        snprintf(etag, sizeof etag, "%s", bench_header(&r, "ETag"));
+        assert_non_null(strstr(etag, "-2-"));
+        done(r);
+        const char *const known[] = {"If-None-Match", etag, NULL};
+        done(expect(304, bench_send(b, "GET", target, known, NULL)));
+        /* Of the present it says nothing. */
+        *strstr(target, "revision=2") = '\0';
+        target[strlen(target) - 1] = '\0';
+        done(expect(200, bench_send(b, "GET", target, known, NULL)));
+    }
+    bench_free(b);
+}
+
+/* What no step leads to any more can be had again as a mesh of its own. */
+static void an_earlier_revision_can_be_copied(void **state)
+{
+    (void)state;
+    api_bench *b = poked();
+    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    bench_reply r = expect(201, post(b, "copy?revision=3", "{\"id\":\"c\"}"));
+    assert_int_equal(number_of(cJSON_GetObjectItem(r.json, "counts"), "faces"), 8);
+    assert_int_equal(number_of(r.json, "revision"), 1);
+    done(r);
+    bench_reply then = expect(200, get(b, "/v1/meshes/m/faces?revision=3"));
+    r = expect(200, get(b, "/v1/meshes/c/faces"));
+    assert_true(cJSON_Compare(cJSON_GetObjectItem(r.json, "items"),
+                              cJSON_GetObjectItem(then.json, "items"), true));
+    done(then);
+    done(r);
+    bench_free(b);
+}
+
+/* --- the list --- */
+
+static void the_history_tells_what_each_revision_did(void **state)
+{
+    (void)state;
+    api_bench *b = poked();
+    bench_reply r = expect(200, get(b, "/v1/meshes/m/edits"));
+    const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
+    static const struct {
+        const char *action, *op;
+        int created, deleted, inverts;
+    } rows[] = {{"undo", "face_delete", 1, 0, 3},
+                {"edit", "face_delete", 0, 1, 0},
+                {"edit", "face_poke", 3, 0, 0}};
+    for (size_t i = 0; i < 3; i++, entry = entry->next) {
+        assert_string_equal(cJSON_GetObjectItem(entry, "action")->valuestring, rows[i].action);
+        assert_string_equal(cJSON_GetObjectItem(entry, "ops")->child->valuestring, rows[i].op);
+        assert_int_equal(number_of(cJSON_GetObjectItem(entry, "created"), "faces"),
+                         rows[i].created);
+        assert_int_equal(number_of(cJSON_GetObjectItem(entry, "deleted"), "faces"),
+                         rows[i].deleted);
+        assert_int_equal(cJSON_HasObjectItem(entry, "inverts"), rows[i].inverts != 0);
+        if (rows[i].inverts != 0) {
+            assert_int_equal(number_of(entry, "inverts"), rows[i].inverts);
+        }
+        assert_int_equal(cJSON_IsTrue(cJSON_GetObjectItem(entry, "undoable")), i == 2);
+    }
+    assert_null(entry);
+    done(r);
+    bench_free(b);
+}
+
+static void a_page_of_the_history_goes_on_where_it_was(void **state)
+{
+    (void)state;
+    api_bench *b = poked();
+    char target[400];
+    bench_reply r = expect(200, get(b, "/v1/meshes/m/edits?limit=2&since=1"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 2);
+    snprintf(target, sizeof target, "/v1/meshes/m/edits?limit=2&cursor=%s",
+             cJSON_GetObjectItem(r.json, "next")->valuestring);
+    done(r);
+    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    r = expect(200, get(b, target));
+    const cJSON *entries = cJSON_GetObjectItem(r.json, "entries");
+    assert_int_equal(cJSON_GetArraySize(entries), 1);
+    assert_int_equal(number_of(entries->child, "revision"), 2);
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(r.json, "next")));
+    done(r);
+    r = expect(200, get(b, "/v1/meshes/m/edits?since=4"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 1);
+    done(r);
+    r = expect(200, get(b, "/v1/meshes/m/edits?since=99"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 0);
+    done(r);
+    bench_free(b);
+}
+
+/* --- refusals of steps --- */
+
+static void steps_that_cannot_be_taken_change_nothing(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *what, *body;
+        int status;
+        const char *code;
+    } rows[] = {
+        {"undo", "{\"to_revision\":9}", 422, "no_such_revision"},
+        {"redo", "{\"to_revision\":9}", 422, "no_such_revision"},
+        {"undo", "{\"to_revision\":3}", 409, "unreachable_revision"}, /* redo leads there */
+        {"redo", "{\"to_revision\":1}", 409, "unreachable_revision"},
+        {"undo", "{\"steps\":2}", 409, "nothing_to_undo"},
+        {"redo", "{\"steps\":2}", 409, "nothing_to_redo"},
+        {"undo", "{\"steps\":0}", 400, NULL},
+        {"undo", "{\"steps\":4294967296}", 400, NULL},
+        {"undo", "{\"steps\":1,\"to_revision\":1}", 400, "conflicting_members"},
+        {"undo", "{\"to_revision\":0}", 400, NULL},
+        {"undo", "{\"to_revision\":1,\"expected_revision\":3}", 412, "stale_revision"},
+        {"undo", "{\"to\":1}", 400, "unknown_member"},
+    };
+    api_bench *b = poked();
+    char *before = dump(b, 0);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        bench_reply r = expect(rows[i].status, post(b, rows[i].what, rows[i].body));
+        if (rows[i].code != NULL) {
+            assert_string_equal(code_of(&r), rows[i].code);
+        }
+        done(r);
+        assert_int_equal(head_of(b), 4);
+    }
+    char *after = dump(b, 0);
+    assert_string_equal(before, after);
+    free(before);
+    free(after);
+    /* To where it is already takes no step, and makes no revision. */
+    bench_reply r = expect(200, post(b, "undo", "{\"to_revision\":2}"));
+    assert_int_equal(number_of(r.json, "revision"), 4);
+    done(r);
+    /* What was undone and edited over can be read, and not stepped to. */
+    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    r = expect(409, post(b, "undo", "{\"to_revision\":3}"));
+    assert_string_equal(code_of(&r), "unreachable_revision");
+    done(r);
+    done(expect(200, get(b, "/v1/meshes/m?revision=3")));
+    bench_free(b);
+}
+
+/* --- memory --- */
+
+static struct {
+    long calls, fail_at;
+} memory;
+
+static void *failing(void *context, void *block, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(block);
+        return NULL;
+    }
+    return ++memory.calls == memory.fail_at ? NULL : realloc(block, size);
+}
+
+static void every_allocation_of_a_reader_may_fail(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {
+        "/v1/meshes/m?revision=2",       "/v1/meshes/m/faces/2?revision=3",
+        "/v1/meshes/m/faces?revision=2", "/v1/meshes/m/boundaries?revision=3",
+        "/v1/meshes/m/edits?since=2",    "/v1/meshes/m/content?revision=1&format=off"};
+    static const he_mem_hook hook = {failing, NULL};
+    he_mem_set_hook(&hook);
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        bool more = true;
+        for (long n = 1; more; n++) {
+            memory.fail_at = 0;
+            api_bench *b = poked();
+            memory.calls = 0;
+            memory.fail_at = n;
+            bench_reply r;
+            bool answered = bench_try(b, "GET", targets[i], NULL, NULL, 0, &r);
+            more = memory.calls >= n;
+            memory.fail_at = 0;
+            if (answered) {
+                /* The cache of a summary, or a copy's slack, can be done without. */
+                assert_true(r.status == 200 || (more && (r.status == 507 || r.status == 503)));
+                bench_reply_free(&r);
+            }
+            done(expect(200, get(b, targets[i])));
+            bench_free(b);
+        }
+    }
+    he_mem_set_hook(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_revision_stays_what_it_was),
+        cmocka_unit_test(the_history_stays_within_its_budget_and_says_so),
+        cmocka_unit_test(an_edit_beyond_the_budget_says_that_the_history_ends),
+        cmocka_unit_test(elements_are_those_of_the_revision),
+        cmocka_unit_test(a_tag_names_the_revision_that_was_read),
+        cmocka_unit_test(an_earlier_revision_can_be_copied),
+        cmocka_unit_test(the_history_tells_what_each_revision_did),
+        cmocka_unit_test(a_page_of_the_history_goes_on_where_it_was),
+        cmocka_unit_test(steps_that_cannot_be_taken_change_nothing),
+        cmocka_unit_test(every_allocation_of_a_reader_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,540 @@
+/* The history of a stored mesh: earlier revisions and walks along them are what the mesh was,
+ * columns that came and went included, within the budget, while others write. */
+#include "tests/unit/edit_script.h"
+#include "tests/unit/fixture.h"
+
+#include "mesh/write.h"
+#include "server/memory.h"
+#include "server/replay_walk.h"
+#include "server/store.h"
+#include "tests/model/random.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <time.h>
+
+enum { MOST = 300 };
+
+static srv_store *store;
+static api_store api;
+
+static uint64_t seed_of_run(void)
+{
+    const char *given = getenv("SEED");
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
+                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
+    printf("note: SEED=%" PRIu64 "\n", seed);
+    return seed;
+}
+
+static api_mesh *open_mesh(uint64_t budget)
+{
+    store = srv_store_new(&(srv_store_options){
+        .undo_budget = budget, .max_meshes = 10, .journal = srv_journal_memory()});
+    assert_non_null(store);
+    api = srv_store_interface(store);
+    he_mesh *content = script_mesh("012,023,034,045,051", NULL);
+    script_add_columns(content);
+    api_mesh *mesh;
+    assert_int_equal(api.create(api.self, "m", NULL, content, &mesh), API_STORE_OK);
+    return mesh;
+}
+
+static void close_mesh(api_mesh *mesh)
+{
+    api.release(api.self, mesh);
+    srv_store_free(store);
+}
+
+static void add_column(he_mesh *m, unsigned serial)
+{
+    char name[32];
+    he_column *column;
+    snprintf(name, sizeof name, "later%u", serial);
+    assert_int_equal(he_column_new(name, HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE, &column, NULL),
+                     HE_OK);
+    assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+static void drop_column(he_mesh *m)
+{
+    size_t slot = he_mesh_columns(m);
+    while (slot > 0 && he_mesh_column(m, slot - 1) == NULL) {
+        slot--;
+    }
+    if (slot > 0) {
+        assert_int_equal(he_mesh_drop_column(m, slot - 1, NULL), HE_OK);
+    }
+}
+
+/* One edit, refused ones included, which make no revision. */
+static void edit(api_mesh *mesh, md_random *random, unsigned serial)
+{
+    char text[96];
+    he_delta *delta;
+    he_mesh *m = api.write_begin(api.self, mesh, NULL, &delta);
+    assert_non_null(m);
+    switch (md_below(random, 7)) {
+    case 0:
+        add_column(m, serial);
+        break;
+    case 1:
+        drop_column(m);
+        break;
+    case 2:
+        snprintf(text, sizeof text, "face_poke face=#%u",
+                 md_below(random, he_mesh_issued(m, HE_FACE)));
+        (void)script_run(m, text, NULL, NULL);
+        break;
+    case 3:
+        snprintf(text, sizeof text, "face_delete face=#%u",
+                 md_below(random, he_mesh_issued(m, HE_FACE)));
+        (void)script_run(m, text, NULL, NULL);
+        break;
+    default:
+        snprintf(text, sizeof text, "vertex_add position=%u,1,%u", serial, md_below(random, 9));
+        (void)script_run(m, text, NULL, NULL);
+        break;
+    }
+    if (delta->count > 0) {
+        api.write_commit(api.self, mesh, "some", false, NULL);
+    } else {
+        api.write_abort(api.self, mesh);
+    }
+}
+
+static api_store_status step(api_mesh *mesh, api_action which, uint32_t steps)
+{
+    const he_delta *deltas[8];
+    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
+    api_store_status status = api.step(api.self, mesh, which, steps, deltas, NULL);
+    api.write_end(api.self, mesh);
+    return status;
+}
+
+static void change(api_mesh *mesh, md_random *random, unsigned serial)
+{
+    uint32_t what = md_below(random, 5);
+    if (what < 3) {
+        edit(mesh, random, serial);
+    } else {
+        (void)step(mesh, what == 3 ? API_UNDO : API_REDO, 1 + md_below(random, 3));
+    }
+}
+
+static uint64_t head_of(api_mesh *mesh, he_mesh **content)
+{
+    api_mesh_info info;
+    const he_mesh *m = api.read_begin(api.self, mesh, &info);
+    if (content != NULL) {
+        *content = copy_of(m);
+    }
+    api.read_end(api.self, mesh);
+    return info.revision;
+}
+
+/* Copies of all revisions; those a change of several steps passed through are missing. */
+typedef struct album {
+    he_mesh *at[MOST];
+    uint64_t head;
+} album;
+
+static void take_picture(album *a, api_mesh *mesh)
+{
+    he_mesh *content;
+    uint64_t head = head_of(mesh, &content);
+    if (head == a->head || head >= MOST) {
+        he_mesh_free(content);
+        return;
+    }
+    a->head = head;
+    a->at[head] = content;
+}
+
+static void clear_album(album *a)
+{
+    for (size_t i = 0; i < MOST; i++) {
+        he_mesh_free(a->at[i]);
+    }
+    *a = (album){0};
+}
+
+static void expect_picture(const album *a, uint64_t revision, const he_mesh *m)
+{
+    if (a->at[revision] != NULL && !he_mesh_equal(m, a->at[revision])) {
+        fail_msg("revision %" PRIu64 " is not what it was", revision);
+    }
+}
+
+static void expect_snapshot(const album *a, api_mesh *mesh, uint64_t revision)
+{
+    api_snapshot *snapshot;
+    api_mesh_info info;
+    assert_int_equal(api.snapshot_at(api.self, mesh, revision, &snapshot), API_STORE_OK);
+    const he_mesh *m = api.snapshot_content(snapshot, &info);
+    assert_int_equal(info.revision, revision);
+    expect_picture(a, revision, m);
+    api.snapshot_release(api.self, snapshot);
+}
+
+static void snapshots_of_earlier_revisions(void **state)
+{
+    (void)state;
+    md_random random = {seed_of_run()};
+    api_mesh *mesh = open_mesh(1 << 20);
+    album pictures = {0};
+    api_snapshot *held = NULL, *none;
+    take_picture(&pictures, mesh);
+    for (unsigned i = 0; pictures.head < 200; i++) {
+        change(mesh, &random, i);
+        take_picture(&pictures, mesh);
+        uint64_t revision = 1 + md_below(&random, (uint32_t)pictures.head);
+        expect_snapshot(&pictures, mesh, revision);
+        if (i % 16 == 0) { /* somebody reads on, so that the copy has to stay */
+            if (held != NULL) {
+                api.snapshot_release(api.self, held);
+            }
+            assert_int_equal(api.snapshot_at(api.self, mesh, revision, &held), API_STORE_OK);
+        }
+        if (i % 32 == 0) {
+            srv_store_shed(store);
+        }
+        api_mesh_info info;
+        const he_mesh *m = api.snapshot_content(held, &info);
+        expect_picture(&pictures, info.revision, m);
+    }
+    api.snapshot_release(api.self, held);
+    assert_int_equal(api.snapshot_at(api.self, mesh, pictures.head + 1, &none), API_STORE_AHEAD);
+    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
+    api.replace(api.self, mesh, fixture_mesh("012"), NULL);
+    api.write_end(api.self, mesh);
+    assert_int_equal(api.snapshot_at(api.self, mesh, pictures.head, &none), API_STORE_GONE);
+    clear_album(&pictures);
+    close_mesh(mesh);
+}
+
+static void follow(const album *a, srv_walk *walk, uint64_t head)
+{
+    srv_walk_step at;
+    uint64_t revision = srv_walk_revision(walk);
+    expect_picture(a, revision, srv_walk_content(walk));
+    while (revision < head) {
+        assert_int_equal(srv_walk_next(walk, &at), API_STORE_OK);
+        assert_int_equal(at.revision, ++revision);
+        assert_ptr_equal(at.content, srv_walk_content(walk));
+        assert_int_equal(at.undone, at.action == API_UNDO);
+        expect_picture(a, revision, at.content);
+        he_changes changes;
+        assert_int_equal(
+            he_changes_find(at.content, at.delta, 0, at.delta->count, at.undone, &changes, NULL),
+            HE_OK);
+        he_changes_clear(&changes);
+    }
+    assert_int_equal(srv_walk_next(walk, &at), API_STORE_NOTHING);
+}
+
+static void a_walk_follows_the_mesh(void **state)
+{
+    (void)state;
+    md_random random = {seed_of_run()};
+    for (int round = 0; round < 10; round++) {
+        api_mesh *mesh = open_mesh(1 << 20);
+        album pictures = {0};
+        srv_walk *walk, *none;
+        take_picture(&pictures, mesh);
+        for (unsigned i = 0; i < 30; i++) {
+            change(mesh, &random, i);
+            take_picture(&pictures, mesh);
+        }
+        uint64_t from = 1 + md_below(&random, (uint32_t)pictures.head);
+        assert_int_equal(srv_walk_begin(mesh, from, &walk), API_STORE_OK);
+        assert_int_equal(srv_walk_begin(mesh, pictures.head + 1, &none), API_STORE_AHEAD);
+        follow(&pictures, walk, pictures.head);
+        /* On behind a mesh that goes on, columns that nobody but it holds included. */
+        for (unsigned i = 0; i < 30; i++) {
+            change(mesh, &random, 100 + i);
+            take_picture(&pictures, mesh);
+            if (md_below(&random, 4) == 0) {
+                follow(&pictures, walk, pictures.head);
+            }
+        }
+        follow(&pictures, walk, pictures.head);
+        srv_walk_end(walk);
+        clear_album(&pictures);
+        close_mesh(mesh);
+    }
+}
+
+/* What a walk lends stays, though the log has dropped it; and it is told when it was left behind.
+ */
+static void a_walk_is_told_that_the_history_was_cut(void **state)
+{
+    (void)state;
+    md_random random = {3};
+    api_mesh *mesh = open_mesh(3000);
+    srv_walk *walk;
+    srv_walk_step at;
+    for (unsigned i = 0; i < 5; i++) {
+        edit(mesh, &random, i);
+    }
+    uint64_t head = head_of(mesh, NULL);
+    assert_int_equal(srv_walk_begin(mesh, head - 1, &walk), API_STORE_OK);
+    assert_int_equal(srv_walk_next(walk, &at), API_STORE_OK);
+    assert_int_equal(at.revision, head);
+    for (unsigned i = 0; i < 60; i++) {
+        edit(mesh, &random, 10 + i);
+    }
+    he_changes changes;
+    assert_int_equal(
+        he_changes_find(at.content, at.delta, 0, at.delta->count, at.undone, &changes, NULL),
+        HE_OK);
+    he_changes_clear(&changes);
+    assert_int_equal(srv_walk_next(walk, &at), API_STORE_GONE);
+    srv_walk_end(walk);
+    assert_int_equal(srv_walk_begin(mesh, 2, &walk), API_STORE_GONE);
+    assert_int_equal(srv_walk_begin(mesh, head_of(mesh, NULL), &walk), API_STORE_OK);
+    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
+    api.replace(api.self, mesh, fixture_mesh("012"), NULL);
+    api.write_end(api.self, mesh);
+    assert_int_equal(srv_walk_next(walk, &at), API_STORE_GONE);
+    srv_walk_end(walk);
+    close_mesh(mesh);
+}
+
+/* --- memory --- */
+
+/* Undone, a column is held by the log: its bytes are counted where they are. */
+static void the_log_keeps_its_budget(void **state)
+{
+    (void)state;
+    md_random random = {seed_of_run()};
+    for (uint64_t budget = 0; budget < 20000; budget = 2 * budget + 700) {
+        api_mesh *mesh = open_mesh(budget);
+        album pictures = {0};
+        take_picture(&pictures, mesh);
+        for (unsigned i = 0; i < 200; i++) {
+            change(mesh, &random, i);
+            take_picture(&pictures, mesh);
+            api_history facts;
+            api.history_facts(api.self, mesh, &facts);
+            api_entry newest;
+            bool any = api.history(api.self, mesh, 0, &newest);
+            assert_true(facts.bytes <= budget || (any && facts.bytes < 600));
+            assert_true(facts.oldest <= pictures.head);
+            expect_snapshot(&pictures, mesh, facts.oldest);
+        }
+        clear_album(&pictures);
+        close_mesh(mesh);
+    }
+}
+
+static void what_the_log_frees_is_free(void **state)
+{
+    (void)state;
+    enum { BUDGET = 1 << 20 };
+    md_random random = {5};
+    srv_memory_install(0);
+    uint64_t before = srv_memory_used();
+    api_mesh *mesh = open_mesh(BUDGET);
+    for (unsigned i = 0; i < 20000; i++) {
+        he_mesh *m = api.write_begin(api.self, mesh, NULL, NULL);
+        char text[64];
+        snprintf(text, sizeof text, "vertex_move vertex=%u to=%u,1,2", md_below(&random, 6), i);
+        assert_int_equal(script_run(m, text, NULL, NULL), HE_OK);
+        api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+    }
+    api_history facts;
+    api.history_facts(api.self, mesh, &facts);
+    uint64_t used = srv_memory_used() - before;
+    printf("note: a budget of %d bytes: %" PRIu64 " counted, %" PRIu64 " held in all\n", BUDGET,
+           facts.bytes, used);
+    assert_true(facts.dropped > 0);
+    assert_true(used < BUDGET + BUDGET / 4);
+    close_mesh(mesh);
+    assert_true(srv_memory_used() == before);
+    he_mem_set_hook(NULL);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    (void)state;
+    bool failed = true;
+    for (unsigned n = 1; failed; n++) {
+        md_random random = {11};
+        api_mesh *mesh = open_mesh(1 << 20);
+        album pictures = {0};
+        take_picture(&pictures, mesh);
+        for (unsigned i = 0; i < 25; i++) {
+            edit(mesh, &random, i);
+            take_picture(&pictures, mesh);
+        }
+        uint64_t head = pictures.head;
+        const he_delta *deltas[8];
+        assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
+        fail_allocation(n);
+        api_store_status status = api.step(api.self, mesh, API_UNDO, 7, deltas, NULL);
+        bool step_failed = allocation_failed();
+        api.write_end(api.self, mesh);
+        api_snapshot *snapshot = NULL;
+        srv_walk *walk = NULL;
+        srv_walk_step at;
+        api_store_status seen = api.snapshot_at(api.self, mesh, 3, &snapshot);
+        api_store_status walked = srv_walk_begin(mesh, 2, &walk);
+        while (walked == API_STORE_OK) {
+            walked = srv_walk_next(walk, &at);
+        }
+        failed = allocation_failed();
+        fail_allocation(0);
+        assert_true(status == API_STORE_OK || (step_failed && status == API_STORE_NO_MEMORY));
+        assert_true(seen == API_STORE_OK || (failed && seen == API_STORE_NO_MEMORY));
+        assert_true(walked == API_STORE_NOTHING || (failed && walked == API_STORE_NO_MEMORY));
+        he_mesh *now;
+        assert_int_equal(head_of(mesh, &now), head + (status == API_STORE_OK ? 7 : 0));
+        if (status != API_STORE_OK) {
+            assert_true(he_mesh_equal(now, pictures.at[head]));
+        } else {
+            assert_true(he_mesh_equal_live(now, pictures.at[head - 7]));
+        }
+        he_mesh_free(now);
+        if (snapshot != NULL) {
+            expect_picture(&pictures, 3, api.snapshot_content(snapshot, NULL));
+            api.snapshot_release(api.self, snapshot);
+        }
+        srv_walk_end(walk);
+        expect_snapshot(&pictures, mesh, 2);
+        clear_album(&pictures);
+        close_mesh(mesh);
+    }
+}
+
+/* --- threads --- */
+
+enum { ROUNDS = 400, THREADS = 4 };
+static _Atomic bool writing, broken;
+
+/* Vertices 0 and 1 are at the same place in each revision, which says which one it is: x is the
+ * revision of the edit that put them there. */
+static void *write_on(void *context)
+{
+    api_mesh *mesh = context;
+    md_random random = {17};
+    for (unsigned i = 0; i < ROUNDS; i++) {
+        if (i % 5 == 4) {
+            (void)step(mesh, i % 2 == 0 ? API_UNDO : API_REDO, 1 + md_below(&random, 3));
+            continue;
+        }
+        char text[96];
+        api_mesh_info info;
+        he_mesh *m = api.write_begin(api.self, mesh, &info, NULL);
+        snprintf(text, sizeof text, "vertex_move vertex=0,1 to=%" PRIu64 ",0,0", info.revision + 1);
+        bool good = m != NULL && script_run(m, text, NULL, NULL) == HE_OK;
+        if (good && i % 7 == 0) {
+            add_column(m, i);
+        }
+        if (!good) {
+            atomic_store(&broken, true);
+            break;
+        }
+        api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+    }
+    atomic_store(&writing, false);
+    return NULL;
+}
+
+static bool is_whole(const he_mesh *m, uint64_t revision)
+{
+    double x = he_position(m, (he_vertex){0}).x;
+    return x == he_position(m, (he_vertex){1}).x && x <= (double)revision;
+}
+
+static void *read_back(void *context)
+{
+    api_mesh *mesh = context;
+    md_random random = {23};
+    bool more = true;
+    while (more) {
+        more = atomic_load(&writing);
+        uint64_t head = head_of(mesh, NULL);
+        uint64_t revision = md_from(&random, head > 60 ? (uint32_t)head - 50 : 2, (uint32_t)head);
+        api_snapshot *snapshot;
+        api_store_status status = api.snapshot_at(api.self, mesh, revision, &snapshot);
+        if (status == API_STORE_OK) {
+            if (!is_whole(api.snapshot_content(snapshot, NULL), revision)) {
+                atomic_store(&broken, true);
+            }
+            api.snapshot_release(api.self, snapshot);
+        } else if (status != API_STORE_GONE && revision != 1) {
+            atomic_store(&broken, true);
+        }
+    }
+    return NULL;
+}
+
+static void *walk_behind(void *context)
+{
+    api_mesh *mesh = context;
+    srv_walk *walk = NULL;
+    bool more = true;
+    while (more) {
+        more = atomic_load(&writing);
+        srv_walk_step at;
+        api_store_status status = API_STORE_OK;
+        if (walk == NULL) {
+            status = srv_walk_begin(mesh, head_of(mesh, NULL), &walk);
+        }
+        while (status == API_STORE_OK && (status = srv_walk_next(walk, &at)) == API_STORE_OK) {
+            if (!is_whole(at.content, at.revision)) {
+                atomic_store(&broken, true);
+            }
+        }
+        if (status == API_STORE_GONE) {
+            srv_walk_end(walk);
+            walk = NULL;
+        } else if (status != API_STORE_NOTHING) {
+            atomic_store(&broken, true);
+        }
+    }
+    srv_walk_end(walk);
+    return NULL;
+}
+
+static void readers_of_the_past_and_a_writer(void **state)
+{
+    (void)state;
+    api_mesh *mesh = open_mesh(64 * 1024);
+    he_mesh *m = api.write_begin(api.self, mesh, NULL, NULL);
+    he_vec3 point = {2, 0, 0};
+    assert_int_equal(he_reserve(m, (he_need){.positions = 2}, NULL), HE_OK);
+    he_set_position(m, (he_vertex){0}, point);
+    he_set_position(m, (he_vertex){1}, point);
+    api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+    pthread_t threads[THREADS];
+    atomic_store(&writing, true);
+    assert_int_equal(pthread_create(&threads[0], NULL, read_back, mesh), 0);
+    assert_int_equal(pthread_create(&threads[1], NULL, read_back, mesh), 0);
+    assert_int_equal(pthread_create(&threads[2], NULL, walk_behind, mesh), 0);
+    assert_int_equal(pthread_create(&threads[3], NULL, write_on, mesh), 0);
+    for (size_t i = 0; i < THREADS; i++) {
+        pthread_join(threads[i], NULL);
+    }
+    assert_false(atomic_load(&broken));
+    close_mesh(mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(snapshots_of_earlier_revisions),
+        cmocka_unit_test(a_walk_follows_the_mesh),
+        cmocka_unit_test(a_walk_is_told_that_the_history_was_cut),
+        cmocka_unit_test(the_log_keeps_its_budget),
+        cmocka_unit_test(what_the_log_frees_is_free),
+        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(readers_of_the_past_and_a_writer),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
