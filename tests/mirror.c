@@ -419,21 +419,36 @@ static mirror_row row_of(const mirror_table *table, size_t i)
     return i < table->count ? table->rows[i] : (mirror_row){0};
 }
 
+/* Minus zero is not zero, and a NaN is itself. */
+static bool same_bits(const double *a, const double *b, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint64_t x, y;
+        memcpy(&x, &a[i], sizeof x);
+        memcpy(&y, &b[i], sizeof y);
+        if (x != y) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool same_row(const mirror_row *a, const mirror_row *b)
 {
     return a->live == b->live && memcmp(a->link, b->link, sizeof a->link) == 0 &&
-           memcmp(a->position, b->position, sizeof a->position) == 0;
+           same_bits(a->position, b->position, 3);
 }
 
 static bool same_column(const mirror *m, const mirror_column *a, const mirror_column *b,
                         char text[MIRROR_TEXT])
 {
-    size_t rows = a->rows > b->rows ? a->rows : b->rows, bytes = a->components * sizeof(double);
-    bool same = a->components == b->components && memcmp(a->fallback, b->fallback, bytes) == 0;
+    size_t rows = a->rows > b->rows ? a->rows : b->rows;
+    bool same =
+        a->components == b->components && same_bits(a->fallback, b->fallback, a->components);
     size_t row = 0;
     for (; same && row < rows; row++) {
-        same =
-            !is_live(m, a->domain, row) || memcmp(value_at(a, row), value_at(b, row), bytes) == 0;
+        same = !is_live(m, a->domain, row) ||
+               same_bits(value_at(a, row), value_at(b, row), a->components);
     }
     if (!same) {
         (void)snprintf(text, MIRROR_TEXT, "attribute %s of %s, before row %zu", a->name,
