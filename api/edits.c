@@ -186,8 +186,8 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
         return run_op(x, e, mesh, delta, &x->root);
     }
     for (size_t i = 0; i < e->count; i++) {
-        he_watch_span(x->watch, COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) /
-                                                 (double)e->count);
+        he_watch_span(x->watch,
+                      COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) / (double)e->count);
         if (!api_item_read(&x->ops, i, &e->list, &e->op) || !run_op(x, e, mesh, delta, &e->op.in)) {
             return false;
         }

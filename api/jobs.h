@@ -42,7 +42,7 @@ typedef struct api_job {
     char mesh[API_MESH_ID + 1];        /* "" while it has no id */
     double created, started, finished; /* seconds since 1970 UTC; 0: not yet */
     int status;                        /* HTTP, of the answer; 0: there is none */
-    char location[API_JOB_LOCATION];       /* likewise; "" where it has none */
+    char location[API_JOB_LOCATION];   /* likewise; "" where it has none */
     const char *body;                  /* JSON, lent for the call; NULL: none, or not kept */
     size_t length;
 } api_job;

@@ -70,7 +70,7 @@ enum {
     API_MAX_LABEL = 1024      /* characters of one */
 };
 #define API_MAX_ATTRIBUTE_BYTES ((uint64_t)1 << 30) /* of one column that a request brings */
-#define API_MAX_EXACT ((uint64_t)1 << 53) /* up to here every reader of JSON counts right */
+#define API_MAX_EXACT           ((uint64_t)1 << 53) /* up to here every reader of JSON counts right */
 /* Long work. A client that said nothing waits for API_PATIENCE seconds; what will take longer
  * becomes a job. The rates were measured with a torus of a million quads on one busy core: 5.2
  * million vertices and corners were built and summed up in 0.37 s, 6.3 million vertices, half-edges

@@ -195,9 +195,8 @@ static void copy(api_exchange *x)
         return;
     }
     he_mesh_watch(fresh, NULL);
-    api_store_status stored =
-        x->store->create(x->store->self, r->id, r->name != NULL ? r->name : x->info.name, fresh,
-                         x->claim, &made);
+    api_store_status stored = x->store->create(
+        x->store->self, r->id, r->name != NULL ? r->name : x->info.name, fresh, x->claim, &made);
     if (stored != API_STORE_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);

@@ -43,7 +43,7 @@ static const member answers[] = {
 
     {"job", "id", "text", REQUIRED, "Who knows it may look and cancel."},
     {"job", "operation", "text", REQUIRED, "The operationId of the request."},
-    {"job", "state", "text", REQUIRED, "queued, running, done, failed or cancelled."},
+    {"job", "state", "#job_state", REQUIRED, NULL},
     {"job", "phase", "text?", REQUIRED, "What it is doing, or was last."},
     {"job", "progress", "number", REQUIRED, "From 0 to 1; it never falls."},
     {"job", "mesh", "text?", REQUIRED, "Null while it has no id."},
@@ -52,9 +52,9 @@ static const member answers[] = {
     {"job", "finished", "time?", REQUIRED, NULL},
     {"job", "status", "integer?", REQUIRED, "What the request would have been answered with."},
     {"job", "location", "text?", REQUIRED, "Likewise."},
-    {"job", "result", "any", OPTIONAL,
+    {"job", "result", "#job_result?", OPTIONAL,
      "Likewise; null where it has no body or was too large to keep."},
-    {"job", "problem", "any", OPTIONAL, "In its place, where that is a refusal."},
+    {"job", "problem", "#problem?", OPTIONAL, "In its place, where that is a refusal."},
 
     {"job_page", "items", "*#job", REQUIRED, NULL},
     {"job_page", "next", "text?", REQUIRED, "The cursor of the next page."},
@@ -468,6 +468,10 @@ static const struct {
     {"any_members",
      "{\"type\":\"object\",\"additionalProperties\":true,\"minProperties\":1,\"descrip"
      "tion\":\"As OpenAPI 3.1 says.\"}"},
+    {"job_state", "{\"enum\":[\"queued\",\"running\",\"done\",\"failed\",\"cancelled\"]}"},
+    {"job_result", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/edited\"},"
+                   "{\"$ref\":\"#/components/schemas/created\"},"
+                   "{\"$ref\":\"#/components/schemas/summary\"}]}"},
     {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"

@@ -189,8 +189,7 @@ typedef struct api_store {
      * keep cannot fail, and with API_CLAIM_KEPT `kept` gives the answer. Both are ended by
      * claim_end, which forgets the key again unless its answer was kept. Keys of a mesh go with the
      * mesh, and all after a day or when newer ones need the room. */
-    api_claim_status (*claim_key)(void *self, api_mesh *mesh, const api_key *key,
-                                  api_claim **out);
+    api_claim_status (*claim_key)(void *self, api_mesh *mesh, const api_key *key, api_claim **out);
     const api_kept *(*kept)(const api_claim *claim);
     void (*keep)(void *self, api_claim *claim, const api_kept *answer);
     void (*claim_end)(void *self, api_claim *claim);
