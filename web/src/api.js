@@ -65,10 +65,13 @@ async function getJson(path, signal) {
     return (await request(path, { signal })).json();
 }
 
+// The page waits for its answers: what takes long must not become a job.
+const PATIENT = { Prefer: 'wait=600' };
+
 async function postJson(path, body) {
     const answer = await request(path, {
         method: 'POST',
-        headers: { 'Content-Type': 'application/json' },
+        headers: { 'Content-Type': 'application/json', ...PATIENT },
         body: JSON.stringify(body),
     });
     return answer.json();
@@ -204,6 +207,7 @@ export function upload(file, onProgress) {
         const sender = new XMLHttpRequest();
         sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}`);
         sender.setRequestHeader('Content-Type', type ?? (file.type || 'application/octet-stream'));
+        sender.setRequestHeader('Prefer', PATIENT.Prefer);
         sender.upload.onprogress = (event) => {
             onProgress(event.lengthComputable ? event.loaded / event.total : 0);
         };
