@@ -1,7 +1,7 @@
 // api.js - the only module that talks to the server. Paths are relative, so that the page works
 // behind any prefix.
 
-import { HEADER_BYTES, lengthOf } from './geometry.js';
+import { HEADER_BYTES, headerOf } from './geometry.js';
 
 const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
@@ -158,7 +158,7 @@ export async function getGeometry(mesh, onProgress, signal) {
         let rest = take(value);
         if (at === HEADER_BYTES && whole.length === HEADER_BYTES) {
             const header = whole;
-            whole = new Uint8Array(lengthOf(header.buffer));
+            whole = new Uint8Array(headerOf(header.buffer).length);
             whole.set(header.subarray(0, whole.length));
         }
         rest = take(rest);
