@@ -170,13 +170,13 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     api_out_key(out, "headers");
     api_out_object_begin(out);
     if (status == 202) {
-        write_header(out, "Location", "Where the job is.", true);
+        write_header(out, "Location", "Where the job is.", (route->flags & API_LONG) != 0);
         write_header(out, "Preference-Applied", "respond-async, where the client asked for it.",
                      false);
     }
     if (tagged) {
         /* A dry run made no state. Neither knows one what published, but could not say more. */
-        bool always = status != 204 && route->body_kind != API_BODY_EDITS;
+        bool always = status != 204 && !(route->flags & API_REHEARSED);
         write_header(out, "ETag", "Names the state that is shown.", always);
     }
     if (status == 201) {
@@ -196,8 +196,10 @@ static const char *const job_media[] = {"application/json", NULL};
 
 static void write_success(api_out *out, const api_route *route, int status)
 {
-    const char *what = status == 201   ? "Created. Only where memory ran out right after does it "
-                                         "come without a body and tag."
+    const char *what = status == 201
+                           ? "Created. Only where memory ran out right after, or where it "
+                             "is given again and was not kept, does it come without a "
+                             "body and tag."
                        : status == 202 ? "Not ended yet: a job."
                        : status == 204 ? "Done; nothing is returned."
                        : status == 304 ? "The client's copy is the present one."

@@ -68,10 +68,10 @@ async function getJson(path, signal) {
 // The page waits for its answers: what takes long must not become a job.
 const PATIENT = { Prefer: 'wait=600' };
 
-async function postJson(path, body) {
+async function postJson(path, body, headers = {}) {
     const answer = await request(path, {
         method: 'POST',
-        headers: { 'Content-Type': 'application/json', ...PATIENT },
+        headers: { 'Content-Type': 'application/json', ...headers },
         body: JSON.stringify(body),
     });
     return answer.json();
@@ -186,7 +186,8 @@ async function readOn(reader) {
 
 // Edits name the revision they were meant for: 412 when the mesh has moved on.
 export function edit(mesh, operation, revision) {
-    return postJson(`${meshPath(mesh)}/edits`, { expected_revision: revision, ops: [operation] });
+    const body = { expected_revision: revision, ops: [operation] };
+    return postJson(`${meshPath(mesh)}/edits`, body, PATIENT);
 }
 
 export function undo(mesh, revision) {
