@@ -90,6 +90,20 @@ export function waitForFrame(page, { mesh, revision, selection }) {
     );
 }
 
+// How many bytes have come over the network since, as a function; heads and streams count too.
+export async function countBytes(page) {
+    const session = await page.context().newCDPSession(page);
+    let bytes = 0;
+    session.on('Network.responseReceived', ({ response }) => {
+        bytes += response.encodedDataLength;
+    });
+    session.on('Network.dataReceived', ({ dataLength }) => {
+        bytes += dataLength;
+    });
+    await session.send('Network.enable');
+    return () => bytes;
+}
+
 export async function checkAccessible(page, state) {
     // Not a script of the page: the policy does not apply to what the protocol evaluates.
     await page.evaluate(axe);
