@@ -226,11 +226,17 @@ test('an element that is gone is said, with a way to what it is part of', async 
     await goTo(page, 'face', created.faces[0]);
     await page.getByRole('button', { name: 'Undo' }).click();
     await waitForFrame(page, { revision: 4, selection: '' });
+    await page.getByRole('button', { name: 'Redo' }).click();
+    await waitForFrame(page, { revision: 5 });
+    assert.equal(await gone.count(), 0); // it is back
+    await goTo(page, 'face', created.faces[0]);
+    await page.getByRole('button', { name: 'Undo' }).click();
+    await waitForFrame(page, { revision: 6, selection: '' });
     await gone.getByRole('button', { name: 'Face 8' }).click();
     await checkInspector(context, 'face', 8);
     // Neither: nothing is left of it.
     await edit(daemon, mesh, { op: 'face_delete', face: 8 });
-    await waitForFrame(page, { revision: 5, selection: '' });
+    await waitForFrame(page, { revision: 7, selection: '' });
     assert.match(await gone.textContent(), /^Face 8 is gone/);
     assert.equal(await gone.getByRole('button').count(), 0);
     await press(page, 'Escape');

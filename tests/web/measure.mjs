@@ -63,10 +63,17 @@ async function measure(browser, daemon, side) {
         () => waitForFrame(page, { revision: 2 }),
     );
     const edited = bytes();
-    const rival = await timed(
-        () => post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 }),
-        () => waitForFrame(page, { revision: 3 }),
+    // Until the arrays have it, and until it is drawn too.
+    const start = performance.now();
+    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });
+    await page.waitForFunction(
+        () => document.getElementById('canvas').geometry.revision === 3,
+        null,
+        { polling: 1 },
     );
+    const heard = performance.now() - start;
+    await waitForFrame(page, { revision: 3 });
+    const rival = performance.now() - start;
     const undo = await timed(
         () => page.locator('#canvas').press('Control+z'),
         () => waitForFrame(page, { revision: 4 }),
@@ -83,14 +90,14 @@ async function measure(browser, daemon, side) {
     if (after.faces !== counts.faces + 3) {
         throw new Error(`${after.faces} faces after undo, not ${counts.faces + 3}`);
     }
-    return { faces: counts.faces, bytes: edited, times: [open, frame, pick, edit, rival, undo] };
+    return { faces: counts.faces, bytes: edited, times: [open, frame, pick, edit, heard, rival, undo] };
 }
 
 const browser = await launch();
 try {
     const daemon = await startDaemon(lifetime);
     const line = (cells) => console.log(cells.map((cell) => `${cell}`.padStart(10)).join(''));
-    line(['faces', 'open', 'frame', 'pick', 'edit', 'rival', 'undo', 'bytes']);
+    line(['faces', 'open', 'frame', 'pick', 'edit', 'heard', 'rival', 'undo', 'bytes']);
     for (const side of SIDES) {
         const { faces, bytes, times } = await measure(browser, daemon, side);
         line([faces, ...times.map((time) => `${time.toFixed(0)} ms`), bytes]);

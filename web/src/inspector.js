@@ -68,12 +68,12 @@ export class Inspector {
     }
 
     #farewell({ kind, id, detail }) {
-        const line = make('li', {}, `${TITLES[kind]} ${id} is gone: ${detail}. `);
+        const line = make('li', {}, `${TITLES[kind]} ${id} is gone: ${detail}.`);
         const heir = this.#heirOf({ kind, id });
         if (heir !== null) {
             const link = this.#value(heir.kind, heir.id);
-            link.textContent = `Go to ${TITLES[heir.kind].toLowerCase()} ${heir.id}`;
-            line.append(link);
+            link.textContent = `${TITLES[heir.kind]} ${heir.id}`;
+            line.append(' Instead: ', link);
         }
         return line;
     }

@@ -103,12 +103,14 @@ export class Selection {
     async read() {
         const change = ++this.#change;
         const choice = this.#choice;
-        const [chosen, gone] = await readAll(this.#mesh, this.chosen);
+        const [[chosen, lost], [, stillGone]] = await Promise.all(
+            [this.chosen, this.gone].map((elements) => readAll(this.#mesh, elements)),
+        );
         const around = await this.#describe(chosen.at(-1));
         return () => {
             if (choice === this.#choice && change === this.#change) {
                 this.#seen = change;
-                this.#set(chosen, around, gone.length > 0 ? gone : this.gone);
+                this.#set(chosen, around, [...stillGone, ...lost]);
             }
         };
     }

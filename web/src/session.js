@@ -102,6 +102,7 @@ export class Session {
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
             // The content that was replaced may have been fetched already, after an edit of ours.
+            followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
             this.#fetchSoon(followed, { whole: !isKnown });
         } else if (name === 'metadata' && followed === this.#followed) {
