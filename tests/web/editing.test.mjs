@@ -257,7 +257,7 @@ test('the panel has a form for each operation of the table', async (t) => {
     );
     for (const { name, params, doc } of operations) {
         await select.selectOption(name);
-        await checkAccessible(page, name);
+        await checkAccessible(page, name, '#parameters');
         const labels = await page.locator('#parameters label').allTextContents();
         assert.deepEqual(labels, params.map((param) => param.name), name);
         assert.ok((await page.locator('#parameters').textContent()).startsWith(doc), name);

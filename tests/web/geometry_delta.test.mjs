@@ -6,22 +6,10 @@ import { test } from 'node:test';
 import { findFaces, trianglesOfFace, unpack } from '../../web/src/geometry.js';
 import { applyDelta } from '../../web/src/geometry_delta.js';
 import { get, startDaemon } from './daemon.mjs';
+import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 
 const EDITS = Number(process.env.EDITS ?? 1000);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
-
-// Numbers that follow from a seed (Marsaglia, "Xorshift RNGs", 2003).
-function numbersFrom(seed) {
-    let state = seed >>> 0 || 1;
-    const below = (n) => {
-        state ^= state << 13;
-        state ^= state >>> 17;
-        state ^= state << 5;
-        state >>>= 0;
-        return Math.floor((state / 2 ** 32) * n);
-    };
-    return below;
-}
 
 // Arrays without room to spare, so that they must grow.
 function wholeOf(buffer) {
@@ -67,21 +55,6 @@ function assertSame(kept, fresh) {
     }
 }
 
-function randomEdit(below, issued) {
-    const id = (kind) => below(issued[kind]);
-    const by = [0, 1, 2].map(() => (below(200) - 100) / 2000);
-    return [
-        () => ({ op: 'face_poke', face: id('faces') }),
-        () => ({ op: 'edge_split', edge: id('edges') }),
-        () => ({ op: 'edge_flip', edge: id('edges') }),
-        () => ({ op: 'edge_collapse', edge: id('edges') }),
-        () => ({ op: 'face_join', edge: id('edges') }),
-        () => ({ op: 'face_delete', face: id('faces') }),
-        () => ({ op: 'vertex_move', vertex: id('vertices'), by }),
-        () => ({ op: 'vertex_add', position: by }),
-    ][below(8)]();
-}
-
 async function post(url, body) {
     const answer = await fetch(url, {
         method: 'POST',
@@ -118,8 +91,8 @@ test('after random edits the patched arrays equal fresh ones', { timeout: 200_00
             said = await post(`${url}/${dice < 92 ? 'undo' : 'redo'}`);
         }
         done += said === null ? 0 : 1;
-        for (const kind of said === null ? [] : Object.keys(issued)) {
-            issued[kind] = Math.max(issued[kind], ...said.created[kind].map((id) => id + 1));
+        if (said !== null) {
+            countIssued(issued, said);
         }
         if (below(3) === 0) {
             geometry = await update(url, geometry, tally);

@@ -1,11 +1,11 @@
 // measure.mjs [FOLDER] - how long meshes of a thousand, a hundred thousand and a million faces take
-// to open, to draw, to pick in and to edit; with FOLDER a screenshot of each. Not a test: what it
-// prints depends on the machine.
+// to open, to draw, to pick in and to edit, and how many bytes an edit fetches; with FOLDER a
+// screenshot of each. Not a test: what it prints depends on the machine.
 
 import { writeFile } from 'node:fs/promises';
 import path from 'node:path';
 
-import { launch, waitForFrame } from './browser.mjs';
+import { countBytes, launch, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 
 const SIDES = [32, 316, 1000];
@@ -57,13 +57,26 @@ async function measure(browser, daemon, side) {
         () => page.locator('#canvas').click({ position: { x: width / 2, y: 0.68 * height } }),
         () => page.locator('#canvas[data-selection^="face"]').waitFor(),
     );
+    const bytes = await countBytes(page);
     const edit = await timed(
         () => page.getByRole('button', { name: 'Split' }).click(),
         () => waitForFrame(page, { revision: 2 }),
     );
+    const edited = bytes();
+    // Until the arrays have it, and until it is drawn too.
+    const start = performance.now();
+    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });
+    await page.waitForFunction(
+        () => document.getElementById('canvas').geometry.revision === 3,
+        null,
+        { polling: 1 },
+    );
+    const heard = performance.now() - start;
+    await waitForFrame(page, { revision: 3 });
+    const rival = performance.now() - start;
     const undo = await timed(
         () => page.locator('#canvas').press('Control+z'),
-        () => waitForFrame(page, { revision: 3 }),
+        () => waitForFrame(page, { revision: 4 }),
     );
     if (folder) {
         await page.screenshot({ path: path.join(folder, `torus-${side}.png`) });
@@ -73,20 +86,21 @@ async function measure(browser, daemon, side) {
     }
     await page.close();
     const { counts: after } = await get(daemon, `/${mesh}`);
-    if (after.faces !== counts.faces) {
-        throw new Error(`${after.faces} faces after undo, not ${counts.faces}`);
+    // The undo was of the rival's.
+    if (after.faces !== counts.faces + 3) {
+        throw new Error(`${after.faces} faces after undo, not ${counts.faces + 3}`);
     }
-    return [counts.faces, open, frame, pick, edit, undo];
+    return { faces: counts.faces, bytes: edited, times: [open, frame, pick, edit, heard, rival, undo] };
 }
 
 const browser = await launch();
 try {
     const daemon = await startDaemon(lifetime);
     const line = (cells) => console.log(cells.map((cell) => `${cell}`.padStart(10)).join(''));
-    line(['faces', 'open', 'frame', 'pick', 'edit', 'undo']);
+    line(['faces', 'open', 'frame', 'pick', 'edit', 'heard', 'rival', 'undo', 'bytes']);
     for (const side of SIDES) {
-        const [faces, ...times] = await measure(browser, daemon, side);
-        line([faces, ...times.map((time) => `${time.toFixed(0)} ms`)]);
+        const { faces, bytes, times } = await measure(browser, daemon, side);
+        line([faces, ...times.map((time) => `${time.toFixed(0)} ms`), bytes]);
     }
 } finally {
     await browser.close();

@@ -3,7 +3,15 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 
-import { isChosen, isSurface, launch, openPage, readCanvas, waitForFrame } from './browser.mjs';
+import {
+    countBytes,
+    isChosen,
+    isSurface,
+    launch,
+    openPage,
+    readCanvas,
+    waitForFrame,
+} from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { checkInspector, click, goTo, press, setMode } from './page.mjs';
 
@@ -14,6 +22,15 @@ before(async () => {
     browser = await launch();
 });
 after(() => browser?.close());
+
+const waitForStatistics = (page, { faces, revision }) =>
+    page.waitForFunction(
+        ([count, at]) => {
+            const of = (name) => document.querySelector(`[data-statistic="${name}"]`).textContent;
+            return of('faces').replaceAll(',', '') === count && of('revision') === at;
+        },
+        [`${faces}`, `${revision}`],
+    );
 
 test('a torus of a million quads opens, is picked in, edited and undone', async (t) => {
     const daemon = await startDaemon(t);
@@ -42,9 +59,20 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     assert.ok(isChosen(canvas.colour(width / 2, height / 2)));
     assert.ok(canvas.countOf(isChosen) > 1000);
 
+    // An edit fetches what it changed, its statistics too, and no more.
+    const bytes = await countBytes(page);
+    const whole = [];
+    page.on('request', (request) => {
+        if (request.url().endsWith('/geometry')) {
+            whole.push(request.url());
+        }
+    });
     await page.getByRole('button', { name: 'Split' }).click();
     await waitForFrame(page, { revision: 2 });
     assert.equal((await get(daemon, `/${mesh}`)).counts.faces, counts.faces + 3);
+    await waitForStatistics(page, { faces: counts.faces + 3, revision: 2 });
+    console.log(`note: an edit of ${counts.faces} faces: ${bytes()} bytes`);
+    assert.ok(bytes() > 100 && bytes() < 65536, `${bytes()} bytes`);
     // The last of the new faces is where the server has it.
     const made = counts.faces + 2;
     await goTo(page, 'face', made);
@@ -52,6 +80,12 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     await press(page, 'Control+z');
     await waitForFrame(page, { revision: 3, selection: '' });
     assert.equal((await get(daemon, `/${mesh}`)).counts.faces, counts.faces);
+    // Those of others cost no more.
+    const before = bytes();
+    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face });
+    await waitForFrame(page, { revision: 4 });
+    assert.ok(bytes() - before < 65536, `${bytes() - before} bytes`);
+    assert.deepEqual(whole, []);
     await goTo(page, 'face', face);
     await setMode(page, 'Edge');
     await picked('edge');

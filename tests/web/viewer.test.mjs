@@ -421,9 +421,13 @@ test('an edit meant for an older revision is refused, and the page catches up', 
     const [face] = (await getAll(daemon, mesh, 'faces')).filter((f) => place.isSeen(f));
     await click(page, place.at(face.vertices));
     await waitForFrame(page, { selection: `face:${face.id}` });
-    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: face.id });
+    // Another client is faster while the page's edit is on its way.
+    await page.route('**/edits', async (route) => {
+        await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: face.id });
+        await route.continue();
+    }, { times: 1 });
     await page.getByRole('button', { name: 'Split' }).click();
-    await expectToast(page, /revision/i);
+    await expectToast(page, /revision.*another client did this: face_poke/);
     await waitForFrame(page, { mesh, revision: 2 });
     assert.equal((await checkStatistics(context)).counts.faces, 9);
     await page.getByRole('button', { name: 'Undo' }).click();
@@ -449,9 +453,14 @@ test('a mesh that is gone and a server that is gone are said', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE, {
         allowed: [/status of 404/, /ERR_CONNECTION_REFUSED/],
     });
-    await fetch(`${daemon.url}/v1/meshes/${mesh}`, { method: 'DELETE' });
-    await page.locator('#meshes button').click();
-    await expectToast(page, mesh);
+    const { id: other } = await post(daemon, '', { name: 'other', shape: 'torus' });
+    await page.getByRole('button', { name: 'Refresh' }).click();
+    const row = page.locator(`#meshes button[data-mesh="${other}"]`);
+    await row.waitFor();
+    await fetch(`${daemon.url}/v1/meshes/${other}`, { method: 'DELETE' });
+    await row.click();
+    await expectToast(page, other);
+    await waitForFrame(page, { mesh, revision: 1 });
     await daemon.stop();
     await page.getByRole('button', { name: 'Refresh' }).click();
     await expectToast(page, /cannot be reached/);

@@ -5,6 +5,13 @@ import { HEADER_BYTES, headerOf } from './geometry.js';
 
 const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
+// Entries of the history in one answer.
+const HISTORY_PAGE = 20;
+
+// How often a job is looked at, in milliseconds: soon at first, then less.
+const JOB_SOON = 60;
+const JOB_LATEST = 1000;
+
 // Media types by the end of a file's name; what is not here the server is asked to refuse.
 const MEDIA_TYPES = {
     obj: 'model/obj',
@@ -65,16 +72,18 @@ async function getJson(path, signal) {
     return (await request(path, { signal })).json();
 }
 
-// The page waits for its answers: what takes long must not become a job.
-const PATIENT = { Prefer: 'wait=600' };
-
-async function postJson(path, body, headers = {}) {
-    const answer = await request(path, {
-        method: 'POST',
-        headers: { 'Content-Type': 'application/json', ...headers },
-        body: JSON.stringify(body),
-    });
-    return answer.json();
+// The answer of a POST, null where it has no body. What the server goes on with after it has
+// answered is waited for: see finish().
+async function postJson(path, body, work = null) {
+    const headers = { 'Content-Type': 'application/json' };
+    if (work !== null) {
+        headers.Prefer = 'respond-async';
+    }
+    const answer = await request(path, { method: 'POST', headers, body: JSON.stringify(body) });
+    if (answer.status === 204) {
+        return null;
+    }
+    return answer.status === 202 ? finish(await answer.json(), work) : answer.json();
 }
 
 function meshPath(mesh) {
@@ -96,9 +105,11 @@ export function getSummary(mesh, signal) {
     return getJson(meshPath(mesh), signal);
 }
 
-// How many steps can be undone and redone: {undo, redo}.
-export function getHistory(mesh, signal) {
-    return getJson(`${meshPath(mesh)}/edits?limit=1`, signal);
+// One page of the history, the newest first: {revision, entries, undo, redo, next}; undo and redo
+// are how many steps there are, `next` the cursor of the page after it, or null.
+export function getHistory(mesh, cursor = null, signal = undefined) {
+    const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
+    return getJson(`${meshPath(mesh)}/edits?limit=${HISTORY_PAGE}${after}`, signal);
 }
 
 export function getElement(mesh, kind, id) {
@@ -108,12 +119,6 @@ export function getElement(mesh, kind, id) {
 // Many questions of one revision, answered in order; a failed one by its problem.
 export async function query(mesh, queries) {
     return (await postJson(`${meshPath(mesh)}/query`, { queries })).results;
-}
-
-// Many elements of one revision, in order; null for one that does not live.
-export async function getElements(mesh, wanted) {
-    const results = await query(mesh, wanted.map(({ kind, id }) => ({ get: { [kind]: id } })));
-    return results.map((result) => ('status' in result ? null : result));
 }
 
 // {revision, loops: [{halfedges, vertices, ...}]}
@@ -138,9 +143,19 @@ export async function findHalfedge(mesh, from, to) {
 }
 
 // The arrays to draw a mesh from, as an ArrayBuffer; `onProgress` gets the part that has come, 0 to
-// 1. Its header says how long it is: Content-Length may be that of a compressed body.
-export async function getGeometry(mesh, onProgress, signal) {
-    const answer = await request(`${meshPath(mesh)}/geometry`, { signal });
+// 1.
+export function getGeometry(mesh, onProgress, signal) {
+    return readArrays(`${meshPath(mesh)}/geometry`, onProgress, signal);
+}
+
+// What they have become since a revision with a layout, or all of them: see geometry_delta.js.
+export function getGeometryChanges(mesh, { revision, layout }) {
+    return readArrays(`${meshPath(mesh)}/geometry?since=${revision}&layout=${layout}`, () => {});
+}
+
+// The header says how long an answer is: Content-Length may be that of a compressed body.
+async function readArrays(path, onProgress, signal) {
+    const answer = await request(path, { signal });
     const reader = answer.body.getReader();
     let whole = new Uint8Array(HEADER_BYTES);
     let at = 0;
@@ -184,23 +199,94 @@ async function readOn(reader) {
     }
 }
 
-// Edits name the revision they were meant for: 412 when the mesh has moved on.
-export function edit(mesh, operation, revision) {
-    const body = { expected_revision: revision, ops: [operation] };
-    return postJson(`${meshPath(mesh)}/edits`, body, PATIENT);
+// --- events ---
+
+// Listen to what happens to a mesh after an event's id or a revision, null: from now on. onEvent
+// gets an event's name, its data and its id; onError, once, that the stream has ended. Returns an
+// object that is closed by close().
+export function listen(mesh, since, { onOpen, onEvent, onError }) {
+    const after = since === null ? '' : `?since=${encodeURIComponent(since)}`;
+    const source = new EventSource(`${meshPath(mesh)}/events${after}`);
+    source.onopen = onOpen;
+    // A browser would come back by itself, but not where an answer refused it.
+    source.onerror = () => {
+        source.close();
+        onError();
+    };
+    for (const name of ['edit', 'metadata', 'resync', 'bye']) {
+        source.addEventListener(name, ({ data, lastEventId }) => {
+            onEvent(name, JSON.parse(data), lastEventId);
+        });
+    }
+    return source;
 }
 
-export function undo(mesh, revision) {
-    return postJson(`${meshPath(mesh)}/undo`, { expected_revision: revision });
+// --- edits ---
+//
+// They name the revision they were meant for: 412 when the mesh has moved on.
+//
+// `work`, not null, wants to hear of what takes long: work.begin(cancel), where calling
+// `cancel` gives it up, and work.show(job) of the server's job.
+
+export function edit(mesh, operation, revision, work = null) {
+    const body = { expected_revision: revision, ops: [operation] };
+    return postJson(`${meshPath(mesh)}/edits`, body, work);
+}
+
+// The last step, or all that were done since a revision.
+export function undo(mesh, revision, to = undefined) {
+    const body = { expected_revision: revision, to_revision: to };
+    return postJson(`${meshPath(mesh)}/undo`, body);
 }
 
 export function redo(mesh, revision) {
     return postJson(`${meshPath(mesh)}/redo`, { expected_revision: revision });
 }
 
+// --- jobs ---
+
+function cancelled() {
+    return new Problem({ title: 'Cancelled', detail: 'Nothing was changed.', code: 'cancelled' });
+}
+
+// Wait for a job that the server answered with: its result, or its problem is thrown.
+async function finish(first, work) {
+    const path = `v1/jobs/${first.id}`;
+    let stop = () => {};
+    const stopped = () => new Promise((resolve) => {
+        stop = resolve;
+    });
+    work?.begin(async () => {
+        // One that has ended would be forgotten with its result.
+        if ((await getJson(path)).finished === null) {
+            await request(path, { method: 'DELETE' });
+        }
+        stop();
+    });
+    let job = first;
+    for (let delay = JOB_SOON; job.finished === null; delay = Math.min(2 * delay, JOB_LATEST)) {
+        work?.show(job);
+        await Promise.race([stopped(), new Promise((resolve) => setTimeout(resolve, delay))]);
+        job = await getJson(path);
+    }
+    if (job.state === 'cancelled') {
+        throw cancelled();
+    }
+    if (job.state === 'failed') {
+        throw job.problem ? new Problem(job.problem) : problemOf(job.status, '');
+    }
+    return job.result ?? null;
+}
+
 // Create a mesh of a file; `onProgress` gets the sent part, 0 to 1. Returns the new mesh's summary.
 // fetch cannot tell how much was sent, hence XMLHttpRequest.
-export function upload(file, onProgress) {
+export async function upload(file, onProgress, work) {
+    const { status, answer } = await send(file, onProgress, work);
+    onProgress(1);
+    return status === 202 ? finish(answer, work) : answer;
+}
+
+function send(file, onProgress, work) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;
     const type = MEDIA_TYPES[file.name.slice(dot + 1).toLowerCase()];
@@ -208,18 +294,21 @@ export function upload(file, onProgress) {
         const sender = new XMLHttpRequest();
         sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}`);
         sender.setRequestHeader('Content-Type', type ?? (file.type || 'application/octet-stream'));
-        sender.setRequestHeader('Prefer', PATIENT.Prefer);
+        sender.setRequestHeader('Prefer', 'respond-async');
         sender.upload.onprogress = (event) => {
             onProgress(event.lengthComputable ? event.loaded / event.total : 0);
         };
         sender.onload = () => {
-            if (sender.status >= 200 && sender.status < 300) {
-                resolve(JSON.parse(sender.responseText));
+            const { status, responseText: text } = sender;
+            if (status >= 200 && status < 300) {
+                resolve({ status, answer: JSON.parse(text) });
             } else {
-                reject(problemOf(sender.status, sender.responseText));
+                reject(problemOf(status, text));
             }
         };
         sender.onerror = () => reject(unreachable());
+        sender.onabort = () => reject(cancelled());
+        work.begin(() => sender.abort());
         sender.send(file);
     });
 }

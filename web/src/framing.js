@@ -7,16 +7,18 @@ import { middleOf, reachFrom } from './view.js';
 const NOWHERE = 1e-3;
 
 // {center, radius, normal} of the selected elements, with what is around it where that is a single
-// vertex; null where nothing is selected. `selection`, `marks` and `arrows` are those of a Session.
+// vertex; null where nothing is selected. `selection` is a Selection.
 // The normal is where the selected faces look to, or those beside what is selected, null where that
 // is nowhere.
-export function framing(geometry, { selection, marks, arrows }) {
+export function framing(geometry, selection) {
+    const marks = selection.marksIn(geometry);
+    const arrows = selection.arrowsIn(geometry);
     const placeOf = (id) => pointAt(geometry, id);
     const ids = marks.flatMap(({ kind, id, from, to }) => {
         if (kind === 'vertex') {
             return [id];
         }
-        return kind === 'face' ? cornersOf(selection, id) : [from, to];
+        return kind === 'face' ? cornersOf(selection.chosen, id) : [from, to];
     });
     if (ids.length === 0) {
         return null;
@@ -32,8 +34,8 @@ export function framing(geometry, { selection, marks, arrows }) {
     };
 }
 
-function cornersOf(selection, face) {
-    return selection.find(({ kind, id }) => kind === 'face' && id === face).element.vertices;
+function cornersOf(chosen, face) {
+    return chosen.find(({ kind, id }) => kind === 'face' && id === face).element.vertices;
 }
 
 function meanNormal(geometry, faces) {

@@ -30,22 +30,30 @@ const DIGITS = 5;
 export class Inspector {
     #title;
     #hint;
+    #gone;
     #members;
     #around;
     #onFollow;
+    #heirOf;
 
-    // `onFollow(kind, id)` is called when a link is clicked.
-    constructor({ title, hint, members, around }, { onFollow }) {
+    // `onFollow(kind, id)` is called when a link is clicked; `heirOf({kind, id})` says where an
+    // element that is gone is to be found, or null.
+    constructor({ title, hint, gone, members, around }, { onFollow, heirOf }) {
         this.#title = title;
         this.#hint = hint;
+        this.#gone = gone;
         this.#members = members;
         this.#around = around;
         this.#onFollow = onFollow;
+        this.#heirOf = heirOf;
     }
 
-    // Show the last of the selected elements and what is around it, see around.js.
-    show(selection, around) {
+    // Show the last of the selected elements, what is around it and what is not there any more, see
+    // selection.js.
+    show({ chosen: selection, around, gone }) {
         const last = selection.at(-1);
+        this.#gone.hidden = gone.length === 0;
+        this.#gone.replaceChildren(...gone.map((element) => this.#farewell(element)));
         this.#title.textContent = last ? `${TITLES[last.kind]} ${last.id}` : 'Nothing selected';
         this.#hint.textContent = hintFor(selection);
         this.#hint.hidden = this.#hint.textContent === '';
@@ -57,6 +65,17 @@ export class Inspector {
             ]),
         );
         this.#showAround(around ?? { rings: [], measures: [] });
+    }
+
+    #farewell({ kind, id, detail }) {
+        const line = make('li', {}, `${TITLES[kind]} ${id} is gone: ${detail}.`);
+        const heir = this.#heirOf({ kind, id });
+        if (heir !== null) {
+            const link = this.#value(heir.kind, heir.id);
+            link.textContent = `${TITLES[heir.kind]} ${heir.id}`;
+            line.append(' Instead: ', link);
+        }
+        return line;
     }
 
     #showAround({ rings, measures }) {

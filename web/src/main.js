@@ -1,8 +1,9 @@
 // main.js - puts the page together: session in the middle, panels and renderer around it.
 
 import * as api from './api.js';
-import { make } from './dom.js';
+import { formatCount, make } from './dom.js';
 import { framing } from './framing.js';
+import { History } from './history.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
 import { formatLink, parseLink } from './link.js';
@@ -14,6 +15,7 @@ import { Statistics } from './statistics.js';
 import { Toasts } from './toast.js';
 import { Tools } from './tools.js';
 import { Uploads } from './upload.js';
+import { Work } from './work.js';
 
 // A pointer that moved further than this between down and up was orbiting.
 const CLICK_PIXELS = 4;
@@ -32,16 +34,37 @@ const canvas = page('canvas');
 const toasts = new Toasts(page('toasts'));
 const fail = (error) => toasts.show(error);
 
-const session = new Session(update);
+const session = new Session(update, fail);
 const statistics = new Statistics({ sizes: page('sizes'), facts: page('facts') });
 const inspector = new Inspector(
     {
         title: page('element-title'),
         hint: page('element-hint'),
+        gone: page('element-gone'),
         members: page('members'),
         around: page('around'),
     },
-    { onFollow: (kind, id) => session.select(kind, id).catch(fail) },
+    {
+        onFollow: (kind, id) => session.selection.select(kind, id).catch(fail),
+        heirOf: (element) => session.heirOf(element),
+    },
+);
+const history = new History(
+    { list: page('history'), more: page('more-history') },
+    {
+        readPage: (cursor) => api.getHistory(session.mesh, cursor),
+        onUndo: (revision) => session.undo(revision).catch(fail),
+        onError: fail,
+    },
+);
+const work = new Work(
+    {
+        box: page('work'),
+        label: page('work-label'),
+        progress: page('work-progress'),
+        button: page('work-cancel'),
+    },
+    fail,
 );
 const list = new MeshList(
     { list: page('meshes'), more: page('more-meshes') },
@@ -53,28 +76,54 @@ const list = new MeshList(
 );
 const tools = new Tools(
     { select: page('operation'), form: page('parameters') },
-    { onRun: run, onError: fail },
+    { onRun: (operation) => run(operation).catch(fail), onError: fail },
 );
 new Uploads(
     {
         input: page('file'),
-        progress: page('upload-progress'),
-        label: page('upload-label'),
+        work: new Work(
+            {
+                box: page('uploading'),
+                label: page('upload-label'),
+                progress: page('upload-progress'),
+                button: page('upload-cancel'),
+            },
+            fail,
+        ),
         area: page('drop'),
     },
     {
         send: api.upload,
-        onDone: async (summary) => {
+        onDone: async (summary, file) => {
             await refreshList();
             await session.open(summary.id);
+            toasts.tell(`Read ${file.name}`, importOf(summary));
         },
         onError: fail,
     },
 );
 const renderer = makeRenderer();
 
-function run(operation) {
-    session.run(operation).catch(fail);
+function importOf({ counts, import: report }) {
+    const found = ['repairs', 'warnings']
+        .filter((name) => report?.[name]?.length > 0)
+        .map((name) => `${formatCount(report[name].length)} ${name}`);
+    const sizes = ['vertices', 'faces'].map((kind) => `${formatCount(counts[kind])} ${kind}`);
+    return [...sizes, ...found].join(', ');
+}
+
+async function run(operation) {
+    if (!tools.isWhole(operation.op)) {
+        await session.run(operation);
+        return;
+    }
+    work.start(operation.op, false);
+    try {
+        await session.run(operation, work);
+        toasts.tell(operation.op, `Done: this is revision ${session.shown.revision}.`);
+    } finally {
+        work.end();
+    }
 }
 
 function makeRenderer() {
@@ -113,39 +162,80 @@ function shown() {
         : {
               mesh,
               revision: content.revision,
-              selection: selection.map(({ kind, id }) => `${kind}:${id}`).join(' '),
+              selection: selection.chosen.map(({ kind, id }) => `${kind}:${id}`).join(' '),
           };
 }
 
+// Of what a test compares with what the server sends.
+Object.defineProperty(canvas, 'geometry', { get: () => session.shown?.geometry ?? null });
+
 // The session changed: see Session for what.
-function update(what) {
-    if (what === 'mesh' || what === 'revision') {
-        drawMesh();
-        showMesh();
+function update(what, change) {
+    const isNew = what === 'mesh' || what === 'content';
+    if (isNew) {
+        draw(() => renderer?.show(session.shown.geometry, shown()));
+    } else if (what === 'change') {
+        draw(() => renderer?.update(change, shown()));
+    }
+    if (what === 'facts') {
+        renderer?.setBoundary(session.shown.boundary);
+        showFacts();
+    } else if (isNew || what === 'change') {
+        renderer?.setBoundary(session.shown.boundary);
+        showFacts();
+        history.show(session.shown.history);
+    }
+    if (isNew || what === 'name') {
+        showName();
     }
     if (what === 'mesh') {
+        showMesh();
         renderer?.fit();
     }
-    if (what !== 'state') {
-        renderer?.select(session.marks, session.arrows, shown());
-        inspector.show(session.selection, session.around);
-        tools.setSelection(session.selection);
-        writeLink();
+    if (isNew || what === 'change' || what === 'selection') {
+        showSelection();
+    }
+    if (what === 'gone') {
+        refreshList().catch(fail);
     }
     showState();
 }
 
-function drawMesh() {
-    const { geometry, boundary } = session.shown;
+function draw(act) {
     try {
-        renderer?.show(geometry, boundary, shown());
+        act();
     } catch (error) {
-        renderer.show(null, [], shown());
+        renderer.show(null, shown());
         fail(error);
     }
 }
 
+function showSelection() {
+    const { shown: content, selection } = session;
+    if (content !== null) {
+        const { geometry } = content;
+        const marks = selection.marksIn(geometry);
+        renderer?.select(marks, selection.arrowsIn(geometry), shown());
+    }
+    inspector.show(selection);
+    tools.setSelection(selection.chosen);
+    writeLink();
+}
+
 function showMesh() {
+    page('empty').hidden = true;
+    page('details').hidden = false;
+    list.setCurrent(session.mesh);
+}
+
+function showFacts() {
+    const { summary, hasFacts } = session.shown;
+    statistics.show(summary, hasFacts);
+    list.update(summary);
+    page('boundary-toggle').hidden = summary.counts.boundary_loops === 0;
+}
+
+function showName() {
     const { mesh, summary } = session.shown;
     const name = summary.name || mesh;
     page('mesh-title').textContent = name;
@@ -154,26 +244,41 @@ function showMesh() {
         'aria-label',
         `3D view of ${name}. Drag to orbit, click to pick, press ? for keys.`,
     );
-    page('empty').hidden = true;
-    page('details').hidden = false;
-    statistics.show(summary);
-    list.setCurrent(mesh);
     list.update(summary);
 }
 
+const CONNECTIONS = {
+    lost: 'Connection lost, trying again. What others do meanwhile is not shown.',
+    gone: 'This mesh was deleted. What you see is what it was last.',
+};
+
+// What the stream of events is like, said where that is a hindrance.
+function showConnection() {
+    const { connection } = session;
+    const box = page('connection');
+    const text = CONNECTIONS[connection] ?? '';
+    if (box.dataset.state !== `${connection}`) {
+        box.dataset.state = connection;
+        box.textContent = text;
+        box.hidden = text === '';
+    }
+}
+
 function showState() {
-    const { mesh, loading, busy, split } = session;
-    const history = session.shown?.history;
-    const ready = mesh !== null && !busy;
+    const { mesh, loading, busy, split, connection } = session;
+    const steps = session.shown?.history;
+    const ready = mesh !== null && !busy && connection !== 'gone';
     page('split').disabled = !ready || split === null;
     page('split').title = SPLIT_TITLES[split] ?? 'Select a face, an edge or two vertices to split';
-    page('undo').disabled = !ready || history.undo === 0;
-    page('redo').disabled = !ready || history.redo === 0;
+    page('undo').disabled = !ready || steps.undo === 0;
+    page('redo').disabled = !ready || steps.redo === 0;
     page('fit').disabled = mesh === null || renderer === null;
     page('screenshot').disabled = mesh === null || renderer === null;
     page('goto-id').disabled = mesh === null;
     page('goto-button').disabled = mesh === null;
     tools.setEnabled(ready);
+    history.setEnabled(ready);
+    showConnection();
     page('loading').hidden = loading === null;
     page('load-progress').value = loading ?? 0;
 }
@@ -204,7 +309,7 @@ canvas.addEventListener('pointerup', (event) => {
     const screen = { matrix: renderer.matrix, width: box.width, height: box.height, x, y };
     const seen = renderer.look(x, y, REACH);
     const chosen = choose(pickMode(), session.shown.geometry, seen, screen);
-    session.pick(chosen, event.shiftKey).catch(fail);
+    session.selection.pick(chosen, event.shiftKey).catch(fail);
 });
 
 function setPickMode(mode) {
@@ -214,7 +319,8 @@ function setPickMode(mode) {
 
 // The selection, or the whole mesh where there is none.
 function frameSelection() {
-    const found = session.shown === null ? null : framing(session.shown.geometry, session);
+    const geometry = session.shown?.geometry;
+    const found = geometry === undefined ? null : framing(geometry, session.selection);
     if (found === null) {
         renderer?.fit();
     } else {
@@ -230,7 +336,7 @@ function openTool(name) {
 
 // What X does to what is selected: to the last one where the operation takes only one.
 function removeSelection() {
-    const last = session.selection.at(-1);
+    const { chosen, last } = session.selection;
     const operations = {
         vertex: 'vertex_delete',
         halfedge: 'edge_collapse',
@@ -238,7 +344,7 @@ function removeSelection() {
         face: 'face_delete',
     };
     if (last !== undefined) {
-        run(tools.operationOn(operations[last.kind], session.selection));
+        run(tools.operationOn(operations[last.kind], chosen)).catch(fail);
     }
 }
 
@@ -256,7 +362,7 @@ function writeLink() {
     clearTimeout(linkTimer);
     const { mesh, selection } = session;
     if (mesh !== null) {
-        const { kind, id } = selection.at(-1) ?? {};
+        const { kind, id } = selection.last ?? {};
         const link = formatLink({ mesh, kind, id, camera: renderer?.camera });
         window.history.replaceState(null, '', link);
     }
@@ -274,7 +380,7 @@ async function followLink() {
         renderer.camera = camera;
     }
     if (session.mesh === mesh && kind !== null) {
-        await session.select(kind, id);
+        await session.selection.select(kind, id);
     }
 }
 
@@ -290,7 +396,7 @@ async function saveScreenshot() {
 
 async function goTo(event) {
     event.preventDefault();
-    await session.select(page('goto-kind').value, Number(page('goto-id').value));
+    await session.selection.select(page('goto-kind').value, Number(page('goto-id').value));
     frameSelection();
 }
 
@@ -302,9 +408,9 @@ listenToKeys(canvas, {
     pickEdge: () => setPickMode('edge'),
     pickFace: () => setPickMode('face'),
     pickHalfedge: () => setPickMode('halfedge'),
-    next: () => session.step('next').catch(fail),
-    prev: () => session.step('prev').catch(fail),
-    twin: () => session.step('twin').catch(fail),
+    next: () => session.selection.step('next').catch(fail),
+    prev: () => session.selection.step('prev').catch(fail),
+    twin: () => session.selection.step('twin').catch(fail),
     frame: frameSelection,
     zoomIn: () => renderer?.zoom(true),
     zoomOut: () => renderer?.zoom(false),
@@ -315,7 +421,7 @@ listenToKeys(canvas, {
     undo,
     redo,
     help: () => page('help').showModal(),
-    clear: () => session.clearSelection(),
+    clear: () => session.selection.clear(),
 });
 page('keys').append(...keyList());
 page('pick-modes').addEventListener('change', () => setPickMode(pickMode()));
@@ -327,6 +433,9 @@ window.addEventListener('hashchange', () => followLink().catch(fail));
 page('split').addEventListener('click', () => session.splitSelection().catch(fail));
 page('undo').addEventListener('click', undo);
 page('redo').addEventListener('click', redo);
+page('show-boundary').addEventListener('change', (event) => {
+    session.showBoundary(event.target.checked).catch(fail);
+});
 page('fit').addEventListener('click', () => renderer.fit());
 page('refresh').addEventListener('click', () => refreshList().catch(fail));
 for (const button of document.querySelectorAll('.upload')) {
@@ -336,7 +445,7 @@ window.addEventListener('error', (event) => fail(event.error ?? event));
 window.addEventListener('unhandledrejection', (event) => fail(event.reason));
 
 showState();
-inspector.show([], null);
+inspector.show(session.selection);
 api.getOperations()
     .then((operations) => {
         tools.setOperations(operations);

@@ -1,4 +1,4 @@
-// render.js - the only module that knows WebGL and three.
+// render.js - the only module, with rows.js, that knows WebGL and three.
 //
 // The arrays of geometry.js are two textures; one draw call gives fill, polygon edges and flat
 // shading. Nothing is drawn until something changed. After each frame `onFrame` gets what it shows,
@@ -8,7 +8,6 @@ import {
     BufferAttribute,
     BufferGeometry,
     Color,
-    DataTexture,
     DoubleSide,
     FloatType,
     GLSL3,
@@ -36,8 +35,16 @@ import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 
 import { MOST_PIXELS, arrowOf } from './arrows.js';
-import { ROW, ballOf, edgesOfTriangles, pointAt, trianglesOfFace } from './geometry.js';
+import {
+    ROW,
+    ballOf,
+    edgesOfTriangles,
+    hasVertex,
+    pointAt,
+    trianglesOfFace,
+} from './geometry.js';
 import { readSquare } from './pick.js';
+import { Rows } from './rows.js';
 import {
     ARROW_FRAGMENT,
     ARROW_VERTEX,
@@ -131,7 +138,11 @@ export class Renderer {
         this.#controls.addEventListener('end', onMove);
         this.#build();
         this.fit();
-        canvas.addEventListener('webglcontextlost', () => onLost(true));
+        canvas.addEventListener('webglcontextlost', () => {
+            this.#shared.vertices.value.forget();
+            this.#shared.triangles.value.forget();
+            onLost(true);
+        });
         canvas.addEventListener('webglcontextrestored', () => {
             onLost(false);
             this.#draw();
@@ -139,26 +150,58 @@ export class Renderer {
         new ResizeObserver(() => this.#resize()).observe(canvas);
     }
 
-    // Show a mesh with the edges of its boundary loops, pairs of vertices one after another, or
-    // nothing (null). `label` is what onFrame will say is shown. Throws a RangeError, and shows
-    // what it did before, when the mesh is larger than a texture can be.
-    show(geometry, boundary, label) {
+    // Show a mesh, or nothing (null). `label` is what onFrame will say is shown. Throws a RangeError,
+    // and shows what it did before, when the mesh is larger than a texture can be.
+    show(geometry, label) {
+        const arrays = this.#arraysOf(geometry);
+        this.#geometry = geometry;
+        this.#shared.vertices.value?.dispose();
+        this.#shared.triangles.value?.dispose();
+        this.#shared.vertices.value = new Rows(arrays.vertices, RGBAFormat, FloatType);
+        this.#shared.triangles.value = new Rows(
+            arrays.triangles,
+            RGBAIntegerFormat,
+            UnsignedIntType,
+        );
+        this.#setRanges();
+        this.setBoundary([]);
+        this.select([], [], label);
+    }
+
+    // The arrays of the mesh that is shown were changed, see applyDelta(): only what changed goes to
+    // the graphics memory. Boundary and selection stay as they were. Throws as show() does.
+    update({ vertices, triangles }, label) {
+        if (this.#geometry !== null) {
+            const arrays = this.#arraysOf(this.#geometry);
+            this.#shared.vertices.value = this.#shared.vertices.value.update(
+                arrays.vertices,
+                vertices,
+            );
+            this.#shared.triangles.value = this.#shared.triangles.value.update(
+                arrays.triangles,
+                triangles,
+            );
+            this.#setRanges();
+        }
+        this.#label = label;
+        this.#draw();
+    }
+
+    // The arrays of a mesh or, of none, zeros.
+    #arraysOf(geometry) {
         const vertices = geometry?.vertices ?? new Float32Array(4 * ROW);
         const triangles = geometry?.triangles ?? new Uint32Array(4 * ROW);
         const rows = Math.max(vertices.length, triangles.length) / (4 * ROW);
         if (rows > this.#renderer.capabilities.maxTextureSize) {
             throw new RangeError('This mesh is larger than the graphics memory can hold.');
         }
-        this.#shared.vertices.value?.dispose();
-        this.#shared.triangles.value?.dispose();
-        this.#geometry = geometry;
-        this.#shared.vertices.value = textureOf(vertices, RGBAFormat, FloatType);
-        this.#shared.triangles.value = textureOf(triangles, RGBAIntegerFormat, UnsignedIntType);
-        this.#surface.geometry.setDrawRange(0, 3 * (geometry?.triangleCount ?? 0));
-        this.#dots.geometry.setDrawRange(0, geometry?.vertexCount ?? 0);
+        return { vertices, triangles };
+    }
+
+    #setRanges() {
+        this.#surface.geometry.setDrawRange(0, 3 * (this.#geometry?.triangleCount ?? 0));
+        this.#dots.geometry.setDrawRange(0, this.#geometry?.vertexCount ?? 0);
         this.#setDots();
-        this.#setBoundary(boundary);
-        this.select([], [], label);
     }
 
     // Mark elements: {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to} or
@@ -374,7 +417,7 @@ export class Renderer {
             new Mesh(this.#surface.geometry, surface(SURFACE_PICK, {})),
             this.#pickDots,
         ]);
-        this.show(null, [], null);
+        this.show(null, null);
     }
 
     // Bounds are not known to three, which sees no positions.
@@ -412,8 +455,17 @@ export class Renderer {
         this.#hiddenLines.visible = ends.length > 0;
     }
 
-    #setBoundary(ends) {
-        this.#replace(this.#boundary, this.#segments(ends), ends.length > 0);
+    // Draw the edges of boundary loops: pairs of vertices one after another. They may be of a
+    // revision before what is shown: an edge whose ends are gone is left out.
+    setBoundary(ends) {
+        const live = [];
+        for (let i = 0; this.#geometry !== null && i < ends.length; i += 2) {
+            if (hasVertex(this.#geometry, ends[i]) && hasVertex(this.#geometry, ends[i + 1])) {
+                live.push(ends[i], ends[i + 1]);
+            }
+        }
+        this.#replace(this.#boundary, this.#segments(live), live.length > 0);
+        this.#draw();
     }
 
     // Lines between pairs of vertices.
@@ -538,11 +590,3 @@ function idsOf(marks, kind) {
     return marks.filter((mark) => mark.kind === kind).map(({ id }) => id);
 }
 
-// A texture that has an array of whole rows for its pixels.
-function textureOf(array, format, type) {
-    const texture = new DataTexture(array, ROW, array.length / (4 * ROW), format, type);
-    texture.minFilter = NearestFilter;
-    texture.magFilter = NearestFilter;
-    texture.needsUpdate = true;
-    return texture;
-}

@@ -1,28 +1,44 @@
 // session.js - the open mesh, what is selected in it, and what may be done to it. No page in here:
 // whoever shows it passes `onChange` and reads the properties.
 //
-// Everything shown is of one revision. An edit names that revision, so that nobody splits what
-// another client has changed in the meantime: then the mesh is read again and the refusal shown.
+// The mesh is followed: what another client does to it is heard of and fetched, one request at a
+// time, however many edits that were meanwhile. An edit names the revision that is shown, so that
+// nobody splits what another client has changed: then what has changed is fetched and the refusal
+// shown.
 
 import * as api from './api.js';
-import { describe } from './around.js';
-import { hasVertex, trianglesOfFace } from './geometry.js';
-import { readRevision } from './revision.js';
+import { Lineage } from './lineage.js';
+import { Live } from './live.js';
+import { Content } from './revision.js';
+import { Selection } from './selection.js';
+
+// A large mesh is at rest when nothing has happened to it for so many milliseconds.
+const REST = 400;
 
 export class Session {
-    shown = null; // see revision.js; null when no mesh is open
-    selection = []; // {kind, id, element}, the last chosen last
-    around = null; // what describe() says of the last one
+    shown = null; // a Content; null when no mesh is open
+    selection;
     loading = null; // part of the mesh that has been read, 0 to 1, or null
-    busy = false; // an edit is under way
+    busy = false; // an edit of this page is under way
 
     #onChange;
+    #onError;
+    #withBoundary = true;
     #opening = null;
-    #choice = 0;
+    // Of the open mesh: {live, latest, lineage}, where `latest` is the newest revision heard of.
+    #followed = null;
+    #running = null; // the promise of what is being fetched
+    #wanted = { once: false, whole: false };
+    #rest = 0;
 
-    // `onChange(what)`: 'mesh' (another), 'revision', 'selection' or 'state' (loading, busy).
-    constructor(onChange) {
+    // `onChange(what, change)`: 'mesh' (another), 'content' (new arrays), 'change' (what
+    // applyDelta() says of the arrays), 'facts' (summary, boundary), 'name', 'selection', 'gone'
+    // (the mesh was deleted) or 'state' (loading, busy, connection). `onError` gets what fails
+    // without having been asked for.
+    constructor(onChange, onError) {
         this.#onChange = onChange;
+        this.#onError = onError;
+        this.selection = new Selection(() => onChange('selection'));
     }
 
     // The id of the open mesh or null.
@@ -30,17 +46,31 @@ export class Session {
         return this.shown?.mesh ?? null;
     }
 
-    // Open a mesh and show it once all of it is there. A later call overtakes an earlier one.
+    // 'on', 'lost' or 'gone', see live.js; null when no mesh is open.
+    get connection() {
+        return this.#followed?.live.state ?? null;
+    }
+
+    // Open a mesh and show it once all of it is there. A later call overtakes an earlier one. The
+    // stream is opened first, so that nothing falls between it and the arrays.
     async open(mesh) {
         this.#opening?.abort();
         const opening = new AbortController();
         this.#opening = opening;
+        const followed = this.#follow(mesh);
         try {
-            const shown = await this.#read(mesh, opening.signal);
-            Object.assign(this, { shown, selection: [], around: null });
-            this.#choice++;
+            await followed.live.open();
+            opening.signal.throwIfAborted();
+            const onProgress = (part) => this.#setLoading(part);
+            const shown = await Content.read(mesh, this.#withBoundary, onProgress, opening.signal);
+            this.#followed?.live.close();
+            this.#followed = followed;
+            this.shown = shown;
+            this.selection.reset(mesh);
             this.#onChange('mesh');
+            this.#heardOf(followed, 0);
         } catch (error) {
+            followed.live.close();
             if (error.name !== 'AbortError') {
                 throw error;
             }
@@ -52,102 +82,127 @@ export class Session {
         }
     }
 
-    // Read the mesh again as it is now. What is selected stays selected where it still lives.
-    async reload() {
-        const { mesh } = this;
-        const shown = await this.#read(mesh, undefined);
-        const selection = await refresh(mesh, this.selection);
-        const around = await this.#describe(mesh, selection.at(-1));
-        if (this.mesh === mesh) {
-            Object.assign(this, { shown, selection, around });
-            this.#choice++;
-            this.#onChange('revision');
+    #follow(mesh) {
+        const followed = { latest: 0, lineage: new Lineage() };
+        followed.live = new Live(mesh, {
+            event: (name, data) => this.#receive(followed, name, data),
+            state: (state) => {
+                if (followed === this.#followed) {
+                    this.#onChange(state === 'gone' ? 'gone' : 'state');
+                }
+            },
+            back: () => this.#fetchSoon(followed, { once: true }),
+        });
+        return followed;
+    }
+
+    #receive(followed, name, data) {
+        if (name === 'edit') {
+            followed.lineage.note(data);
+            this.#heardOf(followed, data.revision);
+        } else if (name === 'resync') {
+            // The content that was replaced may have been fetched already, after an edit of ours.
+            followed.latest = Math.max(followed.latest, data.revision);
+            const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
+            this.#fetchSoon(followed, { whole: !isKnown });
+        } else if (name === 'metadata' && followed === this.#followed) {
+            Object.assign(this.shown.summary, data);
+            this.#onChange('name');
         }
     }
 
-    // Select an element; `also` keeps those selected before it, if they are of the same kind.
-    async select(kind, id, also = false) {
-        const choice = ++this.#choice;
-        const { mesh } = this;
-        const element = await api.getElement(mesh, kind, id);
-        const around = await this.#describe(mesh, { kind, element });
-        if (choice !== this.#choice) {
+    #heardOf(followed, revision) {
+        followed.latest = Math.max(followed.latest, revision);
+        this.#fetchSoon(followed, {});
+    }
+
+    #fetchSoon(followed, wanted) {
+        if (followed !== this.#followed) {
             return;
         }
-        const others = also ? this.selection.filter((s) => s.kind === kind && s.id !== id) : [];
-        this.selection = [...others, { kind, id, element }];
-        this.around = around;
-        this.#onChange('selection');
+        this.#fetch(wanted).catch((error) => {
+            // Without a connection the stream ends too, which is shown.
+            if (error.status !== 0) {
+                this.#onError(error);
+            }
+        });
     }
 
-    // Select what pick.js chose; null selects nothing.
-    async pick(chosen, also) {
-        if (chosen === null) {
-            this.clearSelection();
-            return;
-        }
-        const { kind, id, from, to } = chosen;
-        if (id !== undefined) {
-            await this.select(kind, id, also);
-            return;
-        }
-        const halfedge = await api.findHalfedge(this.mesh, from, to);
-        if (halfedge !== null) {
-            // The half-edges of edge e are 2e and 2e + 1.
-            await this.select(kind, kind === 'edge' ? Math.floor(halfedge / 2) : halfedge, also);
-        }
+    // Fetch until what is shown is the newest that was heard of; `once` asks at least once, `whole`
+    // for all of it. Whoever calls it meanwhile waits for the same end.
+    #fetch({ once = false, whole = false }) {
+        this.#wanted.once ||= once;
+        this.#wanted.whole ||= whole;
+        this.#running ??= this.#fetchAll().finally(() => {
+            this.#running = null;
+        });
+        return this.#running;
     }
 
-    // Follow a link of the selected half-edge: 'next', 'prev' or 'twin'.
-    async step(link) {
-        const last = this.selection.at(-1);
-        if (last?.kind === 'halfedge') {
-            await this.select('halfedge', last.element[link]);
-        }
-    }
-
-    async #describe(mesh, chosen) {
-        return chosen === undefined
-            ? null
-            : describe(chosen.kind, chosen.element, (queries) => api.query(mesh, queries));
-    }
-
-    clearSelection() {
-        this.#choice++;
-        if (this.selection.length > 0) {
-            this.selection = [];
-            this.around = null;
-            this.#onChange('selection');
+    async #fetchAll() {
+        const isBehind = () => this.#followed.latest > this.shown.revision;
+        while (this.#wanted.once || this.#wanted.whole || isBehind()) {
+            const { whole } = this.#wanted;
+            this.#wanted = { once: false, whole: false };
+            try {
+                await this.#advance(whole);
+            } catch (error) {
+                // Of other arrays, or of a mesh of the same name that is younger than what is shown.
+                if (whole || !(error instanceof RangeError || error.status === 400)) {
+                    throw error;
+                }
+                await this.#advance(true);
+            }
         }
     }
 
-    // The selected elements for the renderer, those of the revision shown: {kind: 'face', id},
-    // {kind: 'vertex', id}, or {kind: 'edge' or 'halfedge', from, to}.
-    get marks() {
-        return this.selection.map(markOf).filter((mark) => this.#isShown(mark));
-    }
-
-    // The half-edges near the last selected element, likewise.
-    get arrows() {
-        return (this.around?.halfedges ?? []).filter(({ origin, target, face, across }) =>
-            this.#isShown({ kind: 'edge', from: origin, to: target }) &&
-            this.#isShown({ kind: 'face', id: face ?? across }),
-        );
-    }
-
-    #isShown({ kind, id, from, to }) {
-        const { geometry } = this.shown;
-        if (kind === 'face') {
-            return trianglesOfFace(geometry, id).length > 0;
+    async #advance(whole) {
+        const { shown } = this;
+        const putGeometry = await shown.readGeometry(whole);
+        const puts = await Promise.all([
+            this.selection.read(),
+            shown.readHistory(),
+            shown.isLarge ? () => this.#readFactsAtRest() : shown.readFacts(this.#withBoundary),
+        ]);
+        if (this.shown === shown) {
+            const change = putGeometry();
+            puts.forEach((put) => put());
+            this.#onChange(change === null ? 'content' : 'change', change);
         }
-        return kind === 'vertex'
-            ? hasVertex(geometry, id)
-            : hasVertex(geometry, from) && hasVertex(geometry, to);
+    }
+
+    #readFactsAtRest() {
+        clearTimeout(this.#rest);
+        this.#rest = setTimeout(() => {
+            this.#readFacts().catch((error) => error.status !== 0 && this.#onError(error));
+        }, REST);
+    }
+
+    async #readFacts() {
+        const { shown } = this;
+        const put = await shown.readFacts(this.#withBoundary);
+        if (this.shown === shown) {
+            put();
+            this.#onChange('facts');
+        }
+    }
+
+    // Whether boundary loops are read and shown.
+    async showBoundary(isShown) {
+        this.#withBoundary = isShown;
+        if (this.shown !== null) {
+            await this.#readFacts();
+        }
+    }
+
+    // Where an element that is gone is to be found: {kind, id} or null.
+    heirOf(element) {
+        return this.#followed?.lineage.heirOf(element) ?? null;
     }
 
     // What Split would do: 'edge_split', 'face_poke', 'face_split' or null.
     get split() {
-        const kinds = this.selection.map(({ kind }) => kind).join();
+        const kinds = this.selection.chosen.map(({ kind }) => kind).join();
         const operations = {
             edge: 'edge_split',
             halfedge: 'edge_split',
@@ -159,16 +214,14 @@ export class Session {
 
     async splitSelection() {
         const op = this.split;
-        const [first, second] = this.selection;
+        const [first, second] = this.selection.chosen;
         if (op === 'edge_split') {
-            const edge = first.kind === 'edge' ? first.id : first.element.edge;
-            await this.#edit((revision) => api.edit(this.mesh, { op, edge }, revision));
+            await this.run({ op, edge: first.kind === 'edge' ? first.id : first.element.edge });
         } else if (op === 'face_poke') {
-            await this.#edit((revision) => api.edit(this.mesh, { op, face: first.id }, revision));
+            await this.run({ op, face: first.id });
         } else if (op === 'face_split') {
             const face = await this.#sharedFace(first.id, second.id);
-            const operation = { op, face, from: first.id, to: second.id };
-            await this.#edit((revision) => api.edit(this.mesh, operation, revision));
+            await this.run({ op, face, from: first.id, to: second.id });
         }
     }
 
@@ -187,13 +240,14 @@ export class Session {
         return face;
     }
 
-    // Run an operation of the server's table.
-    run(operation) {
-        return this.#edit((revision) => api.edit(this.mesh, operation, revision));
+    // Run an operation of the server's table; `work` for one that may take long, see api.js.
+    run(operation, work = null) {
+        return this.#edit((revision) => api.edit(this.mesh, operation, revision, work));
     }
 
-    undo() {
-        return this.#edit((revision) => api.undo(this.mesh, revision));
+    // The last step, or all since a revision.
+    undo(to = undefined) {
+        return this.#edit((revision) => api.undo(this.mesh, revision, to));
     }
 
     redo() {
@@ -204,22 +258,39 @@ export class Session {
         if (this.busy) {
             return;
         }
+        const followed = this.#followed;
+        const { revision } = this.shown;
         this.#setBusy(true);
         try {
-            await send(this.shown.revision);
-            await this.reload();
-        } catch (error) {
-            if (error.status === 412) {
-                await this.reload();
+            const answer = await send(revision);
+            if (answer !== null) {
+                followed.lineage.note(answer);
+                followed.latest = Math.max(followed.latest, answer.revision);
             }
+            if (followed === this.#followed) {
+                await this.#fetch({});
+            }
+        } catch (error) {
+            if ((error.status !== 409 && error.status !== 412) || followed !== this.#followed) {
+                throw error;
+            }
+            await this.#fetch({ once: true });
+            error.detail += this.#since(revision);
             throw error;
         } finally {
             this.#setBusy(false);
         }
     }
 
-    #read(mesh, signal) {
-        return readRevision(mesh, (part) => this.#setLoading(part), signal);
+    // What has happened since a revision, in words.
+    #since(revision) {
+        const entries = this.shown.history.entries.filter((entry) => entry.revision > revision);
+        const words = entries.reverse().map(({ action, ops }) =>
+            action === 'edit' ? ops.join(', ') : `${action} of ${ops.join(', ')}`,
+        );
+        return words.length === 0
+            ? ''
+            : ` Meanwhile another client did this: ${words.join('; ')}. It is shown now.`;
     }
 
     #setLoading(part) {
@@ -229,28 +300,6 @@ export class Session {
 
     #setBusy(busy) {
         this.busy = busy;
-        if (!busy) {
-            this.loading = null;
-        }
         this.#onChange('state');
     }
-}
-
-function markOf({ kind, id, element }) {
-    if (kind === 'face' || kind === 'vertex') {
-        return { kind, id };
-    }
-    const [from, to] = kind === 'edge' ? element.vertices : [element.origin, element.target];
-    return { kind, from, to };
-}
-
-// What still lives of a selection, as it is now.
-async function refresh(mesh, selection) {
-    if (selection.length === 0) {
-        return [];
-    }
-    const elements = await api.getElements(mesh, selection);
-    return selection
-        .map(({ kind, id }, i) => ({ kind, id, element: elements[i] }))
-        .filter(({ element }) => element !== null);
 }

@@ -11,10 +11,11 @@ export class Statistics {
         this.#facts = facts;
     }
 
-    // null when no mesh is open.
-    show(summary) {
-        this.#sizes.replaceChildren(...(summary ? sizesOf(summary) : []));
-        this.#facts.replaceChildren(...(summary ? factsOf(summary) : []));
+    // `isCurrent` is false while they are those of a revision before what is shown.
+    show(summary, isCurrent) {
+        this.#sizes.replaceChildren(...sizesOf(summary));
+        this.#facts.replaceChildren(...factsOf(summary));
+        this.#facts.parentElement.setAttribute('aria-busy', `${!isCurrent}`);
     }
 }
 

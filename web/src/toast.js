@@ -1,8 +1,12 @@
-// toast.js - messages about failures. They stay until they are closed: nobody has to read in time.
+// toast.js - messages. Those about failures stay until they are closed: nobody has to read in time.
+// What went well goes by itself.
 
 import { make } from './dom.js';
 
 const MOST = 4;
+
+// Milliseconds that a message about what went well is shown.
+const SHORT = 8000;
 
 export class Toasts {
     #region;
@@ -18,14 +22,24 @@ export class Toasts {
         // The page sends one operation at a time: that it is the first says nothing.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
+        this.#add('alert', title, `${detail}${where}`);
+    }
+
+    // Show what went well.
+    tell(title, detail) {
+        const toast = this.#add('status', title, detail);
+        setTimeout(() => toast.remove(), SHORT);
+    }
+
+    #add(role, title, text) {
         const toast = make(
             'div',
-            { className: 'toast', role: 'alert' },
+            { className: role === 'alert' ? 'toast' : 'toast well', role },
             make(
                 'div',
                 {},
                 make('strong', {}, title),
-                make('p', {}, `${detail}${where}`),
+                make('p', {}, text),
             ),
             make(
                 'button',
@@ -42,5 +56,6 @@ export class Toasts {
         while (this.#region.children.length > MOST) {
             this.#region.lastElementChild.remove();
         }
+        return toast;
     }
 }

@@ -97,6 +97,11 @@ export class Tools {
         return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: id };
     }
 
+    // May it cost the whole mesh, and take long?
+    isWhole(name) {
+        return this.#operations.find((operation) => operation.name === name)?.size === 'whole';
+    }
+
     // Show the form of an operation with the focus in its first field that is empty. False when the
     // server has none of this name.
     open(name) {

@@ -1,8 +1,7 @@
 // upload.js - files from the button or dropped on the page, sent one after another.
 
 export class Uploads {
-    #progress;
-    #label;
+    #work;
     #area;
     #send;
     #onDone;
@@ -10,10 +9,10 @@ export class Uploads {
     #queue = Promise.resolve();
     #depth = 0;
 
-    // `send(file, onProgress)` uploads one file; `onDone(summary)` gets what became of it.
-    constructor({ input, progress, label, area }, { send, onDone, onError }) {
-        this.#progress = progress;
-        this.#label = label;
+    // `send(file, onProgress, work)` uploads one file; `onDone(summary, file)` gets what became of
+    // it; `work` shows it, see work.js.
+    constructor({ input, work, area }, { send, onDone, onError }) {
+        this.#work = work;
         this.#area = area;
         this.#send = send;
         this.#onDone = onDone;
@@ -65,21 +64,19 @@ export class Uploads {
     }
 
     async #upload(file) {
-        this.#label.textContent = `Uploading ${file.name}`;
-        this.#progress.value = 0;
-        this.#progress.parentElement.hidden = false;
+        this.#work.start(`Uploading ${file.name}`, true);
         try {
-            const summary = await this.#send(file, (part) => {
-                this.#progress.value = part;
+            const onProgress = (part) => {
                 if (part === 1) {
-                    this.#label.textContent = `Reading ${file.name}`;
+                    this.#work.start(`Reading ${file.name}`, true);
                 }
-            });
-            await this.#onDone(summary);
+                this.#work.show({ progress: part });
+            };
+            await this.#onDone(await this.#send(file, onProgress, this.#work), file);
         } catch (error) {
             this.#onError(error);
         } finally {
-            this.#progress.parentElement.hidden = true;
+            this.#work.end();
         }
     }
 }
