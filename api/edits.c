@@ -320,7 +320,7 @@ static bool claim(api_exchange *x, edits *e)
 static bool publish_copy(api_exchange *x, const edits *e, he_mesh *copy, bool barrier)
 {
     api_store_status status =
-        x->store->publish(x->store->self, x->mesh, copy, e->ops, barrier, &x->info);
+        x->store->publish(x->store->self, x->mesh, copy, e->ops, barrier, x->claim, &x->info);
     x->claimed = false;
     if (status != API_STORE_OK) {
         x->has_info = false;

@@ -160,9 +160,26 @@ static void end(srv_job *j)
     pthread_mutex_unlock(&board->lock);
 }
 
+/* Nobody is told that something was done which the journal may never have. */
+static void lose_answer(srv_job *j)
+{
+    pthread_mutex_lock(&j->board->lock);
+    he_mem_free(j->body);
+    j->body = NULL;
+    j->facts.body = NULL;
+    j->facts.length = 0;
+    j->facts.location[0] = '\0';
+    j->facts.status = 503;
+    pthread_mutex_unlock(&j->board->lock);
+}
+
 static void resume(srv_hold *hold)
 {
-    end((srv_job *)((char *)hold - offsetof(srv_job, hold)));
+    srv_job *j = (srv_job *)((char *)hold - offsetof(srv_job, hold));
+    if (hold->abandoned) {
+        lose_answer(j);
+    }
+    end(j);
 }
 
 /* D1: the end is not shown before it is durable. */
@@ -173,9 +190,10 @@ static void end_when_durable(srv_job *j)
     if (answer->mesh != NULL && !srv_store_is_durable(store, answer->mesh, answer->record)) {
         atomic_store(&j->phase, "storing");
         j->hold = (srv_hold){.mesh = answer->mesh, .record = answer->record, .resume = resume};
-        if (srv_held_add(srv_store_held(store), &j->hold)) {
-            return;
+        if (!srv_held_add(srv_store_held(store), &j->hold)) {
+            resume(&j->hold);
         }
+        return;
     }
     end(j);
 }
@@ -345,14 +363,24 @@ api_jobs srv_board_interface(srv_board *board)
                       .follow = srv_job_follow};
 }
 
-void srv_board_stop(srv_board *board)
+/* What is left of some job that waited; NULL when none does. */
+static api_exchange *cancel_one(srv_board *board)
 {
+    api_exchange *work = NULL;
     pthread_mutex_lock(&board->lock);
     board->stopped = true;
-    for (srv_job *j = board->first; j != NULL; j = j->next) {
-        api_free(cancel(j));
+    for (srv_job *j = board->first; j != NULL && work == NULL; j = j->next) {
+        work = cancel(j);
     }
     pthread_mutex_unlock(&board->lock);
+    return work;
+}
+
+void srv_board_stop(srv_board *board)
+{
+    for (api_exchange *work; (work = cancel_one(board)) != NULL;) {
+        api_free(work);
+    }
 }
 
 void srv_board_free(srv_board *board)
