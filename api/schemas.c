@@ -160,6 +160,10 @@ static const member answers[] = {
     {"attribute_written", "modified", "#sets", REQUIRED, "Empty where it came or went whole."},
     {"attribute_written", "parents", "#parents", REQUIRED, "Empty."},
     {"attribute_written", "merged", "#merged", REQUIRED, "Empty."},
+    {"attribute_written", "undoable", "flag", OPTIONAL,
+     "Only when false: it is larger than the undo budget. It cannot be undone, and neither can "
+     "what "
+     "came before."},
 
     {"element_page", "revision", "count", REQUIRED, NULL},
     {"element_page", "items", "*#element", REQUIRED, NULL},
