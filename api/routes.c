@@ -461,8 +461,9 @@ static const api_route routes[] = {
      .statuses = {200},
      .summary = "Every change as it happens",
      .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
-            "link for link; `metadata` a new name; `resync` says to fetch the mesh anew, `bye` "
-            "that the stream ends. Last-Event-ID or `since` goes on where a client was cut off, "
+            "link for link; `metadata` a new name; `job` that one of this mesh has begun or ended; "
+            "`resync` says to fetch the mesh anew, `bye` that the stream ends. Last-Event-ID or "
+            "`since` goes on where a client was cut off, "
             "or gives one `resync` where the history does not reach."},
 
     /* jobs */

@@ -38,6 +38,7 @@ static const member answers[] = {
 
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"mesh_page", "listeners", "count", REQUIRED, "Clients that follow events of meshes."},
     {"mesh_page", "memory_bytes", "count", OPTIONAL, "What the whole server holds."},
     {"mesh_page", "memory_budget", "count", OPTIONAL, "What it may hold; 0: no limit is set."},
 

@@ -140,9 +140,12 @@ static void keep_answer(srv_job *j)
 static void end(srv_job *j)
 {
     srv_board *board = j->board;
+    srv_store *store = board->options.store;
+    char mesh[API_MESH_ID + 1];
     api_free(j->work);
     pthread_mutex_lock(&board->lock);
     j->work = NULL;
+    memcpy(mesh, j->facts.mesh, sizeof mesh); /* of which it was told that the job began */
     const char *slash = strrchr(j->facts.location, '/');
     if (slash != NULL && strlen(slash + 1) <= API_MESH_ID) {
         memcpy(j->facts.mesh, slash + 1, strlen(slash + 1) + 1);
@@ -155,9 +158,11 @@ static void end(srv_job *j)
     j->facts.finished = srv_clock_utc();
     board->bytes += j->facts.length;
     srv_job_wake(j);
+    api_job facts = j->facts;
     tidy(board, 0);
     srv_job_release(j);
     pthread_mutex_unlock(&board->lock);
+    srv_store_tell_job(store, mesh, &facts);
 }
 
 /* Nobody is told that something was done which the journal may never have. */
@@ -204,10 +209,12 @@ static void run(void *context)
     srv_board *board = j->board;
     pthread_mutex_lock(&board->lock);
     bool wanted = j->facts.state == API_JOB_QUEUED;
+    api_job facts = {.number = 0};
     if (wanted) {
         j->facts.state = API_JOB_RUNNING;
         j->facts.started = srv_clock_utc();
         srv_job_wake(j);
+        facts = *srv_job_facts(j);
     } else {
         srv_job_release(j);
     }
@@ -215,6 +222,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
+    srv_store_tell_job(board->options.store, facts.mesh, &facts);
     api_watch(j->work, tell, j);
     api_work(j->work);
     pthread_mutex_lock(&board->lock);
@@ -336,6 +344,7 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
 {
     srv_board *board = self;
     api_exchange *over = NULL;
+    api_job facts = {.number = 0};
     pthread_mutex_lock(&board->lock);
     tidy(board, 0);
     srv_job *j = srv_job_find(board, id);
@@ -345,11 +354,15 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
             forget(board, j);
         } else {
             over = cancel(j);
-            show(context, srv_job_facts(j));
+            facts = *srv_job_facts(j);
+            show(context, &facts);
         }
     }
     pthread_mutex_unlock(&board->lock);
-    api_free(over);
+    if (over != NULL) {
+        api_free(over);
+        srv_store_tell_job(board->options.store, facts.mesh, &facts);
+    }
     return j != NULL;
 }
 

@@ -357,6 +357,103 @@ static void what_is_no_edit_has_events_of_its_own(void **state)
 }
 
 /* 200 x 200 faces do not fit in an event; what fits is complete. */
+static const char *prefer_async(void *context, const char *name)
+{
+    (void)context;
+    return strcmp(name, "Prefer") == 0         ? "respond-async"
+           : strcmp(name, "Content-Type") == 0 ? "application/json"
+                                               : NULL;
+}
+
+/* 202; the exchange is the caller's. */
+static api_exchange *submit(api_bench *b, const char *path, const char *body)
+{
+    api_request request = {.method = "POST",
+                           .path = path,
+                           .query = "",
+                           .request_id = "test",
+                           .header = prefer_async,
+                           .has_length = true,
+                           .length = strlen(body),
+                           .has_body = true};
+    api_exchange *x = api_handle(bench_service(b), &request, body, strlen(body));
+    assert_int_equal(api_answer_of(x)->status, 202);
+    return x;
+}
+
+static void assert_job(listener *l, const char *state)
+{
+    assert_string_equal(next(l, false), "job");
+    assert_string_equal(text_of(l, "state"), state);
+    assert_int_equal(strlen(text_of(l, "id")), API_JOB_ID);
+    assert_int_equal(number_of(l, "progress"), strcmp(state, "done") == 0);
+    assert_int_equal(cJSON_GetArraySize(l->data), 3);
+}
+
+static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
+{
+    (void)state;
+    static const char poke[] = "{\"op\":\"face_poke\",\"face\":0}";
+    api_bench *b = bench_new();
+    put_mesh(b);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", poke), 200);
+    listener *l = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    assert_string_equal(next(l, false), "");
+    api_free(submit(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":1}"));
+    bench_run_jobs(b, 1);
+    assert_job(l, "running");
+    assert_string_equal(next(l, false), "edit");
+    assert_int_equal(number_of(l, "revision"), 3);
+    assert_job(l, "done");
+    /* One that fails, one that makes another mesh, and one that never begins. */
+    api_free(submit(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":99}"));
+    bench_run_jobs(b, 1);
+    assert_job(l, "running");
+    assert_job(l, "failed");
+    api_free(submit(b, "/v1/meshes/m/copy", "{}"));
+    bench_run_jobs(b, 1);
+    assert_job(l, "running");
+    assert_job(l, "done");
+    api_exchange *x = submit(b, "/v1/meshes/m/edits", poke);
+    const char *path = "";
+    for (size_t i = 0; i < api_answer_of(x)->header_count; i++) {
+        const api_header *header = &api_answer_of(x)->headers[i];
+        path = strcmp(header->name, "Location") == 0 ? header->value : path;
+    }
+    assert_int_equal(send(b, "DELETE", path, NULL), 202);
+    api_free(x);
+    assert_job(l, "cancelled");
+    bench_run_jobs(b, 1);
+    assert_string_equal(next(l, false), "");
+    /* Deleted under a job: the stream has ended. */
+    api_free(submit(b, "/v1/meshes/m/edits", poke));
+    assert_int_equal(send(b, "DELETE", "/v1/meshes/m", NULL), 204);
+    bench_run_jobs(b, 1);
+    assert_string_equal(next(l, false), "bye");
+    assert_string_equal(next(l, false), "");
+    listener_free(l);
+    bench_free(b);
+}
+
+static void the_list_of_meshes_counts_listeners(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    put_mesh(b);
+    listener *l[2];
+    for (int i = 0; i <= 2; i++) {
+        bench_reply r = bench_send(b, "GET", "/v1/meshes", NULL, NULL);
+        assert_int_equal(cJSON_GetObjectItem(r.json, "listeners")->valueint, i);
+        bench_reply_free(&r);
+        if (i < 2) {
+            l[i] = listen_to(b, "/v1/meshes/m/events", "", NULL);
+        }
+    }
+    listener_free(l[0]);
+    listener_free(l[1]);
+    bench_free(b);
+}
+
 static void a_large_edit_is_only_announced(void **state)
 {
     (void)state;
@@ -682,6 +779,8 @@ int main(void)
         cmocka_unit_test(every_operation_undo_and_redo_is_told_exactly),
         cmocka_unit_test(columns_that_come_and_go_are_told),
         cmocka_unit_test(what_is_no_edit_has_events_of_its_own),
+        cmocka_unit_test(jobs_of_a_mesh_are_told_as_they_begin_and_end),
+        cmocka_unit_test(the_list_of_meshes_counts_listeners),
         cmocka_unit_test(a_large_edit_is_only_announced),
         cmocka_unit_test(who_was_cut_off_goes_on_where_it_was),
         cmocka_unit_test(who_is_far_behind_is_told_from_the_history),
