@@ -486,29 +486,6 @@ static void an_edit_beyond_the_budget_says_that_the_history_ends(void **state)
     bench_free(b);
 }
 
-static void an_attribute_beyond_the_budget_says_so_too(void **state)
-{
-    (void)state;
-    static const char *const dry[] = {",\"dry_run\":true", ""};
-    api_bench *b = bench_new_within(4000);
-    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                "{\"shape\":\"icosphere\",\"subdivisions\":2}")));
-    bench_reply r = expect(
-        201, bench_send(b, "PUT", "/v1/meshes/m/attributes/faces/a", NULL, "{\"type\":\"bool\"}"));
-    assert_null(cJSON_GetObjectItem(r.json, "undoable"));
-    done(r);
-    for (int i = 0; i < 2; i++) {
-        char body[BODY];
-        snprintf(body, sizeof body, "{\"ids\":\"all\",\"value\":true%s}", dry[i]);
-        r = expect(200, bench_send(b, "PATCH", "/v1/meshes/m/attributes/faces/a", NULL, body));
-        assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
-        done(r);
-        done(expect(i == 0 ? 200 : 410, get(b, "/v1/meshes/m?revision=2")));
-    }
-    done(expect(409, post(b, "undo", NULL)));
-    bench_free(b);
-}
-
 /* --- reading what was --- */
 
 static api_bench *poked(void)
@@ -635,31 +612,6 @@ static void the_history_tells_what_each_revision_did(void **state)
             assert_int_equal(number_of(entry, "inverts"), rows[i].inverts);
         }
         assert_int_equal(cJSON_IsTrue(cJSON_GetObjectItem(entry, "undoable")), i == 2);
-    }
-    assert_null(entry);
-    done(r);
-    bench_free(b);
-}
-
-static void the_history_counts_what_attributes_changed(void **state)
-{
-    (void)state;
-    api_bench *b = poked();
-    done(expect(
-        201, bench_send(b, "PUT", "/v1/meshes/m/attributes/faces/a", NULL, "{\"type\":\"bool\"}")));
-    done(expect(200, bench_send(b, "PATCH", "/v1/meshes/m/attributes/faces/a", NULL,
-                                "{\"ids\":[1,2],\"value\":true}")));
-    done(expect(200, bench_send(b, "DELETE", "/v1/meshes/m/attributes/faces/a", NULL, NULL)));
-    bench_reply r = expect(200, get(b, "/v1/meshes/m/edits?since=4"));
-    static const struct {
-        const char *op;
-        int modified;
-    } rows[] = {{"attribute_delete", 0}, {"attribute_write", 2}, {"attribute_create", 0}};
-    const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
-    for (size_t i = 0; i < 3; i++, entry = entry->next) {
-        assert_string_equal(cJSON_GetObjectItem(entry, "ops")->child->valuestring, rows[i].op);
-        assert_int_equal(number_of(cJSON_GetObjectItem(entry, "modified"), "faces"),
-                         rows[i].modified);
     }
     assert_null(entry);
     done(r);
@@ -796,12 +748,10 @@ int main(void)
         cmocka_unit_test(every_revision_stays_what_it_was),
         cmocka_unit_test(the_history_stays_within_its_budget_and_says_so),
         cmocka_unit_test(an_edit_beyond_the_budget_says_that_the_history_ends),
-        cmocka_unit_test(an_attribute_beyond_the_budget_says_so_too),
         cmocka_unit_test(elements_are_those_of_the_revision),
         cmocka_unit_test(a_tag_names_the_revision_that_was_read),
         cmocka_unit_test(an_earlier_revision_can_be_copied),
         cmocka_unit_test(the_history_tells_what_each_revision_did),
-        cmocka_unit_test(the_history_counts_what_attributes_changed),
         cmocka_unit_test(a_page_of_the_history_goes_on_where_it_was),
         cmocka_unit_test(steps_that_cannot_be_taken_change_nothing),
         cmocka_unit_test(every_allocation_of_a_reader_may_fail),
