@@ -50,7 +50,7 @@ static writing *begin(api_exchange *x)
 
 /* The whole answer is written before anything is published, so that no failure follows it. */
 static bool write_answer(api_exchange *x, const writing *w, const he_mesh *mesh,
-                         const he_changes *changes, uint64_t revision)
+                         const he_changes *changes, uint64_t revision, bool undoable)
 {
     const he_column *column = he_mesh_find_column(mesh, x->kind, x->attribute);
     api_out *out = &x->out;
@@ -66,6 +66,9 @@ static bool write_answer(api_exchange *x, const writing *w, const he_mesh *mesh,
         api_out_object_end(out);
     }
     api_write_changes(out, changes);
+    if (!undoable) {
+        api_out_key_bool(out, "undoable", false);
+    }
     api_out_object_end(out);
     return !x->text.failed || api_fail_memory(x);
 }
@@ -80,8 +83,12 @@ static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, cons
         good = api_fail_core(x, &err);
     }
     bool effect = good && !he_changes_none(&changes);
-    good = good && write_answer(x, w, mesh, &changes, x->info.revision + (effect ? 1 : 0));
+    bool undoable = !effect || x->store->undoable(x->store->self, x->mesh);
+    good =
+        good && write_answer(x, w, mesh, &changes, x->info.revision + (effect ? 1 : 0), undoable);
     if (good && effect && !w->dry_run) {
+        api_tally tally = api_changes_tally(&changes);
+        x->store->tally(x->store->self, x->mesh, &tally);
         x->store->write_commit(x->store->self, x->mesh, op, false, &x->info);
         api_publish(x, status == 201 ? 201 : 204);
         api_attribute_path(x, x->location);

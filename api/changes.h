@@ -3,6 +3,7 @@
 #define HE_API_CHANGES_H
 
 #include "api/json_out.h"
+#include "api/store.h"
 #include "mesh/delta.h"
 #include "op/op.h"
 
@@ -12,5 +13,8 @@ void api_write_results(api_out *out, const he_op *op, const he_results *results)
 /* The members created, deleted, modified, parents and merged of an object that is open; and
  * "replaced":true where the content was changed as a whole and the sets are empty. */
 void api_write_changes(api_out *out, const he_changes *changes);
+
+/* How many of each, for the history; not known where the content was changed as a whole. */
+api_tally api_changes_tally(const he_changes *changes);
 
 #endif

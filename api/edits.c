@@ -224,19 +224,6 @@ static void answer(api_exchange *x, const edits *e)
     }
 }
 
-/* For the history; a replace has no sets to count. */
-static void note_tally(api_exchange *x, const he_changes *changes)
-{
-    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
-    api_tally tally = {.known = !changes->replaced};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        tally.created[i] = (uint32_t)changes->created[kinds[i]].count;
-        tally.deleted[i] = (uint32_t)changes->deleted[kinds[i]].count;
-        tally.modified[i] = (uint32_t)changes->modified[kinds[i]].count;
-    }
-    x->store->tally(x->store->self, x->mesh, &tally);
-}
-
 /* What the operations make of the mesh. True when that is to be published, with the answer written;
  * `*barrier` says whether it ends the undo stack. */
 static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta, bool *barrier)
@@ -267,7 +254,8 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
         publish = effect && !e->dry_run;
     }
     if (publish) {
-        note_tally(x, &changes);
+        api_tally tally = api_changes_tally(&changes);
+        x->store->tally(x->store->self, x->mesh, &tally);
     }
     *barrier = changes.replaced;
     he_changes_clear(&changes);
@@ -320,7 +308,7 @@ static bool claim(api_exchange *x, edits *e)
 static bool publish_copy(api_exchange *x, const edits *e, he_mesh *copy, bool barrier)
 {
     api_store_status status =
-        x->store->publish(x->store->self, x->mesh, copy, e->ops, barrier, &x->info);
+        x->store->publish(x->store->self, x->mesh, copy, e->ops, barrier, x->claim, &x->info);
     x->claimed = false;
     if (status != API_STORE_OK) {
         x->has_info = false;

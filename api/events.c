@@ -2,6 +2,7 @@
 
 #include "api/changes.h"
 #include "api/event_values.h"
+#include "api/job_out.h"
 #include "api/limits.h"
 #include "format/number.h"
 
@@ -61,6 +62,18 @@ void api_event_metadata(api_text *text, const api_mesh_info *info)
 void api_event_job(api_text *text, const api_text *data)
 {
     add_event(text, "job", data);
+}
+
+void api_event_job_state(api_text *text, const api_job *job)
+{
+    api_text data = {0};
+    api_out out;
+    api_out_init(&out, &data);
+    api_out_object_begin(&out);
+    api_write_job_state(&out, job);
+    api_out_object_end(&out);
+    add_event(text, "job", &data);
+    api_text_clear(&data);
 }
 
 void api_event_bye(api_text *text, const char *reason)

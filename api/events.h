@@ -5,7 +5,8 @@
  *     edit     a revision as a delta, exact: see event_values.h        the revision's
  *     metadata {"name":"..."}                                          (none)
  *     resync   {"revision":n,"reason":"..."}: fetch the mesh anew      present
- *     job      what GET of a job gives                                  (none)
+ *     job      what GET of a job gives; of a mesh's stream only
+ *              {"id":"...","state":"...","progress":n}, when one of it begins and ends   (none)
  *     bye      {"reason":"..."}: the stream ends                       (none)
  *
  * An id is INCARNATION.REVISION, the incarnation as an ETag spells it. An edit of more than
@@ -17,8 +18,7 @@
 #ifndef HE_API_EVENTS_H
 #define HE_API_EVENTS_H
 
-#include "api/store.h"
-#include "api/text.h"
+#include "api/jobs.h"
 
 /* What is sent when nothing happens: a comment. */
 #define API_EVENT_IDLE ":\n\n"
@@ -40,6 +40,8 @@ void api_event_metadata(api_text *text, const api_mesh_info *info);
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
 /* A job, as GET shows it: `data`. */
 void api_event_job(api_text *text, const api_text *data);
+/* How a job is, for those who listen to its mesh. */
+void api_event_job_state(api_text *text, const api_job *job);
 /* Reasons: "deleted", "stopping", and of a job's stream "ended". */
 void api_event_bye(api_text *text, const char *reason);
 

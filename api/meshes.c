@@ -34,9 +34,10 @@ static void write_item(api_exchange *x, api_mesh *mesh, api_mesh_info *info)
 }
 
 /* Of the whole server: it is here that a client sees what to delete. */
-static void write_memory(api_exchange *x)
+static void write_server(api_exchange *x)
 {
     uint64_t used, budget;
+    api_out_key_u64(&x->out, "listeners", x->store->listeners(x->store->self));
     if (x->service->options.memory != NULL) {
         x->service->options.memory(&used, &budget);
         api_out_key_u64(&x->out, "memory_bytes", used);
@@ -80,7 +81,7 @@ void api_meshes_list(api_exchange *x)
     } else {
         api_out_null(out);
     }
-    write_memory(x);
+    write_server(x);
     api_out_object_end(out);
     api_answer_json(x, 200);
 }

@@ -300,7 +300,7 @@ static const api_route routes[] = {
      .consumes = octets_too,
      .produces = json,
      .parameters = {&type, &components, &rule, &dry_run},
-     .statuses = {200, 201, 204, 412, 413, 415, 422},
+     .statuses = {200, 201, 204, 409, 412, 413, 415, 422},
      .request = "attribute",
      .response = "attribute_written",
      .summary = "Create an attribute, or replace it",
@@ -311,11 +311,11 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "attribute_patch",
      .run = api_attribute_patch,
-     .flags = API_WRITES | API_COSTLY | API_REHEARSED,
+     .flags = API_WRITES | API_COSTLY | API_KEYED | API_REHEARSED,
      .body_kind = API_BODY_EDITS,
      .consumes = json,
      .produces = json,
-     .statuses = {200, 204, 412, 413, 415, 422},
+     .statuses = {200, 204, 409, 412, 413, 415, 422},
      .request = "attribute_patch",
      .response = "attribute_written",
      .summary = "Write values by ids",
@@ -328,7 +328,7 @@ static const api_route routes[] = {
      .flags = API_WRITES | API_REHEARSED,
      .produces = json,
      .parameters = {&dry_run},
-     .statuses = {200, 204, 412},
+     .statuses = {200, 204, 409, 412},
      .response = "attribute_written",
      .summary = "Delete an attribute",
      .doc = "One revision, which can be undone."},
@@ -341,7 +341,8 @@ static const api_route routes[] = {
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
      .produces = octets_too,
-     .statuses = {200, 413, 415, 422},
+     .parameters = {&revision},
+     .statuses = {200, 410, 413, 415, 422},
      .request = "query",
      .response = "query_results",
      .summary = "Ask many questions at once",
@@ -354,7 +355,8 @@ static const api_route routes[] = {
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
      .produces = json,
-     .statuses = {200, 413, 415, 422},
+     .parameters = {&revision},
+     .statuses = {200, 410, 413, 415, 422},
      .request = "walk",
      .response = "walked",
      .summary = "Walk over a mesh",
@@ -461,8 +463,9 @@ static const api_route routes[] = {
      .statuses = {200},
      .summary = "Every change as it happens",
      .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
-            "link for link; `metadata` a new name; `resync` says to fetch the mesh anew, `bye` "
-            "that the stream ends. Last-Event-ID or `since` goes on where a client was cut off, "
+            "link for link; `metadata` a new name; `job` that one of this mesh has begun or ended; "
+            "`resync` says to fetch the mesh anew, `bye` that the stream ends. Last-Event-ID or "
+            "`since` goes on where a client was cut off, "
             "or gives one `resync` where the history does not reach."},
 
     /* jobs */

@@ -38,6 +38,7 @@ static const member answers[] = {
 
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"mesh_page", "listeners", "count", REQUIRED, "Clients that follow events of meshes."},
     {"mesh_page", "memory_bytes", "count", OPTIONAL, "What the whole server holds."},
     {"mesh_page", "memory_budget", "count", OPTIONAL, "What it may hold; 0: no limit is set."},
 
@@ -160,6 +161,10 @@ static const member answers[] = {
     {"attribute_written", "modified", "#sets", REQUIRED, "Empty where it came or went whole."},
     {"attribute_written", "parents", "#parents", REQUIRED, "Empty."},
     {"attribute_written", "merged", "#merged", REQUIRED, "Empty."},
+    {"attribute_written", "undoable", "flag", OPTIONAL,
+     "Only when false: it is larger than the undo budget. It cannot be undone, and neither can "
+     "what "
+     "came before."},
 
     {"element_page", "revision", "count", REQUIRED, NULL},
     {"element_page", "items", "*#element", REQUIRED, NULL},

@@ -109,8 +109,18 @@ static bool varies(const api_route *route)
            !(route->flags & API_FIXED);
 }
 
+/* Whoever has the answer in hand may write at once. */
+static void end_claim(api_exchange *x)
+{
+    if (x->claimed) {
+        x->store->unclaim(x->store->self, x->mesh);
+        x->claimed = false;
+    }
+}
+
 static api_step finish(api_exchange *x)
 {
+    end_claim(x);
     if (x->problem.code == HE_OK && !x->answered) {
         api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
                  x->route == NULL ? "-" : x->route->name);
@@ -411,9 +421,7 @@ void api_free(api_exchange *x)
     api_document_clear(&x->document);
     api_text_clear(&x->body);
     api_text_clear(&x->text);
-    if (x->claimed) {
-        x->store->unclaim(x->store->self, x->mesh);
-    }
+    end_claim(x);
     if (x->past != NULL) {
         x->store->snapshot_release(x->store->self, x->past);
     }

@@ -199,10 +199,11 @@ typedef struct api_store {
      * done to the copy. API_STORE_BUSY, API_STORE_ABSENT, API_STORE_NO_MEMORY. */
     api_store_status (*claim)(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
                               api_mesh_info *info);
-    /* Ends the claim as write_commit does, with the copy as the content: it is taken. Or ends it
-     * with API_STORE_ABSENT, where the mesh was removed meanwhile: it is not. */
+    /* Ends the claim as write_commit does, with the copy as the content: it is taken. `keyed` is
+     * the claim of a keyed request, or NULL. Or ends it with API_STORE_ABSENT, where the mesh was
+     * removed meanwhile: it is not. */
     api_store_status (*publish)(void *self, api_mesh *mesh, he_mesh *takes, const char *ops,
-                                bool barrier, api_mesh_info *info);
+                                bool barrier, const api_claim *keyed, api_mesh_info *info);
     /* Ends the claim with nothing done; what was recorded is forgotten. */
     void (*unclaim)(void *self, api_mesh *mesh);
 
@@ -210,6 +211,8 @@ typedef struct api_store {
      * the present revision, whose facts go to `info`. The caller frees the source. */
     api_store_status (*follow)(void *self, api_mesh *mesh, const api_since *since,
                                api_mesh_info *info, api_source *out);
+    /* How many follow a mesh of the store. */
+    size_t (*listeners)(void *self);
 
     /* --- the history, under the read lock: newest first; false past the end --- */
     bool (*history)(void *self, api_mesh *mesh, size_t i, struct api_entry *out);

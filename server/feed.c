@@ -37,6 +37,7 @@ static void drop_oldest(srv_feed *feed)
 {
     srv_message *message = message_at(feed, 0);
     feed->floor = message->place;
+    feed->floor_number++;
     feed->bytes -= message->length;
     feed->first = (feed->first + 1) & (feed->capacity - 1);
     feed->count--;
@@ -48,7 +49,6 @@ static void drop_all(srv_feed *feed)
     while (feed->count > 0) {
         drop_oldest(feed);
     }
-    feed->floor = feed->newest;
     he_mem_free(feed->ring);
     feed->ring = NULL;
     feed->capacity = 0;
@@ -119,13 +119,18 @@ static void wake_all(srv_feed *feed)
     }
 }
 
-/* Places are in the order of stamps: the first message after one. */
-static size_t first_after(const srv_feed *feed, uint64_t stamp)
+static uint64_t newest_number(const srv_feed *feed)
+{
+    return feed->floor_number + feed->count;
+}
+
+/* Places are in the order of stamps: the first message that may not be read. */
+static size_t first_forbidden(const srv_feed *feed)
 {
     size_t low = 0, high = feed->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (message_at(feed, middle)->place.stamp <= stamp) {
+        if (message_at(feed, middle)->place.stamp <= feed->allowed) {
             low = middle + 1;
         } else {
             high = middle;
@@ -151,32 +156,56 @@ bool srv_feed_is_followed(srv_feed *feed)
     return followed;
 }
 
-static srv_message *message_new(srv_place place, const char *bytes, size_t length)
+static srv_message *message_new(const char *bytes, size_t length)
 {
     srv_message *message =
         bytes == NULL || length > SRV_FEED_BYTES ? NULL : he_mem_alloc(sizeof *message + length);
     if (message != NULL) {
-        *message = (srv_message){.uses = 1, .place = place, .length = length};
+        *message = (srv_message){.uses = 1, .length = length};
         memcpy(message->bytes, bytes, length);
     }
     return message;
 }
 
-void srv_feed_add(srv_feed *feed, srv_place place, const char *bytes, size_t length)
+/* Takes the message, at the newest place; NULL: it is lost. */
+static void append(srv_feed *feed, srv_message *message)
 {
-    srv_message *message = message_new(place, bytes, length);
-    pthread_mutex_lock(&feed->lock);
-    assert(place.stamp > feed->newest.stamp && !feed->ended);
-    feed->newest = place;
     if (message == NULL || !reserve_place(feed)) {
         release(message);
         drop_all(feed);
+        feed->floor = feed->newest;
+        feed->floor_number++;
+        return;
+    }
+    message->place = feed->newest;
+    feed->ring[(feed->first + feed->count) & (feed->capacity - 1)] = message;
+    feed->count++;
+    feed->bytes += message->length;
+    while (feed->count > SRV_FEED_MESSAGES || feed->bytes > SRV_FEED_BYTES) {
+        drop_oldest(feed);
+    }
+}
+
+void srv_feed_add(srv_feed *feed, srv_place place, const char *bytes, size_t length)
+{
+    srv_message *message = message_new(bytes, length);
+    pthread_mutex_lock(&feed->lock);
+    assert(place.stamp > feed->newest.stamp && !feed->ended);
+    feed->newest = place;
+    append(feed, message);
+    pthread_mutex_unlock(&feed->lock);
+}
+
+void srv_feed_add_beside(srv_feed *feed, const char *bytes, size_t length)
+{
+    srv_message *message = message_new(bytes, length);
+    pthread_mutex_lock(&feed->lock);
+    if (feed->ended) {
+        release(message);
     } else {
-        feed->ring[(feed->first + feed->count) & (feed->capacity - 1)] = message;
-        feed->count++;
-        feed->bytes += length;
-        while (feed->count > SRV_FEED_MESSAGES || feed->bytes > SRV_FEED_BYTES) {
-            drop_oldest(feed);
+        append(feed, message);
+        if (feed->newest.stamp <= feed->allowed) {
+            wake_all(feed);
         }
     }
     pthread_mutex_unlock(&feed->lock);
@@ -224,7 +253,7 @@ bool srv_feed_listen(srv_feed *feed, srv_listener *listener, size_t most)
     pthread_mutex_lock(&feed->lock);
     bool room = feed->listeners < most;
     if (room) {
-        *listener = (srv_listener){.feed = feed, .stamp = feed->newest.stamp};
+        *listener = (srv_listener){.feed = feed, .number = newest_number(feed)};
         feed->listeners++;
     }
     pthread_mutex_unlock(&feed->lock);
@@ -236,14 +265,13 @@ bool srv_feed_rewind(srv_listener *listener, uint64_t key)
     srv_feed *feed = listener->feed;
     pthread_mutex_lock(&feed->lock);
     bool found = feed->floor.key == key;
-    uint64_t stamp = feed->floor.stamp;
+    uint64_t number = feed->floor_number;
     for (size_t i = 0; i < feed->count && !found; i++) {
-        const srv_message *message = message_at(feed, i);
-        found = message->place.key == key;
-        stamp = message->place.stamp;
+        found = message_at(feed, i)->place.key == key;
+        number++;
     }
     if (found) {
-        listener->stamp = stamp;
+        listener->number = number;
     }
     pthread_mutex_unlock(&feed->lock);
     return found;
@@ -273,21 +301,20 @@ void srv_feed_leave(srv_listener *listener)
 /* The next message it may read becomes the one it is in the middle of. */
 static srv_feed_step next_message(srv_feed *feed, srv_listener *listener)
 {
-    if (listener->stamp < feed->floor.stamp) {
+    if (listener->number < feed->floor_number) {
         return feed->floor.stamp <= feed->allowed ? SRV_FEED_BEHIND : SRV_FEED_WAIT;
     }
-    size_t i = first_after(feed, listener->stamp);
-    if (i == feed->count) {
-        return feed->ended && listener->stamp <= feed->allowed ? SRV_FEED_ENDED : SRV_FEED_WAIT;
+    if (listener->number == newest_number(feed)) {
+        return feed->ended && feed->newest.stamp <= feed->allowed ? SRV_FEED_ENDED : SRV_FEED_WAIT;
     }
-    srv_message *message = message_at(feed, i);
+    srv_message *message = message_at(feed, (size_t)(listener->number - feed->floor_number));
     if (message->place.stamp > feed->allowed) {
         return SRV_FEED_WAIT;
     }
     message->uses++;
     listener->message = message;
     listener->sent = 0;
-    listener->stamp = message->place.stamp;
+    listener->number++;
     return SRV_FEED_GOT;
 }
 
@@ -333,9 +360,9 @@ srv_place srv_feed_skip(srv_listener *listener)
 {
     srv_feed *feed = listener->feed;
     pthread_mutex_lock(&feed->lock);
-    size_t i = first_after(feed, feed->allowed);
+    size_t i = first_forbidden(feed);
     srv_place place = i == 0 ? feed->floor : message_at(feed, i - 1)->place;
-    listener->stamp = place.stamp;
+    listener->number = feed->floor_number + i;
     pthread_mutex_unlock(&feed->lock);
     return place;
 }

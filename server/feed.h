@@ -2,7 +2,8 @@
  *
  * A feed is a bounded queue of messages that any number of listeners read, each at its own pace.
  * Messages are bytes; what they mean is their maker's business. Each has a place: a stamp, which
- * grows with every message, and a key, which need not.
+ * grows with every message of a change, and a key, which need not. What is no change is put beside
+ * the newest one, at its place. Listeners go by numbers, which have no gaps.
  *
  *        floor                                     newest
  *          |    [m] [m] [m] [m] [m] [m] [m]          |
@@ -37,7 +38,7 @@ typedef struct srv_message srv_message;
  * srv_feed_leave. */
 typedef struct srv_listener {
     struct srv_feed *feed; /* NULL: it listens to none */
-    uint64_t stamp;        /* of the message it read last, or is reading */
+    uint64_t number;       /* of the message it read last, or is reading */
     srv_message *message;  /* being read, NULL: none */
     size_t sent;           /* of it */
     void (*wake)(void *context);
@@ -52,6 +53,7 @@ typedef struct srv_feed {
     size_t capacity, first, count;
     size_t bytes;            /* of messages */
     srv_place floor, newest; /* the last that is not in the ring, and the last of all */
+    uint64_t floor_number;   /* the ring holds those after it, up to the newest */
     uint64_t allowed;        /* stamps up to here may be read */
     bool ended;              /* nothing comes after `newest` */
     size_t listeners;
@@ -68,6 +70,8 @@ void srv_feed_clear(srv_feed *feed);
 bool srv_feed_is_followed(srv_feed *feed);
 /* Add a message; its bytes are copied. NULL bytes, or no memory: who reads up to here is behind. */
 void srv_feed_add(srv_feed *feed, srv_place place, const char *bytes, size_t length);
+/* The same at the place of the newest message. After the end it is left out. */
+void srv_feed_add_beside(srv_feed *feed, const char *bytes, size_t length);
 /* The newest stamp. */
 uint64_t srv_feed_newest(srv_feed *feed);
 /* Messages up to this stamp may be read: wakes who waits. */

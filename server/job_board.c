@@ -140,9 +140,12 @@ static void keep_answer(srv_job *j)
 static void end(srv_job *j)
 {
     srv_board *board = j->board;
+    srv_store *store = board->options.store;
+    char mesh[API_MESH_ID + 1];
     api_free(j->work);
     pthread_mutex_lock(&board->lock);
     j->work = NULL;
+    memcpy(mesh, j->facts.mesh, sizeof mesh); /* of which it was told that the job began */
     const char *slash = strrchr(j->facts.location, '/');
     if (slash != NULL && strlen(slash + 1) <= API_MESH_ID) {
         memcpy(j->facts.mesh, slash + 1, strlen(slash + 1) + 1);
@@ -155,14 +158,33 @@ static void end(srv_job *j)
     j->facts.finished = srv_clock_utc();
     board->bytes += j->facts.length;
     srv_job_wake(j);
+    api_job facts = j->facts;
     tidy(board, 0);
     srv_job_release(j);
     pthread_mutex_unlock(&board->lock);
+    srv_store_tell_job(store, mesh, &facts);
+}
+
+/* Nobody is told that something was done which the journal may never have. */
+static void lose_answer(srv_job *j)
+{
+    pthread_mutex_lock(&j->board->lock);
+    he_mem_free(j->body);
+    j->body = NULL;
+    j->facts.body = NULL;
+    j->facts.length = 0;
+    j->facts.location[0] = '\0';
+    j->facts.status = 503;
+    pthread_mutex_unlock(&j->board->lock);
 }
 
 static void resume(srv_hold *hold)
 {
-    end((srv_job *)((char *)hold - offsetof(srv_job, hold)));
+    srv_job *j = (srv_job *)((char *)hold - offsetof(srv_job, hold));
+    if (hold->abandoned) {
+        lose_answer(j);
+    }
+    end(j);
 }
 
 /* D1: the end is not shown before it is durable. */
@@ -173,9 +195,10 @@ static void end_when_durable(srv_job *j)
     if (answer->mesh != NULL && !srv_store_is_durable(store, answer->mesh, answer->record)) {
         atomic_store(&j->phase, "storing");
         j->hold = (srv_hold){.mesh = answer->mesh, .record = answer->record, .resume = resume};
-        if (srv_held_add(srv_store_held(store), &j->hold)) {
-            return;
+        if (!srv_held_add(srv_store_held(store), &j->hold)) {
+            resume(&j->hold);
         }
+        return;
     }
     end(j);
 }
@@ -186,10 +209,12 @@ static void run(void *context)
     srv_board *board = j->board;
     pthread_mutex_lock(&board->lock);
     bool wanted = j->facts.state == API_JOB_QUEUED;
+    api_job facts = {.number = 0};
     if (wanted) {
         j->facts.state = API_JOB_RUNNING;
         j->facts.started = srv_clock_utc();
         srv_job_wake(j);
+        facts = *srv_job_facts(j);
     } else {
         srv_job_release(j);
     }
@@ -197,6 +222,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
+    srv_store_tell_job(board->options.store, facts.mesh, &facts);
     api_watch(j->work, tell, j);
     api_work(j->work);
     pthread_mutex_lock(&board->lock);
@@ -318,6 +344,7 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
 {
     srv_board *board = self;
     api_exchange *over = NULL;
+    api_job facts = {.number = 0};
     pthread_mutex_lock(&board->lock);
     tidy(board, 0);
     srv_job *j = srv_job_find(board, id);
@@ -327,11 +354,15 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
             forget(board, j);
         } else {
             over = cancel(j);
-            show(context, srv_job_facts(j));
+            facts = *srv_job_facts(j);
+            show(context, &facts);
         }
     }
     pthread_mutex_unlock(&board->lock);
-    api_free(over);
+    if (over != NULL) {
+        api_free(over);
+        srv_store_tell_job(board->options.store, facts.mesh, &facts);
+    }
     return j != NULL;
 }
 
@@ -345,14 +376,24 @@ api_jobs srv_board_interface(srv_board *board)
                       .follow = srv_job_follow};
 }
 
-void srv_board_stop(srv_board *board)
+/* What is left of some job that waited; NULL when none does. */
+static api_exchange *cancel_one(srv_board *board)
 {
+    api_exchange *work = NULL;
     pthread_mutex_lock(&board->lock);
     board->stopped = true;
-    for (srv_job *j = board->first; j != NULL; j = j->next) {
-        api_free(cancel(j));
+    for (srv_job *j = board->first; j != NULL && work == NULL; j = j->next) {
+        work = cancel(j);
     }
     pthread_mutex_unlock(&board->lock);
+    return work;
+}
+
+void srv_board_stop(srv_board *board)
+{
+    for (api_exchange *work; (work = cancel_one(board)) != NULL;) {
+        api_free(work);
+    }
 }
 
 void srv_board_free(srv_board *board)

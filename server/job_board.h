@@ -5,7 +5,9 @@
  * is kept for a while, within SRV_JOBS_KEPT jobs and SRV_JOBS_BYTES of answers: the ones that ended
  * first go first. Everything else of it is freed before it shows its end.
  *
- * One lock, held for as long as it takes to copy an answer. Progress goes past it. */
+ * One lock, held for as long as it takes to copy an answer. Progress goes past it. It is taken by
+ * those who hold a mesh's, when progress has come far enough for listeners: so no mesh's is taken
+ * under it, and no work freed. */
 #ifndef HE_SERVER_JOB_BOARD_H
 #define HE_SERVER_JOB_BOARD_H
 

@@ -88,6 +88,17 @@ void srv_events_publish(api_mesh *mesh, const srv_record *record)
     api_text_clear(&text);
 }
 
+void srv_events_job(api_mesh *mesh, const api_job *job)
+{
+    api_text text = {0};
+    if (srv_feed_is_followed(&mesh->feed)) {
+        api_event_job_state(&text, job);
+        srv_feed_add_beside(&mesh->feed, text.failed ? NULL : text.bytes, text.length);
+        allow(mesh);
+        api_text_clear(&text);
+    }
+}
+
 /* --- listening --- */
 
 typedef struct stream {

@@ -3,10 +3,12 @@
  * Each change is rendered once, under the mesh's write lock, when it gets its number, and put into
  * the mesh's feed under that number; who listens gets it when the journal has it (D1). While nobody
  * listens nothing is rendered. Who was cut off and comes back goes on from the feed, from the
- * history (catch_up.h), or, when neither reaches that far, after one `resync`. */
+ * history (catch_up.h), or, when neither reaches that far, after one `resync`. Jobs are told beside
+ * the changes, and are not in the history. */
 #ifndef HE_SERVER_MESH_EVENTS_H
 #define HE_SERVER_MESH_EVENTS_H
 
+#include "api/jobs.h"
 #include "server/stored_mesh.h"
 
 /* What the meshes of a store share. */
@@ -20,6 +22,9 @@ typedef struct srv_events {
 
 /* Under the mesh's write lock: this change has just been made. */
 void srv_events_publish(api_mesh *mesh, const srv_record *record);
+
+/* Without a lock: a job that is about the mesh has begun or ended. */
+void srv_events_job(api_mesh *mesh, const api_job *job);
 
 /* The member of api_store. */
 api_store_status srv_follow(void *self, api_mesh *mesh, const api_since *since, api_mesh_info *info,

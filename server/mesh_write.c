@@ -112,7 +112,7 @@ static void end_claim(api_mesh *mesh)
 }
 
 api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const char *ops,
-                             bool barrier, api_mesh_info *info)
+                             bool barrier, const api_claim *keyed, api_mesh_info *info)
 {
     (void)self;
     pthread_rwlock_wrlock(&mesh->lock);
@@ -124,6 +124,7 @@ api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const
     he_delta *delta = he_mesh_record(content, NULL);
     assert(mesh->claimed && mesh->discard == NULL);
     mesh->claimed = false;
+    mesh->claim = keyed;
     mesh->discard = mesh->content;
     mesh->content = content;
     commit(mesh, delta, ops, barrier, info);

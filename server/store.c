@@ -269,6 +269,12 @@ static void claim_end(void *self, api_claim *claim)
     srv_keys_end(claim);
 }
 
+static size_t listeners(void *self)
+{
+    srv_store *store = self;
+    return atomic_load(&store->events.count);
+}
+
 static uint64_t random_number(void *self)
 {
     (void)self;
@@ -317,6 +323,7 @@ api_store srv_store_interface(srv_store *store)
         .keep = keep,
         .claim_end = claim_end,
         .follow = srv_follow,
+        .listeners = listeners,
         .history = srv_history,
         .history_facts = srv_history_facts,
     };
@@ -336,6 +343,15 @@ void srv_store_listen(srv_store *store, void (*notify)(void *context), void *con
 srv_held *srv_store_held(srv_store *store)
 {
     return store->events.held;
+}
+
+void srv_store_tell_job(srv_store *store, const char *mesh, const api_job *job)
+{
+    api_mesh *found;
+    if (find(store, mesh, &found) == API_STORE_OK) {
+        srv_events_job(found, job);
+        srv_mesh_release(found);
+    }
 }
 
 size_t srv_store_count(srv_store *store)

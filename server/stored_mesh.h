@@ -92,7 +92,7 @@ void srv_write_end(void *self, api_mesh *mesh);
 api_store_status srv_claim(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
                            api_mesh_info *info);
 api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const char *ops,
-                             bool barrier, api_mesh_info *info);
+                             bool barrier, const api_claim *keyed, api_mesh_info *info);
 void srv_unclaim(void *self, api_mesh *mesh);
 void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
 void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);

@@ -663,6 +663,49 @@ static void what_changes_nothing_makes_no_revision(void **state)
     bench_free(b);
 }
 
+static const char FLAG[] = "/v1/meshes/m/attributes/faces/a";
+
+static void what_cannot_be_undone_says_so(void **state)
+{
+    (void)state;
+    static const char *const dry[] = {",\"dry_run\":true", ""};
+    static const int then[] = {200, 410};
+    api_bench *b = bench_new_within(4000);
+    send(b, 201, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
+    send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
+    for (int i = 0; i < 2; i++) {
+        char body[80];
+        snprintf(body, sizeof body, "{\"ids\":\"all\",\"value\":true%s}", dry[i]);
+        bench_reply r = expect(200, bench_send(b, "PATCH", FLAG, NULL, body));
+        assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
+        bench_reply_free(&r);
+        send(b, then[i], "GET", "/v1/meshes/m?revision=2", NULL);
+    }
+    send(b, 409, "POST", "/v1/meshes/m/undo", NULL);
+    bench_free(b);
+}
+
+static void the_history_counts_what_was_written(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    send(b, 201, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
+    send(b, 200, "PATCH", FLAG, "{\"ids\":[1,2],\"value\":true}");
+    send(b, 200, "DELETE", FLAG, NULL);
+    bench_reply r = expect(200, bench_send(b, "GET", "/v1/meshes/m/edits", NULL, NULL));
+    static const int modified[] = {0, 2, 0};
+    const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
+    for (size_t i = 0; i < 3; i++, entry = entry->next) {
+        const cJSON *sets = cJSON_GetObjectItem(entry, "modified");
+        assert_non_null(sets);
+        assert_int_equal(cJSON_GetObjectItem(sets, "faces")->valueint, modified[i]);
+    }
+    assert_null(entry);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 static void there_is_a_largest_number_of_attributes(void **state)
 {
     (void)state;
@@ -714,6 +757,8 @@ int main(void)
         cmocka_unit_test(documents_are_read_whole_or_not_at_all),
         cmocka_unit_test(sets_stand_for_lists),
         cmocka_unit_test(what_changes_nothing_makes_no_revision),
+        cmocka_unit_test(what_cannot_be_undone_says_so),
+        cmocka_unit_test(the_history_counts_what_was_written),
         cmocka_unit_test(there_is_a_largest_number_of_attributes),
         cmocka_unit_test(a_page_leads_to_the_next),
     };

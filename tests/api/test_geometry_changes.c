@@ -287,12 +287,25 @@ static bool run_one(world *w, he_mesh *m, bool *barrier)
     return status == HE_OK;
 }
 
+/* As a long edit begins. */
+static he_mesh *claim(world *w, he_delta **delta)
+{
+    api_mesh_info info;
+    const he_mesh *content;
+    he_mesh *copy = NULL;
+    assert_int_equal(w->store->claim(w->store->self, w->mesh, &content, delta, &info),
+                     API_STORE_OK);
+    assert_int_equal(he_mesh_copy(content, &copy, NULL), HE_OK);
+    he_mesh_record(copy, *delta);
+    return copy;
+}
+
 static void edit(world *w)
 {
     const api_store *s = w->store;
-    bool barrier = false;
+    bool barrier = false, claimed = md_chance(&w->r, 20);
     he_delta *delta = NULL;
-    he_mesh *m = s->write_begin(s->self, w->mesh, NULL, &delta);
+    he_mesh *m = claimed ? claim(w, &delta) : s->write_begin(s->self, w->mesh, NULL, &delta);
     assert_non_null(m);
     uint32_t batch = md_chance(&w->r, 70) ? 1 : md_from(&w->r, 2, 6);
     for (uint32_t i = 0; i < batch && !barrier; i++) {
@@ -300,7 +313,14 @@ static void edit(world *w)
         w->done += good;
         w->refused += !good;
     }
-    if (delta->count == 0) {
+    if (claimed && delta->count == 0) {
+        s->unclaim(s->self, w->mesh);
+        he_mesh_free(m);
+    } else if (claimed) {
+        api_mesh_info info;
+        assert_int_equal(s->publish(s->self, w->mesh, m, "random", barrier, NULL, &info),
+                         API_STORE_OK);
+    } else if (delta->count == 0) {
         s->write_abort(s->self, w->mesh);
     } else {
         s->write_commit(s->self, w->mesh, "random", barrier, NULL);

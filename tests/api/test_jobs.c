@@ -311,6 +311,31 @@ static void a_refused_long_edit_gives_the_mesh_back(void **state)
     bench_reply_free(&r);
 }
 
+/* The answers are still being read, and their exchanges are there. */
+static void who_has_the_answer_to_a_long_edit_may_write(void **state)
+{
+    (void)state;
+    static const struct {
+        int status;
+        const char *body;
+    } unpublished[] = {
+        {412, "{\"expected_revision\":9,\"ops\":[" TRANSFORM "]}"},
+        {200, "{\"dry_run\":true,\"ops\":[" TRANSFORM "]}"},
+        {422, "{\"ops\":[" TRANSFORM ",{\"op\":\"edge_flip\",\"edge\":0}]}"},
+    };
+    static const char *const patient[] = {"Prefer", "wait=20", NULL};
+    bench_reply replies[3];
+    send(201, "PUT", "/v1/meshes/m", LARGE);
+    for (size_t i = 0; i < 3; i++) {
+        replies[i] = expect(unpublished[i].status, "POST", "/v1/meshes/m/edits", patient,
+                            unpublished[i].body);
+        send(200, "PATCH", "/v1/meshes/m", "{}");
+    }
+    for (size_t i = 0; i < 3; i++) {
+        bench_reply_free(&replies[i]);
+    }
+}
+
 static void a_mesh_may_be_deleted_under_a_long_edit(void **state)
 {
     (void)state;
@@ -584,6 +609,7 @@ int main(void)
         JOB_TEST(a_long_edit_keeps_writers_out_and_lets_readers_in),
         JOB_TEST(a_long_edit_is_undone_in_one_step_to_the_same_bits),
         JOB_TEST(a_refused_long_edit_gives_the_mesh_back),
+        JOB_TEST(who_has_the_answer_to_a_long_edit_may_write),
         JOB_TEST(a_mesh_may_be_deleted_under_a_long_edit),
         JOB_TEST(compact_as_a_job_ends_the_undo_stack),
         JOB_TEST(a_dry_run_changes_nothing_as_a_job_either),

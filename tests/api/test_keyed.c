@@ -228,6 +228,62 @@ static void a_huge_answer_is_given_again_without_its_body(void **state)
     bench_free(b);
 }
 
+static bench_reply keyed_job(api_bench *b, const char *body)
+{
+    return bench_send(b, "POST", "/v1/meshes/m/edits",
+                      (const char *const[]){"Idempotency-Key", "k", "Prefer", "respond-async", NULL},
+                      body);
+}
+
+static void a_key_is_busy_while_its_job_is_and_then_gives_its_answer(void **state)
+{
+    (void)state;
+    static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
+    api_bench *b = begin();
+    bench_reply job = expect(202, keyed_job(b, poke));
+    refused(409, "idempotency_in_progress", keyed(b, "POST", "/v1/meshes/m/edits", "k", poke));
+    refused(409, "idempotency_in_progress", keyed_job(b, poke));
+    refused(422, "idempotency_mismatch", keyed(b, "POST", "/v1/meshes/m/undo", "k", NULL));
+    bench_run_jobs(b, 1);
+    bench_reply kept = expect(200, get(b, bench_header(&job, "Location")));
+    bench_reply again = expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke));
+    assert_string_equal(bench_header(&again, "Idempotency-Replayed"), "true");
+    assert_true(cJSON_Compare(cJSON_GetObjectItem(kept.json, "result"), again.json, true));
+    done(expect(200, keyed_job(b, poke)));
+    assert_int_equal(revision(b), 6);
+    bench_reply_free(&job);
+    bench_reply_free(&kept);
+    bench_reply_free(&again);
+    bench_free(b);
+}
+
+static void a_job_that_came_to_nothing_gives_its_key_back(void **state)
+{
+    (void)state;
+    static const char wrong[] = "{\"op\":\"face_poke\",\"face\":99}";
+    static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
+    api_bench *b = begin();
+    done(expect(202, keyed_job(b, wrong)));
+    bench_run_jobs(b, 1);
+    bench_reply job = expect(202, keyed_job(b, poke));
+    done(expect(202, bench_send(b, "DELETE", bench_header(&job, "Location"), NULL, NULL)));
+    bench_reply_free(&job);
+    bench_run_jobs(b, 1);
+    bench_limit_jobs(b, 0);
+    refused(503, "too_many_jobs", keyed_job(b, poke));
+    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
+    assert_int_equal(revision(b), 6);
+    /* The mesh, and its keys with it, may go while one is busy. */
+    bench_limit_jobs(b, 1);
+    done(expect(202, bench_send(b, "POST", "/v1/meshes/m/edits",
+                                (const char *const[]){"Idempotency-Key", "other", "Prefer",
+                                                      "respond-async", NULL},
+                                "{\"op\":\"face_poke\",\"face\":5}")));
+    done(expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
+    bench_run_jobs(b, 1);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -237,6 +293,8 @@ int main(void)
         cmocka_unit_test(a_refusal_may_be_tried_again),
         cmocka_unit_test(undo_forgets_no_key_and_removal_all),
         cmocka_unit_test(a_huge_answer_is_given_again_without_its_body),
+        cmocka_unit_test(a_key_is_busy_while_its_job_is_and_then_gives_its_answer),
+        cmocka_unit_test(a_job_that_came_to_nothing_gives_its_key_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -302,6 +302,76 @@ static void dense_answers_are_offsets_and_ids(void **state)
     for_each_specimen(try_dense);
 }
 
+static bench_reply require(int status, bench_reply r)
+{
+    if (r.status != status) {
+        fail_msg("%d instead of %d: %s", r.status, status, r.body);
+    }
+    return r;
+}
+
+static void done(bench_reply r)
+{
+    bench_reply_free(&r);
+}
+
+/* As octets, in problems of single questions, and of a walk. */
+static void questions_are_of_the_revision(void **state)
+{
+    (void)state;
+    static const char *const octets[] = {"Accept", "application/octet-stream", NULL};
+    static const char gone[] = "{\"queries\":[{\"get\":{\"face\":1}},{\"get\":{\"face\":8}}]}";
+    static const char dense[] =
+        "{\"queries\":[{\"relation\":\"edges\",\"of\":{\"faces\":\"all\"}}]}";
+    static const char walk[] = "{\"walk\":\"breadth_first\",\"from\":{\"face\":1}}";
+    static const struct {
+        int revision;
+        const char *first, *second; /* codes; NULL: there it is */
+        int faces, walked;          /* 0: refused */
+    } rows[] = {{1, NULL, "no_such_element", 6, 6},
+                {2, NULL, NULL, 9, 9},
+                {3, "deleted_element", NULL, 8, 0},
+                {4, NULL, NULL, 9, 9}};
+    api_bench *b = bench_new();
+    static const char *const past[][2] = {
+        {"/v1/meshes?id=p", "{\"shape\":\"cube\"}"},
+        {"/v1/meshes/p/edits", "{\"op\":\"face_poke\",\"face\":0}"},
+        {"/v1/meshes/p/edits", "{\"op\":\"face_delete\",\"face\":1}"},
+        {"/v1/meshes/p/undo", NULL},
+    };
+    for (size_t i = 0; i < sizeof past / sizeof *past; i++) {
+        done(require(i == 0 ? 201 : 200, bench_send(b, "POST", past[i][0], NULL, past[i][1])));
+    }
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char target[80];
+        snprintf(target, sizeof target, "/v1/meshes/p/query?revision=%d", rows[i].revision);
+        bench_reply r = require(200, bench_send(b, "POST", target, NULL, gone));
+        assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, rows[i].revision);
+        const cJSON *result = cJSON_GetObjectItem(r.json, "results")->child;
+        const char *const codes[] = {rows[i].first, rows[i].second};
+        for (int q = 0; q < 2; q++, result = result->next) {
+            const cJSON *code = cJSON_GetObjectItem(result, "code");
+            assert_string_equal(code == NULL ? "" : code->valuestring,
+                                codes[q] == NULL ? "" : codes[q]);
+        }
+        done(r);
+        snprintf(target, sizeof target, "/v1/meshes/p/query?revision=%d", rows[i].revision);
+        r = require(200, bench_send(b, "POST", target, octets, dense));
+        uint32_t end;
+        memcpy(&end, r.body + 4 * (size_t)rows[i].faces, sizeof end);
+        assert_int_equal(r.length, 4 * ((size_t)rows[i].faces + 1 + end));
+        done(r);
+        snprintf(target, sizeof target, "/v1/meshes/p/traverse?revision=%d", rows[i].revision);
+        r = require(rows[i].walked == 0 ? 422 : 200, bench_send(b, "POST", target, NULL, walk));
+        assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "ids")), rows[i].walked);
+        done(r);
+    }
+    done(require(404, bench_send(b, "POST", "/v1/meshes/p/query?revision=5", NULL, gone)));
+    done(require(404, bench_send(b, "POST", "/v1/meshes/p/traverse?revision=5", NULL, walk)));
+    done(require(400, bench_send(b, "POST", "/v1/meshes/p/traverse?revision=0", NULL, walk)));
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -312,6 +382,7 @@ int main(void)
         cmocka_unit_test(lines_give_all_elements_and_their_count),
         cmocka_unit_test(queries_answer_in_order),
         cmocka_unit_test(dense_answers_are_offsets_and_ids),
+        cmocka_unit_test(questions_are_of_the_revision),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -197,6 +197,16 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/components?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/check?revision=1", 410, NULL, {NULL}},
     {"POST", "/v1/meshes/m/copy?revision=1", 410, NULL, {NULL}},
+    {"POST",
+     "/v1/meshes/m/query?revision=1",
+     410,
+     "{\"queries\":[{\"get\":{\"edge\":0}}]}",
+     {NULL}},
+    {"POST",
+     "/v1/meshes/m/traverse?revision=1",
+     410,
+     "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}",
+     {NULL}},
     {"GET", "/v1/meshes/m/attributes?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/attributes/faces/selected?revision=1", 410, NULL, {NULL}},
 
@@ -205,8 +215,16 @@ static const step steps[] = {
     {"POST", "/v1/meshes/m/copy", 202, NULL, {ASYNC}},
     {"POST", "/v1/meshes/m/edits", 202, "{\"op\":\"face_poke\",\"face\":1}", {ASYNC}},
     {"PUT", "/v1/meshes/large", 201, LARGE, {NULL}},
+    {"PUT", "/v1/meshes/large/attributes/faces/a", 201, "{\"type\":\"bool\"}", {NULL}},
     {"POST", "/v1/meshes/large/edits", 202, "{\"op\":\"compact\"}", {ASYNC}},
     {"POST", "/v1/meshes/large/edits", 409, "{\"op\":\"face_poke\",\"face\":1}", {NULL}},
+    {"PUT", "/v1/meshes/large/attributes/faces/a", 409, "{\"type\":\"bool\"}", {NULL}},
+    {"PATCH",
+     "/v1/meshes/large/attributes/faces/a",
+     409,
+     "{\"ids\":[0],\"value\":true}",
+     {NULL}},
+    {"DELETE", "/v1/meshes/large/attributes/faces/a", 409, NULL, {NULL}},
     {"PATCH", "/v1/meshes/large", 409, "{\"name\":\"x\"}", {NULL}},
     {"PUT", "/v1/meshes/large", 409, CUBE, {NULL}},
     {"GET", "/v1/jobs", 200, NULL, {NULL}},
@@ -378,6 +396,9 @@ static void test_each_declared_status(void **state)
     take_keyed(b, "POST", "/v1/meshes", CUBE);
     take_keyed(b, "PATCH", "/v1/meshes/m", "{\"name\":\"z\"}");
     take_keyed(b, "POST", "/v1/meshes/m/copy", "{}");
+    static const char flag[] = "{\"type\":\"bool\"}";
+    take(b, "PUT", "/v1/meshes/m/attributes/faces/a", 201, NULL, flag, sizeof flag - 1);
+    take_keyed(b, "PATCH", "/v1/meshes/m/attributes/faces/a", "{\"ids\":[0],\"value\":true}");
     take_keyed_edits(b);
     take_job(b);
     size_t missing = 0;

@@ -3,6 +3,8 @@
 #include "tests/unit/fixture.h"
 
 #include "server/clock.h"
+#include "server/held.h"
+#include "server/idempotency.h"
 #include "server/job_board.h"
 #include "server/jobs.h"
 #include "server/memory.h"
@@ -18,6 +20,7 @@
 
 static struct {
     _Atomic bool behind;
+    char key[16]; /* of the newest record */
     void (*notify)(void *context);
     void *context;
 } slow;
@@ -25,7 +28,7 @@ static struct {
 static void slow_append(void *self, const srv_record *record)
 {
     (void)self;
-    (void)record;
+    snprintf(slow.key, sizeof slow.key, "%s", record->claim == NULL ? "" : record->claim->key);
 }
 
 static uint64_t slow_durable(void *self, const char *id, uint64_t incarnation)
@@ -56,6 +59,8 @@ static srv_jobs *pool;
 static srv_board *board;
 static api_jobs jobs;
 static api_service *service;
+
+static const char *key; /* of the requests; NULL: none */
 
 static bool submit(void *context, void (*work)(void *context), void *argument)
 {
@@ -99,9 +104,10 @@ static int stop(void **state)
 static const char *header(void *context, const char *name)
 {
     (void)context;
-    return strcmp(name, "Prefer") == 0         ? "respond-async"
-           : strcmp(name, "Content-Type") == 0 ? "application/json"
-                                               : NULL;
+    return strcmp(name, "Prefer") == 0            ? "respond-async"
+           : strcmp(name, "Content-Type") == 0    ? "application/json"
+           : strcmp(name, "Idempotency-Key") == 0 ? key
+                                                  : NULL;
 }
 
 /* 202; the job's id goes to `id`. */
@@ -237,6 +243,51 @@ static void an_end_is_shown_when_it_is_durable(void **state)
     assert_int_equal(look(first).status, 201);
 }
 
+static void what_is_never_durable_was_not_done(void **state)
+{
+    (void)state;
+    char id[API_JOB_ID + 1], late[API_JOB_ID + 1];
+    slow.behind = true;
+    assert_int_equal(post("/v1/meshes", CUBE, id), 202);
+    while (strcmp(look(id).phase, "storing") != 0) {
+    }
+    srv_held_abandon(srv_store_held(store));
+    assert_int_equal(post("/v1/meshes", CUBE, late), 202);
+    const char *const ids[] = {id, late};
+    for (int i = 0; i < 2; i++) {
+        api_job job = wait_for(ids[i], API_JOB_DONE);
+        assert_int_equal(job.state, API_JOB_FAILED);
+        assert_int_equal(job.status, 503);
+        assert_null(job.body);
+        assert_string_equal(job.location, "");
+    }
+}
+
+static void the_record_of_a_job_carries_its_key(void **state)
+{
+    (void)state;
+    static const char *const edits[] = {
+        "{\"op\":\"face_poke\",\"face\":0}",
+        "{\"op\":\"transform\",\"matrix\":[2,0,0,1,0,3,0,0,0,0,1,0,0,0,0,1]}",
+        "{\"op\":\"compact\"}",
+    };
+    char id[API_JOB_ID + 1], path[API_JOB_LOCATION + 8];
+    key = "create";
+    assert_int_equal(post("/v1/meshes", MIDDLE, id), 202);
+    api_job job = wait_for(id, API_JOB_DONE);
+    assert_string_equal(slow.key, key);
+    snprintf(path, sizeof path, "%s/edits", job.location);
+    for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+        char name[] = "edit0";
+        name[4] = (char)('0' + i);
+        key = name;
+        assert_int_equal(post(path, edits[i], id), 202);
+        assert_int_equal(wait_for(id, API_JOB_DONE).state, API_JOB_DONE);
+        assert_string_equal(slow.key, key);
+        key = NULL;
+    }
+}
+
 static void what_ended_is_forgotten_in_time(void **state)
 {
     (void)state;
@@ -289,6 +340,8 @@ int main(void)
         BOARD_TEST(cancelling_gives_the_memory_back),
         BOARD_TEST(beyond_the_queue_jobs_are_refused),
         BOARD_TEST(an_end_is_shown_when_it_is_durable),
+        BOARD_TEST(what_is_never_durable_was_not_done),
+        BOARD_TEST(the_record_of_a_job_carries_its_key),
         BOARD_TEST(only_so_many_are_kept),
         BOARD_TEST(a_stop_ends_what_waits_and_what_runs),
         cmocka_unit_test(what_ended_is_forgotten_in_time),

@@ -114,6 +114,39 @@ static void what_is_not_allowed_is_not_read(void **state)
     srv_feed_leave(&listener);
 }
 
+static void what_is_beside_a_message_comes_after_it(void **state)
+{
+    (void)state;
+    srv_listener listener, late;
+    unsigned wakes = 0;
+    join(&listener, &wakes);
+    srv_feed_allow(&feed, 7);
+    assert_reads(&listener, "");
+    srv_feed_add_beside(&feed, "a;", 2);
+    assert_int_equal(wakes, 1);
+    add(8, 4);
+    srv_feed_add_beside(&feed, "b;", 2);
+    srv_feed_add_beside(&feed, "c;", 2);
+    assert_reads(&listener, "a;"); /* what is beside 8 shows it */
+    assert_int_equal(wakes, 1);
+    add(9, 5);
+    srv_feed_allow(&feed, 9);
+    assert_reads(&listener, "8;b;c;9;");
+    join(&late, &wakes);
+    assert_true(srv_feed_rewind(&late, 4));
+    assert_reads(&late, "b;c;9;");
+    assert_true(srv_feed_rewind(&late, 3));
+    assert_reads(&late, "a;8;b;c;9;");
+    srv_feed_add_beside(&feed, NULL, 0);
+    assert_step(&listener, SRV_FEED_BEHIND);
+    assert_int_equal(srv_feed_skip(&listener).key, 5);
+    srv_feed_end(&feed);
+    srv_feed_add_beside(&feed, "d;", 2);
+    assert_step(&listener, SRV_FEED_ENDED);
+    srv_feed_leave(&listener);
+    srv_feed_leave(&late);
+}
+
 static void who_is_slow_is_behind_once(void **state)
 {
     (void)state;
@@ -345,10 +378,15 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = {
-        TEST(everybody_reads_everything_once),   TEST(what_is_not_allowed_is_not_read),
-        TEST(who_is_slow_is_behind_once),        TEST(bytes_are_bounded_too),
-        TEST(a_listener_goes_back_to_a_key),     TEST(only_so_many_may_listen),
-        TEST(a_message_without_memory_is_a_gap), TEST(threads_read_what_one_writes),
+        TEST(everybody_reads_everything_once),
+        TEST(what_is_not_allowed_is_not_read),
+        TEST(what_is_beside_a_message_comes_after_it),
+        TEST(who_is_slow_is_behind_once),
+        TEST(bytes_are_bounded_too),
+        TEST(a_listener_goes_back_to_a_key),
+        TEST(only_so_many_may_listen),
+        TEST(a_message_without_memory_is_a_gap),
+        TEST(threads_read_what_one_writes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,165 @@
+#include "tests/api/stream.h"
+
+#include "api/events.h"
+
+#include <inttypes.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void wake(void *context)
+{
+    listener *l = context;
+    pthread_mutex_lock(&l->lock);
+    l->woken = true;
+    pthread_cond_signal(&l->changed);
+    pthread_mutex_unlock(&l->lock);
+}
+
+static const char *last_event_id(void *context, const char *name)
+{
+    return strcmp(name, "Last-Event-ID") == 0 ? context : NULL;
+}
+
+/* NULL where it is refused for want of memory; else the status is 200. */
+listener *stream_try(api_bench *b, const char *path, const char *query, const char *last)
+{
+    api_request request = {.method = "GET",
+                           .path = path,
+                           .query = query,
+                           .request_id = "test",
+                           .header = last_event_id,
+                           .context = (void *)(uintptr_t)last};
+    api_exchange *x = api_handle(bench_service(b), &request, NULL, 0);
+    if (x == NULL || api_answer_of(x)->status != 200) {
+        assert_true(x == NULL || api_answer_of(x)->status == 507);
+        api_free(x);
+        return NULL;
+    }
+    listener *l = calloc(1, sizeof *l);
+    assert_non_null(l);
+    l->exchange = x;
+    l->source = api_answer_of(x)->live;
+    assert_non_null(l->source);
+    assert_string_equal(api_answer_of(x)->idle, API_EVENT_IDLE);
+    pthread_mutex_init(&l->lock, NULL);
+    pthread_cond_init(&l->changed, NULL);
+    l->source->start(l->source->self, wake, l);
+    return l;
+}
+
+listener *stream_open(api_bench *b, const char *path, const char *query, const char *last)
+{
+    listener *l = stream_try(b, path, query, last);
+    assert_non_null(l);
+    return l;
+}
+
+void stream_close(listener *l)
+{
+    api_free(l->exchange);
+    pthread_mutex_destroy(&l->lock);
+    pthread_cond_destroy(&l->changed);
+    sse_clear(&l->events);
+    cJSON_Delete(l->data);
+    free(l);
+}
+
+static void wait_for_wake(listener *l)
+{
+    pthread_mutex_lock(&l->lock);
+    while (!l->woken) {
+        pthread_cond_wait(&l->changed, &l->lock);
+    }
+    l->woken = false;
+    pthread_mutex_unlock(&l->lock);
+}
+
+/* The next event; "" at the end of the stream, and where it would wait and `patient` is false. */
+const char *stream_next(listener *l, bool patient)
+{
+    char buffer[777];
+    cJSON_Delete(l->data);
+    l->data = NULL;
+    while (!sse_next(&l->events, &l->event)) {
+        int64_t got = l->source->read(l->source->self, buffer, sizeof buffer);
+        if (got == API_READ_WAIT && patient) {
+            wait_for_wake(l);
+        } else if (got <= 0) {
+            assert_true(got == 0 || got == API_READ_WAIT);
+            return "";
+        } else {
+            sse_add(&l->events, buffer, (size_t)got);
+        }
+    }
+    l->data = cJSON_Parse(l->event.data);
+    assert_non_null(l->data);
+    return l->event.name;
+}
+
+const char *stream_text(const listener *l, const char *member)
+{
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(l->data, member);
+    return cJSON_IsString(found) ? found->valuestring : "";
+}
+
+uint64_t stream_number(const listener *l, const char *member)
+{
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(l->data, member);
+    assert_true(cJSON_IsNumber(found));
+    return (uint64_t)found->valuedouble;
+}
+
+api_mesh *stream_mesh(api_bench *b)
+{
+    const api_store *store = bench_store(b);
+    api_mesh *mesh = NULL;
+    assert_int_equal(store->find(store->self, "m", &mesh), API_STORE_OK);
+    return mesh;
+}
+
+/* What the mesh is now. */
+void stream_dump(api_bench *b, mirror *m)
+{
+    const api_store *store = bench_store(b);
+    api_mesh *mesh = stream_mesh(b);
+    api_mesh_info info;
+    const he_mesh *content = store->read_begin(store->self, mesh, &info);
+    mirror_take(m, content, info.revision);
+    store->read_end(store->self, mesh);
+    store->release(store->self, mesh);
+}
+
+void stream_require(api_bench *b, const mirror *copy, const char *after)
+{
+    char text[MIRROR_TEXT] = "";
+    mirror fresh = {0};
+    stream_dump(b, &fresh);
+    assert_int_equal(copy->revision, fresh.revision);
+    if (!mirror_equal(copy, &fresh, text)) {
+        fail_msg("after %s the copy differs at %s", after, text);
+    }
+    mirror_clear(&fresh);
+}
+
+/* Read everything there is. How often the copy had to be taken anew. */
+unsigned stream_follow(api_bench *b, listener *l, mirror *copy)
+{
+    unsigned anew = 0;
+    const char *name;
+    while ((name = stream_next(l, false))[0] != '\0') {
+        bool lost = strcmp(name, "resync") == 0;
+        if (strcmp(name, "edit") == 0) {
+            lost = mirror_apply(copy, l->data) == MIRROR_LOST;
+        }
+        if (lost) {
+            stream_dump(b, copy);
+            anew++;
+        }
+    }
+    return anew;
+}
