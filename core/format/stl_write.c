@@ -308,24 +308,21 @@ static char *write_facets(stl_writer *w, char *p, const char *end)
     return p;
 }
 
-static size_t stl_fill(void *state, char *buffer, size_t room)
+static bool stl_step(void *state, char **p, const char *end)
 {
     stl_writer *w = state;
-    char *p = buffer, *end = buffer + room;
-    while (w->part != END && end - p >= HE_WRITE_ROOM) {
-        switch (w->part) {
-        case HEADER:
-            p = write_header(w, p);
-            w->part = FACETS;
-            break;
-        case FACETS:
-            p = write_facets(w, p, end);
-            break;
-        case END:
-            break;
-        }
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        w->part = FACETS;
+        break;
+    case FACETS:
+        *p = write_facets(w, *p, end);
+        break;
+    case END:
+        break;
     }
-    return (size_t)(p - buffer);
+    return w->part != END;
 }
 
-const he_writing he_stl_writing = {stl_open, stl_fill, stl_close};
+const he_writing he_stl_writing = {stl_open, stl_step, stl_close};
