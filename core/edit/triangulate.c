@@ -9,7 +9,7 @@ static he_status room(he_ids *list, size_t extra, he_error *err)
 }
 
 /* Between two looks at the watch. */
-enum { STEPS = 1 << 20 };
+enum { STEPS = 1 << 14 };
 
 static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *faces,
                                  he_ids *degenerate, uint64_t *steps, he_error *err)
