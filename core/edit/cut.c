@@ -169,7 +169,7 @@ he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err)
     }
     he_halfedge h = he_edge_halfedge(e, 0), back = he_twin(h);
     he_face f = he_face_of(m, h), g = he_face_of(m, back);
-    he_need need = {.deleted_edges = 1, .deleted_faces = 1, .lineage = 1};
+    he_need need = {.deleted_edges = 1, .deleted_faces = 1, .attributes = 1, .lineage = 1};
     need.links = (size_t)he_face_degree(m, g) + 7;
     status = he_reserve(m, need, err);
     if (status != HE_OK) {
@@ -191,6 +191,7 @@ he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err)
     }
     he_link(m, he_prev(m, h), at_a);
     he_link(m, he_prev(m, back), at_b);
+    he_carry_merge(m, HE_FACE, f.i, g.i, 0.5);
     he_note_merged(m, HE_FACE, g.i, f.i);
     he_delete_edge(m, e);
     he_delete_face(m, g);

@@ -27,7 +27,8 @@ HE_NODISCARD he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he
 he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
 
 /* face_join: V + 0, E - 1, F - 1. The inverse: the edge goes, and the face of its half-edge 2e
- * grows over the other one, which becomes part of it.
+ * grows over the other one, which becomes part of it. Interpolated attributes of f become the mean
+ * of both.
  *
  *           o-------o-------o             o-------o-------o
  *           |       ^       |             |               |

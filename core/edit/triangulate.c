@@ -8,14 +8,18 @@ static he_status room(he_ids *list, size_t extra, he_error *err)
     return list == NULL ? HE_OK : he_ids_reserve(list, extra, err);
 }
 
+/* Between two looks at the watch. */
+enum { STEPS = 1 << 14 };
+
 static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *faces,
-                                 he_ids *degenerate, he_error *err)
+                                 he_ids *degenerate, uint64_t *steps, he_error *err)
 {
     he_triangles plan;
     he_status status = he_triangles_plan(m, he_face_halfedge(m, f), &plan, err);
     if (status != HE_OK) {
         return status;
     }
+    *steps += plan.of.flat.n + plan.of.steps;
     he_need need = {0};
     he_triangles_need(&plan, true, &need);
     status = room(edges, need.edges, err);
@@ -59,8 +63,17 @@ he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count
     if (status != HE_OK) {
         return status;
     }
+    uint64_t steps = STEPS;
+    status = he_watch_phase(m->watch, "triangulating", 1, err);
     for (size_t i = 0; status == HE_OK && i < count; i++) {
-        status = triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, err);
+        if (steps >= STEPS) {
+            steps = 0;
+            status = he_watch_step(m->watch, i, count, err);
+        }
+        if (status == HE_OK) {
+            status =
+                triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, &steps, err);
+        }
     }
     for (unsigned i = 0; status != HE_OK && i < 3; i++) {
         if (lists[i] != NULL) {

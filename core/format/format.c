@@ -244,6 +244,7 @@ he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
 struct he_writer {
     const he_writing *writing;
     void *state;
+    bool ended;
     he_notes notes;
     /* What did not fit the caller's last buffer. */
     size_t spare_from, spare_to;
@@ -278,6 +279,16 @@ void he_writer_free(he_writer *writer)
     }
 }
 
+/* 0 only at the end. */
+static size_t fill(he_writer *writer, char *buffer, size_t room)
+{
+    char *p = buffer, *end = buffer + room;
+    while (!writer->ended && end - p >= HE_WRITE_ROOM) {
+        writer->ended = !writer->writing->step(writer->state, &p, end);
+    }
+    return (size_t)(p - buffer);
+}
+
 size_t he_writer_read(he_writer *writer, void *buffer, size_t size)
 {
     char *bytes = buffer;
@@ -290,15 +301,14 @@ size_t he_writer_read(he_writer *writer, void *buffer, size_t size)
             writer->spare_from += n;
             done += n;
         } else if (size - done >= HE_WRITE_ROOM) {
-            size_t n = writer->writing->fill(writer->state, bytes + done, size - done);
+            size_t n = fill(writer, bytes + done, size - done);
             if (n == 0) {
                 break;
             }
             done += n;
         } else {
             writer->spare_from = 0;
-            writer->spare_to =
-                writer->writing->fill(writer->state, writer->spare, sizeof writer->spare);
+            writer->spare_to = fill(writer, writer->spare, sizeof writer->spare);
             if (writer->spare_to == 0) {
                 break;
             }

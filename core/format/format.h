@@ -48,14 +48,14 @@ typedef struct he_reading {
     void (*close)(void *state);
 } he_reading;
 
-/* What a format's writer does. `fill` gets at least HE_WRITE_ROOM bytes of room and returns how
- * many it wrote, 0 only at the end. */
+/* What a format's writer does. `step` writes some of what comes next at `*p`, from where at least
+ * HE_WRITE_ROOM bytes are free up to `end`, and moves it. False when that was the last. */
 enum { HE_WRITE_ROOM = 512 };
 
 typedef struct he_writing {
     he_status (*open)(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
                       he_error *err);
-    size_t (*fill)(void *state, char *buffer, size_t room);
+    bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
 } he_writing;
 

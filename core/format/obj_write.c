@@ -301,33 +301,30 @@ static char *write_faces(obj_writer *w, char *p, const char *end)
     return p;
 }
 
-static size_t obj_fill(void *state, char *buffer, size_t room)
+static bool obj_step(void *state, char **p, const char *end)
 {
     obj_writer *w = state;
-    char *p = buffer, *end = buffer + room;
-    while (w->part != END && end - p >= HE_WRITE_ROOM) {
-        switch (w->part) {
-        case HEADER:
-            p = write_header(w, p);
-            w->part = VERTICES;
-            break;
-        case VERTICES:
-            p = write_rows(w, NULL, p, end);
-            break;
-        case UVS:
-            p = write_rows(w, &w->uv, p, end);
-            break;
-        case NORMALS:
-            p = write_rows(w, &w->normal, p, end);
-            break;
-        case FACES:
-            p = write_faces(w, p, end);
-            break;
-        case END:
-            break;
-        }
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        w->part = VERTICES;
+        break;
+    case VERTICES:
+        *p = write_rows(w, NULL, *p, end);
+        break;
+    case UVS:
+        *p = write_rows(w, &w->uv, *p, end);
+        break;
+    case NORMALS:
+        *p = write_rows(w, &w->normal, *p, end);
+        break;
+    case FACES:
+        *p = write_faces(w, *p, end);
+        break;
+    case END:
+        break;
     }
-    return (size_t)(p - buffer);
+    return w->part != END;
 }
 
-const he_writing he_obj_writing = {obj_open, obj_fill, obj_close};
+const he_writing he_obj_writing = {obj_open, obj_step, obj_close};

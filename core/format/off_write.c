@@ -148,27 +148,24 @@ static char *write_faces(off_writer *w, char *p, const char *end)
     return p;
 }
 
-static size_t off_fill(void *state, char *buffer, size_t room)
+static bool off_step(void *state, char **p, const char *end)
 {
     off_writer *w = state;
-    char *p = buffer, *end = buffer + room;
-    while (w->part != END && end - p >= HE_WRITE_ROOM) {
-        switch (w->part) {
-        case HEADER:
-            p = write_header(w, p);
-            w->part = VERTICES;
-            break;
-        case VERTICES:
-            p = write_vertices(w, p, end);
-            break;
-        case FACES:
-            p = write_faces(w, p, end);
-            break;
-        case END:
-            break;
-        }
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        w->part = VERTICES;
+        break;
+    case VERTICES:
+        *p = write_vertices(w, *p, end);
+        break;
+    case FACES:
+        *p = write_faces(w, *p, end);
+        break;
+    case END:
+        break;
     }
-    return (size_t)(p - buffer);
+    return w->part != END;
 }
 
-const he_writing he_off_writing = {off_open, off_fill, off_close};
+const he_writing he_off_writing = {off_open, off_step, off_close};

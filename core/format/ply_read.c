@@ -455,7 +455,7 @@ static he_status ply_finish(void *state, he_error *err)
 {
     ply *o = state;
     const he_ply_rows *rows = &o->rows;
-    uint64_t last_line = o->lines.number - (o->lines.length == 0 && o->lines.number > 1);
+    uint64_t last_line = he_lines_last(&o->lines);
     bool had_header = o->header.ended;
     he_status status = he_lines_finish(&o->lines, err);
     if (status == HE_OK && o->header.ended && !had_header) {

@@ -367,26 +367,23 @@ static char *write_faces(ply_writer *w, char *p, const char *end)
     return p;
 }
 
-static size_t ply_fill(void *state, char *buffer, size_t room)
+static bool ply_step(void *state, char **p, const char *end)
 {
     ply_writer *w = state;
-    char *p = buffer, *end = buffer + room;
-    while (w->part != END && end - p >= HE_WRITE_ROOM) {
-        switch (w->part) {
-        case HEADER:
-            p = write_header(w, p);
-            break;
-        case VERTICES:
-            p = write_vertices(w, p, end);
-            break;
-        case FACES:
-            p = write_faces(w, p, end);
-            break;
-        case END:
-            break;
-        }
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        break;
+    case VERTICES:
+        *p = write_vertices(w, *p, end);
+        break;
+    case FACES:
+        *p = write_faces(w, *p, end);
+        break;
+    case END:
+        break;
     }
-    return (size_t)(p - buffer);
+    return w->part != END;
 }
 
-const he_writing he_ply_writing = {ply_open, ply_fill, ply_close};
+const he_writing he_ply_writing = {ply_open, ply_step, ply_close};

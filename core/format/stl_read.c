@@ -170,7 +170,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
 
 static he_status finish_text(stl *o, he_error *err)
 {
-    uint64_t last_line = o->lines.number - (o->lines.length == 0 && o->lines.number > 1);
+    uint64_t last_line = he_lines_last(&o->lines);
     he_status status = he_lines_finish(&o->lines, err);
     if (status != HE_OK) {
         return status;

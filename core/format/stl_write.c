@@ -45,10 +45,15 @@ static void add_fan(he_ids *cuts, const he_mesh *m, he_halfedge first)
     }
 }
 
+/* Of all faces. */
+typedef struct cutting {
+    uint64_t polygons, turned, fans;
+    uint64_t steps;
+} cutting;
+
 /* Diagonals avoid the edges there are where they can: an edge that is doubled would have more than
  * two faces when the file is read again. */
-static he_status cut_face(stl_writer *w, he_halfedge first, uint64_t *turned, uint64_t *fans,
-                          he_error *err)
+static he_status cut_face(stl_writer *w, he_halfedge first, cutting *done, he_error *err)
 {
     he_triangulation cut;
     size_t corners = 3 * ((size_t)he_loop_length(w->mesh, first) - 2);
@@ -56,38 +61,43 @@ static he_status cut_face(stl_writer *w, he_halfedge first, uint64_t *turned, ui
     if (status != HE_OK) {
         return status;
     }
-    status = he_triangulation_make(w->mesh, first, HE_AVOID_EDGES, &cut, err);
+    status = HE_LIMIT;
+    if (done->steps < HE_TRIANGULATION_STEPS) {
+        status =
+            he_triangulation_make(w->mesh, first, HE_ANY_DIAGONALS | HE_AVOID_EDGES, &cut, err);
+    }
     if (status == HE_DOUBLED_EDGE) {
-        status = he_triangulation_make(w->mesh, first, 0, &cut, err);
+        status = he_triangulation_make(w->mesh, first, HE_ANY_DIAGONALS, &cut, err);
     }
     if (status == HE_LIMIT) {
         add_fan(&w->cuts, w->mesh, first);
-        ++*fans;
+        done->fans++;
+        done->steps = HE_TRIANGULATION_STEPS;
         return HE_OK;
     }
     if (status != HE_OK) {
         return status;
     }
+    done->steps += cut.steps;
     for (size_t i = 0; i < corners; i++) {
         he_halfedge h = {cut.flat.halfedge[cut.corners[i]]};
         w->cuts.ids[w->cuts.count++] = he_origin(w->mesh, h).i;
     }
-    *turned += cut.degenerate;
+    done->turned += cut.degenerate;
     he_triangulation_clear(&cut);
     return HE_OK;
 }
 
 static he_status cut_faces(stl_writer *w, he_notes *notes, he_error *err)
 {
-    uint64_t polygons = 0, turned = 0, fans = 0;
+    cutting done = {0};
     for (uint32_t f = 0; f < w->mesh->c.faces.issued; f++) {
         if (!he_face_is_live(w->mesh, (he_face){f}) || he_face_degree(w->mesh, (he_face){f}) == 3) {
             continue;
         }
-        polygons++;
+        done.polygons++;
         he_error reason = {0};
-        he_status status =
-            cut_face(w, he_face_halfedge(w->mesh, (he_face){f}), &turned, &fans, &reason);
+        he_status status = cut_face(w, he_face_halfedge(w->mesh, (he_face){f}), &done, &reason);
         if (status != HE_OK) {
             if (err != NULL) {
                 *err = reason;
@@ -95,11 +105,12 @@ static he_status cut_faces(stl_writer *w, he_notes *notes, he_error *err)
             return status;
         }
     }
-    he_notes_add_count(notes, "triangulated", "cut into triangles: a face", polygons);
+    he_notes_add_count(notes, "triangulated", "cut into triangles: a face", done.polygons);
     he_notes_add_count(notes, "turned_triangles",
                        "cut into triangles some of which have no area or are turned over: a face",
-                       turned);
-    he_notes_add_count(notes, "fans", "too large to be cut other than into a fan: a face", fans);
+                       done.turned);
+    he_notes_add_count(notes, "fans", "cut into a fan, since cutting took too much: a face",
+                       done.fans);
     return HE_OK;
 }
 
@@ -297,24 +308,21 @@ static char *write_facets(stl_writer *w, char *p, const char *end)
     return p;
 }
 
-static size_t stl_fill(void *state, char *buffer, size_t room)
+static bool stl_step(void *state, char **p, const char *end)
 {
     stl_writer *w = state;
-    char *p = buffer, *end = buffer + room;
-    while (w->part != END && end - p >= HE_WRITE_ROOM) {
-        switch (w->part) {
-        case HEADER:
-            p = write_header(w, p);
-            w->part = FACETS;
-            break;
-        case FACETS:
-            p = write_facets(w, p, end);
-            break;
-        case END:
-            break;
-        }
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        w->part = FACETS;
+        break;
+    case FACETS:
+        *p = write_facets(w, *p, end);
+        break;
+    case END:
+        break;
     }
-    return (size_t)(p - buffer);
+    return w->part != END;
 }
 
-const he_writing he_stl_writing = {stl_open, stl_fill, stl_close};
+const he_writing he_stl_writing = {stl_open, stl_step, stl_close};

@@ -168,63 +168,78 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-/* Append the records of one part in the order in which they took effect. */
-static size_t gather_part(const he_change_part *part, word_record *records, he_changes *found)
+/* The words of all parts, in the order of their keys and, for one key, in that in which they took
+ * effect. */
+typedef struct words {
+    word_record *records;
+    size_t count;
+    he_ids slots; /* whose column came or went: what was written there shows as a whole */
+} words;
+
+static void words_clear(words *w)
 {
-    size_t n = 0;
-    for (size_t i = part->from; i < part->to; i++) {
+    he_mem_free(w->records);
+    he_ids_clear(&w->slots);
+}
+
+static he_status gather_part(const he_change_part *part, words *w, he_changes *found, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
         const he_record *r =
             &part->delta->records[part->undone ? part->to - 1 - (i - part->from) : i];
         if (is_word(r)) {
-            records[n++] = (word_record){key_of(r), part->undone ? r->after : r->before,
-                                         part->undone ? r->before : r->after};
+            w->records[w->count++] = (word_record){key_of(r), part->undone ? r->after : r->before,
+                                                   part->undone ? r->before : r->after};
         } else if (r->column == HE_COL_REPLACED) {
             found->replaced = true;
         } else if (r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED) {
             found->others = true;
+            status = he_ids_add(&w->slots, r->row, err);
         }
     }
-    return n;
+    return status;
 }
 
 static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t part_count,
-                        word_record **out, size_t *count, he_changes *found, he_error *err)
+                        words *w, he_changes *found, he_error *err)
 {
     size_t total = 0;
     for (size_t i = 0; i < part_count; i++) {
         total += parts[i].to - parts[i].from;
     }
-    word_record *records = he_mem_array(NULL, total, sizeof *records);
-    if (records == NULL) {
+    w->records = he_mem_array(NULL, total, sizeof *w->records);
+    if (w->records == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %zu changes", total);
     }
-    size_t n = 0;
-    for (size_t i = 0; i < part_count; i++) {
-        n += gather_part(&parts[i], records + n, found);
+    he_status status = HE_OK;
+    for (size_t i = 0; i < part_count && status == HE_OK; i++) {
+        status = gather_part(&parts[i], w, found, err);
     }
-    he_status status = sort_records(&records, n, mesh->watch, err);
-    if (status != HE_OK) {
-        he_mem_free(records);
-        return status;
+    if (status == HE_OK) {
+        status = he_ids_sort(&w->slots, err);
     }
-    *out = records;
-    *count = n;
-    return HE_OK;
+    return status == HE_OK ? sort_records(&w->records, w->count, mesh->watch, err) : status;
 }
 
-static he_status note_all(const he_mesh *mesh, const word_record *records, size_t count,
-                          he_changes *out, he_error *err)
+static bool is_of_other_column(const words *w, uint32_t column)
 {
+    return column >= HE_COL_ATTRIBUTE && contains(&w->slots, column - HE_COL_ATTRIBUTE);
+}
+
+static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, he_error *err)
+{
+    const word_record *records = w->records;
+    size_t count = w->count;
     he_status status = HE_OK;
     for (size_t i = 0, noted = 0; i < count && status == HE_OK; noted++) {
         size_t last = i;
         while (last + 1 < count && records[last + 1].key == records[i].key) {
             last++;
         }
-        if (records[i].before != records[last].after) {
-            status =
-                note_word(mesh, out, (uint32_t)(records[i].key >> 40), (uint32_t)records[i].key,
-                          records[i].before, records[last].after, err);
+        uint32_t column = (uint32_t)(records[i].key >> 40), row = (uint32_t)records[i].key;
+        if (records[i].before != records[last].after && !is_of_other_column(w, column)) {
+            status = note_word(mesh, out, column, row, records[i].before, records[last].after, err);
         }
         if (status == HE_OK && noted % HE_WATCH_STRIDE == 0) {
             status = he_watch_step(mesh->watch, count + i, 2 * (uint64_t)count, err);
@@ -283,16 +298,15 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
                          he_changes *out, he_error *err)
 {
     he_changes found = {0};
-    word_record *records = NULL;
-    size_t count = 0;
+    words w = {.records = NULL};
     he_status status = he_watch_phase(mesh->watch, "listing changes", 1, err);
     if (status == HE_OK) {
-        status = gather(mesh, parts, part_count, &records, &count, &found, err);
+        status = gather(mesh, parts, part_count, &w, &found, err);
     }
     if (status != HE_OK || found.replaced) {
         goto out;
     }
-    status = note_all(mesh, records, count, &found, err);
+    status = note_all(mesh, &w, &found, err);
     for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
         he_kind kind = published[i];
         status = he_ids_sort(&found.created[kind], err);
@@ -312,7 +326,7 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
         }
     }
 out:
-    he_mem_free(records);
+    words_clear(&w);
     if (status != HE_OK) {
         he_changes_clear(&found);
         return status;

@@ -3,6 +3,7 @@
 
 #include "mesh/delta.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* Live rows are counted by the words that turn from dead to alive and back. */
@@ -25,6 +26,7 @@ static void put_attribute(he_content *c, const he_record *r, uint32_t value)
 
 static void swap_column(void **objects, he_content *c, const he_record *r)
 {
+    assert(r->row < c->column_count);
     he_column *other = objects[r->before];
     objects[r->before] = c->columns[r->row];
     c->columns[r->row] = other;

@@ -25,23 +25,28 @@ static double largest(he_vec3 p)
     return fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
 }
 
-static he_vec3 scaled(he_vec3 p, int exponent)
+/* A power of two, which may itself be no double: as two factors. */
+typedef struct power {
+    double one, other;
+} power;
+
+static he_vec3 scaled(he_vec3 p, power by)
 {
-    return (he_vec3){ldexp(p.x, exponent), ldexp(p.y, exponent), ldexp(p.z, exponent)};
+    return (he_vec3){p.x * by.one * by.other, p.y * by.one * by.other, p.z * by.one * by.other};
 }
 
-/* The power of two that brings `size` into [0.5, 1). */
-static int exponent_for(double size)
+/* What brings `size` into [0.5, 1). */
+static power power_for(double size)
 {
     int exponent = 0;
     (void)frexp(size, &exponent);
-    return -exponent;
+    return (power){ldexp(1, -exponent / 2), ldexp(1, -exponent - -exponent / 2)};
 }
 
 /* Corner i, relative to corner 0 and scaled: first so that differences are finite, then so that
  * the loop fills the unit cube. */
 typedef struct frame {
-    int first, second;
+    power first, second;
     he_vec3 base;
 } frame;
 
@@ -53,18 +58,18 @@ static he_vec3 place(const he_mesh *m, const he_flat *flat, const frame *unit, u
 
 static frame find_frame(const he_mesh *m, const he_flat *flat)
 {
-    frame found = {0, 0, {0, 0, 0}};
+    frame found = {{1, 1}, {1, 1}, {0, 0, 0}};
     double size = 0;
     for (uint32_t i = 0; i < flat->n; i++) {
         size = fmax(size, largest(he_position(m, he_origin(m, (he_halfedge){flat->halfedge[i]}))));
     }
-    found.first = exponent_for(size);
+    found.first = power_for(size);
     found.base = place(m, flat, &found, 0);
     size = 0;
     for (uint32_t i = 0; i < flat->n; i++) {
         size = fmax(size, largest(place(m, flat, &found, i)));
     }
-    found.second = exponent_for(size);
+    found.second = power_for(size);
     return found;
 }
 

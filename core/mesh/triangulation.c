@@ -2,11 +2,19 @@
 
 #include <float.h>
 
-static bool is_joined(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k)
+/* Adds the steps of the search: where very many edges meet it may be long. */
+static bool is_joined(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
+                      uint64_t *steps)
 {
     he_vertex a = he_origin(m, (he_halfedge){flat->halfedge[i]});
     he_vertex b = he_origin(m, (he_halfedge){flat->halfedge[k]});
-    return he_find_halfedge(m, a, b).i != HE_NONE;
+    return he_find_halfedge_counted(m, a, b, steps).i != HE_NONE;
+}
+
+static he_status refuse_work(const he_flat *flat, he_error *err)
+{
+    return he_fail_plain(err, HE_LIMIT, "a loop of %u corners takes more than %llu steps", flat->n,
+                         (unsigned long long)HE_TRIANGULATION_STEPS);
 }
 
 static he_status refuse_doubled(const he_mesh *m, const he_flat *flat, he_error *err)
@@ -23,8 +31,10 @@ static he_status refuse_doubled(const he_mesh *m, const he_flat *flat, he_error 
 static const double BAD = 4096;
 
 typedef struct table {
-    double *cost;    /* of the best triangulation of sub-loop i..k; DBL_MAX when there is none */
+    double *cost;    /* of the best triangulation of sub-loop i..k, under i, k and under k, i;
+                        DBL_MAX when there is none */
     uint8_t *middle; /* its triangle on the side i, k */
+    uint64_t steps;
 } table;
 
 static double diagonal_cost(const he_flat *f, uint32_t i, uint32_t k)
@@ -33,32 +43,46 @@ static double diagonal_cost(const he_flat *f, uint32_t i, uint32_t k)
     return (x * x + y * y) / 12;
 }
 
-static void fill_table(const he_mesh *m, const he_flat *f, bool avoid, table *t)
+/* What the sub-loop i..k costs, `side` with it. */
+static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, table *t)
+{
+    uint32_t n = f->n;
+    const double *from_i = t->cost + (size_t)i * n, *to_k = t->cost + (size_t)k * n;
+    double best = DBL_MAX;
+    for (uint32_t j = i + 1; j < k; j++) {
+        double cost = side + from_i[j] + to_k[j];
+        /* Most are no better even if they turn left: do not look. */
+        if (cost < best) {
+            cost += he_flat_turns_left(f, i, j, k) ? 0 : BAD;
+            if (cost < best) {
+                best = cost;
+                t->middle[(size_t)i * n + k] = (uint8_t)j;
+            }
+        }
+    }
+    return best;
+}
+
+static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, table *t, he_error *err)
 {
     uint32_t n = f->n;
     for (uint32_t i = 0; i + 1 < n; i++) {
-        t->cost[i * n + i + 1] = 0;
+        t->cost[i * n + i + 1] = t->cost[(i + 1) * n + i] = 0;
     }
     for (uint32_t span = 2; span < n; span++) {
         for (uint32_t i = 0; i + span < n; i++) {
             uint32_t k = i + span;
-            double best = DBL_MAX, side = 0;
-            if (span < n - 1) {
-                side = avoid && is_joined(m, f, i, k) ? DBL_MAX : diagonal_cost(f, i, k);
+            bool free = span == n - 1 || !avoid || !is_joined(m, f, i, k, &t->steps);
+            double side = span < n - 1 ? diagonal_cost(f, i, k) : 0;
+            double cost = free ? fill_cell(f, i, k, side, t) : DBL_MAX;
+            t->cost[i * n + k] = t->cost[k * n + i] = cost;
+            t->steps += span;
+            if (t->steps > HE_TRIANGULATION_STEPS) {
+                return refuse_work(f, err);
             }
-            for (uint32_t j = i + 1; j < k && side < DBL_MAX; j++) {
-                double one = t->cost[i * n + j], two = t->cost[j * n + k];
-                if (one < DBL_MAX && two < DBL_MAX) {
-                    double cost = side + one + two + (he_flat_turns_left(f, i, j, k) ? 0 : BAD);
-                    if (cost < best) {
-                        best = cost;
-                        t->middle[i * n + k] = (uint8_t)j;
-                    }
-                }
-            }
-            t->cost[i * n + k] = best;
         }
     }
+    return HE_OK;
 }
 
 /* Triangles innermost first, so that each has its middle corner to itself when its turn comes.
@@ -87,21 +111,26 @@ static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation *plan
     const he_flat *f = &plan->flat;
     size_t cells = (size_t)f->n * f->n, whole = f->n - 1;
     he_status status = HE_OK;
-    table t = {he_mem_array(NULL, cells, sizeof *t.cost), he_mem_zero(cells, sizeof *t.middle)};
+    table t = {he_mem_array(NULL, cells, sizeof *t.cost), he_mem_zero(cells, sizeof *t.middle), 0};
     if (t.cost == NULL || t.middle == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
         goto out;
     }
-    fill_table(m, f, avoid, &t);
+    status = fill_table(m, f, avoid, &t, err);
     double cost = t.cost[whole];
-    if (avoid && cost >= BAD) {
+    if (status == HE_OK && avoid && cost >= BAD) {
         /* Did avoiding edges make it so? */
-        fill_table(m, f, false, &t);
-        if (cost >= t.cost[whole] + BAD / 2) {
+        status = fill_table(m, f, false, &t, err);
+        if (status == HE_OK && cost >= t.cost[whole] + BAD / 2) {
             status = refuse_doubled(m, f, err);
-            goto out;
         }
-        fill_table(m, f, true, &t);
+        if (status == HE_OK) {
+            status = fill_table(m, f, true, &t, err);
+        }
+    }
+    plan->steps += t.steps;
+    if (status != HE_OK) {
+        goto out;
     }
     plan->degenerate = cost >= BAD;
     read_table(f, &t, plan->corners);
@@ -167,9 +196,9 @@ static bool is_pierced(ears *e, uint32_t a, uint32_t b, uint32_t c)
     return false;
 }
 
-static bool is_taken(const ears *e, uint32_t a, uint32_t c)
+static bool is_taken(ears *e, uint32_t a, uint32_t c)
 {
-    return e->avoid && is_joined(e->m, e->f, a, c);
+    return e->avoid && is_joined(e->m, e->f, a, c, &e->tests);
 }
 
 static bool is_ear(ears *e, uint32_t i)
@@ -205,7 +234,7 @@ static uint32_t cut_ear(ears *e, uint32_t i, uint32_t *corners)
 /* The first ear from i on; i itself when there is none. */
 static bool find_ear(ears *e, uint32_t i, uint32_t *out)
 {
-    for (uint32_t seen = 0; seen < e->left && e->tests <= HE_EAR_TESTS; seen++) {
+    for (uint32_t seen = 0; seen < e->left && e->tests <= HE_TRIANGULATION_STEPS; seen++) {
         if (is_ear(e, i)) {
             *out = i;
             return true;
@@ -247,10 +276,8 @@ static he_status cut_ears(ears *e, he_triangulation *plan, he_error *err)
             e->blocked = false;
             forget_states(e, at);
             if (!find_ear(e, at, &i)) {
-                if (e->tests > HE_EAR_TESTS) {
-                    return he_fail_plain(err, HE_LIMIT,
-                                         "a loop of %u corners takes more than %llu tests", e->f->n,
-                                         (unsigned long long)HE_EAR_TESTS);
+                if (e->tests > HE_TRIANGULATION_STEPS) {
+                    return refuse_work(e->f, err);
                 }
                 if (e->blocked || !find_corner(e, at, &i)) {
                     return refuse_doubled(e->m, e->f, err);
@@ -268,19 +295,16 @@ static he_status cut_ears(ears *e, he_triangulation *plan, he_error *err)
 static he_status plan_ears(const he_mesh *m, bool avoid, he_triangulation *plan, he_error *err)
 {
     uint32_t n = plan->flat.n;
-    he_status status = HE_OK;
     ears e = {.m = m, .f = &plan->flat, .avoid = avoid, .left = n};
-    e.next = he_mem_array(NULL, n, sizeof *e.next);
-    e.prev = he_mem_array(NULL, n, sizeof *e.prev);
-    e.reflex = he_mem_array(NULL, n, sizeof *e.reflex);
-    e.state = he_mem_zero(n, sizeof *e.state);
-    e.convex = he_mem_zero(n, sizeof *e.convex);
-    if (e.next == NULL || e.prev == NULL || e.reflex == NULL || e.state == NULL ||
-        e.convex == NULL) {
-        status =
-            he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop of %u corners", n);
-        goto out;
+    uint32_t *block = he_mem_zero(n, 3 * sizeof(uint32_t) + 2 * sizeof(uint8_t));
+    if (block == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop of %u corners", n);
     }
+    e.next = block;
+    e.prev = e.next + n;
+    e.reflex = e.prev + n;
+    e.state = (uint8_t *)(e.reflex + n);
+    e.convex = e.state + n;
     for (uint32_t i = 0; i < n; i++) {
         e.next[i] = i + 1 == n ? 0 : i + 1;
         e.prev[i] = i == 0 ? n - 1 : i - 1;
@@ -291,13 +315,9 @@ static he_status plan_ears(const he_mesh *m, bool avoid, he_triangulation *plan,
             e.reflex[e.reflex_count++] = i;
         }
     }
-    status = cut_ears(&e, plan, err);
-out:
-    he_mem_free(e.next);
-    he_mem_free(e.prev);
-    he_mem_free(e.reflex);
-    he_mem_free(e.state);
-    he_mem_free(e.convex);
+    he_status status = cut_ears(&e, plan, err);
+    plan->steps += e.tests;
+    he_mem_free(block);
     return status;
 }
 
@@ -310,11 +330,26 @@ void he_triangulation_clear(he_triangulation *triangulation)
     *triangulation = (he_triangulation){.corners = NULL};
 }
 
+static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation *plan, he_error *err)
+{
+    bool avoid = (flags & HE_AVOID_EDGES) != 0;
+    if (plan->flat.n > HE_EXACT_CORNERS) {
+        return plan_ears(m, avoid, plan, err);
+    }
+    if (flags & HE_ANY_DIAGONALS) {
+        he_status status = plan_ears(m, avoid, plan, err);
+        bool done = status == HE_OK && (!plan->degenerate || plan->flat.degenerate);
+        if (done || (status != HE_OK && status != HE_DOUBLED_EDGE)) {
+            return status;
+        }
+    }
+    return plan_exact(m, avoid, plan, err);
+}
+
 he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
                                 he_triangulation *out, he_error *err)
 {
     he_triangulation plan = {.degenerate = false};
-    bool avoid = (flags & HE_AVOID_EDGES) != 0;
     he_status status = he_flat_init(&plan.flat, m, first, err);
     if (status != HE_OK) {
         return status;
@@ -324,8 +359,7 @@ he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned fl
     if (plan.corners == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
     } else {
-        status = n <= HE_EXACT_CORNERS ? plan_exact(m, avoid, &plan, err)
-                                       : plan_ears(m, avoid, &plan, err);
+        status = plan_loop(m, flags, &plan, err);
     }
     if (status != HE_OK) {
         he_triangulation_clear(&plan);

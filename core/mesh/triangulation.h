@@ -10,7 +10,11 @@
  * Longer loops are cut ear by ear (G. H. Meisters, "Polygons have ears", 1975), going round so
  * that the triangles stay balanced. Where there is no ear at all, which happens only in loops that
  * meet themselves in the plane, any corner is cut. The work is the corners times the reflex
- * corners, and limited.
+ * corners.
+ *
+ * With HE_ANY_DIAGONALS short loops are cut ear by ear too, and only those where that turns a
+ * triangle over are searched for the best: for who wants triangles, and many of them soon. The
+ * work for a loop is counted, and limited.
  *
  * With HE_AVOID_EDGES no diagonal is an edge that exists: an edit would double it. Short loops
  * avoid them wherever that costs no triangle that is turned over. In long ones an ear whose
@@ -24,18 +28,19 @@
 #include "mesh/flat.h"
 
 enum { HE_EXACT_CORNERS = 64 };
-#define HE_EAR_TESTS ((uint64_t)1 << 28)
+#define HE_TRIANGULATION_STEPS ((uint64_t)1 << 28)
 
 typedef struct he_triangulation {
     he_flat flat;
     uint32_t *corners; /* three a triangle, counter-clockwise, of flat.n - 2 triangles */
     bool degenerate;   /* some triangle has no area in the plane, or is seen from behind */
+    uint64_t steps;    /* that were taken */
 } he_triangulation;
 
-enum { HE_AVOID_EDGES = 1 };
+enum { HE_AVOID_EDGES = 1, HE_ANY_DIAGONALS = 2 };
 
 /* HE_DOUBLED_EDGE when none was found that avoids the edges there are, HE_LIMIT when a loop would
- * take more than HE_EAR_TESTS tests, HE_NO_MEMORY. he_triangulation_clear frees. */
+ * take more than HE_TRIANGULATION_STEPS, HE_NO_MEMORY. he_triangulation_clear frees. */
 HE_NODISCARD he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
                                              he_triangulation *out, he_error *err);
 void he_triangulation_clear(he_triangulation *triangulation);

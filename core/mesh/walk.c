@@ -46,6 +46,12 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
 
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b)
 {
+    uint64_t steps = 0;
+    return he_find_halfedge_counted(m, a, b, &steps);
+}
+
+he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps)
+{
     he_halfedge none = {HE_NONE};
     if (he_is_isolated(m, a) || he_is_isolated(m, b)) {
         return none;
@@ -53,6 +59,7 @@ he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b)
     he_halfedge from_a = he_vertex_halfedge(m, a), from_b = he_vertex_halfedge(m, b);
     he_halfedge h = from_a, k = from_b;
     do {
+        ++*steps;
         if (he_target(m, h).i == b.i) {
             return h;
         }

@@ -105,5 +105,7 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
 /* The half-edge from a to b, HE_NONE when no edge joins them. Turns about both in step, so it
  * costs the smaller degree. */
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b);
+/* The same, adding what it cost: for whoever limits that. */
+he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps);
 
 #endif

@@ -137,8 +137,8 @@ static uint32_t side(uint32_t a, uint32_t b, uint32_t n, unsigned bit)
 static he_status cut(he_drawing *d, uint32_t face, he_error *err)
 {
     he_triangulation t;
-    he_status status =
-        he_triangulation_make(d->mesh, (he_halfedge){d->mesh->c.face_halfedge[face]}, 0, &t, err);
+    he_halfedge first = {d->mesh->c.face_halfedge[face]};
+    he_status status = he_triangulation_make(d->mesh, first, HE_ANY_DIAGONALS, &t, err);
     if (status != HE_OK) {
         return status == HE_LIMIT ? HE_OK : status;
     }

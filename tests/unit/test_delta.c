@@ -270,6 +270,55 @@ static void test_changes_of_no_element(void **state)
     }
 }
 
+static void put_column(he_mesh *m, const char *name, he_kind domain)
+{
+    he_column *column;
+    assert_int_equal(he_column_new(name, domain, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(he_column_extend(column, he_mesh_issued(m, domain), NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+/* What was written in a column that went is no value of the one that took its slot. */
+static void test_changes_when_a_slot_has_another_column(void **state)
+{
+    (void)state;
+    static const he_kind domains[] = {HE_FACE, HE_HALFEDGE, HE_EDGE, HE_MESH_KIND};
+    for (size_t i = 0; i < sizeof domains / sizeof *domains; i++) {
+        he_mesh *m = fixture_mesh("012,345");
+        he_vertex far = {0};
+        assert_int_equal(he_reserve(m, (he_need){.vertices = 1000}, NULL), HE_OK);
+        for (int k = 0; k < 1000; k++) {
+            far = he_new_vertex(m);
+            he_set_vertex_halfedge(m, far, (he_halfedge){HE_NONE});
+        }
+        he_delta *steps[3] = {he_delta_new(), he_delta_new(), he_delta_new()};
+        he_changes changes;
+        put_column(m, "first", HE_VERTEX);
+        he_mesh_record(m, steps[0]);
+        assert_int_equal(he_reserve_values(m, 0, 2, NULL), HE_OK);
+        he_set_attribute(m, 0, 1, &(uint32_t){7});
+        he_set_attribute(m, 0, far.i, &(uint32_t){7});
+        he_mesh_record(m, steps[1]);
+        assert_int_equal(he_mesh_drop_column(m, 0, NULL), HE_OK);
+        he_mesh_record(m, steps[2]);
+        put_column(m, "second", domains[i]);
+        he_mesh_record(m, NULL);
+        const he_change_part done[3] = {{steps[0], 0, steps[0]->count, false},
+                                        {steps[1], 0, steps[1]->count, false},
+                                        {steps[2], 0, steps[2]->count, false}};
+        assert_int_equal(he_changes_sum(m, done, 3, &changes, NULL), HE_OK);
+        assert_true(changes.others);
+        assert_int_equal(changes.modified[HE_VERTEX].count, 0);
+        assert_int_equal(changes.modified[HE_EDGE].count, 0);
+        assert_int_equal(changes.modified[HE_FACE].count, 0);
+        he_changes_clear(&changes);
+        for (size_t k = 0; k < 3; k++) {
+            he_delta_free(steps[k]);
+        }
+        he_mesh_free(m);
+    }
+}
+
 /* he_reserve makes room for every word of a value, whatever its domain. */
 static void test_the_widest_value_has_room(void **state)
 {
@@ -423,6 +472,7 @@ int main(void)
         cmocka_unit_test(test_changes_of_many_rows),
         cmocka_unit_test(test_columns_are_recorded),
         cmocka_unit_test(test_changes_of_no_element),
+        cmocka_unit_test(test_changes_when_a_slot_has_another_column),
         cmocka_unit_test(test_the_widest_value_has_room),
         cmocka_unit_test(test_compact_renumbers_and_undoes),
         cmocka_unit_test(test_every_allocation_may_fail),

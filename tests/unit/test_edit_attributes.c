@@ -139,8 +139,11 @@ static void test_edges_and_faces(void **state)
     m = after("0123", HE_FACE, HE_COPY, "plane_split point=0.5,0,0 normal=1,0,0");
     assert_value(m, HE_FACE, 1, 0);
     he_mesh_free(m);
-    m = after("012,023", HE_FACE, HE_INTERPOLATE, "face_join edge=0-2");
+    m = after("012,023", HE_FACE, HE_COPY, "face_join edge=0-2");
     assert_value(m, HE_FACE, 0, 0);
+    he_mesh_free(m);
+    m = after("012,023", HE_FACE, HE_INTERPOLATE, "face_join edge=0-2");
+    assert_value(m, HE_FACE, 0, 5);
     assert_value(m, HE_FACE, 1, -1); /* dead */
     he_mesh_free(m);
     m = after("012,103,214", HE_EDGE, HE_COPY, "face_delete face=2;edge_flip edge=0-1;compact");

@@ -13,6 +13,7 @@
 #include "edit/hole.h"
 #include "edit/triangulate.h"
 #include "mesh/build.h"
+#include "mesh/triangulation.h"
 #include "mesh/walk.h"
 
 typedef struct point {
@@ -300,14 +301,85 @@ static void test_same_every_time(void **state)
     he_mesh_free(b);
 }
 
+static he_triangulation triangulation_of(const he_mesh *m, uint32_t face, unsigned flags)
+{
+    he_triangulation t;
+    he_halfedge first = he_face_halfedge(m, (he_face){face});
+    assert_int_equal(he_triangulation_make(m, first, flags, &t, NULL), HE_OK);
+    return t;
+}
+
+/* A star and a polygon whose sides cross. */
+static void test_any_diagonals_take_few_steps(void **state)
+{
+    (void)state;
+    enum { N = HE_EXACT_CORNERS };
+    point star[N], crossed[N];
+    for (uint32_t i = 0; i < N; i++) {
+        double angle = 6.283185307179586 * i / N, radius = i % 2 ? 100 : 30;
+        star[i] = (point){radius * cos(angle), radius * sin(angle)};
+        crossed[i] = (point){(i * 37) % 61, (i * 23) % 59};
+    }
+    he_mesh *m = polygon(star, N, 1);
+    he_triangulation any = triangulation_of(m, 0, HE_ANY_DIAGONALS),
+                     best = triangulation_of(m, 0, 0);
+    assert_false(any.degenerate);
+    assert_false(best.degenerate);
+    assert_true(any.steps < N * N);
+    assert_true(best.steps > N * N);
+    he_triangulation_clear(&any);
+    he_triangulation_clear(&best);
+    he_mesh_free(m);
+
+    m = polygon(crossed, N, 1);
+    any = triangulation_of(m, 0, HE_ANY_DIAGONALS);
+    best = triangulation_of(m, 0, 0);
+    assert_int_equal(any.degenerate, best.degenerate);
+    assert_memory_equal(any.corners, best.corners, 3 * sizeof(uint32_t) * (N - 2));
+    he_triangulation_clear(&any);
+    he_triangulation_clear(&best);
+    he_mesh_free(m);
+}
+
+/* Every face passes the same two vertices, of which each diagonal might join them already. */
+static void test_searching_for_edges_counts(void **state)
+{
+    (void)state;
+    enum { FACES = 2000 };
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_soup_init(&soup, NULL);
+    assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){-1, 0, 0}, NULL), HE_OK);
+    assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){1, 0, 0}, NULL), HE_OK);
+    for (uint32_t i = 0; i < FACES; i++) {
+        uint32_t a = (uint32_t)soup.vertex_count;
+        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){0, -1, i}, NULL), HE_OK);
+        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){0, 1, i}, NULL), HE_OK);
+        assert_int_equal(he_soup_add_face(&soup, (uint32_t[]){0, a, 1, a + 1}, 4, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    he_triangulation t = triangulation_of(m, 0, HE_AVOID_EDGES);
+    assert_true(t.steps > FACES);
+    he_triangulation_clear(&t);
+    he_mesh_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_small),        cmocka_unit_test(test_any_scale),
-        cmocka_unit_test(test_long),         cmocka_unit_test(test_convex_is_fast),
-        cmocka_unit_test(test_degenerate),   cmocka_unit_test(test_existing_edges),
-        cmocka_unit_test(test_blocked_ears), cmocka_unit_test(test_list_sees_its_own_diagonals),
-        cmocka_unit_test(test_holes),        cmocka_unit_test(test_same_every_time),
+        cmocka_unit_test(test_small),
+        cmocka_unit_test(test_any_scale),
+        cmocka_unit_test(test_long),
+        cmocka_unit_test(test_convex_is_fast),
+        cmocka_unit_test(test_degenerate),
+        cmocka_unit_test(test_existing_edges),
+        cmocka_unit_test(test_blocked_ears),
+        cmocka_unit_test(test_list_sees_its_own_diagonals),
+        cmocka_unit_test(test_holes),
+        cmocka_unit_test(test_same_every_time),
+        cmocka_unit_test(test_any_diagonals_take_few_steps),
+        cmocka_unit_test(test_searching_for_edges_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

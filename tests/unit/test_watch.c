@@ -5,6 +5,7 @@
 #include "edit/delaunay.h"
 #include "edit/plane_split.h"
 #include "edit/transform.h"
+#include "edit/triangulate.h"
 #include "mesh/compact.h"
 #include "query/geometry.h"
 #include "query/topology.h"
@@ -151,6 +152,15 @@ static he_status run_delaunay(he_mesh *m)
     return he_delaunay(m, NULL, 0, NULL, NULL);
 }
 
+static he_status run_triangulate(he_mesh *m)
+{
+    static uint32_t faces[SIDE * SIDE];
+    for (uint32_t f = 0; f < SIDE * SIDE; f++) {
+        faces[f] = f;
+    }
+    return he_face_triangulate(m, faces, SIDE * SIDE, NULL, NULL, NULL, NULL);
+}
+
 static he_status run_compact(he_mesh *m)
 {
     return he_compact(m, NULL, NULL);
@@ -167,8 +177,8 @@ static he_status run_copy(he_mesh *m)
     return status;
 }
 
-static he_status (*const operations[])(he_mesh *m) = {run_transform, run_plane_split, run_delaunay,
-                                                      run_compact, run_copy};
+static he_status (*const operations[])(he_mesh *m) = {
+    run_transform, run_plane_split, run_delaunay, run_triangulate, run_compact, run_copy};
 
 static he_status run_recorded(he_status (*operation)(he_mesh *m), he_mesh *mesh, listener *l)
 {

@@ -1,0 +1,213 @@
+/* Attributes of a mesh that was edited come back from the files that can hold them, bit by bit:
+ * rows of the dead are left out, and no value changes its element. */
+#include "unit/format_fixture.h"
+
+#include "edit/erase.h"
+#include "mesh/write.h"
+#include "mesh/compact.h"
+#include "model/random.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <time.h>
+
+typedef struct attribute {
+    const char *name;
+    he_kind domain;
+    he_type type;
+    uint32_t components;
+    uint32_t below; /* of whole numbers, 0 for all */
+} attribute;
+
+static void random_number(md_random *random, const attribute *a, unsigned char *at)
+{
+    uint32_t word = (uint32_t)md_bits(random), bits;
+    uint64_t wide = md_bits(random);
+    word = a->below != 0 ? word % a->below : word;
+    switch (a->type) {
+    case HE_INT32:
+    case HE_UINT32:
+        memcpy(at, &word, sizeof word);
+        break;
+    case HE_FLOAT: {
+        float value;
+        do {
+            bits = (uint32_t)md_bits(random);
+            memcpy(&value, &bits, sizeof value);
+        } while (!isfinite(value));
+        memcpy(at, &value, sizeof value);
+        break;
+    }
+    case HE_DOUBLE: {
+        double value;
+        memcpy(&value, &wide, sizeof value);
+        while (!isfinite(value)) {
+            wide = md_bits(random);
+            memcpy(&value, &wide, sizeof value);
+        }
+        memcpy(at, &value, sizeof value);
+        break;
+    }
+    case HE_BOOL:
+    case HE_TYPE_COUNT:
+        fail();
+    }
+}
+
+static void add_attribute(he_mesh *m, md_random *random, const attribute *a)
+{
+    he_column *column;
+    assert_int_equal(
+        he_column_new(a->name, a->domain, a->type, a->components, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(he_column_extend(column, he_mesh_issued(m, a->domain), NULL), HE_OK);
+    for (uint32_t row = 0; row < column->rows; row++) {
+        for (uint32_t i = 0; i < a->components && he_mesh_is_live(m, a->domain, row); i++) {
+            random_number(random, a, he_column_row(column, row) + i * he_type_bytes(a->type));
+        }
+    }
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+/* A grid of which faces and vertices were deleted, with attributes. */
+static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t count)
+{
+    enum { SIDE = 8 };
+    he_soup soup;
+    he_mesh *m;
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i < (SIDE + 1) * (SIDE + 1); i++) {
+        he_vec3 p = {i % (SIDE + 1) / 3.0, (i / (SIDE + 1)) * 0.1, 1e-7 * i};
+        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+    }
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        uint32_t a = i / SIDE * (SIDE + 1) + i % SIDE, b = a + SIDE + 1;
+        assert_int_equal(he_soup_add_face(&soup, (uint32_t[]){a, a + 1, b + 1, b}, 4, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    for (size_t i = 0; i < count; i++) {
+        add_attribute(m, random, &attributes[i]);
+    }
+    for (int i = 0; i < 12; i++) {
+        uint32_t face = md_below(random, SIDE * SIDE);
+        if (he_mesh_is_live(m, HE_FACE, face)) {
+            he_leftover leftover = i % 2 ? HE_DROP_ISOLATED : HE_KEEP_ISOLATED;
+            assert_int_equal(he_face_delete(m, &face, 1, leftover, NULL), HE_OK);
+        }
+    }
+    fixture_check(m);
+    return m;
+}
+
+/* Rows of corners follow faces, all others the ids, which have no gaps here. */
+static void expect_column(const he_mesh *m, const he_import *import, const attribute *a)
+{
+    const he_column *wanted = he_mesh_find_column(m, a->domain, a->name);
+    const he_column *column = find_column(import, a->domain, a->name);
+    size_t row = 0, bytes = wanted->row_bytes;
+    assert_non_null(column);
+    assert_int_equal(column->type, a->type);
+    assert_int_equal(column->components, a->components);
+    if (a->domain != HE_HALFEDGE) {
+        assert_int_equal(column->rows, he_mesh_count(m, a->domain));
+        assert_memory_equal(column->data, wanted->data, column->rows * bytes);
+        return;
+    }
+    for (uint32_t f = 0; f < he_mesh_faces(m); f++) {
+        uint32_t first = m->c.face_halfedge[f], h = first;
+        do {
+            assert_true(row < column->rows);
+            assert_memory_equal(he_column_value(column, row++), he_column_value(wanted, h), bytes);
+            h = m->c.next[h];
+        } while (h != first);
+    }
+    assert_int_equal(row, column->rows);
+}
+
+static void round_trip(const char *format, const char *encoding, const attribute *attributes,
+                       size_t count)
+{
+    const char *given = getenv("SEED");
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
+                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
+    printf("note: SEED=%" PRIu64 " %s %s\n", seed, format, encoding);
+    md_random random = {seed};
+    for (int round = 0; round < 20; round++) {
+        he_mesh *m = worn_grid(&random, attributes, count);
+        he_notes notes;
+        size_t length;
+        char *bytes = write_encoded(format, encoding, m, 777, &notes, &length);
+        assert_int_equal(notes.count, 0);
+        he_import import = {0};
+        he_error err = {0};
+        if (read_pieces(format, bytes, length, 333, NULL, &import, &err) != HE_OK) {
+            fail_msg("%s", err.text);
+        }
+        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(he_compact(m, NULL, NULL), HE_OK);
+        assert_int_equal(import.soup.vertex_count, he_mesh_vertices(m));
+        assert_memory_equal(import.soup.positions, m->c.position,
+                            he_mesh_vertices(m) * sizeof(he_vec3));
+        assert_int_equal(import.soup.column_count, count);
+        for (size_t i = 0; i < count; i++) {
+            expect_column(m, &import, &attributes[i]);
+        }
+        he_mesh_free(build_import(&import));
+        he_import_clear(&import);
+        free(bytes);
+        he_mesh_free(m);
+    }
+}
+
+static void ply_keeps_the_attributes_of_vertices_and_faces(void **state)
+{
+    (void)state;
+    static const attribute attributes[] = {
+        {"normal", HE_VERTEX, HE_FLOAT, 3, 0},  {"color", HE_VERTEX, HE_UINT32, 4, 256},
+        {"uv", HE_VERTEX, HE_DOUBLE, 2, 0},     {"charge", HE_VERTEX, HE_INT32, 1, 0},
+        {"weight", HE_VERTEX, HE_DOUBLE, 1, 0}, {"normal", HE_FACE, HE_DOUBLE, 3, 0},
+        {"color", HE_FACE, HE_FLOAT, 3, 0},     {"part", HE_FACE, HE_UINT32, 1, 0},
+        {"heat", HE_FACE, HE_FLOAT, 1, 0},
+    };
+    static const char *const encodings[] = {"ascii", "binary", "binary_big_endian"};
+    for (size_t i = 0; i < 3; i++) {
+        round_trip("ply", encodings[i], attributes, sizeof attributes / sizeof *attributes);
+    }
+}
+
+static void obj_keeps_the_values_of_corners(void **state)
+{
+    (void)state;
+    static const attribute attributes[] = {
+        {"color", HE_VERTEX, HE_DOUBLE, 3, 0},
+        {"uv", HE_HALFEDGE, HE_DOUBLE, 2, 0},
+        {"normal", HE_HALFEDGE, HE_DOUBLE, 3, 0},
+        {"smoothing", HE_FACE, HE_UINT32, 1, 3},
+    };
+    round_trip("obj", "ascii", attributes, sizeof attributes / sizeof *attributes);
+}
+
+static void off_keeps_normals_colors_and_texture(void **state)
+{
+    (void)state;
+    static const attribute attributes[] = {
+        {"normal", HE_VERTEX, HE_DOUBLE, 3, 0},
+        {"color", HE_VERTEX, HE_UINT32, 4, 256},
+        {"uv", HE_VERTEX, HE_DOUBLE, 2, 0},
+        {"color", HE_FACE, HE_UINT32, 3, 256},
+    };
+    round_trip("off", "ascii", attributes, sizeof attributes / sizeof *attributes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ply_keeps_the_attributes_of_vertices_and_faces),
+        cmocka_unit_test(obj_keeps_the_values_of_corners),
+        cmocka_unit_test(off_keeps_normals_colors_and_texture),
+    };
+    return cmocka_run_group_tests_name("format_attributes", tests, NULL, NULL);
+}
