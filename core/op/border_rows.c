@@ -1,5 +1,6 @@
 #include "op/rows.h"
 
+#include "edit/edge_extrude.h"
 #include "edit/erase.h"
 #include "edit/seam.h"
 
@@ -28,6 +29,20 @@ static he_status run_edge_weld(he_mesh *m, const he_arg *args, he_results *out, 
         he_edge_weld(m, (he_edge){args[0].id}, (he_edge){args[1].id}, (he_keep)args[2].choice, err);
     if (status == HE_OK) {
         he_give(out, 0, args[0].id);
+    }
+    return status;
+}
+
+static he_status run_edge_extrude(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_walls walls;
+    he_status status =
+        he_edge_extrude(m, args[0].ids, args[0].count, args[1].points[0], &walls, err);
+    if (status == HE_OK) {
+        he_give_list(out, 0, &walls.vertices);
+        he_give_list(out, 1, &walls.edges);
+        he_give_list(out, 2, &walls.faces);
+        he_walls_clear(&walls);
     }
     return status;
 }
@@ -94,6 +109,29 @@ const he_op he_border_rows[] = {
                      HE_REPEATED_CORNER, HE_DOUBLED_EDGE, HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, -1, 0},
         .run = run_edge_weld,
+    },
+    {
+        .name = "edge_extrude",
+        .doc = "Draw boundary edges out into quads.",
+        .params = {{.name = "edge",
+                    .plural = "edges",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is drawn out; edges that follow each other share corners."},
+                   {.name = "by",
+                    .type = HE_PARAM_POINT,
+                    .flags = HE_REQUIRED,
+                    .doc = "From the edges to their copies."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, by rising vertex they come from."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "The copies of the edges, in the same order."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The quads, in the same order."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
+                     HE_BRANCHING_CHAIN, HE_CLOSED_FAN, HE_NOT_FINITE},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_edge_extrude,
     },
     {.name = NULL},
 };

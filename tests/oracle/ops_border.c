@@ -216,15 +216,6 @@ static uint32_t became(uint32_t v, const uint32_t goes[2], const uint32_t stays[
     return v == goes[0] ? stays[0] : v == goes[1] ? stays[1] : v;
 }
 
-/* Does the fan at v that begins with x, end with y, and another touch it? */
-static bool closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y)
-{
-    while (o->left[v][x] != OR_NONE) {
-        x = or_turn(o, v, x);
-    }
-    return x == y && or_fans(o, v) > 1;
-}
-
 static bool is_beside(const or_mesh *o, uint32_t e, uint32_t v)
 {
     return o->edge[e].a == v || o->edge[e].b == v;
@@ -298,7 +289,7 @@ uint64_t or_edge_weld(or_mesh *o, uint32_t ea, uint32_t eb, or_keep keep)
         uint32_t x = stays[1 - i];
         uint32_t y = goes[1 - i];
         bool starts = o->left[stays[i]][x] != OR_NONE;
-        if (stays[i] == goes[i] && closes_beside(o, stays[i], starts ? x : y, starts ? y : x)) {
+        if (stays[i] == goes[i] && or_closes_beside(o, stays[i], starts ? x : y, starts ? y : x)) {
             refused |= OR_BIT(HE_CLOSED_FAN);
         }
         refused |= locked_at_end(o, goes[i], stays[i], keep) ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
