@@ -1,7 +1,7 @@
 #include "edit/face_add.h"
 
 #include "edit/list.h"
-#include "mesh/write.h"
+#include "edit/ring.h"
 
 /* The boundary half-edge that runs from a to b, or HE_NONE when no edge joins them. */
 static he_status find_side(const he_mesh *m, he_vertex a, he_vertex b, uint32_t *out, he_error *err)
@@ -21,20 +21,10 @@ static he_status find_side(const he_mesh *m, he_vertex a, he_vertex b, uint32_t 
     return HE_OK;
 }
 
-/* The boundary half-edge that ends the fan which `in`, a boundary half-edge, begins. */
-static he_halfedge fan_end(const he_mesh *m, he_halfedge in)
-{
-    he_halfedge h = he_twin(in);
-    while (!he_is_boundary_halfedge(m, h)) {
-        h = he_turn_ccw(m, h);
-    }
-    return h;
-}
-
 static he_status check_corner(const he_mesh *m, uint32_t in, uint32_t out, he_error *err)
 {
     if (in == HE_NONE || out == HE_NONE || m->c.next[in] == out ||
-        fan_end(m, (he_halfedge){in}).i != out) {
+        he_ring_fan_end(m, (he_halfedge){in}).i != out) {
         return HE_OK;
     }
     uint32_t v = m->c.origin[out];
@@ -69,19 +59,6 @@ static he_status check(const he_mesh *m, const uint32_t *vertices, size_t n, uin
     return HE_OK;
 }
 
-/* Make `out` follow `in`, both on the boundary, taking the fans between them out of the gap. */
-static void close_gap(he_mesh *m, he_halfedge in, he_halfedge out)
-{
-    he_halfedge after_in = he_next(m, in);
-    if (after_in.i == out.i) {
-        return;
-    }
-    he_halfedge before_out = he_prev(m, out), end = fan_end(m, in), before_end = he_prev(m, end);
-    he_link(m, in, out);
-    he_link(m, before_out, end);
-    he_link(m, before_end, after_in);
-}
-
 /* Link the corner between two sides, of which some are new and have no links yet. Touches only
  * links about this vertex. */
 static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new, he_halfedge out,
@@ -89,7 +66,7 @@ static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new,
 {
     he_halfedge outer_in = he_twin(in), outer_out = he_twin(out);
     if (!in_is_new && !out_is_new) {
-        close_gap(m, in, out);
+        he_ring_close_gap(m, in, out);
     } else if (!in_is_new) {
         he_link(m, outer_out, he_next(m, in));
         he_link(m, in, out);

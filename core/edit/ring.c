@@ -20,3 +20,25 @@ void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving)
         he_set_vertex_halfedge(m, v, leaving);
     }
 }
+
+he_halfedge he_ring_fan_end(const he_mesh *m, he_halfedge in)
+{
+    he_halfedge h = he_twin(in);
+    while (!he_is_boundary_halfedge(m, h)) {
+        h = he_turn_ccw(m, h);
+    }
+    return h;
+}
+
+void he_ring_close_gap(he_mesh *m, he_halfedge in, he_halfedge out)
+{
+    he_halfedge after_in = he_next(m, in);
+    if (after_in.i == out.i) {
+        return;
+    }
+    he_halfedge before_out = he_prev(m, out), end = he_ring_fan_end(m, in);
+    he_halfedge before_end = he_prev(m, end);
+    he_link(m, in, out);
+    he_link(m, before_out, end);
+    he_link(m, before_end, after_in);
+}

@@ -53,9 +53,11 @@
     X(SHARED_BOUNDARY, "shared_boundary", "The faces share more than this edge")              \
     X(WRONG_DEGREE, "wrong_degree", "The vertex does not have degree two")                    \
     X(TRIANGLE_SIDE, "triangle_side", "A face beside the vertex is a triangle")               \
-    X(LOW_DEGREE, "low_degree", "An end of the edge would lose too many edges")               \
+    X(LOW_DEGREE, "low_degree", "A vertex has too few edges")                                 \
     X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")               \
     X(LINK_CONDITION, "link_condition", "The link condition does not hold")                   \
+    X(BRANCHING_CHAIN, "branching_chain", "A chain of edges branches at a vertex")            \
+    X(DEGENERATE_EDGE, "degenerate_edge", "An edge has no length")                            \
     /* what marks forbid (marks.h) */                                                         \
     X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
     X(LOCKED_ELEMENT, "locked_element", "The element is locked")

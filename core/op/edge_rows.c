@@ -2,6 +2,7 @@
 
 #include "edit/bisect.h"
 #include "edit/collapse.h"
+#include "edit/edge_bevel.h"
 #include "edit/flip.h"
 #include "edit/split.h"
 
@@ -73,6 +74,19 @@ static he_status run_edge_collapse(he_mesh *m, const he_arg *args, he_results *o
         he_edge_collapse(m, h, args[2].number, args[3].given ? args[3].points : NULL, &v, err);
     if (status == HE_OK) {
         he_give(out, 0, v.i);
+    }
+    return status;
+}
+
+static he_status run_edge_bevel(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_bevel bevel;
+    he_status status = he_edge_bevel(m, (he_edge){args[0].id}, args[1].number, &bevel, err);
+    if (status == HE_OK) {
+        he_give(out, 0, bevel.face.i);
+        he_give_list(out, 1, &bevel.vertices);
+        he_give_number(out, 2, bevel.width);
+        he_bevel_clear(&bevel);
     }
     return status;
 }
@@ -185,6 +199,28 @@ const he_op he_edge_rows[] = {
                      HE_LOCKED_ELEMENT},
         .change = {-1, HE_VARIES, HE_VARIES},
         .run = run_edge_collapse,
+    },
+    {
+        .name = "edge_bevel",
+        .doc = "Flatten an edge into a face.",
+        .params = {{.name = "edge",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What becomes a face."},
+                   {.name = "width",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_REQUIRED,
+                    .doc = "Above 0: how far from its ends the other edges there are cut; at most "
+                           "0.99 of the shortest."}},
+        .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
+                    {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, in the order of the new face."},
+                    {"width", HE_RESULT_NUMBER, HE_MESH_KIND, "The width that was taken."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_BAD_VALUE,
+                     HE_LOW_DEGREE, HE_DEGENERATE_EDGE, HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, 1},
+        .run = run_edge_bevel,
     },
     {.name = NULL},
 };

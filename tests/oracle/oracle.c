@@ -155,6 +155,14 @@ uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x)
     return f == OR_NONE ? OR_NONE : or_before(&o->face[f], v);
 }
 
+bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y)
+{
+    while (o->left[v][x] != OR_NONE) {
+        x = or_turn(o, v, x);
+    }
+    return x == y && or_fans(o, v) > 1;
+}
+
 /* One closed fan, or any number of open ones? */
 static bool fans_can_be_held(const or_mesh *o, uint32_t v)
 {

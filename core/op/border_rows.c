@@ -1,0 +1,137 @@
+#include "op/rows.h"
+
+#include "edit/edge_extrude.h"
+#include "edit/erase.h"
+#include "edit/seam.h"
+
+static he_status run_edge_delete(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)out;
+    return he_edge_delete(m, args[0].ids, args[0].count,
+                          args[1].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
+}
+
+static he_status run_edge_cut(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_seam seam;
+    he_status status = he_edge_cut(m, args[0].ids, args[0].count, &seam, err);
+    if (status == HE_OK) {
+        he_give_list(out, 0, &seam.vertices);
+        he_give_list(out, 1, &seam.edges);
+        he_seam_clear(&seam);
+    }
+    return status;
+}
+
+static he_status run_edge_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_status status =
+        he_edge_weld(m, (he_edge){args[0].id}, (he_edge){args[1].id}, (he_keep)args[2].choice, err);
+    if (status == HE_OK) {
+        he_give(out, 0, args[0].id);
+    }
+    return status;
+}
+
+static he_status run_edge_extrude(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_walls walls;
+    he_status status =
+        he_edge_extrude(m, args[0].ids, args[0].count, args[1].points[0], &walls, err);
+    if (status == HE_OK) {
+        he_give_list(out, 0, &walls.vertices);
+        he_give_list(out, 1, &walls.edges);
+        he_give_list(out, 2, &walls.faces);
+        he_walls_clear(&walls);
+    }
+    return status;
+}
+
+/* In the order of he_keep. */
+static const char *const keeps[] = {"mean", "a", "b", NULL};
+
+const he_op he_border_rows[] = {
+    {
+        .name = "edge_delete",
+        .doc = "Delete edges with the faces beside them, and edges and vertices that are left "
+               "without any.",
+        .params = {{.name = "edge",
+                    .plural = "edges",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What goes."},
+                   {.name = "keep_isolated",
+                    .type = HE_PARAM_FLAG,
+                    .doc = "Keep vertices that lose their last face."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT,
+                     HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_edge_delete,
+    },
+    {
+        .name = "edge_cut",
+        .doc = "Open the mesh along edges: each becomes two on the boundary.",
+        .params = {{.name = "edge",
+                    .plural = "edges",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is cut; each keeps the side of its first half-edge."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, at the place of those they come from."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "The other sides of the edges, by rising edge."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BOUNDARY_EDGE,
+                     HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, 0},
+        .run = run_edge_cut,
+    },
+    {
+        .name = "edge_weld",
+        .doc = "Make two boundary edges one; the inverse of edge_cut.",
+        .params = {{.name = "a",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What stays, with its ends."},
+                   {.name = "b",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is merged into it, with its ends."},
+                   {.name = "keep",
+                    .type = HE_PARAM_CHOICE,
+                    .choices = keeps,
+                    .doc = "Where the ends lie: half-way between, or where those of a or b did."}},
+        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The edge that stays."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
+                     HE_REPEATED_CORNER, HE_DOUBLED_EDGE, HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, -1, 0},
+        .run = run_edge_weld,
+    },
+    {
+        .name = "edge_extrude",
+        .doc = "Draw boundary edges out into quads.",
+        .params = {{.name = "edge",
+                    .plural = "edges",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is drawn out; edges that follow each other share corners."},
+                   {.name = "by",
+                    .type = HE_PARAM_POINT,
+                    .flags = HE_REQUIRED,
+                    .doc = "From the edges to their copies."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, by rising vertex they come from."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "The copies of the edges, in the same order."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The quads, in the same order."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
+                     HE_BRANCHING_CHAIN, HE_CLOSED_FAN, HE_NOT_FINITE},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_edge_extrude,
+    },
+    {.name = NULL},
+};

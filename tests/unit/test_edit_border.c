@@ -1,0 +1,505 @@
+/* Edits that open, close and draw out the boundary, and edge_bevel: what they leave where, and that
+ * they undo each other. */
+#include "edit_script.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "edit/edge_bevel.h"
+#include "edit/edge_extrude.h"
+#include "edit/seam.h"
+#include "mesh/build.h"
+#include "mesh/write.h"
+
+#define QCUBE   "0123,7654,1045,2156,3267,0374"
+#define TETRA   "021,013,032,123"
+#define RING10  "401,430,512,541,652,734,874,845,985,956"
+#define STRANGE "012,034,056"
+#define HEXAGON "012,023,034,045,056,061"
+
+static const he_vec3 cube[] = {{0, 0, 0},  {1, 0, 0},  {1, 1, 0},  {0, 1, 0},
+                               {0, 0, -1}, {1, 0, -1}, {1, 1, -1}, {0, 1, -1}};
+
+static void assert_at(const he_mesh *m, uint32_t v, double x, double y, double z)
+{
+    he_vec3 p = he_position(m, (he_vertex){v});
+    assert_true(fabs(p.x - x) < 1e-12 && fabs(p.y - y) < 1e-12 && fabs(p.z - z) < 1e-12);
+}
+
+/* An interior vertex may store any half-edge that leaves it, one at a bow-tie any of the boundary:
+ * take those of `like`. */
+static void store_like(he_mesh *m, const he_mesh *like)
+{
+    for (uint32_t v = 0; v < he_mesh_issued(like, HE_VERTEX); v++) {
+        if (he_vertex_is_live(like, (he_vertex){v})) {
+            he_set_vertex_halfedge(m, (he_vertex){v}, he_vertex_halfedge(like, (he_vertex){v}));
+        }
+    }
+}
+
+/* --- edge_cut and edge_weld ------------------------------------------------------------------- */
+
+static void test_weld_undoes_cut(void **state)
+{
+    (void)state;
+    static const char *const meshes[] = {
+        HEXAGON, "012,023",   "012,023,034,045",
+        RING10,  "0123,3245", "0154,1265,2376,4598,56a9,67ba,89dc,9aed"};
+    unsigned cut = 0;
+    for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
+        he_mesh *m = script_mesh(meshes[i], NULL);
+        script_add_columns(m);
+        uint32_t edges = he_mesh_edges(m);
+        for (uint32_t e = 0; e < edges; e++) {
+            he_mesh *before = copy_of(m);
+            he_seam seam;
+            if (he_edge_cut(m, &e, 1, &seam, NULL) != HE_OK) {
+                assert_equal(m, before);
+                he_mesh_free(before);
+                continue;
+            }
+            assert_valid(m);
+            assert_true(he_is_boundary_edge(m, (he_edge){e}));
+            assert_int_equal(seam.edges.count, 1);
+            assert_int_equal(
+                he_edge_weld(m, (he_edge){e}, (he_edge){seam.edges.ids[0]}, HE_KEEP_MEAN, NULL),
+                HE_OK);
+            assert_valid(m);
+            store_like(m, before);
+            assert_valid(m);
+            assert_true(he_mesh_equal_live(m, before));
+            he_seam_clear(&seam);
+            he_mesh_free(before);
+            cut++;
+        }
+        he_mesh_free(m);
+    }
+    assert_true(cut > 20);
+}
+
+static void test_a_cube_cut_along_all_edges_falls_apart(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, cube);
+    script_prepare(m, "edge_cut edges=#0,#1,#2,#3,#4,#5,#6,#7,#8,#9,#10,#11");
+    assert_counts(m, 24, 24, 6);
+    assert_loops(m, "444444");
+    for (uint32_t f = 0; f < 6; f++) {
+        he_halfedge h = he_face_halfedge(m, (he_face){f});
+        for (unsigned i = 0; i < 4; i++, h = he_next(m, h)) {
+            assert_int_equal(he_vertex_degree(m, (he_vertex){he_origin(m, h).i}), 2);
+        }
+    }
+    he_mesh_free(m);
+}
+
+static void test_cut_leaves_other_fans_alone(void **state)
+{
+    (void)state;
+    /* Two fans at 0, of two and three faces; the second is cut. */
+    he_mesh *m = script_mesh("012,023,045,056,067", NULL);
+    uint32_t e = edge_between(m, 0, 5).i;
+    script_prepare(m, "edge_cut edge=0-5");
+    assert_valid(m);
+    assert_face(m, 0, "012");
+    assert_face(m, 1, "023");
+    assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
+    /* The side of half-edge 2e stays with both ends. */
+    assert_int_equal(he_origin(m, (he_halfedge){2 * e}).i + he_target(m, (he_halfedge){2 * e}).i,
+                     5);
+    assert_false(he_is_boundary_halfedge(m, (he_halfedge){2 * e}));
+    he_mesh_free(m);
+}
+
+static void test_weld_places_the_ends(void **state)
+{
+    (void)state;
+    static const he_vec3 places[] = {{0, 0, 0}, {0, 2, 0}, {-2, 0, 0},
+                                     {4, 0, 0}, {6, 0, 0}, {4, 4, 0}};
+    static const struct {
+        const char *weld;
+        double low, high, top;
+    } cases[] = {{"edge_weld a=0-1 b=3-5", 2, 2, 3},
+                 {"edge_weld a=0-1 b=3-5 keep=mean", 2, 2, 3},
+                 {"edge_weld a=0-1 b=3-5 keep=a", 0, 0, 2},
+                 {"edge_weld a=0-1 b=3-5 keep=b", 4, 4, 4}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        /* Each face is on its own side: 0-1 runs up with face 102, 3-5 with 345. */
+        he_mesh *m = script_mesh("012,345", places);
+        script_prepare(m, cases[i].weld);
+        assert_counts(m, 4, 5, 2);
+        assert_at(m, 0, cases[i].low, 0, 0);
+        assert_at(m, 1, cases[i].high, cases[i].top, 0);
+        he_mesh_free(m);
+    }
+}
+
+static void test_welds_at_a_bowtie_in_every_order(void **state)
+{
+    (void)state;
+    static const char *const welds[] = {"edge_weld a=0-2 b=0-3", "edge_weld a=0-4 b=0-5",
+                                        "edge_weld a=0-6 b=0-7", "edge_weld a=0-8 b=0-1"};
+    /* Four fans in every order of welding; the last closes the only one left. */
+    for (unsigned order = 0; order < 256; order++) {
+        unsigned used = 0;
+        he_mesh *m = script_mesh("012,034,056,078", NULL);
+        for (unsigned k = 0; k < 4; k++) {
+            unsigned i = order >> 2 * k & 3;
+            if (!(used >> i & 1)) {
+                used |= 1u << i;
+                script_prepare(m, welds[i]);
+                assert_valid(m);
+            }
+        }
+        if (used == 15) {
+            assert_counts(m, 5, 8, 4);
+            assert_false(he_is_boundary_vertex(m, (he_vertex){0}));
+        }
+        he_mesh_free(m);
+    }
+}
+
+/* --- edge_extrude ----------------------------------------------------------------------------- */
+
+static void test_deleting_the_walls_undoes_extrude(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *prepare, *extrude;
+    } cases[] = {
+        {"012", NULL, "edge_extrude edge=0-1 by=0,0,1"},
+        {"012", NULL, "edge_extrude edges=0-1,1-2 by=0,0,1"},
+        {"012", NULL, "edge_extrude edges=0-1,1-2,2-0 by=0,0,1"},
+        {QCUBE, "face_delete face=0", "edge_extrude edges=0-1,1-2,2-3,3-0 by=0,0,1"},
+        {STRANGE, NULL, "edge_extrude edges=0-1,0-4 by=0,0,1"},
+        {STRANGE, NULL, "edge_extrude edges=0-1,0-6,3-4 by=0,0,1"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        for (unsigned by_edge = 0; by_edge < 2; by_edge++) {
+            he_mesh *m = script_mesh(cases[i].mesh, NULL);
+            he_results results = {{0}, {0}, {{0}}, {0}};
+            script_prepare(m, cases[i].prepare);
+            he_mesh *before = copy_of(m);
+            assert_int_equal(script_run(m, cases[i].extrude, &results, NULL), HE_OK);
+            assert_valid(m);
+            assert_true(he_mesh_faces(m) > he_mesh_faces(before));
+            /* The far edges are on the boundary and have just the walls. */
+            char text[128];
+            int n =
+                snprintf(text, sizeof text, by_edge ? "edge_delete edges=" : "face_delete faces=");
+            const he_ids *list = &results.list[by_edge ? 1 : 2];
+            for (size_t k = 0; k < list->count; k++) {
+                n += snprintf(text + n, sizeof text - (size_t)n, "#%u,", list->ids[k]);
+            }
+            script_prepare(m, text);
+            assert_valid(m);
+            assert_int_equal(he_mesh_vertices(m), he_mesh_vertices(before));
+            assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
+            if (strcmp(cases[i].mesh, STRANGE) != 0) {
+                /* The order of the fans at a bow-tie is not restored. */
+                store_like(m, before);
+                assert_true(he_mesh_equal_live(m, before));
+            }
+            he_results_clear(&results);
+            he_mesh_free(before);
+            he_mesh_free(m);
+        }
+    }
+}
+
+static void test_extrude_shares_corners(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("0123", cube);
+    he_results results = {{0}, {0}, {{0}}, {0}};
+    assert_int_equal(script_run(m, "edge_extrude edges=1-2,0-1 by=0,0,3", &results, NULL), HE_OK);
+    assert_counts(m, 7, 9, 3);
+    /* Vertices by rising vertex beneath, faces and edges as the edges were given. */
+    for (uint32_t v = 0; v < 3; v++) {
+        assert_at(m, 4 + v, cube[v].x, cube[v].y, 3);
+    }
+    assert_face(m, 1, "2156");
+    assert_face(m, 2, "1045");
+    assert_int_equal(results.list[1].ids[0], edge_between(m, 5, 6).i);
+    assert_int_equal(results.list[1].ids[1], edge_between(m, 4, 5).i);
+    assert_false(he_is_boundary_vertex(m, (he_vertex){1}));
+    /* Again from there: the chain goes on. */
+    script_prepare(m, "edge_extrude edges=4-5,5-6 by=0,0,1");
+    assert_counts(m, 10, 14, 5);
+    he_results_clear(&results);
+    he_mesh_free(m);
+}
+
+/* --- edge_bevel ------------------------------------------------------------------------------- */
+
+static void test_bevel_of_a_cube(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, cube);
+    he_results results = {{0}, {0}, {{0}}, {0}};
+    assert_int_equal(script_run(m, "edge_bevel edge=0-1 width=0.25", &results, NULL), HE_OK);
+    assert_counts(m, 10, 15, 7);
+    assert_face(m, 6, "89ab");
+    assert_face(m, 0, "8b23");
+    assert_face(m, 2, "a945");
+    assert_face(m, 3, "2ba56");
+    assert_face(m, 5, "98374");
+    assert_at(m, 8, 0, 0.25, 0);
+    assert_at(m, 9, 0, 0, -0.25);
+    assert_at(m, 10, 1, 0, -0.25);
+    assert_at(m, 11, 1, 0.25, 0);
+    assert_int_equal(results.id[0], 6);
+    assert_int_equal(results.list[1].count, 4);
+    assert_true(results.number[2] == 0.25);
+    he_results_clear(&results);
+    he_mesh_free(m);
+}
+
+static void test_bevel_is_clamped(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, cube);
+    he_bevel bevel;
+    assert_int_equal(he_edge_bevel(m, edge_between(m, 0, 1), 7, &bevel, NULL), HE_OK);
+    assert_true(bevel.width == 0.99);
+    assert_at(m, 8, 0, 0.99, 0);
+    he_bevel_clear(&bevel);
+    assert_int_equal(he_edge_bevel(m, edge_between(m, 6, 7), (double)NAN, NULL, NULL),
+                     HE_BAD_VALUE);
+    assert_int_equal(he_edge_bevel(m, edge_between(m, 6, 7), (double)INFINITY, NULL, NULL), HE_OK);
+    assert_valid(m);
+    he_mesh_free(m);
+}
+
+static void test_bevel_beside_a_hole_keeps_the_end(void **state)
+{
+    (void)state;
+    static const he_vec3 square[] = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+    he_mesh *m = script_mesh("012,023", square);
+    he_edge e = edge_between(m, 0, 2);
+    bool from_0 = he_origin(m, he_edge_halfedge(e, 0)).i == 0;
+    script_prepare(m, "edge_bevel edge=0-2 width=1");
+    assert_counts(m, 8, 10, 3);
+    /* In the order of the new face: two cuts with the end between them, twice. */
+    assert_face(m, 2, from_0 ? "405627" : "425607");
+    assert_at(m, 0, 0, 0, 0);
+    assert_at(m, 2, 4, 4, 0);
+    assert_loops(m, "8");
+    he_mesh_free(m);
+}
+
+static void test_bevel_at_the_ends_of_doubles(void **state)
+{
+    (void)state;
+    static const double scales[] = {1e-320, 1e-300, 1e300, 1.5e308};
+    static const double widths[] = {1e-322, 1e-300, 1, 1e308};
+    for (unsigned i = 0; i < 4; i++) {
+        for (unsigned k = 0; k < 4; k++) {
+            he_vec3 places[8];
+            for (unsigned v = 0; v < 8; v++) {
+                places[v] =
+                    (he_vec3){(2 * cube[v].x - 1) * scales[i], (2 * cube[v].y - 1) * scales[i],
+                              (2 * cube[v].z + 1) * scales[i]};
+            }
+            he_mesh *m = script_mesh(QCUBE, places);
+            he_status status = he_edge_bevel(m, edge_between(m, 0, 1), widths[k], NULL, NULL);
+            assert_int_equal(status, HE_OK);
+            assert_counts(m, 10, 15, 7); /* and every position is finite */
+            he_mesh_free(m);
+        }
+    }
+}
+
+/* --- marks, values and descent ---------------------------------------------------------------- */
+
+enum { FIRST_VALUE = 10 };
+
+/* A column of doubles that holds 10 times the id. */
+static void add_column(he_mesh *m, he_kind domain, he_rule rule)
+{
+    he_column *column = NULL;
+    assert_int_equal(he_column_new("value", domain, HE_DOUBLE, 1, rule, &column, NULL), HE_OK);
+    size_t rows = he_mesh_issued(m, domain);
+    assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
+    for (size_t row = 0; row < rows; row++) {
+        double value = FIRST_VALUE * (double)row;
+        memcpy(he_column_row(column, row), &value, sizeof value);
+    }
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+static double value_of(const he_mesh *m, he_kind domain, uint32_t id)
+{
+    double value;
+    memcpy(&value, he_column_value(he_mesh_find_column(m, domain, "value"), id), sizeof value);
+    return value;
+}
+
+static void test_values_follow(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *script;
+        he_kind domain;
+        he_rule rule;
+        uint32_t id;
+        double value;
+    } cases[] = {
+        {"012,023", "edge_cut edge=0-2", HE_EDGE, HE_COPY, 5, 20},
+        {"012,023", "edge_cut edge=0-2", HE_EDGE, HE_DEFAULT, 5, 0},
+        {"012,345", "edge_weld a=0-1 b=3-4", HE_VERTEX, HE_INTERPOLATE, 1, 20},
+        {"012,345", "edge_weld a=0-1 b=3-4 keep=b", HE_VERTEX, HE_INTERPOLATE, 1, 30},
+        {"012,345", "edge_weld a=0-1 b=3-4 keep=b", HE_VERTEX, HE_COPY, 1, 10},
+        {"012,345", "edge_weld a=0-1 b=3-4 keep=a", HE_VERTEX, HE_INTERPOLATE, 0, 0},
+        {"012,345", "edge_weld a=0-1 b=3-4", HE_EDGE, HE_INTERPOLATE, 0, 15},
+        {"012,345", "edge_weld a=0-1 b=3-4", HE_HALFEDGE, HE_COPY, 1, 60},
+        {"012,023", "edge_extrude edge=2-3 by=0,0,1", HE_VERTEX, HE_COPY, 5, 30},
+        {"012", "edge_extrude edge=1-2 by=0,0,1", HE_FACE, HE_COPY, 1, 0},
+        {"012", "edge_extrude edge=1-2 by=0,0,1", HE_EDGE, HE_COPY, 5, 10},
+        {"012", "edge_extrude edge=1-2 by=0,0,1", HE_EDGE, HE_COPY, 4, 0},
+        {"012", "edge_extrude edge=1-2 by=0,0,1", HE_HALFEDGE, HE_COPY, 3, 40},
+        {"012", "edge_extrude edge=1-2 by=0,0,1", HE_HALFEDGE, HE_COPY, 10, 20},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        he_mesh *m = script_mesh(cases[i].mesh, NULL);
+        add_column(m, cases[i].domain, cases[i].rule);
+        script_prepare(m, cases[i].script);
+        assert_valid(m);
+        if (value_of(m, cases[i].domain, cases[i].id) != cases[i].value) {
+            fail_msg("%s: %s %u holds %g", cases[i].script, he_kind_name(cases[i].domain),
+                     cases[i].id, value_of(m, cases[i].domain, cases[i].id));
+        }
+        he_mesh_free(m);
+    }
+
+    he_mesh *m = script_mesh(QCUBE, cube);
+    add_column(m, HE_VERTEX, HE_INTERPOLATE);
+    add_column(m, HE_HALFEDGE, HE_INTERPOLATE);
+    /* Corners of face 0 are those of half-edges that leave 0, 1, 2, 3 in it. */
+    uint32_t at_0 = halfedge_between(m, 0, 1).i, at_3 = halfedge_between(m, 3, 0).i;
+    double expected = FIRST_VALUE * (0.75 * at_0 + 0.25 * at_3);
+    script_prepare(m, "edge_bevel edge=0-1 width=0.25");
+    assert_true(fabs(value_of(m, HE_VERTEX, 8) - 7.5) < 1e-12);
+    assert_true(fabs(value_of(m, HE_VERTEX, 11) - 12.5) < 1e-12);
+    uint32_t corner = halfedge_between(m, 8, 11).i;
+    assert_int_equal(he_face_of(m, (he_halfedge){corner}).i, 0);
+    assert_true(fabs(value_of(m, HE_HALFEDGE, corner) - expected) < 1e-9);
+    he_mesh_free(m);
+}
+
+/* "gone into" or "child parent" pairs as text. */
+static void assert_pairs(const he_ids *list, const char *expected)
+{
+    char text[256] = "";
+    size_t at = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        at += (size_t)snprintf(text + at, sizeof text - at, i == 0 ? "%u" : " %u", list->ids[i]);
+    }
+    assert_string_equal(text, expected);
+}
+
+static void test_descent(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *script, *vertices, *edges, *faces, *merged_vertices, *merged_edges;
+    } cases[] = {
+        {HEXAGON, "edge_cut edge=0-1", "7 1", "12 0", "", "", ""},
+        {"012,345", "edge_weld a=0-1 b=3-4", "", "", "", "4 0 3 1", "3 0"},
+        {"012", "edge_extrude edge=1-2 by=0,0,1", "3 1 4 2", "5 1", "1 0", "", ""},
+        {QCUBE, "edge_bevel edge=0-1 width=0.1", "8 0 9 0 10 1 11 1", "12 0 13 0", "6 0", "", ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        he_mesh *m = script_mesh(cases[i].mesh, NULL);
+        he_delta *delta = he_delta_new();
+        he_changes changes;
+        assert_non_null(delta);
+        he_mesh_record(m, delta);
+        script_prepare(m, cases[i].script);
+        assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
+        assert_pairs(&changes.parents[HE_VERTEX], cases[i].vertices);
+        assert_pairs(&changes.parents[HE_EDGE], cases[i].edges);
+        assert_pairs(&changes.parents[HE_FACE], cases[i].faces);
+        assert_pairs(&changes.merged[HE_VERTEX], cases[i].merged_vertices);
+        assert_pairs(&changes.merged[HE_EDGE], cases[i].merged_edges);
+        he_changes_clear(&changes);
+        he_mesh_record(m, NULL);
+        he_delta_free(delta);
+        he_mesh_free(m);
+    }
+}
+
+/* --- a vertex with a thousand edges ----------------------------------------------------------- */
+
+enum { SPOKES = 1000 };
+
+static he_mesh *wheel(void)
+{
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_soup_init(&soup, NULL);
+    assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){0, 0, 0}, NULL), HE_OK);
+    for (uint32_t i = 0; i < SPOKES; i++) {
+        double angle = 6.283185307179586 * i / SPOKES;
+        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){cos(angle), sin(angle), 0}, NULL),
+                         HE_OK);
+    }
+    for (uint32_t i = 0; i < SPOKES; i++) {
+        const uint32_t corners[3] = {0, 1 + i, 1 + (i + 1) % SPOKES};
+        assert_int_equal(he_soup_add_face(&soup, corners, 3, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    return m;
+}
+
+static void test_a_wheel_of_a_thousand_spokes(void **state)
+{
+    (void)state;
+    uint32_t spokes[SPOKES], rim[SPOKES];
+    he_mesh *m = wheel();
+    for (uint32_t i = 0; i < SPOKES; i++) {
+        spokes[i] = edge_between(m, 0, 1 + i).i;
+        rim[i] = edge_between(m, 1 + i, 1 + (i + 1) % SPOKES).i;
+    }
+    assert_int_equal(he_edge_extrude(m, rim, SPOKES, (he_vec3){0, 0, 1}, NULL, NULL), HE_OK);
+    assert_counts(m, 1 + 2 * SPOKES, 4 * SPOKES, 2 * SPOKES);
+    he_bevel bevel;
+    assert_int_equal(he_edge_bevel(m, (he_edge){spokes[0]}, 0.001, &bevel, NULL), HE_OK);
+    assert_int_equal(he_face_degree(m, bevel.face), SPOKES - 1 + 3);
+    assert_valid(m);
+    he_bevel_clear(&bevel);
+    he_mesh_free(m);
+
+    m = wheel();
+    assert_int_equal(he_edge_cut(m, spokes, SPOKES, NULL, NULL), HE_OK);
+    assert_counts(m, 3 * SPOKES, 3 * SPOKES, SPOKES);
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_weld_undoes_cut),
+        cmocka_unit_test(test_a_cube_cut_along_all_edges_falls_apart),
+        cmocka_unit_test(test_cut_leaves_other_fans_alone),
+        cmocka_unit_test(test_weld_places_the_ends),
+        cmocka_unit_test(test_welds_at_a_bowtie_in_every_order),
+        cmocka_unit_test(test_deleting_the_walls_undoes_extrude),
+        cmocka_unit_test(test_extrude_shares_corners),
+        cmocka_unit_test(test_bevel_of_a_cube),
+        cmocka_unit_test(test_bevel_is_clamped),
+        cmocka_unit_test(test_bevel_beside_a_hole_keeps_the_end),
+        cmocka_unit_test(test_bevel_at_the_ends_of_doubles),
+        cmocka_unit_test(test_values_follow),
+        cmocka_unit_test(test_descent),
+        cmocka_unit_test(test_a_wheel_of_a_thousand_spokes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
