@@ -259,3 +259,27 @@ out:
     he_ids_clear(&faces);
     return status;
 }
+
+he_status he_delete_isolated(he_mesh *m, he_error *err)
+{
+    he_marks marks;
+    bool marked = he_marks_find(m, &marks);
+    he_need need = {0};
+    uint32_t issued = he_mesh_issued(m, HE_VERTEX);
+    for (uint32_t v = 0; v < issued; v++) {
+        if (he_is_isolated(m, (he_vertex){v})) {
+            need.deleted_vertices++;
+            if (marked && he_is_locked(&marks, HE_VERTEX, v)) {
+                return he_require_unlocked(&marks, HE_VERTEX, v, err);
+            }
+        }
+    }
+    he_status status = he_reserve(m, need, err);
+    /* Nothing below can fail. */
+    for (uint32_t v = 0; status == HE_OK && need.deleted_vertices > 0 && v < issued; v++) {
+        if (he_is_isolated(m, (he_vertex){v})) {
+            he_delete_vertex(m, (he_vertex){v});
+        }
+    }
+    return status;
+}

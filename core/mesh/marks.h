@@ -26,7 +26,8 @@
  * So a line can be thinned out along itself, and what is beside it be drawn onto it.
  *
  * delaunay leaves edges alone that edge_flip would refuse. Edits whose whole purpose is to take
- * something away (face_join, face_delete) do not heed `feature`. */
+ * something away (face_join, face_delete), and welds, do not heed `feature`: of edges that become
+ * one, the one that stays says whether it is one. */
 #ifndef HE_MESH_MARKS_H
 #define HE_MESH_MARKS_H
 
