@@ -136,6 +136,12 @@ typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
 /* The hole as hedge's boundary links go round it: at a bow-tie that is hedge's choice. */
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
 
+/* (ops_corner.c) `start` is a neighbour of v about which hedge's stored half-edge begins: its face
+ * stays, or v comes to lie towards it. `moved` are the neighbours that go to the new vertex. */
+uint64_t or_vertex_dissolve(or_mesh *o, uint32_t v, uint32_t start);
+uint64_t or_vertex_split_corners(or_mesh *o, uint32_t v, const uint32_t *moved, uint32_t count);
+uint64_t or_vertex_bevel(or_mesh *o, uint32_t v, uint32_t start, double width);
+
 /* (ops_weld.c) Vertex v becomes part of to[v], or is itself that; the mean of all, or where to[v]
  * was. or_weld_near finds `to` for a tolerance: false when rounding decides. */
 uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean);
