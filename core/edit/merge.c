@@ -12,7 +12,6 @@ typedef struct fate {
     uint32_t claim[2]; /* of one that stays: the old half-edge that runs there with its face now */
     uint32_t uses[2];  /* how many faces run along either side */
     uint32_t taken;    /* how many became one with it */
-    bool open;         /* strict: may another still go into it? */
 } fate;
 
 /* Lists of ids are sorted unless they say otherwise, and arrays run along with them. */
@@ -203,10 +202,6 @@ static he_status measure_face(plan *p, size_t i, he_error *err)
     } while (h.i != first.i);
     p->corners += count;
     p->goes[i] = kept < 3 ? HE_DEAD : HE_NONE;
-    if (kept < count && p->how->strict) {
-        return he_fail(err, HE_REPEATED_CORNER, HE_FACE, p->faces.ids[i],
-                       "face %u has two of the vertices that would become one", p->faces.ids[i]);
-    }
     he_status status = HE_OK;
     while (status == HE_OK && kept < 3) {
         status = he_ids_add(&p->edges, he_edge_of(h).i, err);
@@ -251,7 +246,10 @@ static he_status find_faces(plan *p, he_error *err)
         return HE_NO_MEMORY;
     }
     for (size_t i = 0; status == HE_OK && i < p->faces.count; i++) {
-        status = measure_face(p, i, err);
+        status = he_watch_at(p->m->watch, i, p->faces.count, err);
+        if (status == HE_OK) {
+            status = measure_face(p, i, err);
+        }
         if (status == HE_OK && p->goes[i] == HE_NONE) {
             status = check_corners(p, i, &corners, err);
         }
@@ -270,14 +268,14 @@ static size_t slot_of(const plan *p, uint32_t a, uint32_t b)
 }
 
 /* Let edge i stay, or go into the one that is there. */
-static he_status enter(plan *p, uint32_t i, bool kept, he_error *err)
+static void enter(plan *p, uint32_t i)
 {
     he_halfedge h = {2 * p->edges.ids[i]};
     uint32_t a = rep(p, he_origin(p->m, h)).i, b = rep(p, he_target(p->m, h)).i;
     fate *mine = &p->fates[i];
     if (a == b) {
         mine->into = HE_NONE;
-        return HE_OK;
+        return;
     }
     size_t slot = slot_of(p, a, b);
     for (; p->slots[slot] != 0; slot = (slot + 1) & (p->slot_count - 1)) {
@@ -287,26 +285,17 @@ static he_status enter(plan *p, uint32_t i, bool kept, he_error *err)
         if ((a != c || b != d) && (a != d || b != c)) {
             continue;
         }
-        if (p->how->strict && (kept || !p->fates[other].open)) {
-            return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, p->edges.ids[i],
-                           "edges %u and %u would join the same two vertices", p->edges.ids[other],
-                           p->edges.ids[i]);
-        }
-        p->fates[other].open = false;
         mine->into = p->edges.ids[other];
         mine->turned = a != c;
-        return HE_OK;
+        return;
     }
     p->slots[slot] = i + 1;
     mine->into = p->edges.ids[i];
-    mine->open = kept;
-    return HE_OK;
 }
 
 static he_status pair_edges(plan *p, he_error *err)
 {
     size_t count = p->edges.count;
-    he_status status = HE_OK;
     for (p->slot_count = 4; p->slot_count < 2 * count; p->slot_count *= 2) {
     }
     p->slots = he_mem_zero(p->slot_count, sizeof *p->slots);
@@ -315,20 +304,12 @@ static he_status pair_edges(plan *p, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu edges", count);
     }
     for (size_t i = 0; i < count; i++) {
-        p->fates[i] = (fate){.into = HE_DEAD, .claim = {HE_NONE, HE_NONE}, .taken = 1};
+        p->fates[i] = (fate){.claim = {HE_NONE, HE_NONE}, .taken = 1};
     }
-    for (size_t i = 0; status == HE_OK && i < p->how->kept_count; i++) {
-        uint32_t k = place_of(&p->edges, p->how->kept[i]);
-        if (k != HE_NONE) {
-            status = enter(p, k, true, err);
-        }
+    for (uint32_t i = 0; i < count; i++) {
+        enter(p, i);
     }
-    for (uint32_t i = 0; status == HE_OK && i < count; i++) {
-        if (p->fates[i].into == HE_DEAD) {
-            status = enter(p, i, false, err);
-        }
-    }
-    return status;
+    return HE_OK;
 }
 
 /* --- faces along them ----------------------------------------------------------------------- */
@@ -384,6 +365,10 @@ static he_status claim_edges(plan *p, he_error *err)
 {
     const he_mesh *m = p->m;
     for (size_t i = 0; i < p->faces.count; i++) {
+        he_status status = he_watch_at(m->watch, i, p->faces.count, err);
+        if (status != HE_OK) {
+            return status;
+        }
         if (p->goes[i] == HE_NONE) {
             claim_face(p, i);
         }
@@ -520,7 +505,10 @@ static he_status find_fans(plan *p, he_error *err)
     he_ids ring = {0};
     he_status status = find_rim(p, err);
     for (size_t i = 0; status == HE_OK && i < p->rim.count; i++) {
-        status = find_ring(p, (he_vertex){p->rim.ids[i]}, &ring, err);
+        status = he_watch_at(p->m->watch, i, p->rim.count, err);
+        if (status == HE_OK) {
+            status = find_ring(p, (he_vertex){p->rim.ids[i]}, &ring, err);
+        }
         if (status == HE_OK) {
             status = link_fans(p, i, &ring, err);
         }
@@ -547,7 +535,7 @@ static he_vec3 place(const plan *p, uint32_t i)
     for (uint32_t v = p->next[i]; v != HE_NONE; v = p->next[place_of(&p->group, v)]) {
         he_vec3 at = he_position(m, (he_vertex){v});
         count++;
-        mean = p->how->place == HE_MERGE_GONE ? at : he_point_between(mean, at, 1 / count);
+        mean = he_point_between(mean, at, 1 / count);
     }
     return mean;
 }
@@ -571,7 +559,7 @@ static he_status check_faces(const plan *p, const he_marks *marks, he_error *err
     return status;
 }
 
-static he_status check_marks(const plan *p, he_error *err)
+static he_status check_marks(plan *p, he_error *err)
 {
     he_marks marks;
     if (!he_marks_find(p->m, &marks)) {
@@ -603,7 +591,7 @@ static he_status check_marks(const plan *p, he_error *err)
 
 /* --- writing -------------------------------------------------------------------------------- */
 
-static he_status reserve(const plan *p, he_error *err)
+static he_status reserve(plan *p, he_error *err)
 {
     he_need need = {.deleted_edges = p->edges.count, .deleted_faces = p->faces.count};
     need.deleted_vertices = p->how->count + p->rim.count;
@@ -640,13 +628,12 @@ static void relink_face(const plan *p, he_face f)
 static void carry_vertices(const plan *p, uint32_t i)
 {
     double count = 1;
+    if (p->how->place == HE_MERGE_INTO) {
+        return;
+    }
     for (uint32_t v = p->next[i]; v != HE_NONE; v = p->next[place_of(&p->group, v)]) {
-        double t = count / (count + 1);
+        he_carry_merge(p->m, HE_VERTEX, p->group.ids[i], v, count / (count + 1));
         count++;
-        if (p->how->place != HE_MERGE_MEAN) {
-            t = p->how->place == HE_MERGE_INTO ? 1 : 0;
-        }
-        he_carry_merge(p->m, HE_VERTEX, p->group.ids[i], v, t);
     }
 }
 
@@ -708,6 +695,7 @@ static void commit(const plan *p)
 {
     he_mesh *m = p->m;
     for (size_t i = 0; i < p->faces.count; i++) {
+        he_watch_note(m->watch, i, p->faces.count);
         if (p->goes[i] == HE_NONE) {
             relink_face(p, (he_face){p->faces.ids[i]});
         }
@@ -734,28 +722,23 @@ static void commit(const plan *p)
 
 he_status he_merge_vertices(he_mesh *m, const he_merge *how, he_error *err)
 {
+    static const struct {
+        he_status (*run)(plan *p, he_error *err);
+        const char *phase;
+        double to;
+    } parts[] = {
+        {find_group, "finding vertices", 0.5}, {find_rings, "finding faces", 0.55},
+        {find_faces, "measuring faces", 0.65}, {pair_edges, "pairing edges", 0.7},
+        {claim_edges, "checking edges", 0.8},  {find_fans, "checking fans", 0.9},
+        {check_marks, "checking marks", 0.92}, {reserve, "merging", 1},
+    };
     plan p = {.m = m, .how = how};
-    he_status status = find_group(&p, err);
-    if (status == HE_OK) {
-        status = find_rings(&p, err);
-    }
-    if (status == HE_OK) {
-        status = find_faces(&p, err);
-    }
-    if (status == HE_OK) {
-        status = pair_edges(&p, err);
-    }
-    if (status == HE_OK) {
-        status = claim_edges(&p, err);
-    }
-    if (status == HE_OK) {
-        status = find_fans(&p, err);
-    }
-    if (status == HE_OK) {
-        status = check_marks(&p, err);
-    }
-    if (status == HE_OK) {
-        status = reserve(&p, err);
+    he_status status = HE_OK;
+    for (size_t i = 0; status == HE_OK && i < sizeof parts / sizeof *parts; i++) {
+        status = he_watch_phase(m->watch, parts[i].phase, parts[i].to, err);
+        if (status == HE_OK) {
+            status = parts[i].run(&p, err);
+        }
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */

@@ -1,12 +1,11 @@
 /* merge.h - vertices made one, and the boundary edges that come to coincide.
  *
- * What welds, joined loops and the like have in common. The caller says which vertices become part
- * of which; the rest follows:
+ * The caller says which vertices become part of which; the rest follows:
  *
  *     o---o   o---o              o---o---o        The vertices of each side become one, pair by
  *     |   a   c   |              |   |   |        pair: c goes into a, d into b. The edges a-b and
  *     | f |   | g |     --->     | f a g |        c-d, which then join the same two vertices, are
- *     |   b   d   |              |   b   |        one edge: the lowest stays, or the one in `kept`.
+ *     |   b   d   |              |   b   |        one edge: the lowest stays.
  *     o---o   o---o              o---o---o
  *
  *  - An edge whose ends become one goes, and the faces beside it lose a corner. A face left with
@@ -17,10 +16,7 @@
  *
  * Corner values follow their half-edges; interpolated attributes of vertices and edges become the
  * mean of all that became one, those of vertices by `place`. Noted as merged: vertices, edges, and
- * faces that were the same as another.
- *
- * The `strict` way is for edits that name the edges to be paired: it refuses what the others
- * resolve. */
+ * faces that were the same as another. */
 #ifndef HE_EDIT_MERGE_H
 #define HE_EDIT_MERGE_H
 
@@ -29,8 +25,7 @@
 /* Where a vertex lies that took in others. */
 typedef enum he_merge_place {
     HE_MERGE_MEAN, /* at the mean of all of them */
-    HE_MERGE_INTO, /* where it was */
-    HE_MERGE_GONE  /* where the last was that it took in */
+    HE_MERGE_INTO  /* where it was */
 } he_merge_place;
 
 typedef struct he_merge {
@@ -38,22 +33,14 @@ typedef struct he_merge {
      * the caller has checked that. */
     const uint32_t *gone, *into;
     size_t count;
-    /* Live edges that stay when others come to coincide with them, in any order and without
-     * repeats; NULL when the lowest shall. */
-    const uint32_t *kept;
-    size_t kept_count;
     he_merge_place place;
-    /* Only pairs of boundary edges of which one is in `kept` may coincide, and no face may lose a
-     * corner. */
-    bool strict;
 } he_merge;
 
 /* V - count, less what goes besides; nothing at all when count is 0.
  *
- * Refused: HE_REPEATED_CORNER when a face would pass a vertex twice (strict: or lose a corner);
- * HE_NONMANIFOLD_EDGE when more than two faces would meet at an edge; HE_ORIENTATION when two would
- * run along it in one direction; HE_CLOSED_FAN when a vertex would have a closed fan and another;
- * strict: HE_DOUBLED_EDGE for edges that would coincide beyond the pairs named;
+ * Refused: HE_REPEATED_CORNER when a face would pass a vertex twice; HE_NONMANIFOLD_EDGE when more
+ * than two faces would meet at an edge; HE_ORIENTATION when two would run along it in one
+ * direction; HE_CLOSED_FAN when a vertex would have a closed fan and another;
  * HE_LOCKED_ELEMENT for what would go, a vertex that would move, an edge with an end that goes, or
  * a face with a corner that does (marks.h). HE_NO_MEMORY.
  *

@@ -119,10 +119,11 @@ he_status he_separate_bowties(he_mesh *m, he_ids *made, he_error *err)
 {
     he_need need = {0};
     he_ids ties = {0};
-    he_status status = HE_OK;
+    he_status status = he_watch_phase(m->watch, "finding bow-ties", 1, err);
     uint32_t issued = he_mesh_issued(m, HE_VERTEX);
     for (uint32_t v = 0; status == HE_OK && v < issued; v++) {
-        if (he_vertex_is_live(m, (he_vertex){v})) {
+        status = he_watch_at(m->watch, v, issued, err);
+        if (status == HE_OK && he_vertex_is_live(m, (he_vertex){v})) {
             status = plan(m, (he_vertex){v}, &need, &ties, err);
         }
     }

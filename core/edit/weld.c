@@ -24,7 +24,7 @@ he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count, he_
         }
     }
     if (status == HE_OK && gone.count > 0) {
-        const he_merge how = {gone.ids, to.ids, gone.count, NULL, 0, place, false};
+        const he_merge how = {gone.ids, to.ids, gone.count, place};
         status = he_merge_vertices(m, &how, err);
     }
     he_ids_clear(&gone);
@@ -127,7 +127,8 @@ static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he
                              he_mesh_vertices(m));
     }
     for (uint32_t v = 0; status == HE_OK && v < issued; v++) {
-        if (!he_vertex_is_live(m, (he_vertex){v})) {
+        status = he_watch_at(m->watch, v, issued, err);
+        if (status != HE_OK || !he_vertex_is_live(m, (he_vertex){v})) {
             continue;
         }
         he_vec3 p = he_position(m, (he_vertex){v});
@@ -156,7 +157,10 @@ he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place, he_id
     if (!(tolerance >= 0)) {
         return he_fail_plain(err, HE_BAD_VALUE, "a tolerance cannot be %g", tolerance);
     }
-    he_status status = find_pairs(m, tolerance, &gone, &to, err);
+    he_status status = he_watch_phase(m->watch, "comparing", 0.4, err);
+    if (status == HE_OK) {
+        status = find_pairs(m, tolerance, &gone, &to, err);
+    }
     for (size_t i = 0; status == HE_OK && i < to.count; i++) {
         status = he_ids_add(&stay, to.ids[i], err);
     }
@@ -167,7 +171,7 @@ he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place, he_id
         status = he_ids_reserve(into, stay.count, err);
     }
     if (status == HE_OK && gone.count > 0) {
-        const he_merge how = {gone.ids, to.ids, gone.count, NULL, 0, place, false};
+        const he_merge how = {gone.ids, to.ids, gone.count, place};
         status = he_merge_vertices(m, &how, err);
     }
     for (size_t i = 0; status == HE_OK && into != NULL && i < stay.count; i++) {

@@ -53,7 +53,6 @@ const he_op he_weld_rows[] = {
         .doc = "Make vertices one, and the boundary edges that come to coincide. Faces left with "
                "fewer than three corners go, and all but the first of those that come to be the "
                "same.",
-        .size = HE_OP_WHOLE,
         .params = {{.name = "vertex",
                     .plural = "vertices",
                     .type = HE_PARAM_ELEMENTS,
@@ -63,7 +62,7 @@ const he_op he_weld_rows[] = {
                     .doc = "What becomes one; the lowest id stays."},
                    {.name = "tolerance",
                     .type = HE_PARAM_NUMBER,
-                    .flags = HE_REQUIRED,
+                    .flags = HE_REQUIRED | HE_COSTS_MESH,
                     .group = 'w',
                     .doc = "Each vertex joins the lowest one no farther away than this that has "
                            "not joined another."},
