@@ -75,7 +75,7 @@ static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *ca
 static bool note(edits *e, const api_in *in, const api_call *call)
 {
     he_error err = {0};
-    e->whole += call->op->size == HE_OP_WHOLE || call->has_set;
+    e->whole += he_op_is_whole(call->op, call->args) || call->has_set;
     note_name(e, call->op->name);
     return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
            api_problem_set_core(in->problem, &err);
@@ -147,7 +147,7 @@ static bool within_limits(edits *e, const he_mesh *mesh, const he_delta *delta, 
         return api_in_fail(in, HE_LIMIT, "the operations before change %zu rows, over %d",
                            delta->count, (int)API_MAX_EDITS_ROWS);
     }
-    if (call->op->size == HE_OP_WHOLE || call->has_set) {
+    if (he_op_is_whole(call->op, call->args) || call->has_set) {
         e->looked_at += issued(mesh);
     }
     for (size_t i = 0; i < he_op_params(call->op); i++) {

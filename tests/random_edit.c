@@ -93,6 +93,8 @@ static void put_number(draft *d, const he_param *p)
 {
     bool ranged = (p->flags & HE_RANGE) != 0 && p->max - p->min < 1e6;
     double low = ranged ? p->min : 0, high = ranged ? p->max : 1;
+    /* A large one leaves nothing of a mesh. */
+    high = strcmp(p->name, "tolerance") == 0 ? 0.05 : high;
     put(d, "%.17g", low + (high - low) * (0.01 + 0.98 * md_unit(d->random)));
 }
 
@@ -100,8 +102,14 @@ static void put_value(draft *d, const he_param *p)
 {
     size_t choices = 0;
     switch (p->type) {
-    case HE_PARAM_ELEMENT:
     case HE_PARAM_ELEMENTS:
+        if (md_chance(d->random, 30)) {
+            put(d, "\"%s\":[%u,%u]", p->plural, element(d, p->kind), element(d, p->kind));
+            return;
+        }
+        put(d, "\"%s\":%u", p->name, element(d, p->kind));
+        return;
+    case HE_PARAM_ELEMENT:
         put(d, "\"%s\":%u", p->name, element(d, p->kind));
         return;
     case HE_PARAM_CYCLE:

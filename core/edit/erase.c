@@ -259,3 +259,29 @@ out:
     he_ids_clear(&faces);
     return status;
 }
+
+he_status he_delete_isolated(he_mesh *m, he_error *err)
+{
+    he_marks marks;
+    bool marked = he_marks_find(m, &marks);
+    he_need need = {0};
+    he_status status = he_watch_phase(m->watch, "finding isolated vertices", 1, err);
+    uint32_t issued = he_mesh_issued(m, HE_VERTEX);
+    for (uint32_t v = 0; status == HE_OK && v < issued; v++) {
+        status = he_watch_at(m->watch, v, issued, err);
+        if (status == HE_OK && he_is_isolated(m, (he_vertex){v})) {
+            need.deleted_vertices++;
+            status = marked ? he_require_unlocked(&marks, HE_VERTEX, v, err) : HE_OK;
+        }
+    }
+    if (status == HE_OK) {
+        status = he_reserve(m, need, err);
+    }
+    /* Nothing below can fail. */
+    for (uint32_t v = 0; status == HE_OK && need.deleted_vertices > 0 && v < issued; v++) {
+        if (he_is_isolated(m, (he_vertex){v})) {
+            he_delete_vertex(m, (he_vertex){v});
+        }
+    }
+    return status;
+}

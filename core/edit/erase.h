@@ -39,4 +39,7 @@ HE_NODISCARD he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t 
 HE_NODISCARD he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover,
                                         he_error *err);
 
+/* delete_isolated: V - n, E + 0, F + 0. Every vertex without an edge goes. */
+HE_NODISCARD he_status he_delete_isolated(he_mesh *m, he_error *err);
+
 #endif

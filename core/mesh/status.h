@@ -44,11 +44,14 @@
     X(BOUNDARY_EDGE, "boundary_edge", "The edge is on the boundary")                          \
     X(NOT_BOUNDARY, "not_boundary", "The element is not on the boundary")                     \
     X(INTERIOR_VERTEX, "interior_vertex", "The vertex has no room for another face")          \
+    X(BOUNDARY_VERTEX, "boundary_vertex", "The vertex is on the boundary")                    \
     X(BOWTIE, "bowtie", "The vertex has more than one fan")                                   \
     X(NOT_NEIGHBOUR, "not_neighbour", "The vertices are not joined by an edge")               \
     X(NO_SECTOR, "no_sector", "No sector would move to the new vertex")                       \
     X(NOT_A_CORNER, "not_a_corner", "The element is not a corner of the face")                \
     X(SAME_CORNER, "same_corner", "Both corners are the same")                                \
+    X(DIFFERENT_ORIGINS, "different_origins", "The half-edges leave different vertices")      \
+    X(NO_FACE, "no_face", "The new edge would have no face")                                  \
     X(ADJACENT_CORNERS, "adjacent_corners", "The corners are already neighbours on the face") \
     X(SHARED_BOUNDARY, "shared_boundary", "The faces share more than this edge")              \
     X(WRONG_DEGREE, "wrong_degree", "The vertex does not have degree two")                    \

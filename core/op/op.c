@@ -51,6 +51,15 @@ size_t he_op_results(const he_op *op)
     return count;
 }
 
+bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS])
+{
+    bool whole = op->size == HE_OP_WHOLE;
+    for (size_t i = 0; i < he_op_params(op) && !whole; i++) {
+        whole = args[i].given && (op->params[i].flags & HE_COSTS_MESH) != 0;
+    }
+    return whole;
+}
+
 bool he_op_declares(const he_op *op, he_status status)
 {
     if (status == HE_OK || status == HE_NO_MEMORY || status == HE_IDS_EXHAUSTED ||

@@ -27,10 +27,11 @@ typedef enum he_param_type {
 /* Flags of a parameter. */
 enum {
     HE_REQUIRED = 1,
-    HE_NULLABLE = 2,  /* an element that may be null: HE_NONE */
-    HE_EXCLUSIVE = 4, /* the ends of the range are not in it */
-    HE_RANGE = 8,     /* min and max apply */
-    HE_DERIVED = 16   /* a number whose default follows from the mesh, as `doc` says */
+    HE_NULLABLE = 2,   /* an element that may be null: HE_NONE */
+    HE_EXCLUSIVE = 4,  /* the ends of the range are not in it */
+    HE_RANGE = 8,      /* min and max apply */
+    HE_DERIVED = 16,   /* a number whose default follows from the mesh, as `doc` says */
+    HE_COSTS_MESH = 32 /* where it is given, a local operation costs the mesh */
 };
 
 typedef struct he_param {
@@ -113,6 +114,8 @@ const he_op *he_op_at(size_t i);
 const he_op *he_op_find(const char *name, size_t length); /* NULL when there is none */
 size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);
+/* Does it cost the mesh, given these? */
+bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* Is this a refusal the row declares (or a resource failure any row may have)? */
 bool he_op_declares(const he_op *op, he_status status);
 

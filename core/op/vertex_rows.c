@@ -1,7 +1,10 @@
 #include "op/rows.h"
 
+#include "edit/dissolve.h"
 #include "edit/erase.h"
+#include "edit/split_corners.h"
 #include "edit/vertex.h"
+#include "edit/vertex_bevel.h"
 #include "edit/vertex_split.h"
 
 static he_status run_vertex_add(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
@@ -52,6 +55,41 @@ static he_status run_vertex_split(he_mesh *m, const he_arg *args, he_results *ou
         for (unsigned i = 0; i < parts.sides; i++) {
             he_give_add(out, 2, parts.faces[i].i);
         }
+    }
+    return status;
+}
+
+static he_status run_vertex_dissolve(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_face f;
+    he_status status = he_vertex_dissolve(m, (he_vertex){args[0].id}, &f, err);
+    if (status == HE_OK) {
+        he_give(out, 0, f.i);
+    }
+    return status;
+}
+
+static he_status run_vertex_split_corners(he_mesh *m, const he_arg *args, he_results *out,
+                                          he_error *err)
+{
+    he_vertex v;
+    he_edge e;
+    he_status status = he_vertex_split_corners(m, (he_halfedge){args[0].id},
+                                               (he_halfedge){args[1].id}, &v, &e, err);
+    if (status == HE_OK) {
+        he_give(out, 0, v.i);
+        he_give(out, 1, e.i);
+    }
+    return status;
+}
+
+static he_status run_vertex_bevel(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_face f;
+    he_status status = he_vertex_bevel(m, (he_vertex){args[0].id}, args[1].number, &out->list[0],
+                                       &out->list[1], &f, err);
+    if (status == HE_OK) {
+        he_give(out, 2, f.i);
     }
     return status;
 }
@@ -139,6 +177,66 @@ const he_op he_vertex_rows[] = {
                      HE_BOWTIE, HE_NOT_BOUNDARY, HE_NOT_NEIGHBOUR, HE_NO_SECTOR},
         .change = {1, HE_VARIES, HE_VARIES},
         .run = run_vertex_split,
+    },
+    {
+        .name = "vertex_dissolve",
+        .doc = "Take a vertex out of the middle of its faces, which become one; the inverse of "
+               "face_poke.",
+        .params = {{.name = "vertex",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .doc = "What goes, and the edges at it."}},
+        .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "What the faces about it became."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_VERTEX, HE_TOO_FEW_CORNERS,
+                     HE_REPEATED_CORNER, HE_LOCKED_ELEMENT},
+        .change = {-1, HE_VARIES, HE_VARIES},
+        .run = run_vertex_dissolve,
+    },
+    {
+        .name = "vertex_split_corners",
+        .doc = "Draw a vertex apart into an edge between two of its corners; edge_collapse of the "
+               "edge is the inverse.",
+        .params = {{.name = "a",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "The first half-edge, counter-clockwise, that goes to the new vertex; "
+                           "the edge comes into the corner clockwise of it."},
+                   {.name = "b",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "The half-edge of the same origin up to which they go, which stays; the "
+                           "edge comes into the corner clockwise of it."}},
+        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex."},
+                    {"edge", HE_RESULT_ELEMENT, HE_EDGE, "The edge between the two."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_CORNER, HE_DIFFERENT_ORIGINS,
+                     HE_NO_FACE},
+        .change = {1, 1, 0},
+        .run = run_vertex_split_corners,
+    },
+    {
+        .name = "vertex_bevel",
+        .doc = "Cut a corner off: a face across the edges at a vertex.",
+        .params = {{.name = "vertex",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is cut off; it stays as the new face's first corner."},
+                   {.name = "width",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_REQUIRED,
+                    .doc = "How far from it each edge is cut, above 0; 99 % of an edge that is not "
+                           "longer."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, counter-clockwise."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The edges of the new face."},
+                    {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BAD_VALUE, HE_BOUNDARY_VERTEX,
+                     HE_LOW_DEGREE, HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, 1},
+        .run = run_vertex_bevel,
     },
     {.name = NULL},
 };

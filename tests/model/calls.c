@@ -657,7 +657,7 @@ static const md_row rows[] = {
     {.name = NULL},
 };
 
-static const md_row *const groups[] = {rows, md_border_rows};
+static const md_row *const groups[] = {rows, md_border_rows, md_weld_rows, md_corner_rows};
 
 static const md_row *row_of(const char *name)
 {

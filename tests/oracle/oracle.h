@@ -105,9 +105,7 @@ uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
 bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y);
 bool or_same_cycle(const or_face *f, const or_face *g);
 
-/* --- operations (ops_vertex.c, ops_edge.c, ops_border.c, ops_wall.c,
- * ops_face.c)
- * --------------------------------------- */
+/* --- operations (ops_*.c) --------------------------------------------------------------------- */
 
 /* HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
@@ -144,6 +142,22 @@ uint64_t or_face_triangulate(or_mesh *o, const uint32_t *f, const uint32_t *star
 typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
 /* The hole as hedge's boundary links go round it: at a bow-tie that is hedge's choice. */
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
+
+/* (ops_corner.c) `start` is a neighbour of v about which hedge's stored half-edge begins: its face
+ * stays, or v comes to lie towards it. `moved` are the neighbours that go to the new vertex. */
+uint64_t or_vertex_dissolve(or_mesh *o, uint32_t v, uint32_t start);
+uint64_t or_vertex_split_corners(or_mesh *o, uint32_t v, const uint32_t *moved, uint32_t count);
+uint64_t or_vertex_bevel(or_mesh *o, uint32_t v, uint32_t start, double width);
+
+/* (ops_weld.c) Vertex v becomes part of to[v], or is itself that; the mean of all, or where to[v]
+ * was. or_weld_near finds `to` for a tolerance: false when rounding decides. */
+uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean);
+bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES]);
+/* The fans about v that leave it, by the first neighbour of each: which one stays, and in which
+ * order the others get their vertices, is hedge's choice. */
+uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
+void or_separate(or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
+uint64_t or_delete_isolated(or_mesh *o);
 
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);

@@ -370,7 +370,8 @@ static const scenario scenarios[] = {
     {.operation = NULL},
 };
 
-static const scenario *const groups[] = {scenarios, border_scenarios};
+static const scenario *const groups[] = {scenarios, border_scenarios, weld_scenarios,
+                                         corner_scenarios};
 
 enum { MAX_OPS = 128 };
 

@@ -3,9 +3,12 @@
 
 #include "algo/shape.h"
 #include "edit/delaunay.h"
+#include "edit/erase.h"
 #include "edit/plane_split.h"
+#include "edit/separate.h"
 #include "edit/transform.h"
 #include "edit/triangulate.h"
+#include "edit/weld.h"
 #include "mesh/compact.h"
 #include "query/geometry.h"
 #include "query/topology.h"
@@ -166,6 +169,21 @@ static he_status run_compact(he_mesh *m)
     return he_compact(m, NULL, NULL);
 }
 
+static he_status run_weld(he_mesh *m)
+{
+    return he_weld_near(m, 0.01, HE_MERGE_MEAN, NULL, NULL);
+}
+
+static he_status run_separate_bowties(he_mesh *m)
+{
+    return he_separate_bowties(m, NULL, NULL);
+}
+
+static he_status run_delete_isolated(he_mesh *m)
+{
+    return he_delete_isolated(m, NULL);
+}
+
 static he_status run_copy(he_mesh *m)
 {
     he_mesh *copy;
@@ -178,7 +196,8 @@ static he_status run_copy(he_mesh *m)
 }
 
 static he_status (*const operations[])(he_mesh *m) = {
-    run_transform, run_plane_split, run_delaunay, run_triangulate, run_compact, run_copy};
+    run_transform, run_plane_split, run_delaunay,         run_triangulate,    run_compact,
+    run_copy,      run_weld,        run_separate_bowties, run_delete_isolated};
 
 static he_status run_recorded(he_status (*operation)(he_mesh *m), he_mesh *mesh, listener *l)
 {

@@ -1,0 +1,131 @@
+#include "op/rows.h"
+
+#include "edit/erase.h"
+#include "edit/separate.h"
+#include "edit/weld.h"
+
+static const char *const positions[] = {"mean", "lowest", NULL};
+
+static he_status run_vertex_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_merge_place place = args[2].choice == 0 ? HE_MERGE_MEAN : HE_MERGE_INTO;
+    if (!args[0].given) {
+        return he_weld_near(m, args[1].number, place, &out->list[0], err);
+    }
+    he_vertex into;
+    he_status status = he_give_room(out, 0, 1, err);
+    if (status == HE_OK) {
+        status = he_vertex_weld(m, args[0].ids, args[0].count, place, &into, err);
+    }
+    if (status == HE_OK && args[0].count > 1) {
+        he_give_add(out, 0, into.i);
+    }
+    return status;
+}
+
+static he_status run_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    return he_weld_near(m, args[0].number, HE_MERGE_MEAN, &out->list[0], err);
+}
+
+static he_status run_vertex_separate(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    return he_vertex_separate(m, args[0].ids, args[0].count, &out->list[0], err);
+}
+
+static he_status run_separate_bowties(he_mesh *m, const he_arg *args, he_results *out,
+                                      he_error *err)
+{
+    (void)args;
+    return he_separate_bowties(m, &out->list[0], err);
+}
+
+static he_status run_delete_isolated(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)args;
+    (void)out;
+    return he_delete_isolated(m, err);
+}
+
+const he_op he_weld_rows[] = {
+    {
+        .name = "vertex_weld",
+        .doc = "Make vertices one, and the boundary edges that come to coincide. Faces left with "
+               "fewer than three corners go, and all but the first of those that come to be the "
+               "same.",
+        .params = {{.name = "vertex",
+                    .plural = "vertices",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .group = 'w',
+                    .doc = "What becomes one; the lowest id stays."},
+                   {.name = "tolerance",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_REQUIRED | HE_COSTS_MESH,
+                    .group = 'w',
+                    .doc = "Each vertex joins the lowest one no farther away than this that has "
+                           "not joined another."},
+                   {.name = "position",
+                    .type = HE_PARAM_CHOICE,
+                    .choices = positions,
+                    .doc = "Where it lies then: at the mean, or where the lowest was."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
+                     HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN,
+                     HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_vertex_weld,
+    },
+    {
+        .name = "vertex_separate",
+        .doc = "Give each fan of a bow-tie a vertex of its own, at the same place.",
+        .params = {{.name = "vertex",
+                    .plural = "vertices",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_VERTEX,
+                    .flags = HE_REQUIRED,
+                    .doc = "What is taken apart; nothing changes at one that is no bow-tie."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices; each descends from the one it was part of."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT,
+                     HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, 0, 0},
+        .run = run_vertex_separate,
+    },
+    {
+        .name = "weld",
+        .doc = "Make vertices one that lie close together, and what comes to coincide with them; "
+               "vertex_weld for the whole mesh.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "tolerance",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_REQUIRED,
+                    .doc = "Each vertex joins the lowest one no farther away than this that has "
+                           "not joined another; 0 for equal positions."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."}},
+        .refusals = {HE_BAD_VALUE, HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION,
+                     HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_weld,
+    },
+    {
+        .name = "separate_bowties",
+        .doc = "Give each fan of every bow-tie a vertex of its own.",
+        .size = HE_OP_WHOLE,
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices; each descends from the one it was part of."}},
+        .refusals = {HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, 0, 0},
+        .run = run_separate_bowties,
+    },
+    {
+        .name = "delete_isolated",
+        .doc = "Delete the vertices that have no edge.",
+        .size = HE_OP_WHOLE,
+        .refusals = {HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, 0, 0},
+        .run = run_delete_isolated,
+    },
+    {.name = NULL},
+};
