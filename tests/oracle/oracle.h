@@ -61,8 +61,10 @@ typedef struct or_mesh {
     bool by_plane;
     bool chosen[OR_FACES];        /* what plane_split is to cut */
     double distance[OR_VERTICES]; /* from the plane; 0 in it */
-    uint64_t may; /* refusals that depend on those triangles: hedge may give them or succeed */
-    bool either;  /* edge_join: `joining` are the two edges of which one survives */
+    uint64_t may;      /* refusals that depend on those triangles: hedge may give them or succeed */
+    bool bridging;     /* loop_bridge: new faces of hedge's choice join these two loops */
+    or_face bridge[2]; /* as they go round their holes */
+    bool either;       /* edge_join: `joining` are the two edges of which one survives */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];
     or_edge edge[OR_EDGES];
@@ -103,7 +105,8 @@ uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t roo
 uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
 bool or_same_cycle(const or_face *f, const or_face *g);
 
-/* --- operations (ops_vertex.c, ops_edge.c, ops_border.c, ops_face.c) --------------------------------------- */
+/* --- operations (ops_vertex.c, ops_edge.c, ops_border.c, ops_face.c)
+ * --------------------------------------- */
 
 /* HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
@@ -136,6 +139,17 @@ typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
 /* The hole as hedge's boundary links go round it: at a bow-tie that is hedge's choice. */
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
 
+/* Holes as hedge's links go round them. */
+uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m);
+/* b[i] becomes one with a[i]; fa and fb are the faces of the loops, OR_NONE for holes. */
+uint64_t or_loop_join(or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b, uint32_t fb,
+                      uint32_t n);
+uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
+/* The vertices of the cycle of three edges, as the first one runs; false when they are none. */
+bool or_find_cycle(const or_mesh *o, const uint32_t e[3], uint32_t cycle[3]);
+/* Once plane_split has cut everything: on which side is a face? */
+bool or_face_is_above(const or_mesh *o, uint32_t f, he_vec3 normal);
+
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);
 
@@ -166,6 +180,8 @@ enum { OR_TEXT = 256 };
 /* The vertices that plane_split puts on edges, by rising edge, and the faces to be cut with them.
  */
 void or_plane_vertices(or_mesh *o);
+/* Do the faces from `first_new` on make up the strip of loop_bridge? */
+bool or_strip_is_right(const or_mesh *o, uint32_t first_new);
 /* Take over the ids hedge gave to what the last operation made, then or_derive. False with a
  * sentence when hedge's mesh has other new elements than the oracle. or_decline is for a refusal
  * in `may`: the oracle goes back to before the operation. */

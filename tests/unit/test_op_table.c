@@ -370,7 +370,7 @@ static const scenario scenarios[] = {
     {.operation = NULL},
 };
 
-static const scenario *const groups[] = {scenarios, border_scenarios};
+static const scenario *const groups[] = {scenarios, border_scenarios, loop_scenarios};
 
 enum { MAX_OPS = 128 };
 
