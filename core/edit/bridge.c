@@ -124,7 +124,7 @@ static double twist(const plan *p, uint32_t s)
     double sum = 0;
     for (uint64_t k = 0; k < pairs; k++) {
         uint64_t i = k * n / pairs;
-        sum += apart(p, (uint32_t)i, (uint32_t)((s + i * m / n) % m));
+        sum += apart(p, (uint32_t)i, (uint32_t)((s + (2 * i * m + n) / (2 * n)) % m));
     }
     return sum;
 }

@@ -24,9 +24,9 @@ typedef struct he_bridge {
  * pass a vertex more than once. The strip fills the gaps it passes there, so that fans become one;
  * the gap of a fan with itself exists only where there is no other, so none closes beside another.
  *
- * LEAST TWIST. Corner i of one loop is paired with corner s + i * m / n of the other, and s chosen
- * so that the squared distances of the pairs sum to the least, the lowest s where several do. On
- * loops of more than HE_TWIST_PAIRS corners the sum is over so many, evenly spread.
+ * LEAST TWIST. Corner i of one loop is paired with corner s + i * m / n, rounded, of the other, and
+ * s chosen so that the squared distances of the pairs sum to the least, the lowest s where several
+ * do. On loops of more than HE_TWIST_PAIRS corners the sum is over so many, evenly spread.
  *
  * Triangles start at the pair of a's origin, and the strip goes on by the shorter of the two rungs
  * that are next (H. N. Christiansen and T. W. Sederberg, "Conversion of complex contour line
@@ -41,6 +41,6 @@ HE_NODISCARD he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, 
                                       he_error *err);
 void he_bridge_clear(he_bridge *bridge);
 
-enum { HE_TWIST_PAIRS = 256 };
+enum { HE_TWIST_PAIRS = 64 };
 
 #endif
