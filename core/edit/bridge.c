@@ -4,6 +4,8 @@
 #include "query/idmap.h"
 #include "query/vec3.h"
 
+#include <assert.h>
+
 void he_bridge_clear(he_bridge *bridge)
 {
     he_ids_clear(&bridge->edges);
@@ -167,11 +169,14 @@ static bool steps_along_a(const plan *p, uint32_t i, uint32_t j, uint32_t s)
 
 static he_status choose_rungs(plan *p, he_error *err)
 {
-    uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count, s = least_twist(p);
+    uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count;
+    /* Two half-edges around a hole would be two edges between the same vertices. */
+    assert(n >= 3 && m >= 3);
     he_status status = he_ids_reserve(&p->rungs, 2 * ((size_t)n + m), err);
     if (status != HE_OK) {
         return status;
     }
+    uint32_t s = least_twist(p);
     for (uint32_t i = 0, j = 0; i < n || j < m;) {
         p->rungs.ids[p->rungs.count++] = i % n;
         p->rungs.ids[p->rungs.count++] = (s + j) % m;
