@@ -64,7 +64,7 @@ PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.
 SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
                 $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
 BENCH_C    := $(sort $(wildcard tests/bench/*.c))
-HTTP_C     := tests/bench/http/bare.c
+HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h))
 ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
               $(BENCH_C) $(HTTP_C)
@@ -78,7 +78,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs test lint format asan tsan coverage proof bench bench-http \
-        bench-large container screenshot install clean
+        bench-events bench-large container screenshot install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -208,10 +208,13 @@ bench: $(BENCHES) ## the kernel's figures
 bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(STAMPS)/bench ## requests a second, beside a bare libmicrohttpd
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
 
+bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listeners: memory, and time to reach them all
+	@sh tests/bench/events.sh $(HEDGED) $(BUILD)/tests/bench/http/listeners
+
 bench-large: $(HEDGED) | $(STAMPS)/bench ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)
 
-$(BUILD)/tests/bench/http/bare: $(BUILD)/obj/tests/bench/http/bare.o
+$(patsubst %.c,$(BUILD)/%,$(HTTP_C)): $(BUILD)/%: $(BUILD)/obj/%.o
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)

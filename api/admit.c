@@ -105,6 +105,7 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
     }
     x->code = variables->code;
     x->attribute = variables->name;
+    x->job_id = variables->job;
     return true;
 }
 

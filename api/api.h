@@ -9,9 +9,13 @@
  *           |
  *       api_end  ---- API_READY: the answer is there
  *           |         API_WORK:  long; call api_work on a thread that may block, not on a worker
- *       api_work
+ *           |         API_JOB:   too long to wait for; call api_detach
+ *       api_work, which gives API_READY or API_JOB
  *           |
- *       api_answer -- status, headers, and a body as bytes or as a reader to pull from
+ *       api_detach: the exchange is a job's from now on (jobs.h), the client is answered by another
+ *           |
+ *       api_answer -- status, headers, and a body as bytes, as a reader to pull from, or as a
+ *           |         source that may have to be waited for (live.h)
  *           |
  *       api_free
  *
@@ -20,7 +24,10 @@
 #ifndef HE_API_API_H
 #define HE_API_API_H
 
+#include "api/jobs.h"
+#include "api/live.h"
 #include "api/store.h"
+#include "mesh/watch.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -44,7 +51,7 @@ typedef struct api_request {
     bool has_body; /* a body will follow, of known length or chunked */
 } api_request;
 
-typedef enum api_step { API_MORE, API_READY, API_WORK } api_step;
+typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
 
 enum { API_ANSWER_HEADERS = 16 };
 
@@ -62,6 +69,10 @@ typedef struct api_answer {
     int64_t length; /* -1: unknown, only with read */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
+    /* Instead of both: an answer that goes on, and what to send now and then when it has nothing.
+     * NULL: it is none. */
+    const api_source *live;
+    const char *idle;
     bool close; /* the connection must not be used again */
     /* Hold the answer until this mesh is durable up to this record (api_mesh_info); mesh NULL: do
      * not. */
@@ -85,6 +96,7 @@ typedef struct api_options {
     /* Bytes the process holds by its own count, and how many it may hold, 0 for as many as there
      * are; NULL: not told. */
     void (*memory)(uint64_t *used, uint64_t *budget);
+    const api_jobs *jobs; /* NULL: nothing becomes a job, and no route shows any */
 } api_options;
 
 /* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */
@@ -95,7 +107,13 @@ void api_service_free(api_service *service);
 api_exchange *api_begin(api_service *service, const api_request *request, api_step *step);
 api_step api_body(api_exchange *exchange, const char *bytes, size_t length);
 api_step api_end(api_exchange *exchange);
-void api_work(api_exchange *exchange);
+api_step api_work(api_exchange *exchange);
+/* The exchange to answer the client with, 202 or 503; `exchange` is not the caller's any more.
+ * NULL when memory is out: then it still is. */
+api_exchange *api_detach(api_exchange *exchange);
+/* Before api_work, of a job: `tell` is called as watch.h says. */
+void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
+               void *context);
 const api_answer *api_answer_of(const api_exchange *exchange);
 void api_free(api_exchange *exchange);
 

@@ -242,9 +242,20 @@ static int64_t read_rows(void *stream, char *buffer, size_t size)
 static void answer_octets(api_exchange *x)
 {
     const he_mesh *mesh;
-    if (x->query.count > 0) {
-        api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: octets are all there is",
-                 x->query.pairs[0].name);
+    for (size_t i = 0; i < x->query.count; i++) {
+        if (strcmp(x->query.pairs[i].name, "revision") != 0) {
+            api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: octets are all there is",
+                     x->query.pairs[i].name);
+            return;
+        }
+    }
+    mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    bool done = api_attribute_find(x, mesh) == NULL || api_not_modified(x, "octets");
+    api_read_end(x);
+    if (done) {
         return;
     }
     api_snapshot *snapshot = api_snapshot_of(x, &mesh);

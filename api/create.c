@@ -44,7 +44,8 @@ void api_mesh_put_begin(api_exchange *x)
 {
     bool good = false;
     if (x->mesh != NULL && api_read_begin(x) != NULL) {
-        good = api_preconditions_hold(x, NULL);
+        good =
+            (!x->info.busy || api_fail_store(x, API_STORE_BUSY)) && api_preconditions_hold(x, NULL);
         api_read_end(x);
     } else if (x->mesh == NULL || forget_removed(x)) {
         good = api_precondition_absent(x);
@@ -70,10 +71,13 @@ static bool build(api_exchange *x, made *out)
     if (!api_upload_build(x, &out->mesh)) {
         return false;
     }
+    he_mesh_watch(out->mesh, x->watch);
+    he_watch_span(x->watch, 1);
     if (!api_summary_find(x, out->mesh, &out->summary)) {
         he_mesh_free(out->mesh);
         return false;
     }
+    he_mesh_watch(out->mesh, NULL);
     return true;
 }
 
@@ -88,10 +92,6 @@ static void create(api_exchange *x)
 {
     const char *id = api_param_text(x, "id");
     made m;
-    if (id != NULL && !api_path_is_mesh_id(id)) {
-        api_fail(x, API_BAD_ID, "\"%.100s\" cannot name a mesh", id);
-        return;
-    }
     if (!build(x, &m)) {
         return;
     }
@@ -171,15 +171,17 @@ static void finish(api_exchange *x, void (*make)(api_exchange *x))
     if (!api_upload_end(x)) {
         return;
     }
-    if (api_is_costly(x, api_upload_elements(x), API_COSTLY_ELEMENTS)) {
-        api_defer(x, make);
-    } else {
-        make(x);
-    }
+    uint64_t elements = api_upload_elements(x);
+    api_run_long(x, make, elements > API_COSTLY_ELEMENTS, (double)elements / API_IMPORT_PER_SECOND);
 }
 
 void api_meshes_create(api_exchange *x)
 {
+    const char *id = api_param_text(x, "id");
+    if (id != NULL && !api_path_is_mesh_id(id)) {
+        api_fail(x, API_BAD_ID, "\"%.100s\" cannot name a mesh", id);
+        return;
+    }
     finish(x, create);
 }
 

@@ -17,7 +17,7 @@ typedef struct edits {
     api_in expected;
     bool has_expected;
     bool dry_run;
-    bool whole; /* one of the operations costs the mesh */
+    size_t whole; /* operations that cost the mesh */
     api_edit_cost cost;
     uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
     api_names names;
@@ -25,7 +25,13 @@ typedef struct edits {
     api_text results;  /* objects of `results`, comma-separated */
     api_out out;       /* writes them */
     char ops[API_ENTRY_OPS];
+    /* of a claim */
+    const he_mesh *content;
+    he_delta *delta;
 } edits;
+
+/* Of a long edit: the copy, then the operations, then what they changed; and the answer. */
+static const double COPY_SHARE = 0.2, OPS_SHARE = 0.7, CHANGES_SHARE = 0.95;
 
 static const char *const list_members[] = {"expected_revision", "dry_run", "ops", NULL};
 static const char *const beside_op[] = {"expected_revision", "dry_run", NULL};
@@ -69,7 +75,7 @@ static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *ca
 static bool note(edits *e, const api_in *in, const api_call *call)
 {
     he_error err = {0};
-    e->whole |= call->op->size == HE_OP_WHOLE || call->has_set;
+    e->whole += call->op->size == HE_OP_WHOLE || call->has_set;
     note_name(e, call->op->name);
     return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
            api_problem_set_core(in->problem, &err);
@@ -176,9 +182,12 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
 {
     if (!e->is_list) {
+        he_watch_span(x->watch, OPS_SHARE);
         return run_op(x, e, mesh, delta, &x->root);
     }
     for (size_t i = 0; i < e->count; i++) {
+        he_watch_span(x->watch,
+                      COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) / (double)e->count);
         if (!api_item_read(&x->ops, i, &e->list, &e->op) || !run_op(x, e, mesh, delta, &e->op.in)) {
             return false;
         }
@@ -228,30 +237,25 @@ static void note_tally(api_exchange *x, const he_changes *changes)
     x->store->tally(x->store->self, x->mesh, &tally);
 }
 
-static void run(api_exchange *x)
+/* What the operations make of the mesh. True when that is to be published, with the answer written;
+ * `*barrier` says whether it ends the undo stack. */
+static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta, bool *barrier)
 {
-    edits *e = x->state;
-    he_delta *delta = NULL;
-    he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
-    if (mesh == NULL) {
-        return;
-    }
     he_changes changes = {0};
     he_error err = {0};
     uint64_t ids = issued(mesh);
     bool publish = false;
     api_out_array_begin(&e->out);
     if (!run_ops(x, e, mesh, delta)) {
-        goto out;
+        return false;
     }
     api_out_array_end(&e->out);
     if (e->results.failed) {
-        api_fail_memory(x);
-        goto out;
+        return api_fail_memory(x);
     }
+    he_watch_span(x->watch, CHANGES_SHARE);
     if (he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
-        api_fail_core(x, &err);
-        goto out;
+        return api_fail_core(x, &err);
     }
     /* An edit without effect makes no revision, unless it used up ids that its answer names. */
     bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
@@ -259,38 +263,116 @@ static void run(api_exchange *x)
     write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0), undoable || !effect);
     if (x->text.failed) {
         api_fail_memory(x);
-        goto out;
+    } else {
+        publish = effect && !e->dry_run;
     }
-    publish = effect && !e->dry_run;
-out:
     if (publish) {
         note_tally(x, &changes);
-        x->store->write_commit(x->store->self, x->mesh, e->ops, changes.replaced, &x->info);
+    }
+    *barrier = changes.replaced;
+    he_changes_clear(&changes);
+    return publish;
+}
+
+static void run(api_exchange *x)
+{
+    edits *e = x->state;
+    he_delta *delta = NULL;
+    bool barrier = false;
+    he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
+    if (mesh == NULL) {
+        return;
+    }
+    he_mesh_watch(mesh, x->watch);
+    bool publish = edit(x, e, mesh, delta, &barrier);
+    he_mesh_watch(mesh, NULL);
+    if (publish) {
+        x->store->write_commit(x->store->self, x->mesh, e->ops, barrier, &x->info);
         api_publish(x, 204);
     } else {
         x->store->write_abort(x->store->self, x->mesh);
     }
-    he_changes_clear(&changes);
+    if (x->problem.code == HE_OK) {
+        answer(x, e);
+    }
+}
+
+/* --- long edits --- */
+
+/* Before the client is answered, so that it knows whether the mesh is its own. */
+static bool claim(api_exchange *x, edits *e)
+{
+    uint64_t expected = 0;
+    if (e->has_expected && !api_in_u64(&e->expected, 1, (uint64_t)1 << 53, &expected)) {
+        return false;
+    }
+    api_store_status status =
+        x->store->claim(x->store->self, x->mesh, &e->content, &e->delta, &x->info);
+    x->has_info = status != API_STORE_ABSENT;
+    if (status != API_STORE_OK) {
+        return api_fail_store(x, status);
+    }
+    x->claimed = true;
+    /* They hold until the claim ends: nobody else can change the mesh. */
+    return api_preconditions_hold(x, e->has_expected ? &expected : NULL);
+}
+
+static bool publish_copy(api_exchange *x, const edits *e, he_mesh *copy, bool barrier)
+{
+    api_store_status status =
+        x->store->publish(x->store->self, x->mesh, copy, e->ops, barrier, &x->info);
+    x->claimed = false;
+    if (status != API_STORE_OK) {
+        x->has_info = false;
+        return api_fail_store(x, status);
+    }
+    api_publish(x, 204);
+    return true;
+}
+
+static void run_claimed(api_exchange *x)
+{
+    edits *e = x->state;
+    he_mesh *copy = NULL;
+    he_error err = {0};
+    bool barrier = false;
+    he_watch_span(x->watch, COPY_SHARE);
+    if (he_mesh_copy_watched(e->content, x->watch, &copy, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        return;
+    }
+    he_mesh_record(copy, e->delta);
+    bool publish = edit(x, e, copy, e->delta, &barrier);
+    he_mesh_watch(copy, NULL);
+    if (!publish || !publish_copy(x, e, copy, barrier)) {
+        he_mesh_free(copy);
+    }
     if (x->problem.code == HE_OK) {
         answer(x, e);
     }
 }
 
 /* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a
- * thread that may block. */
-static bool is_long(api_exchange *x, const edits *e)
+ * thread that may block; what costs a really large mesh must not keep it locked. */
+static void choose(api_exchange *x, edits *e)
 {
-    if (api_is_costly(x, e->count, API_COSTLY_EDITS)) {
-        return true;
-    }
-    const he_mesh *mesh = x->phase != API_PHASE_WORK ? api_read_begin(x) : NULL;
+    const he_mesh *mesh = api_read_begin(x);
     if (mesh == NULL) {
-        return false;
+        return;
     }
-    bool large = api_is_large(x, mesh) &&
-                 (e->whole || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS));
+    uint64_t elements = api_elements_of(mesh);
+    bool costly = e->count > API_COSTLY_EDITS ||
+                  (elements > API_COSTLY_ELEMENTS &&
+                   (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
     api_read_end(x);
-    return large;
+    if (e->whole > 0 && elements > API_CLAIM_ELEMENTS) {
+        if (claim(x, e)) {
+            api_run_long(x, run_claimed, true,
+                         (double)e->whole * (double)elements / API_EDIT_PER_SECOND);
+        }
+    } else {
+        api_run_long(x, run, costly, 0);
+    }
 }
 
 void api_edits_post(api_exchange *x)
@@ -307,9 +389,5 @@ void api_edits_post(api_exchange *x)
     if (!read_request(x, e)) {
         return;
     }
-    if (is_long(x, e)) {
-        api_defer(x, run);
-    } else if (x->problem.code == HE_OK) {
-        run(x);
-    }
+    choose(x, e);
 }

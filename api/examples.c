@@ -253,6 +253,30 @@ static const api_example examples[] = {
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},"
                  "\"undo\":1,\"redo\":0}"},
+    {.route = "events_get",
+     .target = "/v1/meshes/kite/events?since=3",
+     .status = 200,
+     .produces = "text/event-stream",
+     .response =
+         "retry: 3000\n"
+         "\n"
+         "event: metadata\n"
+         "data: {\"name\":\"Kite\"}\n"
+         "\n"
+         "id: 5d1b27c0e4a9f386.4\n"
+         "event: edit\n"
+         "data: {\"base\":3,\"revision\":4,\"action\":\"redo\",\"created\":{\"vertices\":[4]"
+         ",\"edges\":[5,6,7],\"faces\":[2,3]},\"deleted\":{\"vertices\":[],\"edges\":[],\"f"
+         "aces\":[]},\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},\"p"
+         "arents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},\"values\":{"
+         "\"vertices\":[[1,1,0,0.25,1],[4,0.5,0.5,0,10]],\"halfedges\":[[0,13,10,0,2"
+         "],[2,4,12,1,0],[4,12,2,2,0],[5,6,14,4,1],[6,14,5,2,1],[8,11,15,3,3],[1"
+         "0,0,13,4,2],[11,15,8,0,3],[12,2,4,4,0],[13,10,0,1,2],[14,5,6,3,1],[15,"
+         "8,11,4,3]],\"faces\":[[0,12],[1,14],[2,10],[3,8]],\"attributes\":{}}}\n"
+         "\n"
+         "event: bye\n"
+         "data: {\"reason\":\"stopping\"}\n"
+         "\n"},
     {.route = "undo_post",
      .target = "/v1/meshes/kite/undo",
      .consumes = "application/json",
@@ -269,6 +293,47 @@ static const api_example examples[] = {
      .produces = "application/json",
      .response = "{\"revision\":4,\"of\":{\"vertex\":4},\"relation\":\"faces\","
                  "\"ids\":[2,0,1,3]}"},
+    {.route = "jobs_list",
+     .target = "/v1/jobs",
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"items\":[{\"id\":\"" API_EXAMPLE_JOB
+         "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
+         "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
+         "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
+         "\"status\":201,\"location\":\"/v1/meshes/disk\"},{\"id\":\"" API_EXAMPLE_WAITING
+         "\",\"operation\":\"mesh_put\",\"state\":\"queued\",\"phase\":null,\"progress\":0,"
+         "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
+         "\"finished\":null,\"status\":null,\"location\":null}],\"next\":null}"},
+    {.route = "job_get",
+     .target = "/v1/jobs/" API_EXAMPLE_JOB,
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"id\":\"" API_EXAMPLE_JOB
+         "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
+         "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
+         "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
+         "\"status\":201,\"location\":\"/v1/meshes/disk\",\"result\":{\"id\":\"disk\","
+         "\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":4,\"halfedges\":12,\"edges\":6,"
+         "\"faces\":3,\"boundary_loops\":1,\"isolated_vertices\":0,\"components\":1,"
+         "\"components_by_edge\":1},\"euler\":1,\"genus\":0,\"closed\":false,\"manifold\":true,"
+         "\"degrees\":{\"3\":3},\"bbox\":{\"min\":[-0.5,-0.8660254037844386,0],\"max\":[1,"
+         "0.8660254037844386,0]},\"area\":1.299038105676658,\"volume\":null,\"memory_bytes\":408,"
+         "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000Z\","
+         "\"import\":{\"format\":\"shape\",\"vertices\":4,\"faces\":3,\"repairs\":[],"
+         "\"warnings\":[]}}}"},
+    {.route = "job_delete",
+     .target = "/v1/jobs/" API_EXAMPLE_WAITING,
+     .status = 202,
+     .produces = "application/json",
+     .response =
+         "{\"id\":\"" API_EXAMPLE_WAITING
+         "\",\"operation\":\"mesh_put\",\"state\":\"cancelled\",\"phase\":null,\"progress\":0,"
+         "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
+         "\"finished\":\"2026-01-01T12:00:00.000Z\",\"status\":null,\"location\":null,"
+         "\"problem\":null}"},
     {.route = "attribute_put",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .consumes = "application/json",

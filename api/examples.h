@@ -1,12 +1,17 @@
 /* examples.h - one session with a small mesh, request by request, as the OpenAPI document shows it.
  *
  * Sent in this order to a server without meshes, each request is answered as its row says, apart
- * from times and bytes of memory: tests/api/test_examples.c does that. */
+ * from times, bytes of memory and the ids of jobs: tests/api/test_examples.c does that. The server
+ * has two jobs: API_EXAMPLE_JOB has made a mesh that was deleted since, API_EXAMPLE_WAITING has yet
+ * to begin. */
 #ifndef HE_API_EXAMPLES_H
 #define HE_API_EXAMPLES_H
 
 #include <stdbool.h>
 #include <stddef.h>
+
+#define API_EXAMPLE_JOB     "b3vCwT0aQkPz81LmXyRs2d"
+#define API_EXAMPLE_WAITING "Zq7HnE4uYfJc90GtKoVi5p"
 
 typedef struct api_example {
     const char *route;              /* name of its row in the route table */

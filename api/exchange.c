@@ -114,8 +114,12 @@ bool api_fail_store(api_exchange *x, api_store_status status)
         return api_fail(x, API_MEMORY_BUDGET, "the mesh does not fit the memory budget");
     case API_STORE_TOO_MANY:
         return api_fail(x, API_TOO_MANY_MESHES, "the server holds as many meshes as it may");
+    case API_STORE_BUSY:
+        return api_fail(x, API_MESH_BUSY, "a long operation changes the mesh");
     case API_STORE_NOTHING:
         return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
+    case API_STORE_LISTENERS:
+        return api_fail(x, API_OVERLOADED, "as many clients listen as may");
     case API_STORE_AHEAD:
         return api_fail(x, API_NO_SUCH_REVISION, "the revision is still to come");
     case API_STORE_GONE:
@@ -210,6 +214,9 @@ he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **del
     /* A refusal, too, shows the state it was found in. */
     x->has_info = !x->info.removed;
     bool good = x->has_info || api_fail_store(x, API_STORE_ABSENT);
+    if (good && x->info.busy && !(x->route->flags & API_INTERRUPTS)) {
+        good = api_fail_store(x, API_STORE_BUSY);
+    }
     if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
         if (x->claim != NULL) {
             x->store->write_keyed(x->store->self, x->mesh, x->claim);
@@ -255,7 +262,7 @@ api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
     api_snapshot *snapshot = NULL;
     uint64_t revision;
     if (!is_past(x)) {
-        if (x->problem.code != HE_OK || (x->phase != API_PHASE_WORK && x->deferred != NULL)) {
+        if (x->problem.code != HE_OK || x->deferred != NULL) {
             return NULL;
         }
         snapshot = present_snapshot(x);
@@ -290,23 +297,49 @@ bool api_precondition_absent(api_exchange *x)
 
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x))
 {
-    if (x->phase == API_PHASE_WORK) {
-        handler(x);
-    } else {
+    if (x->phase == API_PHASE_BODY) {
         x->deferred = handler;
+    } else {
+        handler(x);
+    }
+}
+
+static bool wants_job(const api_exchange *x, double seconds)
+{
+    if (x->service->options.jobs == NULL || x->phase == API_PHASE_JOB) {
+        return false;
+    }
+    if (x->prefer.wait >= 0) {
+        return seconds > x->prefer.wait;
+    }
+    return x->prefer.respond_async || seconds > API_PATIENCE;
+}
+
+void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds)
+{
+    assert(x->route->flags & API_LONG);
+    x->is_job = wants_job(x, seconds);
+    if (x->is_job || (costly && x->phase == API_PHASE_BODY)) {
+        x->deferred = handler;
+    } else {
+        handler(x);
     }
 }
 
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold)
 {
-    return x->phase != API_PHASE_WORK && amount > threshold;
+    return x->phase == API_PHASE_BODY && amount > threshold;
+}
+
+uint64_t api_elements_of(const he_mesh *mesh)
+{
+    return (uint64_t)he_mesh_issued(mesh, HE_VERTEX) + he_mesh_issued(mesh, HE_HALFEDGE) +
+           he_mesh_issued(mesh, HE_FACE);
 }
 
 bool api_is_large(const api_exchange *x, const he_mesh *mesh)
 {
-    uint64_t elements = (uint64_t)he_mesh_issued(mesh, HE_VERTEX) +
-                        he_mesh_issued(mesh, HE_HALFEDGE) + he_mesh_issued(mesh, HE_FACE);
-    return api_is_costly(x, elements, API_COSTLY_ELEMENTS);
+    return api_is_costly(x, api_elements_of(mesh), API_COSTLY_ELEMENTS);
 }
 
 /* --- answers --- */
@@ -381,11 +414,11 @@ void api_answer_empty(api_exchange *x, int status)
 
 bool api_answer_minimal(api_exchange *x)
 {
-    if (x->minimal) {
+    if (x->prefer.minimal) {
         api_answer_header(x, "Preference-Applied", "return=minimal");
         api_answer_empty(x, 204);
     }
-    return x->minimal;
+    return x->prefer.minimal;
 }
 
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
@@ -398,6 +431,18 @@ void api_answer_stream(api_exchange *x, int status, const char *type, int64_t le
     x->answer.context = stream;
     x->stream = stream;
     x->free_stream = free_stream;
+}
+
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
+                     const char *idle)
+{
+    api_answer_bytes(x, status, type, NULL, 0);
+    x->live = *source;
+    x->answer.length = -1;
+    x->answer.live = &x->live;
+    x->answer.idle = idle;
+    x->stream = source->self;
+    x->free_stream = source->free;
 }
 
 void api_answer_etag(api_exchange *x, const char *representation)

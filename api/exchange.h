@@ -31,6 +31,7 @@
 #include "api/json_out.h"
 #include "api/limits.h"
 #include "api/media.h"
+#include "api/prefer.h"
 #include "api/routes.h"
 
 struct api_service {
@@ -38,10 +39,12 @@ struct api_service {
     api_options options;
 };
 
-/* Where an exchange is: begin sets BODY, WORK or DONE; end sets WORK or DONE; work sets DONE. */
-typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_DONE } api_phase;
+/* Where an exchange is, forwards only: on a worker, on a thread that may block, a job, answered. */
+typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
 enum { API_LOCATION = 512 }; /* a path of this API, escaped */
+/* Headers a handler may ask for when the client's connection is out of reach. */
+enum { API_KEPT_HEADERS = 2 };
 
 struct api_exchange {
     api_service *service;
@@ -59,10 +62,11 @@ struct api_exchange {
     const char *relation;   /* of {relation}, one of api_relations(kind) */
     const char *code;       /* of {code} */
     const char *attribute;  /* of {name} */
+    const char *job_id;     /* of {job}, any text */
     api_query query;
     const char *media_in;  /* which of route->consumes the body is, NULL without a body */
     const char *media_out; /* which of route->produces is wanted */
-    bool minimal;          /* Prefer: return=minimal */
+    api_prefer prefer;
     char allow[API_ALLOW]; /* methods of a path that does not take this one */
     const char *key;       /* Idempotency-Key, NULL without one or where the row takes none */
     api_hash hash;         /* of a keyed request */
@@ -80,12 +84,17 @@ struct api_exchange {
     api_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
     api_mesh_info info; /* filled by read_begin, write_begin and what the handler passes on */
     bool has_info;
+    bool claimed;       /* x->mesh is, by this exchange: see api_store.claim */
     api_snapshot *past; /* the earlier revision the request is about; NULL: the present, or taken */
 
     /* --- the handler's own, freed by `free_state` with the exchange --- */
     void *state;
     void (*free_state)(void *state);
     void (*deferred)(api_exchange *x);
+    bool is_job;      /* `deferred` is to be one */
+    he_watch *watch;  /* of the work; NULL: nobody watches */
+    he_watch watched; /* it, when somebody does */
+    const char *kept[API_KEPT_HEADERS];
 
     /* --- the answer --- */
     int published; /* see api_publish; 0: nothing was */
@@ -97,6 +106,7 @@ struct api_exchange {
     api_answer answer;
     void *stream;
     void (*free_stream)(void *stream);
+    api_source live;
 };
 
 /* --- query parameters: checked against the row already, so these cannot fail --- */
@@ -133,8 +143,14 @@ bool api_precondition_absent(api_exchange *x);
 /* Run `handler` instead of the present one, on a thread that may block. Call and return, before
  * taking a lock. In api_work it is called at once. */
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
+/* The same for work that may take so long that it becomes a job: where the client prefers that, or
+ * `seconds` are more than it will wait. Otherwise deferred if `costly`, or called at once. The
+ * route has API_LONG. */
+void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
 /* Should work on this many elements (or bytes) leave the worker? False in api_work. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
+/* Vertices, half-edges and faces that were issued: what work on the whole mesh goes by. */
+uint64_t api_elements_of(const he_mesh *mesh);
 /* The same of work that costs the mesh. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 
@@ -157,6 +173,9 @@ bool api_answer_minimal(api_exchange *x);
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
                        int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
                        void (*free_stream)(void *stream));
+/* An answer that goes on: takes `source`, freed with the exchange. `idle` is a literal. */
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
+                     const char *idle);
 /* A header of the answer, in place of one of this name; `value` is copied. Before or after the
  * answer. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);

@@ -13,6 +13,12 @@ void api_problem_get(api_exchange *x);
 void api_operations_get(api_exchange *x);
 void api_openapi_get(api_exchange *x);
 
+/* Jobs: x->job_id. */
+void api_jobs_list(api_exchange *x);
+void api_job_get(api_exchange *x);
+void api_job_delete(api_exchange *x);
+void api_job_events(api_exchange *x);
+
 /* The collection. */
 void api_meshes_list(api_exchange *x);
 void api_meshes_create_begin(api_exchange *x);
@@ -56,5 +62,6 @@ void api_edits_post(api_exchange *x);
 void api_edits_list(api_exchange *x);
 void api_undo_post(api_exchange *x);
 void api_redo_post(api_exchange *x);
+void api_events_get(api_exchange *x);
 
 #endif

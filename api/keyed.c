@@ -25,7 +25,10 @@ bool api_keyed_begin(api_exchange *x)
         return api_fail(x, API_BAD_HEADER, "Idempotency-Key has %zu characters, 1 to %d are taken",
                         length, API_MAX_KEY_LENGTH);
     }
-    x->key = key;
+    x->key = api_arena_copy(&x->arena, key, length); /* outlives the connection, in a job */
+    if (x->key == NULL) {
+        return api_fail_memory(x);
+    }
     api_hash_begin(&x->hash, x->store->secret);
     add_text(&x->hash, x->request.method);
     add_text(&x->hash, x->request.path);
@@ -90,7 +93,7 @@ bool api_keyed_claim(api_exchange *x)
     api_key key = {.text = x->key};
     api_hash_end(&x->hash, key.digest);
     api_mesh *mesh = x->route->flags & API_KEYED_NEW ? NULL : x->mesh;
-    switch (x->store->claim(x->store->self, mesh, &key, &x->claim)) {
+    switch (x->store->claim_key(x->store->self, mesh, &key, &x->claim)) {
     case API_CLAIM_NEW:
         return true;
     case API_CLAIM_KEPT:

@@ -70,7 +70,24 @@ enum {
     API_MAX_LABEL = 1024      /* characters of one */
 };
 #define API_MAX_ATTRIBUTE_BYTES ((uint64_t)1 << 30) /* of one column that a request brings */
-#define API_MAX_EXACT ((uint64_t)1 << 53) /* up to here every reader of JSON counts right */
+#define API_MAX_EXACT           ((uint64_t)1 << 53) /* up to here every reader of JSON counts right */
+/* Long work. A client that said nothing waits for API_PATIENCE seconds; what will take longer
+ * becomes a job. The rates were measured with a torus of a million quads on one busy core: 5.2
+ * million vertices and corners were built and summed up in 0.37 s, 6.3 million vertices, half-edges
+ * and faces transformed, with the answer, in 0.64 s and copied and summed up in 0.32 s. */
+#define API_PATIENCE          1.0
+#define API_IMPORT_PER_SECOND 1.2e7
+#define API_EDIT_PER_SECOND   1e7
+#define API_COPY_PER_SECOND   2e7
+enum {
+    /* Above this an operation on the whole mesh claims it and works on a copy; below, it takes the
+     * lock for a few milliseconds. */
+    API_CLAIM_ELEMENTS = 200000,
+    API_DEFAULT_JOBS = 100 /* of one page of the list */
+};
+/* Of an event: bytes of its data, and rows of the delta it is made from, under the mesh's lock.
+ * Beyond either it only says that there was one. */
+enum { API_MAX_EVENT = 64 * 1024, API_MAX_EVENT_ROWS = 1 << 15 };
 
 enum { API_PROBLEM_ELEMENTS = 100 }; /* named one by one in a problem */
 

@@ -139,7 +139,12 @@ void api_mesh_delete(api_exchange *x)
 
 static const char *const copy_members[] = {"id", "name", NULL};
 
-static bool read_copy(api_exchange *x, const char **id, const char **name)
+/* What the copy will be called; NULL: it is chosen. */
+typedef struct copy_request {
+    const char *id, *name;
+} copy_request;
+
+static bool read_copy(api_exchange *x, copy_request *r)
 {
     api_in member;
     if (!x->has_root) {
@@ -149,22 +154,23 @@ static bool read_copy(api_exchange *x, const char **id, const char **name)
         return false;
     }
     if (api_in_find(&x->root, "id", &member)) {
-        if (!api_in_string(&member, API_MESH_ID, id)) {
+        if (!api_in_string(&member, API_MESH_ID, &r->id)) {
             return false;
         }
-        if (!api_path_is_mesh_id(*id)) {
-            return api_in_fail(&member, API_BAD_ID, "\"%s\" cannot name a mesh", *id);
+        if (!api_path_is_mesh_id(r->id)) {
+            return api_in_fail(&member, API_BAD_ID, "\"%s\" cannot name a mesh", r->id);
         }
     }
-    return !api_in_find(&x->root, "name", &member) || api_in_string(&member, API_MESH_NAME, name);
+    return !api_in_find(&x->root, "name", &member) ||
+           api_in_string(&member, API_MESH_NAME, &r->name);
 }
 
-void api_mesh_copy(api_exchange *x)
+/* Of making the copy; what is left is its summary's. */
+static const double COPY_SHARE = 0.4;
+
+static void copy(api_exchange *x)
 {
-    const char *id = NULL, *name = NULL;
-    if (!read_copy(x, &id, &name)) {
-        return;
-    }
+    const copy_request *r = x->state;
     const he_mesh *content;
     api_snapshot *snapshot = api_snapshot_of(x, &content);
     if (snapshot == NULL) {
@@ -174,19 +180,23 @@ void api_mesh_copy(api_exchange *x)
     api_mesh *made = NULL;
     api_summary summary;
     he_error err = {0};
-    if (api_preconditions_hold(x, NULL) && he_mesh_copy(content, &fresh, &err) != HE_OK) {
+    he_watch_span(x->watch, COPY_SHARE);
+    if (api_preconditions_hold(x, NULL) &&
+        he_mesh_copy_watched(content, x->watch, &fresh, &err) != HE_OK) {
         api_fail_core(x, &err);
     }
     x->store->snapshot_release(x->store->self, snapshot);
     if (fresh == NULL) {
         return;
     }
+    he_watch_span(x->watch, 1);
     if (!api_summary_find(x, fresh, &summary)) {
         he_mesh_free(fresh);
         return;
     }
+    he_mesh_watch(fresh, NULL);
     api_store_status stored = x->store->create(
-        x->store->self, id, name != NULL ? name : x->info.name, fresh, x->claim, &made);
+        x->store->self, r->id, r->name != NULL ? r->name : x->info.name, fresh, x->claim, &made);
     if (stored != API_STORE_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);
@@ -195,4 +205,29 @@ void api_mesh_copy(api_exchange *x)
     x->store->release(x->store->self, x->mesh);
     x->mesh = made;
     api_answer_created(x, &summary, NULL);
+}
+
+void api_mesh_copy(api_exchange *x)
+{
+    copy_request *r = api_arena_array(&x->arena, 1, sizeof *r);
+    if (r == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    *r = (copy_request){NULL, NULL};
+    x->state = r;
+    if (!read_copy(x, r)) {
+        return;
+    }
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    uint64_t elements = api_elements_of(mesh);
+    bool good = api_preconditions_hold(x, NULL);
+    api_read_end(x);
+    if (good) {
+        api_run_long(x, copy, elements > API_COSTLY_ELEMENTS,
+                     (double)elements / API_COPY_PER_SECOND);
+    }
 }

@@ -20,6 +20,10 @@ static void write_path_parameter(api_out *out, const char *name)
     api_out_key(out, "schema");
     if (strcmp(name, "id") == 0) {
         api_schema_ref(out, "schemas", "id");
+    } else if (strcmp(name, "domain") == 0) {
+        api_schema_ref(out, "schemas", "domain");
+    } else if (strcmp(name, "name") == 0) {
+        api_schema_ref(out, "schemas", "attribute_name");
     } else {
         api_out_object_begin(out);
         api_out_key_string(out, "type", "string");
@@ -159,14 +163,20 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
 {
     bool writes = (route->flags & API_WRITES) != 0;
     bool tagged = answers(route, 304) || (writes && answers(route, status == 204 ? 200 : status));
-    if (!tagged && route->headers[0] == NULL) {
+    tagged = tagged && status != 202;
+    if (!tagged && status != 202 && route->headers[0] == NULL) {
         return;
     }
     api_out_key(out, "headers");
     api_out_object_begin(out);
+    if (status == 202) {
+        write_header(out, "Location", "Where the job is.", (route->flags & API_LONG) != 0);
+        write_header(out, "Preference-Applied", "respond-async, where the client asked for it.",
+                     false);
+    }
     if (tagged) {
         /* A dry run made no state. Neither knows one what published, but could not say more. */
-        bool always = status != 204 && route->body_kind != API_BODY_EDITS;
+        bool always = status != 204 && !(route->flags & API_REHEARSED);
         write_header(out, "ETag", "Names the state that is shown.", always);
     }
     if (status == 201) {
@@ -182,16 +192,24 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     api_out_object_end(out);
 }
 
+static const char *const job_media[] = {"application/json", NULL};
+
 static void write_success(api_out *out, const api_route *route, int status)
 {
-    const char *what = status == 201   ? "Created. Only where memory ran out right after does it "
-                                         "come without a body and tag."
+    const char *what = status == 201
+                           ? "Created. Only where memory ran out right after, or where it "
+                             "is given again and was not kept, does it come without a "
+                             "body and tag."
+                       : status == 202 ? "Not ended yet: a job."
                        : status == 204 ? "Done; nothing is returned."
                        : status == 304 ? "The client's copy is the present one."
                                        : "Success.";
     api_out_object_begin(out);
     api_out_key_string(out, "description", what);
     write_success_headers(out, route, status);
+    if (status == 202) {
+        write_content(out, job_media, "job", NULL, api_example_response, "job_delete");
+    }
     if (status == 200 || status == 201) {
         write_content(out, route->produces, route->response, route->line, api_example_response,
                       route->name);
@@ -265,7 +283,19 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(out, "If-Match", "ETag of the state the request was made for.");
         write_header_parameter(out, "If-None-Match", "ETag of a state it must not meet, or *.");
     }
-    if (answers(route, 204) && answers(route, 200)) {
+    if (route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0) {
+        write_header_parameter(out, "Last-Event-ID",
+                               "Id of the last event the client has seen; wins over `since`.");
+    }
+    bool minimal = answers(route, 204) && answers(route, 200);
+    if (route->flags & API_LONG) {
+        write_header_parameter(out, "Prefer",
+                               minimal ? "respond-async: a job and 202. wait=N: the answer itself, "
+                                         "if it will take N seconds at most. return=minimal: 204 "
+                                         "in place of the answer."
+                                       : "respond-async: a job and 202. wait=N: the answer itself, "
+                                         "if it will take N seconds at most.");
+    } else if (minimal) {
         write_header_parameter(out, "Prefer", "return=minimal: 204 in place of the answer.");
     }
     if (route->flags & (API_KEYED | API_KEYED_NEW)) {

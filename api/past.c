@@ -55,7 +55,7 @@ bool api_past_begin(api_exchange *x, uint64_t revision)
     if (revision > present) {
         return refuse(x, API_STORE_AHEAD, revision, present);
     }
-    if (x->phase != API_PHASE_WORK) {
+    if (x->phase == API_PHASE_BODY) {
         api_defer(x, x->route->run);
         return false;
     }

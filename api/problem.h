@@ -79,6 +79,8 @@
     X(NO_SUCH_ATTRIBUTE, "no_such_attribute", 404, "No such attribute",                            \
       "The mesh has no attribute of this name in this domain; GET .../attributes lists those it "  \
       "has. Where a body names one, the status is 422.")                                           \
+    X(NO_SUCH_JOB, "no_such_job", 404, "No such job",                                              \
+      "No job has this id, or it ended so long ago that it was forgotten.")                        \
     X(NO_SUCH_REVISION, "no_such_revision", 404, "The mesh has no such revision yet",              \
       "The revision that is named is beyond the present one, which every answer about the mesh "   \
       "shows.")                                                                                    \
@@ -134,6 +136,8 @@
       "It is starting or stopping. Try again later.")                                              \
     X(OVERLOADED, "overloaded", 503, "Too many connections",                                       \
       "The server is at its limit of connections. Try again after Retry-After seconds.")           \
+    X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
+      "The queue of jobs is full. Try again after Retry-After seconds.")                           \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
       "What the request would store does not fit the configured budget. Delete a mesh and try "    \
       "again.")                                                                                    \

@@ -37,7 +37,7 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
                    .revision = x->info.revision,
                    .out = &x->out,
                    .arena = &x->arena,
-                   .on_worker = x->phase != API_PHASE_WORK};
+                   .on_worker = x->phase == API_PHASE_BODY};
     a.left = allowance(&a);
     answer(x, &a);
     api_view_end(x, &view);

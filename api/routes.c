@@ -21,6 +21,7 @@ static const char *const mesh_in[] = {"application/json",
                                       NULL};
 static const char *const mesh_out[] = {"application/json", "model/obj", "model/x-off",
                                        "model/ply",        "model/stl", NULL};
+static const char *const event_stream[] = {"text/event-stream", NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
                                        "text/javascript",
@@ -57,6 +58,8 @@ static const api_parameter layout = {
 static const api_parameter turning = {
     "cw", API_PARAM_FLAG, 0,
     0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
+static const api_parameter last_seen = {
+    "since", API_PARAM_TEXT, 0, 64, NULL, "Go on after this: an event's id, or a revision."};
 static const api_parameter format = {
     "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
 static const api_parameter encoding = {
@@ -113,12 +116,12 @@ static const api_route routes[] = {
      .begin = api_meshes_create_begin,
      .body = api_meshes_create_body,
      .run = api_meshes_create,
-     .flags = API_WRITES | API_COSTLY | API_KEYED_NEW,
+     .flags = API_WRITES | API_COSTLY | API_LONG | API_KEYED_NEW,
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
      .parameters = {&format, &name, &identity},
-     .statuses = {201, 409, 413, 415, 422},
+     .statuses = {201, 202, 409, 413, 415, 422},
      .request = "create",
      .response = "created",
      .summary = "Create a mesh",
@@ -156,12 +159,12 @@ static const api_route routes[] = {
      .begin = api_mesh_put_begin,
      .body = api_mesh_put_body,
      .run = api_mesh_put,
-     .flags = API_WRITES | API_COSTLY | API_MAY_CREATE,
+     .flags = API_WRITES | API_COSTLY | API_LONG | API_MAY_CREATE,
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
      .parameters = {&format, &name},
-     .statuses = {200, 201, 204, 412, 413, 415, 422},
+     .statuses = {200, 201, 202, 204, 409, 412, 413, 415, 422},
      .request = "create",
      .response = "created",
      .summary = "Replace a mesh, or create it under this id",
@@ -171,7 +174,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}",
      .name = "mesh_delete",
      .run = api_mesh_delete,
-     .flags = API_WRITES,
+     .flags = API_WRITES | API_INTERRUPTS,
      .produces = json,
      .statuses = {204, 412},
      .summary = "Delete a mesh",
@@ -213,12 +216,12 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/copy",
      .name = "mesh_copy",
      .run = api_mesh_copy,
-     .flags = API_WRITES | API_COSTLY | API_KEYED_NEW,
+     .flags = API_WRITES | API_COSTLY | API_LONG | API_KEYED_NEW,
      .body_kind = API_BODY_OPTION,
      .consumes = json,
      .produces = json,
      .parameters = {&revision},
-     .statuses = {201, 409, 410, 412, 413, 415, 422},
+     .statuses = {201, 202, 409, 410, 412, 413, 415, 422},
      .request = "copy",
      .response = "summary",
      .summary = "Copy a mesh",
@@ -267,7 +270,8 @@ static const api_route routes[] = {
      .name = "attributes_list",
      .run = api_attributes_list,
      .produces = json,
-     .statuses = {200, 304},
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
      .response = "attribute_list",
      .summary = "List the attributes",
      .doc = "All of them, of every domain, without their values."},
@@ -277,7 +281,8 @@ static const api_route routes[] = {
      .run = api_attribute_get,
      .flags = API_COSTLY,
      .produces = octets_too,
-     .parameters = {&limit, &cursor, &ids},
+     .parameters = {&revision, &limit, &cursor, &ids},
+     .headers = {&next_page},
      .statuses = {200, 304, 410},
      .response = "attribute_values",
      .summary = "Values of an attribute",
@@ -290,7 +295,7 @@ static const api_route routes[] = {
      .begin = api_attribute_put_begin,
      .body = api_attribute_put_body,
      .run = api_attribute_put,
-     .flags = API_WRITES | API_COSTLY,
+     .flags = API_WRITES | API_COSTLY | API_REHEARSED,
      .body_kind = API_BODY_UPLOAD,
      .consumes = octets_too,
      .produces = json,
@@ -306,7 +311,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "attribute_patch",
      .run = api_attribute_patch,
-     .flags = API_WRITES | API_COSTLY,
+     .flags = API_WRITES | API_COSTLY | API_REHEARSED,
      .body_kind = API_BODY_EDITS,
      .consumes = json,
      .produces = json,
@@ -320,7 +325,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "attribute_delete",
      .run = api_attribute_delete,
-     .flags = API_WRITES,
+     .flags = API_WRITES | API_REHEARSED,
      .produces = json,
      .parameters = {&dry_run},
      .statuses = {200, 204, 412},
@@ -393,11 +398,11 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/edits",
      .name = "edits_post",
      .run = api_edits_post,
-     .flags = API_WRITES | API_KEYED,
+     .flags = API_WRITES | API_LONG | API_KEYED | API_REHEARSED,
      .body_kind = API_BODY_EDITS,
      .consumes = json,
      .produces = json,
-     .statuses = {200, 204, 409, 412, 413, 415, 422},
+     .statuses = {200, 202, 204, 409, 412, 413, 415, 422},
      .request = "edit",
      .response = "edited",
      .summary = "Edit a mesh",
@@ -446,6 +451,61 @@ static const api_route routes[] = {
      .doc =
          "What was undone last, the last `steps`, or as far as revision `to_revision` was: each as "
          "a new revision, with the ids it had."},
+
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/events",
+     .name = "events_get",
+     .run = api_events_get,
+     .produces = event_stream,
+     .parameters = {&last_seen},
+     .statuses = {200},
+     .summary = "Every change as it happens",
+     .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
+            "link for link; `metadata` a new name; `resync` says to fetch the mesh anew, `bye` "
+            "that the stream ends. Last-Event-ID or `since` goes on where a client was cut off, "
+            "or gives one `resync` where the history does not reach."},
+
+    /* jobs */
+    {.method = "GET",
+     .path = "/v1/jobs",
+     .name = "jobs_list",
+     .run = api_jobs_list,
+     .produces = json,
+     .parameters = {&limit, &cursor},
+     .headers = {&next_page},
+     .statuses = {200},
+     .response = "job_page",
+     .summary = "List the jobs",
+     .doc = "A page in the order of their submission, without results and problems."},
+    {.method = "GET",
+     .path = "/v1/jobs/{job}",
+     .name = "job_get",
+     .run = api_job_get,
+     .produces = json,
+     .statuses = {200},
+     .response = "job",
+     .summary = "How far a job is",
+     .doc = "With what the request would have been answered with, once it has ended: its result or "
+            "problem. A job that has ended is kept for an hour, if there is room."},
+    {.method = "GET",
+     .path = "/v1/jobs/{job}/events",
+     .name = "job_events",
+     .run = api_job_events,
+     .produces = event_stream,
+     .statuses = {200},
+     .summary = "How a job goes on",
+     .doc = "Server-Sent Events: `job` holds the job whenever it has come further, the last with "
+            "its result or problem where that is small; `bye` says that the stream ends."},
+    {.method = "DELETE",
+     .path = "/v1/jobs/{job}",
+     .name = "job_delete",
+     .run = api_job_delete,
+     .produces = json,
+     .statuses = {202, 204},
+     .response = "job",
+     .summary = "Cancel or forget a job",
+     .doc = "One that waits or runs is told to end (202): what it had changed is undone and its "
+            "memory given back. One that has ended is forgotten (204)."},
 
     /* the tables */
     {.method = "GET",
@@ -591,6 +651,9 @@ static bool match_variable(const char *variable, const char *segment, api_variab
         return true;
     case 'c':
         out->code = segment;
+        return true;
+    case 'j':
+        out->job = segment;
         return true;
     case 'n':
         out->name = segment;

@@ -6,8 +6,8 @@
  *
  * A template is literal segments and variables. {kind} matches vertices, halfedges, edges, faces
  * and nothing else; {domain} these or mesh; {id} an element id; {name} that of an attribute; {mesh}
- * a mesh id; {relation} one of the kind's relations; {code} any segment; {asset} the rest of the
- * path. */
+ * a mesh id; {relation} one of the kind's relations; {code} and {job} any segment; {asset} the rest
+ * of the path. */
 #ifndef HE_API_ROUTES_H
 #define HE_API_ROUTES_H
 
@@ -39,13 +39,16 @@ typedef struct api_parameter {
 } api_parameter;
 
 enum {
-    API_WRITES = 1,     /* changes something; If-Match is read */
-    API_COSTLY = 2,     /* costs the mesh or the upload: large ones go to the job pool */
-    API_MAY_CREATE = 4, /* the mesh need not exist */
-    API_OWN_ACCEPT = 8, /* the handler reads Accept itself (?format= comes first) */
-    API_FIXED = 16,     /* not under /v1: the same whatever the version */
-    API_KEYED = 32,     /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
-    API_KEYED_NEW = 64  /* the same of what makes a mesh: kept with the store */
+    API_WRITES = 1,       /* changes something; If-Match is read */
+    API_COSTLY = 2,       /* costs the mesh or the upload: large ones go to the job pool */
+    API_MAY_CREATE = 4,   /* the mesh need not exist */
+    API_OWN_ACCEPT = 8,   /* the handler reads Accept itself (?format= comes first) */
+    API_FIXED = 16,       /* not under /v1: the same whatever the version */
+    API_KEYED = 32,       /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
+    API_KEYED_NEW = 64,   /* the same of what makes a mesh: kept with the store */
+    API_LONG = 128,       /* may become a job: Prefer is read, and 202 may be the answer */
+    API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
+    API_REHEARSED = 512   /* takes `dry_run`: an answer may be about nothing that is */
 };
 
 /* A header that only some of a route's answers with 200 have. */
@@ -86,8 +89,8 @@ const int *api_route_common(void);
 typedef struct api_variables {
     const char *mesh; /* as decoded, not yet checked; NULL where the template has none */
     bool has_kind;
-    he_kind kind;                            /* of {kind} or {domain} */
-    const char *id, *relation, *code, *name; /* likewise */
+    he_kind kind;                                  /* of {kind} or {domain} */
+    const char *id, *relation, *code, *name, *job; /* likewise */
 } api_variables;
 
 /* The row for a method and path. NULL when there is none: then `allow`, which has room for

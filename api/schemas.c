@@ -41,6 +41,24 @@ static const member answers[] = {
     {"mesh_page", "memory_bytes", "count", OPTIONAL, "What the whole server holds."},
     {"mesh_page", "memory_budget", "count", OPTIONAL, "What it may hold; 0: no limit is set."},
 
+    {"job", "id", "text", REQUIRED, "Who knows it may look and cancel."},
+    {"job", "operation", "text", REQUIRED, "The operationId of the request."},
+    {"job", "state", "#job_state", REQUIRED, NULL},
+    {"job", "phase", "text?", REQUIRED, "What it is doing, or was last."},
+    {"job", "progress", "number", REQUIRED, "From 0 to 1; it never falls."},
+    {"job", "mesh", "text?", REQUIRED, "Null while it has no id."},
+    {"job", "created", "time", REQUIRED, NULL},
+    {"job", "started", "time?", REQUIRED, NULL},
+    {"job", "finished", "time?", REQUIRED, NULL},
+    {"job", "status", "integer?", REQUIRED, "What the request would have been answered with."},
+    {"job", "location", "text?", REQUIRED, "Likewise."},
+    {"job", "result", "#job_result?", OPTIONAL,
+     "Likewise; null where it has no body or was too large to keep."},
+    {"job", "problem", "#problem?", OPTIONAL, "In its place, where that is a refusal."},
+
+    {"job_page", "items", "*#job", REQUIRED, NULL},
+    {"job_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+
     {"summary", "id", "text", REQUIRED, NULL},
     {"summary", "name", "text", REQUIRED, NULL},
     {"summary", "revision", "count", REQUIRED, NULL},
@@ -79,7 +97,7 @@ static const member answers[] = {
     {"vertex", "degree", "count", REQUIRED, "Edges."},
     {"vertex", "boundary", "flag", REQUIRED, NULL},
     {"vertex", "isolated", "flag", REQUIRED, NULL},
-    {"vertex", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"vertex", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
     {"halfedge", "id", "id", REQUIRED, NULL},
     {"halfedge", "twin", "id", REQUIRED, NULL},
@@ -90,7 +108,7 @@ static const member answers[] = {
     {"halfedge", "edge", "id", REQUIRED, NULL},
     {"halfedge", "face", "id?", REQUIRED, "Null on the boundary."},
     {"halfedge", "boundary", "flag", REQUIRED, NULL},
-    {"halfedge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"halfedge", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
     {"edge", "id", "id", REQUIRED, NULL},
     {"edge", "halfedges", "#pair", REQUIRED, "2 * id and 2 * id + 1."},
@@ -98,7 +116,7 @@ static const member answers[] = {
     {"edge", "faces", "#sides", REQUIRED, "Beside the two half-edges."},
     {"edge", "length", "number", REQUIRED, NULL},
     {"edge", "boundary", "flag", REQUIRED, NULL},
-    {"edge", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"edge", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
     {"face", "id", "id", REQUIRED, NULL},
     {"face", "halfedge", "id", REQUIRED, NULL},
@@ -108,14 +126,14 @@ static const member answers[] = {
     {"face", "area", "number", REQUIRED, "Of the vector (Newell) area."},
     {"face", "normal", "point", REQUIRED, "Zero where the face is degenerate."},
     {"face", "centroid", "point", REQUIRED, NULL},
-    {"face", "attributes", "any", OPTIONAL, "Values by name, where there are any."},
+    {"face", "attributes", "#values_by_name", OPTIONAL, "Values by name, where there are any."},
 
-    {"attribute_info", "domain", "text", REQUIRED, "vertices, halfedges, edges, faces or mesh."},
+    {"attribute_info", "domain", "#domain", REQUIRED, NULL},
     {"attribute_info", "name", "text", REQUIRED, NULL},
-    {"attribute_info", "type", "text", REQUIRED, "bool, int32, uint32, float or double."},
+    {"attribute_info", "type", "#type_name", REQUIRED, NULL},
     {"attribute_info", "components", "count", REQUIRED, "Numbers of one value."},
-    {"attribute_info", "rule", "text", REQUIRED, "copy, interpolate or default."},
-    {"attribute_info", "default", "any", REQUIRED, "The value where nothing was written."},
+    {"attribute_info", "rule", "#rule_name", REQUIRED, NULL},
+    {"attribute_info", "default", "#value", REQUIRED, "The value where nothing was written."},
     {"attribute_info", "labels", "*text", OPTIONAL, "In the list: what values index."},
     {"attribute_info", "bytes", "count", REQUIRED, "Of the values as octets."},
 
@@ -123,21 +141,25 @@ static const member answers[] = {
     {"attribute_list", "attributes", "*#attribute_info", REQUIRED, NULL},
 
     {"attribute_values", "revision", "count", REQUIRED, NULL},
-    {"attribute_values", "domain", "text", REQUIRED, NULL},
+    {"attribute_values", "domain", "#domain", REQUIRED, NULL},
     {"attribute_values", "name", "text", REQUIRED, NULL},
-    {"attribute_values", "type", "text", REQUIRED, NULL},
+    {"attribute_values", "type", "#type_name", REQUIRED, NULL},
     {"attribute_values", "components", "count", REQUIRED, NULL},
-    {"attribute_values", "rule", "text", REQUIRED, NULL},
-    {"attribute_values", "default", "any", REQUIRED, NULL},
+    {"attribute_values", "rule", "#rule_name", REQUIRED, NULL},
+    {"attribute_values", "default", "#value", REQUIRED, NULL},
     {"attribute_values", "bytes", "count", REQUIRED, NULL},
     {"attribute_values", "ids", "*id", REQUIRED, NULL},
-    {"attribute_values", "values", "*any", REQUIRED, "One for each id; arrays of components."},
+    {"attribute_values", "values", "*#value", REQUIRED, "One for each id; arrays of components."},
     {"attribute_values", "next", "text?", REQUIRED, "The cursor of the next page."},
 
     {"attribute_written", "revision", "count", REQUIRED, NULL},
     {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was done."},
     {"attribute_written", "attribute", "#attribute_info", OPTIONAL, "Unless it was deleted."},
+    {"attribute_written", "created", "#sets", REQUIRED, "Empty."},
+    {"attribute_written", "deleted", "#sets", REQUIRED, "Empty."},
     {"attribute_written", "modified", "#sets", REQUIRED, "Empty where it came or went whole."},
+    {"attribute_written", "parents", "#parents", REQUIRED, "Empty."},
+    {"attribute_written", "merged", "#merged", REQUIRED, "Empty."},
 
     {"element_page", "revision", "count", REQUIRED, NULL},
     {"element_page", "items", "*#element", REQUIRED, NULL},
@@ -321,13 +343,13 @@ static const member requests[] = {
     {"document", "attributes", "*#document_attribute", OPTIONAL, "Of any domain."},
 
     {"document_attribute", "domain", "#domain", REQUIRED, NULL},
-    {"document_attribute", "name", "text", REQUIRED, NULL},
+    {"document_attribute", "name", "#attribute_name", REQUIRED, NULL},
     {"document_attribute", "type", "#type_name", REQUIRED, NULL},
     {"document_attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
     {"document_attribute", "rule", "#rule_name", OPTIONAL, NULL},
-    {"document_attribute", "default", "any", OPTIONAL, NULL},
+    {"document_attribute", "default", "#value", OPTIONAL, NULL},
     {"document_attribute", "labels", "+#label", OPTIONAL, NULL},
-    {"document_attribute", "values", "*any", OPTIONAL,
+    {"document_attribute", "values", "*#value", OPTIONAL,
      "One for each element, or none. Edges come as the faces run along them first, half-edges by "
      "edges, that of the first face before its twin."},
 
@@ -335,16 +357,16 @@ static const member requests[] = {
     {"attribute", "components", "count", OPTIONAL, "1 to 16; 1 if not said."},
     {"attribute", "rule", "#rule_name", OPTIONAL,
      "interpolate for float and double, else copy, if not said."},
-    {"attribute", "default", "any", OPTIONAL, "Zero or false if not said."},
+    {"attribute", "default", "#value", OPTIONAL, "Zero or false if not said."},
     {"attribute", "labels", "+#label", OPTIONAL, "Of a uint32: what its values index."},
-    {"attribute", "values", "*any", OPTIONAL, "One for each live element, in the order of ids."},
-    {"attribute", "value", "any", OPTIONAL, "One for all instead."},
+    {"attribute", "values", "*#value", OPTIONAL, "One for each live element, in the order of ids."},
+    {"attribute", "value", "#value", OPTIONAL, "One for all instead."},
     {"attribute", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute", "dry_run", "flag", OPTIONAL, NULL},
 
     {"attribute_patch", "ids", "#ids_or_set", REQUIRED, "Ids, \"all\", or {\"NAME\":true}."},
-    {"attribute_patch", "values", "*any", OPTIONAL, "One for each id."},
-    {"attribute_patch", "value", "any", OPTIONAL, "One for all instead."},
+    {"attribute_patch", "values", "*#value", OPTIONAL, "One for each id."},
+    {"attribute_patch", "value", "#value", OPTIONAL, "One for all instead."},
     {"attribute_patch", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
@@ -401,8 +423,15 @@ static const struct {
                "\"items\":{\"$ref\":\"#/components/schemas/point\"},\"minItems\":1}]}"},
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},
-    {"any_object", "{\"type\":\"object\"}"},
+    {"value", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/plain\"},{\"type\":\"array\","
+              "\"items\":{\"$ref\":\"#/components/schemas/plain\"},\"minItems\":2,"
+              "\"maxItems\":16}]}"},
+    {"plain", "{\"type\":[\"number\",\"boolean\"]}"},
+    {"values_by_name", "{\"type\":\"object\",\"additionalProperties\":"
+                       "{\"$ref\":\"#/components/schemas/value\"},\"minProperties\":1}"},
     {"domain", "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
+    {"attribute_name", "{\"type\":\"string\",\"minLength\":1,\"maxLength\":63,\"description\":"
+                       "\"At most 63 bytes of UTF-8; `position` is built in.\"}"},
     {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
     {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
     {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
@@ -439,6 +468,10 @@ static const struct {
     {"any_members",
      "{\"type\":\"object\",\"additionalProperties\":true,\"minProperties\":1,\"descrip"
      "tion\":\"As OpenAPI 3.1 says.\"}"},
+    {"job_state", "{\"enum\":[\"queued\",\"running\",\"done\",\"failed\",\"cancelled\"]}"},
+    {"job_result", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/edited\"},"
+                   "{\"$ref\":\"#/components/schemas/created\"},"
+                   "{\"$ref\":\"#/components/schemas/summary\"}]}"},
     {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"

@@ -1,8 +1,10 @@
 #include "api/api.h"
 
 #include "api/admit.h"
+#include "api/job_out.h"
 #include "api/keyed.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -159,20 +161,46 @@ static bool copy_request(api_exchange *x, const api_request *request)
            x->request.request_id != NULL;
 }
 
-static bool begin(api_exchange *x)
+void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
+               void *context)
 {
-    if (!api_admit(x) || !api_keyed_begin(x)) {
-        return false;
-    }
-    x->minimal = api_header_has(api_header_of(x, "Prefer"), "return=minimal");
-    x->body.maximum = (size_t)api_body_cap(x);
-    if (x->route->begin != NULL) {
-        x->route->begin(x);
-    }
-    return x->problem.code == HE_OK && !x->answered;
+    he_watch_init(&x->watched, tell, context);
+    x->watch = &x->watched;
 }
 
-api_exchange *api_begin(api_service *service, const api_request *request, api_step *step)
+/* --- detaching --- */
+
+static const char *const kept_names[API_KEPT_HEADERS] = {"If-Match", "If-None-Match"};
+
+static const char *kept_header(void *context, const char *name)
+{
+    const api_exchange *x = context;
+    for (size_t i = 0; i < API_KEPT_HEADERS; i++) {
+        if (api_equal_nocase(name, kept_names[i])) {
+            return x->kept[i];
+        }
+    }
+    return NULL;
+}
+
+/* Preconditions are asked again when the work is published, and the connection is gone by then. */
+static bool keep_headers(api_exchange *x)
+{
+    for (size_t i = 0; i < API_KEPT_HEADERS; i++) {
+        const char *value = api_header_of(x, kept_names[i]);
+        if (value != NULL) {
+            x->kept[i] = api_arena_copy(&x->arena, value, strlen(value));
+            if (x->kept[i] == NULL) {
+                return false;
+            }
+        }
+    }
+    x->request.header = kept_header;
+    x->request.context = x;
+    return true;
+}
+
+static api_exchange *exchange_new(api_service *service, const api_request *request)
 {
     api_exchange *x = he_mem_zero(1, sizeof *x);
     if (x == NULL) {
@@ -186,6 +214,59 @@ api_exchange *api_begin(api_service *service, const api_request *request, api_st
     if (!copy_request(x, request)) {
         api_arena_clear(&x->arena);
         he_mem_free(x);
+        return NULL;
+    }
+    return x;
+}
+
+api_exchange *api_detach(api_exchange *x)
+{
+    const api_jobs *jobs = x->service->options.jobs;
+    assert(x->phase == API_PHASE_JOB);
+    api_exchange *answer = exchange_new(x->service, &x->request);
+    if (answer == NULL || !keep_headers(x)) {
+        api_free(answer);
+        return NULL;
+    }
+    answer->request.header = NULL;
+    answer->route = x->route;
+    answer->answer.route = x->answer.route;
+    answer->prefer = x->prefer;
+    api_job job;
+    const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
+    api_store_status status =
+        jobs->submit(jobs->self, x, x->route->name, mesh == NULL ? "" : mesh, &job);
+    if (status == API_STORE_OK) {
+        api_answer_job(answer, &job);
+    } else {
+        api_free(x);
+    }
+    if (status == API_STORE_TOO_MANY) {
+        api_fail(answer, API_TOO_MANY_JOBS, "as many jobs wait as may");
+    } else if (status != API_STORE_OK) {
+        api_fail_store(answer, status);
+    }
+    finish(answer);
+    return answer;
+}
+
+static bool begin(api_exchange *x)
+{
+    if (!api_admit(x) || !api_keyed_begin(x)) {
+        return false;
+    }
+    x->prefer = api_prefer_read(api_header_of(x, "Prefer"));
+    x->body.maximum = (size_t)api_body_cap(x);
+    if (x->route->begin != NULL) {
+        x->route->begin(x);
+    }
+    return x->problem.code == HE_OK && !x->answered;
+}
+
+api_exchange *api_begin(api_service *service, const api_request *request, api_step *step)
+{
+    api_exchange *x = exchange_new(service, request);
+    if (x == NULL) {
         return NULL;
     }
     *step = begin(x) ? API_MORE : finish_early(x);
@@ -263,6 +344,15 @@ static bool is_costly(api_exchange *x)
     return large;
 }
 
+static api_step finish_or_go_on(api_exchange *x)
+{
+    if (x->deferred == NULL || x->answered || x->problem.code != HE_OK) {
+        return finish(x);
+    }
+    x->phase = x->is_job ? API_PHASE_JOB : API_PHASE_WORK;
+    return x->is_job ? API_JOB : API_WORK;
+}
+
 static void parse_and_run(api_exchange *x)
 {
     if (parse_body(x)) {
@@ -288,19 +378,18 @@ api_step api_end(api_exchange *x)
             x->route->run(x);
         }
     }
-    if (x->deferred != NULL && !x->answered && x->problem.code == HE_OK) {
-        x->phase = API_PHASE_WORK;
-        return API_WORK;
-    }
-    return finish(x);
+    return finish_or_go_on(x);
 }
 
-void api_work(api_exchange *x)
+api_step api_work(api_exchange *x)
 {
-    if (x->phase == API_PHASE_WORK) {
-        x->deferred(x);
-        finish(x);
+    if (x->phase != API_PHASE_WORK && x->phase != API_PHASE_JOB) {
+        return API_READY;
     }
+    void (*handler)(api_exchange * x) = x->deferred;
+    x->deferred = NULL;
+    handler(x);
+    return finish_or_go_on(x);
 }
 
 const api_answer *api_answer_of(const api_exchange *x)
@@ -322,6 +411,9 @@ void api_free(api_exchange *x)
     api_document_clear(&x->document);
     api_text_clear(&x->body);
     api_text_clear(&x->text);
+    if (x->claimed) {
+        x->store->unclaim(x->store->self, x->mesh);
+    }
     if (x->past != NULL) {
         x->store->snapshot_release(x->store->self, x->past);
     }
@@ -350,7 +442,14 @@ api_exchange *api_handle(api_service *service, const api_request *request, const
         step = api_end(x);
     }
     if (step == API_WORK) {
-        api_work(x);
+        step = api_work(x);
+    }
+    if (step == API_JOB) {
+        api_exchange *answer = api_detach(x);
+        if (answer == NULL) {
+            api_free(x);
+        }
+        x = answer;
     }
     return x;
 }

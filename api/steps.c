@@ -73,7 +73,9 @@ static void refuse(api_exchange *x, const steps *s, api_store_status status)
     case API_STORE_TAKEN:
     case API_STORE_NO_MEMORY:
     case API_STORE_BUDGET:
+    case API_STORE_BUSY:
     case API_STORE_TOO_MANY:
+    case API_STORE_LISTENERS:
         break;
     }
     api_fail_store(x, status);

@@ -7,8 +7,11 @@
 #ifndef HE_API_STORE_H
 #define HE_API_STORE_H
 
+#include "api/live.h"
 #include "mesh/delta.h"
 #include "mesh/mesh.h"
+
+#include <stdbool.h>
 
 typedef struct api_mesh api_mesh;         /* a stored mesh; the server defines it */
 typedef struct api_snapshot api_snapshot; /* an immutable copy at one revision; likewise */
@@ -28,6 +31,7 @@ typedef struct api_mesh_info {
     double created, modified;     /* seconds since 1970 UTC */
     uint32_t undo, redo;          /* steps on the stacks */
     bool removed;
+    bool busy; /* claimed by a long edit, see `claim` */
 } api_mesh_info;
 
 /* Something a handler derives from a mesh, keeps with it, and brings forward as it changes. */
@@ -50,15 +54,17 @@ typedef enum api_store_status {
     API_STORE_ABSENT,
     API_STORE_TAKEN, /* the id is in use */
     API_STORE_NO_MEMORY,
-    API_STORE_BUDGET,   /* the configured memory budget */
-    API_STORE_TOO_MANY, /* meshes */
-    API_STORE_NOTHING,  /* to undo or redo */
-    API_STORE_AHEAD,    /* no such revision yet */
-    API_STORE_GONE,     /* the revision is no longer in the history */
-    API_STORE_ELSEWHERE /* the stack does not lead to the revision */
+    API_STORE_BUDGET,    /* the configured memory budget */
+    API_STORE_TOO_MANY,  /* meshes */
+    API_STORE_NOTHING,   /* to undo or redo */
+    API_STORE_LISTENERS, /* as many listen as may */
+    API_STORE_AHEAD,     /* no such revision yet */
+    API_STORE_GONE,      /* the revision is no longer in the history */
+    API_STORE_ELSEWHERE, /* the stack does not lead to the revision */
+    API_STORE_BUSY       /* the mesh is claimed already */
 } api_store_status;
 
-/* A request with an Idempotency-Key, from claim to claim_end. */
+/* A request with an Idempotency-Key, from claim_key to claim_end. */
 typedef struct api_claim api_claim;
 
 typedef struct api_key {
@@ -86,6 +92,12 @@ typedef struct api_kept {
     const char *body; /* JSON; NULL with a length: left out */
     size_t length;
 } api_kept;
+/* Where a listener wants to go on. */
+typedef struct api_since {
+    bool given;
+    bool has_incarnation;
+    uint64_t incarnation, revision;
+} api_since;
 
 typedef struct api_store {
     void *self;
@@ -138,7 +150,8 @@ typedef struct api_store {
 
     /* --- writing --- exclusive lock with a recording delta attached, which is lent through
      * `delta` for he_changes_find. NULL when memory is out. Every begin is ended by exactly one of
-     * write_commit, write_abort and write_end, which give the lock back. */
+     * write_commit, write_abort and write_end, which give the lock back. Where info->busy only
+     * remove may be called, and write_end. */
     he_mesh *(*write_begin)(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta);
     /* What follows, up to the end of writing, is done for this claim: its record carries it. */
     void (*write_keyed)(void *self, api_mesh *mesh, const api_claim *claim);
@@ -171,15 +184,32 @@ typedef struct api_store {
     void (*rename)(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
 
     /* --- keyed requests ---
-     * claim is called before a request is tried, without a lock; `mesh` NULL: the key is among
+     * claim_key is called before a request is tried, without a lock; `mesh` NULL: the key is among
      * those of the store. With API_CLAIM_NEW all memory that remembering takes is there, so that
      * keep cannot fail, and with API_CLAIM_KEPT `kept` gives the answer. Both are ended by
      * claim_end, which forgets the key again unless its answer was kept. Keys of a mesh go with the
      * mesh, and all after a day or when newer ones need the room. */
-    api_claim_status (*claim)(void *self, api_mesh *mesh, const api_key *key, api_claim **out);
+    api_claim_status (*claim_key)(void *self, api_mesh *mesh, const api_key *key, api_claim **out);
     const api_kept *(*kept)(const api_claim *claim);
     void (*keep)(void *self, api_claim *claim, const api_kept *answer);
     void (*claim_end)(void *self, api_claim *claim);
+    /* --- a long edit --- works without a lock on a copy of its own, which takes the place of the
+     * content at once. Before that it claims the mesh: until the claim ends nobody else can write,
+     * so that the content stands still and is lent, to be copied. `delta` is for all that is then
+     * done to the copy. API_STORE_BUSY, API_STORE_ABSENT, API_STORE_NO_MEMORY. */
+    api_store_status (*claim)(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
+                              api_mesh_info *info);
+    /* Ends the claim as write_commit does, with the copy as the content: it is taken. Or ends it
+     * with API_STORE_ABSENT, where the mesh was removed meanwhile: it is not. */
+    api_store_status (*publish)(void *self, api_mesh *mesh, he_mesh *takes, const char *ops,
+                                bool barrier, api_mesh_info *info);
+    /* Ends the claim with nothing done; what was recorded is forgotten. */
+    void (*unclaim)(void *self, api_mesh *mesh);
+
+    /* --- listening --- The changes of a mesh as messages of events.h, from after `since`, or from
+     * the present revision, whose facts go to `info`. The caller frees the source. */
+    api_store_status (*follow)(void *self, api_mesh *mesh, const api_since *since,
+                               api_mesh_info *info, api_source *out);
 
     /* --- the history, under the read lock: newest first; false past the end --- */
     bool (*history)(void *self, api_mesh *mesh, size_t i, struct api_entry *out);

@@ -10,6 +10,9 @@
 /* Enough to tell any format by. */
 enum { SNIFF_BYTES = 512 };
 
+/* Of the making of a mesh; what is left is its summary's. */
+static const double SHAPE_SHARE = 0.2, BUILD_SHARE = 0.7;
+
 typedef struct upload {
     he_limits limits;
     /* exactly one of these reads; neither while the first bytes are gathered */
@@ -262,14 +265,18 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     he_soup made, *soup = soup_of(u);
     he_error err = {0};
     he_mesh *mesh = NULL;
+    u->limits.watch = x->watch;
     if (u->shape != NULL) {
+        he_watch_span(x->watch, SHAPE_SHARE);
         if (he_shape_make(u->shape, u->args, &u->limits, &made, &err) != HE_OK) {
             return api_fail_core(x, &err);
         }
         soup = &made;
     }
+    soup->limits.watch = x->watch;
     u->vertices = soup->vertex_count;
     u->faces = soup->face_count;
+    he_watch_span(x->watch, BUILD_SHARE);
     he_status status = he_build(soup, HE_BUILD_TAKE, &mesh, &u->report, &err);
     if (soup == &made) {
         he_soup_clear(&made);

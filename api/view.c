@@ -3,7 +3,7 @@
 bool api_view_begin(api_exchange *x, api_view *view)
 {
     *view = (api_view){0};
-    if (x->phase == API_PHASE_WORK) {
+    if (x->phase != API_PHASE_BODY) {
         view->snapshot = api_snapshot_of(x, &view->mesh);
         return view->snapshot != NULL;
     }

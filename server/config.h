@@ -31,7 +31,9 @@ typedef struct srv_config {
     uint64_t workers, jobs; /* threads; 0: one a core */
     uint64_t job_queue;
     uint64_t max_connections;
+    uint64_t max_listeners, max_mesh_listeners;
 
+    uint64_t heartbeat;                                                 /* seconds */
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
     uint64_t min_rate;                                                  /* bytes a second */
 

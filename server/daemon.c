@@ -2,6 +2,7 @@
 
 #include "server/assets.h"
 #include "server/http.h"
+#include "server/job_board.h"
 #include "server/memory.h"
 #include "server/samples.h"
 
@@ -25,6 +26,8 @@ typedef struct daemon_parts {
     srv_assets *assets;
     api_service *service;
     srv_jobs *jobs;
+    srv_board *board;
+    api_jobs board_interface;
     srv_access_log *log;
     srv_http *http;
     srv_policy policy;
@@ -88,12 +91,22 @@ static bool fail(const char *why)
     return false;
 }
 
+static bool open_jobs(daemon_parts *parts, const srv_config *config)
+{
+    parts->jobs =
+        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
+    return parts->jobs != NULL || fail("no memory or threads to start");
+}
+
 static bool open_store(daemon_parts *parts, const srv_config *config)
 {
     parts->store = srv_store_new(&(srv_store_options){
         .undo_budget = config->undo_budget,
         .max_meshes = config->max_meshes,
         .journal = srv_journal_memory(),
+        .listeners = config->max_listeners,
+        .mesh_listeners = config->max_mesh_listeners,
+        .jobs = parts->jobs,
     });
     if (parts->store == NULL) {
         return fail("no memory to start");
@@ -124,8 +137,19 @@ static void count_memory(uint64_t *used, uint64_t *budget)
     *budget = srv_memory_budget();
 }
 
+static bool submit_job(void *pool, void (*work)(void *context), void *context)
+{
+    return srv_jobs_submit(pool, work, context);
+}
+
 static bool open_service(daemon_parts *parts, const srv_config *config)
 {
+    parts->board = srv_board_new(&(srv_board_options){
+        .store = parts->store, .submit = submit_job, .pool = parts->jobs, .keep = SRV_JOB_SECONDS});
+    if (parts->board == NULL) {
+        return fail("no memory to start");
+    }
+    parts->board_interface = srv_board_interface(parts->board);
     parts->service = api_service_new(&parts->interface, &(api_options){
                                                             .max_upload = config->max_upload,
                                                             .version = SRV_VERSION,
@@ -134,14 +158,12 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
                                                             .ready = is_ready,
                                                             .ready_context = parts,
                                                             .memory = count_memory,
+                                                            .jobs = &parts->board_interface,
                                                         });
-    parts->jobs =
-        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
     if (config->log == SRV_LOG_ACCESS) {
         parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
     }
-    return (parts->service != NULL && parts->jobs != NULL &&
-            (parts->log != NULL || config->log == SRV_LOG_OFF)) ||
+    return (parts->service != NULL && (parts->log != NULL || config->log == SRV_LOG_OFF)) ||
            fail("no memory or threads to start");
 }
 
@@ -165,6 +187,7 @@ static bool open_http(daemon_parts *parts, const srv_config *config)
         .jobs = parts->jobs,
         .log = parts->log,
         .policy = &parts->policy,
+        .heartbeat_micros = config->heartbeat * 1000000,
     };
     if (!srv_address_parse(config->listen, &options.address)) {
         return fail("no address to listen on");
@@ -211,11 +234,13 @@ int srv_daemon_run(const srv_config *config)
     uint64_t budget = config->memory_budget;
     srv_memory_set_budget(budget == 0 ? srv_memory_default_budget() : budget);
 
-    bool started = open_store(&parts, config) && load_page(&parts, config) &&
-                   open_service(&parts, config) && open_http(&parts, config);
+    bool started = open_jobs(&parts, config) && open_store(&parts, config) &&
+                   load_page(&parts, config) && open_service(&parts, config) &&
+                   open_http(&parts, config);
     if (started) {
         wait_for_stop(&signals);
         atomic_store(&parts.ready, false);
+        srv_board_stop(parts.board);
         if (!srv_http_stop(parts.http, STOP_MILLIS)) {
             /* A long operation is in the middle of its work, on memory that must stay. */
             srv_access_log_free(parts.log);
@@ -223,6 +248,7 @@ int srv_daemon_run(const srv_config *config)
         }
     }
     srv_jobs_free(parts.jobs);
+    srv_board_free(parts.board);
     api_service_free(parts.service);
     srv_store_free(parts.store);
     srv_assets_free(parts.assets);

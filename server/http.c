@@ -5,6 +5,8 @@
 #include "server/clock.h"
 #include "server/held.h"
 #include "server/http_framing.h"
+#include "server/http_gate.h"
+#include "server/http_live.h"
 #include "server/http_wire.h"
 #include "server/random.h"
 
@@ -32,7 +34,8 @@
  *     instead of DONE, when what the answer shows is not durable: HELD --resume_held*--> DONE
  *
  * While WORK or HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
- * or the hold resumes it exactly once. */
+ * or the hold resumes it exactly once. An answer that goes on is DONE and suspended again and again
+ * by `pull`: see http_live.h. */
 typedef enum state { FRESH, BODY, WORK, HELD, DONE, CUT } state;
 
 enum {
@@ -42,6 +45,7 @@ enum {
     POOL_BYTES = 32 * 1024,
     SWALLOW = 256 * 1024,     /* of a refused body, rather than close the connection */
     ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once */
+    LIVE_BLOCK = 1024,        /* the same, where thousands wait; used by HTTP/1.0 only */
     BACKLOG = 1024,
     ID_PREFIX = 8
 };
@@ -50,16 +54,12 @@ struct srv_http {
     struct MHD_Daemon *daemon;
     srv_http_options options;
     srv_deadlines *deadlines;
-    srv_held *held;
+    srv_live *live;
     unsigned port;
     char id_prefix[ID_PREFIX + 1];
     _Atomic uint64_t next_id;
     _Atomic bool stopping;
-    pthread_mutex_t lock; /* of what follows */
-    pthread_cond_t ended;
-    size_t active;  /* requests between their headers and their completion */
-    size_t waiting; /* of them suspended */
-    bool closing;   /* none may be suspended any more */
+    srv_gate gate;
 };
 
 typedef struct request {
@@ -67,7 +67,8 @@ typedef struct request {
     struct MHD_Connection *connection;
     srv_connection *socket; /* NULL when it is not watched */
     state state;
-    bool counted; /* in http->active */
+    bool counted; /* by the gate */
+    bool aside;   /* suspended by `pull`, or resumed since */
     bool whole;   /* all of the body has arrived */
     uint64_t started;
     uint64_t bytes_in, bytes_out;
@@ -83,6 +84,7 @@ typedef struct request {
     api_text text; /* the refusal as JSON */
     bool preflight;
     srv_hold hold;
+    srv_stream stream;
     int status;
 
     char method[SRV_METHOD + 1];
@@ -91,16 +93,6 @@ typedef struct request {
 } request;
 
 /* --- life --- */
-
-static void count_active(srv_http *http, int change)
-{
-    pthread_mutex_lock(&http->lock);
-    http->active += (size_t)change;
-    if (http->active == 0) {
-        pthread_cond_broadcast(&http->ended);
-    }
-    pthread_mutex_unlock(&http->lock);
-}
 
 static srv_connection *socket_of(struct MHD_Connection *connection)
 {
@@ -167,11 +159,14 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
         write_log(r, now);
     }
     bool counted = r->counted;
+    if (r->aside) {
+        srv_gate_resume(&http->gate);
+    }
     api_free(r->exchange);
     api_text_clear(&r->text);
     he_mem_free(r);
     if (counted) {
-        count_active(http, -1);
+        srv_gate_leave(&http->gate);
     }
 }
 
@@ -224,6 +219,39 @@ static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
     return complete ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
 }
 
+static void resume_stream(srv_stream *stream)
+{
+    request *r = (request *)((char *)stream - offsetof(request, stream));
+    MHD_resume_connection(r->connection);
+}
+
+/* The same for an answer that goes on. Once the stream is aside the request is another's. */
+static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t size)
+{
+    (void)position;
+    request *r = context;
+    const api_answer *answer = api_answer_of(r->exchange);
+    if (r->aside) {
+        r->aside = false;
+        srv_gate_resume(&r->http->gate);
+    }
+    if (r->stream.live == NULL) {
+        srv_live_begin(r->http->live, &r->stream, answer->live, answer->idle, resume_stream);
+    }
+    int64_t got = srv_live_read(&r->stream, buffer, size);
+    if (got > 0) {
+        r->bytes_out += (uint64_t)got;
+        return (ssize_t)got;
+    }
+    if (got == API_READ_WAIT && srv_gate_wait(&r->http->gate)) {
+        r->aside = true;
+        MHD_suspend_connection(r->connection);
+        srv_live_aside(&r->stream);
+        return 0;
+    }
+    return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
 /* The answer as it is to be sent: the exchange's, or what this file found itself. Valid until the
  * request ends. */
 static void describe(request *r, srv_wire *wire)
@@ -238,7 +266,7 @@ static void describe(request *r, srv_wire *wire)
         wire->bytes = answer->bytes;
         wire->length = answer->length;
         /* With all of the body read there is nothing left to be mistaken for a request. */
-        wire->close = wire->close || (answer->close && !r->whole);
+        wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
     } else {
         srv_wire_refusal(wire, r->preflight ? NULL : &r->refusal, r->request_id, &r->text);
     }
@@ -248,18 +276,23 @@ static void describe(request *r, srv_wire *wire)
     wire->close = wire->close || atomic_load(&r->http->stopping);
 }
 
+static bool is_live(const request *r)
+{
+    return r->exchange != NULL && api_answer_of(r->exchange)->live != NULL;
+}
+
 static bool is_streamed(const request *r)
 {
-    return r->exchange != NULL && api_answer_of(r->exchange)->read != NULL;
+    return is_live(r) || (r->exchange != NULL && api_answer_of(r->exchange)->read != NULL);
 }
 
 static struct MHD_Response *response_of(request *r, const srv_wire *wire)
 {
     struct MHD_Response *response;
     if (is_streamed(r)) {
-        response = MHD_create_response_from_callback(wire->length < 0 ? MHD_SIZE_UNKNOWN
-                                                                      : (uint64_t)wire->length,
-                                                     ANSWER_BLOCK, pull, r, NULL);
+        response = MHD_create_response_from_callback(
+            wire->length < 0 ? MHD_SIZE_UNKNOWN : (uint64_t)wire->length,
+            is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK, is_live(r) ? pull_live : pull, r, NULL);
     } else {
         /* The bytes are the exchange's and live until the request has completed. */
         response = MHD_create_response_from_buffer((size_t)wire->length, (void *)wire->bytes,
@@ -294,7 +327,12 @@ static enum MHD_Result send_answer(request *r)
     }
     r->state = DONE;
     r->status = wire.status;
-    srv_connection_enter(r->socket, SRV_STAGE_ANSWER, srv_clock_micros());
+    srv_connection_enter(r->socket, is_live(r) ? SRV_STAGE_LIVE : SRV_STAGE_ANSWER,
+                         srv_clock_micros());
+    if (is_live(r)) {
+        /* Its silence is no fault; the connection is closed after it. */
+        MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
+    }
     if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;
     }
@@ -340,26 +378,14 @@ static void resume_held(srv_hold *hold)
     MHD_resume_connection(r->connection);
 }
 
-/* libmicrohttpd must not be stopped while a connection is suspended: false when it is about to. */
 static bool begin_wait(request *r, state why)
 {
-    srv_http *http = r->http;
-    pthread_mutex_lock(&http->lock);
-    bool allowed = !http->closing;
-    http->waiting += allowed ? 1 : 0;
-    pthread_mutex_unlock(&http->lock);
+    bool allowed = srv_gate_wait(&r->http->gate);
     if (allowed) {
         r->state = why;
         MHD_suspend_connection(r->connection);
     }
     return allowed;
-}
-
-static void end_wait(srv_http *http)
-{
-    pthread_mutex_lock(&http->lock);
-    http->waiting--;
-    pthread_mutex_unlock(&http->lock);
 }
 
 /* D1. Suspended before the hold is known to others: from then on it may be resumed. */
@@ -374,7 +400,7 @@ static enum MHD_Result answer_when_durable(request *r)
     if (!begin_wait(r, HELD)) {
         return MHD_NO;
     }
-    if (!srv_held_add(r->http->held, &r->hold)) {
+    if (!srv_held_add(srv_store_held(r->http->options.store), &r->hold)) {
         MHD_resume_connection(r->connection);
     }
     return MHD_YES;
@@ -389,10 +415,23 @@ static enum MHD_Result answer_held(request *r)
     return send_answer(r);
 }
 
+/* The exchange has become a job: the client is answered by another one. */
+static void detach(request *r)
+{
+    api_exchange *answer = api_detach(r->exchange);
+    if (answer == NULL) {
+        refuse(r, HE_NO_MEMORY, "no memory for the request");
+    } else {
+        r->exchange = answer;
+    }
+}
+
 static void do_job(void *context)
 {
     request *r = context;
-    api_work(r->exchange);
+    if (api_work(r->exchange) == API_JOB) {
+        detach(r);
+    }
     MHD_resume_connection(r->connection);
 }
 
@@ -509,7 +548,7 @@ static enum MHD_Result read_head(request *r, const char *method, const char *ver
     MHD_get_connection_values_n(r->connection, MHD_HEADER_KIND, gather_field, &head);
     memcpy(r->method, method, strnlen(method, SRV_METHOD));
     choose_id(r, &head);
-    count_active(r->http, 1);
+    srv_gate_enter(&r->http->gate);
     r->counted = true;
     r->state = BODY;
 
@@ -566,6 +605,9 @@ static enum MHD_Result end_body(request *r)
         srv_connection_enter(r->socket, SRV_STAGE_WORK, srv_clock_micros());
         r->step = api_end(r->exchange);
     }
+    if (r->step == API_JOB) {
+        detach(r);
+    }
     return r->step == API_WORK ? begin_work(r) : answer_when_durable(r);
 }
 
@@ -591,10 +633,10 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
         }
         return end_body(r);
     case WORK:
-        end_wait(r->http);
+        srv_gate_resume(&r->http->gate);
         return answer_when_durable(r);
     case HELD:
-        end_wait(r->http);
+        srv_gate_resume(&r->http->gate);
         return answer_held(r);
     case DONE:
     case CUT:
@@ -668,10 +710,9 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
 
 static void http_free(srv_http *http)
 {
-    srv_held_free(http->held);
+    srv_live_free(http->live);
     srv_deadlines_free(http->deadlines);
-    pthread_mutex_destroy(&http->lock);
-    pthread_cond_destroy(&http->ended);
+    srv_gate_clear(&http->gate);
     he_mem_free(http);
 }
 
@@ -683,12 +724,11 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
         return NULL;
     }
     http->options = *options;
-    pthread_mutex_init(&http->lock, NULL);
-    pthread_cond_init(&http->ended, NULL);
+    srv_gate_init(&http->gate);
     srv_random_id(http->id_prefix, ID_PREFIX);
     http->deadlines = srv_deadlines_new(&options->deadlines);
-    http->held = srv_held_new(options->store);
-    if (http->deadlines == NULL || http->held == NULL) {
+    http->live = srv_live_new(options->heartbeat_micros);
+    if (http->deadlines == NULL || http->live == NULL) {
         snprintf(message, size, "no memory or threads to start");
         http_free(http);
         return NULL;
@@ -712,29 +752,6 @@ unsigned srv_http_port(const srv_http *http)
     return http->port;
 }
 
-/* Wait until no request runs; at the deadline only those that are suspended still count. From then
- * on none may be. */
-static bool wait_for_end(srv_http *http, unsigned millis)
-{
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_sec += millis / 1000;
-    until.tv_nsec += (long)(millis % 1000) * 1000000;
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_nsec -= 1000000000;
-        until.tv_sec++;
-    }
-    pthread_mutex_lock(&http->lock);
-    int timed_out = 0;
-    while (http->active > 0 && timed_out == 0) {
-        timed_out = pthread_cond_timedwait(&http->ended, &http->lock, &until);
-    }
-    bool ended = http->waiting == 0;
-    http->closing = ended;
-    pthread_mutex_unlock(&http->lock);
-    return ended;
-}
-
 bool srv_http_stop(srv_http *http, unsigned millis)
 {
     if (http == NULL) {
@@ -744,8 +761,10 @@ bool srv_http_stop(srv_http *http, unsigned millis)
      * takes the listening socket out of the workers' epoll sets while they may do so themselves,
      * and the library aborts where both try. */
     atomic_store(&http->stopping, true);
-    srv_held_abandon(http->held);
-    if (!wait_for_end(http, millis)) {
+    srv_held_abandon(srv_store_held(http->options.store));
+    srv_live_stop(http->live);
+    /* At the deadline only those that are suspended still count. */
+    if (!srv_gate_close(&http->gate, millis)) {
         return false;
     }
     MHD_stop_daemon(http->daemon);

@@ -84,6 +84,7 @@ bool srv_connection_is_late(const srv_connection *c, const srv_deadline_options 
         return elapsed > o->total * SECOND || is_slow(o, elapsed, bytes);
     case SRV_STAGE_WORK:
     case SRV_STAGE_ANSWER:
+    case SRV_STAGE_LIVE:
         break;
     }
     return false;
@@ -112,7 +113,8 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
     struct tcp_info info = {0};
     socklen_t length = sizeof info;
     int outstanding = 0;
-    if (atomic_load_explicit(&c->stage, memory_order_relaxed) != SRV_STAGE_ANSWER) {
+    int stage = atomic_load_explicit(&c->stage, memory_order_relaxed);
+    if (stage != SRV_STAGE_ANSWER && stage != SRV_STAGE_LIVE) {
         c->window = 0;
         return false;
     }
@@ -120,7 +122,9 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
         getsockopt(c->socket, IPPROTO_TCP, TCP_INFO, &info, &length) != 0) {
         return false;
     }
-    return srv_connection_is_stuck(c, o, (uint64_t)outstanding, info.tcpi_bytes_acked, now);
+    const srv_deadline_options patient = {.grace = o->total, .min_rate = 1};
+    return srv_connection_is_stuck(c, stage == SRV_STAGE_LIVE ? &patient : o, (uint64_t)outstanding,
+                                   info.tcpi_bytes_acked, now);
 }
 
 /* Has the client closed before its body was complete? Seen twice without a move in between: what

@@ -15,6 +15,8 @@
  *     WORK    not limited: the client is waiting for us
  *     ANSWER  while bytes wait to be taken: min_rate bytes a second, over `grace` seconds. What
  *             counts is what the client's side has acknowledged, not what fits the socket's buffer
+ *     LIVE    an answer that goes on (http_live.h), in place of ANSWER: while bytes wait to be
+ *             taken, one a second over `total` seconds
  *
  * It also drains connections that were answered before their body was read: closing a socket with
  * unread data resets it, and a reset can take the answer away before the client has read it. */
@@ -33,7 +35,8 @@ typedef enum srv_stage {
     SRV_STAGE_HEAD,
     SRV_STAGE_BODY,
     SRV_STAGE_WORK,
-    SRV_STAGE_ANSWER
+    SRV_STAGE_ANSWER,
+    SRV_STAGE_LIVE
 } srv_stage;
 
 typedef struct srv_deadline_options {

@@ -14,13 +14,16 @@ he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_del
         srv_store_shed(self);
     }
     pthread_rwlock_wrlock(&mesh->lock);
-    he_delta *recording = srv_log_reserve(&mesh->log);
-    if (recording == NULL) {
+    /* Of a claimed mesh nothing is written, so there is nothing to record. */
+    he_delta *recording = mesh->claimed ? NULL : srv_log_reserve(&mesh->log);
+    if (recording == NULL && !mesh->claimed) {
         pthread_rwlock_unlock(&mesh->lock);
         return NULL;
     }
-    he_mesh_record(mesh->content, recording);
-    mesh->mark = he_delta_mark(mesh->content);
+    if (recording != NULL) {
+        he_mesh_record(mesh->content, recording);
+        mesh->mark = he_delta_mark(mesh->content);
+    }
     if (info != NULL) {
         srv_mesh_info(mesh, info);
     }
@@ -52,11 +55,10 @@ static double revise(api_mesh *mesh)
     return mesh->info.modified;
 }
 
-void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
-                      api_mesh_info *info)
+/* The content is what the reserved delta leads to. */
+static void commit(api_mesh *mesh, const he_delta *delta, const char *ops, bool barrier,
+                   api_mesh_info *info)
 {
-    (void)self;
-    he_delta *delta = he_mesh_record(mesh->content, NULL);
     double now = revise(mesh);
     srv_mesh_append(mesh, barrier ? API_REPLACE : API_EDIT, barrier ? NULL : delta, false);
     if (barrier) {
@@ -71,6 +73,69 @@ void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
     if (barrier) {
         srv_mesh_shed(mesh);
     }
+}
+
+void srv_write_commit(void *self, api_mesh *mesh, const char *ops, bool barrier,
+                      api_mesh_info *info)
+{
+    (void)self;
+    he_delta *delta = he_mesh_record(mesh->content, NULL);
+    commit(mesh, delta, ops, barrier, info);
+}
+
+api_store_status srv_claim(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
+                           api_mesh_info *info)
+{
+    (void)self;
+    pthread_rwlock_wrlock(&mesh->lock);
+    api_store_status status = mesh->info.removed ? API_STORE_ABSENT : API_STORE_OK;
+    if (status == API_STORE_OK && mesh->claimed) {
+        status = API_STORE_BUSY;
+    }
+    srv_mesh_info(mesh, info);
+    if (status == API_STORE_OK) {
+        *content = mesh->content;
+        *delta = srv_log_reserve(&mesh->log);
+        mesh->claimed = *delta != NULL;
+        status = mesh->claimed ? API_STORE_OK : API_STORE_NO_MEMORY;
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+    return status;
+}
+
+/* Under the lock. Objects in the reserved delta are the copy's old side. */
+static void end_claim(api_mesh *mesh)
+{
+    mesh->claimed = false;
+    he_delta_empty(srv_log_reserve(&mesh->log));
+    srv_log_unreserve(&mesh->log);
+}
+
+api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const char *ops,
+                             bool barrier, api_mesh_info *info)
+{
+    (void)self;
+    pthread_rwlock_wrlock(&mesh->lock);
+    if (mesh->info.removed) {
+        end_claim(mesh);
+        unlock(mesh);
+        return API_STORE_ABSENT;
+    }
+    he_delta *delta = he_mesh_record(content, NULL);
+    assert(mesh->claimed && mesh->discard == NULL);
+    mesh->claimed = false;
+    mesh->discard = mesh->content;
+    mesh->content = content;
+    commit(mesh, delta, ops, barrier, info);
+    return API_STORE_OK;
+}
+
+void srv_unclaim(void *self, api_mesh *mesh)
+{
+    (void)self;
+    pthread_rwlock_wrlock(&mesh->lock);
+    end_claim(mesh);
+    unlock(mesh);
 }
 
 /* Back to where the writer began; what it recorded is forgotten. */

@@ -208,6 +208,7 @@ void srv_copy_shed(api_mesh *mesh)
     pthread_mutex_lock(&mesh->snapshot_lock);
     shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
+    srv_feed_shed(&mesh->feed);
     /* Held for as long as a copy is being made; that one is wanted. */
     if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
         shed(&mesh->past);

@@ -1,7 +1,9 @@
 #include "server/store.h"
 
 #include "server/clock.h"
+#include "server/held.h"
 #include "server/memory.h"
+#include "server/mesh_events.h"
 #include "server/random.h"
 #include "server/stored_mesh.h"
 
@@ -12,6 +14,7 @@ struct srv_store {
     srv_journal journal;
     uint64_t undo_budget;
     uint64_t max_meshes;
+    srv_events events;
     pthread_rwlock_t lock; /* of the table */
     api_mesh **meshes;     /* in the order of ids, each with a use */
     size_t count, capacity;
@@ -37,6 +40,17 @@ srv_store *srv_store_new(const srv_store_options *options)
     store->secret[0] = srv_random();
     store->secret[1] = srv_random();
     srv_keys_init(&store->keys, store->secret);
+    store->events = (srv_events){
+        .most = options->listeners,
+        .most_of_mesh = options->mesh_listeners,
+        .jobs = options->jobs,
+        .held = srv_held_new(store),
+    };
+    if (store->events.held == NULL) {
+        pthread_rwlock_destroy(&store->lock);
+        he_mem_free(store);
+        return NULL;
+    }
     return store;
 }
 
@@ -50,6 +64,7 @@ void srv_store_free(srv_store *store)
     }
     he_mem_free(store->meshes);
     srv_keys_clear(&store->keys);
+    srv_held_free(store->events.held);
     store->journal.close(store->journal.self);
     pthread_rwlock_destroy(&store->lock);
     he_mem_free(store);
@@ -145,6 +160,7 @@ static api_store_status create_as(srv_store *store, const char *id, const char *
     if (mesh == NULL) {
         return API_STORE_NO_MEMORY;
     }
+    mesh->events = &store->events;
     /* Whoever finds it waits until the journal has its first record. */
     pthread_rwlock_wrlock(&mesh->lock);
     pthread_rwlock_wrlock(&store->lock);
@@ -291,12 +307,16 @@ api_store srv_store_interface(srv_store *store)
         .steps_to = srv_steps_to,
         .step = srv_step_apply,
         .write_end = srv_write_end,
+        .claim = srv_claim,
+        .publish = srv_publish,
+        .unclaim = srv_unclaim,
         .replace = srv_mesh_replace,
         .rename = srv_mesh_rename,
-        .claim = claim_key,
+        .claim_key = claim_key,
         .kept = kept,
         .keep = keep,
         .claim_end = claim_end,
+        .follow = srv_follow,
         .history = srv_history,
         .history_facts = srv_history_facts,
     };
@@ -311,6 +331,11 @@ bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context)
 {
     store->journal.listen(store->journal.self, notify, context);
+}
+
+srv_held *srv_store_held(srv_store *store)
+{
+    return store->events.held;
 }
 
 size_t srv_store_count(srv_store *store)

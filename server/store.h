@@ -17,6 +17,7 @@
 #define HE_SERVER_STORE_H
 
 #include "api/store.h"
+#include "server/jobs.h"
 #include "server/journal.h"
 
 typedef struct srv_store srv_store;
@@ -25,6 +26,10 @@ typedef struct srv_store_options {
     uint64_t undo_budget; /* bytes a mesh */
     uint64_t max_meshes;
     srv_journal journal; /* closed with the store */
+    size_t listeners;    /* at once, and of one mesh */
+    size_t mesh_listeners;
+    srv_jobs *jobs; /* bring listeners forward from the history; run to their end before the store
+                     * is freed */
 } srv_store_options;
 
 /* NULL when memory is out; the journal is the caller's then. */
@@ -38,6 +43,8 @@ api_store srv_store_interface(srv_store *store);
 bool srv_store_is_durable(const srv_store *store, const api_mesh *mesh, uint64_t record);
 /* Call `notify` whenever that may have become true for some mesh; see journal.h. */
 void srv_store_listen(srv_store *store, void (*notify)(void *context), void *context);
+/* Where to wait for that. */
+struct srv_held *srv_store_held(srv_store *store);
 
 size_t srv_store_count(srv_store *store);
 /* Free the cached copies and bodies of kept answers that nobody reads, and what was derived from

@@ -1,6 +1,7 @@
 #include "server/stored_mesh.h"
 
 #include "server/clock.h"
+#include "server/mesh_events.h"
 #include "server/random.h"
 
 #include <string.h>
@@ -56,6 +57,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     mesh->info.modified = mesh->info.created;
     mesh->content = content;
     srv_log_init(&mesh->log, undo_budget, mesh->info.revision, content, mesh->info.created);
+    srv_feed_init(&mesh->feed, (srv_place){.stamp = mesh->info.record, .key = mesh->info.revision});
     return mesh;
 }
 
@@ -73,6 +75,7 @@ void srv_mesh_release(api_mesh *mesh)
         return;
     }
     srv_log_clear(&mesh->log);
+    srv_feed_clear(&mesh->feed);
     he_mesh_free(mesh->content);
     srv_copy_release(mesh->copy);
     srv_copy_release(mesh->past);
@@ -92,6 +95,7 @@ void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out)
     *out = mesh->info;
     out->undo = mesh->log.undo_count;
     out->redo = mesh->log.redo_count;
+    out->busy = mesh->claimed;
 }
 
 void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, bool undone)
@@ -111,6 +115,7 @@ void srv_mesh_append(api_mesh *mesh, api_action action, const he_delta *delta, b
         .claim = mesh->claim,
     };
     mesh->journal->append(mesh->journal->self, &record);
+    srv_events_publish(mesh, &record);
 }
 
 const he_mesh *srv_read_begin(void *self, api_mesh *mesh, api_mesh_info *info)

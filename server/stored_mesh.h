@@ -3,6 +3,8 @@
 #define HE_SERVER_STORED_MESH_H
 
 #include "server/idempotency.h"
+#include "server/feed.h"
+#include "server/held.h"
 #include "server/journal.h"
 #include "server/revision_log.h"
 
@@ -20,14 +22,21 @@ typedef struct srv_copy {
 struct api_mesh {
     _Atomic uint32_t uses;
     const srv_journal *journal;
+    struct srv_events *events;
 
-    pthread_rwlock_t lock; /* of all down to `claim` */
+    pthread_rwlock_t lock; /* of all down to `claimed` */
     api_mesh_info info;    /* but for undo and redo, which the log has */
     he_mesh *content;
     srv_revision_log log;
     he_savepoint mark;      /* where the writer began */
     he_mesh *discard;       /* freed when the writer has given the lock back */
     const api_claim *claim; /* whom the writer works for, NULL: for no keyed request */
+    bool claimed;           /* the log's reserve is lent to a long edit */
+
+    /* See mesh_events.h. */
+    srv_feed feed;
+    srv_hold hold; /* of the newest message that is not yet durable */
+    _Atomic bool holding;
 
     pthread_mutex_t snapshot_lock;
     srv_copy *copy; /* of the present, NULL: none cached */
@@ -80,6 +89,11 @@ api_store_status srv_steps_to(void *self, api_mesh *mesh, api_action which, uint
 api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, uint32_t steps,
                                 const he_delta **deltas, api_mesh_info *info);
 void srv_write_end(void *self, api_mesh *mesh);
+api_store_status srv_claim(void *self, api_mesh *mesh, const he_mesh **content, he_delta **delta,
+                           api_mesh_info *info);
+api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const char *ops,
+                             bool barrier, api_mesh_info *info);
+void srv_unclaim(void *self, api_mesh *mesh);
 void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
 void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
 

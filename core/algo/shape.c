@@ -154,7 +154,7 @@ static void uv_sphere_fill(const double *args, he_soup *soup)
     uint32_t n = (uint32_t)args[0], bands = (uint32_t)args[1];
     double radius = args[2];
     he_solid_vertex(soup, 0, 0, -radius);
-    for (uint32_t i = 1; i < bands; i++) {
+    for (uint32_t i = 1; i < bands && he_solid_goes_on(soup); i++) {
         double out, down;
         circle_point(i, 2 * bands, &down, &out);
         circle(soup, n, radius * out, -radius * down);
@@ -162,7 +162,7 @@ static void uv_sphere_fill(const double *args, he_soup *soup)
     uint32_t north = (uint32_t)soup->vertex_count;
     he_solid_vertex(soup, 0, 0, radius);
     fan(soup, 1, n, 0, false);
-    for (uint32_t i = 0; i + 2 < bands; i++) {
+    for (uint32_t i = 0; i + 2 < bands && he_solid_goes_on(soup); i++) {
         band(soup, 1 + i * n, 1 + (i + 1) * n, n);
     }
     fan(soup, north - n, n, north, true);
@@ -178,13 +178,13 @@ static void grid_fill(const double *args, he_soup *soup)
 {
     uint32_t columns = (uint32_t)args[0], rows = (uint32_t)args[1];
     double width = args[2], height = args[3];
-    for (uint32_t j = 0; j <= rows; j++) {
+    for (uint32_t j = 0; j <= rows && he_solid_goes_on(soup); j++) {
         for (uint32_t i = 0; i <= columns; i++) {
             he_solid_vertex(soup, width * (i / (double)columns - 0.5),
                             height * (j / (double)rows - 0.5), 0);
         }
     }
-    for (uint32_t j = 0; j < rows; j++) {
+    for (uint32_t j = 0; j < rows && he_solid_goes_on(soup); j++) {
         for (uint32_t i = 0; i < columns; i++) {
             uint32_t a = j * (columns + 1) + i, b = a + columns + 1;
             he_solid_face(soup, (uint32_t[]){a, a + 1, b + 1, b}, 4);
@@ -202,7 +202,7 @@ static he_shape_size torus_size(const double *args)
 static void torus_fill(const double *args, he_soup *soup)
 {
     uint32_t major = (uint32_t)args[0], minor = (uint32_t)args[1];
-    for (uint32_t i = 0; i < major; i++) {
+    for (uint32_t i = 0; i < major && he_solid_goes_on(soup); i++) {
         double x, y;
         circle_point(i, major, &x, &y);
         for (uint32_t j = 0; j < minor; j++) {
@@ -212,7 +212,7 @@ static void torus_fill(const double *args, he_soup *soup)
             he_solid_vertex(soup, r * x, r * y, args[3] * up);
         }
     }
-    for (uint32_t i = 0; i < major; i++) {
+    for (uint32_t i = 0; i < major && he_solid_goes_on(soup); i++) {
         uint32_t a = i * minor, b = (i + 1) % major * minor;
         for (uint32_t j = 0; j < minor; j++) {
             uint32_t k = (j + 1) % minor;
@@ -521,8 +521,15 @@ he_status he_shape_make(const he_shape *shape, const double args[HE_SHAPE_PARAMS
     soup.vertex_capacity = size.vertices;
     soup.corner_capacity = size.corners;
     soup.face_capacity = size.faces;
-    /* Nothing below can fail. */
-    shape->fill(args, &soup);
+    status = he_watch_phase(limits->watch, "shaping", 1, err);
+    if (status == HE_OK) {
+        shape->fill(args, &soup);
+        status = he_watch_step(limits->watch, 1, 1, err);
+    }
+    if (status != HE_OK) {
+        he_soup_clear(&soup);
+        return status;
+    }
     *out = soup;
     return HE_OK;
 }

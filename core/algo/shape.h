@@ -38,6 +38,7 @@ typedef struct he_shape {
     he_shape_param params[HE_SHAPE_PARAMS]; /* ends at the first without a name */
     /* Call through the functions below, with arguments at the index of their parameter. */
     he_shape_size (*size)(const double *args);
+    /* Returns early, with whatever it has, once the soup's watch has given up. */
     void (*fill)(const double *args, he_soup *soup);
 } he_shape;
 
@@ -53,7 +54,7 @@ HE_NODISCARD he_status he_shape_check(const he_shape *shape, const double args[H
                                       size_t *param, he_error *err);
 /* The soup is the caller's to clear, and he_build refuses none of them. As he_shape_check; HE_LIMIT
  * when it would have more vertices, faces, corners or bytes than `limits` (NULL: than the
- * structure) allows, HE_NO_MEMORY. */
+ * structure) allows, HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_shape_make(const he_shape *shape, const double args[HE_SHAPE_PARAMS],
                                      const he_limits *limits, he_soup *out, he_error *err);
 

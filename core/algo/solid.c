@@ -5,6 +5,12 @@
 #include <assert.h>
 #include <string.h>
 
+bool he_solid_goes_on(const he_soup *soup)
+{
+    return he_watch_step(soup->limits.watch, soup->vertex_count + soup->corner_count,
+                         soup->vertex_capacity + soup->corner_capacity, NULL) == HE_OK;
+}
+
 void he_solid_vertex(he_soup *soup, double x, double y, double z)
 {
     assert(soup->vertex_count < soup->vertex_capacity);
@@ -236,15 +242,18 @@ void he_solid_icosphere(he_soup *soup, unsigned subdivisions, double radius)
     memcpy(soup->positions, ico.vertex, sizeof ico.vertex);
     soup->vertex_count = vertices;
     for (uint32_t step = p.n; step > 1; step /= 2) {
-        for (p.face = 0; p.face < 20; p.face++) {
+        for (p.face = 0; p.face < 20 && he_solid_goes_on(soup); p.face++) {
             place_level(&p, step, soup->positions);
         }
+    }
+    if (!he_solid_goes_on(soup)) {
+        return;
     }
     for (uint32_t v = 0; v < vertices; v++) {
         soup->positions[v] = he_vec3_scale(soup->positions[v], radius);
     }
     for (p.face = 0; p.face < 20; p.face++) {
-        for (uint32_t j = 0; j < p.n; j++) {
+        for (uint32_t j = 0; j < p.n && he_solid_goes_on(soup); j++) {
             for (uint32_t i = 0; i + j < p.n; i++) {
                 uint32_t b = grid_vertex(&p, i + 1, j), c = grid_vertex(&p, i, j + 1);
                 triangle(soup, grid_vertex(&p, i, j), b, c);

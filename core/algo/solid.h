@@ -5,6 +5,8 @@
 
 #include "mesh/build.h"
 
+/* Tell the soup's watch how full it is; false when it has given up. For each row of a shape. */
+bool he_solid_goes_on(const he_soup *soup);
 /* Append to a soup that has room. */
 void he_solid_vertex(he_soup *soup, double x, double y, double z);
 void he_solid_face(he_soup *soup, const uint32_t *corners, size_t count);

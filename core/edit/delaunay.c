@@ -20,6 +20,7 @@ typedef struct flipper {
     size_t stuck_at;  /* flips when they were last tried */
     he_ids flips;
     uint64_t steps, limit;
+    uint64_t dequeued;
 } flipper;
 
 static void enqueue(flipper *q, he_edge e)
@@ -112,6 +113,12 @@ static he_status empty_queue(flipper *q, he_error *err)
     he_status status = HE_OK;
     while (status == HE_OK && q->waiting > 0) {
         he_edge e = dequeue(q);
+        q->dequeued++;
+        /* Flips spread, so the end is not known: what is done beside what waits only comes near. */
+        status = he_watch_at(q->m->watch, q->dequeued, q->dequeued + q->waiting, err);
+        if (status != HE_OK) {
+            return status;
+        }
         if (++q->steps > q->limit) {
             return he_fail_plain(err, HE_LIMIT, "more than %llu steps, after %zu flips",
                                  (unsigned long long)q->limit, q->flips.count);
@@ -172,6 +179,7 @@ he_status he_delaunay(he_mesh *m, const uint32_t *edges, size_t count, he_ids *f
     if (status != HE_OK) {
         goto out;
     }
+    status = he_watch_phase(m->watch, "flipping", 1, err);
     while (status == HE_OK && q.waiting > 0) {
         status = empty_queue(&q, err);
         try_again(&q);

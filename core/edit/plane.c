@@ -53,12 +53,15 @@ static double weigh(he_vec3 n, he_vec3 p)
     return fabs(n.x * p.x) + fabs(n.y * p.y) + fabs(n.z * p.z);
 }
 
-/* Fill in the distances; the default tolerance, in their unit. */
-static double measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *sides)
+/* Fill in the distances, and the default tolerance, in their unit. */
+static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *sides,
+                         double *tolerance, he_error *err)
 {
     he_vec3 low = {1, 1, 1}, high = {-1, -1, -1}, q = he_vec3_scale(point, sides->scale);
     double weight = 0;
-    for (uint32_t v = 0; v < sides->count; v++) {
+    he_status status = HE_OK;
+    for (uint32_t v = 0; v < sides->count && status == HE_OK; v++) {
+        status = he_watch_at(m->watch, v, sides->count, err);
         if (he_vertex_is_live(m, (he_vertex){v})) {
             he_vec3 p = he_vec3_scale(m->c.position[v], sides->scale);
             sides->distance[v] = he_vec3_dot(n, he_vec3_sub(p, q));
@@ -68,7 +71,8 @@ static double measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *side
         }
     }
     double size = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
-    return fmax(TOLERANCE * size, NOISE * (weight + weigh(n, q)));
+    *tolerance = fmax(TOLERANCE * size, NOISE * (weight + weigh(n, q)));
+    return status;
 }
 
 he_status he_sides_find(const he_mesh *m, he_vec3 point, he_vec3 normal, const double *tolerance,
@@ -84,7 +88,12 @@ he_status he_sides_find(const he_mesh *m, he_vec3 point, he_vec3 normal, const d
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the distances of %u vertices",
                              sides.count);
     }
-    double within = measure(m, point, unit_of(normal), &sides);
+    double within = 0;
+    status = measure(m, point, unit_of(normal), &sides, &within, err);
+    if (status != HE_OK) {
+        he_sides_clear(&sides);
+        return status;
+    }
     if (tolerance != NULL) {
         within = *tolerance * sides.scale;
     }

@@ -62,8 +62,10 @@ static he_status split_edges(splitter *s, he_error *err)
     he_mesh *m = s->m;
     uint32_t issued = m->c.edges.issued, crossed = 0;
     he_need one = {0};
-    for (uint32_t e = 0; e < issued; e++) {
+    he_status status = HE_OK;
+    for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
         crossed += is_crossed(s, (he_edge){e});
+        status = he_watch_at(m->watch, e, 2 * (uint64_t)issued, err);
     }
     he_bisect_need(&one);
     he_need need = {.vertices = crossed * one.vertices,
@@ -71,7 +73,9 @@ static he_status split_edges(splitter *s, he_error *err)
                     .links = crossed * one.links,
                     .attributes = crossed * one.attributes,
                     .lineage = crossed * one.lineage};
-    he_status status = he_ids_reserve(&s->made.vertices, crossed, err);
+    if (status == HE_OK) {
+        status = he_ids_reserve(&s->made.vertices, crossed, err);
+    }
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
     }
@@ -80,6 +84,7 @@ static he_status split_edges(splitter *s, he_error *err)
     }
     /* Nothing below can fail. */
     for (uint32_t e = 0; e < issued; e++) {
+        he_watch_note(m->watch, (uint64_t)issued + e, 2 * (uint64_t)issued);
         if (is_crossed(s, (he_edge){e})) {
             he_halfedge h = {2 * e};
             double from = s->sides.distance[he_origin(m, h).i];
@@ -141,7 +146,9 @@ static he_status split_faces(splitter *s, he_error *err)
     const he_ids *pairs = &s->chords.pairs;
     he_status status = HE_OK;
     for (uint32_t f = 0; status == HE_OK && f < issued; f++) {
-        if (!he_face_is_live(s->m, (he_face){f}) || !is_chosen(s, (he_face){f})) {
+        status = he_watch_at(s->m->watch, f, issued, err);
+        if (status != HE_OK || !he_face_is_live(s->m, (he_face){f}) ||
+            !is_chosen(s, (he_face){f})) {
             continue;
         }
         status = he_chords_plan(s->m, (he_face){f}, &s->sides, &s->chords, err);
@@ -160,6 +167,9 @@ he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal, const double
     he_bracket bracket;
     he_status status = choose(&s, faces, count, err);
     if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "measuring", 0.2, err);
+    }
+    if (status == HE_OK) {
         status = he_sides_find(m, point, normal, tolerance, &s.sides, err);
     }
     if (status == HE_OK) {
@@ -169,7 +179,13 @@ he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal, const double
         goto out;
     }
     /* Faces see the vertices on their sides, and the diagonals of those before them. */
-    status = split_edges(&s, err);
+    status = he_watch_phase(m->watch, "splitting edges", 0.5, err);
+    if (status == HE_OK) {
+        status = split_edges(&s, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "splitting faces", 1, err);
+    }
     if (status == HE_OK) {
         status = split_faces(&s, err);
     }

@@ -27,9 +27,11 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
     }
     he_marks marks;
     bool marked = he_marks_find(m, &marks);
+    he_status status = he_watch_phase(m->watch, "checking", 0.3, err);
     size_t places = vertices != NULL ? count : m->c.vertices.issued, moved = 0;
-    for (size_t i = 0; i < places; i++) {
+    for (size_t i = 0; i < places && status == HE_OK; i++) {
         he_vertex v = {vertices != NULL ? vertices[i] : (uint32_t)i};
+        status = he_watch_at(m->watch, i, places, err);
         if (!he_vertex_is_live(m, v)) {
             continue;
         }
@@ -37,15 +39,19 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
             return he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i,
                            "vertex %u would have a position that is not finite", v.i);
         }
-        he_status status = marked ? he_require_unlocked(&marks, HE_VERTEX, v.i, err) : HE_OK;
-        if (status != HE_OK) {
-            return status;
+        if (status == HE_OK && marked) {
+            status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
         }
         moved++;
     }
-    he_normals normals;
+    he_normals normals = {0};
     he_need need = {.positions = moved};
-    he_status status = he_normals_init(&normals, m, matrix, vertices, count, &need.links, err);
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "moving", 1, err);
+    }
+    if (status == HE_OK) {
+        status = he_normals_init(&normals, m, matrix, vertices, count, &need.links, err);
+    }
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
     }
@@ -56,6 +62,7 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
     /* Nothing below can fail. */
     for (size_t i = 0; i < places; i++) {
         he_vertex v = {vertices != NULL ? vertices[i] : (uint32_t)i};
+        he_watch_note(m->watch, i, places);
         if (he_vertex_is_live(m, v)) {
             he_set_position(m, v, apply(matrix, he_position(m, v)));
         }

@@ -74,11 +74,13 @@ static uint32_t assign(builder *b, uint32_t c, uint32_t from, uint32_t to)
     return h;
 }
 
-static void make_faces(builder *b)
+static he_status make_faces(builder *b, he_error *err)
 {
     const he_soup *soup = b->soup;
     he_content *k = b->c;
-    for (size_t f = 0; f < soup->face_count; f++) {
+    he_status status = he_watch_phase(soup->limits.watch, "linking", 0.85, err);
+    for (size_t f = 0; f < soup->face_count && status == HE_OK; f++) {
+        status = he_watch_at(soup->limits.watch, f, soup->face_count, err);
         uint32_t first = soup->starts[f], end = he_soup_end(soup, f);
         uint32_t start = assign(b, first, soup->corners[first], soup->corners[first + 1]);
         uint32_t before = start;
@@ -99,6 +101,7 @@ static void make_faces(builder *b)
         k->prev[start] = before;
         k->face_halfedge[f] = start;
     }
+    return status;
 }
 
 /* At a bow-tie, whose outgoing boundary half-edges are chained by prev from `head`: let each fan be
@@ -141,11 +144,14 @@ static void link_holes(builder *b)
 }
 
 /* Turning about a vertex must meet all that leaves it: I9. */
-static void check_fans(const builder *b, he_report *report, uint64_t *total)
+static he_status check_fans(const builder *b, he_report *report, uint64_t *total, he_error *err)
 {
     const he_content *k = b->c;
-    for (uint32_t v = 0; v < k->vertices.issued; v++) {
+    he_watch *watch = b->soup->limits.watch;
+    he_status status = he_watch_phase(watch, "turning", 1, err);
+    for (uint32_t v = 0; v < k->vertices.issued && status == HE_OK; v++) {
         uint32_t first = k->vertex_halfedge[v], degree = b->degree[v];
+        status = he_watch_at(watch, v, k->vertices.issued, err);
         if (degree == 0) {
             continue;
         }
@@ -159,6 +165,7 @@ static void check_fans(const builder *b, he_report *report, uint64_t *total)
                           (he_defect){HE_CLOSED_FAN, HE_VERTEX, v, HE_NONE, HE_NONE, HE_NONE});
         }
     }
+    return status;
 }
 
 /* Corner rows of a soup column become half-edge rows. */
@@ -290,14 +297,19 @@ static he_status build_links(he_soup *soup, unsigned flags, he_content *k, size_
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to link %zu edges", edges);
         goto out;
     }
-    make_faces(&b);
+    status = make_faces(&b, err);
+    if (status != HE_OK) {
+        goto out;
+    }
     link_holes(&b);
     k->edges.live = k->edges.issued;
     k->faces.issued = k->faces.live = (uint32_t)soup->face_count;
     k->boundary_halfedges = b.boundary_count;
-    check_fans(&b, report, total);
-    if (*total > 0) {
+    status = check_fans(&b, report, total, err);
+    if (status == HE_OK && *total > 0) {
         status = refuse(report, err);
+    }
+    if (status != HE_OK) {
         goto out;
     }
     status = build_columns(&b, soup, (flags & HE_BUILD_TAKE) != 0, err);
@@ -324,7 +336,10 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         goto out;
     }
     report->total = 0;
-    status = he_soup_check_faces(soup, report, &total, err);
+    status = he_watch_phase(soup->limits.watch, "checking", 0.05, err);
+    if (status == HE_OK) {
+        status = he_soup_check_faces(soup, report, &total, err);
+    }
     if (status == HE_OK && total > 0) {
         status = refuse(report, err);
     }
@@ -336,7 +351,10 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu corners", soup->corner_count);
         goto out;
     }
-    status = he_soup_pair(soup, mate, &edges, report, &total, err);
+    status = he_watch_phase(soup->limits.watch, "pairing", 0.5, err);
+    if (status == HE_OK) {
+        status = he_soup_pair(soup, mate, &edges, report, &total, err);
+    }
     if (status == HE_OK && total > 0) {
         status = refuse(report, err);
     }

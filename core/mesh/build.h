@@ -14,7 +14,8 @@
 /* What a caller allows; 0 means the structure's own maximum. */
 typedef struct he_limits {
     uint64_t vertices, faces, corners;
-    uint64_t bytes; /* of memory for the soup */
+    uint64_t bytes;  /* of memory for the soup */
+    he_watch *watch; /* told of filling and building; NULL: nobody */
 } he_limits;
 
 typedef struct he_soup {
@@ -72,9 +73,9 @@ typedef struct he_report {
 void he_defect_text(const he_defect *defect, char *text, size_t size);
 
 /* The mesh is the caller's. Any defect fails with the reason of the first and its element; all of
- * them are in `report` (may be NULL). HE_NO_MEMORY, HE_IDS_EXHAUSTED. The soup is only read, save
- * that its columns may be taken when `flags` has HE_BUILD_TAKE: then the soup is cleared on
- * success and positions are moved, not copied. */
+ * them are in `report` (may be NULL). HE_NO_MEMORY, HE_IDS_EXHAUSTED, HE_CANCELLED. The soup is
+ * only read, save that its columns may be taken when `flags` has HE_BUILD_TAKE: then the soup is
+ * cleared on success and positions are moved, not copied. */
 enum { HE_BUILD_TAKE = 1 };
 HE_NODISCARD he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *report,
                                 he_error *err);

@@ -32,7 +32,7 @@ static void sort_few(word_record *records, size_t count)
 
 enum { FEW = 96 };
 
-static he_status sort_records(word_record **records, size_t count, he_error *err)
+static he_status sort_records(word_record **records, size_t count, he_watch *watch, he_error *err)
 {
     if (count <= FEW) {
         sort_few(*records, count);
@@ -46,10 +46,12 @@ static he_status sort_records(word_record **records, size_t count, he_error *err
     for (size_t i = 1; i < count; i++) {
         differs |= from[i].key ^ from[0].key;
     }
-    for (unsigned shift = 0; shift < 64; shift += 8) {
+    he_status status = HE_OK;
+    for (unsigned shift = 0; shift < 64 && status == HE_OK; shift += 8) {
         if ((differs >> shift & 255) == 0) {
             continue;
         }
+        status = he_watch_step(watch, shift, 128, err);
         size_t starts[257] = {0};
         for (size_t i = 0; i < count; i++) {
             starts[(from[i].key >> shift & 255) + 1]++;
@@ -57,7 +59,8 @@ static he_status sort_records(word_record **records, size_t count, he_error *err
         for (size_t b = 1; b < 257; b++) {
             starts[b] += starts[b - 1];
         }
-        for (size_t i = 0; i < count; i++) {
+        for (size_t i = 0; i < count && status == HE_OK; i++) {
+            status = he_watch_at(watch, i, 128 * (uint64_t)count, err);
             to[starts[from[i].key >> shift & 255]++] = from[i];
         }
         word_record *swap = from;
@@ -66,7 +69,7 @@ static he_status sort_records(word_record **records, size_t count, he_error *err
     }
     he_mem_free(to);
     *records = from;
-    return HE_OK;
+    return status;
 }
 
 static bool contains(const he_ids *sorted, uint32_t id)
@@ -184,8 +187,8 @@ static size_t gather_part(const he_change_part *part, word_record *records, he_c
     return n;
 }
 
-static he_status gather(const he_change_part *parts, size_t part_count, word_record **out,
-                        size_t *count, he_changes *found, he_error *err)
+static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t part_count,
+                        word_record **out, size_t *count, he_changes *found, he_error *err)
 {
     size_t total = 0;
     for (size_t i = 0; i < part_count; i++) {
@@ -199,7 +202,7 @@ static he_status gather(const he_change_part *parts, size_t part_count, word_rec
     for (size_t i = 0; i < part_count; i++) {
         n += gather_part(&parts[i], records + n, found);
     }
-    he_status status = sort_records(&records, n, err);
+    he_status status = sort_records(&records, n, mesh->watch, err);
     if (status != HE_OK) {
         he_mem_free(records);
         return status;
@@ -213,7 +216,7 @@ static he_status note_all(const he_mesh *mesh, const word_record *records, size_
                           he_changes *out, he_error *err)
 {
     he_status status = HE_OK;
-    for (size_t i = 0; i < count && status == HE_OK;) {
+    for (size_t i = 0, noted = 0; i < count && status == HE_OK; noted++) {
         size_t last = i;
         while (last + 1 < count && records[last + 1].key == records[i].key) {
             last++;
@@ -222,6 +225,9 @@ static he_status note_all(const he_mesh *mesh, const word_record *records, size_
             status =
                 note_word(mesh, out, (uint32_t)(records[i].key >> 40), (uint32_t)records[i].key,
                           records[i].before, records[last].after, err);
+        }
+        if (status == HE_OK && noted % HE_WATCH_STRIDE == 0) {
+            status = he_watch_step(mesh->watch, count + i, 2 * (uint64_t)count, err);
         }
         i = last + 1;
     }
@@ -279,7 +285,10 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
     he_changes found = {0};
     word_record *records = NULL;
     size_t count = 0;
-    he_status status = gather(parts, part_count, &records, &count, &found, err);
+    he_status status = he_watch_phase(mesh->watch, "listing changes", 1, err);
+    if (status == HE_OK) {
+        status = gather(mesh, parts, part_count, &records, &count, &found, err);
+    }
     if (status != HE_OK || found.replaced) {
         goto out;
     }

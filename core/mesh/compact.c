@@ -27,15 +27,22 @@ static uint32_t map_halfedge(const he_maps *maps, uint32_t h)
     return h == HE_NONE ? HE_NONE : 2 * maps->edge[h >> 1] + (h & 1);
 }
 
-static void move_links(const he_content *from, const he_maps *maps, he_content *to)
+static he_status move_links(const he_content *from, const he_maps *maps, he_content *to,
+                            he_watch *watch, he_error *err)
 {
-    for (uint32_t v = 0; v < from->vertices.issued; v++) {
+    he_status status = he_watch_phase(watch, "moving vertices", 0.2, err);
+    for (uint32_t v = 0; v < from->vertices.issued && status == HE_OK; v++) {
+        status = he_watch_at(watch, v, from->vertices.issued, err);
         if (maps->vertex[v] != HE_NONE) {
             to->position[maps->vertex[v]] = from->position[v];
             to->vertex_halfedge[maps->vertex[v]] = map_halfedge(maps, from->vertex_halfedge[v]);
         }
     }
-    for (uint32_t h = 0; h < 2 * from->edges.issued; h++) {
+    if (status == HE_OK) {
+        status = he_watch_phase(watch, "moving edges", 0.8, err);
+    }
+    for (uint32_t h = 0; h < 2 * from->edges.issued && status == HE_OK; h++) {
+        status = he_watch_at(watch, h, 2 * (uint64_t)from->edges.issued, err);
         if (maps->edge[h >> 1] != HE_NONE) {
             uint32_t fresh = map_halfedge(maps, h), face = from->face[h];
             to->next[fresh] = map_halfedge(maps, from->next[h]);
@@ -44,11 +51,12 @@ static void move_links(const he_content *from, const he_maps *maps, he_content *
             to->face[fresh] = face == HE_NONE ? HE_NONE : maps->face[face];
         }
     }
-    for (uint32_t f = 0; f < from->faces.issued; f++) {
+    for (uint32_t f = 0; f < from->faces.issued && status == HE_OK; f++) {
         if (maps->face[f] != HE_NONE) {
             to->face_halfedge[maps->face[f]] = map_halfedge(maps, from->face_halfedge[f]);
         }
     }
+    return status;
 }
 
 static uint32_t map_row(const he_maps *maps, he_kind domain, size_t row)
@@ -148,8 +156,13 @@ he_status he_compact(he_mesh *mesh, he_maps *out, he_error *err)
     to->edges.issued = to->edges.live = from->edges.live;
     to->faces.issued = to->faces.live = from->faces.live;
     to->boundary_halfedges = from->boundary_halfedges;
-    move_links(from, &maps, to);
-    status = move_columns(from, &maps, to, err);
+    status = move_links(from, &maps, to, mesh->watch, err);
+    if (status == HE_OK) {
+        status = he_watch_phase(mesh->watch, "moving attributes", 1, err);
+    }
+    if (status == HE_OK) {
+        status = move_columns(from, &maps, to, err);
+    }
     if (status == HE_OK) {
         status = he_mesh_replace(mesh, fresh, err);
     }

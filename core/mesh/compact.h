@@ -15,7 +15,7 @@ void he_maps_clear(he_maps *maps);
 
 /* Drop the dead rows: live elements keep their order and take the ids 0, 1, 2... Counts, links and
  * attributes are otherwise unchanged; memory shrinks to fit. Recorded as one replace. `maps` may be
- * NULL, else it is the caller's to clear. HE_NO_MEMORY. */
+ * NULL, else it is the caller's to clear. HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_compact(he_mesh *mesh, he_maps *maps, he_error *err);
 
 #endif

@@ -87,12 +87,54 @@ void he_content_clear(he_content *c)
     *c = (he_content){0};
 }
 
-static void copy_rows(void *to, const void *from, size_t rows, size_t size)
+/* Small enough that a copy can be given up between two. */
+enum { COPY_BLOCK = 1 << 20 };
+
+/* The copying of columns one after another. */
+typedef struct copying {
+    he_watch *watch;
+    size_t done, bytes; /* of all of them */
+} copying;
+
+static he_status copy_rows(copying *c, void *to, const void *from, size_t rows, size_t size,
+                           he_error *err)
 {
-    if (rows > 0) {
-        assert(to != NULL && from != NULL);
-        memcpy(to, from, rows * size);
+    he_status status = HE_OK;
+    assert(rows == 0 || (to != NULL && from != NULL));
+    for (size_t at = 0, left = rows * size; left > 0 && status == HE_OK;) {
+        size_t part = left < COPY_BLOCK ? left : COPY_BLOCK;
+        memcpy((char *)to + at, (const char *)from + at, part);
+        at += part;
+        left -= part;
+        c->done += part;
+        status = he_watch_step(c->watch, c->done, c->bytes, err);
     }
+    return status;
+}
+
+static he_status copy_links(const he_content *from, he_watch *watch, he_content *to, he_error *err)
+{
+    size_t v = from->vertices.issued, h = 2 * (size_t)from->edges.issued, f = from->faces.issued;
+    size_t word = sizeof(uint32_t);
+    copying c = {watch, 0, v * (sizeof *to->position + word) + 4 * h * word + f * word};
+    const struct {
+        void *to;
+        const void *from;
+        size_t rows, size;
+    } parts[] = {
+        {to->position, from->position, v, sizeof *to->position},
+        {to->vertex_halfedge, from->vertex_halfedge, v, word},
+        {to->next, from->next, h, word},
+        {to->prev, from->prev, h, word},
+        {to->origin, from->origin, h, word},
+        {to->face, from->face, h, word},
+        {to->face_halfedge, from->face_halfedge, f, word},
+    };
+    he_status status = he_watch_phase(watch, "copying", 1, err);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts && status == HE_OK; i++) {
+        status = copy_rows(&c, parts[i].to, parts[i].from, parts[i].rows, parts[i].size, err);
+    }
+    return status;
 }
 
 static he_status copy_columns(const he_content *from, he_content *to, he_error *err)
@@ -116,7 +158,7 @@ static he_status copy_columns(const he_content *from, he_content *to, he_error *
     return HE_OK;
 }
 
-he_status he_content_copy(const he_content *from, he_content *out, he_error *err)
+he_status he_content_copy(const he_content *from, he_watch *watch, he_content *out, he_error *err)
 {
     he_content to = {0};
     size_t v = from->vertices.issued, h = 2 * (size_t)from->edges.issued, f = from->faces.issued;
@@ -130,17 +172,13 @@ he_status he_content_copy(const he_content *from, he_content *out, he_error *err
     if (status == HE_OK) {
         status = copy_columns(from, &to, err);
     }
+    if (status == HE_OK) {
+        status = copy_links(from, watch, &to, err);
+    }
     if (status != HE_OK) {
         he_content_clear(&to);
         return status;
     }
-    copy_rows(to.position, from->position, v, sizeof *to.position);
-    copy_rows(to.vertex_halfedge, from->vertex_halfedge, v, sizeof(uint32_t));
-    copy_rows(to.next, from->next, h, sizeof(uint32_t));
-    copy_rows(to.prev, from->prev, h, sizeof(uint32_t));
-    copy_rows(to.origin, from->origin, h, sizeof(uint32_t));
-    copy_rows(to.face, from->face, h, sizeof(uint32_t));
-    copy_rows(to.face_halfedge, from->face_halfedge, f, sizeof(uint32_t));
     to.vertices.issued = from->vertices.issued;
     to.vertices.live = from->vertices.live;
     to.edges.issued = from->edges.issued;

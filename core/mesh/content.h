@@ -5,8 +5,9 @@
 #include "mesh/layout.h"
 
 void he_content_clear(he_content *content); /* frees what it holds */
-/* Fills *out on success only. */
-HE_NODISCARD he_status he_content_copy(const he_content *content, he_content *out, he_error *err);
+/* Fills *out on success only. `watch` may be NULL. */
+HE_NODISCARD he_status he_content_copy(const he_content *content, he_watch *watch, he_content *out,
+                                       he_error *err);
 size_t he_content_bytes(const he_content *content);
 
 /* Make room in the link and position columns (not in the attributes) for this many rows in all. */

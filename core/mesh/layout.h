@@ -27,6 +27,7 @@ typedef struct he_content {
 struct he_mesh {
     he_content c;
     he_delta *delta; /* where writes are recorded, or NULL */
+    he_watch *watch; /* who is told of long work, or NULL */
 };
 
 #endif

@@ -52,6 +52,7 @@
 
 #include "mesh/mem.h"
 #include "mesh/status.h"
+#include "mesh/watch.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -88,10 +89,17 @@ he_mesh *he_mesh_new(void);
 void he_mesh_free(he_mesh *mesh);
 /* An independent copy with the same ids, dead rows and attributes; nothing is recorded in it. */
 HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
+/* The same under a watch (which may be NULL), that then is the copy's. */
+HE_NODISCARD he_status he_mesh_copy_watched(const he_mesh *mesh, he_watch *watch, he_mesh **out,
+                                            he_error *err);
 /* Do two meshes hold the same: every issued row of every column, and the high-water marks? */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
 /* The same without the rows only one of them has issued, if those are dead. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
+
+/* Tell `watch` about all long work with this mesh, which may then fail with HE_CANCELLED; NULL
+ * stops. For a mesh that nobody else uses; the watch outlives its use. */
+void he_mesh_watch(he_mesh *mesh, he_watch *watch);
 
 /* What a mesh costs, counted from the capacities of its columns. */
 size_t he_mesh_bytes(const he_mesh *mesh);

@@ -47,7 +47,12 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
                               he_error *err)
 {
     uint32_t *stamp = NULL;
+    he_status status = HE_OK;
     for (size_t f = 0; f < soup->face_count; f++) {
+        status = he_watch_at(soup->limits.watch, f, soup->face_count, err);
+        if (status != HE_OK) {
+            break;
+        }
         const uint32_t *corners = soup->corners + soup->starts[f];
         uint32_t count = he_soup_end(soup, f) - soup->starts[f], k = 0;
         if (count < 3) {
@@ -72,7 +77,7 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
         }
     }
     he_mem_free(stamp);
-    return HE_OK;
+    return status;
 }
 
 /* A corner filed under the smaller vertex of its edge. The top bit of `far` says that it runs from
@@ -85,13 +90,16 @@ typedef struct filed {
 
 /* Bucket sort of all corners by the smaller end of their edge: starts[v]..starts[v + 1] are the
  * entries of vertex v. */
-static void file_corners(const he_soup *soup, uint32_t *starts, filed *entries)
+static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entries, he_error *err)
 {
+    const size_t faces = soup->face_count;
     const uint32_t *corners = soup->corners;
     memset(starts, 0, (soup->vertex_count + 2) * sizeof *starts);
     uint32_t *counts = starts + 2;
-    for (size_t f = 0; f < soup->face_count; f++) {
+    he_status status = HE_OK;
+    for (size_t f = 0; f < faces && status == HE_OK; f++) {
         uint32_t end = he_soup_end(soup, f), a = corners[end - 1];
+        status = he_watch_at(soup->limits.watch, f, 3 * faces, err);
         for (uint32_t c = soup->starts[f]; c < end; c++) {
             uint32_t b = corners[c];
             counts[(a < b ? a : b)]++;
@@ -102,7 +110,8 @@ static void file_corners(const he_soup *soup, uint32_t *starts, filed *entries)
         starts[v] += starts[v - 1];
     }
     uint32_t *place = starts + 1;
-    for (size_t f = 0; f < soup->face_count; f++) {
+    for (size_t f = 0; f < faces && status == HE_OK; f++) {
+        status = he_watch_at(soup->limits.watch, f + faces, 3 * faces, err);
         uint32_t first = soup->starts[f], end = he_soup_end(soup, f);
         for (uint32_t c = first; c < end; c++) {
             uint32_t a = corners[c], b = corners[c + 1 < end ? c + 1 : first];
@@ -110,6 +119,7 @@ static void file_corners(const he_soup *soup, uint32_t *starts, filed *entries)
             entries[place[up ? a : b]++] = (filed){up ? b : a | DOWNWARD, c};
         }
     }
+    return status;
 }
 
 typedef struct pairing {
@@ -172,23 +182,37 @@ static void pair_large(pairing *p, uint32_t low, const filed *entries, uint32_t 
     }
 }
 
+static he_status no_memory(const he_soup *soup, he_error *err)
+{
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
+}
+
 he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_report *report,
                        uint64_t *total, he_error *err)
 {
-    he_status status = HE_NO_MEMORY;
+    he_status status = HE_OK;
+    const size_t vertices = soup->vertex_count;
     uint32_t *starts = he_mem_array(NULL, soup->vertex_count + 2, sizeof *starts);
     filed *entries = he_mem_array(NULL, soup->corner_count, sizeof *entries);
     uint32_t *first = NULL;
     if (starts == NULL || entries == NULL) {
+        status = no_memory(soup, err);
         goto out;
     }
-    file_corners(soup, starts, entries);
+    status = file_corners(soup, starts, entries, err);
+    if (status != HE_OK) {
+        goto out;
+    }
     for (size_t c = 0; c < soup->corner_count; c++) {
         mate[c] = HE_NONE;
     }
     pairing p = {soup, mate, 0, report, total};
-    for (size_t v = 0; v < soup->vertex_count; v++) {
+    for (size_t v = 0; v < vertices; v++) {
         uint32_t begin = starts[v], end = starts[v + 1];
+        status = he_watch_at(soup->limits.watch, v + 2 * vertices, 3 * vertices, err);
+        if (status != HE_OK) {
+            goto out;
+        }
         if (end - begin <= SMALL_BUCKET) {
             pair_small(&p, (uint32_t)v, entries + begin, end - begin);
             continue;
@@ -196,19 +220,16 @@ he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_re
         if (first == NULL) {
             first = he_mem_zero(soup->vertex_count, sizeof *first);
             if (first == NULL) {
+                status = no_memory(soup, err);
                 goto out;
             }
         }
         pair_large(&p, (uint32_t)v, entries, begin, end, first);
     }
     *edges = p.edges;
-    status = HE_OK;
 out:
     he_mem_free(starts);
     he_mem_free(entries);
     he_mem_free(first);
-    if (status != HE_OK) {
-        he_fail_plain(err, status, "no memory to pair %zu corners", soup->corner_count);
-    }
     return status;
 }

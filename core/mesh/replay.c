@@ -103,7 +103,7 @@ static he_status copy_object(const void *object, bool content, void **out, he_er
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the content before");
     }
     *out = copy;
-    return he_content_copy(object, copy, err);
+    return he_content_copy(object, NULL, copy, err);
 }
 
 /* Room for copies of that many objects; NULL when memory is out. */

@@ -53,7 +53,8 @@ size_t he_op_results(const he_op *op)
 
 bool he_op_declares(const he_op *op, he_status status)
 {
-    if (status == HE_OK || status == HE_NO_MEMORY || status == HE_IDS_EXHAUSTED) {
+    if (status == HE_OK || status == HE_NO_MEMORY || status == HE_IDS_EXHAUSTED ||
+        status == HE_CANCELLED) {
         return true;
     }
     for (size_t i = 0; i < HE_OP_REFUSALS && op->refusals[i] != HE_OK; i++) {

@@ -100,7 +100,8 @@ typedef struct he_op {
     he_op_size size;
     he_param params[HE_OP_PARAMS]; /* ends at the first without a name */
     he_result_row results[HE_OP_RESULTS];
-    /* Every refusal it can give besides HE_NO_MEMORY and HE_IDS_EXHAUSTED; ends in HE_OK. */
+    /* Every refusal it can give besides HE_NO_MEMORY, HE_IDS_EXHAUSTED and, under a watch,
+     * HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
     int change[3]; /* V, E, F */
     /* Call through he_op_run. */

@@ -543,7 +543,14 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
     uint32_t budget = whole_budget(m);
     he_vec3 about = {0, 0, 0}; /* a corner of the mesh: far from it, the sum would cancel */
     bool any = false;
+    he_status status = he_watch_phase(m->watch, "measuring", 1, err);
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        if (status == HE_OK) {
+            status = he_watch_at(m->watch, f, m->c.faces.issued, err);
+        }
+        if (status != HE_OK) {
+            return status;
+        }
         if (!he_face_is_live(m, (he_face){f})) {
             continue;
         }

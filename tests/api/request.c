@@ -2,6 +2,9 @@
 
 #include "tests/traffic.h"
 
+#include "server/job_board.h"
+
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,11 +14,47 @@
 
 #include <cmocka.h>
 
+typedef struct piece {
+    void (*work)(void *context);
+    void *context;
+} piece;
+
 struct api_bench {
+    srv_jobs *pool; /* of the store */
     srv_store *meshes;
     api_store store;
+    srv_board *board;
+    api_jobs jobs;
+    piece waiting[BENCH_JOBS];
+    size_t waits, most;
     api_service *service;
 };
+
+/* A pool without threads. */
+static bool submit(void *pool, void (*work)(void *context), void *context)
+{
+    api_bench *b = pool;
+    if (b->waits == b->most) {
+        return false;
+    }
+    b->waiting[b->waits++] = (piece){work, context};
+    return true;
+}
+
+void bench_run_jobs(api_bench *b, size_t most)
+{
+    for (; b->waits > 0 && most > 0; most--) {
+        piece next = b->waiting[0];
+        b->waits--;
+        memmove(b->waiting, b->waiting + 1, b->waits * sizeof *b->waiting);
+        next.work(next.context);
+    }
+}
+
+void bench_limit_jobs(api_bench *b, size_t most)
+{
+    b->most = most;
+}
 
 api_bench *bench_new(void)
 {
@@ -26,18 +65,34 @@ api_bench *bench_new_within(uint64_t undo_budget)
 {
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
-    b->meshes = srv_store_new(&(srv_store_options){
-        .undo_budget = undo_budget, .max_meshes = 1000, .journal = srv_journal_memory()});
+    b->pool = srv_jobs_new(1, 64);
+    assert_non_null(b->pool);
+    b->meshes = srv_store_new(&(srv_store_options){.undo_budget = undo_budget,
+                                                   .max_meshes = 1000,
+                                                   .journal = srv_journal_memory(),
+                                                   .listeners = 3,
+                                                   .mesh_listeners = 2,
+                                                   .jobs = b->pool});
     assert_non_null(b->meshes);
     b->store = srv_store_interface(b->meshes);
-    b->service =
-        api_service_new(&b->store, &(api_options){.version = "0.0.0-test", .max_upload = 8 << 20});
+    b->most = BENCH_JOBS;
+    b->board = srv_board_new(&(srv_board_options){
+        .store = b->meshes, .submit = submit, .pool = b, .keep = SRV_JOB_SECONDS});
+    assert_non_null(b->board);
+    b->jobs = srv_board_interface(b->board);
+    b->service = api_service_new(
+        &b->store,
+        &(api_options){.version = "0.0.0-test", .max_upload = 8 << 20, .jobs = &b->jobs});
     assert_non_null(b->service);
     return b;
 }
 
 void bench_free(api_bench *b)
 {
+    srv_board_stop(b->board);
+    bench_run_jobs(b, BENCH_JOBS);
+    srv_board_free(b->board);
+    srv_jobs_free(b->pool);
     api_service_free(b->service);
     srv_store_free(b->meshes);
     free(b);
@@ -64,10 +119,71 @@ static const char *find_header(void *context, const char *name)
     return NULL;
 }
 
-static void read_all(const api_answer *answer, bench_reply *r)
+typedef struct signal {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    bool set;
+} signal;
+
+static void set_signal(void *context)
+{
+    signal *s = context;
+    pthread_mutex_lock(&s->lock);
+    s->set = true;
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+}
+
+static bool take_signal(signal *s, bool wait)
+{
+    pthread_mutex_lock(&s->lock);
+    while (wait && !s->set) {
+        pthread_cond_wait(&s->changed, &s->lock);
+    }
+    bool set = s->set;
+    s->set = false;
+    pthread_mutex_unlock(&s->lock);
+    return set;
+}
+
+/* One thread does the jobs in their order. */
+static void wait_for_jobs(api_bench *b)
+{
+    signal done = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
+    assert_true(srv_jobs_submit(b->pool, set_signal, &done));
+    (void)take_signal(&done, true);
+}
+
+/* What is there now, what the jobs have in hand, and the goodbye. */
+static void read_live(api_bench *b, const api_source *live, bench_reply *r)
+{
+    signal woken = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
+    bool finished = false;
+    int64_t got;
+    live->start(live->self, set_signal, &woken);
+    do {
+        r->body = realloc(r->body, r->length + 4097);
+        assert_non_null(r->body);
+        got = live->read(live->self, r->body + r->length, 4096);
+        r->length += got > 0 ? (size_t)got : 0;
+        if (got == API_READ_WAIT) {
+            assert_false(finished);
+            wait_for_jobs(b);
+            finished = !take_signal(&woken, false);
+            if (finished) {
+                live->finish(live->self);
+            }
+        }
+    } while (got > 0 || got == API_READ_WAIT);
+    assert_int_equal(got, 0);
+}
+
+static void read_all(api_bench *b, const api_answer *answer, bench_reply *r)
 {
     size_t capacity = 0;
-    if (answer->read == NULL) {
+    if (answer->live != NULL) {
+        read_live(b, answer->live, r);
+    } else if (answer->read == NULL) {
         r->length = answer->length < 0 ? 0 : (size_t)answer->length;
         r->body = malloc(r->length + 1);
         assert_non_null(r->body);
@@ -125,7 +241,7 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
     r.route = answer->route;
     memcpy(r.headers, answer->headers, sizeof r.headers);
     r.header_count = answer->header_count;
-    read_all(answer, &r);
+    read_all(b, answer, &r);
     *out = r;
     return true;
 }

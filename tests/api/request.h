@@ -14,10 +14,15 @@ api_bench *bench_new_within(uint64_t undo_budget);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 const api_store *bench_store(api_bench *b);
+/* Jobs wait until this runs them: without threads, in their order, up to `most`. */
+void bench_run_jobs(api_bench *b, size_t most);
+/* How many may wait; BENCH_JOBS at first. */
+enum { BENCH_JOBS = 16 };
+void bench_limit_jobs(api_bench *b, size_t most);
 
 typedef struct bench_reply {
     int status;
-    char *body; /* ends in NUL; streams are read to their end */
+    char *body; /* ends in NUL; streams are read to their end, and ended where they would wait */
     size_t length;
     cJSON *json;       /* NULL when the body is none */
     const char *route; /* template, "-" when none matched */

@@ -312,7 +312,8 @@ static void step(world *w, api_action which)
     const api_store *s = w->store;
     he_delta *delta = NULL;
     assert_non_null(s->write_begin(s->self, w->mesh, NULL, &delta));
-    w->stepped += s->step(s->self, w->mesh, which, &delta, NULL) == API_STORE_OK;
+    const he_delta *deltas[1];
+    w->stepped += s->step(s->self, w->mesh, which, 1, deltas, NULL) == API_STORE_OK;
     s->write_end(s->self, w->mesh);
 }
 

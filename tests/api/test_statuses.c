@@ -25,6 +25,8 @@ typedef struct step {
 #define STALE   "If-Match", "\"0-0-0-x\""
 #define ABSENT  "If-None-Match", "*"
 #define ANY     "If-None-Match", "*"
+#define LARGE   "{\"shape\":\"grid\",\"columns\":200,\"rows\":200}"
+#define ASYNC   "Prefer", "respond-async"
 #define BIG     "too big" /* replaced by a body above every limit of control documents */
 
 static const step steps[] = {
@@ -179,6 +181,12 @@ static const step steps[] = {
     {"POST", "/v1/meshes/m/redo", 200, NULL, {NULL}},
     {"POST", "/v1/meshes/m/redo", 204, NULL, {MINIMAL}},
 
+    {"GET", "/v1/meshes/m/events", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events?since=1", 200, NULL, {NULL}},
+    {"HEAD", "/v1/meshes/m/events", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events?since=x", 400, NULL, {NULL}},
+    {"GET", "/v1/meshes/none/events", 404, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/events", 406, NULL, {"Accept", "application/json"}},
     /* Revision 1 was there before the mesh was replaced. */
     {"GET", "/v1/meshes/m?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m?revision=99", 404, NULL, {NULL}},
@@ -189,6 +197,23 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/components?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/check?revision=1", 410, NULL, {NULL}},
     {"POST", "/v1/meshes/m/copy?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/attributes?revision=1", 410, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/attributes/faces/selected?revision=1", 410, NULL, {NULL}},
+
+    {"POST", "/v1/meshes?id=job", 202, CUBE, {ASYNC}},
+    {"PUT", "/v1/meshes/job", 202, CUBE, {ASYNC}},
+    {"POST", "/v1/meshes/m/copy", 202, NULL, {ASYNC}},
+    {"POST", "/v1/meshes/m/edits", 202, "{\"op\":\"face_poke\",\"face\":1}", {ASYNC}},
+    {"PUT", "/v1/meshes/large", 201, LARGE, {NULL}},
+    {"POST", "/v1/meshes/large/edits", 202, "{\"op\":\"compact\"}", {ASYNC}},
+    {"POST", "/v1/meshes/large/edits", 409, "{\"op\":\"face_poke\",\"face\":1}", {NULL}},
+    {"PATCH", "/v1/meshes/large", 409, "{\"name\":\"x\"}", {NULL}},
+    {"PUT", "/v1/meshes/large", 409, CUBE, {NULL}},
+    {"GET", "/v1/jobs", 200, NULL, {NULL}},
+    {"GET", "/v1/jobs?cursor=?", 400, NULL, {NULL}},
+    {"GET", "/v1/jobs/none", 404, NULL, {NULL}},
+    {"GET", "/v1/jobs/none/events", 404, NULL, {NULL}},
+    {"DELETE", "/v1/jobs/none", 404, NULL, {NULL}},
 
     {"GET", "/v1/operations", 200, NULL, {NULL}},
     {"GET", "/v1/openapi.json", 200, NULL, {NULL}},
@@ -319,6 +344,21 @@ static void take_keyed_edits(api_bench *b)
     }
 }
 
+static void take_job(api_bench *b)
+{
+    bench_reply r =
+        bench_send(b, "POST", "/v1/meshes/m/copy", (const char *const[]){ASYNC, NULL}, NULL);
+    assert_int_equal(r.status, 202);
+    const char *path = bench_header(&r, "Location");
+    char events[80];
+    snprintf(events, sizeof events, "%s/events", path);
+    take(b, "GET", path, 200, NULL, NULL, 0);
+    take(b, "GET", events, 200, NULL, NULL, 0);
+    take(b, "DELETE", path, 202, NULL, NULL, 0);
+    take(b, "DELETE", path, 204, NULL, NULL, 0);
+    bench_reply_free(&r);
+}
+
 static void test_each_declared_status(void **state)
 {
     (void)state;
@@ -335,11 +375,11 @@ static void test_each_declared_status(void **state)
     }
     take_stale_cursor(b, "vertices");
     take_stale_cursor(b, "edits");
-    take_stale_cursor(b, "attributes/faces/selected");
     take_keyed(b, "POST", "/v1/meshes", CUBE);
     take_keyed(b, "PATCH", "/v1/meshes/m", "{\"name\":\"z\"}");
     take_keyed(b, "POST", "/v1/meshes/m/copy", "{}");
     take_keyed_edits(b);
+    take_job(b);
     size_t missing = 0;
     for (size_t i = 0; i < api_route_count(); i++) {
         const api_route *route = api_route_at(i);

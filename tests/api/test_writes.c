@@ -143,7 +143,7 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/undo", 200, "{\"steps\":2}", {NULL}, ONCE},
     {"POST", "/v1/meshes/m/undo", 200, "{\"to_revision\":1}", {NULL}, ONCE},
     {"POST", "/v1/meshes/m/redo", 200, "{}", {NULL}, ONCE},
-    {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":4}", {NULL}, ONCE},
+    {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
 /* A mesh with something to undo, something to do again, and a dead face. */

@@ -26,7 +26,7 @@ memory() { awk '/VmRSS/ { r = $2 } /VmHWM/ { h = $2 }
 step() {
     name=$1 status=$2
     shift 2
-    result=$(curl -s -o "$work/answer" -w '%{http_code} %{time_total}' "$@")
+    result=$(curl -s -H "Prefer: wait=600" -o "$work/answer" -w '%{http_code} %{time_total}' "$@")
     [ "${result% *}" = "$status" ] || { echo "$name: $result" >&2; head -c 400 "$work/answer" >&2; exit 1; }
     printf '%-34s %8.1f ms   memory %s\n' "$name" \
         "$(echo "${result#* }" | awk '{ print $1 * 1000 }')" "$(memory)"
@@ -93,3 +93,14 @@ step "what both changed" 200 "$meshes/m/geometry?$query"
 printf '%-34s %8d bytes\n' "" "$(wc -c <"$work/answer")"
 step "check" 200 "$meshes/m/check"
 step "export JSON" 200 "$meshes/m/content"
+# As a job: values of progress a listener gets, and from the wish to cancel to the memory's return.
+start() { curl -s -o /dev/null -w '%header{location}' -X PUT -H "$json" -H 'Prefer: respond-async' \
+    "$meshes/$1" -d "{\"shape\":\"torus\",\"major_segments\":$2,\"minor_segments\":$2}"; }
+job=$(start j "$side")
+values=$(curl -s -N "$base$job/events" | grep -o '"progress":[0-9.]*' | sort -u | wc -l)
+printf '%-34s %8d values of progress\n' "create as a job" "$values"
+job=$(start k $((side * 4)))
+until curl -s "$base$job" | grep -q '"state":"running"'; do :; done
+step "cancel a larger one" 202 -X DELETE "$base$job"
+# The connection stays: this waits for the end alone.
+curl -s -N -o /dev/null -w "until it has ended                 %{time_total} s\n" "$base$job/events"

@@ -308,7 +308,7 @@ static void test_shape_limits_are_kept_before_memory_is_taken(void **state)
         he_shape_defaults(shape, args);
         he_shape_size size = shape->size(args);
         uint64_t bytes = size.vertices * 24 + (size.faces + size.corners) * 4;
-        he_limits exact = {size.vertices, size.faces, size.corners, bytes};
+        he_limits exact = {size.vertices, size.faces, size.corners, bytes, NULL};
         he_soup soup;
         assert_int_equal(he_shape_make(shape, args, &exact, &soup, NULL), HE_OK);
         he_soup_clear(&soup);

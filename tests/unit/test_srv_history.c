@@ -39,7 +39,7 @@ static api_mesh *open_mesh(uint64_t budget)
     he_mesh *content = script_mesh("012,023,034,045,051", NULL);
     script_add_columns(content);
     api_mesh *mesh;
-    assert_int_equal(api.create(api.self, "m", NULL, content, &mesh), API_STORE_OK);
+    assert_int_equal(api.create(api.self, "m", NULL, content, NULL, &mesh), API_STORE_OK);
     return mesh;
 }
 

@@ -85,14 +85,17 @@ static int start(void **state)
     (void)state;
     slow.appended = 0;
     slow.durable = 0;
+    jobs = srv_jobs_new(1, 1);
     store = srv_store_new(&(srv_store_options){
         .undo_budget = 1 << 20,
         .max_meshes = 100,
         .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
+        .listeners = 10,
+        .mesh_listeners = 10,
+        .jobs = jobs,
     });
     interface = srv_store_interface(store);
     service = api_service_new(&interface, &(api_options){.version = "test"});
-    jobs = srv_jobs_new(1, 1);
     srv_http_options options = {
         .service = service,
         .store = store,
@@ -105,6 +108,7 @@ static int start(void **state)
                       .min_rate = 1,
                       .max_connections = CONNECTIONS},
         .max_sockets = CONNECTIONS + 4,
+        .heartbeat_micros = UINT64_C(3600) * 1000000,
         .workers = 1,
     };
     char message[256];
@@ -240,6 +244,63 @@ static void test_answers_wait_until_durable(void **state)
     assert_int_equal(answer(writer, text, sizeof text), 204);
     close(writer);
     close(reader);
+}
+
+/* What comes until `text` is in it. */
+static void read_until(int fd, const char *text)
+{
+    char all[8192];
+    size_t length = 0;
+    do {
+        assert_true(length + 1 < sizeof all);
+        ssize_t got = recv(fd, all + length, sizeof all - 1 - length, 0);
+        assert_true(got > 0);
+        length += (size_t)got;
+        all[length] = '\0';
+    } while (strstr(all, text) == NULL);
+}
+
+static void test_events_wait_until_durable(void **state)
+{
+    char text[8192];
+    int writer = connect_client(), listener = connect_client(), late = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    slow_wait(1);
+    ask(listener, "GET", "/v1/meshes/m/events", "");
+    assert_held(listener); /* where it begins is not durable itself */
+    slow_advance(1);
+    assert_int_equal(answer(writer, text, sizeof text), 201);
+    read_until(listener, ".1\n\n");
+    ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"first\"}");
+    slow_wait(2);
+    assert_held(listener);
+    /* The next one is added while the first still waits. */
+    int other = connect_client();
+    ask(other, "PATCH", "/v1/meshes/m", "{\"name\":\"second\"}");
+    slow_wait(3);
+    assert_held(listener);
+    ask(late, "GET", "/v1/meshes/m/events", "");
+    assert_held(late);
+    slow_advance(2);
+    read_until(listener, "\"first\"");
+    assert_held(listener);
+    slow_advance(3);
+    read_until(listener, "\"second\"");
+    read_until(late, ".1\n\n");
+    assert_int_equal(answer(writer, text, sizeof text), 200);
+    assert_int_equal(answer(other, text, sizeof text), 200);
+    ask(writer, "DELETE", "/v1/meshes/m", "");
+    slow_wait(4);
+    assert_held(listener);
+    /* What was not durable is not told at the end either. */
+    assert_int_equal(stop(state), 0);
+    read_until(listener, "\"stopping\"");
+    read_until(late, "\"stopping\"");
+    close(writer);
+    close(other);
+    close(listener);
+    close(late);
+    start(state);
 }
 
 /* Known before the body has come, shown when it is durable. */
@@ -402,9 +463,13 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, start, stop)
     const struct CMUnitTest tests[] = {
-        TEST(test_answers_wait_until_durable), TEST(test_early_refusals_wait_too),
-        TEST(test_a_stop_ends_what_waits),     TEST(test_full_queue_is_503),
-        TEST(test_too_many_connections),       TEST(test_refused_bodies),
+        TEST(test_answers_wait_until_durable),
+        TEST(test_early_refusals_wait_too),
+        TEST(test_events_wait_until_durable),
+        TEST(test_a_stop_ends_what_waits),
+        TEST(test_full_queue_is_503),
+        TEST(test_too_many_connections),
+        TEST(test_refused_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,7 +6,7 @@ import { createRequire } from 'node:module';
 
 import { PerspectiveCamera, Vector3 } from '../../web/node_modules/three/build/three.module.js';
 import { MOST_PIXELS, arrowOf, middleOf } from '../../web/src/arrows.js';
-import { pointAt, unpack } from '../../web/src/geometry.js';
+import { ballOf, pointAt, unpack } from '../../web/src/geometry.js';
 import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance, pixelAtOne } from '../../web/src/view.js';
 import { get, getGeometry } from './daemon.mjs';
 import { readPng } from './png.mjs';
@@ -104,10 +104,11 @@ export async function projector(page, daemon, mesh) {
     const geometry = unpack(await getGeometry(daemon, mesh));
     const { width, height } = await page.locator('#canvas').boundingBox();
     const camera = new PerspectiveCamera(FIELD_OF_VIEW, width / height, 0.01, 100);
-    const center = new Vector3(...geometry.center);
+    const ball = ballOf(geometry);
+    const center = new Vector3(...ball.center);
     camera.up.set(...UP);
     camera.position.set(...DIRECTION);
-    camera.position.multiplyScalar(fitDistance(width / height) * geometry.radius).add(center);
+    camera.position.multiplyScalar(fitDistance(width / height) * ball.radius).add(center);
     camera.lookAt(center);
     camera.updateMatrixWorld();
     const placeOf = (id) => new Vector3(...pointAt(geometry, id));

@@ -12,6 +12,13 @@ function isHalfedge(element: Element): element is Halfedge {
     return 'twin' in element;
 }
 
+type Job = components['schemas']['job'];
+
+// 202, where an answer takes too long to wait for.
+function isJob(answer: object): answer is Job {
+    return 'progress' in answer;
+}
+
 // Split the diagonal of a square and walk back to where the walk began. Returns what it met.
 export async function tour(baseUrl: string) {
     const client = createClient<paths>({ baseUrl });
@@ -32,7 +39,7 @@ export async function tour(baseUrl: string) {
             ],
         },
     });
-    if (made.data === undefined) {
+    if (made.data === undefined || isJob(made.data)) {
         throw new Error(made.error?.detail);
     }
 
@@ -43,7 +50,7 @@ export async function tour(baseUrl: string) {
             ops: [{ op: 'edge_split', edge: 2, t: 0.25 }],
         },
     });
-    if (edited.data === undefined) {
+    if (edited.data === undefined || isJob(edited.data)) {
         throw new Error(edited.error?.detail);
     }
     const [vertex] = edited.data.created.vertices;

@@ -10,11 +10,13 @@ import {
     ROW,
     VERTEX_ISOLATED,
     VERTEX_USED,
+    ballOf,
     edgesOfTriangles,
     faceOf,
+    findFaces,
     hasVertex,
     isEdge,
-    lengthOf,
+    headerOf,
     normalOfFace,
     pointAt,
     trianglesOfFace,
@@ -36,13 +38,14 @@ function answer(points, triangles, { revision = 1n, frame = [0, 0, 0, 1] } = {})
     const buffer = new ArrayBuffer(HEADER_BYTES + 16 * (points.length + triangles.length));
     const view = new DataView(buffer);
     [...'HEDG'].forEach((letter, i) => view.setUint8(i, letter.charCodeAt(0)));
-    view.setUint32(4, 1, true);
+    view.setUint32(4, 2, true);
     view.setBigUint64(8, revision, true);
     view.setBigUint64(24, BigInt(16 * points.length), true);
     view.setBigUint64(32, BigInt(16 * triangles.length), true);
     view.setUint32(40, points.length, true);
     view.setUint32(44, triangles.length, true);
     frame.forEach((value, i) => view.setFloat64(48 + 8 * i, value, true));
+    view.setBigUint64(80, 2n ** 50n, true);
     new Float32Array(buffer, HEADER_BYTES, 4 * points.length).set(points.flat());
     const words = triangles.flatMap(([a, b, c, face, sides]) => [a, b, c, face | (sides << 29)]);
     new Uint32Array(buffer, HEADER_BYTES + 16 * points.length).set(words);
@@ -62,10 +65,11 @@ const TRIANGLES = [[0, 1, 2, 1, 3], [0, 2, 3, 1, 6], [1, 4, 2, 7, 7]];
 
 test('an answer is unpacked into whole rows of textures', () => {
     const buffer = answer(POINTS, TRIANGLES, { revision: 2n ** 40n, frame: [1e300, -2, 3, 0.25] });
-    assert.equal(lengthOf(buffer), buffer.byteLength);
+    assert.equal(headerOf(buffer).length, buffer.byteLength);
     const geometry = unpack(buffer);
-    const { revision, frame, vertices, triangles, hasIsolated, center, radius } = geometry;
-    assert.equal(revision, 2 ** 40);
+    const { revision, layout, frame, vertices, triangles, hasIsolated } = geometry;
+    const { center, radius } = ballOf(geometry);
+    assert.deepEqual([revision, layout], [2 ** 40, 2 ** 50]);
     assert.deepEqual(frame, { origin: [1e300, -2, 3], scale: 0.25 });
     assert.deepEqual([geometry.vertexCount, geometry.triangleCount], [7, 3]);
     for (const array of [vertices, triangles]) {
@@ -82,21 +86,43 @@ test('what is no whole answer is refused', () => {
     const buffer = answer(POINTS, TRIANGLES);
     assert.throws(() => unpack(buffer.slice(0, -16)), RangeError);
     const other = buffer.slice(0);
-    new DataView(other).setUint32(4, 2, true);
+    new DataView(other).setUint32(4, 3, true);
     assert.throws(() => unpack(other), RangeError);
     new Uint8Array(other)[0] = 0;
-    assert.throws(() => lengthOf(other), RangeError);
+    assert.throws(() => headerOf(other), RangeError);
 });
 
 test('a mesh without live vertices still has a ball for the camera', () => {
     for (const points of [[], [[0, 0, 0, 0]]]) {
-        const { center, radius, hasIsolated } = unpack(answer(points, []));
+        const geometry = unpack(answer(points, []));
+        const { center, radius } = ballOf(geometry);
         assert.deepEqual(center, [0, 0, 0]);
         assert.equal(radius, 1);
-        assert.ok(!hasIsolated);
+        assert.ok(!geometry.hasIsolated);
     }
-    const { center, radius } = unpack(answer([[0.5, 0, 0, 2]], []));
+    const { center, radius } = ballOf(unpack(answer([[0.5, 0, 0, 2]], [])));
     assert.deepEqual([center, radius], [[0.5, 0, 0], 1]);
+});
+
+test('faces are found wherever their triangles lie, and again after some were written', () => {
+    const rows = [[1, 4, 2, 7, 7], [0, 0, 0, 0, 0], [0, 1, 2, 1, 3], [0, 2, 3, 1, 6]];
+    const geometry = unpack(answer(POINTS, rows));
+    const found = () => [0, 1, 7, 90].map((face) => trianglesOfFace(geometry, face));
+    assert.deepEqual(found(), [[], [2, 3], [0], []]);
+    const write = (...changes) => {
+        for (const [at, a, b, c, face] of changes) {
+            geometry.triangles.set([a, b, c, face], 4 * at);
+        }
+        findFaces(geometry, changes.map(([at]) => at));
+    };
+    write([1, 0, 0, 0, 0], [2, 0, 0, 0, 0]);
+    assert.deepEqual(found(), [[], [3], [0], []]);
+    write([0, 0, 0, 0, 0], [1, 0, 1, 2, 90], [2, 0, 2, 3, 90], [3, 0, 3, 4, 90]);
+    assert.deepEqual(found(), [[], [], [], [1, 2, 3]]);
+    write([0, 0, 1, 2, 0]);
+    assert.deepEqual(found(), [[0], [], [], [1, 2, 3]]);
+    write([1, 0, 1, 2, 7]);
+    assert.deepEqual(found(), [[0], [], [1], [2, 3]]);
 });
 
 test('faces and vertices are found by their ids', () => {

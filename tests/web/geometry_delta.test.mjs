@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { applyDelta, headerOf } from '../../web/src/geometry_delta.js';
+import { findFaces, trianglesOfFace, unpack } from '../../web/src/geometry.js';
+import { applyDelta } from '../../web/src/geometry_delta.js';
 import { get, startDaemon } from './daemon.mjs';
 
 const EDITS = Number(process.env.EDITS ?? 1000);
@@ -22,14 +23,13 @@ function numbersFrom(seed) {
     return below;
 }
 
+// Arrays without room to spare, so that they must grow.
 function wholeOf(buffer) {
-    const header = headerOf(buffer);
-    const { vertexCount, triangleCount } = header;
-    return {
-        ...header,
-        vertices: new Float32Array(buffer, 96, 4 * vertexCount),
-        triangles: new Uint32Array(buffer, 96 + 16 * vertexCount, 4 * triangleCount),
-    };
+    const geometry = unpack(buffer);
+    const { vertices, vertexCount, triangles, triangleCount } = geometry;
+    geometry.vertices = vertices.slice(0, 4 * vertexCount);
+    geometry.triangles = triangles.slice(0, 4 * triangleCount);
+    return geometry;
 }
 
 async function fetchGeometry(url, query = '') {
@@ -44,6 +44,9 @@ async function update(url, geometry, tally) {
     const changed = applyDelta(geometry, buffer, 64);
     tally[changed === null ? 'whole' : 'changes']++;
     tally.bytes += changed === null ? 0 : buffer.byteLength;
+    if (changed !== null) {
+        findFaces(geometry, changed.triangles);
+    }
     return changed === null ? wholeOf(buffer) : geometry;
 }
 
@@ -58,6 +61,9 @@ function assertSame(kept, fresh) {
     for (const [array, count] of [['vertices', 'vertexCount'], ['triangles', 'triangleCount']]) {
         assert.ok(bytesOf(kept[array], kept[count]).equals(bytesOf(fresh[array], fresh[count])));
         assert.ok(kept[array].subarray(4 * kept[count]).every((word) => word === 0));
+    }
+    for (let face = 0; face < fresh.firstOf.length; face++) {
+        assert.deepEqual(trianglesOfFace(kept, face), trianglesOfFace(fresh, face));
     }
 }
 

@@ -188,7 +188,7 @@ test('the manual is one click away, and the viewer one click back', async (t) =>
     await page.getByRole('link', { name: 'Manual' }).click();
     await page.waitForURL(`${daemon.url}/docs`);
     await page.locator('#meshes_create').waitFor();
-    await page.getByRole('link', { name: 'Viewer' }).click();
+    await page.getByRole('link', { name: 'Viewer', exact: true }).click();
     await waitForFrame(page, { mesh, revision: 1 });
     await fetch(`${daemon.url}/v1/meshes/${mesh}`, { method: 'DELETE' });
     await page.goto(`${daemon.url}/`);

@@ -54,6 +54,17 @@ test('the curl lines work as pasted', async (t) => {
     assert.equal(before.items.length, made.counts.vertices + 1);
 });
 
+test('the lines about jobs work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const [, block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const printed = await run('sh', ['-ec', block]);
+    assert.match(printed, /^event: job$/m);
+    assert.match(printed, /^event: bye$/m);
+    const last = JSON.parse(printed.split('\n').at(-1));
+    assert.equal(last.state, 'done');
+    assert.equal(last.result.counts.faces, 512 * 512);
+});
+
 test('the Python lines work as pasted', async (t) => {
     const { url } = await startDaemon(t);
     const [code, ...others] = blocks('python', url);

@@ -1,7 +1,7 @@
 // api.js - the only module that talks to the server. Paths are relative, so that the page works
 // behind any prefix.
 
-import { HEADER_BYTES, lengthOf } from './geometry.js';
+import { HEADER_BYTES, headerOf } from './geometry.js';
 
 const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
@@ -65,10 +65,13 @@ async function getJson(path, signal) {
     return (await request(path, { signal })).json();
 }
 
-async function postJson(path, body) {
+// The page waits for its answers: what takes long must not become a job.
+const PATIENT = { Prefer: 'wait=600' };
+
+async function postJson(path, body, headers = {}) {
     const answer = await request(path, {
         method: 'POST',
-        headers: { 'Content-Type': 'application/json' },
+        headers: { 'Content-Type': 'application/json', ...headers },
         body: JSON.stringify(body),
     });
     return answer.json();
@@ -155,7 +158,7 @@ export async function getGeometry(mesh, onProgress, signal) {
         let rest = take(value);
         if (at === HEADER_BYTES && whole.length === HEADER_BYTES) {
             const header = whole;
-            whole = new Uint8Array(lengthOf(header.buffer));
+            whole = new Uint8Array(headerOf(header.buffer).length);
             whole.set(header.subarray(0, whole.length));
         }
         rest = take(rest);
@@ -183,7 +186,8 @@ async function readOn(reader) {
 
 // Edits name the revision they were meant for: 412 when the mesh has moved on.
 export function edit(mesh, operation, revision) {
-    return postJson(`${meshPath(mesh)}/edits`, { expected_revision: revision, ops: [operation] });
+    const body = { expected_revision: revision, ops: [operation] };
+    return postJson(`${meshPath(mesh)}/edits`, body, PATIENT);
 }
 
 export function undo(mesh, revision) {
@@ -204,6 +208,7 @@ export function upload(file, onProgress) {
         const sender = new XMLHttpRequest();
         sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}`);
         sender.setRequestHeader('Content-Type', type ?? (file.type || 'application/octet-stream'));
+        sender.setRequestHeader('Prefer', PATIENT.Prefer);
         sender.upload.onprogress = (event) => {
             onProgress(event.lengthComputable ? event.loaded / event.total : 0);
         };

@@ -12,9 +12,11 @@
 //          a---b            bit 31: c -> a
 //                           a bit that is clear marks a diagonal, which is not drawn
 //
-// A vertex's place is its id. Triangles are in the order of their faces. The server has moved and
-// scaled positions into the unit ball ("view coordinates") before it rounded them to floats, so
-// that a mesh far from the origin or of any size draws the same; `frame` says how.
+// A vertex's place is its id. The triangles of a face lie side by side, in no order of faces; a slot
+// without a face is four zeros. The server has moved and scaled positions into the unit ball ("view
+// coordinates") before it rounded them to floats, so that a mesh far from the origin or of any size
+// draws the same; `frame` says how. Within a `layout` faces keep their slots and the frame stays,
+// so that a change can be put into the arrays: see geometry_delta.js.
 
 export const VERTEX_USED = 1;
 export const VERTEX_ISOLATED = 2;
@@ -23,45 +25,56 @@ export const VERTEX_ISOLATED = 2;
 export const ROW = 2048;
 
 export const HEADER_BYTES = 96;
-const VERSION = 1;
+const VERSION = 2;
 const SIDE_SHIFT = 29;
 const FACE_MASK = 2 ** SIDE_SHIFT - 1;
 
-// How many bytes an answer has, by its header. Throws a RangeError where it is no header.
-export function lengthOf(header) {
-    const view = new DataView(header);
-    const text = String.fromCharCode(...new Uint8Array(header, 0, 4));
+// {revision, base, layout, vertexCount, triangleCount, length} of an answer, an ArrayBuffer of which
+// only the header is read: a base of 0 says that it holds all rows, and `length` how many bytes it
+// has. Throws a RangeError where it is no header.
+export function headerOf(buffer) {
+    const view = new DataView(buffer);
+    const text = String.fromCharCode(...new Uint8Array(buffer, 0, 4));
     if (text !== 'HEDG' || view.getUint32(4, true) !== VERSION) {
         throw new RangeError('The server sent no geometry this page can read.');
     }
-    return HEADER_BYTES + Number(view.getBigUint64(24, true) + view.getBigUint64(32, true));
+    const [revision, base, vertexBytes, triangleBytes, layout] = [8, 16, 24, 32, 80].map((at) =>
+        Number(view.getBigUint64(at, true)),
+    );
+    const [vertexCount, triangleCount] = [40, 44].map((at) => view.getUint32(at, true));
+    const length = HEADER_BYTES + vertexBytes + triangleBytes;
+    return { revision, base, layout, vertexCount, triangleCount, length };
 }
 
-// An answer of the server, an ArrayBuffer, as {revision, frame, vertices, vertexCount, triangles,
-// triangleCount, center, radius, hasIsolated}. Throws a RangeError where it is not what it should
-// be.
+// An answer of all rows, an ArrayBuffer, as {revision, layout, frame, vertices, vertexCount,
+// triangles, triangleCount, firstOf, hasIsolated}. Throws a RangeError where it is not what it
+// should be.
 export function unpack(buffer) {
-    const view = new DataView(buffer);
-    if (lengthOf(buffer) !== buffer.byteLength) {
+    const { revision, base, layout, vertexCount, triangleCount, length } = headerOf(buffer);
+    const trianglesAt = HEADER_BYTES + 16 * vertexCount;
+    if (base !== 0 || ![length, trianglesAt + 16 * triangleCount].every(isLengthOf(buffer))) {
         throw new RangeError('The geometry of the mesh was cut short.');
     }
-    const [vertexBytes, triangleBytes] = [24, 32].map((at) => Number(view.getBigUint64(at, true)));
-    const vertices = wholeRows(new Float32Array(buffer, HEADER_BYTES, vertexBytes / 4));
-    const triangles = new Uint32Array(buffer, HEADER_BYTES + vertexBytes, triangleBytes / 4);
+    const view = new DataView(buffer);
+    const vertices = wholeRows(new Float32Array(buffer, HEADER_BYTES, 4 * vertexCount));
+    const triangles = wholeRows(new Uint32Array(buffer, trianglesAt, 4 * triangleCount));
     return {
-        revision: Number(view.getBigUint64(8, true)),
+        revision,
+        layout,
         frame: {
             origin: [48, 56, 64].map((at) => view.getFloat64(at, true)),
             scale: view.getFloat64(72, true),
         },
         vertices,
-        vertexCount: vertexBytes / 16,
-        triangles: wholeRows(triangles),
-        triangleCount: triangleBytes / 16,
-        ...ballOf(vertices),
+        vertexCount,
+        triangles,
+        triangleCount,
+        firstOf: firstsOf(triangles, triangleCount),
         hasIsolated: hasIsolated(vertices),
     };
 }
+
+const isLengthOf = (buffer) => (length) => length === buffer.byteLength;
 
 // A copy that fills the rows of a texture, of which there is one at least.
 function wholeRows(array) {
@@ -73,7 +86,7 @@ function wholeRows(array) {
 
 // A ball around all live vertices: the middle of their box, and how far they reach from it. Never
 // nothing: a camera must stand further.
-function ballOf(vertices) {
+export function ballOf({ vertices }) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
     for (let i = 0; i < vertices.length; i += 4) {
@@ -143,21 +156,63 @@ export function edgesOfTriangles(triangles, which) {
     return edges;
 }
 
-// The triangles of a face, none when it does not live.
-export function trianglesOfFace({ triangles, triangleCount }, face) {
-    let low = 0;
-    let high = triangleCount;
-    while (low < high) {
-        const middle = (low + high) >>> 1;
-        if (faceOf(triangles, middle) < face) {
-            low = middle + 1;
-        } else {
-            high = middle;
+// --- where the triangles of a face are ---
+//
+// firstOf[face] is its first triangle, counted from 1. What is there may be of another face by now:
+// whoever reads it looks.
+
+const isLive = (triangles, triangle) => triangles[4 * triangle] !== triangles[4 * triangle + 1];
+
+function firstsOf(triangles, count) {
+    let most = -1;
+    for (let i = 0; i < count; i++) {
+        most = Math.max(most, faceOf(triangles, i));
+    }
+    const firstOf = new Uint32Array(most + 1);
+    for (let i = count - 1; i >= 0; i--) {
+        if (isLive(triangles, i)) {
+            firstOf[faceOf(triangles, i)] = i + 1;
         }
     }
+    return firstOf;
+}
+
+// Bring `firstOf` up to date after some triangles were written; their places in rising order.
+export function findFaces(geometry, places) {
+    const { triangles, triangleCount } = geometry;
+    let done = -1; // up to here
+    for (const place of places) {
+        // A face that lost this triangle may keep one beside it.
+        for (const at of [place - 1, place, place + 1]) {
+            if (at > done && at < triangleCount && isLive(triangles, at)) {
+                done = at;
+                setFirst(geometry, faceOf(triangles, at), at);
+            }
+        }
+    }
+}
+
+function setFirst(geometry, face, triangle) {
+    const { triangles, firstOf } = geometry;
+    if (face >= firstOf.length) {
+        geometry.firstOf = new Uint32Array(face + 1 + (face >>> 3));
+        geometry.firstOf.set(firstOf);
+    }
+    const isOf = (at) => at >= 0 && faceOf(triangles, at) === face && isLive(triangles, at);
+    let first = geometry.firstOf[face] - 1;
+    // Where the triangles before it were found already, they need not be walked again.
+    if (first < 0 || first >= triangle || !isOf(first) || !isOf(triangle - 1)) {
+        for (first = triangle; isOf(first - 1); first--);
+    }
+    geometry.firstOf[face] = first + 1;
+}
+
+// The triangles of a face, none when it does not live.
+export function trianglesOfFace({ triangles, triangleCount, firstOf }, face) {
     const found = [];
-    for (; low < triangleCount && faceOf(triangles, low) === face; low++) {
-        found.push(low);
+    const isOf = (at) => faceOf(triangles, at) === face && isLive(triangles, at);
+    for (let i = (firstOf[face] ?? 0) - 1; i >= 0 && i < triangleCount && isOf(i); i++) {
+        found.push(i);
     }
     return found;
 }

@@ -10,24 +10,9 @@
 // a layout a triangle keeps its slot, counts never fall, and a slot without a face is four zeros.
 // A face's triangles lie side by side.
 
-const HEADER_BYTES = 96;
-const VERSION = 2;
-const ROW_BYTES = 16;
+import { HEADER_BYTES, headerOf } from './geometry.js';
 
-// {revision, base, layout, vertexCount, triangleCount} of an answer, an ArrayBuffer. A base of 0
-// says that it holds all rows. Throws a RangeError where it is no answer.
-export function headerOf(buffer) {
-    const view = new DataView(buffer);
-    const text = String.fromCharCode(...new Uint8Array(buffer, 0, 4));
-    if (text !== 'HEDG' || view.getUint32(4, true) !== VERSION) {
-        throw new RangeError('The server sent no geometry this page can read.');
-    }
-    const [revision, base, , , layout] = [8, 16, 24, 32, 80].map((at) =>
-        Number(view.getBigUint64(at, true)),
-    );
-    const [vertexCount, triangleCount] = [40, 44].map((at) => view.getUint32(at, true));
-    return { revision, base, layout, vertexCount, triangleCount };
-}
+const ROW_BYTES = 16;
 
 // Put the changes into `geometry`: {revision, layout, vertices, vertexCount, triangles,
 // triangleCount}, whose arrays may be longer than their counts say. An array that is too short is

@@ -36,7 +36,7 @@ import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 
 import { MOST_PIXELS, arrowOf } from './arrows.js';
-import { ROW, edgesOfTriangles, pointAt, trianglesOfFace } from './geometry.js';
+import { ROW, ballOf, edgesOfTriangles, pointAt, trianglesOfFace } from './geometry.js';
 import { readSquare } from './pick.js';
 import {
     ARROW_FRAGMENT,
@@ -195,7 +195,7 @@ export class Renderer {
 
     // Put the camera where the whole mesh is seen from the usual side.
     fit() {
-        const { center, radius } = this.#geometry ?? { center: [0, 0, 0], radius: 1 };
+        const { center, radius } = ballOf(this.#geometry ?? { vertices: [] });
         this.#look(center, DIRECTION, radius);
     }
 

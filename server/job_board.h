@@ -1,0 +1,41 @@
+/* job_board.h - work that outlives its request: runs it, knows how far it is, keeps how it ended.
+ * Fills in api/jobs.h.
+ *
+ * A job runs on the pool it shares with requests that are merely long. What it would have answered
+ * is kept for a while, within SRV_JOBS_KEPT jobs and SRV_JOBS_BYTES of answers: the ones that ended
+ * first go first. Everything else of it is freed before it shows its end.
+ *
+ * One lock, held for as long as it takes to copy an answer. Progress goes past it. */
+#ifndef HE_SERVER_JOB_BOARD_H
+#define HE_SERVER_JOB_BOARD_H
+
+#include "api/api.h"
+#include "server/store.h"
+
+typedef struct srv_board srv_board;
+
+enum {
+    SRV_JOBS_KEPT = 1000,      /* jobs, those that wait and run included */
+    SRV_JOBS_BYTES = 64 << 20, /* of answers */
+    SRV_JOB_SECONDS = 3600,    /* how long one that has ended is kept */
+    SRV_JOB_LISTENERS = 1000   /* clients that listen to jobs */
+};
+
+typedef struct srv_board_options {
+    srv_store *store; /* tells what is durable */
+    /* Run work(context) on another thread, or later; false when too much waits already. */
+    bool (*submit)(void *pool, void (*work)(void *context), void *context);
+    void *pool;
+    double keep; /* seconds */
+} srv_board_options;
+
+/* NULL when memory is out. */
+srv_board *srv_board_new(const srv_board_options *options);
+/* Nothing may run or wait in the pool any more. */
+void srv_board_free(srv_board *board);
+/* The functions of api/jobs.h over this board. */
+api_jobs srv_board_interface(srv_board *board);
+/* Cancel everything, and take nothing more. */
+void srv_board_stop(srv_board *board);
+
+#endif

@@ -1,0 +1,695 @@
+/* The messages of an event stream, without sockets: exact for every operation there is, from the
+ * feed and from the history, whatever memory does. */
+#include "tests/api/request.h"
+#include "tests/mirror.h"
+#include "tests/random_edit.h"
+#include "tests/sse.h"
+
+#include "api/events.h"
+#include "api/limits.h"
+#include "mesh/column.h"
+#include "mesh/mem.h"
+#include "mesh/write.h"
+#include "op/op.h"
+#include "server/limits.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+/* --- a listener ---------------------------------------------------------------------------- */
+
+typedef struct listener {
+    api_exchange *exchange;
+    const api_source *source;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    bool woken;
+    sse events;
+    sse_event event; /* of the last `next` */
+    cJSON *data;
+} listener;
+
+static void wake(void *context)
+{
+    listener *l = context;
+    pthread_mutex_lock(&l->lock);
+    l->woken = true;
+    pthread_cond_signal(&l->changed);
+    pthread_mutex_unlock(&l->lock);
+}
+
+static const char *last_event_id(void *context, const char *name)
+{
+    return strcmp(name, "Last-Event-ID") == 0 ? context : NULL;
+}
+
+/* NULL where it is refused for want of memory; else the status is 200. */
+static listener *try_listen(api_bench *b, const char *path, const char *query, const char *last)
+{
+    api_request request = {.method = "GET",
+                           .path = path,
+                           .query = query,
+                           .request_id = "test",
+                           .header = last_event_id,
+                           .context = (void *)(uintptr_t)last};
+    api_exchange *x = api_handle(bench_service(b), &request, NULL, 0);
+    if (x == NULL || api_answer_of(x)->status != 200) {
+        assert_true(x == NULL || api_answer_of(x)->status == 507);
+        api_free(x);
+        return NULL;
+    }
+    listener *l = calloc(1, sizeof *l);
+    assert_non_null(l);
+    l->exchange = x;
+    l->source = api_answer_of(x)->live;
+    assert_non_null(l->source);
+    assert_string_equal(api_answer_of(x)->idle, API_EVENT_IDLE);
+    pthread_mutex_init(&l->lock, NULL);
+    pthread_cond_init(&l->changed, NULL);
+    l->source->start(l->source->self, wake, l);
+    return l;
+}
+
+static listener *listen_to(api_bench *b, const char *path, const char *query, const char *last)
+{
+    listener *l = try_listen(b, path, query, last);
+    assert_non_null(l);
+    return l;
+}
+
+static void listener_free(listener *l)
+{
+    api_free(l->exchange);
+    pthread_mutex_destroy(&l->lock);
+    pthread_cond_destroy(&l->changed);
+    sse_clear(&l->events);
+    cJSON_Delete(l->data);
+    free(l);
+}
+
+static void wait_for_wake(listener *l)
+{
+    pthread_mutex_lock(&l->lock);
+    while (!l->woken) {
+        pthread_cond_wait(&l->changed, &l->lock);
+    }
+    l->woken = false;
+    pthread_mutex_unlock(&l->lock);
+}
+
+/* The next event; "" at the end of the stream, and where it would wait and `patient` is false. */
+static const char *next(listener *l, bool patient)
+{
+    char buffer[777];
+    cJSON_Delete(l->data);
+    l->data = NULL;
+    while (!sse_next(&l->events, &l->event)) {
+        int64_t got = l->source->read(l->source->self, buffer, sizeof buffer);
+        if (got == API_READ_WAIT && patient) {
+            wait_for_wake(l);
+        } else if (got <= 0) {
+            assert_true(got == 0 || got == API_READ_WAIT);
+            return "";
+        } else {
+            sse_add(&l->events, buffer, (size_t)got);
+        }
+    }
+    l->data = cJSON_Parse(l->event.data);
+    assert_non_null(l->data);
+    return l->event.name;
+}
+
+static const char *text_of(const listener *l, const char *member)
+{
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(l->data, member);
+    return cJSON_IsString(found) ? found->valuestring : "";
+}
+
+static uint64_t number_of(const listener *l, const char *member)
+{
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(l->data, member);
+    assert_true(cJSON_IsNumber(found));
+    return (uint64_t)found->valuedouble;
+}
+
+/* --- the mesh ------------------------------------------------------------------------------- */
+
+static const char OBJ[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 3 0 1\nv 3 1 1\n"
+                          "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
+                          "g left\nusemtl red\nf 1/1/1 2/2/1 3/3/1 4/4/1\n"
+                          "g right\nusemtl blue\nf 2/1/1 5/2/1 6/3/1 3/4/1\n"
+                          "f 5/1/1 7/2/1 8/3/1 6/4/1\n";
+
+static int send(api_bench *b, const char *method, const char *target, const char *body)
+{
+    bench_reply r = bench_send(b, method, target, NULL, body);
+    int status = r.status;
+    bench_reply_free(&r);
+    return status;
+}
+
+static void put_mesh(api_bench *b)
+{
+    static const char *const headers[] = {"Content-Type", "model/obj", NULL};
+    bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", headers, OBJ);
+    assert_true(r.status == 200 || r.status == 201);
+    bench_reply_free(&r);
+}
+
+static api_mesh *find_mesh(api_bench *b)
+{
+    const api_store *store = bench_store(b);
+    api_mesh *mesh = NULL;
+    assert_int_equal(store->find(store->self, "m", &mesh), API_STORE_OK);
+    return mesh;
+}
+
+/* What the mesh is now. */
+static void dump(api_bench *b, mirror *m)
+{
+    const api_store *store = bench_store(b);
+    api_mesh *mesh = find_mesh(b);
+    api_mesh_info info;
+    const he_mesh *content = store->read_begin(store->self, mesh, &info);
+    mirror_take(m, content, info.revision);
+    store->read_end(store->self, mesh);
+    store->release(store->self, mesh);
+}
+
+static void require_equal(api_bench *b, const mirror *copy, const char *after)
+{
+    char text[MIRROR_TEXT] = "";
+    mirror fresh = {0};
+    dump(b, &fresh);
+    assert_int_equal(copy->revision, fresh.revision);
+    if (!mirror_equal(copy, &fresh, text)) {
+        fail_msg("after %s the copy differs at %s", after, text);
+    }
+    mirror_clear(&fresh);
+}
+
+/* Read everything there is. How often the copy had to be taken anew. */
+static unsigned follow(api_bench *b, listener *l, mirror *copy)
+{
+    unsigned anew = 0;
+    const char *name;
+    while ((name = next(l, false))[0] != '\0') {
+        bool lost = strcmp(name, "resync") == 0;
+        if (strcmp(name, "edit") == 0) {
+            lost = mirror_apply(copy, l->data) == MIRROR_LOST;
+        }
+        if (lost) {
+            dump(b, copy);
+            anew++;
+        }
+    }
+    return anew;
+}
+
+static uint64_t seed_of_run(void)
+{
+    const char *given = getenv("SEED");
+    uint64_t seed = given != NULL ? strtoull(given, NULL, 10) : (uint64_t)time(NULL);
+    printf("note: SEED=%" PRIu64 "\n", seed);
+    return seed;
+}
+
+/* --- tests ---------------------------------------------------------------------------------- */
+
+enum { ROWS = 256 };
+
+/* The row that succeeded least often. */
+static size_t rarest(const unsigned done[ROWS])
+{
+    size_t least = 0;
+    for (size_t row = 1; row < he_op_count(); row++) {
+        least = done[row] < done[least] ? row : least;
+    }
+    return least;
+}
+
+static void every_operation_undo_and_redo_is_told_exactly(void **state)
+{
+    (void)state;
+    enum { EDITS = 6000, MOST = 100000 };
+    unsigned done[ROWS] = {0}, anew = 0, steps = 0;
+    md_random random = {seed_of_run()};
+    char text[RANDOM_EDIT_TEXT];
+    mirror copy = {0};
+    api_bench *b = bench_new();
+    put_mesh(b);
+    listener *l = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    dump(b, &copy);
+    assert_true(copy.column_count > 0);
+    int requests = 0;
+    for (; requests < EDITS || done[rarest(done)] == 0; requests++) {
+        if (requests == MOST) {
+            fail_msg("%s never succeeded: does random_edit.c draw arguments for it?",
+                     he_op_at(rarest(done))->name);
+        }
+        size_t faces = mirror_count(&copy, HE_FACE);
+        if (faces == 0 || faces > 300 || md_chance(&random, 1)) {
+            put_mesh(b);
+            anew += follow(b, l, &copy);
+        }
+        size_t row =
+            md_chance(&random, 30) ? rarest(done) : md_below(&random, (uint32_t)he_op_count());
+        if (md_chance(&random, 15)) {
+            bool undo = md_chance(&random, 60);
+            int status = send(b, "POST", undo ? "/v1/meshes/m/undo" : "/v1/meshes/m/redo", NULL);
+            (void)snprintf(text, sizeof text, "%s", undo ? "undo" : "redo");
+            steps += status == 200;
+        } else {
+            random_edit(&random, &copy, row, text);
+            done[row] += send(b, "POST", "/v1/meshes/m/edits", text) == 200;
+        }
+        anew += follow(b, l, &copy);
+        require_equal(b, &copy, text);
+    }
+    printf("note: %d requests, %u undos and redos, taken anew %u times; least often %s, %u times\n",
+           requests, steps, anew, he_op_at(rarest(done))->name, done[rarest(done)]);
+    listener_free(l);
+    mirror_clear(&copy);
+    bench_free(b);
+}
+
+/* Through the store, as no request makes columns. */
+static void columns_that_come_and_go_are_told(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    const api_store *store = bench_store(b);
+    mirror copy = {0};
+    put_mesh(b);
+    listener *l = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    dump(b, &copy);
+    size_t before = copy.column_count;
+    api_mesh *stored = find_mesh(b);
+    he_mesh *mesh = store->write_begin(store->self, stored, NULL, NULL);
+    he_column *weight = NULL;
+    assert_int_equal(he_column_new("weight", HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE, &weight, NULL),
+                     HE_OK);
+    assert_int_equal(he_column_extend(weight, he_mesh_issued(mesh, HE_VERTEX), NULL), HE_OK);
+    const float value[] = {0.1F, -2.5F};
+    memcpy(he_column_row(weight, 3), value, sizeof value);
+    assert_int_equal(he_mesh_add_column(mesh, weight, NULL), HE_OK);
+    assert_int_equal(he_mesh_drop_column(mesh, 0, NULL), HE_OK);
+    store->write_commit(store->self, stored, "attributes", false, NULL);
+    store->release(store->self, stored);
+    assert_string_equal(next(l, false), "edit");
+    assert_non_null(cJSON_GetObjectItem(l->data, "attributes_added"));
+    assert_non_null(cJSON_GetObjectItem(l->data, "attributes_dropped"));
+    assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
+    assert_int_equal(copy.column_count, before);
+    require_equal(b, &copy, "a column for another");
+    static const char *const steps[] = {"undo", "redo", "undo"};
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        char target[64];
+        (void)snprintf(target, sizeof target, "/v1/meshes/m/%s", steps[i]);
+        assert_int_equal(send(b, "POST", target, NULL), 200);
+        assert_string_equal(next(l, false), "edit");
+        assert_string_equal(text_of(l, "action"), steps[i]);
+        assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
+        require_equal(b, &copy, steps[i]);
+    }
+    listener_free(l);
+    mirror_clear(&copy);
+    bench_free(b);
+}
+
+#define POKE "{\"op\":\"face_poke\",\"face\":0}"
+
+static void what_is_no_edit_has_events_of_its_own(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    put_mesh(b);
+    listener *l = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    assert_string_equal(next(l, false), "");
+    assert_int_equal(l->events.blocks, 1);
+    assert_int_equal(strlen(l->events.id), 16 + 2);
+    assert_string_equal(l->events.id + 16, ".1");
+    assert_int_equal(send(b, "PATCH", "/v1/meshes/m", "{\"name\":\"a\\nb\"}"), 200);
+    assert_string_equal(next(l, false), "metadata");
+    assert_string_equal(text_of(l, "name"), "a\nb");
+    put_mesh(b);
+    assert_string_equal(next(l, false), "resync");
+    assert_string_equal(text_of(l, "reason"), "replaced");
+    assert_int_equal(number_of(l, "revision"), 2);
+    assert_string_equal(l->events.id + 16, ".2");
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", "{\"op\":\"compact\"}"), 200);
+    const char *name = next(l, false);
+    assert_true(strcmp(name, "resync") == 0 || strcmp(name, "edit") == 0);
+    assert_int_equal(send(b, "DELETE", "/v1/meshes/m", NULL), 204);
+    assert_string_equal(next(l, true), "bye");
+    assert_string_equal(text_of(l, "reason"), "deleted");
+    assert_string_equal(next(l, true), "");
+    listener_free(l);
+    bench_free(b);
+}
+
+/* 200 x 200 faces do not fit in an event; what fits is complete. */
+static void a_large_edit_is_only_announced(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    assert_int_equal(
+        send(b, "PUT", "/v1/meshes/m", "{\"shape\":\"grid\",\"columns\":200,\"rows\":200}"), 201);
+    listener *l = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits",
+                          "{\"op\":\"transform\",\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]}"),
+                     200);
+    assert_string_equal(next(l, false), "edit");
+    assert_true(cJSON_IsTrue(cJSON_GetObjectItem(l->data, "stale")));
+    assert_null(cJSON_GetObjectItem(l->data, "values"));
+    assert_int_equal(number_of(l, "base"), 1);
+    assert_int_equal(number_of(l, "revision"), 2);
+    assert_true(strlen(l->event.data) < API_MAX_EVENT);
+    listener_free(l);
+    bench_free(b);
+}
+
+static void who_was_cut_off_goes_on_where_it_was(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    mirror copy = {0};
+    char id[64];
+    put_mesh(b);
+    listener *l = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    dump(b, &copy);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
+    assert_int_equal(follow(b, l, &copy), 0);
+    (void)snprintf(id, sizeof id, "%s", l->events.id);
+    listener_free(l);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
+    assert_int_equal(send(b, "PATCH", "/v1/meshes/m", "{\"name\":\"x\"}"), 200);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/undo", NULL), 200);
+    /* The header is newer than the URL. */
+    l = listen_to(b, "/v1/meshes/m/events", "since=1", id);
+    assert_string_equal(next(l, false), "edit");
+    assert_int_equal(number_of(l, "base"), 2);
+    assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
+    assert_string_equal(next(l, false), "metadata");
+    assert_string_equal(next(l, false), "edit");
+    assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
+    assert_string_equal(next(l, false), "");
+    require_equal(b, &copy, "a cut");
+    listener_free(l);
+    mirror_clear(&copy);
+    bench_free(b);
+}
+
+/* More than the feed holds: from the history, a batch at a time, then from the feed. */
+static void who_is_far_behind_is_told_from_the_history(void **state)
+{
+    (void)state;
+    enum { EDITS = SRV_FEED_MESSAGES + 500 };
+    md_random random = {seed_of_run()};
+    char text[RANDOM_EDIT_TEXT];
+    api_bench *b = bench_new();
+    mirror now = {0}, copy = {0};
+    put_mesh(b);
+    listener *l = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    dump(b, &now);
+    dump(b, &copy);
+    while (now.revision < EDITS) {
+        /* compact and what empties the mesh would cut the history off */
+        size_t row = md_below(&random, (uint32_t)he_op_count());
+        const char *name = he_op_at(row)->name;
+        bool back = mirror_count(&now, HE_FACE) > 200 || md_chance(&random, 20);
+        if (back) {
+            (void)send(b, "POST", "/v1/meshes/m/undo", NULL);
+        } else if (strcmp(name, "compact") != 0 &&
+                   (mirror_count(&now, HE_FACE) > 3 || strstr(name, "delete") == NULL)) {
+            random_edit(&random, &now, row, text);
+            (void)send(b, "POST", "/v1/meshes/m/edits", text);
+        }
+        assert_int_equal(follow(b, l, &now), 0);
+        assert_true(mirror_count(&now, HE_FACE) > 0);
+    }
+    listener_free(l);
+    l = listen_to(b, "/v1/meshes/m/events", "since=1", NULL);
+    assert_string_equal(next(l, true), "metadata");
+    while (copy.revision < now.revision) {
+        assert_string_equal(next(l, true), "edit");
+        assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
+    }
+    require_equal(b, &copy, "the history");
+    (void)send(b, "POST", "/v1/meshes/m/undo", NULL);
+    assert_string_equal(next(l, true), "edit");
+    assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
+    require_equal(b, &copy, "the history and an undo");
+    listener_free(l);
+    /* In the middle, and left in the middle. */
+    l = listen_to(b, "/v1/meshes/m/events", "since=2", NULL);
+    assert_string_equal(next(l, true), "metadata");
+    assert_string_equal(next(l, true), "edit");
+    assert_int_equal(number_of(l, "base"), 2);
+    listener_free(l);
+    l = listen_to(b, "/v1/meshes/m/events", "since=2", NULL);
+    l->source->finish(l->source->self);
+    while (strcmp(next(l, true), "bye") != 0) {
+    }
+    assert_string_equal(text_of(l, "reason"), "stopping");
+    assert_string_equal(next(l, true), "");
+    listener_free(l);
+    mirror_clear(&now);
+    mirror_clear(&copy);
+    bench_free(b);
+}
+
+static void require_resync(api_bench *b, const char *query, const char *last, const char *reason)
+{
+    listener *l = listen_to(b, "/v1/meshes/m/events", query, last);
+    const char *name = next(l, true);
+    if (strcmp(name, "metadata") == 0) {
+        name = next(l, true);
+    }
+    assert_string_equal(name, "resync");
+    assert_string_equal(text_of(l, "reason"), reason);
+    assert_int_equal(number_of(l, "revision"), 4);
+    assert_string_equal(l->events.id + 16, ".4");
+    assert_string_equal(next(l, false), "");
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/undo", NULL), 200);
+    assert_string_equal(next(l, true), "edit");
+    assert_int_equal(number_of(l, "base"), 4);
+    listener_free(l);
+}
+
+static void make_four_revisions(api_bench *b)
+{
+    (void)send(b, "DELETE", "/v1/meshes/m", NULL);
+    put_mesh(b);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
+    put_mesh(b);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
+}
+
+static void what_cannot_be_told_is_one_resync(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    make_four_revisions(b);
+    require_resync(b, "since=1", NULL, "gap"); /* before the replace */
+    make_four_revisions(b);
+    require_resync(b, "since=5", NULL, "future");
+    make_four_revisions(b);
+    require_resync(b, "", "0123456789abcdef.4", "incarnation");
+    make_four_revisions(b);
+    require_resync(b, "since=4", "nonsense", "incarnation");
+    make_four_revisions(b);
+    require_resync(b, "since=0", NULL, "gap");
+    static const char *const bad[] = {"since=",
+                                      "since=x",
+                                      "since=1.2",
+                                      "since=0123456789abcdef.",
+                                      "since=-1",
+                                      "since=18446744073709551616",
+                                      "since=0123456789ABCDEF.1"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char target[128];
+        (void)snprintf(target, sizeof target, "/v1/meshes/m/events?%s", bad[i]);
+        assert_int_equal(send(b, "GET", target, NULL), 400);
+    }
+    bench_free(b);
+}
+
+/* Read nothing while the feed runs over: one resync, and on from the head. */
+static void a_slow_listener_is_told_to_fetch_anew(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    mirror copy = {0};
+    put_mesh(b);
+    listener *slow = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    dump(b, &copy);
+    for (int i = 0; i < SRV_FEED_MESSAGES + 50; i++) {
+        const char *target = i % 2 == 0 ? "/v1/meshes/m/edits" : "/v1/meshes/m/undo";
+        assert_int_equal(send(b, "POST", target, i % 2 == 0 ? POKE : NULL), 200);
+    }
+    assert_int_equal(follow(b, slow, &copy), 1);
+    require_equal(b, &copy, "a resync");
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
+    assert_int_equal(follow(b, slow, &copy), 0);
+    require_equal(b, &copy, "the edit after it");
+    listener_free(slow);
+    mirror_clear(&copy);
+    bench_free(b);
+}
+
+static void too_many_listeners_are_503(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new(); /* 2 a mesh, 3 in all */
+    put_mesh(b);
+    assert_int_equal(send(b, "PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
+    listener *first = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    listener *second = listen_to(b, "/v1/meshes/m/events", "", NULL);
+    bench_reply r = bench_send(b, "GET", "/v1/meshes/m/events", NULL, NULL);
+    assert_int_equal(r.status, 503);
+    assert_string_equal(bench_header(&r, "Retry-After"), "1");
+    bench_reply_free(&r);
+    listener *third = listen_to(b, "/v1/meshes/n/events", "", NULL);
+    assert_int_equal(send(b, "GET", "/v1/meshes/n/events", NULL), 503);
+    listener_free(second);
+    assert_int_equal(send(b, "GET", "/v1/meshes/n/events", NULL), 200);
+    assert_int_equal(send(b, "GET", "/v1/meshes/m/events", NULL), 200);
+    listener_free(first);
+    listener_free(third);
+    bench_free(b);
+}
+
+/* --- memory --------------------------------------------------------------------------------- */
+
+typedef struct famine {
+    pthread_t tester;
+    bool jobs; /* the job pool's allocations fail, else those of the tester */
+    uint32_t left;
+    bool struck;
+} famine;
+
+static void *resize_until(void *context, void *memory, size_t size)
+{
+    famine *f = context;
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    if ((pthread_equal(pthread_self(), f->tester) != 0) == f->jobs) {
+        return realloc(memory, size);
+    }
+    if (f->left == 0) {
+        f->struck = true;
+        return NULL;
+    }
+    f->left--;
+    return realloc(memory, size);
+}
+
+/* Whatever allocation fails when an edit is told, it is made, and the listener is told the truth:
+ * the edit, or that it must fetch anew. */
+static void a_failed_allocation_loses_no_listener(void **state)
+{
+    (void)state;
+    unsigned lost = 0, told = 0;
+    for (uint32_t n = 0;; n++) {
+        api_bench *b = bench_new();
+        mirror copy = {0};
+        put_mesh(b);
+        famine f = {.tester = pthread_self(), .left = n};
+        const he_mem_hook hook = {resize_until, &f};
+        he_mem_set_hook(&hook);
+        listener *l = try_listen(b, "/v1/meshes/m/events", "", NULL);
+        if (l != NULL) {
+            he_mem_set_hook(NULL);
+            dump(b, &copy);
+            he_mem_set_hook(&hook);
+            bench_reply r = {0};
+            bool sent = bench_try(b, "POST", "/v1/meshes/m/edits", NULL, POKE, sizeof POKE - 1, &r);
+            he_mem_set_hook(NULL);
+            if (sent) {
+                bench_reply_free(&r);
+            }
+            unsigned anew = follow(b, l, &copy);
+            lost += anew;
+            told += copy.revision == 2 && anew == 0;
+            require_equal(b, &copy, "a failed allocation");
+            listener_free(l);
+        }
+        he_mem_set_hook(NULL);
+        mirror_clear(&copy);
+        bench_free(b);
+        if (!f.struck) {
+            break;
+        }
+        assert_true(n < 2000);
+    }
+    assert_true(lost > 0);
+    assert_true(told > 0);
+}
+
+/* The same from the history: what is there comes in order, then perhaps a resync. */
+static void a_failed_allocation_in_the_history_is_a_resync(void **state)
+{
+    (void)state;
+    unsigned lost = 0;
+    for (uint32_t n = 0;; n++) {
+        api_bench *b = bench_new();
+        put_mesh(b);
+        assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
+        assert_int_equal(send(b, "POST", "/v1/meshes/m/undo", NULL), 200);
+        famine f = {.tester = pthread_self(), .left = n, .jobs = true};
+        const he_mem_hook hook = {resize_until, &f};
+        he_mem_set_hook(&hook);
+        listener *l = listen_to(b, "/v1/meshes/m/events", "since=1", NULL);
+        assert_string_equal(next(l, true), "metadata");
+        const char *name = "";
+        for (uint64_t at = 1; at < 3; at++) {
+            name = next(l, true);
+            if (strcmp(name, "edit") != 0 || cJSON_GetObjectItem(l->data, "stale") != NULL) {
+                lost++;
+                break;
+            }
+            assert_int_equal(number_of(l, "base"), at);
+        }
+        if (strcmp(name, "resync") == 0) {
+            assert_int_equal(number_of(l, "revision"), 3);
+            assert_string_equal(next(l, false), "");
+        }
+        he_mem_set_hook(NULL);
+        listener_free(l);
+        bench_free(b);
+        if (!f.struck) {
+            break;
+        }
+        assert_true(n < 2000);
+    }
+    assert_true(lost > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_operation_undo_and_redo_is_told_exactly),
+        cmocka_unit_test(columns_that_come_and_go_are_told),
+        cmocka_unit_test(what_is_no_edit_has_events_of_its_own),
+        cmocka_unit_test(a_large_edit_is_only_announced),
+        cmocka_unit_test(who_was_cut_off_goes_on_where_it_was),
+        cmocka_unit_test(who_is_far_behind_is_told_from_the_history),
+        cmocka_unit_test(what_cannot_be_told_is_one_resync),
+        cmocka_unit_test(a_slow_listener_is_told_to_fetch_anew),
+        cmocka_unit_test(too_many_listeners_are_503),
+        cmocka_unit_test(a_failed_allocation_loses_no_listener),
+        cmocka_unit_test(a_failed_allocation_in_the_history_is_a_resync),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

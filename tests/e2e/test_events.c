@@ -1,0 +1,417 @@
+/* Event streams of a real daemon: a copy that stays equal through ten thousand edits and cuts, slow
+ * and dead clients, a thousand listeners, a stop.
+ *
+ * EDITS (10000) and SEED (from the clock) come from the environment. */
+#include "tests/e2e/client.h"
+#include "tests/e2e/listener.h"
+#include "tests/mirror.h"
+#include "tests/random_edit.h"
+
+#include "op/op.h"
+
+#include <inttypes.h>
+#include <poll.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define EVENTS "/v1/meshes/m/events"
+
+static uint64_t number_from(const char *name, uint64_t fallback)
+{
+    const char *text = getenv(name);
+    return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
+}
+
+static void put_mesh(client *c, const char *body)
+{
+    reply r = client_send(c, "PUT", "/v1/meshes/m", body, strlen(body), NULL);
+    assert_true(r.status == 200 || r.status == 201);
+    reply_free(&r);
+}
+
+/* The revision it made, 0 when it was refused. */
+static uint64_t post(client *c, const char *path, const char *json)
+{
+    reply r = client_post(c, path, json);
+    uint64_t revision = r.status == 200 ? (uint64_t)reply_number(&r, "revision") : 0;
+    if (r.status != 200 && r.status != 422 && r.status != 409) {
+        fail_msg("%s: %ld %s", json, r.status, r.body);
+    }
+    reply_free(&r);
+    return revision;
+}
+
+/* --- a dump --- */
+
+static void dump_kind(client *c, mirror *m, he_kind kind)
+{
+    static const char *const lines[] = {"Accept: application/x-ndjson", NULL};
+    char target[64];
+    (void)snprintf(target, sizeof target, "/v1/meshes/m/%s", he_kind_plural(kind));
+    reply r = client_send(c, "GET", target, NULL, 0, lines);
+    assert_int_equal(r.status, 200);
+    bool ended = false;
+    char *rest = NULL;
+    for (char *line = strtok_r(r.body, "\n", &rest); line != NULL;
+         line = strtok_r(NULL, "\n", &rest)) {
+        cJSON *element = cJSON_Parse(line);
+        assert_non_null(element);
+        ended = cJSON_GetObjectItem(element, "end") != NULL;
+        if (!ended) {
+            mirror_add_line(m, kind, element);
+        }
+        cJSON_Delete(element);
+    }
+    assert_true(ended);
+    reply_free(&r);
+}
+
+/* While nobody edits. */
+static void dump(client *c, mirror *m)
+{
+    mirror_clear(m);
+    reply r = client_get(c, "/v1/meshes/m");
+    assert_int_equal(r.status, 200);
+    m->revision = (uint64_t)reply_number(&r, "revision");
+    reply_free(&r);
+    dump_kind(c, m, HE_VERTEX);
+    dump_kind(c, m, HE_HALFEDGE);
+    dump_kind(c, m, HE_FACE);
+}
+
+static void require_equal(client *c, const mirror *copy)
+{
+    char text[MIRROR_TEXT] = "";
+    mirror fresh = {0};
+    dump(c, &fresh);
+    assert_int_equal(copy->revision, fresh.revision);
+    if (!mirror_equal(copy, &fresh, text)) {
+        fail_msg("at revision %" PRIu64 " the copy differs at %s", copy->revision, text);
+    }
+    mirror_clear(&fresh);
+}
+
+/* --- a copy --- */
+
+typedef struct copy {
+    const daemon_process *daemon;
+    client *client;
+    listener *listener;
+    mirror mesh;
+    unsigned applied, anew, cuts;
+} copy;
+
+static void take(copy *c, const char *name)
+{
+    bool lost = strcmp(name, "resync") == 0;
+    if (strcmp(name, "edit") == 0) {
+        mirror_step step = mirror_apply(&c->mesh, c->listener->data);
+        lost = step == MIRROR_LOST;
+        c->applied += step == MIRROR_APPLIED;
+    }
+    if (lost) {
+        dump(c->client, &c->mesh);
+        c->anew++;
+    }
+}
+
+static void follow_to(copy *c, uint64_t revision)
+{
+    while (c->mesh.revision < revision) {
+        take(c, listener_next(c->listener, true));
+    }
+}
+
+static void cut(copy *c)
+{
+    char id[64];
+    (void)snprintf(id, sizeof id, "%s", c->listener->events.id);
+    listener_close(c->listener);
+    c->listener = listener_open(c->daemon, EVENTS, id, 0);
+    assert_int_equal(c->listener->status, 200);
+    c->cuts++;
+}
+
+#define GRID "{\"shape\":\"grid\",\"columns\":8,\"rows\":8}"
+
+static uint64_t random_request(copy *c, md_random *r)
+{
+    char text[8 * RANDOM_EDIT_TEXT];
+    size_t rows = he_op_count(), faces = mirror_count(&c->mesh, HE_FACE);
+    if (faces == 0 || faces > 400) {
+        put_mesh(c->client, GRID);
+        return c->mesh.revision + 1;
+    }
+    if (md_chance(r, 10)) {
+        return post(c->client, "/v1/meshes/m/undo", "{}");
+    }
+    if (md_chance(r, 10)) {
+        return post(c->client, "/v1/meshes/m/redo", "{}");
+    }
+    size_t length = 0, count = md_chance(r, 20) ? md_from(r, 2, 6) : 1;
+    if (count > 1) {
+        length = (size_t)snprintf(text, sizeof text, "{\"ops\":[");
+    }
+    for (size_t i = 0; i < count; i++) {
+        random_edit(r, &c->mesh, md_below(r, (uint32_t)rows), text + length);
+        length = strlen(text);
+        text[length++] = i + 1 < count ? ',' : ']';
+    }
+    text[count > 1 ? length++ : length - 1] = count > 1 ? '}' : '\0';
+    text[length] = '\0';
+    return post(c->client, "/v1/meshes/m/edits", text);
+}
+
+static void a_copy_stays_equal_through_ten_thousand_edits(void **state)
+{
+    (void)state;
+    uint64_t edits = number_from("EDITS", 10000), done = 0, asked = 0, last = 1;
+    md_random random = {number_from("SEED", (uint64_t)time(NULL))};
+    printf("note: SEED=%" PRIu64 " EDITS=%" PRIu64 "\n", random.state, edits);
+    daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
+    copy c = {.daemon = d, .client = client_new(d)};
+    put_mesh(c.client, GRID);
+    c.listener = listener_open(d, EVENTS, NULL, 0);
+    dump(c.client, &c.mesh);
+    for (; done < edits; asked++) {
+        /* What is drawn from must be what the server has; the rest of the time it may lag. */
+        follow_to(&c, last);
+        if (md_chance(&random, 1)) {
+            cut(&c);
+        }
+        for (uint32_t burst = md_chance(&random, 5) ? 5 : 1; burst > 0; burst--) {
+            uint64_t revision = random_request(&c, &random);
+            done += revision > 0;
+            last = revision > 0 ? revision : last;
+        }
+        if (done % 1000 == 0) {
+            follow_to(&c, last);
+            require_equal(c.client, &c.mesh);
+        }
+    }
+    follow_to(&c, last);
+    require_equal(c.client, &c.mesh);
+    printf("note: %" PRIu64 " of %" PRIu64 " requests made a revision, %u events applied, %u cuts, "
+           "taken anew %u times\n",
+           done, asked, c.applied, c.cuts, c.anew);
+    listener_close(c.listener);
+    mirror_clear(&c.mesh);
+    client_free(c.client);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+#define POKE "{\"op\":\"face_poke\",\"face\":0}"
+
+static void an_id_of_another_incarnation_is_a_resync(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start((const char *const[]){"--undo-budget", "0", NULL});
+    client *c = client_new(d);
+    char id[64];
+    put_mesh(c, GRID);
+    listener *l = listener_open(d, EVENTS, NULL, 0);
+    assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), 2);
+    assert_string_equal(listener_next(l, true), "edit");
+    (void)snprintf(id, sizeof id, "%s", l->events.id);
+    reply r = client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL);
+    assert_int_equal(r.status, 204);
+    reply_free(&r);
+    assert_string_equal(listener_next(l, true), "bye");
+    assert_string_equal(listener_string(l, "reason"), "deleted");
+    assert_string_equal(listener_next(l, true), "");
+    assert_true(l->ended);
+    listener_close(l);
+    put_mesh(c, GRID);
+    l = listener_open(d, EVENTS, id, 0);
+    assert_string_equal(listener_next(l, true), "resync");
+    assert_string_equal(listener_string(l, "reason"), "incarnation");
+    assert_string_not_equal(l->events.id, id);
+    listener_close(l);
+    l = listener_open(d, EVENTS "?since=7", NULL, 0);
+    assert_string_equal(listener_next(l, true), "resync");
+    assert_string_equal(listener_string(l, "reason"), "future");
+    /* It goes on from there. */
+    assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), 2);
+    assert_string_equal(listener_next(l, true), "edit");
+    listener_close(l);
+    l = listener_open(d, "/v1/meshes/none/events", NULL, 0);
+    assert_int_equal(l->status, 404);
+    listener_close(l);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* The history keeps nothing, so what the feed has let go of is gone. */
+static void a_gap_in_the_history_is_a_resync(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start((const char *const[]){"--undo-budget", "0", NULL});
+    client *c = client_new(d);
+    put_mesh(c, GRID);
+    for (uint64_t revision = 2; revision < 5; revision++) {
+        assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), revision);
+    }
+    listener *l = listener_open(d, EVENTS "?since=2", NULL, 0);
+    const char *name = listener_next(l, true);
+    name = strcmp(name, "metadata") == 0 ? listener_next(l, true) : name;
+    assert_string_equal(name, "resync");
+    assert_string_equal(listener_string(l, "reason"), "gap");
+    assert_int_equal((int)listener_number(l, "revision"), 4);
+    listener_close(l);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+static long resident_kilobytes(const daemon_process *d)
+{
+    char path[64], line[256];
+    long kilobytes = -1;
+    (void)snprintf(path, sizeof path, "/proc/%d/status", daemon_pid(d));
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) != NULL) {
+        if (strncmp(line, "VmRSS:", 6) == 0) {
+            kilobytes = strtol(line + 6, NULL, 10);
+        }
+    }
+    (void)fclose(file);
+    assert_true(kilobytes > 0);
+    return kilobytes;
+}
+
+/* Events of half a hundred kilobytes, many more than buffers on the way hold. */
+static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
+{
+    (void)state;
+    enum { EDITS = 400, MOST_KILOBYTES = 24 * 1024 };
+    daemon_process *d = daemon_start((const char *const[]){"--undo-budget", "0", NULL});
+    copy c = {.daemon = d, .client = client_new(d)};
+    put_mesh(c.client, "{\"shape\":\"uv_sphere\",\"segments\":24,\"rings\":24}");
+    c.listener = listener_open(d, EVENTS, NULL, 16 * 1024);
+    dump(c.client, &c.mesh);
+    long before = resident_kilobytes(d);
+    uint64_t last = 1;
+    for (int i = 0; i < EDITS; i++) {
+        char text[256];
+        (void)snprintf(
+            text, sizeof text,
+            "{\"op\":\"transform\",\"matrix\":[1,0,0,0.%d1,0,1,0,0.3,0,0,1,0.7,0,0,0,1]}", i);
+        last = post(c.client, "/v1/meshes/m/edits", text);
+        assert_true(last > 0);
+    }
+    long grown = resident_kilobytes(d) - before;
+    follow_to(&c, last);
+    require_equal(c.client, &c.mesh);
+    assert_true(c.applied > 0);
+    assert_true(c.anew > 0); /* more than once where it catches up and falls behind again */
+    last = post(c.client, "/v1/meshes/m/edits", POKE);
+    follow_to(&c, last);
+    require_equal(c.client, &c.mesh);
+    printf("note: of %d large events %u were applied, taken anew %u times; %ld KiB more resident\n",
+           EDITS, c.applied, c.anew, grown);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* which keep what is freed */
+    assert_true(grown < MOST_KILOBYTES);
+#endif
+    listener_close(c.listener);
+    mirror_clear(&c.mesh);
+    client_free(c.client);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+static void a_dead_client_makes_room(void **state)
+{
+    (void)state;
+    daemon_process *d =
+        daemon_start((const char *const[]){"--max-mesh-listeners", "1", "--heartbeat", "1", NULL});
+    client *c = client_new(d);
+    put_mesh(c, GRID);
+    listener *first = listener_open(d, EVENTS, NULL, 0);
+    assert_int_equal(first->status, 200);
+    listener *second = listener_open(d, EVENTS, NULL, 0);
+    assert_int_equal(second->status, 503);
+    listener_close(second);
+    free(daemon_wait_log(d, "\"status\":503", 1));
+    listener_close(first);
+    /* Its line in the log is written when the stream is given up. */
+    free(daemon_wait_log(d, "/events\",\"status\":200", 1));
+    second = listener_open(d, EVENTS, NULL, 0);
+    assert_int_equal(second->status, 200);
+    listener_close(second);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* Deadlines of ordinary requests do not end a stream that is silent. */
+static void silence_is_filled_with_comments(void **state)
+{
+    (void)state;
+    daemon_process *d =
+        daemon_start((const char *const[]){"--heartbeat", "2", "--idle-timeout", "1",
+                                           "--body-grace", "1", "--request-timeout", "1", NULL});
+    client *c = client_new(d);
+    put_mesh(c, GRID);
+    listener *l = listener_open(d, EVENTS, NULL, 0);
+    listener_wait_idle(l, 2);
+    client_free(c);
+    c = client_new(d);
+    assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), 2);
+    assert_string_equal(listener_next(l, true), "edit");
+    listener_close(l);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+enum { LISTENERS = 1000, BROADCASTS = 5 };
+
+static void a_thousand_listeners_hear_every_edit_and_the_end(void **state)
+{
+    (void)state;
+    static listener *all[LISTENERS];
+    daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
+    client *c = client_new(d);
+    put_mesh(c, GRID);
+    for (size_t i = 0; i < LISTENERS; i++) {
+        all[i] = listener_open(d, EVENTS, NULL, 0);
+        assert_int_equal(all[i]->status, 200);
+    }
+    for (uint64_t revision = 2; revision < 2 + BROADCASTS; revision++) {
+        assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), revision);
+    }
+    for (size_t i = 0; i < LISTENERS; i++) {
+        for (unsigned k = 0; k < BROADCASTS; k++) {
+            assert_string_equal(listener_next(all[i], true), "edit");
+            assert_int_equal((int)listener_number(all[i], "base"), k + 1);
+        }
+    }
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+    for (size_t i = 0; i < LISTENERS; i++) {
+        assert_string_equal(listener_next(all[i], true), "bye");
+        assert_string_equal(listener_string(all[i], "reason"), "stopping");
+        assert_string_equal(listener_next(all[i], true), "");
+        assert_true(all[i]->ended);
+        listener_close(all[i]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_copy_stays_equal_through_ten_thousand_edits),
+        cmocka_unit_test(an_id_of_another_incarnation_is_a_resync),
+        cmocka_unit_test(a_gap_in_the_history_is_a_resync),
+        cmocka_unit_test(who_reads_nothing_is_sent_to_fetch_anew),
+        cmocka_unit_test(a_dead_client_makes_room),
+        cmocka_unit_test(silence_is_filled_with_comments),
+        cmocka_unit_test(a_thousand_listeners_hear_every_edit_and_the_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

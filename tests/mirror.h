@@ -1,0 +1,64 @@
+/* mirror.h - a client's own copy of a mesh: plain tables, filled from a dump and kept by events.
+ *
+ * It knows nothing of half-edges: what an event does not say, it does not have. */
+#ifndef TESTS_MIRROR_H
+#define TESTS_MIRROR_H
+
+#include "mesh/mesh.h"
+
+#include <cjson/cJSON.h>
+
+enum { MIRROR_TEXT = 200, MIRROR_LINKS = 4, MIRROR_COMPONENTS = 16 };
+
+/* A vertex: position and half-edge; a half-edge: next, prev, origin, face; a face: half-edge. */
+typedef struct mirror_row {
+    bool live;
+    double position[3];
+    uint32_t link[MIRROR_LINKS]; /* HE_NONE for null */
+} mirror_row;
+
+typedef struct mirror_table {
+    mirror_row *rows;
+    size_t count;
+} mirror_table;
+
+typedef struct mirror_column {
+    he_kind domain;
+    char name[64];
+    size_t components, rows;
+    double fallback[MIRROR_COMPONENTS];
+    double *values; /* of rows; beyond them the default */
+} mirror_column;
+
+typedef struct mirror {
+    uint64_t revision;
+    mirror_table tables[HE_KIND_COUNT]; /* of vertices, half-edges and faces */
+    mirror_column *columns;
+    size_t column_count;
+} mirror;
+
+void mirror_clear(mirror *m);
+/* What `mesh` holds, at `revision`. */
+void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision);
+/* A line of the collection of a kind. */
+void mirror_add_line(mirror *m, he_kind kind, const cJSON *element);
+
+typedef enum mirror_step {
+    MIRROR_APPLIED,
+    MIRROR_KNOWN, /* a revision it has */
+    MIRROR_LOST   /* stale, or not of its revision: it must be taken anew */
+} mirror_step;
+
+/* The data of an `edit`. Fails the test where the sets contradict the copy. */
+mirror_step mirror_apply(mirror *m, const cJSON *data);
+
+/* Link for link, value for value? `text` names what differs. Columns are not compared when one side
+ * has none at all: a dump does not show them. */
+bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
+
+/* The first live element from `from` on, then from the start; HE_NONE when there is none. Edges
+ * are looked up as half-edges. */
+uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from);
+size_t mirror_count(const mirror *m, he_kind kind);
+
+#endif

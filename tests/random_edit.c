@@ -1,0 +1,179 @@
+#include "tests/random_edit.h"
+
+#include "op/op.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+typedef struct draft {
+    md_random *random;
+    const mirror *mesh;
+    uint32_t halfedge; /* what is drawn lies about it */
+    char *text;
+    size_t length;
+} draft;
+
+static void put(draft *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put(draft *d, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int n = vsnprintf(d->text + d->length, RANDOM_EDIT_TEXT - d->length, format, arguments);
+    va_end(arguments);
+    assert_true(n >= 0 && d->length + (size_t)n < RANDOM_EDIT_TEXT);
+    d->length += (size_t)n;
+}
+
+enum link { NEXT, PREV, ORIGIN, FACE };
+
+static uint32_t link_of(const draft *d, uint32_t halfedge, enum link which)
+{
+    return d->mesh->tables[HE_HALFEDGE].rows[halfedge].link[which];
+}
+
+/* A few steps away, over faces and edges. */
+static uint32_t near_halfedge(draft *d)
+{
+    uint32_t h = d->halfedge;
+    for (uint32_t steps = md_below(d->random, 4); steps > 0; steps--) {
+        uint32_t way = md_below(d->random, 3);
+        h = way == 0 ? h ^ 1 : link_of(d, h, way == 1 ? NEXT : PREV);
+    }
+    return h;
+}
+
+static uint32_t any(draft *d, he_kind kind)
+{
+    return mirror_live(d->mesh, kind, (uint32_t)(md_bits(d->random) >> 33));
+}
+
+static uint32_t element(draft *d, he_kind kind)
+{
+    uint32_t h = near_halfedge(d);
+    if (md_chance(d->random, 5)) {
+        h = any(d, HE_HALFEDGE);
+    }
+    switch (kind) {
+    case HE_VERTEX:
+        return md_chance(d->random, 5) ? any(d, kind) : link_of(d, h, ORIGIN);
+    case HE_HALFEDGE:
+        return h;
+    case HE_EDGE:
+        return h / 2;
+    case HE_FACE:
+        return link_of(d, h, FACE) == HE_NONE ? link_of(d, h ^ 1, FACE) : link_of(d, h, FACE);
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    fail();
+    return HE_NONE;
+}
+
+/* Along a hole: the corners of a face that would fill a part of it. */
+static void put_cycle(draft *d, uint32_t count)
+{
+    uint32_t h = d->halfedge;
+    for (uint32_t i = 0; i < count; i++, h = link_of(d, h, NEXT)) {
+        put(d, "%s%u", i > 0 ? "," : "", link_of(d, h, ORIGIN));
+    }
+}
+
+static void put_point(draft *d)
+{
+    put(d, "[%.17g,%.17g,%.17g]", 2 * md_unit(d->random) - 1, 2 * md_unit(d->random) - 1,
+        2 * md_unit(d->random) - 1);
+}
+
+static void put_number(draft *d, const he_param *p)
+{
+    bool ranged = (p->flags & HE_RANGE) != 0 && p->max - p->min < 1e6;
+    double low = ranged ? p->min : 0, high = ranged ? p->max : 1;
+    put(d, "%.17g", low + (high - low) * (0.01 + 0.98 * md_unit(d->random)));
+}
+
+static void put_value(draft *d, const he_param *p)
+{
+    size_t choices = 0;
+    switch (p->type) {
+    case HE_PARAM_ELEMENT:
+    case HE_PARAM_ELEMENTS:
+        put(d, "\"%s\":%u", p->name, element(d, p->kind));
+        return;
+    case HE_PARAM_CYCLE:
+        put(d, "\"%s\":[", p->name);
+        put_cycle(d, md_from(d->random, 3, 5));
+        put(d, "]");
+        return;
+    case HE_PARAM_NUMBER:
+        put(d, "\"%s\":", p->name);
+        put_number(d, p);
+        return;
+    case HE_PARAM_POINT:
+    case HE_PARAM_POINTS:
+        put(d, "\"%s\":", p->name);
+        put_point(d);
+        return;
+    case HE_PARAM_FLAG:
+        put(d, "\"%s\":%s", p->name, md_chance(d->random, 50) ? "true" : "false");
+        return;
+    case HE_PARAM_CHOICE:
+        while (p->choices[choices] != NULL) {
+            choices++;
+        }
+        put(d, "\"%s\":\"%s\"", p->name, p->choices[md_below(d->random, (uint32_t)choices)]);
+        return;
+    case HE_PARAM_MATRIX:
+        put(d, "\"%s\":[1,0,0,%.17g,0,1,0,%.17g,0,0,1,0,0,0,0,1]", p->name,
+            md_unit(d->random) - 0.5, md_unit(d->random) - 0.5);
+        return;
+    }
+}
+
+/* Of alternatives one is taken, at random. */
+static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
+{
+    const he_param *p = &op->params[i];
+    if (p->group == 0) {
+        return (p->flags & HE_REQUIRED) != 0 || md_chance(d->random, 30);
+    }
+    size_t later = 0;
+    bool required = false;
+    for (size_t k = 0; k < he_op_params(op); k++) {
+        later += k > i && op->params[k].group == p->group;
+        required |= op->params[k].group == p->group && (op->params[k].flags & HE_REQUIRED) != 0;
+    }
+    return strchr(taken, p->group) == NULL &&
+           (md_chance(d->random, 40) || (required && later == 0));
+}
+
+void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDIT_TEXT])
+{
+    const he_op *op = he_op_at(row);
+    draft d = {.random = r, .mesh = m, .text = text};
+    char taken[HE_OP_PARAMS + 1] = "";
+    d.halfedge = any(&d, HE_HALFEDGE);
+    /* Holes are few beside faces, and some operations are about them. */
+    for (uint32_t tries = 0;
+         md_chance(r, 97) && tries < 60 && link_of(&d, d.halfedge, FACE) != HE_NONE; tries++) {
+        if (tries == 0 && md_chance(r, 60)) {
+            break;
+        }
+        d.halfedge = any(&d, HE_HALFEDGE);
+    }
+    put(&d, "{\"op\":\"%s\"", op->name);
+    for (size_t i = 0; i < he_op_params(op); i++) {
+        if (is_chosen(&d, op, i, taken)) {
+            if (op->params[i].group != 0) {
+                taken[strlen(taken)] = op->params[i].group;
+            }
+            put(&d, ",");
+            put_value(&d, &op->params[i]);
+        }
+    }
+    put(&d, "}");
+}

@@ -1,0 +1,298 @@
+/* The board of jobs with real threads: memory comes back when a job is cancelled, an end is shown
+ * when it is durable, and a stop ends everything. */
+#include "tests/unit/fixture.h"
+
+#include "server/clock.h"
+#include "server/job_board.h"
+#include "server/jobs.h"
+#include "server/memory.h"
+
+#include <pthread.h>
+
+#define LARGE      "{\"shape\":\"torus\",\"major_segments\":1500,\"minor_segments\":1500}"
+#define MIDDLE     "{\"shape\":\"torus\",\"major_segments\":800,\"minor_segments\":800}"
+#define HUGE_TORUS "{\"shape\":\"torus\",\"major_segments\":3500,\"minor_segments\":3500}"
+#define CUBE       "{\"shape\":\"cube\"}"
+
+/* --- a journal that is behind while a test says so --- */
+
+static struct {
+    _Atomic bool behind;
+    void (*notify)(void *context);
+    void *context;
+} slow;
+
+static void slow_append(void *self, const srv_record *record)
+{
+    (void)self;
+    (void)record;
+}
+
+static uint64_t slow_durable(void *self, const char *id, uint64_t incarnation)
+{
+    (void)self;
+    (void)id;
+    (void)incarnation;
+    return slow.behind ? 0 : UINT64_MAX;
+}
+
+static void slow_listen(void *self, void (*notify)(void *context), void *context)
+{
+    (void)self;
+    slow.notify = notify;
+    slow.context = context;
+}
+
+static void slow_close(void *self)
+{
+    (void)self;
+}
+
+/* --- the server --- */
+
+static srv_store *store;
+static api_store interface;
+static srv_jobs *pool;
+static srv_board *board;
+static api_jobs jobs;
+static api_service *service;
+
+static bool submit(void *context, void (*work)(void *context), void *argument)
+{
+    return srv_jobs_submit(context, work, argument);
+}
+
+static int start_keeping(double keep)
+{
+    slow.behind = false;
+    pool = srv_jobs_new(2, 4);
+    store = srv_store_new(&(srv_store_options){
+        .undo_budget = 64 << 20,
+        .max_meshes = 100,
+        .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
+    });
+    interface = srv_store_interface(store);
+    board = srv_board_new(
+        &(srv_board_options){.store = store, .submit = submit, .pool = pool, .keep = keep});
+    jobs = srv_board_interface(board);
+    service = api_service_new(&interface, &(api_options){.version = "test", .jobs = &jobs});
+    return 0;
+}
+
+static int start(void **state)
+{
+    (void)state;
+    return start_keeping(SRV_JOB_SECONDS);
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    srv_board_stop(board);
+    srv_jobs_free(pool);
+    srv_board_free(board);
+    api_service_free(service);
+    srv_store_free(store);
+    return 0;
+}
+
+static const char *header(void *context, const char *name)
+{
+    (void)context;
+    return strcmp(name, "Prefer") == 0         ? "respond-async"
+           : strcmp(name, "Content-Type") == 0 ? "application/json"
+                                               : NULL;
+}
+
+/* 202; the job's id goes to `id`. */
+static int post(const char *path, const char *body, char id[API_JOB_ID + 1])
+{
+    api_request request = {.method = "POST",
+                           .path = path,
+                           .query = "",
+                           .request_id = "test",
+                           .header = header,
+                           .has_length = true,
+                           .length = strlen(body),
+                           .has_body = true};
+    api_exchange *x = api_handle(service, &request, body, strlen(body));
+    const api_answer *answer = api_answer_of(x);
+    int status = answer->status;
+    for (size_t i = 0; i < answer->header_count; i++) {
+        if (strcmp(answer->headers[i].name, "Location") == 0) {
+            snprintf(id, API_JOB_ID + 1, "%s", answer->headers[i].value + strlen("/v1/jobs/"));
+        }
+    }
+    api_free(x);
+    return status;
+}
+
+static void take_facts(void *context, const api_job *job)
+{
+    *(api_job *)context = *job;
+}
+
+static api_job look(const char *id)
+{
+    api_job job = {.number = 0};
+    assert_true(jobs.find(jobs.self, id, take_facts, &job));
+    return job;
+}
+
+static api_job wait_for(const char *id, api_job_state state)
+{
+    api_job job;
+    do {
+        job = look(id);
+    } while (job.state < state);
+    return job;
+}
+
+static void progress_is_seen_and_never_falls(void **state)
+{
+    (void)state;
+    char id[API_JOB_ID + 1];
+    double last = 0;
+    size_t values = 0;
+    assert_int_equal(post("/v1/meshes", LARGE, id), 202);
+    for (api_job job = look(id); job.state < API_JOB_DONE; job = look(id)) {
+        assert_true(job.progress >= last);
+        values += job.progress > last;
+        last = job.progress;
+    }
+    assert_int_equal(look(id).state, API_JOB_DONE);
+    assert_true(values >= 20);
+    print_message("note: %zu values seen\n", values);
+}
+
+/* False where it was done before it could be cancelled. */
+static bool cancel_at(int percent)
+{
+    char id[API_JOB_ID + 1];
+    bool forgotten = false;
+    uint64_t before = srv_memory_used();
+    assert_int_equal(post("/v1/meshes", MIDDLE, id), 202);
+    api_job job = wait_for(id, API_JOB_RUNNING);
+    while (job.state == API_JOB_RUNNING && job.progress * 100 < percent) {
+        job = look(id);
+    }
+    uint64_t asked = srv_clock_micros();
+    assert_true(jobs.remove(jobs.self, id, &forgotten, take_facts, &job));
+    if (forgotten || wait_for(id, API_JOB_DONE).state == API_JOB_DONE) {
+        return false;
+    }
+    print_message("note: cancelled at %d %%, ended in %.1f ms\n", percent,
+                  (double)(srv_clock_micros() - asked) / 1000);
+    assert_int_equal(look(id).state, API_JOB_CANCELLED);
+    assert_true(jobs.remove(jobs.self, id, &forgotten, take_facts, &job));
+    assert_true(forgotten);
+    /* The pool's thread gives its hold of the job back last. */
+    while (srv_memory_used() != before) {
+        assert_false(jobs.find(jobs.self, id, take_facts, &job));
+    }
+    return true;
+}
+
+static void cancelling_gives_the_memory_back(void **state)
+{
+    (void)state;
+    int percent = 0;
+    while (percent < 100 && cancel_at(percent)) {
+        percent += 20;
+    }
+    assert_int_equal(srv_store_count(store), percent < 100 ? 1 : 0);
+}
+
+static void beyond_the_queue_jobs_are_refused(void **state)
+{
+    (void)state;
+    char id[API_JOB_ID + 1];
+    int status = 202, taken = -1;
+    while (status == 202) {
+        status = post("/v1/meshes", HUGE_TORUS, id);
+        taken++;
+    }
+    assert_int_equal(status, 503);
+    assert_true(taken >= 4);
+}
+
+static void an_end_is_shown_when_it_is_durable(void **state)
+{
+    (void)state;
+    char first[API_JOB_ID + 1], second[API_JOB_ID + 1];
+    slow.behind = true;
+    assert_int_equal(post("/v1/meshes", CUBE, first), 202);
+    api_job job;
+    do {
+        job = look(first);
+    } while (job.state != API_JOB_RUNNING || strcmp(job.phase, "storing") != 0);
+    /* A problem shows no change, and so does not wait. */
+    assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", second), 202);
+    assert_int_equal(wait_for(second, API_JOB_DONE).state, API_JOB_FAILED);
+    assert_int_equal(look(first).state, API_JOB_RUNNING);
+    slow.behind = false;
+    do {
+        slow.notify(slow.context); /* again where the hold came after it */
+    } while (look(first).state != API_JOB_DONE);
+    assert_int_equal(look(first).status, 201);
+}
+
+static void what_ended_is_forgotten_in_time(void **state)
+{
+    (void)state;
+    char id[API_JOB_ID + 1];
+    api_job job;
+    start_keeping(0);
+    assert_int_equal(post("/v1/meshes", CUBE, id), 202);
+    while (jobs.find(jobs.self, id, take_facts, &job)) {
+        assert_true(job.state <= API_JOB_RUNNING);
+    }
+    stop(NULL);
+}
+
+static void only_so_many_are_kept(void **state)
+{
+    (void)state;
+    char id[API_JOB_ID + 1], first[API_JOB_ID + 1];
+    assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", first), 202);
+    wait_for(first, API_JOB_DONE);
+    for (int i = 0; i < SRV_JOBS_KEPT; i++) {
+        assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", id), 202);
+        wait_for(id, API_JOB_DONE);
+    }
+    api_job job;
+    assert_false(jobs.find(jobs.self, first, take_facts, &job));
+    assert_true(jobs.find(jobs.self, id, take_facts, &job));
+}
+
+static void a_stop_ends_what_waits_and_what_runs(void **state)
+{
+    (void)state;
+    char ids[4][API_JOB_ID + 1];
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(post("/v1/meshes", HUGE_TORUS, ids[i]), 202);
+    }
+    srv_board_stop(board);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(wait_for(ids[i], API_JOB_DONE).state, API_JOB_CANCELLED);
+    }
+    char id[API_JOB_ID + 1];
+    assert_int_equal(post("/v1/meshes", CUBE, id), 503);
+}
+
+#define BOARD_TEST(f) cmocka_unit_test_setup_teardown(f, start, stop)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        BOARD_TEST(progress_is_seen_and_never_falls),
+        BOARD_TEST(cancelling_gives_the_memory_back),
+        BOARD_TEST(beyond_the_queue_jobs_are_refused),
+        BOARD_TEST(an_end_is_shown_when_it_is_durable),
+        BOARD_TEST(only_so_many_are_kept),
+        BOARD_TEST(a_stop_ends_what_waits_and_what_runs),
+        cmocka_unit_test(what_ended_is_forgotten_in_time),
+    };
+    srv_memory_install(0);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,354 @@
+/* A feed: everybody reads everything in order, nobody what is not allowed, and who is slow is told
+ * so and costs nothing. */
+#include "tests/unit/fixture.h"
+
+#include "mesh/mem.h"
+#include "server/feed.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static srv_feed feed;
+
+static int setup(void **state)
+{
+    (void)state;
+    srv_feed_init(&feed, (srv_place){.stamp = 7, .key = 3});
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    srv_feed_clear(&feed);
+    return 0;
+}
+
+static void count_wake(void *context)
+{
+    ++*(unsigned *)context;
+}
+
+static void join(srv_listener *listener, unsigned *wakes)
+{
+    assert_true(srv_feed_listen(&feed, listener, SIZE_MAX));
+    srv_feed_wake(listener, count_wake, wakes);
+}
+
+/* A message that says its stamp. */
+static void add(uint64_t stamp, uint64_t key)
+{
+    char text[32];
+    int length = snprintf(text, sizeof text, "%llu;", (unsigned long long)stamp);
+    srv_feed_add(&feed, (srv_place){stamp, key}, text, (size_t)length);
+}
+
+static void assert_reads(srv_listener *listener, const char *expected)
+{
+    char text[256];
+    size_t length = 0, got = 0;
+    while (srv_feed_read(listener, text + length, 3, &got) == SRV_FEED_GOT) {
+        length += got;
+        assert_true(length + 3 < sizeof text);
+    }
+    text[length] = '\0';
+    assert_string_equal(text, expected);
+}
+
+static void assert_step(srv_listener *listener, srv_feed_step expected)
+{
+    char text[256];
+    size_t got;
+    assert_int_equal(srv_feed_read(listener, text, sizeof text, &got), expected);
+}
+
+static void everybody_reads_everything_once(void **state)
+{
+    (void)state;
+    srv_listener early, late;
+    unsigned early_wakes = 0, late_wakes = 0;
+    join(&early, &early_wakes);
+    add(8, 4);
+    srv_feed_allow(&feed, 8);
+    join(&late, &late_wakes);
+    add(9, 5);
+    srv_feed_allow(&feed, 9);
+    assert_int_equal(early_wakes, 0); /* it does not wait yet */
+    assert_reads(&early, "8;9;");
+    assert_reads(&late, "9;");
+    add(10, 5);
+    srv_feed_allow(&feed, 10);
+    assert_int_equal(early_wakes, 1);
+    add(12, 6);
+    srv_feed_allow(&feed, 12);
+    assert_int_equal(early_wakes, 1); /* once for each wait */
+    assert_int_equal(late_wakes, 1);
+    assert_reads(&early, "10;12;");
+    assert_reads(&late, "10;12;");
+    srv_feed_leave(&early);
+    srv_feed_leave(&late);
+}
+
+static void what_is_not_allowed_is_not_read(void **state)
+{
+    (void)state;
+    srv_listener listener;
+    unsigned wakes = 0;
+    join(&listener, &wakes);
+    assert_step(&listener, SRV_FEED_WAIT);
+    add(8, 4);
+    add(9, 5);
+    add(10, 6);
+    assert_int_equal(wakes, 0);
+    assert_reads(&listener, "");
+    srv_feed_allow(&feed, 9);
+    assert_int_equal(wakes, 1);
+    assert_reads(&listener, "8;9;");
+    srv_feed_end(&feed);
+    assert_step(&listener, SRV_FEED_WAIT); /* the end, too, is not allowed yet */
+    srv_feed_allow(&feed, 10);
+    assert_reads(&listener, "10;");
+    assert_step(&listener, SRV_FEED_ENDED);
+    srv_feed_leave(&listener);
+}
+
+static void who_is_slow_is_behind_once(void **state)
+{
+    (void)state;
+    srv_listener slow, middle;
+    unsigned wakes = 0;
+    char byte[2];
+    size_t got;
+    join(&slow, &wakes);
+    join(&middle, &wakes);
+    add(8, 4);
+    srv_feed_allow(&feed, 8);
+    assert_int_equal(srv_feed_read(&middle, byte, 1, &got), SRV_FEED_GOT);
+    uint64_t stamp = 9;
+    for (; stamp < 9 + SRV_FEED_MESSAGES + 10; stamp++) {
+        add(stamp, stamp);
+    }
+    assert_int_equal(feed.count, SRV_FEED_MESSAGES);
+    /* Not even where to go on may be told. */
+    assert_step(&slow, SRV_FEED_WAIT);
+    srv_feed_allow(&feed, stamp - 3);
+    assert_step(&slow, SRV_FEED_BEHIND);
+    srv_place place = srv_feed_skip(&slow);
+    assert_int_equal(place.stamp, stamp - 3);
+    assert_int_equal(place.key, stamp - 3);
+    assert_step(&slow, SRV_FEED_WAIT);
+    /* A message that was begun is read to its end. */
+    assert_int_equal(srv_feed_read(&middle, byte, 2, &got), SRV_FEED_GOT);
+    assert_int_equal(got, 1);
+    assert_int_equal(byte[0], ';');
+    assert_step(&middle, SRV_FEED_BEHIND);
+    srv_feed_allow(&feed, stamp);
+    assert_step(&slow, SRV_FEED_GOT);
+    srv_feed_leave(&slow);
+    srv_feed_leave(&middle);
+}
+
+static void bytes_are_bounded_too(void **state)
+{
+    (void)state;
+    enum { LARGE = 100 * 1000 };
+    static char text[LARGE];
+    srv_listener slow;
+    unsigned wakes = 0;
+    join(&slow, &wakes);
+    memset(text, 'x', sizeof text);
+    for (uint64_t stamp = 8; stamp < 100; stamp++) {
+        srv_feed_add(&feed, (srv_place){stamp, stamp}, text, sizeof text);
+        assert_true(feed.bytes <= SRV_FEED_BYTES);
+    }
+    assert_int_equal(feed.count, SRV_FEED_BYTES / LARGE);
+    srv_feed_shed(&feed); /* somebody listens */
+    assert_int_equal(feed.count, SRV_FEED_BYTES / LARGE);
+    srv_feed_leave(&slow);
+    assert_true(srv_feed_is_followed(&feed)); /* until lately */
+    srv_feed_shed(&feed);
+    assert_int_equal(feed.count, 0);
+    assert_int_equal(feed.bytes, 0);
+}
+
+static void a_listener_goes_back_to_a_key(void **state)
+{
+    (void)state;
+    srv_listener listener;
+    unsigned wakes = 0;
+    join(&listener, &wakes);
+    add(8, 4);
+    add(9, 4); /* beside the revision */
+    add(10, 5);
+    srv_feed_allow(&feed, 10);
+    assert_true(srv_feed_rewind(&listener, 3));
+    assert_reads(&listener, "8;9;10;");
+    assert_true(srv_feed_rewind(&listener, 4));
+    assert_reads(&listener, "9;10;");
+    assert_true(srv_feed_rewind(&listener, 5));
+    assert_reads(&listener, "");
+    assert_false(srv_feed_rewind(&listener, 2));
+    assert_false(srv_feed_rewind(&listener, 6));
+    srv_feed_leave(&listener);
+}
+
+static void only_so_many_may_listen(void **state)
+{
+    (void)state;
+    srv_listener listener[3];
+    assert_true(srv_feed_listen(&feed, &listener[0], 2));
+    assert_true(srv_feed_listen(&feed, &listener[1], 2));
+    assert_false(srv_feed_listen(&feed, &listener[2], 2));
+    srv_feed_leave(&listener[0]);
+    assert_true(srv_feed_listen(&feed, &listener[2], 2));
+    srv_feed_leave(&listener[1]);
+    srv_feed_leave(&listener[2]);
+}
+
+static void *no_memory(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(memory);
+    }
+    return NULL;
+}
+
+static void a_message_without_memory_is_a_gap(void **state)
+{
+    (void)state;
+    static const he_mem_hook hook = {no_memory, NULL};
+    srv_listener listener;
+    unsigned wakes = 0;
+    join(&listener, &wakes);
+    add(8, 4);
+    he_mem_set_hook(&hook);
+    add(9, 5);
+    he_mem_set_hook(NULL);
+    srv_feed_allow(&feed, 9);
+    assert_step(&listener, SRV_FEED_BEHIND);
+    assert_int_equal(srv_feed_skip(&listener).key, 5);
+    add(10, 6);
+    srv_feed_add(&feed, (srv_place){11, 7}, NULL, 0);
+    add(12, 8);
+    srv_feed_allow(&feed, 12);
+    assert_step(&listener, SRV_FEED_BEHIND);
+    assert_int_equal(srv_feed_skip(&listener).key, 8);
+    srv_feed_leave(&listener);
+}
+
+/* --- threads --------------------------------------------------------------------------------- */
+
+enum { LISTENERS = 6, MESSAGES = 20000 };
+
+typedef struct reader {
+    pthread_t thread;
+    srv_listener listener;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    bool woken, leaves;
+    uint64_t last; /* stamp */
+    unsigned behind;
+} reader;
+
+static void wake_reader(void *context)
+{
+    reader *r = context;
+    pthread_mutex_lock(&r->lock);
+    assert_false(r->woken);
+    r->woken = true;
+    pthread_cond_signal(&r->changed);
+    pthread_mutex_unlock(&r->lock);
+}
+
+static void wait_for_wake(reader *r)
+{
+    pthread_mutex_lock(&r->lock);
+    while (!r->woken) {
+        pthread_cond_wait(&r->changed, &r->lock);
+    }
+    r->woken = false;
+    pthread_mutex_unlock(&r->lock);
+}
+
+/* A message is a stamp of eight bytes; a buffer holds whole ones. */
+static void take(reader *r, const char *bytes, size_t length)
+{
+    for (size_t at = 0; at < length; at += sizeof(uint64_t)) {
+        uint64_t stamp;
+        memcpy(&stamp, bytes + at, sizeof stamp);
+        assert_int_equal(stamp, r->last + 1);
+        r->last = stamp;
+    }
+}
+
+static void *read_feed(void *context)
+{
+    reader *r = context;
+    char buffer[16 * sizeof(uint64_t)];
+    for (;;) {
+        size_t got = 0;
+        srv_feed_step step = srv_feed_read(&r->listener, buffer, sizeof buffer, &got);
+        if (step == SRV_FEED_GOT) {
+            take(r, buffer, got);
+        } else if (step == SRV_FEED_WAIT) {
+            wait_for_wake(r);
+        } else if (step == SRV_FEED_BEHIND) {
+            r->last = srv_feed_skip(&r->listener).stamp;
+            r->behind++;
+        } else {
+            break;
+        }
+        if (r->leaves && r->last > MESSAGES / 2) {
+            break;
+        }
+    }
+    srv_feed_leave(&r->listener);
+    return NULL;
+}
+
+static void threads_read_what_one_writes(void **state)
+{
+    (void)state;
+    static reader readers[LISTENERS];
+    for (size_t i = 0; i < LISTENERS; i++) {
+        reader *r = &readers[i];
+        *r = (reader){.last = 7, .leaves = i == 0};
+        pthread_mutex_init(&r->lock, NULL);
+        pthread_cond_init(&r->changed, NULL);
+        assert_true(srv_feed_listen(&feed, &r->listener, LISTENERS));
+        srv_feed_wake(&r->listener, wake_reader, r);
+        assert_int_equal(pthread_create(&r->thread, NULL, read_feed, r), 0);
+    }
+    for (uint64_t stamp = 8; stamp <= MESSAGES; stamp++) {
+        srv_feed_add(&feed, (srv_place){stamp, stamp}, (const char *)&stamp, sizeof stamp);
+        if (stamp % 3 == 0 || stamp == MESSAGES) {
+            srv_feed_allow(&feed, stamp);
+        }
+    }
+    srv_feed_end(&feed);
+    unsigned behind = 0;
+    for (size_t i = 0; i < LISTENERS; i++) {
+        pthread_join(readers[i].thread, NULL);
+        assert_true(readers[i].leaves || readers[i].last == MESSAGES);
+        behind += readers[i].behind;
+        pthread_mutex_destroy(&readers[i].lock);
+        pthread_cond_destroy(&readers[i].changed);
+    }
+    assert_int_equal(feed.listeners, 0);
+    printf("note: %d messages to %d threads, behind %u times\n", MESSAGES, LISTENERS, behind);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
+    const struct CMUnitTest tests[] = {
+        TEST(everybody_reads_everything_once),   TEST(what_is_not_allowed_is_not_read),
+        TEST(who_is_slow_is_behind_once),        TEST(bytes_are_bounded_too),
+        TEST(a_listener_goes_back_to_a_key),     TEST(only_so_many_may_listen),
+        TEST(a_message_without_memory_is_a_gap), TEST(threads_read_what_one_writes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

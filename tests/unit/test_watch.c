@@ -1,0 +1,234 @@
+/* Progress never falls and has steps enough to see; work that is given up leaves nothing behind. */
+#include "tests/unit/fixture.h"
+
+#include "algo/shape.h"
+#include "edit/delaunay.h"
+#include "edit/plane_split.h"
+#include "edit/transform.h"
+#include "mesh/compact.h"
+#include "query/geometry.h"
+#include "query/topology.h"
+
+/* --- memory that is counted --- */
+
+static size_t blocks;
+
+static void *count_blocks(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        blocks -= memory != NULL;
+        free(memory);
+        return NULL;
+    }
+    void *resized = realloc(memory, size);
+    blocks += memory == NULL && resized != NULL;
+    return resized;
+}
+
+static const he_mem_hook counting = {count_blocks, NULL};
+
+/* --- a listener --- */
+
+typedef struct listener {
+    long told, give_up_at; /* 0: never */
+    size_t distinct;
+    double last;
+    bool fell;
+} listener;
+
+static bool hear(void *context, const char *phase, double done)
+{
+    listener *l = context;
+    assert_non_null(phase);
+    l->told++;
+    l->fell |= done < l->last || done > 1;
+    l->distinct += done > l->last;
+    l->last = done;
+    return l->told != l->give_up_at;
+}
+
+enum { SIDE = 260 }; /* cells of a grid */
+
+static he_status make(he_watch *watch, he_mesh **out)
+{
+    double args[HE_SHAPE_PARAMS];
+    const he_shape *grid = he_shape_find("grid", 4);
+    he_limits limits = {.watch = watch};
+    he_soup soup;
+    he_mesh *mesh;
+    he_topology topology;
+    he_measures measures;
+    he_shape_defaults(grid, args);
+    args[0] = args[1] = SIDE;
+    he_watch_span(watch, 0.2);
+    he_status status = he_shape_make(grid, args, &limits, &soup, NULL);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_watch_span(watch, 0.7);
+    status = he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL);
+    he_soup_clear(&soup);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_mesh_watch(mesh, watch);
+    he_watch_span(watch, 1);
+    status = he_topology_find(mesh, &topology, NULL);
+    if (status == HE_OK) {
+        he_topology_clear(&topology);
+        status = he_mesh_measure(mesh, &measures, NULL);
+    }
+    he_mesh_watch(mesh, NULL);
+    if (status != HE_OK) {
+        he_mesh_free(mesh);
+        return status;
+    }
+    *out = mesh;
+    return HE_OK;
+}
+
+static void a_second_of_work_has_twenty_steps_and_none_falls(void **state)
+{
+    (void)state;
+    he_mesh *mesh = NULL;
+    he_watch watch;
+    listener l = {0};
+    he_watch_init(&watch, hear, &l);
+    assert_int_equal(make(&watch, &mesh), HE_OK);
+    he_mesh_free(mesh);
+    assert_false(l.fell);
+    assert_true(l.distinct >= 20);
+    assert_true(l.last > 0.95);
+    print_message("note: %zu steps for %d quads\n", l.distinct, SIDE * SIDE);
+}
+
+static void making_is_given_up_anywhere_and_leaves_nothing(void **state)
+{
+    (void)state;
+    he_mem_set_hook(&counting);
+    blocks = 0;
+    he_status status = HE_CANCELLED;
+    for (long n = 1; status != HE_OK; n += n < 40 ? 1 : 37) {
+        he_mesh *mesh = NULL;
+        he_watch watch;
+        listener l = {.give_up_at = n};
+        he_watch_init(&watch, hear, &l);
+        status = make(&watch, &mesh);
+        if (status != HE_OK) {
+            assert_int_equal(status, HE_CANCELLED);
+            assert_null(mesh);
+            assert_int_equal(l.told, n);
+            assert_int_equal(blocks, 0);
+        }
+        he_mesh_free(mesh);
+    }
+    assert_int_equal(blocks, 0);
+    he_mem_set_hook(NULL);
+}
+
+/* --- operations on a mesh --- */
+
+static he_status run_transform(he_mesh *m)
+{
+    static const double matrix[16] = {2, 0, 0, 1, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1};
+    return he_transform(m, matrix, NULL, 0, NULL);
+}
+
+static he_status run_plane_split(he_mesh *m)
+{
+    he_plane_parts parts;
+    he_status status = he_plane_split(m, (he_vec3){0.001, 0.002, 0}, (he_vec3){1, 0.7, 0}, NULL,
+                                      NULL, 0, &parts, NULL);
+    if (status == HE_OK) {
+        he_plane_parts_clear(&parts);
+    }
+    return status;
+}
+
+static he_status run_delaunay(he_mesh *m)
+{
+    return he_delaunay(m, NULL, 0, NULL, NULL);
+}
+
+static he_status run_compact(he_mesh *m)
+{
+    return he_compact(m, NULL, NULL);
+}
+
+static he_status run_copy(he_mesh *m)
+{
+    he_mesh *copy;
+    he_status status = he_mesh_copy_watched(m, m->watch, &copy, NULL);
+    if (status == HE_OK) {
+        assert_true(he_mesh_equal(m, copy));
+        he_mesh_free(copy);
+    }
+    return status;
+}
+
+static he_status (*const operations[])(he_mesh *m) = {run_transform, run_plane_split, run_delaunay,
+                                                      run_compact, run_copy};
+
+static he_status run_recorded(he_status (*operation)(he_mesh *m), he_mesh *mesh, listener *l)
+{
+    he_watch watch;
+    he_delta *delta = he_delta_new();
+    he_changes changes;
+    he_watch_init(&watch, hear, l);
+    he_mesh_watch(mesh, &watch);
+    he_mesh_record(mesh, delta);
+    he_savepoint mark = he_delta_mark(mesh);
+    he_watch_span(&watch, 0.8);
+    he_status status = operation(mesh);
+    if (status == HE_OK) {
+        he_watch_span(&watch, 1);
+        status = he_changes_find(mesh, delta, 0, delta->count, false, &changes, NULL);
+    }
+    if (status == HE_OK) {
+        he_changes_clear(&changes);
+    } else {
+        he_delta_rollback(mesh, mark);
+    }
+    he_mesh_record(mesh, NULL);
+    he_mesh_watch(mesh, NULL);
+    he_delta_free(delta);
+    return status;
+}
+
+static void an_operation_is_given_up_and_the_mesh_is_as_it_was(void **state)
+{
+    (void)state;
+    he_mesh *mesh, *copy;
+    assert_int_equal(make(NULL, &mesh), HE_OK);
+    for (size_t i = 0; i < sizeof operations / sizeof *operations; i++) {
+        he_mem_set_hook(&counting);
+        he_status status = HE_CANCELLED;
+        for (long n = 1; status != HE_OK; n += n < 20 ? 1 : 23) {
+            listener l = {.give_up_at = n};
+            blocks = 0;
+            assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
+            size_t before = blocks;
+            status = run_recorded(operations[i], copy, &l);
+            assert_false(l.fell);
+            if (status != HE_OK) {
+                assert_int_equal(status, HE_CANCELLED);
+                assert_int_equal(blocks, before);
+                assert_true(he_mesh_equal(mesh, copy));
+            }
+            he_mesh_free(copy);
+        }
+        he_mem_set_hook(NULL);
+    }
+    he_mesh_free(mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_second_of_work_has_twenty_steps_and_none_falls),
+        cmocka_unit_test(making_is_given_up_anywhere_and_leaves_nothing),
+        cmocka_unit_test(an_operation_is_given_up_and_the_mesh_is_as_it_was),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
