@@ -1,6 +1,7 @@
 #include "op/rows.h"
 
 #include "edit/delaunay.h"
+#include "edit/plane_cut.h"
 #include "edit/plane_split.h"
 #include "edit/transform.h"
 #include "mesh/compact.h"
@@ -26,6 +27,21 @@ static he_status run_plane_split(he_mesh *m, const he_arg *args, he_results *out
         he_give_list(out, 3, &parts.edges);
         he_give_list(out, 4, &parts.faces);
         he_plane_parts_clear(&parts);
+    }
+    return status;
+}
+
+static he_status run_plane_cut(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_cut_parts parts;
+    he_status status = he_plane_cut(m, args[0].points[0], args[1].points[0],
+                                    (he_cut_side)args[2].choice, args[3].flag, &parts, err);
+    if (status == HE_OK) {
+        he_give_number(out, 0, parts.edges_split);
+        he_give_number(out, 1, parts.faces_split);
+        he_give_number(out, 2, parts.faces_deleted);
+        he_give_list(out, 3, &parts.caps);
+        he_cut_parts_clear(&parts);
     }
     return status;
 }
@@ -60,6 +76,9 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
     }
     return status;
 }
+
+/* In the order of he_cut_side. */
+static const char *const cut_sides[] = {"above", "below", NULL};
 
 const he_op he_mesh_rows[] = {
     {
@@ -113,6 +132,36 @@ const he_op he_mesh_rows[] = {
                      HE_DOUBLED_EDGE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .run = run_plane_split,
+    },
+    {
+        .name = "plane_cut",
+        .doc = "Split the mesh along a plane and delete what is on one side.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "point",
+                    .type = HE_PARAM_POINT,
+                    .flags = HE_REQUIRED,
+                    .doc = "Any point of the plane."},
+                   {.name = "normal",
+                    .type = HE_PARAM_POINT,
+                    .flags = HE_REQUIRED,
+                    .doc = "The direction it faces, of any length but zero."},
+                   {.name = "keep",
+                    .type = HE_PARAM_CHOICE,
+                    .choices = cut_sides,
+                    .doc = "The side that stays; above is where the normal points. A face in the "
+                           "plane is below it when it faces up."},
+                   {.name = "cap",
+                    .type = HE_PARAM_FLAG,
+                    .doc = "Close each loop of the cut with a polygon."}},
+        .results = {{"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges got a vertex."},
+                    {"faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."},
+                    {"faces_deleted", HE_RESULT_NUMBER, HE_FACE,
+                     "How many faces went, the parts of those that were cut among them."},
+                    {"caps", HE_RESULT_ELEMENTS, HE_FACE, "The polygons that close the cut."}},
+        .refusals = {HE_BAD_VALUE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT, HE_OPEN_LOOP,
+                     HE_REPEATED_CORNER},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_plane_cut,
     },
     {
         .name = "delaunay",

@@ -9,6 +9,7 @@ extern const he_op he_vertex_rows[];
 extern const he_op he_edge_rows[];
 extern const he_op he_border_rows[];
 extern const he_op he_face_rows[];
+extern const he_op he_loop_rows[];
 extern const he_op he_mesh_rows[];
 extern const he_op he_weld_rows[];
 

@@ -130,6 +130,28 @@ uint32_t md_pick_some(md_draft *d, const char *one, const char *many, he_kind ki
     return n;
 }
 
+void md_give_plane(md_draft *d)
+{
+    md_give_points(d, "point", 1, false);
+    md_give_points(d, "normal", 1, false);
+    he_vec3 *point = d->c->points[md_index(d->c, "point")];
+    he_vec3 *normal = d->c->points[md_index(d->c, "normal")];
+    if (md_chance(d->r, 40) && or_live_vertices(d->o) > 0) {
+        he_vec3 p[3];
+        for (int i = 0; i < 3; i++) {
+            p[i] = d->o->vertex[md_live(d, HE_VERTEX)].at;
+        }
+        he_vec3 a = {p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
+        he_vec3 b = {p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
+        he_vec3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+        *point = p[0];
+        *normal = n.x * n.x + n.y * n.y + n.z * n.z > 1e-3 ? n : *normal;
+    }
+    if (md_chance(d->r, 2)) {
+        *normal = (he_vec3){0, 0, 0};
+    }
+}
+
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg)
 {
     uint64_t refused = 0;

@@ -44,6 +44,8 @@ uint32_t md_pick(md_draft *d, he_kind kind);
 /* Give up to `most` elements, as one id or as a list; now and then one twice. How many it were. */
 uint32_t md_pick_some(md_draft *d, const char *one, const char *many, he_kind kind, uint32_t most);
 uint32_t md_boundary_halfedge(md_draft *d);
+/* Give `point` and `normal`: anywhere, or through three vertices. */
+void md_give_plane(md_draft *d);
 
 /* or_require of all elements of a list, and HE_REPEATED_ELEMENT. */
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg);

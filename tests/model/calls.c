@@ -517,32 +517,9 @@ static uint64_t play_transform(const md_call *c, or_mesh *o, const he_mesh *m)
                                        v->given ? (uint32_t)v->count : 0);
 }
 
-/* Anywhere, or through three vertices. */
-static void draw_plane(md_draft *d)
-{
-    md_give_points(d, "point", 1, false);
-    md_give_points(d, "normal", 1, false);
-    he_vec3 *point = d->c->points[md_index(d->c, "point")];
-    he_vec3 *normal = d->c->points[md_index(d->c, "normal")];
-    if (md_chance(d->r, 40) && or_live_vertices(d->o) > 0) {
-        he_vec3 p[3];
-        for (int i = 0; i < 3; i++) {
-            p[i] = d->o->vertex[md_live(d, HE_VERTEX)].at;
-        }
-        he_vec3 a = {p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
-        he_vec3 b = {p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
-        he_vec3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-        *point = p[0];
-        *normal = n.x * n.x + n.y * n.y + n.z * n.z > 1e-3 ? n : *normal;
-    }
-    if (md_chance(d->r, 2)) {
-        *normal = (he_vec3){0, 0, 0};
-    }
-}
-
 static bool draw_plane_split(md_draft *d)
 {
-    draw_plane(d);
+    md_give_plane(d);
     if (md_chance(d->r, 30)) {
         md_give_number(d, "tolerance", md_chance(d->r, 5) ? -1 : md_unit(d->r) * 0.5);
     }
@@ -657,7 +634,8 @@ static const md_row rows[] = {
     {.name = NULL},
 };
 
-static const md_row *const groups[] = {rows, md_border_rows, md_weld_rows, md_corner_rows};
+static const md_row *const groups[] = {rows, md_border_rows, md_weld_rows, md_corner_rows,
+                                       md_loop_rows};
 
 static const md_row *row_of(const char *name)
 {

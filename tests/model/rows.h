@@ -17,5 +17,6 @@ typedef struct md_row {
 extern const md_row md_border_rows[];
 extern const md_row md_weld_rows[];
 extern const md_row md_corner_rows[];
+extern const md_row md_loop_rows[];
 
 #endif

@@ -46,6 +46,11 @@ static bool adopt_faces(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     for (uint32_t i = 0; i < o->cuts && !o->by_plane; i++) {
         expected += o->cut[i].was.count - (o->cut[i].id == OR_NONE ? 2 : 3);
     }
+    if (o->bridging) {
+        uint32_t n = o->bridge[0].count;
+        uint32_t other = o->bridge[1].count;
+        expected = n == other ? n : n + other;
+    }
     if (made != expected && (!o->by_plane || o->cuts == 0)) {
         return differ(text, "%u faces were issued, not %u", made, expected);
     }
@@ -60,7 +65,7 @@ static bool adopt_faces(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
         if (!read_face(m, f, &there)) {
             return differ(text, "new face %u has no loop", f);
         }
-        if (o->cuts > 0) {
+        if (o->cuts > 0 || o->bridging) {
             o->face[f] = there;
             continue;
         }
@@ -240,7 +245,7 @@ static void settled(or_mesh *o)
 {
     o->cuts = 0;
     o->may = 0;
-    o->either = o->by_plane = false;
+    o->either = o->by_plane = o->bridging = false;
 }
 
 void or_decline(or_mesh *o)
@@ -264,6 +269,9 @@ bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     }
     if (o->by_plane && !adopt_parts(o, first_new, text)) {
         return false;
+    }
+    if (o->bridging && !or_strip_is_right(o, first_new)) {
+        return differ(text, "the new faces do not make up a strip of least twist");
     }
     for (uint32_t i = 0; i < o->cuts && !o->by_plane; i++) {
         const or_face *was = &o->cut[i].was;

@@ -32,7 +32,7 @@ void or_empty(or_mesh *o)
 {
     forget_pairs(o);
     o->vertices = o->edges = o->faces = o->fresh = o->cuts = 0;
-    o->either = o->by_plane = false;
+    o->either = o->by_plane = o->bridging = false;
     o->may = 0;
 }
 

@@ -61,8 +61,10 @@ typedef struct or_mesh {
     bool by_plane;
     bool chosen[OR_FACES];        /* what plane_split is to cut */
     double distance[OR_VERTICES]; /* from the plane; 0 in it */
-    uint64_t may; /* refusals that depend on those triangles: hedge may give them or succeed */
-    bool either;  /* edge_join: `joining` are the two edges of which one survives */
+    uint64_t may;      /* refusals that depend on those triangles: hedge may give them or succeed */
+    bool bridging;     /* loop_bridge: new faces of hedge's choice join these two loops */
+    or_face bridge[2]; /* as they go round their holes */
+    bool either;       /* edge_join: `joining` are the two edges of which one survives */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];
     or_edge edge[OR_EDGES];
@@ -158,6 +160,16 @@ bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES]);
 uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 void or_separate(or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 uint64_t or_delete_isolated(or_mesh *o);
+/* Holes as hedge's links go round them. */
+uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m);
+/* b[i] becomes one with a[i]; fa and fb are the faces of the loops, OR_NONE for holes. */
+uint64_t or_loop_join(or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b, uint32_t fb,
+                      uint32_t n);
+uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
+/* The vertices of the cycle of three edges, as the first one runs; false when they are none. */
+bool or_find_cycle(const or_mesh *o, const uint32_t e[3], uint32_t cycle[3]);
+/* Once plane_split has cut everything: on which side is a face? */
+bool or_face_is_above(const or_mesh *o, uint32_t f, he_vec3 normal);
 
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);
@@ -189,6 +201,8 @@ enum { OR_TEXT = 256 };
 /* The vertices that plane_split puts on edges, by rising edge, and the faces to be cut with them.
  */
 void or_plane_vertices(or_mesh *o);
+/* Do the faces from `first_new` on make up the strip of loop_bridge? */
+bool or_strip_is_right(const or_mesh *o, uint32_t first_new);
 /* Take over the ids hedge gave to what the last operation made, then or_derive. False with a
  * sentence when hedge's mesh has other new elements than the oracle. or_decline is for a refusal
  * in `may`: the oracle goes back to before the operation. */

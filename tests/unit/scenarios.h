@@ -16,5 +16,6 @@ typedef struct scenario {
 extern const scenario border_scenarios[];
 extern const scenario weld_scenarios[];
 extern const scenario corner_scenarios[];
+extern const scenario loop_scenarios[];
 
 #endif

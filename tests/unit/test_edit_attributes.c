@@ -409,13 +409,64 @@ static void test_extreme_positions(void **state)
     }
 }
 
+#define CF4       "023,321,031,647,675,745"
+#define BIPYRAMID "013,123,203,104,214,024"
+
+static void test_loops(void **state)
+{
+    (void)state;
+    static const char join[] = "loop_join a=2-0 b=4-6";
+    static const char split[] = "loop_split a=0-1 b=1-2 c=2-0";
+    /* 6 goes into 2, and the edge 4-6 into 0-2. */
+    he_mesh *m = after(CF4, HE_VERTEX, HE_INTERPOLATE, join);
+    assert_value(m, HE_VERTEX, 2, 40);
+    he_mesh_free(m);
+    m = after(CF4, HE_VERTEX, HE_COPY, join);
+    assert_value(m, HE_VERTEX, 2, 20);
+    he_mesh_free(m);
+    m = after(CF4, HE_EDGE, HE_INTERPOLATE, NULL);
+    uint32_t kept = edge_between(m, 0, 2).i, gone = edge_between(m, 4, 6).i;
+    uint32_t corner = halfedge_between(m, 6, 4).i;
+    script_prepare(m, join);
+    assert_value(m, HE_EDGE, kept, 5.0 * (kept + gone));
+    he_mesh_free(m);
+    m = after(CF4, HE_HALFEDGE, HE_DEFAULT, join);
+    assert_corner(m, 3, 2, 10.0 * corner);
+    assert_corner(m, 0, 2, 10.0 * halfedge_between(m, 2, 3).i);
+    he_mesh_free(m);
+
+    /* 5, 6 and 7 come from 0, 1 and 2; edge 9 from edge 0, which runs from 0 to 1. */
+    m = after(BIPYRAMID, HE_VERTEX, HE_COPY, split);
+    assert_value(m, HE_VERTEX, 6, 10);
+    he_mesh_free(m);
+    m = after(BIPYRAMID, HE_VERTEX, HE_DEFAULT, split);
+    assert_value(m, HE_VERTEX, 6, -1);
+    assert_value(m, HE_VERTEX, 1, 10);
+    he_mesh_free(m);
+    m = after(BIPYRAMID, HE_EDGE, HE_INTERPOLATE, split);
+    assert_value(m, HE_EDGE, 9, 0);
+    assert_value(m, HE_EDGE, 10, 10.0 * edge_between(m, 1, 2).i);
+    he_mesh_free(m);
+    for (he_rule rule = HE_COPY; rule <= HE_DEFAULT; rule++) {
+        m = after(BIPYRAMID, HE_HALFEDGE, rule, split);
+        assert_corner(m, 3, 6, 10);
+        assert_corner(m, 6, 1, 10);
+        assert_corner(m, 7, 5, rule == HE_DEFAULT ? -1 : 0);
+        he_mesh_free(m);
+    }
+    m = after("012,345", HE_FACE, HE_COPY, "loop_bridge a=1-0 b=4-3");
+    assert_value(m, HE_FACE, 1, 10);
+    assert_value(m, HE_FACE, 2, -1);
+    he_mesh_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_vertices),          cmocka_unit_test(test_edges_and_faces),
         cmocka_unit_test(test_normals),           cmocka_unit_test(test_marks_are_copied),
         cmocka_unit_test(test_corners),           cmocka_unit_test(test_bad_values),
-        cmocka_unit_test(test_extreme_positions),
+        cmocka_unit_test(test_extreme_positions), cmocka_unit_test(test_loops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

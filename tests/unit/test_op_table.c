@@ -371,7 +371,7 @@ static const scenario scenarios[] = {
 };
 
 static const scenario *const groups[] = {scenarios, border_scenarios, weld_scenarios,
-                                         corner_scenarios};
+                                         corner_scenarios, loop_scenarios};
 
 enum { MAX_OPS = 128 };
 

@@ -1,0 +1,173 @@
+#include "edit/plane_cut.h"
+
+#include "edit/erase.h"
+#include "edit/hole.h"
+#include "edit/plane.h"
+#include "edit/plane_split.h"
+#include "mesh/write.h"
+#include "query/geometry.h"
+#include "query/vec3.h"
+
+void he_cut_parts_clear(he_cut_parts *parts)
+{
+    he_ids_clear(&parts->caps);
+}
+
+/* One call. */
+typedef struct cutter {
+    he_mesh *m;
+    he_sides sides;
+    he_vec3 normal;
+    int away;        /* the side that goes: 1 above, -1 below */
+    uint64_t *going; /* faces */
+    he_ids faces;    /* the same */
+    he_ids rim;      /* half-edges of theirs whose twins are of faces that stay */
+    he_cut_parts made;
+} cutter;
+
+/* Corners are on one side of the plane or in it. */
+static int side_of_face(const cutter *c, he_face f)
+{
+    he_halfedge first = he_face_halfedge(c->m, f), h = first;
+    he_vec3 up;
+    do {
+        int side = he_side_of(&c->sides, he_origin(c->m, h));
+        if (side != 0) {
+            return side;
+        }
+        h = he_next(c->m, h);
+    } while (h.i != first.i);
+    (void)he_face_normal(c->m, f, &up);
+    return he_vec3_dot(up, c->normal) > 0 ? -1 : 1;
+}
+
+static he_status find_faces(cutter *c, he_error *err)
+{
+    uint32_t issued = c->m->c.faces.issued;
+    he_status status = HE_OK;
+    c->going = he_bits_new(issued);
+    if (c->going == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a set of faces");
+    }
+    for (uint32_t f = 0; status == HE_OK && f < issued; f++) {
+        if (he_face_is_live(c->m, (he_face){f}) && side_of_face(c, (he_face){f}) == c->away) {
+            he_bits_set(c->going, f);
+            status = he_ids_add(&c->faces, f, err);
+        }
+    }
+    return status;
+}
+
+static he_status find_rim(cutter *c, he_error *err)
+{
+    const he_mesh *m = c->m;
+    he_status status = HE_OK;
+    for (size_t i = 0; i < c->faces.count; i++) {
+        he_halfedge first = he_face_halfedge(m, (he_face){c->faces.ids[i]}), h = first;
+        do {
+            he_face beyond = he_face_of(m, he_twin(h));
+            if (beyond.i != HE_NONE && !he_bits_get(c->going, beyond.i)) {
+                status = he_ids_add(&c->rim, h.i, err);
+            }
+            h = he_next(m, h);
+        } while (status == HE_OK && h.i != first.i);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    return he_ids_sort(&c->rim, err);
+}
+
+static he_status erase(cutter *c, he_error *err)
+{
+    he_mesh *m = c->m;
+    he_status status = he_face_delete(m, c->faces.ids, c->faces.count, HE_DROP_ISOLATED, err);
+    for (uint32_t v = 0; status == HE_OK && v < m->c.vertices.issued; v++) {
+        if (he_vertex_is_live(m, (he_vertex){v}) && he_is_isolated(m, (he_vertex){v}) &&
+            he_side_of(&c->sides, (he_vertex){v}) == c->away) {
+            status = he_vertex_delete(m, (he_vertex){v}, HE_DROP_ISOLATED, err);
+        }
+    }
+    return status;
+}
+
+static he_status check_loop(const cutter *c, he_halfedge h, he_error *err)
+{
+    he_halfedge k = h;
+    do {
+        he_vertex v = he_origin(c->m, k);
+        if (he_side_of(&c->sides, v) != 0) {
+            return he_fail(err, HE_OPEN_LOOP, HE_VERTEX, v.i,
+                           "the loop of the cut leaves the plane to vertex %u", v.i);
+        }
+        k = he_next(c->m, k);
+    } while (k.i != h.i);
+    return HE_OK;
+}
+
+static he_status cap_loops(cutter *c, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; status == HE_OK && i < c->rim.count; i++) {
+        he_halfedge h = {c->rim.ids[i]};
+        he_filled filled = {.vertex = {HE_NONE}};
+        if (!he_is_boundary_halfedge(c->m, h)) {
+            continue; /* on a loop that is capped */
+        }
+        status = check_loop(c, h, err);
+        if (status == HE_OK) {
+            status = he_hole_fill(c->m, h, HE_FILL_POLYGON, &filled, err);
+        }
+        if (status == HE_OK) {
+            status = he_ids_add(&c->made.caps, filled.faces.ids[0], err);
+        }
+        he_filled_clear(&filled);
+    }
+    return status;
+}
+
+static he_status cut(cutter *c, he_vec3 point, bool cap, he_error *err)
+{
+    he_plane_parts parts = {.faces_split = 0};
+    he_status status = he_plane_split(c->m, point, c->normal, NULL, NULL, 0, &parts, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    c->made.edges_split = (uint32_t)parts.vertices.count;
+    c->made.faces_split = parts.faces_split;
+    he_plane_parts_clear(&parts);
+    status = find_faces(c, err);
+    if (status == HE_OK && cap) {
+        status = find_rim(c, err);
+    }
+    if (status == HE_OK) {
+        c->made.faces_deleted = (uint32_t)c->faces.count;
+        status = erase(c, err);
+    }
+    return status == HE_OK ? cap_loops(c, err) : status;
+}
+
+he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal, he_cut_side keep, bool cap,
+                       he_cut_parts *out, he_error *err)
+{
+    cutter c = {.m = m, .normal = normal, .away = keep == HE_CUT_ABOVE ? -1 : 1};
+    he_bracket bracket;
+    /* Measured before the split, whose vertices are in the plane then. */
+    he_status status = he_sides_find(m, point, normal, NULL, &c.sides, err);
+    if (status == HE_OK) {
+        status = he_edit_begin(m, &bracket, err);
+    }
+    if (status == HE_OK) {
+        status = he_edit_end(m, &bracket, cut(&c, point, cap, err));
+    }
+    if (status == HE_OK && out != NULL) {
+        *out = c.made;
+        c.made.caps = (he_ids){0};
+    }
+    he_cut_parts_clear(&c.made);
+    he_ids_clear(&c.rim);
+    he_ids_clear(&c.faces);
+    he_mem_free(c.going);
+    he_sides_clear(&c.sides);
+    return status;
+}

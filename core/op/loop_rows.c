@@ -1,0 +1,125 @@
+#include "op/rows.h"
+
+#include "edit/bridge.h"
+#include "edit/loop_join.h"
+#include "edit/loop_split.h"
+
+static he_status run_loop_bridge(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_bridge bridge;
+    he_status status =
+        he_loop_bridge(m, (he_halfedge){args[0].id}, (he_halfedge){args[1].id}, &bridge, err);
+    if (status == HE_OK) {
+        he_give_list(out, 0, &bridge.edges);
+        he_give_list(out, 1, &bridge.faces);
+        he_bridge_clear(&bridge);
+    }
+    return status;
+}
+
+static he_status run_loop_join(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)out;
+    return he_loop_join(m, (he_halfedge){args[0].id}, (he_halfedge){args[1].id}, err);
+}
+
+static he_status run_loop_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_loop_parts parts;
+    he_status status = HE_OK;
+    for (size_t i = 0; status == HE_OK && i < 3; i++) {
+        status = he_give_room(out, i, 3, err);
+    }
+    if (status == HE_OK) {
+        status = he_loop_split(m, (he_edge){args[0].id}, (he_edge){args[1].id},
+                               (he_edge){args[2].id}, &parts, err);
+    }
+    if (status == HE_OK) {
+        for (size_t i = 0; i < 3; i++) {
+            he_give_add(out, 0, parts.vertices[i].i);
+            he_give_add(out, 1, parts.edges[i].i);
+        }
+        he_give_add(out, 2, parts.faces[0].i);
+        he_give_add(out, 2, parts.faces[1].i);
+    }
+    return status;
+}
+
+const he_op he_loop_rows[] = {
+    {
+        .name = "loop_bridge",
+        .doc = "Join two holes by a strip of faces: quadrilaterals where they have equally many "
+               "edges, else triangles.",
+        .params = {{.name = "a",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "A boundary half-edge of one hole."},
+                   {.name = "b",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "One of the other hole. Which corners are joined follows from where "
+                           "they lie."}},
+        .results = {{"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "The new edges, from the origin of `a` on; each leaves its loop."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                     "The new faces, each between the edge in its place and the one after."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_SAME_LOOP,
+                     HE_SHARED_VERTEX, HE_DOUBLED_EDGE},
+        .change = {0, HE_VARIES, HE_VARIES},
+        .run = run_loop_bridge,
+    },
+    {
+        .name = "loop_join",
+        .doc = "Sew two loops of equally many edges together, each a face's or a hole's; the "
+               "faces go.",
+        .params = {{.name = "a",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "One loop; its vertices and edges stay."},
+                   {.name = "b",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_HALFEDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "The other, by the edge that becomes one with that of `a`: its target "
+                           "is merged into the origin of `a`."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_LOOP, HE_LOOP_LENGTH,
+                     HE_REPEATED_CORNER, HE_SHARED_VERTEX, HE_BOUNDARY_EDGE, HE_DOUBLED_EDGE,
+                     HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_loop_join,
+    },
+    {
+        .name = "loop_split",
+        .doc = "Cut the mesh around three edges and cap both sides with triangles; the inverse of "
+               "loop_join.",
+        .params = {{.name = "a",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "One edge; what is left of its first half-edge keeps the vertices."},
+                   {.name = "b",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "Another that makes up a cycle with it."},
+                   {.name = "c",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_EDGE,
+                    .flags = HE_REQUIRED,
+                    .doc = "The third."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, from that of the origin of the first half-edge of `a` on."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "The new edges: between the first two vertices, and so on around."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                     "The caps: that of the old vertices, then that of the new ones."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_A_CYCLE, HE_BOUNDARY_VERTEX,
+                     HE_SHARED_FACE, HE_LOCKED_ELEMENT},
+        .change = {3, 3, 2},
+        .run = run_loop_split,
+    },
+    {.name = NULL},
+};
