@@ -197,6 +197,28 @@ he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_lef
     return he_edit_end(m, &bracket, status);
 }
 
+he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count, he_leftover leftover,
+                         he_error *err)
+{
+    he_status status = he_list_require(m, HE_EDGE, edges, count, HE_REPEATED_ELEMENT, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_bracket bracket;
+    status = he_edit_begin(m, &bracket, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < 2 * count && status == HE_OK; i++) {
+        he_halfedge h = he_edge_halfedge((he_edge){edges[i / 2]}, i % 2);
+        /* Gone already with a face it shares with an edge before it? */
+        if (he_edge_is_live(m, he_edge_of(h)) && !he_is_boundary_halfedge(m, h)) {
+            status = erase_one(m, he_face_of(m, h), leftover, err);
+        }
+    }
+    return he_edit_end(m, &bracket, status);
+}
+
 he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover, he_error *err)
 {
     he_ids faces = {0};

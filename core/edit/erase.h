@@ -28,6 +28,12 @@ typedef enum he_leftover { HE_DROP_ISOLATED, HE_KEEP_ISOLATED } he_leftover;
 HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count,
                                       he_leftover leftover, he_error *err);
 
+/* edge_delete: the faces beside the edges go as by face_delete, and with them the edges. A face
+ * beside two of the edges goes once. V varies, E - count at least, F - the faces beside them.
+ * Refused, all or nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT. */
+HE_NODISCARD he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count,
+                                      he_leftover leftover, he_error *err);
+
 /* vertex_delete: the faces of v go as by face_delete, then v itself; `leftover` is about the other
  * vertices. An isolated vertex just goes. Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT. */
 HE_NODISCARD he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover,

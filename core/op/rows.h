@@ -7,6 +7,7 @@
 /* Rows by what they edit; each array ends in a row without a name. */
 extern const he_op he_vertex_rows[];
 extern const he_op he_edge_rows[];
+extern const he_op he_border_rows[];
 extern const he_op he_face_rows[];
 extern const he_op he_mesh_rows[];
 

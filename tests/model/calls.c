@@ -1,7 +1,7 @@
 #include "model/calls.h"
 
 #include "mesh/walk.h"
-#include "model/arguments.h"
+#include "model/rows.h"
 
 #include <assert.h>
 #include <math.h>
@@ -633,13 +633,7 @@ static uint64_t play_compact(const md_call *c, or_mesh *o, const he_mesh *m)
     return 0;
 }
 
-static const struct row {
-    const char *name;
-    int growth; /* of the mesh, roughly: rows above 0 wait while there is no room */
-    bool (*draw)(md_draft *d);
-    uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);
-    bool (*follow)(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
-} rows[] = {
+static const md_row rows[] = {
     {"vertex_add", 1, draw_vertex_add, play_vertex_add, NULL},
     {"vertex_move", 0, draw_vertex_move, play_vertex_move, NULL},
     {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete, NULL},
@@ -660,13 +654,18 @@ static const struct row {
     {"plane_split", 1, draw_plane_split, play_plane_split, NULL},
     {"delaunay", 0, draw_delaunay, play_delaunay, follow_delaunay},
     {"compact", 0, draw_compact, play_compact, NULL},
+    {.name = NULL},
 };
 
-static const struct row *row_of(const char *name)
+static const md_row *const groups[] = {rows, md_border_rows};
+
+static const md_row *row_of(const char *name)
 {
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        if (strcmp(rows[i].name, name) == 0) {
-            return &rows[i];
+    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
+        for (const md_row *row = groups[g]; row->name != NULL; row++) {
+            if (strcmp(row->name, name) == 0) {
+                return row;
+            }
         }
     }
     return NULL;
@@ -688,7 +687,7 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
     c->row = md_below(r, (uint32_t)he_op_count());
     c->op = he_op_at(c->row);
     he_op_defaults(c->op, c->args);
-    const struct row *row = row_of(c->op->name);
+    const md_row *row = row_of(c->op->name);
     /* What little there is should not be gone at once. */
     if (row->growth < 0 && he_mesh_faces(m) < 8 && md_chance(r, 60)) {
         return false;
@@ -703,6 +702,6 @@ uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m)
 
 bool md_follow(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT])
 {
-    const struct row *row = row_of(c->op->name);
+    const md_row *row = row_of(c->op->name);
     return row->follow == NULL || row->follow(c, o, results, text);
 }

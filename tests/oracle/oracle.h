@@ -103,7 +103,7 @@ uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t roo
 uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
 bool or_same_cycle(const or_face *f, const or_face *g);
 
-/* --- operations (ops_vertex.c, ops_edge.c, ops_face.c) --------------------------------------- */
+/* --- operations (ops_vertex.c, ops_edge.c, ops_border.c, ops_face.c) --------------------------------------- */
 
 /* HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
@@ -120,6 +120,8 @@ uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_flip(or_mesh *o, uint32_t e);
 /* u, the origin, goes; v stays, at `to` or at t between them. */
 uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
+
+uint64_t or_edge_delete(or_mesh *o, const uint32_t *e, uint32_t count, bool keep_isolated);
 
 uint64_t or_face_add(or_mesh *o, const uint32_t *v, uint32_t count);
 uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep_isolated);

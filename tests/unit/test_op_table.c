@@ -2,6 +2,7 @@
  * produced and no other, V, E and F move as declared, the checker passes, a refusal or a failed
  * allocation leaves the mesh bit-identical, and the delta undoes and redoes. */
 #include "edit_script.h"
+#include "scenarios.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -27,14 +28,6 @@
 #define MANY \
     "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33"
 #define MANY_MORE "+++++++++++++++++++++++++++++++++"
-
-typedef struct scenario {
-    const char *operation;
-    const char *mesh;
-    const char *prepare;
-    he_status expected;
-    int change[3];
-} scenario;
 
 static const char MIRROR[] = "transform matrix=-1,0,0,5,0,1,0,0,0,0,1,0,0,0,0,1";
 
@@ -374,9 +367,12 @@ static const scenario scenarios[] = {
 
     {"compact", "012,034+", "face_delete face=0", HE_OK, {0, 0, 0}},
     {"compact", "", NULL, HE_OK, {0, 0, 0}},
+    {.operation = NULL},
 };
 
-enum { SCENARIOS = sizeof scenarios / sizeof *scenarios, MAX_OPS = 128 };
+static const scenario *const groups[] = {scenarios, border_scenarios};
+
+enum { MAX_OPS = 128 };
 
 /* What the scenarios of this run produced, by row. */
 static bool produced[MAX_OPS][HE_STATUS_COUNT];
@@ -483,13 +479,14 @@ static void run_short_of_memory(const scenario *s, bool columns, bool record)
 static void test_scenarios(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < SCENARIOS; i++) {
-        const scenario *s = &scenarios[i];
-        print_message("%s on %s\n", s->operation, s->mesh);
-        for (unsigned columns = 0; columns < 2; columns++) {
-            run_recorded(s, columns);
-            run_short_of_memory(s, columns, false);
-            run_short_of_memory(s, columns, true);
+    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
+        for (const scenario *s = groups[g]; s->operation != NULL; s++) {
+            print_message("%s on %s\n", s->operation, s->mesh);
+            for (unsigned columns = 0; columns < 2; columns++) {
+                run_recorded(s, columns);
+                run_short_of_memory(s, columns, false);
+                run_short_of_memory(s, columns, true);
+            }
         }
     }
 }

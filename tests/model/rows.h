@@ -1,0 +1,19 @@
+/* rows.h - one line for each row of the table: how the model draws its arguments and plays it. */
+#ifndef TESTS_MODEL_ROWS_H
+#define TESTS_MODEL_ROWS_H
+
+#include "model/arguments.h"
+
+typedef struct md_row {
+    const char *name;
+    int growth; /* of the mesh, roughly: rows above 0 wait while there is no room */
+    /* What md_draw, md_play and md_follow of calls.h say of one row. */
+    bool (*draw)(md_draft *d);
+    uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);
+    bool (*follow)(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
+} md_row;
+
+/* Beside those of calls.c; each array ends in a row without a name. */
+extern const md_row md_border_rows[];
+
+#endif
