@@ -56,6 +56,11 @@
     X(LOW_DEGREE, "low_degree", "An end of the edge would lose too many edges")               \
     X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")               \
     X(LINK_CONDITION, "link_condition", "The link condition does not hold")                   \
+    X(ISOLATED_VERTEX, "isolated_vertex", "The vertex has no face")                           \
+    X(NO_RIM, "no_rim", "The faces are a whole closed component")                             \
+    X(RIM_MEETS_ITSELF, "rim_meets_itself", "The rim of the faces passes a vertex twice")     \
+    X(NO_NORMAL, "no_normal", "The face has no area, so it faces nowhere")                    \
+    X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of one name differ in type")            \
     /* what marks forbid (marks.h) */                                                         \
     X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
     X(LOCKED_ELEMENT, "locked_element", "The element is locked")

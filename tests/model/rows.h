@@ -15,5 +15,6 @@ typedef struct md_row {
 
 /* Beside those of calls.c; each array ends in a row without a name. */
 extern const md_row md_border_rows[];
+extern const md_row md_region_rows[];
 
 #endif

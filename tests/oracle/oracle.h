@@ -103,7 +103,8 @@ uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t roo
 uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
 bool or_same_cycle(const or_face *f, const or_face *g);
 
-/* --- operations (ops_vertex.c, ops_edge.c, ops_border.c, ops_face.c) --------------------------------------- */
+/* --- operations (ops_vertex.c, ops_edge.c, ops_border.c, ops_face.c)
+ * --------------------------------------- */
 
 /* HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
@@ -135,6 +136,24 @@ uint64_t or_face_triangulate(or_mesh *o, const uint32_t *f, const uint32_t *star
 typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
 /* The hole as hedge's boundary links go round it: at a bow-tie that is hedge's choice. */
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
+
+/* start[f] is the origin of the stored half-edge of face f, which is where its corners begin. `by`
+ * NULL: `distance` along the normal. A factor of 0: by `distance`; where the corners of an inset
+ * come to lie is only known to be near their old places. */
+typedef struct or_region {
+    const uint32_t *faces, *start;
+    uint32_t count;
+    bool joined;
+} or_region;
+uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double distance);
+uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance);
+/* Is the direction a face, or the whole region, faces so uncertain that rounding decides? */
+bool or_faces_vaguely(const or_mesh *o, or_region region);
+uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
+
+/* NULL faces for all. */
+uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
+uint64_t or_dual(or_mesh *o);
 
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);

@@ -14,5 +14,6 @@ typedef struct scenario {
 
 /* Beside those of test_op_table.c; each list ends in one without an operation. */
 extern const scenario border_scenarios[];
+extern const scenario region_scenarios[];
 
 #endif
