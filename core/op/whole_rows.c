@@ -1,5 +1,6 @@
 #include "op/rows.h"
 
+#include "edit/append.h"
 #include "edit/dual.h"
 #include "edit/reverse.h"
 #include "edit/triangulate.h"
@@ -21,6 +22,19 @@ static he_status run_dual(he_mesh *m, const he_arg *args, he_results *out, he_er
     (void)args;
     (void)out;
     return he_dual(m, err);
+}
+
+static he_status run_append(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_appended appended;
+    he_status status = he_append(m, args[0].mesh, &appended, err);
+    if (status == HE_OK) {
+        he_give_list(out, 0, &appended.vertices);
+        he_give_list(out, 1, &appended.edges);
+        he_give_list(out, 2, &appended.faces);
+        he_appended_clear(&appended);
+    }
+    return status;
 }
 
 const he_op he_whole_rows[] = {
@@ -58,6 +72,23 @@ const he_op he_whole_rows[] = {
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, HE_VARIES},
         .run = run_dual,
+    },
+    {
+        .name = "append",
+        .doc = "Bring in the content of another mesh, with its attributes.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "mesh",
+                    .type = HE_PARAM_MESH,
+                    .flags = HE_REQUIRED,
+                    .doc = "The id of the other mesh, which is taken as it was when the request "
+                           "began and stays as it is."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new ones, in the order of the ids in the other mesh."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The same of edges."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The same of faces."}},
+        .refusals = {HE_ATTRIBUTE_CLASH},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_append,
     },
     {.name = NULL},
 };

@@ -1,6 +1,11 @@
 #include "model/rows.h"
 
+#include "edit/erase.h"
+#include "mesh/column.h"
 #include "mesh/walk.h"
+#include "mesh/write.h"
+#include "model/marks.h"
+#include "model/shapes.h"
 
 static void find_starts(const he_mesh *m, uint32_t start[OR_FACES])
 {
@@ -207,6 +212,73 @@ static uint64_t play_dual(const md_call *c, or_mesh *o, const he_mesh *m)
     return or_dual(o);
 }
 
+/* --- another mesh, which lives until the next one is drawn --- */
+
+static or_mesh *other_oracle;
+static he_mesh *other;
+
+/* Numbers where marks are truths clash with those. */
+static bool add_numbers(he_mesh *m)
+{
+    he_column *column = NULL;
+    if (he_column_new("locked", HE_FACE, HE_INT32, 1, HE_COPY, &column, NULL) != HE_OK) {
+        return false;
+    }
+    if (he_mesh_add_column(m, column, NULL) == HE_OK) {
+        return true;
+    }
+    he_column_free(column);
+    return true;
+}
+
+static bool draw_append(md_draft *d)
+{
+    if (other_oracle == NULL) {
+        other_oracle = or_new();
+    }
+    he_mesh_free(other);
+    md_shape(other_oracle, d->r);
+    other = md_build(other_oracle);
+    if (other == NULL || !md_mark(other, d->r) || (md_chance(d->r, 10) && !add_numbers(other))) {
+        return false;
+    }
+    if (he_mesh_faces(other) > 0 && md_chance(d->r, 50)) {
+        uint32_t f = md_below(d->r, he_mesh_faces(other));
+        he_status status = he_face_delete(other, &f, 1, HE_DROP_ISOLATED, NULL);
+        if (status == HE_OK) {
+            (void)or_face_delete(other_oracle, &f, 1, false);
+        }
+    }
+    he_arg *arg = &d->c->args[md_index(d->c, "mesh")];
+    arg->given = true;
+    arg->mesh = other;
+    return he_mesh_faces(other) < 40 && d->o->vertices + he_mesh_vertices(other) < OR_VERTICES &&
+           d->o->edges + he_mesh_edges(other) < OR_EDGES &&
+           d->o->faces + he_mesh_faces(other) < OR_FACES;
+}
+
+static bool clashes(const he_mesh *m, const he_mesh *theirs)
+{
+    for (size_t i = 0; i < he_mesh_columns(theirs); i++) {
+        const he_column *column = he_mesh_column(theirs, i);
+        const he_column *own = he_mesh_find_column(m, column->domain, column->name);
+        if (own != NULL && own->type != column->type) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static uint64_t play_append(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)c;
+    if (clashes(m, other)) {
+        return OR_BIT(HE_ATTRIBUTE_CLASH);
+    }
+    or_append(o, other_oracle);
+    return 0;
+}
+
 const md_row md_region_rows[] = {
     {"face_extrude", 1, draw_face_extrude, play_face_extrude, NULL},
     {"face_inset", 1, draw_face_inset, play_face_inset, NULL},
@@ -214,5 +286,6 @@ const md_row md_region_rows[] = {
     {"triangulate", 1, draw_triangulate, play_triangulate, NULL},
     {"reverse", 0, draw_reverse, play_reverse, NULL},
     {"dual", 0, draw_dual, play_dual, NULL},
+    {"append", 1, draw_append, play_append, NULL},
     {.name = NULL},
 };

@@ -452,3 +452,28 @@ uint64_t or_dual(or_mesh *o)
     }
     return 0;
 }
+
+void or_append(or_mesh *o, const or_mesh *other)
+{
+    uint32_t name[OR_VERTICES];
+    for (uint32_t v = 0; v < other->vertices; v++) {
+        if (other->vertex[v].alive) {
+            name[v] = or_add_vertex(o, other->vertex[v].at);
+        }
+    }
+    for (uint32_t e = 0; e < other->edges; e++) {
+        if (other->edge[e].alive) {
+            o->edge[o->edges++] =
+                (or_edge){.alive = true, .a = name[other->edge[e].a], .b = name[other->edge[e].b]};
+        }
+    }
+    for (uint32_t f = 0; f < other->faces; f++) {
+        uint32_t v[OR_CORNERS];
+        for (uint32_t i = 0; i < other->face[f].count && other->face[f].alive; i++) {
+            v[i] = name[other->face[f].v[i]];
+        }
+        if (other->face[f].alive) {
+            (void)or_add_face(o, v, other->face[f].count);
+        }
+    }
+}

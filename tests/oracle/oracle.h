@@ -154,6 +154,8 @@ uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 /* NULL faces for all. */
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
+/* All of `other` that lives, with the ids in their order. */
+void or_append(or_mesh *o, const or_mesh *other);
 
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);

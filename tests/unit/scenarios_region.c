@@ -139,5 +139,13 @@ const scenario region_scenarios[] = {
     {"dual", TETRA, "mark locked vertex=1", HE_LOCKED_ELEMENT, {0}},
     {"dual", TETRA, "mark locked edge=0-1", HE_LOCKED_ELEMENT, {0}},
     {"dual", TETRA, "mark locked face=1", HE_LOCKED_ELEMENT, {0}},
+
+    {"append mesh=012,023+", QCUBE, NULL, HE_OK, {5, 5, 2}},
+    {"append mesh=012,034", "", NULL, HE_OK, {5, 6, 2}},
+    {"append mesh=012,034*", STRANGE, "face_delete face=0", HE_OK, {5, 6, 2}},
+    {"append mesh=012*", "012", "mark selected face=0", HE_OK, {3, 3, 1}},
+    {"append mesh=012*", "012", "mark locked face=0", HE_ATTRIBUTE_CLASH, {0}},
+    {"append mesh=012", "012", "mark locked face=0", HE_OK, {3, 3, 1}},
+    {"append mesh=", "012", NULL, HE_OK, {0, 0, 0}},
     {.operation = NULL},
 };
