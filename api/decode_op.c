@@ -9,6 +9,7 @@ typedef struct decoder {
     const api_in *object;
     const api_references *references;
     const he_mesh *mesh; /* NULL while sets are not looked up */
+    const api_meshes *meshes;
     api_arena *arena;
     const he_op *op;
     api_call *call;
@@ -170,6 +171,13 @@ static bool decode_matrix(const api_in *in, he_arg *arg)
     return true;
 }
 
+static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
+{
+    const char *id;
+    return api_in_string(in, API_MESH_ID, &id) &&
+           (d->meshes == NULL || d->meshes->find(d->meshes->context, in, id, &arg->mesh));
+}
+
 static bool decode_number(const he_param *param, const api_in *in, he_arg *arg)
 {
     if (param->flags & HE_RANGE) {
@@ -214,6 +222,8 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_CYCLE:
         /* Too few corners is a refusal of the operation, not of the document. */
         return decode_list(d, param->kind, 0, in, arg);
+    case HE_PARAM_MESH:
+        return decode_mesh(d, in, arg);
     }
     return api_in_fail(in, API_INTERNAL, "a parameter has no type");
 }
@@ -349,7 +359,7 @@ static bool check_points(const decoder *d)
 }
 
 bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
-                   const he_mesh *mesh, api_arena *arena, api_call *out)
+                   const he_mesh *mesh, const api_meshes *meshes, api_arena *arena, api_call *out)
 {
     api_in name, member;
     const char *text;
@@ -362,7 +372,7 @@ bool api_decode_op(const api_in *object, const char *const *also, const api_refe
         return api_in_fail(&name, API_UNKNOWN_OPERATION, "there is no operation \"%.100s\"", text);
     }
     he_op_defaults(out->op, out->args);
-    decoder d = {object, references, mesh, arena, out->op, out};
+    decoder d = {object, references, mesh, meshes, arena, out->op, out};
     for (bool more = api_in_first(object, &member); more; more = api_in_next(&member)) {
         if (!decode_member(&d, also, &member)) {
             return false;

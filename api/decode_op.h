@@ -15,6 +15,7 @@
 #define HE_API_DECODE_OP_H
 
 #include "api/element_set.h"
+#include "api/store.h"
 #include "op/op.h"
 
 /* Ids a reference stands for; borrowed from the scope. */
@@ -31,6 +32,13 @@ typedef struct api_references {
     void *context;
 } api_references;
 
+/* What finds other meshes. */
+typedef struct api_meshes {
+    /* The mesh of an id, or NULL where its content is not taken yet. Refuses at `at` on false. */
+    bool (*find)(void *context, const api_in *at, const char *id, const he_mesh **out);
+    void *context;
+} api_meshes;
+
 /* One operation, ready for he_op_run. */
 typedef struct api_call {
     const he_op *op;
@@ -41,9 +49,9 @@ typedef struct api_call {
 
 /* `references` NULL: strings in the place of ids are refused, and so is "as". `also` lists members
  * the object may hold besides (expected_revision beside a single operation), NULL for none. `mesh`
- * is what sets are looked up in; NULL: not yet, they are empty. Lists are in the arena, which must
- * outlive the call. */
+ * is what sets are looked up in; NULL: not yet, they are empty. `meshes` finds other meshes; NULL:
+ * their ids are not looked at. Lists are in the arena, which must outlive the call. */
 bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
-                   const he_mesh *mesh, api_arena *arena, api_call *out);
+                   const he_mesh *mesh, const api_meshes *meshes, api_arena *arena, api_call *out);
 
 #endif

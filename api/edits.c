@@ -5,6 +5,7 @@
 #include "api/decode_op.h"
 #include "api/edit_cost.h"
 #include "api/names.h"
+#include "api/others.h"
 
 #include <string.h>
 
@@ -21,6 +22,7 @@ typedef struct edits {
     api_edit_cost cost;
     uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
     api_names names;
+    api_others others;
     api_arena scratch; /* arguments of the operation at hand */
     api_text results;  /* objects of `results`, comma-separated */
     api_out out;       /* writes them */
@@ -40,6 +42,7 @@ static void free_edits(void *state)
 {
     edits *e = state;
     api_names_clear(&e->names);
+    api_others_clear(&e->others);
     api_edit_cost_clear(&e->cost);
     api_arena_clear(&e->scratch);
     api_item_clear(&e->op);
@@ -69,7 +72,8 @@ static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *ca
 {
     api_arena_empty(&e->scratch);
     return api_decode_op(in, e->is_list ? NULL : beside_op,
-                         e->is_list ? &e->names.references : NULL, mesh, &e->scratch, call);
+                         e->is_list ? &e->names.references : NULL, mesh, &e->others.meshes,
+                         &e->scratch, call);
 }
 
 static bool note(edits *e, const api_in *in, const api_call *call)
@@ -152,6 +156,32 @@ static bool within_limits(edits *e, const he_mesh *mesh, const he_delta *delta, 
     }
     for (size_t i = 0; i < he_op_params(call->op); i++) {
         e->looked_at += call->args[i].list ? call->args[i].count : 0;
+        e->looked_at += call->args[i].mesh != NULL ? issued(call->args[i].mesh) : 0;
+    }
+    return true;
+}
+
+static size_t count_columns(const he_mesh *mesh, const he_mesh *unless)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
+        const he_column *column = he_mesh_column(mesh, i);
+        count += column != NULL && (unless == NULL || he_mesh_find_column(unless, column->domain,
+                                                                          column->name) == NULL);
+    }
+    return count;
+}
+
+/* What another mesh brings along counts like what requests add. */
+static bool within_attributes(const he_mesh *mesh, const api_in *in, const api_call *call)
+{
+    for (size_t i = 0; i < he_op_params(call->op); i++) {
+        const he_mesh *other = call->args[i].mesh;
+        size_t more = other != NULL ? count_columns(other, mesh) : 0;
+        if (more > 0 && count_columns(mesh, NULL) + more > API_MAX_ATTRIBUTES) {
+            return api_in_fail(in, HE_LIMIT, "the mesh would have %zu attributes, over %d",
+                               count_columns(mesh, NULL) + more, (int)API_MAX_ATTRIBUTES);
+        }
     }
     return true;
 }
@@ -163,7 +193,8 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     api_call call;
     he_results results = {0};
     he_error err = {0};
-    if (!decode(e, in, mesh, &call) || !within_limits(e, mesh, delta, in, &call)) {
+    if (!decode(e, in, mesh, &call) || !within_limits(e, mesh, delta, in, &call) ||
+        !within_attributes(mesh, in, &call)) {
         return false;
     }
     if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
@@ -267,6 +298,9 @@ static void run(api_exchange *x)
     edits *e = x->state;
     he_delta *delta = NULL;
     bool barrier = false;
+    if (!api_others_take(x, &e->others)) {
+        return;
+    }
     he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
     if (mesh == NULL) {
         return;
@@ -280,6 +314,7 @@ static void run(api_exchange *x)
     } else {
         x->store->write_abort(x->store->self, x->mesh);
     }
+    api_others_release(&e->others);
     if (x->problem.code == HE_OK) {
         answer(x, e);
     }
@@ -325,6 +360,9 @@ static void run_claimed(api_exchange *x)
     he_error err = {0};
     bool barrier = false;
     he_watch_span(x->watch, COPY_SHARE);
+    if (!api_others_take(x, &e->others)) {
+        return;
+    }
     if (he_mesh_copy_watched(e->content, x->watch, &copy, &err) != HE_OK) {
         api_fail_core(x, &err);
         return;
@@ -335,6 +373,7 @@ static void run_claimed(api_exchange *x)
     if (!publish || !publish_copy(x, e, copy, barrier)) {
         he_mesh_free(copy);
     }
+    api_others_release(&e->others);
     if (x->problem.code == HE_OK) {
         answer(x, e);
     }
@@ -344,11 +383,12 @@ static void run_claimed(api_exchange *x)
  * thread that may block; what costs a really large mesh must not keep it locked. */
 static void choose(api_exchange *x, edits *e)
 {
+    uint64_t elements = api_others_elements(&e->others);
     const he_mesh *mesh = api_read_begin(x);
     if (mesh == NULL) {
         return;
     }
-    uint64_t elements = api_elements_of(mesh);
+    elements += api_elements_of(mesh);
     bool costly = e->count > API_COSTLY_EDITS ||
                   (elements > API_COSTLY_ELEMENTS &&
                    (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
@@ -373,6 +413,7 @@ void api_edits_post(api_exchange *x)
     x->state = e;
     x->free_state = free_edits;
     api_names_init(&e->names, x->store->secret);
+    api_others_init(&e->others, x->store);
     api_out_init(&e->out, &e->results);
     if (!read_request(x, e)) {
         return;

@@ -48,6 +48,7 @@ enum {
     API_MAX_EDITS_ELEMENTS = 1 << 26,
     API_MAX_EDITS_ROWS = 1 << 26,
     API_MAX_IDS = 1 << 24,     /* in one list of ids, what references stand for included */
+    API_MAX_OTHERS = 16,       /* meshes that one request names beside its own */
     API_MAX_AS = 64,           /* characters of an "as" name */
     API_MAX_QUERIES = 10000,   /* questions of one query */
     API_MAX_PATH_STEPS = 4096, /* of a traversal's path */

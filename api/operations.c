@@ -28,6 +28,8 @@ static const char *param_type(const he_param *param)
         return "choice";
     case HE_PARAM_MATRIX:
         return "matrix";
+    case HE_PARAM_MESH:
+        return "mesh";
     }
     return "";
 }
@@ -219,6 +221,9 @@ static void write_value_schema(api_out *out, const he_param *param)
         return;
     case HE_PARAM_MATRIX:
         api_schema_ref(out, "schemas", "matrix");
+        return;
+    case HE_PARAM_MESH:
+        api_schema_ref(out, "schemas", "mesh_id");
         return;
     }
 }

@@ -426,6 +426,7 @@ static const struct {
               "\"maxItems\":3}"},
     {"points", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/point\"},{\"type\":\"array\","
                "\"items\":{\"$ref\":\"#/components/schemas/point\"},\"minItems\":1}]}"},
+    {"mesh_id", "{\"type\":\"string\",\"pattern\":\"^[A-Za-z0-9._-]{1,64}$\"}"},
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},
     {"value", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/plain\"},{\"type\":\"array\","

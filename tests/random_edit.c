@@ -139,6 +139,9 @@ static void put_value(draft *d, const he_param *p)
         put(d, "\"%s\":[1,0,0,%.17g,0,1,0,%.17g,0,0,1,0,0,0,0,1]", p->name,
             md_unit(d->random) - 0.5, md_unit(d->random) - 0.5);
         return;
+    case HE_PARAM_MESH:
+        put(d, "\"%s\":\"m\"", p->name);
+        return;
     }
 }
 

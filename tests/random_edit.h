@@ -10,7 +10,8 @@
 
 enum { RANDOM_EDIT_TEXT = 1024 };
 
-/* Rows of the table by index. The mesh has an edge. */
+/* Rows of the table by index. The mesh has an edge; its id is m, where another mesh is asked for.
+ */
 void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDIT_TEXT]);
 
 #endif

@@ -82,3 +82,25 @@ he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count
     }
     return he_edit_end(m, &bracket, status);
 }
+
+he_status he_triangulate(he_mesh *m, he_ids *edges, he_ids *faces, he_ids *degenerate,
+                         he_error *err)
+{
+    he_ids polygons = {0};
+    he_status status = HE_OK;
+    for (uint32_t f = 0; status == HE_OK && f < m->c.faces.issued; f++) {
+        if (!he_face_is_live(m, (he_face){f})) {
+            continue;
+        }
+        he_halfedge h = he_face_halfedge(m, (he_face){f});
+        if (he_next(m, he_next(m, h)).i != he_prev(m, h).i) {
+            status = he_ids_add(&polygons, f, err);
+        }
+    }
+    if (status == HE_OK && polygons.count > 0) {
+        status =
+            he_face_triangulate(m, polygons.ids, polygons.count, edges, faces, degenerate, err);
+    }
+    he_ids_clear(&polygons);
+    return status;
+}

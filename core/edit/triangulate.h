@@ -29,4 +29,9 @@ HE_NODISCARD he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids,
                                            he_ids *edges, he_ids *faces, he_ids *degenerate,
                                            he_error *err);
 
+/* triangulate: face_triangulate of every face of more than three corners, in the order of ids. Of
+ * its refusals HE_DOUBLED_EDGE and HE_LIMIT are left. */
+HE_NODISCARD he_status he_triangulate(he_mesh *m, he_ids *edges, he_ids *faces, he_ids *degenerate,
+                                      he_error *err);
+
 #endif

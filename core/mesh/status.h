@@ -61,13 +61,17 @@
     X(LINK_CONDITION, "link_condition", "The link condition does not hold")                   \
     X(BRANCHING_CHAIN, "branching_chain", "A chain of edges branches at a vertex")            \
     X(DEGENERATE_EDGE, "degenerate_edge", "An edge has no length")                            \
-    X(BOUNDARY_VERTEX, "boundary_vertex", "The vertex is on the boundary")                    \
     X(SAME_LOOP, "same_loop", "Both half-edges lie on one loop")                              \
     X(SHARED_VERTEX, "shared_vertex", "The loops have a vertex in common")                    \
     X(LOOP_LENGTH, "loop_length", "The loops have different lengths")                         \
     X(OPEN_LOOP, "open_loop", "The cut does not close within the plane")                      \
     X(NOT_A_CYCLE, "not_a_cycle", "The edges do not make up a cycle")                         \
     X(SHARED_FACE, "shared_face", "A face lies at more than one of the edges")                \
+    X(ISOLATED_VERTEX, "isolated_vertex", "The vertex has no face")                           \
+    X(NO_RIM, "no_rim", "The faces are a whole closed component")                             \
+    X(RIM_MEETS_ITSELF, "rim_meets_itself", "The rim of the faces passes a vertex twice")     \
+    X(NO_NORMAL, "no_normal", "The face has no area, so it faces nowhere")                    \
+    X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of one name differ in type")            \
     /* what marks forbid (marks.h) */                                                         \
     X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
     X(LOCKED_ELEMENT, "locked_element", "The element is locked")

@@ -98,6 +98,7 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
         case HE_PARAM_POINTS:
         case HE_PARAM_MATRIX:
         case HE_PARAM_CYCLE:
+        case HE_PARAM_MESH:
             break;
         }
     }
@@ -116,6 +117,8 @@ static bool is_sound(const he_param *param, const he_arg *arg)
         return arg->ids != NULL;
     case HE_PARAM_CYCLE:
         return arg->ids != NULL || arg->count == 0;
+    case HE_PARAM_MESH:
+        return arg->mesh != NULL;
     case HE_PARAM_NUMBER:
         if (param->flags & HE_RANGE) {
             return (param->flags & HE_EXCLUSIVE)

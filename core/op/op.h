@@ -21,7 +21,8 @@ typedef enum he_param_type {
     HE_PARAM_FLAG,     /* true or false */
     HE_PARAM_CHOICE,   /* one of the strings in `choices` */
     HE_PARAM_MATRIX,   /* 16 numbers, row-major, last row 0 0 0 1 */
-    HE_PARAM_CYCLE /* a list of element ids whose order matters and where repeats are refusals */
+    HE_PARAM_CYCLE, /* a list of element ids whose order matters and where repeats are refusals */
+    HE_PARAM_MESH   /* another mesh, which stands still meanwhile */
 } he_param_type;
 
 /* Flags of a parameter. */
@@ -61,6 +62,7 @@ typedef struct he_arg {
     bool flag;
     int choice;
     double matrix[16];
+    const he_mesh *mesh; /* borrowed, and not the one that is edited */
 } he_arg;
 
 /* What an operation gives back besides the sets that follow from its delta. */

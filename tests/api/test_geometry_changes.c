@@ -7,6 +7,7 @@
 #include "model/random.h"
 #include "op/op.h"
 #include "query/drawing.h"
+#include "mesh/build.h"
 
 #include <inttypes.h>
 #include <pthread.h>
@@ -207,6 +208,25 @@ static uint32_t any(world *w, const he_mesh *m, he_kind kind)
     return id;
 }
 
+/* What is appended: made once. */
+static const he_mesh *a_triangle(void)
+{
+    static he_mesh *triangle;
+    static const uint32_t corners[3] = {0, 1, 2};
+    if (triangle == NULL) {
+        he_soup soup;
+        he_soup_init(&soup, NULL);
+        for (int i = 0; i < 3; i++) {
+            he_vec3 p = {i == 1, i == 2, 0};
+            assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+        }
+        assert_int_equal(he_soup_add_face(&soup, corners, 3, NULL), HE_OK);
+        assert_int_equal(he_build(&soup, 0, &triangle, NULL, NULL), HE_OK);
+        he_soup_clear(&soup);
+    }
+    return triangle;
+}
+
 static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg *arg,
                           uint32_t ids[MANY], he_vec3 *point)
 {
@@ -244,6 +264,9 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
         break;
     case HE_PARAM_CHOICE:
         arg->choice = 0;
+        break;
+    case HE_PARAM_MESH:
+        arg->mesh = a_triangle();
         break;
     case HE_PARAM_MATRIX:
         for (int i = 0; i < 16; i++) {

@@ -239,6 +239,9 @@ void md_describe(const md_call *c, char text[MD_CALL_TEXT])
         case HE_PARAM_MATRIX:
             n = snprintf(to, room, " %s=(16 numbers)", p->name);
             break;
+        case HE_PARAM_MESH:
+            n = snprintf(to, room, " %s=(%u faces)", p->name, he_mesh_faces(arg->mesh));
+            break;
         }
         used += (size_t)n;
     }

@@ -634,8 +634,8 @@ static const md_row rows[] = {
     {.name = NULL},
 };
 
-static const md_row *const groups[] = {rows, md_border_rows, md_weld_rows, md_corner_rows,
-                                       md_loop_rows};
+static const md_row *const groups[] = {rows,           md_border_rows, md_weld_rows,
+                                       md_corner_rows, md_loop_rows,   md_region_rows};
 
 static const md_row *row_of(const char *name)
 {
@@ -659,11 +659,21 @@ const char *md_missing(void)
     return NULL;
 }
 
+static void choose(md_call *c, const char *name)
+{
+    for (c->row = 0; strcmp(he_op_at(c->row)->name, name) != 0; c->row++) {
+    }
+    c->op = he_op_at(c->row);
+}
+
 bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool room)
 {
     md_draft d = {c, o, m, r};
     c->row = md_below(r, (uint32_t)he_op_count());
     c->op = he_op_at(c->row);
+    if (he_mesh_faces(m) > 0 && he_mesh_boundary_halfedges(m) == 0 && md_chance(r, 10)) {
+        choose(c, "dual"); /* few meshes are closed, and those not for long */
+    }
     he_op_defaults(c->op, c->args);
     const md_row *row = row_of(c->op->name);
     /* What little there is should not be gone at once. */

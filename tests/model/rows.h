@@ -18,5 +18,6 @@ extern const md_row md_border_rows[];
 extern const md_row md_weld_rows[];
 extern const md_row md_corner_rows[];
 extern const md_row md_loop_rows[];
+extern const md_row md_region_rows[];
 
 #endif

@@ -103,6 +103,46 @@ void script_add_columns(he_mesh *m)
     }
 }
 
+/* --- memory --- */
+
+static unsigned allocations_left;
+static bool failed;
+
+static void *resize(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    if (allocations_left > 0 && --allocations_left == 0) {
+        failed = true;
+        return NULL;
+    }
+    return realloc(memory, size);
+}
+
+static bool counting;
+
+static void count_allocations(bool on)
+{
+    static const he_mem_hook hook = {resize, NULL};
+    he_mem_set_hook(on ? &hook : NULL);
+}
+
+void fail_allocation(unsigned n)
+{
+    allocations_left = n;
+    failed = false;
+    counting = n > 0;
+    count_allocations(counting);
+}
+
+bool allocation_failed(void)
+{
+    return failed;
+}
+
 /* --- operations --- */
 
 typedef struct storage {
@@ -149,8 +189,27 @@ static size_t parse_numbers(const char *text, double *numbers)
     return count;
 }
 
+/* Another mesh, made by the test and not by what it tests. */
+static he_mesh *other_mesh(const char *text)
+{
+    char faces[MAX_TEXT];
+    size_t length = strcspn(text, "*");
+    snprintf(faces, sizeof faces, "%.*s", (int)length, text);
+    count_allocations(false);
+    he_mesh *other = script_mesh(faces, NULL);
+    if (text[length] == '*') {
+        he_column *column = NULL;
+        script_add_columns(other);
+        assert_int_equal(he_column_new("locked", HE_FACE, HE_INT32, 1, HE_COPY, &column, NULL),
+                         HE_OK);
+        assert_int_equal(he_mesh_add_column(other, column, NULL), HE_OK);
+    }
+    count_allocations(counting);
+    return other;
+}
+
 static void parse_value(const he_mesh *m, const he_param *param, const char *text, he_arg *arg,
-                        uint32_t *ids, he_vec3 *points)
+                        uint32_t *ids, he_vec3 *points, he_mesh **other)
 {
     double numbers[3 * MAX_LIST];
     arg->given = true;
@@ -184,6 +243,9 @@ static void parse_value(const he_mesh *m, const he_param *param, const char *tex
             points[i] = (he_vec3){numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
         }
         return;
+    case HE_PARAM_MESH:
+        arg->mesh = *other = other_mesh(text);
+        return;
     case HE_PARAM_MATRIX:
         assert_int_equal(parse_numbers(text, numbers), 16);
         memcpy(arg->matrix, numbers, sizeof arg->matrix);
@@ -210,6 +272,7 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
     const he_op *op = script_op(operation);
     he_arg args[HE_OP_PARAMS];
     storage store;
+    he_mesh *other = NULL;
     he_op_defaults(op, args);
     const char *at = operation + strcspn(operation, " ");
     while (*at == ' ') {
@@ -223,12 +286,13 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
             i++;
             assert_true(i < he_op_params(op));
         }
-        parse_value(m, &op->params[i], text, &args[i], store.ids[i], store.points[i]);
+        parse_value(m, &op->params[i], text, &args[i], store.ids[i], store.points[i], &other);
         at += value;
     }
     he_results own = {{0}, {0}, {{0}}, {0}};
     he_status status = he_op_run(op, m, args, results != NULL ? results : &own, err);
     he_results_clear(&own);
+    he_mesh_free(other);
     return status;
 }
 
@@ -353,36 +417,4 @@ he_mesh *copy_of(const he_mesh *m)
     he_mesh *copy = NULL;
     assert_int_equal(he_mesh_copy(m, &copy, NULL), HE_OK);
     return copy;
-}
-
-/* --- memory --- */
-
-static unsigned allocations_left;
-static bool failed;
-
-static void *resize(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    if (allocations_left > 0 && --allocations_left == 0) {
-        failed = true;
-        return NULL;
-    }
-    return realloc(memory, size);
-}
-
-void fail_allocation(unsigned n)
-{
-    static const he_mem_hook hook = {resize, NULL};
-    allocations_left = n;
-    failed = false;
-    he_mem_set_hook(n == 0 ? NULL : &hook);
-}
-
-bool allocation_failed(void)
-{
-    return failed;
 }

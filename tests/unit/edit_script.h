@@ -7,6 +7,8 @@
  *     face_add vertices=0,1,2              a list
  *     vertex_move vertex=0,1 by=0,0,1      points are three numbers each
  *     vertex_split vertex=1 left=null right=0 to=0,0,1
+ *     append mesh=012,023*                 another mesh, with "*" one that has the columns of
+ *                                          script_add_columns and `locked` numbers on faces
  *
  * and a script is operations separated by ";". A name that is not found fails the test. */
 #ifndef TESTS_UNIT_EDIT_SCRIPT_H

@@ -17,5 +17,6 @@ extern const scenario border_scenarios[];
 extern const scenario weld_scenarios[];
 extern const scenario corner_scenarios[];
 extern const scenario loop_scenarios[];
+extern const scenario region_scenarios[];
 
 #endif

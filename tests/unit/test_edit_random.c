@@ -78,6 +78,8 @@ typedef struct storage {
     he_vec3 points[LONGEST];
 } storage;
 
+static he_mesh *other; /* what is appended */
+
 static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, storage *stores)
 {
     const he_param *param = &op->params[at];
@@ -121,6 +123,9 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
         arg->count = 1;
         arg->points = store->points;
         store->points[0] = (he_vec3){random_unit(), random_unit(), random_unit()};
+        return;
+    case HE_PARAM_MESH:
+        arg->mesh = other;
         return;
     case HE_PARAM_MATRIX:
         for (unsigned i = 0; i < 16; i++) {
@@ -214,6 +219,8 @@ static void test_random_edits(void **state)
     (void)state;
     uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 300);
     uint64_t done[128] = {0};
+    other = script_mesh("012,034+", NULL);
+    script_add_columns(other);
     for (uint64_t round = 0; round < rounds; round++) {
         random_state = seed + round;
         /* What is printed last repeats a failure. */
@@ -234,6 +241,7 @@ static void test_random_edits(void **state)
         print_message("%-18s %llu\n", he_op_at(i)->name, (unsigned long long)done[i]);
         all += done[i];
     }
+    he_mesh_free(other);
     /* Most steps must have done something, or the arguments are chosen badly. */
     assert_true(all > 10 * rounds);
 }

@@ -370,8 +370,8 @@ static const scenario scenarios[] = {
     {.operation = NULL},
 };
 
-static const scenario *const groups[] = {scenarios, border_scenarios, weld_scenarios,
-                                         corner_scenarios, loop_scenarios};
+static const scenario *const groups[] = {scenarios,        border_scenarios, weld_scenarios,
+                                         corner_scenarios, loop_scenarios,   region_scenarios};
 
 enum { MAX_OPS = 128 };
 
@@ -536,9 +536,15 @@ static void test_limit(void **state)
 {
     (void)state;
     static const char *const operations[] = {
-        "face_triangulate face=0", "hole_fill halfedge=1-0 method=triangulate", "delaunay"};
-    for (unsigned i = 0; i < 3; i++) {
-        he_mesh *m = i < 2 ? huge_star() : two_rows(), *before = copy_of(m);
+        "delaunay",
+        "face_triangulate face=0",
+        "hole_fill halfedge=1-0 method=triangulate",
+        "triangulate",
+        "face_inset face=0 distance=0.1",
+        "face_collapse face=0",
+    };
+    for (unsigned i = 0; i < sizeof operations / sizeof *operations; i++) {
+        he_mesh *m = i > 0 ? huge_star() : two_rows(), *before = copy_of(m);
         assert_int_equal(script_run(m, operations[i], NULL, NULL), HE_LIMIT);
         assert_equal(m, before);
         mark(script_op(operations[i]), HE_LIMIT);

@@ -11,6 +11,7 @@ const HINTS = {
     point: 'x y z',
     points: 'x y z, one or more',
     matrix: '16 numbers',
+    mesh: 'id of a mesh',
 };
 
 // What an element that is selected says of elements of other kinds.
@@ -240,6 +241,9 @@ function readField(param, input) {
     }
     if (text === '') {
         return [name, param.nullable ? null : undefined];
+    }
+    if (type === 'mesh') {
+        return [name, text];
     }
     if (param.nullable && text === 'none') {
         return [name, null];

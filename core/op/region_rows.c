@@ -1,0 +1,134 @@
+#include "op/rows.h"
+
+#include "edit/extrude.h"
+#include "edit/face_collapse.h"
+#include "edit/inset.h"
+
+static void give_parts(he_results *out, he_region_parts *takes)
+{
+    he_give_list(out, 0, &takes->vertices);
+    he_give_list(out, 1, &takes->edges);
+    he_give_list(out, 2, &takes->faces);
+    he_region_parts_clear(takes);
+}
+
+static he_status run_face_extrude(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_region_parts parts;
+    const he_vec3 *by = args[1].given ? args[1].points : NULL;
+    he_status status = he_face_extrude(m, args[0].ids, args[0].count, args[3].flag, by,
+                                       args[2].number, &parts, err);
+    if (status == HE_OK) {
+        give_parts(out, &parts);
+    }
+    return status;
+}
+
+static he_status run_face_inset(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_region_parts parts;
+    double factor = args[1].given ? args[1].number : 0;
+    he_status status = he_face_inset(m, args[0].ids, args[0].count, args[3].flag, factor,
+                                     args[2].number, &parts, err);
+    if (status == HE_OK) {
+        give_parts(out, &parts);
+    }
+    return status;
+}
+
+static he_status run_face_collapse(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_vertex v;
+    he_status status = he_face_collapse(m, (he_face){args[0].id}, &v, err);
+    if (status == HE_OK) {
+        he_give(out, 0, v.i);
+    }
+    return status;
+}
+
+const he_op he_region_rows[] = {
+    {
+        .name = "face_extrude",
+        .doc = "Pull faces out of the surface, with sides between them and what was about them.",
+        .params = {{.name = "face",
+                    .plural = "faces",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_FACE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What moves; it is on top and keeps its id."},
+                   {.name = "by",
+                    .type = HE_PARAM_POINT,
+                    .flags = HE_REQUIRED,
+                    .group = 'b',
+                    .doc = "The vector it moves by."},
+                   {.name = "distance",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_REQUIRED,
+                    .group = 'b',
+                    .doc = "How far it moves along its normal; negative is inwards."},
+                   {.name = "region",
+                    .type = HE_PARAM_FLAG,
+                    .doc = "Faces that share an edge move as one, without sides between them."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, one for each corner of the rim."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "For each of them an edge of the top and the one up to it."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The sides."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NO_RIM,
+                     HE_RIM_MEETS_ITSELF, HE_NO_NORMAL, HE_NOT_FINITE, HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_face_extrude,
+    },
+    {
+        .name = "face_inset",
+        .doc = "Make faces smaller within themselves, with a border about them.",
+        .params = {{.name = "face",
+                    .plural = "faces",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_FACE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What shrinks; the inner part keeps its id."},
+                   {.name = "factor",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_REQUIRED | HE_RANGE | HE_EXCLUSIVE,
+                    .group = 'b',
+                    .min = 0,
+                    .max = 1,
+                    .fallback = 0.5,
+                    .doc = "How far corners go to the middle of their faces: nowhere (0) to all "
+                           "the way (1)."},
+                   {.name = "distance",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_REQUIRED,
+                    .group = 'b',
+                    .doc = "How wide the border is, above 0; less where it would cross itself."},
+                   {.name = "region",
+                    .type = HE_PARAM_FLAG,
+                    .doc = "Faces that share an edge shrink as one, with one border."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new vertices, one for each corner of the rim."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                     "For each of them an inner edge and the one across the border."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The border."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
+                     HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_NO_NORMAL, HE_LIMIT, HE_NOT_FINITE,
+                     HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_face_inset,
+    },
+    {
+        .name = "face_collapse",
+        .doc = "Draw a face together to one vertex at the mean of its corners.",
+        .params = {{.name = "face",
+                    .type = HE_PARAM_ELEMENT,
+                    .kind = HE_FACE,
+                    .flags = HE_REQUIRED,
+                    .doc = "What goes; the corner its stored half-edge leaves stays."}},
+        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The vertex that stays."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_LINK_CONDITION, HE_FEATURE_EDGE,
+                     HE_LOCKED_ELEMENT, HE_LIMIT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_face_collapse,
+    },
+    {.name = NULL},
+};

@@ -1,0 +1,94 @@
+#include "op/rows.h"
+
+#include "edit/append.h"
+#include "edit/dual.h"
+#include "edit/reverse.h"
+#include "edit/triangulate.h"
+
+static he_status run_triangulate(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)args;
+    return he_triangulate(m, &out->list[0], &out->list[1], &out->list[2], err);
+}
+
+static he_status run_reverse(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)out;
+    return he_reverse(m, args[0].given ? args[0].ids : NULL, args[0].count, err);
+}
+
+static he_status run_dual(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)args;
+    (void)out;
+    return he_dual(m, err);
+}
+
+static he_status run_append(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_appended appended;
+    he_status status = he_append(m, args[0].mesh, &appended, err);
+    if (status == HE_OK) {
+        he_give_list(out, 0, &appended.vertices);
+        he_give_list(out, 1, &appended.edges);
+        he_give_list(out, 2, &appended.faces);
+        he_appended_clear(&appended);
+    }
+    return status;
+}
+
+const he_op he_whole_rows[] = {
+    {
+        .name = "triangulate",
+        .doc = "Cut all faces into triangles.",
+        .size = HE_OP_WHOLE,
+        .results = {{"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The diagonals."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new triangles."},
+                    {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
+                     "Faces some triangle of which has no area or is turned over."}},
+        .refusals = {HE_DOUBLED_EDGE, HE_LIMIT},
+        .change = {0, HE_VARIES, HE_VARIES},
+        .run = run_triangulate,
+    },
+    {
+        .name = "reverse",
+        .doc = "Turn faces over, and attributes `normal` with them.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "face",
+                    .plural = "faces",
+                    .type = HE_PARAM_ELEMENTS,
+                    .kind = HE_FACE,
+                    .doc = "What is turned over, whole components; all faces when not given."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_ORIENTATION,
+                     HE_BOWTIE},
+        .change = {0, 0, 0},
+        .run = run_reverse,
+    },
+    {
+        .name = "dual",
+        .doc = "Put a vertex in the place of each face and a face in that of each vertex.",
+        .size = HE_OP_WHOLE,
+        .refusals = {HE_BOUNDARY_EDGE, HE_ISOLATED_VERTEX, HE_TOO_FEW_CORNERS, HE_DOUBLED_EDGE,
+                     HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, 0, HE_VARIES},
+        .run = run_dual,
+    },
+    {
+        .name = "append",
+        .doc = "Bring in the content of another mesh, with its attributes.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "mesh",
+                    .type = HE_PARAM_MESH,
+                    .flags = HE_REQUIRED,
+                    .doc = "The id of the other mesh, which is taken as it was when the request "
+                           "began and stays as it is."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The new ones, in the order of the ids in the other mesh."},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The same of edges."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The same of faces."}},
+        .refusals = {HE_ATTRIBUTE_CLASH},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_append,
+    },
+    {.name = NULL},
+};

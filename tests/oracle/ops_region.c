@@ -1,0 +1,479 @@
+#include "oracle/oracle.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- parts: which of the listed faces go together, and where they end ------------------------ */
+
+typedef struct part {
+    uint32_t faces[OR_LIST];
+    uint32_t count;
+    bool in[OR_FACES];
+    /* Directed sides at which it ends. */
+    uint32_t from[OR_LIST * 4], to[OR_LIST * 4];
+    uint32_t rim;
+} part;
+
+static bool is_listed(or_region region, uint32_t f)
+{
+    for (uint32_t i = 0; i < region.count; i++) {
+        if (region.faces[i] == f) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The corner i places after that where a face begins. */
+static uint32_t corner(const or_mesh *o, or_region region, uint32_t f, uint32_t i)
+{
+    const or_face *face = &o->face[f];
+    return face->v[(or_place(face, region.start[f]) + i) % face->count];
+}
+
+/* Around `first`, breadth-first. */
+static void find_part(const or_mesh *o, or_region region, uint32_t first, part *p)
+{
+    memset(p, 0, sizeof *p);
+    p->faces[p->count++] = first;
+    p->in[first] = true;
+    for (uint32_t k = 0; k < p->count && region.joined; k++) {
+        uint32_t f = p->faces[k];
+        for (uint32_t i = 0; i < o->face[f].count; i++) {
+            uint32_t g = o->left[corner(o, region, f, i + 1)][corner(o, region, f, i)];
+            if (g != OR_NONE && !p->in[g] && is_listed(region, g)) {
+                p->in[g] = true;
+                p->faces[p->count++] = g;
+            }
+        }
+    }
+    for (uint32_t k = 0; k < p->count; k++) {
+        uint32_t f = p->faces[k];
+        for (uint32_t i = 0; i < o->face[f].count; i++) {
+            uint32_t a = corner(o, region, f, i);
+            uint32_t b = corner(o, region, f, i + 1);
+            uint32_t g = o->left[b][a];
+            if (g == OR_NONE || !p->in[g]) {
+                p->from[p->rim] = a;
+                p->to[p->rim++] = b;
+            }
+        }
+    }
+}
+
+static uint32_t rim_place(const part *p, uint32_t v)
+{
+    for (uint32_t i = 0; i < p->rim; i++) {
+        if (p->from[i] == v) {
+            return i;
+        }
+    }
+    return OR_NONE;
+}
+
+static bool is_done(const or_region region, uint32_t at, const bool *done)
+{
+    return done[region.faces[at]];
+}
+
+static uint64_t check_part(const or_mesh *o, const part *p, bool moves_inside)
+{
+    uint64_t refused = p->rim == 0 ? OR_BIT(HE_NO_RIM) : 0;
+    for (uint32_t i = 0; i < p->rim; i++) {
+        refused |= rim_place(p, p->from[i]) != i ? OR_BIT(HE_RIM_MEETS_ITSELF) : 0;
+    }
+    for (uint32_t k = 0; k < p->count; k++) {
+        const or_face *face = &o->face[p->faces[k]];
+        for (uint32_t i = 0; i < face->count; i++) {
+            uint32_t a = face->v[i];
+            uint32_t b = face->v[(i + 1) % face->count];
+            uint32_t beyond = o->left[b][a];
+            bool at_rim = rim_place(p, a) != OR_NONE;
+            bool inner = beyond != OR_NONE && p->in[beyond];
+            bool locked = at_rim ? face->locked : moves_inside && o->vertex[a].locked;
+            locked |=
+                inner && (at_rim || rim_place(p, b) != OR_NONE) && o->edge[o->joined[a][b]].locked;
+            refused |= locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
+        }
+    }
+    return refused;
+}
+
+/* Twice the area vector. */
+static he_vec3 newell(const or_mesh *o, uint32_t f)
+{
+    const or_face *face = &o->face[f];
+    he_vec3 c = o->vertex[face->v[0]].at;
+    he_vec3 sum = {0, 0, 0};
+    for (uint32_t i = 0; i < face->count; i++) {
+        he_vec3 p = o->vertex[face->v[i]].at;
+        he_vec3 q = o->vertex[face->v[(i + 1) % face->count]].at;
+        p = (he_vec3){p.x - c.x, p.y - c.y, p.z - c.z};
+        q = (he_vec3){q.x - c.x, q.y - c.y, q.z - c.z};
+        sum.x += p.y * q.z - p.z * q.y;
+        sum.y += p.z * q.x - p.x * q.z;
+        sum.z += p.x * q.y - p.y * q.x;
+    }
+    return sum;
+}
+
+static double length_of(he_vec3 a)
+{
+    return sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+}
+
+static he_vec3 direction_of(const or_mesh *o, const part *p, double *length, double *total)
+{
+    he_vec3 sum = {0, 0, 0};
+    *total = 0;
+    for (uint32_t k = 0; k < p->count; k++) {
+        he_vec3 a = newell(o, p->faces[k]);
+        sum = (he_vec3){sum.x + a.x, sum.y + a.y, sum.z + a.z};
+        *total += length_of(a);
+    }
+    *length = length_of(sum);
+    return (he_vec3){sum.x / *length, sum.y / *length, sum.z / *length};
+}
+
+bool or_faces_vaguely(const or_mesh *o, or_region region)
+{
+    static part p;
+    for (uint32_t i = 0; i < region.count; i++) {
+        double length;
+        double total;
+        find_part(o, region, region.faces[i], &p);
+        (void)direction_of(o, &p, &length, &total);
+        if (!(length > 1e-3 * total) || !(length_of(newell(o, region.faces[i])) > 1e-3)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* --- drawing a part off ---------------------------------------------------------------------- */
+
+static void draw_off(or_mesh *o, const part *p)
+{
+    uint32_t first = o->vertices;
+    bool inner[OR_EDGES] = {false};
+    for (uint32_t e = 0; e < o->edges; e++) {
+        uint32_t f = o->left[o->edge[e].a][o->edge[e].b];
+        uint32_t g = o->left[o->edge[e].b][o->edge[e].a];
+        inner[e] = o->edge[e].alive && f != OR_NONE && g != OR_NONE && p->in[f] && p->in[g];
+    }
+    for (uint32_t i = 0; i < p->rim; i++) {
+        (void)or_add_vertex(o, o->vertex[p->from[i]].at);
+    }
+    for (uint32_t k = 0; k < p->count; k++) {
+        or_face *face = &o->face[p->faces[k]];
+        for (uint32_t i = 0; i < face->count; i++) {
+            uint32_t at = rim_place(p, face->v[i]);
+            face->v[i] = at != OR_NONE ? first + at : face->v[i];
+        }
+    }
+    for (uint32_t e = 0; e < o->edges; e++) {
+        uint32_t a = rim_place(p, o->edge[e].a);
+        uint32_t b = rim_place(p, o->edge[e].b);
+        if (inner[e] && a != OR_NONE) {
+            o->edge[e].a = first + a;
+        }
+        if (inner[e] && b != OR_NONE) {
+            o->edge[e].b = first + b;
+        }
+    }
+    for (uint32_t i = 0; i < p->rim; i++) {
+        uint32_t next = rim_place(p, p->to[i]);
+        const uint32_t quad[4] = {p->from[i], p->to[i], first + next, first + i};
+        (void)or_add_face(o, quad, 4);
+    }
+}
+
+/* The refusals of all parts; each is on its own, so the order in which they come does not matter.
+ */
+static uint64_t check_all(const or_mesh *o, or_region region, bool moves_inside)
+{
+    static part p;
+    uint64_t refused = 0;
+    for (uint32_t i = 0; i < region.count; i++) {
+        find_part(o, region, region.faces[i], &p);
+        refused |= check_part(o, &p, moves_inside);
+    }
+    return refused;
+}
+
+uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double distance)
+{
+    static part p;
+    bool done[OR_FACES] = {false};
+    uint64_t refused = check_all(o, region, true);
+    for (uint32_t k = 0; k < region.count && refused == 0; k++) {
+        if (is_done(region, k, done)) {
+            continue;
+        }
+        find_part(o, region, region.faces[k], &p);
+        double length;
+        double total;
+        he_vec3 shift = direction_of(o, &p, &length, &total);
+        shift = (he_vec3){shift.x * distance, shift.y * distance, shift.z * distance};
+        shift = by != NULL ? *by : shift;
+        uint32_t first = o->vertices;
+        draw_off(o, &p);
+        bool moved[OR_VERTICES] = {false};
+        for (uint32_t i = 0; i < p.count; i++) {
+            const or_face *face = &o->face[p.faces[i]];
+            done[p.faces[i]] = true;
+            for (uint32_t c = 0; c < face->count; c++) {
+                moved[face->v[c]] = true;
+            }
+        }
+        assert(o->vertices == first + p.rim);
+        for (uint32_t v = 0; v < o->vertices; v++) {
+            if (moved[v]) {
+                he_vec3 at = o->vertex[v].at;
+                o->vertex[v].at = (he_vec3){at.x + shift.x, at.y + shift.y, at.z + shift.z};
+                o->vertex[v].near = true;
+            }
+        }
+        /* Sides belong to nothing that is listed; sides between parts are found anew. */
+        uint64_t wrong = or_derive(o);
+        assert(wrong == 0);
+        (void)wrong;
+    }
+    return refused;
+}
+
+/* Within a box about where it comes from. */
+static void may_move(or_vertex *v, double reach)
+{
+    v->inside = true;
+    v->low = (he_vec3){v->at.x - reach, v->at.y - reach, v->at.z - reach};
+    v->high = (he_vec3){v->at.x + reach, v->at.y + reach, v->at.z + reach};
+}
+
+/* The mean of the means of the part's faces about v. */
+static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
+{
+    he_vec3 sum = {0, 0, 0};
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < p->count; k++) {
+        const or_face *face = &o->face[p->faces[k]];
+        for (uint32_t i = 0; i < face->count && or_place(face, v) != OR_NONE; i++) {
+            he_vec3 c = o->vertex[face->v[i]].at;
+            sum.x += c.x / face->count;
+            sum.y += c.y / face->count;
+            sum.z += c.z / face->count;
+        }
+        n += or_place(face, v) != OR_NONE;
+    }
+    return (he_vec3){sum.x / n, sum.y / n, sum.z / n};
+}
+
+uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance)
+{
+    static part p;
+    bool done[OR_FACES] = {false};
+    uint64_t refused = check_all(o, region, false);
+    if (factor == 0 && !(distance > 0)) {
+        refused |= OR_BIT(HE_BAD_VALUE);
+    }
+    for (uint32_t k = 0; k < region.count && refused == 0; k++) {
+        if (is_done(region, k, done)) {
+            continue;
+        }
+        find_part(o, region, region.faces[k], &p);
+        double reach[OR_LIST * 4];
+        for (uint32_t i = 0; i < p.rim; i++) {
+            he_vec3 a = o->vertex[p.from[i]].at;
+            he_vec3 c = middle(o, &p, p.from[i]);
+            he_vec3 way = {c.x - a.x, c.y - a.y, c.z - a.z};
+            reach[i] = factor > 0 ? factor * length_of(way) : 4 * distance;
+        }
+        uint32_t first = o->vertices;
+        draw_off(o, &p);
+        for (uint32_t i = 0; i < p.rim; i++) {
+            may_move(&o->vertex[first + i], reach[i]);
+        }
+        for (uint32_t i = 0; i < p.count; i++) {
+            done[p.faces[i]] = true;
+        }
+        uint64_t wrong = or_derive(o);
+        assert(wrong == 0);
+        (void)wrong;
+    }
+    return refused;
+}
+
+/* --- the others ------------------------------------------------------------------------------ */
+
+uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start)
+{
+    or_face was = o->face[f];
+    uint32_t shift = or_place(&was, start);
+    uint64_t refused = 0;
+    or_mesh *before = malloc(sizeof *before);
+    assert(before != NULL);
+    memcpy(before, o, sizeof *o);
+    for (uint32_t k = 1; k < was.count && refused == 0; k++) {
+        uint32_t u = was.v[(shift + k) % was.count];
+        he_vec3 at = o->vertex[start].at;
+        he_vec3 goes = o->vertex[u].at;
+        bool same = at.x == goes.x && at.y == goes.y && at.z == goes.z;
+        refused = or_edge_collapse(o, u, start, (double)k / (k + 1), same ? &at : NULL);
+        if (refused == 0) {
+            uint64_t wrong = or_derive(o);
+            assert(wrong == 0);
+            (void)wrong;
+        }
+    }
+    if (refused != 0) {
+        memcpy(o, before, sizeof *o);
+    }
+    free(before);
+    return refused;
+}
+
+uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count)
+{
+    bool chosen[OR_FACES] = {false};
+    bool beside = false;
+    bool touched = false;
+    bool at[OR_VERTICES] = {false};
+    for (uint32_t i = 0; i < count && faces != NULL; i++) {
+        chosen[faces[i]] = true;
+    }
+    for (uint32_t f = 0; f < o->faces; f++) {
+        chosen[f] = o->face[f].alive && (faces == NULL || chosen[f]);
+        for (uint32_t i = 0; i < o->face[f].count && chosen[f]; i++) {
+            at[o->face[f].v[i]] = true;
+        }
+    }
+    for (uint32_t f = 0; f < o->faces; f++) {
+        const or_face *face = &o->face[f];
+        for (uint32_t i = 0; i < face->count && face->alive && !chosen[f]; i++) {
+            uint32_t g = o->left[face->v[(i + 1) % face->count]][face->v[i]];
+            touched |= at[face->v[i]];
+            beside |= g != OR_NONE && chosen[g];
+        }
+    }
+    if (beside || touched) {
+        return OR_BIT(beside ? HE_ORIENTATION : HE_BOWTIE);
+    }
+    for (uint32_t f = 0; f < o->faces; f++) {
+        or_face was = o->face[f];
+        for (uint32_t i = 0; i < was.count && chosen[f]; i++) {
+            o->face[f].v[i] = was.v[was.count - 1 - i];
+        }
+    }
+    return 0;
+}
+
+static uint64_t check_dual(const or_mesh *o)
+{
+    uint64_t refused = 0;
+    bool locked = false;
+    for (uint32_t v = 0; v < o->vertices; v++) {
+        if (o->vertex[v].alive) {
+            uint32_t degree = or_degree(o, v);
+            refused |= degree == 0  ? OR_BIT(HE_ISOLATED_VERTEX)
+                       : degree < 3 ? OR_BIT(HE_TOO_FEW_CORNERS)
+                                    : 0;
+            locked |= o->vertex[v].locked;
+        }
+    }
+    for (uint32_t e = 0; e < o->edges; e++) {
+        uint32_t f = o->left[o->edge[e].a][o->edge[e].b];
+        uint32_t g = o->left[o->edge[e].b][o->edge[e].a];
+        if (!o->edge[e].alive) {
+            continue;
+        }
+        refused |= f == OR_NONE || g == OR_NONE ? OR_BIT(HE_BOUNDARY_EDGE) : 0;
+        locked |= o->edge[e].locked;
+        for (uint32_t d = 0; d < e && f != OR_NONE && g != OR_NONE; d++) {
+            uint32_t x = o->left[o->edge[d].a][o->edge[d].b];
+            uint32_t y = o->left[o->edge[d].b][o->edge[d].a];
+            if (o->edge[d].alive && ((x == f && y == g) || (x == g && y == f))) {
+                refused |= OR_BIT(HE_DOUBLED_EDGE);
+            }
+        }
+    }
+    for (uint32_t f = 0; f < o->faces; f++) {
+        locked |= o->face[f].alive && o->face[f].locked;
+    }
+    return refused | (locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0);
+}
+
+uint64_t or_dual(or_mesh *o)
+{
+    uint64_t refused = check_dual(o);
+    uint32_t name[OR_FACES];
+    uint32_t vertices = o->vertices;
+    uint32_t faces = o->faces;
+    if (refused != 0) {
+        return refused;
+    }
+    for (uint32_t f = 0; f < faces; f++) {
+        const or_face *face = &o->face[f];
+        if (!face->alive) {
+            continue;
+        }
+        he_vec3 sum = {0, 0, 0};
+        for (uint32_t i = 0; i < face->count; i++) {
+            he_vec3 p = o->vertex[face->v[i]].at;
+            sum = (he_vec3){sum.x + p.x, sum.y + p.y, sum.z + p.z};
+        }
+        double n = face->count;
+        name[f] = or_add_vertex(o, (he_vec3){sum.x / n, sum.y / n, sum.z / n});
+        o->vertex[name[f]].near = true;
+    }
+    for (uint32_t v = 0; v < vertices; v++) {
+        uint32_t cycle[OR_CORNERS];
+        uint32_t n = 0;
+        uint32_t first;
+        if (!o->vertex[v].alive || or_neighbours(o, v, &first, 1) == 0) {
+            continue;
+        }
+        uint32_t x = first;
+        do {
+            cycle[n++] = name[o->left[v][x]];
+            x = or_turn(o, v, x);
+        } while (x != first);
+        (void)or_add_face(o, cycle, n);
+    }
+    for (uint32_t v = 0; v < vertices; v++) {
+        o->vertex[v].alive = false;
+    }
+    for (uint32_t e = 0; e < o->edges; e++) {
+        o->edge[e].alive = false;
+    }
+    for (uint32_t f = 0; f < faces; f++) {
+        o->face[f].alive = false;
+    }
+    return 0;
+}
+
+void or_append(or_mesh *o, const or_mesh *other)
+{
+    uint32_t name[OR_VERTICES];
+    for (uint32_t v = 0; v < other->vertices; v++) {
+        if (other->vertex[v].alive) {
+            name[v] = or_add_vertex(o, other->vertex[v].at);
+        }
+    }
+    for (uint32_t e = 0; e < other->edges; e++) {
+        if (other->edge[e].alive) {
+            o->edge[o->edges++] =
+                (or_edge){.alive = true, .a = name[other->edge[e].a], .b = name[other->edge[e].b]};
+        }
+    }
+    for (uint32_t f = 0; f < other->faces; f++) {
+        uint32_t v[OR_CORNERS];
+        for (uint32_t i = 0; i < other->face[f].count && other->face[f].alive; i++) {
+            v[i] = name[other->face[f].v[i]];
+        }
+        if (other->face[f].alive) {
+            (void)or_add_face(o, v, other->face[f].count);
+        }
+    }
+}
