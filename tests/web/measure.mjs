@@ -90,7 +90,8 @@ async function measure(browser, daemon, side) {
     if (after.faces !== counts.faces + 3) {
         throw new Error(`${after.faces} faces after undo, not ${counts.faces + 3}`);
     }
-    return { faces: counts.faces, bytes: edited, times: [open, frame, pick, edit, heard, rival, undo] };
+    const times = [open, frame, pick, edit, heard, rival, undo];
+    return { faces: counts.faces, bytes: edited, times };
 }
 
 const browser = await launch();

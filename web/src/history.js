@@ -112,7 +112,10 @@ const signs = { created: '+', deleted: '\u2212', modified: '~' };
 // "+6 −1": how many elements came and went.
 function sumOf(entry) {
     return ['created', 'deleted']
-        .map((name) => [signs[name], KINDS.reduce((sum, kind) => sum + (entry[name]?.[kind] ?? 0), 0)])
+        .map((name) => [
+            signs[name],
+            KINDS.reduce((sum, kind) => sum + (entry[name]?.[kind] ?? 0), 0),
+        ])
         .filter(([, sum]) => sum > 0)
         .map(([sign, sum]) => `${sign}${formatCount(sum)}`)
         .join(' ');

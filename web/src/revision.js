@@ -64,7 +64,8 @@ export class Content {
             return () => this.#replace(buffer);
         }
         const buffer = await api.getGeometryChanges(this.mesh, this.geometry);
-        return headerOf(buffer).base === 0 ? () => this.#replace(buffer) : () => this.#patch(buffer);
+        const isWhole = headerOf(buffer).base === 0;
+        return isWhole ? () => this.#replace(buffer) : () => this.#patch(buffer);
     }
 
     #replace(buffer) {
