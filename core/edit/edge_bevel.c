@@ -5,14 +5,13 @@
 #include "mesh/marks.h"
 #include "query/geometry.h"
 
-#include <float.h>
-
-/* Of the shortest edge, what a cut may take. */
+/* Of the length of an edge, what a cut may take. */
 static const double MOST = 0.99;
 
 void he_bevel_clear(he_bevel *bevel)
 {
     he_ids_clear(&bevel->vertices);
+    he_ids_clear(&bevel->edges);
 }
 
 /* One end of the edge. */
@@ -52,7 +51,7 @@ static he_halfedge at(const bevel_end *end, size_t i)
     return (he_halfedge){end->ring.ids[i]};
 }
 
-static he_status check_end(const he_mesh *m, const bevel_end *end, double *shortest, he_error *err)
+static he_status check_end(const he_mesh *m, const bevel_end *end, he_error *err)
 {
     if (end->ring.count < 2) {
         uint32_t v = he_origin(m, end->along).i;
@@ -60,12 +59,10 @@ static he_status check_end(const he_mesh *m, const bevel_end *end, double *short
     }
     for (size_t i = 0; i < end->ring.count; i++) {
         he_edge e = he_edge_of(at(end, i));
-        double length = he_edge_length(m, e);
-        if (!(length > 0)) {
+        if (!(he_edge_length(m, e) > 0)) {
             return he_fail(err, HE_DEGENERATE_EDGE, HE_EDGE, e.i,
                            "edge %u would be cut, but has no length", e.i);
         }
-        *shortest = length < *shortest ? length : *shortest;
     }
     return HE_OK;
 }
@@ -92,7 +89,7 @@ static he_status check_locks(const he_mesh *m, const bevel_end *end, he_error *e
     return status;
 }
 
-static he_status check(const he_mesh *m, he_edge e, double *width, bevel_end ends[2], he_error *err)
+static he_status check(const he_mesh *m, he_edge e, double width, bevel_end ends[2], he_error *err)
 {
     he_status status = he_mesh_require(m, HE_EDGE, e.i, err);
     if (status != HE_OK) {
@@ -101,21 +98,18 @@ static he_status check(const he_mesh *m, he_edge e, double *width, bevel_end end
     if (he_is_boundary_edge(m, e)) {
         return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e.i, "edge %u has only one face", e.i);
     }
-    if (!(*width > 0)) {
-        return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "the width must be above 0, not %g",
-                       *width);
+    if (!(width > 0)) {
+        return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "the width must be above 0, not %g", width);
     }
-    double shortest = DBL_MAX;
     for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
         status = walk_end(m, he_edge_halfedge(e, i), &ends[i], err);
         if (status == HE_OK) {
-            status = check_end(m, &ends[i], &shortest, err);
+            status = check_end(m, &ends[i], err);
         }
     }
     for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
         status = check_locks(m, &ends[i], err);
     }
-    *width = fmin(*width, MOST * shortest);
     return status;
 }
 
@@ -137,6 +131,9 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
     need.attributes = cuts;
     need.lineage = need.vertices + need.edges + 1;
     he_status status = he_ids_reserve(&made->vertices, cuts, err);
+    if (status == HE_OK) {
+        status = he_ids_reserve(&made->edges, need.edges, err);
+    }
     return status == HE_OK ? he_reserve(m, need, err) : status;
 }
 
@@ -144,6 +141,7 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
 typedef struct new_face {
     he_face face;
     he_halfedge first, last;
+    he_ids *edges;
 } new_face;
 
 static void add_side(he_mesh *m, new_face *rim, he_halfedge h)
@@ -154,6 +152,7 @@ static void add_side(he_mesh *m, new_face *rim, he_halfedge h)
         he_link(m, rim->last, h);
     }
     he_set_face(m, h, rim->face);
+    rim->edges->ids[rim->edges->count++] = he_edge_of(h).i;
     rim->last = h;
 }
 
@@ -180,7 +179,7 @@ static he_vertex cut_at(const bevel_end *end, size_t i)
 /* From the end (0) to the other end of edge i (1), where the cut is. */
 static double part_of(const he_mesh *m, const bevel_end *end, size_t i, double width)
 {
-    return width / he_edge_length(m, he_edge_of(at(end, i)));
+    return fmin(width / he_edge_length(m, he_edge_of(at(end, i))), MOST);
 }
 
 static void make_cuts(he_mesh *m, bevel_end *end, double width, he_bevel *made)
@@ -278,10 +277,9 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
 static void commit(he_mesh *m, he_edge e, double width, bevel_end ends[2], he_bevel *made)
 {
     const he_halfedge h = ends[0].along, back = ends[1].along;
-    made->width = width;
     make_cuts(m, &ends[0], width, made);
     make_cuts(m, &ends[1], width, made);
-    new_face rim = {he_new_face(m), {HE_NONE}, {HE_NONE}};
+    new_face rim = {he_new_face(m), {HE_NONE}, {HE_NONE}, &made->edges};
     made->face = rim.face;
     he_carry_copy(m, HE_FACE, rim.face.i, he_face_of(m, h).i);
     he_note_parent(m, HE_FACE, rim.face.i, he_face_of(m, h).i);
@@ -309,8 +307,8 @@ static void commit(he_mesh *m, he_edge e, double width, bevel_end ends[2], he_be
 he_status he_edge_bevel(he_mesh *m, he_edge e, double width, he_bevel *out, he_error *err)
 {
     bevel_end ends[2] = {{.gap = 0}, {.gap = 0}};
-    he_bevel made = {.width = 0};
-    he_status status = check(m, e, &width, ends, err);
+    he_bevel made = {.face = {HE_NONE}};
+    he_status status = check(m, e, width, ends, err);
     if (status == HE_OK) {
         status = reserve(m, ends, &made, err);
     }
@@ -319,7 +317,7 @@ he_status he_edge_bevel(he_mesh *m, he_edge e, double width, he_bevel *out, he_e
         commit(m, e, width, ends, &made);
         if (out != NULL) {
             *out = made;
-            made = (he_bevel){.width = 0};
+            made = (he_bevel){.face = {HE_NONE}};
         }
     }
     he_bevel_clear(&made);

@@ -6,8 +6,7 @@
 
 typedef struct he_bevel {
     he_face face;
-    he_ids vertices; /* as described below */
-    double width;    /* after it was clamped */
+    he_ids vertices, edges; /* in the order of the face */
 } he_bevel;
 
 /* edge_bevel, for ends with d1 and d2 edges: V + d1 + d2 - 4, E + d1 + d2 - 3, F + 1, and V + 1, E
@@ -30,15 +29,14 @@ typedef struct he_bevel {
  *
  * Other fans of such an end stay with it; d counts the edges of the fan with the edge only.
  *
- * The width is the same along all edges: at most 0.99 of the shortest, so that no cut passes the
- * other end of an edge.
+ * No cut is farther along its edge than 0.99 of the length, so that none passes the other end.
  *
  * The new vertices come in the order of the new face, from the one after the edge counter-clockwise
  * about the origin of half-edge 2e on: 1 to 6 above. They descend from their end, and have values
- * between it and the other end of their edge. The old edges keep their ids at their other ends. The
- * two long sides descend from the edge, the stubs from theirs, and the face from the one left of
- * half-edge 2e. Half-edge 2e of a new edge runs along the new face, whose stored half-edge leaves
- * the first vertex.
+ * between it and the other end of their edge. The new edges come in the same order. The old edges
+ * keep their ids at their other ends. The two long sides descend from the edge, the stubs from
+ * theirs, and the face from the one left of half-edge 2e. Half-edge 2e of a new edge runs along the
+ * new face, whose stored half-edge leaves the first vertex.
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_BAD_VALUE unless width > 0;
  * HE_LOW_DEGREE for an interior end with two edges; HE_DEGENERATE_EDGE where an edge to be cut has

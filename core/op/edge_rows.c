@@ -85,7 +85,7 @@ static he_status run_edge_bevel(he_mesh *m, const he_arg *args, he_results *out,
     if (status == HE_OK) {
         he_give(out, 0, bevel.face.i);
         he_give_list(out, 1, &bevel.vertices);
-        he_give_number(out, 2, bevel.width);
+        he_give_list(out, 2, &bevel.edges);
         he_bevel_clear(&bevel);
     }
     return status;
@@ -212,11 +212,11 @@ const he_op he_edge_rows[] = {
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_REQUIRED,
                     .doc = "Above 0: how far from its ends the other edges there are cut; at most "
-                           "0.99 of the shortest."}},
+                           "0.99 of their length."}},
         .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
                     {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                      "The new vertices, in the order of the new face."},
-                    {"width", HE_RESULT_NUMBER, HE_MESH_KIND, "The width that was taken."}},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "Its sides, in the same order."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_BAD_VALUE,
                      HE_LOW_DEGREE, HE_DEGENERATE_EDGE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 1},

@@ -151,7 +151,6 @@ uint64_t or_edge_bevel(or_mesh *o, uint32_t e, double width)
     if (refused != 0) {
         return refused;
     }
-    width = fmin(width, 0.99 * shortest);
     uint32_t corners[2 * OR_CORNERS];
     uint32_t count = 0;
     for (int i = 0; i < 2; i++) {
@@ -168,7 +167,7 @@ uint64_t or_edge_bevel(or_mesh *o, uint32_t e, double width)
             }
             he_vec3 a = o->vertex[v].at;
             he_vec3 b = o->vertex[x].at;
-            double t = width / distance(a, b);
+            double t = fmin(width / distance(a, b), 0.99);
             cut[x] = or_add_vertex(
                 o, (he_vec3){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)});
             o->vertex[cut[x]].near = true;
