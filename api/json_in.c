@@ -17,7 +17,7 @@ void api_in_setup(void)
     cJSON_InitHooks(&hooks);
 }
 
-/* FNV-1a: compares 128 names at the price of integers. */
+/* FNV-1a: compares names at the price of integers. */
 static uint32_t hash(const char *text)
 {
     uint32_t h = 2166136261u;

@@ -422,19 +422,18 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     dump(b, &now);
     dump(b, &copy);
     while (now.revision < EDITS) {
-        /* compact and what empties the mesh would cut the history off */
+        /* compact would cut the history off; what emptied the mesh is taken back */
         size_t row = md_below(&random, (uint32_t)he_op_count());
         const char *name = he_op_at(row)->name;
-        bool back = mirror_count(&now, HE_FACE) > 200 || md_chance(&random, 20);
+        size_t faces = mirror_count(&now, HE_FACE);
+        bool back = faces == 0 || faces > 200 || md_chance(&random, 20);
         if (back) {
             (void)send(b, "POST", "/v1/meshes/m/undo", NULL);
-        } else if (strcmp(name, "compact") != 0 &&
-                   (mirror_count(&now, HE_FACE) > 3 || strstr(name, "delete") == NULL)) {
+        } else if (strcmp(name, "compact") != 0 && (faces > 3 || strstr(name, "delete") == NULL)) {
             random_edit(&random, &now, row, text);
             (void)send(b, "POST", "/v1/meshes/m/edits", text);
         }
         assert_int_equal(follow(b, l, &now), 0);
-        assert_true(mirror_count(&now, HE_FACE) > 0);
     }
     listener_free(l);
     l = listen_to(b, "/v1/meshes/m/events", "since=1", NULL);
