@@ -106,6 +106,8 @@ const scenario loop_scenarios[] = {
     {"plane_cut point=9,0,0 normal=1,0,0 keep=below cap=1", QCUBE, NULL, HE_OK, {0, 0, 0}},
     {"plane_cut point=9,0,0 normal=1,0,0 keep=below", "012+", NULL, HE_OK, {0, 0, 0}},
     {"plane_cut point=2.5,0,0 normal=1,0,0 keep=below", "012+", NULL, HE_OK, {-1, 0, 0}},
+    {"plane_cut point=0,0,0 normal=1,0,0 cap=1", "", NULL, HE_OK, {0, 0, 0}},
+    {"plane_cut point=0,0,0 normal=-1,0,0 keep=above", "++", NULL, HE_OK, {-1, 0, 0}},
     {"plane_cut point=1.5,0,0 normal=1,0,0", "0123", NULL, HE_OK, {0, 0, 0}},
     {"plane_cut point=0.5,0,0 normal=1,0,0", STRANGE, NULL, HE_OK, {5, 3, 0}},
     {"plane_cut point=0,0,0 normal=0,0,1 keep=above", PEAKS, PEAKS_LIE, HE_OK, {1, -2, -4}},
