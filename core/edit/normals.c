@@ -57,10 +57,15 @@ static void turn_row(const he_normals *n, size_t slot, uint32_t row)
         const double *k = n->k + 3 * i;
         w[i] = k[0] * (v[0] / largest) + k[1] * (v[1] / largest) + k[2] * (v[2] / largest);
     }
-    double length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    if (!(length > 0)) {
+    /* First to a largest part of 1: squares of what a very flat map leaves would vanish. */
+    largest = fmax(fabs(w[0]), fmax(fabs(w[1]), fabs(w[2])));
+    if (!(largest > 0)) {
         return;
     }
+    for (int i = 0; i < 3; i++) {
+        w[i] /= largest;
+    }
+    double length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
     for (int i = 0; i < 3; i++) {
         w[i] /= length;
         f[i] = (float)w[i];

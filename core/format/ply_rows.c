@@ -383,6 +383,10 @@ he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value, he
         return HE_OK;
     }
     if (value < 0 || (uint64_t)value >= rows->vertices) {
+        if (rows->vertices == 0) {
+            return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
+                              "there is no vertex %lld, nor any other", (long long)value);
+        }
         return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
                           "there is no vertex %lld, only 0 to %lld", (long long)value,
                           (long long)rows->vertices - 1);

@@ -273,6 +273,7 @@ static void test_normals(void **state)
     static const char MIRROR[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1";
     static const char FLAT[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1";
     static const char SHIFT[] = "transform matrix=1,0,0,7,0,1,0,0,0,0,1,0,0,0,0,1";
+    static const char SLIM[] = "transform matrix=1e-170,0,0,0,0,1e-170,0,0,0,0,1,0,0,0,0,1";
     const double far = sqrt(13);
     static const he_kind domains[] = {HE_VERTEX, HE_HALFEDGE, HE_FACE};
     for (unsigned i = 0; i < 6; i++) {
@@ -288,6 +289,10 @@ static void test_normals(void **state)
         assert_normal(m, domain, 2, 0, 3 / far, 2 / far);
         script_prepare(m, MIRROR);
         assert_normal(m, domain, 2, 0, 3 / far, -2 / far);
+        he_mesh *slim = copy_of(m);
+        script_prepare(slim, SLIM);
+        assert_normal(slim, domain, 2, 0, 1, 0);
+        he_mesh_free(slim);
         script_prepare(m, FLAT);
         assert_normal(m, domain, 2, 0, 0, -1);
         he_mesh_free(m);

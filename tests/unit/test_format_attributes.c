@@ -77,7 +77,7 @@ static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t
     he_mesh *m;
     he_soup_init(&soup, NULL);
     for (uint32_t i = 0; i < (SIDE + 1) * (SIDE + 1); i++) {
-        he_vec3 p = {i % (SIDE + 1) / 3.0, (i / (SIDE + 1)) * 0.1, 1e-7 * i};
+        he_vec3 p = {i % (SIDE + 1) / 3.0, i * 0.1, 1e-7 * i};
         assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
     }
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {

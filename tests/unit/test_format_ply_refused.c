@@ -105,13 +105,15 @@ static void wrong_rows_name_their_line(void **state)
         {ROWS POINTS "3.0 0 1 2\n", HE_SYNTAX, 14, "'3.0' is not the count of a list"},
         {ROWS POINTS "x 0 1 2\n", HE_SYNTAX, 14, "'x' is not the count of a list"},
         {ROWS POINTS "4 0 1 2\n", HE_SYNTAX, 14, "'face' ends before its last value"},
+        {ROWS "0 0 0 1\n# the end", HE_SYNTAX, 12, "after 1 of the 3 rows of element 'vertex'"},
         {ROWS POINTS "3 0 1 -1\n", HE_BAD_INDEX, 14, "no vertex -1, only 0 to 2"},
         {ROWS POINTS "3 0 1 3\n", HE_BAD_INDEX, 14, "no vertex 3"},
         {ROWS POINTS "3 0 1 4294967297\n", HE_BAD_INDEX, 14, "no vertex 4294967297"},
         {ROWS POINTS "3 0 1 18446744073709551617\n", HE_BAD_INDEX, 14, "no vertex"},
         {ROWS POINTS "3 0 1 1.0\n", HE_SYNTAX, 14, "'1.0' is not a corner"},
         {ROWS POINTS "3 0 1 2\n3 0 1\n", HE_SYNTAX, 15, "ends before its last value"},
-        {ASCII "element face 1\n" CORNER "end_header\n3 0 1 2\n", HE_BAD_INDEX, 6, "no vertex 0"},
+        {ASCII "element face 1\n" CORNER "end_header\n3 0 1 2\n", HE_BAD_INDEX, 6,
+         "no vertex 0, nor any other"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         expect_refused("ply", rows[i].text, rows[i].status, rows[i].line, rows[i].words);
