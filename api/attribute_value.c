@@ -6,18 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const types[] = {"bool", "int32", "uint32", "float", "double", NULL};
-static const char *const rules[] = {"copy", "interpolate", "default", NULL};
-
-const char *const *api_type_names(void)
-{
-    return types;
-}
-
-const char *const *api_rule_names(void)
-{
-    return rules;
-}
+const char *const api_type_names[] = {"bool", "int32", "uint32", "float", "double", NULL};
+const char *const api_rule_names[] = {"copy", "interpolate", "default", NULL};
 
 he_rule api_default_rule(he_type type)
 {
@@ -62,18 +52,24 @@ static void write_number(api_out *out, he_type type, const unsigned char *at)
     }
 }
 
-void api_write_value(api_out *out, const he_column *column, const unsigned char *row)
+void api_write_components(api_out *out, const he_column *column, const unsigned char *row)
 {
     size_t size = he_type_bytes(column->type);
-    if (column->components == 1) {
-        write_number(out, column->type, row);
-        return;
-    }
-    api_out_array_begin(out);
     for (uint32_t i = 0; i < column->components; i++) {
         write_number(out, column->type, row + i * size);
     }
-    api_out_array_end(out);
+}
+
+void api_write_value(api_out *out, const he_column *column, const unsigned char *row)
+{
+    bool many = column->components > 1;
+    if (many) {
+        api_out_array_begin(out);
+    }
+    api_write_components(out, column, row);
+    if (many) {
+        api_out_array_end(out);
+    }
 }
 
 void api_write_head(api_out *out, const he_column *column)
@@ -275,7 +271,7 @@ bool api_read_column(const api_in *object, he_kind domain, const char *name, he_
     api_in member, components = *object;
     int type, rule;
     uint64_t count = 1;
-    if (!api_in_need(object, "type", &member) || !api_in_choice(&member, types, &type)) {
+    if (!api_in_need(object, "type", &member) || !api_in_choice(&member, api_type_names, &type)) {
         return false;
     }
     if (api_in_find(object, "components", &components) &&
@@ -283,7 +279,7 @@ bool api_read_column(const api_in *object, he_kind domain, const char *name, he_
         return false;
     }
     rule = (int)api_default_rule((he_type)type);
-    if (api_in_find(object, "rule", &member) && !api_in_choice(&member, rules, &rule)) {
+    if (api_in_find(object, "rule", &member) && !api_in_choice(&member, api_rule_names, &rule)) {
         return false;
     }
     he_column *column = NULL;

@@ -13,6 +13,8 @@
 
 /* One row of a column, at `row`. */
 void api_write_value(api_out *out, const he_column *column, const unsigned char *row);
+/* Its numbers one after the other, in an array that is open. */
+void api_write_components(api_out *out, const he_column *column, const unsigned char *row);
 bool api_read_value(const api_in *in, const he_column *column, unsigned char *row);
 /* Every value of an array, packed, from mem.h: the caller frees. */
 bool api_read_values(const api_in *in, const he_column *column, unsigned char **rows,
@@ -32,8 +34,7 @@ void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column
 uint32_t api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id);
 
 /* Texts of he_type and he_rule in their order; end in NULL. */
-const char *const *api_type_names(void);
-const char *const *api_rule_names(void);
+extern const char *const api_type_names[], *const api_rule_names[];
 /* What a rule is where none is said: interpolate for numbers with a fraction, else copy. */
 he_rule api_default_rule(he_type type);
 

@@ -88,3 +88,10 @@ api_tally api_changes_tally(const he_changes *changes)
     }
     return tally;
 }
+
+const char *api_action_name(api_action action)
+{
+    static const char *const names[] = {
+        [API_EDIT] = "edit", [API_UNDO] = "undo", [API_REDO] = "redo", [API_REPLACE] = "replace"};
+    return names[action];
+}

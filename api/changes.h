@@ -1,4 +1,5 @@
-/* changes.h - the answer to an edit, an undo and a redo: what came, went and changed. */
+/* changes.h - what came, went and changed: in the answer to an edit, an undo and a redo, in an
+ * event, and in the history. */
 #ifndef HE_API_CHANGES_H
 #define HE_API_CHANGES_H
 
@@ -16,5 +17,8 @@ void api_write_changes(api_out *out, const he_changes *changes);
 
 /* How many of each, for the history; not known where the content was changed as a whole. */
 api_tally api_changes_tally(const he_changes *changes);
+
+/* "edit", "undo", "redo", "replace". */
+const char *api_action_name(api_action action);
 
 #endif

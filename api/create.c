@@ -27,7 +27,6 @@ void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-/* Preconditions that fail already spare the client its body. */
 /* A PUT is as good where the mesh was removed while it came: go on as if it had never been. */
 static bool forget_removed(api_exchange *x)
 {
@@ -40,6 +39,7 @@ static bool forget_removed(api_exchange *x)
     return true;
 }
 
+/* Preconditions that fail already spare the client its body. */
 void api_mesh_put_begin(api_exchange *x)
 {
     bool good = false;

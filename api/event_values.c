@@ -1,5 +1,6 @@
 #include "api/event_values.h"
 
+#include "api/attribute_value.h"
 #include "mesh/column.h"
 #include "mesh/walk.h"
 
@@ -191,44 +192,6 @@ static void write_faces(api_out *out, const he_mesh *mesh, const he_ids *rows)
     api_out_array_end(out);
 }
 
-static void write_component(api_out *out, he_type type, const unsigned char *at)
-{
-    int32_t whole;
-    uint32_t natural;
-    float single;
-    double number;
-    switch (type) {
-    case HE_BOOL:
-        api_out_bool(out, *at != 0);
-        return;
-    case HE_INT32:
-        memcpy(&whole, at, sizeof whole);
-        api_out_i64(out, whole);
-        return;
-    case HE_UINT32:
-        memcpy(&natural, at, sizeof natural);
-        api_out_u64(out, natural);
-        return;
-    case HE_FLOAT:
-        memcpy(&single, at, sizeof single);
-        api_out_number(out, (double)single);
-        return;
-    case HE_DOUBLE:
-        memcpy(&number, at, sizeof number);
-        api_out_number(out, number);
-        return;
-    case HE_TYPE_COUNT:
-        break;
-    }
-}
-
-static void write_components(api_out *out, const he_column *column, const unsigned char *row)
-{
-    for (uint32_t k = 0; k < column->components; k++) {
-        write_component(out, column->type, row + k * he_type_bytes(column->type));
-    }
-}
-
 static void write_rows(api_out *out, const he_mesh *mesh, const he_column *column,
                        const he_ids *rows)
 {
@@ -239,7 +202,7 @@ static void write_rows(api_out *out, const he_mesh *mesh, const he_column *colum
         if (is_live(mesh, column->domain, row)) {
             api_out_array_begin(out);
             api_out_id(out, row);
-            write_components(out, column, he_column_value(column, row));
+            api_write_components(out, column, he_column_value(column, row));
             api_out_array_end(out);
         }
     }
@@ -279,23 +242,8 @@ static void write_attributes(api_out *out, const he_mesh *mesh, const touched *t
 static void write_added(api_out *out, const he_column *column)
 {
     api_out_object_begin(out);
-    api_out_key_string(out, "domain", he_kind_plural(column->domain));
-    api_out_key_string(out, "name", column->name);
-    api_out_key_string(out, "type", he_type_name(column->type));
-    api_out_key_u64(out, "components", column->components);
-    api_out_key_string(out, "rule", he_rule_name(column->rule));
-    api_out_key(out, "default");
-    api_out_array_begin(out);
-    write_components(out, column, column->fallback);
-    api_out_array_end(out);
-    if (column->labels != NULL) {
-        api_out_key(out, "labels");
-        api_out_array_begin(out);
-        for (size_t i = 0; i < he_labels_count(column->labels) && !out->text->failed; i++) {
-            api_out_string(out, he_labels_get(column->labels, i));
-        }
-        api_out_array_end(out);
-    }
+    api_write_head(out, column);
+    api_write_labels(out, column);
     api_out_object_end(out);
 }
 

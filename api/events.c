@@ -88,9 +88,6 @@ void api_event_bye(api_text *text, const char *reason)
     api_text_clear(&data);
 }
 
-static const char *const actions[] = {
-    [API_EDIT] = "edit", [API_UNDO] = "undo", [API_REDO] = "redo", [API_REPLACE] = "replace"};
-
 static void begin_edit(api_out *out, const api_mesh_info *info)
 {
     api_out_object_begin(out);
@@ -106,7 +103,7 @@ static bool write_edit(api_text *data, const api_mesh_info *info, api_action act
     api_out out;
     api_out_init(&out, data);
     begin_edit(&out, info);
-    api_out_key_string(&out, "action", actions[action]);
+    api_out_key_string(&out, "action", api_action_name(action));
     api_write_changes(&out, changes);
     if (api_write_values(&out, content, delta, undone, NULL) != HE_OK) {
         return false;

@@ -71,7 +71,7 @@ static const api_example examples[] = {
                  "\"revision\":1,\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,"
                  "\"faces\":1}},{\"id\":\"tile-off\",\"name\":\"\",\"revision\":1,"
                  "\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,\"faces\":1}}],"
-                 "\"next\":null}"},
+                 "\"next\":null,\"listeners\":0}"},
     {.route = "mesh_get",
      .target = "/v1/meshes/kite",
      .status = 200,

@@ -1,10 +1,9 @@
 /* GET .../edits: what each revision did. */
 #include "api/handlers.h"
 
-#include <string.h>
+#include "api/changes.h"
 
-static const char *const actions[] = {
-    [API_EDIT] = "edit", [API_UNDO] = "undo", [API_REDO] = "redo", [API_REPLACE] = "replace"};
+#include <string.h>
 
 /* "a,b,..." as ["a","b","..."]. */
 static void write_names(api_out *out, const char *names)
@@ -32,7 +31,7 @@ static void write_entry(api_out *out, const api_entry *entry)
 {
     api_out_object_begin(out);
     api_out_key_u64(out, "revision", entry->revision);
-    api_out_key_string(out, "action", actions[entry->action]);
+    api_out_key_string(out, "action", api_action_name(entry->action));
     if (entry->inverts != 0) {
         api_out_key_u64(out, "inverts", entry->inverts);
     }

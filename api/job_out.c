@@ -50,19 +50,26 @@ static void write_answer(api_out *out, const api_job *job, bool whole)
     }
 }
 
+static void write_progress(api_out *out, const api_job *job)
+{
+    api_out_key_number(out, "progress", floor(job->progress * STEPS) / STEPS);
+}
+
 void api_write_job_state(api_out *out, const api_job *job)
 {
     api_out_key_string(out, "id", job->id);
     api_out_key_string(out, "state", states[job->state]);
-    api_out_key_number(out, "progress", floor(job->progress * STEPS) / STEPS);
+    write_progress(out, job);
 }
 
 void api_write_job(api_out *out, const api_job *job, bool whole)
 {
     api_out_object_begin(out);
-    api_write_job_state(out, job);
+    api_out_key_string(out, "id", job->id);
     api_out_key_string(out, "operation", job->operation);
+    api_out_key_string(out, "state", states[job->state]);
     write_text(out, "phase", job->phase);
+    write_progress(out, job);
     write_text(out, "mesh", job->mesh);
     write_time(out, "created", job->created);
     write_time(out, "started", job->started);

@@ -72,6 +72,7 @@ enum {
 };
 #define API_MAX_ATTRIBUTE_BYTES ((uint64_t)1 << 30) /* of one column that a request brings */
 #define API_MAX_EXACT           ((uint64_t)1 << 53) /* up to here every reader of JSON counts right */
+
 /* Long work. A client that said nothing waits for API_PATIENCE seconds; what will take longer
  * becomes a job. The rates were measured with a torus of a million quads on one busy core: 5.2
  * million vertices and corners were built and summed up in 0.37 s, 6.3 million vertices, half-edges
@@ -86,6 +87,7 @@ enum {
     API_CLAIM_ELEMENTS = 200000,
     API_DEFAULT_JOBS = 100 /* of one page of the list */
 };
+
 /* Of an event: bytes of its data, and rows of the delta it is made from, under the mesh's lock.
  * Beyond either it only says that there was one. */
 enum { API_MAX_EVENT = 64 * 1024, API_MAX_EVENT_ROWS = 1 << 15 };

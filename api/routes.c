@@ -1,5 +1,6 @@
 #include "api/routes.h"
 
+#include "api/attribute_value.h"
 #include "api/handlers.h"
 
 #include <string.h>
@@ -76,19 +77,17 @@ static const api_parameter by = {
 
 static const api_parameter ids = {"ids",       API_PARAM_TEXT, 1,
                                   API_MAX_URI, NULL,           "Ids joined by commas."};
-static const char *const types[] = {"bool", "int32", "uint32", "float", "double", NULL};
-static const char *const rules[] = {"copy", "interpolate", "default", NULL};
 static const api_parameter type = {
-    "type", API_PARAM_CHOICE, 0, 0, types, "Type of the numbers, where the body is octets."};
+    "type", API_PARAM_CHOICE, 0,
+    0,      api_type_names,   "Type of the numbers, where the body is octets."};
 static const api_parameter components = {
     "components", API_PARAM_U64, 1,
     16,           NULL,          "Numbers of one value, where the body is octets; 1 if not said."};
 static const api_parameter dry_run = {
     "dry_run", API_PARAM_FLAG, 0, 0, NULL, "Do nothing, and answer as if; members say it in JSON."};
 static const api_parameter rule = {
-    "rule", API_PARAM_CHOICE,
-    0,      0,
-    rules,  "What edits give to new elements, where the body is octets."};
+    "rule", API_PARAM_CHOICE, 0,
+    0,      api_rule_names,   "What edits give to new elements, where the body is octets."};
 
 /* --- headers --- */
 

@@ -92,6 +92,7 @@ typedef struct api_kept {
     const char *body; /* JSON; NULL with a length: left out */
     size_t length;
 } api_kept;
+
 /* Where a listener wants to go on. */
 typedef struct api_since {
     bool given;
@@ -193,6 +194,7 @@ typedef struct api_store {
     const api_kept *(*kept)(const api_claim *claim);
     void (*keep)(void *self, api_claim *claim, const api_kept *answer);
     void (*claim_end)(void *self, api_claim *claim);
+
     /* --- a long edit --- works without a lock on a copy of its own, which takes the place of the
      * content at once. Before that it claims the mesh: until the claim ends nobody else can write,
      * so that the content stands still and is lent, to be copied. `delta` is for all that is then

@@ -8,6 +8,10 @@
  *     cache     the mesh's cached value
  *     keys      answers kept for keyed requests, of a mesh or of the store
  *     derived   what a handler derived from it
+ *     feed      messages for those who listen to it
+ *     held      answers that wait until they are durable
+ * The board of jobs (job_board.h) has a lock that is taken after a mesh's, and those who are to be
+ * woken (http_live.h) one that is taken after all others.
  * Whoever holds a mesh's lock takes no other mesh's, not even shared and not the same one twice:
  * a waiting writer would stop both. To bring another mesh's content in, take its snapshot first.
  *

@@ -153,6 +153,7 @@ static double component(he_type type, const unsigned char *at)
 static void take_column(mirror *m, const he_column *from)
 {
     mirror_column *c = add_column(m, from->domain, from->name, from->components);
+    c->single = from->type == HE_FLOAT;
     size_t bytes = he_type_bytes(from->type);
     for (size_t k = 0; k < c->components; k++) {
         c->fallback[k] = component(from->type, from->fallback + k * bytes);
@@ -228,11 +229,23 @@ static uint32_t id_of(const cJSON *item)
     return cJSON_IsNull(item) ? HE_NONE : (uint32_t)item->valuedouble;
 }
 
+static double number_of(const cJSON *item)
+{
+    return cJSON_IsTrue(item) ? 1 : cJSON_IsFalse(item) ? 0 : item->valuedouble;
+}
+
 static void read_numbers(const cJSON *list, double *out, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        const cJSON *item = cJSON_GetArrayItem(list, (int)i);
-        out[i] = cJSON_IsTrue(item) ? 1 : cJSON_IsFalse(item) ? 0 : item->valuedouble;
+        out[i] = number_of(cJSON_GetArrayItem(list, (int)i));
+    }
+}
+
+/* The shortest text of a float is another double than the float is. */
+static void round_numbers(const mirror_column *c, double *values)
+{
+    for (size_t k = 0; k < c->components && c->single; k++) {
+        values[k] = (double)(float)values[k];
     }
 }
 
@@ -285,7 +298,14 @@ static void apply_columns(mirror *m, const cJSON *data)
         mirror_column *c = add_column(m, kind_of(member(item, "domain")->valuestring),
                                       member(item, "name")->valuestring,
                                       (size_t)member(item, "components")->valuedouble);
-        read_numbers(member(item, "default"), c->fallback, c->components);
+        const cJSON *fallback = member(item, "default");
+        c->single = strcmp(member(item, "type")->valuestring, "float") == 0;
+        if (c->components == 1) {
+            c->fallback[0] = number_of(fallback);
+        } else {
+            read_numbers(fallback, c->fallback, c->components);
+        }
+        round_numbers(c, c->fallback);
     }
 }
 
@@ -363,6 +383,7 @@ static void apply_attributes(mirror *m, const cJSON *attributes)
                 double value[1 + MIRROR_COMPONENTS];
                 assert_int_equal(cJSON_GetArraySize(row), c->components + 1);
                 read_numbers(row, value, c->components + 1);
+                round_numbers(c, value + 1);
                 memcpy(value_of(c, (size_t)value[0]), value + 1, c->components * sizeof *c->values);
             }
         }

@@ -26,6 +26,7 @@ typedef struct mirror_column {
     he_kind domain;
     char name[64];
     size_t components, rows;
+    bool single; /* numbers are floats */
     double fallback[MIRROR_COMPONENTS];
     double *values; /* of rows; beyond them the default */
 } mirror_column;

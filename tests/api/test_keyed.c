@@ -230,9 +230,9 @@ static void a_huge_answer_is_given_again_without_its_body(void **state)
 
 static bench_reply keyed_job(api_bench *b, const char *body)
 {
-    return bench_send(b, "POST", "/v1/meshes/m/edits",
-                      (const char *const[]){"Idempotency-Key", "k", "Prefer", "respond-async", NULL},
-                      body);
+    return bench_send(
+        b, "POST", "/v1/meshes/m/edits",
+        (const char *const[]){"Idempotency-Key", "k", "Prefer", "respond-async", NULL}, body);
 }
 
 static void a_key_is_busy_while_its_job_is_and_then_gives_its_answer(void **state)

@@ -111,7 +111,7 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
 
 /* --- what long edits, attributes and steps make together --- */
 
-enum { REVISIONS = 80 };
+enum { REVISIONS = 80, SOME = 6 };
 
 /* Large enough that what costs the mesh claims it and is published as a copy. */
 static void put_large(api_bench *b)
@@ -179,7 +179,7 @@ static void do_something(api_bench *b, md_random *random, int turn)
 }
 
 /* Copy the revisions that were made since, each as it is when it is read back; the newest is what
- * the mesh is. */
+ * the mesh is. Of those before, some are read once more. */
 static uint64_t note_revisions(api_bench *b, he_mesh *copies[REVISIONS], uint64_t known)
 {
     const api_store *store = bench_store(b);
@@ -192,6 +192,9 @@ static uint64_t note_revisions(api_bench *b, he_mesh *copies[REVISIONS], uint64_
     }
     store->read_end(store->self, mesh);
     for (uint64_t r = 1; r < info.revision; r++) {
+        if (r <= known && (r + known) % SOME != 0) {
+            continue;
+        }
         api_snapshot *snapshot;
         assert_int_equal(store->snapshot_at(store->self, mesh, r, &snapshot), API_STORE_OK);
         const he_mesh *past = store->snapshot_content(snapshot, NULL);

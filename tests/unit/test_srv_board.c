@@ -288,6 +288,41 @@ static void the_record_of_a_job_carries_its_key(void **state)
     }
 }
 
+static int delete_mesh(const char *path)
+{
+    api_request request = {
+        .method = "DELETE", .path = path, .query = "", .request_id = "test", .header = header};
+    api_exchange *x = api_handle(service, &request, NULL, 0);
+    int status = api_answer_of(x)->status;
+    api_free(x);
+    return status;
+}
+
+static void a_mesh_may_go_while_a_job_changes_it(void **state)
+{
+    (void)state;
+    char id[API_JOB_ID + 1], path[API_JOB_LOCATION + 8];
+    unsigned lost = 0;
+    for (int percent = 0; percent < 100; percent += 20) {
+        assert_int_equal(post("/v1/meshes", MIDDLE, id), 202);
+        api_job made = wait_for(id, API_JOB_DONE);
+        snprintf(path, sizeof path, "%s/edits", made.location);
+        assert_int_equal(
+            post(path, "{\"op\":\"transform\",\"matrix\":[2,0,0,1,0,3,0,0,0,0,1,0,0,0,0,1]}", id),
+            202);
+        api_job job = wait_for(id, API_JOB_RUNNING);
+        while (job.state == API_JOB_RUNNING && job.progress * 100 < percent) {
+            job = look(id);
+        }
+        assert_int_equal(delete_mesh(made.location), 204);
+        job = wait_for(id, API_JOB_DONE);
+        assert_int_equal(job.status, job.state == API_JOB_DONE ? 200 : 404);
+        lost += job.state == API_JOB_FAILED;
+        assert_int_equal(srv_store_count(store), 0);
+    }
+    print_message("note: %u of 5 jobs lost their mesh\n", lost);
+}
+
 static void what_ended_is_forgotten_in_time(void **state)
 {
     (void)state;
@@ -342,6 +377,7 @@ int main(void)
         BOARD_TEST(an_end_is_shown_when_it_is_durable),
         BOARD_TEST(what_is_never_durable_was_not_done),
         BOARD_TEST(the_record_of_a_job_carries_its_key),
+        BOARD_TEST(a_mesh_may_go_while_a_job_changes_it),
         BOARD_TEST(only_so_many_are_kept),
         BOARD_TEST(a_stop_ends_what_waits_and_what_runs),
         cmocka_unit_test(what_ended_is_forgotten_in_time),
