@@ -60,7 +60,10 @@ he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count
         return status;
     }
     for (size_t i = 0; status == HE_OK && i < count; i++) {
-        status = triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, err);
+        status = he_watch_at(m->watch, i, count, err);
+        if (status == HE_OK) {
+            status = triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, err);
+        }
     }
     for (unsigned i = 0; status != HE_OK && i < 3; i++) {
         if (lists[i] != NULL) {
@@ -74,7 +77,7 @@ he_status he_triangulate(he_mesh *m, he_ids *edges, he_ids *faces, he_ids *degen
                          he_error *err)
 {
     he_ids polygons = {0};
-    he_status status = HE_OK;
+    he_status status = he_watch_phase(m->watch, "triangulating", 1, err);
     for (uint32_t f = 0; status == HE_OK && f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
             continue;
