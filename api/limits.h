@@ -20,7 +20,7 @@
 /* JSON */
 enum {
     API_MAX_DEPTH = 32,    /* nesting of arrays and objects */
-    API_MAX_MEMBERS = 128, /* of one object */
+    API_MAX_MEMBERS = 256, /* of one object */
     API_MAX_NUMBER = 60,   /* characters of a number in a control document: cJSON reads 63 */
     API_MAX_DOCUMENT_NUMBER = 1024, /* the same in a mesh document */
     API_MAX_KEY = 256               /* characters of a top-level member's name in a mesh document */
