@@ -65,6 +65,18 @@ static const struct {
                            "An element whose bool attribute `locked` is true is not taken away; a "
                            "vertex keeps its place, an edge its ends and a face its corners. "
                            "Cutting it is allowed. Write false to unlock it."},
+    [HE_ISOLATED_VERTEX] = {422, "A vertex without a face has no dual: give it one, or delete it."},
+    [HE_NO_RIM] = {422, "Faces are drawn off what is about them along their rim, and a whole "
+                        "closed component has none. Leave a face out."},
+    [HE_RIM_MEETS_ITSELF] = {422,
+                             "The rim of a region may pass each vertex once. Add the faces that "
+                             "lie between, or take the parts one after another."},
+    [HE_NO_NORMAL] = {422, "The direction of a face comes from its area, and that of a region "
+                           "from the sum of its faces'. Give a vector, or a factor."},
+    [HE_ATTRIBUTE_CLASH] = {422,
+                            "Attributes of one name on one kind of element must agree in type, "
+                            "in the number of components and in whether they have labels. Rename "
+                            "or delete one of them."},
     [HE_LINK_CONDITION] = {422,
                            "Collapsing the edge would make an edge with three faces, a doubled "
                            "edge or a face without area: the common neighbours of its ends "

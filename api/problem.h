@@ -75,7 +75,7 @@
     X(NO_SUCH_ROUTE, "no_such_route", 404, "There is nothing at this path",                        \
       "GET /v1/openapi.json lists every path.")                                                    \
     X(NO_SUCH_MESH, "no_such_mesh", 404, "No such mesh",                                           \
-      "No mesh has this id, or it was deleted.")                                                   \
+      "No mesh has this id, or it was deleted. In a body the status is 422.")                      \
     X(NO_SUCH_ATTRIBUTE, "no_such_attribute", 404, "No such attribute",                            \
       "The mesh has no attribute of this name in this domain; GET .../attributes lists those it "  \
       "has. Where a body names one, the status is 422.")                                           \

@@ -44,6 +44,10 @@ static he_status check_neighbours(const he_mesh *m, uint32_t *seen_by, he_error 
         seen_by[i] = HE_NONE;
     }
     for (uint32_t i = 0; i < m->c.faces.issued; i++) {
+        he_status status = he_watch_at(m->watch, i, m->c.faces.issued, err);
+        if (status != HE_OK) {
+            return status;
+        }
         if (!he_face_is_live(m, (he_face){i})) {
             continue;
         }
@@ -181,6 +185,9 @@ he_status he_dual(he_mesh *m, he_error *err)
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the rows of the dual");
     }
     if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "checking", 0.3, err);
+    }
+    if (status == HE_OK) {
         status = check(m, r.vertex, err);
     }
     he_need need = {.vertices = m->c.faces.live,
@@ -192,6 +199,9 @@ he_status he_dual(he_mesh *m, he_error *err)
                     .lineage = m->c.edges.live};
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "making the dual", 1, err);
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */

@@ -25,7 +25,8 @@
  *
  * Refused: HE_BOUNDARY_EDGE unless closed; HE_ISOLATED_VERTEX; HE_TOO_FEW_CORNERS for a vertex
  * under degree 3; HE_DOUBLED_EDGE naming a second edge between two faces; HE_LOCKED_ELEMENT for
- * anything locked. HE_NO_MEMORY, HE_IDS_EXHAUSTED. */
+ * anything locked. HE_NO_MEMORY, HE_IDS_EXHAUSTED,
+ * HE_CANCELLED. */
 HE_NODISCARD he_status he_dual(he_mesh *m, he_error *err);
 
 #endif

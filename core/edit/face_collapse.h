@@ -5,7 +5,7 @@
 #include "mesh/mesh.h"
 
 /* The work of one face: its corners times the half-edges of the loops about them. */
-enum { HE_FACE_COLLAPSE_STEPS = 1 << 26 };
+enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
 
 /* face_collapse: a face of n corners goes, and its corners become one vertex at their mean:
  * V - (n - 1). Among polygons of more corners E - n, F - 1; a triangle beside one of the sides goes

@@ -5,7 +5,7 @@
 #include "edit/region.h"
 
 /* The work of looking where an inset ends, a corner against a side each. */
-enum { HE_INSET_STEPS = 1 << 24 };
+enum { HE_INSET_STEPS = 1 << 22 };
 
 /* face_inset: every listed face, or with `region` every set of them connected across edges, is
  * drawn off its surroundings (see region.h), and its rim moves inwards.

@@ -25,7 +25,8 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
         }
     }
     for (uint32_t e = 0; status == HE_OK && e < m->c.edges.issued; e++) {
-        if (he_edge_is_live(m, (he_edge){e})) {
+        status = he_watch_at(m->watch, e, m->c.edges.issued, err);
+        if (status == HE_OK && he_edge_is_live(m, (he_edge){e})) {
             status = he_ids_add(&out->edges, e, err);
         }
     }
@@ -209,16 +210,17 @@ static void commit(he_mesh *m, const part *p)
     }
     for (size_t i = 0; i < p->edges.count; i++) {
         turn_edge(m, (he_edge){p->edges.ids[i]});
+        he_watch_note(m->watch, i, p->edges.count);
     }
 }
 
 he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *err)
 {
     part p = {.vertices = {0}};
-    he_status status;
-    if (faces == NULL) {
+    he_status status = he_watch_phase(m->watch, "gathering", 0.4, err);
+    if (status == HE_OK && faces == NULL) {
         status = take_all(m, &p, err);
-    } else {
+    } else if (status == HE_OK) {
         status = he_list_require(m, HE_FACE, faces, count, HE_REPEATED_ELEMENT, err);
         if (status == HE_OK) {
             status = take_listed(m, faces, count, &p, err);
@@ -233,6 +235,9 @@ he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *
     }
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "turning over", 1, err);
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */

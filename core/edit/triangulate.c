@@ -87,7 +87,7 @@ he_status he_triangulate(he_mesh *m, he_ids *edges, he_ids *faces, he_ids *degen
                          he_error *err)
 {
     he_ids polygons = {0};
-    he_status status = HE_OK;
+    he_status status = he_watch_phase(m->watch, "triangulating", 1, err);
     for (uint32_t f = 0; status == HE_OK && f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
             continue;
