@@ -84,6 +84,7 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
     if (stored.i == first.i || stored.i == he_prev(m, first).i) {
         he_set_face_halfedge(m, f, he_next(m, first));
     }
+    double taken = 0; /* faces that f has taken in */
     /* The spokes' own links stay until they are deleted, and lead about v all the while. */
     do {
         he_halfedge next = he_turn_ccw(m, k), back = he_twin(k), out = he_next(m, k);
@@ -94,6 +95,8 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
             he_set_vertex_halfedge(m, a, out);
         }
         if (g.i != f.i) {
+            taken++;
+            he_carry_merge(m, HE_FACE, f.i, g.i, taken / (taken + 1));
             he_note_merged(m, HE_FACE, g.i, f.i);
             he_delete_face(m, g);
         }
@@ -119,6 +122,7 @@ he_status he_vertex_dissolve(he_mesh *m, he_vertex v, he_face *face, he_error *e
     he_need need = {.deleted_vertices = 1, .deleted_edges = degree, .deleted_faces = degree};
     need.links = corners + 3 * (size_t)degree + 1;
     need.lineage = degree;
+    need.attributes = degree;
     status = he_reserve(m, need, err);
     if (status != HE_OK) {
         return status;
