@@ -195,6 +195,38 @@ static bool put_neck(draft *d)
     return false;
 }
 
+static bool on_loop(const draft *d, uint32_t loop, uint32_t h)
+{
+    uint32_t k = loop;
+    do {
+        if (k == h) {
+            return true;
+        }
+        k = link_of(d, k, NEXT);
+    } while (k != loop);
+    return false;
+}
+
+/* Half-edges of two holes. False when there are not so many. */
+static bool put_holes(draft *d)
+{
+    uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count, hole = HE_NONE;
+    uint32_t start = any(d, HE_HALFEDGE);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t h = (start + i) % count;
+        if (!d->mesh->tables[HE_HALFEDGE].rows[h].live || link_of(d, h, FACE) != HE_NONE) {
+            continue;
+        }
+        if (hole == HE_NONE) {
+            hole = h;
+        } else if (!on_loop(d, hole, h)) {
+            put(d, ",\"a\":%u,\"b\":%u", hole, h);
+            return true;
+        }
+    }
+    return false;
+}
+
 void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDIT_TEXT])
 {
     const he_op *op = he_op_at(row);
@@ -210,7 +242,8 @@ void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDI
         d.halfedge = any(&d, HE_HALFEDGE);
     }
     put(&d, "{\"op\":\"%s\"", op->name);
-    if (strcmp(op->name, "loop_split") == 0 && put_neck(&d)) {
+    if ((strcmp(op->name, "loop_split") == 0 && put_neck(&d)) ||
+        (strcmp(op->name, "loop_bridge") == 0 && put_holes(&d))) {
         put(&d, "}");
         return;
     }
