@@ -162,6 +162,82 @@ static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
            (md_chance(d->random, 40) || (required && later == 0));
 }
 
+/* The half-edge from the target of h to the vertex v, HE_NONE without one. */
+static uint32_t find_link(const draft *d, uint32_t h, uint32_t v)
+{
+    uint32_t first = link_of(d, h, NEXT), k = first;
+    do {
+        if (link_of(d, k ^ 1, ORIGIN) == v) {
+            return k;
+        }
+        k = link_of(d, k ^ 1, NEXT);
+    } while (k != first);
+    return HE_NONE;
+}
+
+/* Three edges around a neck: a cycle with six faces. False when there is none. */
+static bool put_neck(draft *d)
+{
+    uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count;
+    uint32_t start = any(d, HE_HALFEDGE);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t h = (start + i) % count;
+        if (!d->mesh->tables[HE_HALFEDGE].rows[h].live) {
+            continue;
+        }
+        uint32_t first = link_of(d, h, NEXT), k = first;
+        do {
+            uint32_t l = find_link(d, k, link_of(d, h, ORIGIN));
+            uint32_t sides[6] = {h, h ^ 1, k, k ^ 1, l, l ^ 1};
+            bool six = l != HE_NONE;
+            for (unsigned x = 0; six && x < 6; x++) {
+                six = link_of(d, sides[x], FACE) != HE_NONE;
+                for (unsigned y = 0; six && y < x; y++) {
+                    six = link_of(d, sides[x], FACE) != link_of(d, sides[y], FACE);
+                }
+            }
+            if (six) {
+                put(d, ",\"a\":%u,\"b\":%u,\"c\":%u", h / 2, k / 2, l / 2);
+                return true;
+            }
+            k = link_of(d, k ^ 1, NEXT);
+        } while (k != first);
+    }
+    return false;
+}
+
+static bool on_loop(const draft *d, uint32_t loop, uint32_t h)
+{
+    uint32_t k = loop;
+    do {
+        if (k == h) {
+            return true;
+        }
+        k = link_of(d, k, NEXT);
+    } while (k != loop);
+    return false;
+}
+
+/* Half-edges of two holes. False when there are not so many. */
+static bool put_holes(draft *d)
+{
+    uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count, hole = HE_NONE;
+    uint32_t start = any(d, HE_HALFEDGE);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t h = (start + i) % count;
+        if (!d->mesh->tables[HE_HALFEDGE].rows[h].live || link_of(d, h, FACE) != HE_NONE) {
+            continue;
+        }
+        if (hole == HE_NONE) {
+            hole = h;
+        } else if (!on_loop(d, hole, h)) {
+            put(d, ",\"a\":%u,\"b\":%u", hole, h);
+            return true;
+        }
+    }
+    return false;
+}
+
 void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDIT_TEXT])
 {
     const he_op *op = he_op_at(row);
@@ -177,6 +253,11 @@ void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDI
         d.halfedge = any(&d, HE_HALFEDGE);
     }
     put(&d, "{\"op\":\"%s\"", op->name);
+    if ((strcmp(op->name, "loop_split") == 0 && put_neck(&d)) ||
+        (strcmp(op->name, "loop_bridge") == 0 && put_holes(&d))) {
+        put(&d, "}");
+        return;
+    }
     for (size_t i = 0; i < he_op_params(op); i++) {
         if (is_chosen(&d, op, i, taken)) {
             if (op->params[i].group != 0) {

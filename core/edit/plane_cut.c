@@ -50,7 +50,9 @@ static he_status find_faces(cutter *c, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a set of faces");
     }
     for (uint32_t f = 0; status == HE_OK && f < issued; f++) {
-        if (he_face_is_live(c->m, (he_face){f}) && side_of_face(c, (he_face){f}) == c->away) {
+        status = he_watch_at(c->m->watch, f, issued, err);
+        if (status == HE_OK && he_face_is_live(c->m, (he_face){f}) &&
+            side_of_face(c, (he_face){f}) == c->away) {
             he_bits_set(c->going, f);
             status = he_ids_add(&c->faces, f, err);
         }
@@ -136,7 +138,11 @@ static he_status cut(cutter *c, he_vec3 point, bool cap, he_error *err)
     c->made.edges_split = (uint32_t)parts.vertices.count;
     c->made.faces_split = parts.faces_split;
     he_plane_parts_clear(&parts);
-    status = find_faces(c, err);
+    /* The split has told of the whole way, so these give only their names, and can be given up. */
+    status = he_watch_phase(c->m->watch, "deleting one side", 1, err);
+    if (status == HE_OK) {
+        status = find_faces(c, err);
+    }
     if (status == HE_OK && cap) {
         status = find_rim(c, err);
     }
