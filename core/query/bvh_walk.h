@@ -1,0 +1,60 @@
+/* bvh_walk.h - what the walks over a tree of boxes share. */
+#ifndef HE_QUERY_BVH_WALK_H
+#define HE_QUERY_BVH_WALK_H
+
+#include "mesh/walk.h"
+#include "query/bvh.h"
+#include "query/scale.h"
+
+/* Beyond this from the origin, in coordinates of the tree, products of coordinates might overflow.
+ */
+#define HE_BVH_FAR 0x1p100
+
+static inline void he_bvh_corners(const he_bvh *tree, const he_mesh *m, uint32_t triangle,
+                                  he_vec3 out[3])
+{
+    const uint32_t *vertex = tree->triangles[triangle].vertex;
+    for (int k = 0; k < 3; k++) {
+        out[k] = he_vec3_scale(m->c.position[vertex[k]], tree->scale);
+    }
+}
+
+/* Take one from a budget. */
+static inline bool he_bvh_spend(uint64_t *budget)
+{
+    bool any = *budget > 0;
+    *budget -= any;
+    return any;
+}
+
+static inline he_status he_bvh_exhausted(he_error *err)
+{
+    return he_fail_plain(err, HE_LIMIT, "too many boxes and triangles would be looked at");
+}
+
+/* What a walk has found yet: a triangle, and where in it. */
+typedef struct he_bvh_found {
+    uint32_t triangle; /* HE_NONE: nothing */
+    double weight[3];
+    double far; /* of the tree's lengths, or their squares: what is farther need not be looked at */
+} he_bvh_found;
+
+/* The hit in the mesh's own lengths, but for its distance. */
+static inline he_hit he_bvh_tell(const he_bvh *tree, const he_mesh *m, const he_bvh_found *found)
+{
+    const he_bvh_triangle *t = &tree->triangles[found->triangle];
+    he_hit hit = {.face = t->face};
+    he_vec3 p[3], sum = {0, 0, 0};
+    he_bvh_corners(tree, m, found->triangle, p);
+    for (int k = 0; k < 3; k++) {
+        hit.vertex[k] = t->vertex[k];
+        hit.weight[k] = found->weight[k];
+        sum = he_vec3_add(sum, he_vec3_scale(p[k], found->weight[k]));
+    }
+    hit.point = (he_vec3){he_clamped(ldexp(sum.x, tree->exponent)),
+                          he_clamped(ldexp(sum.y, tree->exponent)),
+                          he_clamped(ldexp(sum.z, tree->exponent))};
+    return hit;
+}
+
+#endif

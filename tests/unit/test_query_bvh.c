@@ -1,0 +1,580 @@
+/* Rays, nearest points and self-intersections over a tree of boxes, against trying all triangles.
+ */
+#include "query_specimens.h"
+
+#include "query/bvh.h"
+#include "query/meet.h"
+#include "query/orient.h"
+
+#include <float.h>
+#include <math.h>
+
+static he_bvh *tree_of(const he_mesh *m)
+{
+    he_bvh *tree = NULL;
+    assert_int_equal(he_bvh_new(m, &tree, NULL), HE_OK);
+    return tree;
+}
+
+static he_hit cast(const he_bvh *tree, const he_mesh *m, he_vec3 from, he_vec3 to, double max)
+{
+    he_hit hit;
+    uint64_t budget = UINT64_MAX;
+    assert_int_equal(he_bvh_ray(tree, m, from, to, max, &budget, &hit, NULL), HE_OK);
+    return hit;
+}
+
+static he_hit closest(const he_bvh *tree, const he_mesh *m, he_vec3 p, double max)
+{
+    he_hit hit;
+    uint64_t budget = UINT64_MAX;
+    assert_int_equal(he_bvh_closest(tree, m, p, max, &budget, &hit, NULL), HE_OK);
+    return hit;
+}
+
+static double uniform(uint64_t *seed, double low, double high)
+{
+    return low + (high - low) * ldexp((double)(query_random(seed) >> 11), -53);
+}
+
+static he_vec3 random_point(uint64_t *seed, double reach)
+{
+    return (he_vec3){uniform(seed, -reach, reach), uniform(seed, -reach, reach),
+                     uniform(seed, -reach, reach)};
+}
+
+/* Vertices anywhere: faces cut through one another, and polygons are not flat. */
+static he_mesh *tangle(uint64_t *seed)
+{
+    static const char *const shapes[] = {"icosphere", "cube", "dodecahedron", "grid"};
+    static const double args[][4] = {{2, 1}, {1}, {1}, {5, 4, 1, 1}};
+    size_t which = query_random(seed) % 4;
+    const double *a = args[which];
+    he_mesh *m = query_shape(shapes[which], a[0], a[1], a[2], a[3]);
+    for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
+        m->c.position[v] = he_vec3_add(m->c.position[v], random_point(seed, 0.4));
+    }
+    return m;
+}
+
+/* What a hit says of itself. */
+static void check_hit(const he_mesh *m, const he_hit *hit)
+{
+    he_vec3 sum = {0, 0, 0};
+    double weights = 0;
+    assert_true(he_face_is_live(m, (he_face){hit->face}));
+    for (int k = 0; k < 3; k++) {
+        assert_true(hit->weight[k] >= 0);
+        weights += hit->weight[k];
+        sum = he_vec3_add(sum, he_vec3_scale(m->c.position[hit->vertex[k]], hit->weight[k]));
+        he_halfedge first = he_face_halfedge(m, (he_face){hit->face}), h = first;
+        while (he_origin(m, h).i != hit->vertex[k]) {
+            h = he_next(m, h);
+            assert_int_not_equal(h.i, first.i);
+        }
+    }
+    assert_true(fabs(weights - 1) < 1e-12);
+    double size = fmax(he_vec3_extent(sum), 1);
+    assert_true(he_vec3_extent(he_vec3_sub(sum, hit->point)) <= 1e-12 * size);
+}
+
+/* --- rays --- */
+
+/* Moeller and Trumbore 1997: another way than the tree's, without its care about edges. */
+static double ray_triangle(he_vec3 o, he_vec3 d, he_vec3 a, he_vec3 b, he_vec3 c)
+{
+    he_vec3 u = he_vec3_sub(b, a), v = he_vec3_sub(c, a), p = he_vec3_cross(d, v);
+    he_vec3 s = he_vec3_sub(o, a), q = he_vec3_cross(s, u);
+    double det = he_vec3_dot(u, p), x = he_vec3_dot(s, p) / det, y = he_vec3_dot(d, q) / det;
+    double t = he_vec3_dot(v, q) / det;
+    return det != 0 && x >= 0 && y >= 0 && x + y <= 1 && t >= 0 ? t : HUGE_VAL;
+}
+
+static void rays_hit_what_trying_all_triangles_finds(void **state)
+{
+    (void)state;
+    uint64_t seed = 11;
+    int hits = 0, misses = 0;
+    for (int round = 0; round < 60; round++) {
+        he_mesh *m = tangle(&seed);
+        he_bvh *tree = tree_of(m);
+        for (int i = 0; i < 100; i++) {
+            he_vec3 o = random_point(&seed, 2), d = random_point(&seed, 1);
+            double unit = he_vec3_length(d), best = HUGE_VAL;
+            he_vec3 along = he_vec3_scale(d, 1 / unit);
+            for (uint32_t t = 0; t < tree->count; t++) {
+                const uint32_t *v = tree->triangles[t].vertex;
+                best = fmin(best, ray_triangle(o, along, m->c.position[v[0]], m->c.position[v[1]],
+                                               m->c.position[v[2]]));
+            }
+            he_hit hit = cast(tree, m, o, d, HUGE_VAL);
+            if (best == HUGE_VAL) {
+                assert_int_equal(hit.face, HE_NONE);
+                misses++;
+                continue;
+            }
+            check_hit(m, &hit);
+            assert_true(fabs(hit.distance - best) < 1e-9);
+            he_vec3 there = he_vec3_add(o, he_vec3_scale(along, hit.distance));
+            assert_true(he_vec3_extent(he_vec3_sub(there, hit.point)) < 1e-9);
+            assert_int_equal(cast(tree, m, o, d, best * 1.001).face, hit.face);
+            assert_int_equal(cast(tree, m, o, d, best * 0.999).face, HE_NONE);
+            hits++;
+        }
+        he_bvh_free(tree);
+        he_mesh_free(m);
+    }
+    assert_true(hits > 500 && misses > 500);
+}
+
+static void a_closed_surface_has_no_cracks(void **state)
+{
+    (void)state;
+    uint64_t seed = 12;
+    he_mesh *m = query_shape("icosphere", 3, 1, 0, 0);
+    he_bvh *tree = tree_of(m);
+    he_vec3 middle = {0.1, -0.2, 0.05};
+    for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
+        he_vec3 a = m->c.position[m->c.origin[2 * e]], b = m->c.position[m->c.origin[2 * e + 1]];
+        double t = uniform(&seed, 0, 1);
+        he_vec3 on = he_vec3_add(he_vec3_scale(a, t), he_vec3_scale(b, 1 - t));
+        he_hit hit = cast(tree, m, middle, he_vec3_sub(on, middle), HUGE_VAL);
+        assert_int_not_equal(hit.face, HE_NONE);
+        hit = cast(tree, m, middle, he_vec3_sub(a, middle), HUGE_VAL);
+        assert_int_not_equal(hit.face, HE_NONE);
+    }
+    he_bvh_free(tree);
+    he_mesh_free(m);
+}
+
+static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
+{
+    (void)state;
+    he_mesh *m = query_shape("cube", 2, 0, 0, 0);
+    he_bvh *tree = tree_of(m);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        /* Through the middle of an edge, then through a corner. */
+        he_vec3 to[2] = {{sign, 1, 0}, {sign, 1, 1}};
+        for (int i = 0; i < 2; i++) {
+            he_vec3 from = he_vec3_scale(to[i], 3), back = he_vec3_scale(to[i], -1);
+            he_hit hit = cast(tree, m, from, back, HUGE_VAL);
+            check_hit(m, &hit);
+            assert_true(fabs(hit.distance - 2 * he_vec3_length(to[i])) < 1e-12);
+            uint32_t least = HE_NONE;
+            for (uint32_t h = 0; h < 24; h++) {
+                he_vec3 p = m->c.position[m->c.origin[h]], q = m->c.position[m->c.origin[h ^ 1u]];
+                he_vec3 point = i == 0 ? he_vec3_scale(he_vec3_add(p, q), 0.5) : p;
+                bool there = he_vec3_extent(he_vec3_sub(point, to[i])) == 0;
+                least = there && m->c.face[h] < least ? m->c.face[h] : least;
+            }
+            assert_int_equal(hit.face, least);
+        }
+    }
+    /* From the surface itself. */
+    he_hit hit = cast(tree, m, (he_vec3){0.25, 0.25, 1}, (he_vec3){0, 0, 1}, HUGE_VAL);
+    assert_true(hit.face != HE_NONE && hit.distance == 0);
+    /* Exactly in the plane of a face, which is not met from its side; those beside it are. */
+    hit = cast(tree, m, (he_vec3){-5, 0.25, 1}, (he_vec3){1, 0, 0}, HUGE_VAL);
+    assert_true(hit.face != HE_NONE && hit.distance == 4);
+    he_bvh_free(tree);
+    he_mesh_free(m);
+}
+
+static void a_ray_needs_a_direction(void **state)
+{
+    (void)state;
+    he_mesh *m = query_shape("cube", 2, 0, 0, 0), *none = he_mesh_new();
+    he_bvh *tree = tree_of(m), *empty = tree_of(none);
+    he_hit hit;
+    he_error err = {0};
+    uint64_t budget = 1000;
+    const he_vec3 zero = {0, 0, -0.0}, tiny = {0, 0, 5e-324}, huge = {0, 0, DBL_MAX};
+    assert_int_equal(he_bvh_ray(tree, m, zero, zero, 1, &budget, &hit, &err), HE_BAD_VALUE);
+    assert_true(cast(tree, m, zero, tiny, HUGE_VAL).distance == 1);
+    assert_true(cast(tree, m, zero, huge, 1).distance == 1);
+    assert_int_equal(cast(tree, m, zero, huge, 0.999).face, HE_NONE);
+    assert_int_equal(cast(empty, none, zero, tiny, HUGE_VAL).face, HE_NONE);
+    assert_int_equal(closest(empty, none, zero, HUGE_VAL).face, HE_NONE);
+    he_bvh_free(tree);
+    he_bvh_free(empty);
+    he_mesh_free(m);
+    he_mesh_free(none);
+}
+
+static void rays_from_far_out_along_an_axis_are_exact(void **state)
+{
+    (void)state;
+    he_mesh *m = query_shape("cube", 2, 0, 0, 0);
+    he_bvh *tree = tree_of(m);
+    static const double far[] = {1e10, 1e40, 1e200, DBL_MAX};
+    for (int i = 0; i < 4; i++) {
+        he_hit hit = cast(tree, m, (he_vec3){0.25, -0.5, far[i]}, (he_vec3){0, 0, -1}, HUGE_VAL);
+        check_hit(m, &hit);
+        assert_true(fabs(hit.point.x - 0.25) < 1e-12 && fabs(hit.point.y + 0.5) < 1e-12);
+        assert_true(hit.point.z == 1 && hit.distance == far[i] - 1);
+        hit = cast(tree, m, (he_vec3){1.25, -0.5, far[i]}, (he_vec3){0, 0, -1}, HUGE_VAL);
+        assert_int_equal(hit.face, HE_NONE);
+    }
+    he_bvh_free(tree);
+    he_mesh_free(m);
+}
+
+/* --- nearest points --- */
+
+/* By steps over the triangle: never nearer than what is right, and hardly farther. */
+static double sampled(he_vec3 p, he_vec3 a, he_vec3 b, he_vec3 c)
+{
+    enum { STEPS = 40 };
+    double best = HUGE_VAL;
+    for (int i = 0; i <= STEPS; i++) {
+        for (int k = 0; i + k <= STEPS; k++) {
+            he_vec3 q = he_vec3_scale(a, (double)i / STEPS);
+            q = he_vec3_add(q, he_vec3_scale(b, (double)k / STEPS));
+            q = he_vec3_add(q, he_vec3_scale(c, (double)(STEPS - i - k) / STEPS));
+            best = fmin(best, he_vec3_length(he_vec3_sub(p, q)));
+        }
+    }
+    return best;
+}
+
+static void the_nearest_point_is_that_of_all_triangles(void **state)
+{
+    (void)state;
+    uint64_t seed = 21;
+    for (int round = 0; round < 12; round++) {
+        he_mesh *m = tangle(&seed);
+        he_bvh *tree = tree_of(m);
+        for (int i = 0; i < 6; i++) {
+            he_vec3 p = random_point(&seed, i % 2 == 0 ? 1 : 4);
+            double best = HUGE_VAL, side = 0;
+            for (uint32_t t = 0; t < tree->count; t++) {
+                const uint32_t *v = tree->triangles[t].vertex;
+                he_vec3 a = m->c.position[v[0]], b = m->c.position[v[1]], c = m->c.position[v[2]];
+                best = fmin(best, sampled(p, a, b, c));
+                side = fmax(side, he_vec3_length(he_vec3_sub(a, b)));
+                side = fmax(side, he_vec3_length(he_vec3_sub(a, c)));
+            }
+            he_hit hit = closest(tree, m, p, HUGE_VAL);
+            check_hit(m, &hit);
+            assert_true(hit.distance <= best + 1e-12 && hit.distance >= best - side / 20);
+            assert_true(fabs(he_vec3_length(he_vec3_sub(p, hit.point)) - hit.distance) < 1e-12);
+            assert_int_equal(closest(tree, m, p, hit.distance * 0.999).face, HE_NONE);
+            assert_int_equal(closest(tree, m, p, hit.distance * 1.001).face, hit.face);
+        }
+        he_bvh_free(tree);
+        he_mesh_free(m);
+    }
+}
+
+static void nearest_points_of_a_cube(void **state)
+{
+    (void)state;
+    he_mesh *m = query_shape("cube", 2, 0, 0, 0);
+    he_bvh *tree = tree_of(m);
+    uint64_t seed = 22;
+    for (int i = 0; i < 2000; i++) {
+        he_vec3 p = random_point(&seed, 3);
+        he_vec3 q = {fmin(fmax(p.x, -1), 1), fmin(fmax(p.y, -1), 1), fmin(fmax(p.z, -1), 1)};
+        double outside = he_vec3_length(he_vec3_sub(p, q));
+        double wanted = outside > 0 ? outside : 1 - he_vec3_extent(p);
+        he_hit hit = closest(tree, m, p, HUGE_VAL);
+        check_hit(m, &hit);
+        assert_true(fabs(hit.distance - wanted) < 1e-12);
+    }
+    he_hit hit = closest(tree, m, (he_vec3){1, 1, 1}, 0);
+    assert_true(hit.face != HE_NONE && hit.distance == 0);
+    he_bvh_free(tree);
+    he_mesh_free(m);
+}
+
+static void faces_without_area_are_the_segments_they_look_like(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012");
+    const he_vec3 line[] = {{0, 0, 0}, {2, 0, 0}, {5, 0, 0}},
+                  dot[] = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
+    memcpy(m->c.position, line, sizeof line);
+    he_bvh *tree = tree_of(m);
+    he_hit hit = closest(tree, m, (he_vec3){3.5, 2, 0}, HUGE_VAL);
+    assert_true(hit.face == 0 && fabs(hit.distance - 2) < 1e-12 && fabs(hit.point.x - 3.5) < 1e-12);
+    assert_int_equal(cast(tree, m, (he_vec3){1, 1, 0}, (he_vec3){0, -1, 0}, 9).face, HE_NONE);
+    he_bvh_free(tree);
+    memcpy(m->c.position, dot, sizeof dot);
+    tree = tree_of(m);
+    hit = closest(tree, m, (he_vec3){1, 2, 5}, HUGE_VAL);
+    assert_true(hit.face == 0 && hit.distance == 2);
+    he_bvh_free(tree);
+    he_mesh_free(m);
+}
+
+static void a_tree_of_triangles_in_one_place_has_a_budget(void **state)
+{
+    (void)state;
+    /* All in one place: nothing to split by. */
+    he_mesh *m = query_shape("grid", 40, 40, 1, 1);
+    memset(m->c.position, 0, he_mesh_issued(m, HE_VERTEX) * sizeof *m->c.position);
+    he_bvh *tree = tree_of(m);
+    he_hit hit = closest(tree, m, (he_vec3){0, 3, 4}, HUGE_VAL), unused;
+    assert_true(hit.face == 0 && hit.distance == 5);
+    uint64_t budget = 100;
+    assert_int_equal(he_bvh_closest(tree, m, (he_vec3){0, 3, 4}, HUGE_VAL, &budget, &unused, NULL),
+                     HE_LIMIT);
+    assert_true(budget == 0);
+    he_bvh_free(tree);
+    he_mesh_free(m);
+}
+
+static void hostile_coordinates_give_finite_hits(void **state)
+{
+    (void)state;
+    static const double odd[] = {0,      1,     -1,    DBL_MAX, -DBL_MAX, DBL_MIN,
+                                 5e-324, 1e-77, 1e154, -1e308,  1e-160,   -0.0};
+    uint64_t seed = 23;
+    for (int round = 0; round < 4000; round++) {
+        he_mesh *m = fixture_mesh(query_specimens[query_random(&seed) % QUERY_SPECIMENS]);
+        uint64_t kinds = 1 + query_random(&seed) % 12;
+        double x[9];
+        for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
+            for (int k = 0; k < 3; k++) {
+                (&m->c.position[v].x)[k] = odd[query_random(&seed) % kinds];
+            }
+        }
+        for (int k = 0; k < 9; k++) {
+            x[k] = odd[query_random(&seed) % 12];
+        }
+        x[3] = x[3] == 0 && x[4] == 0 && x[5] == 0 ? 1 : x[3];
+        he_bvh *tree = tree_of(m);
+        he_hit hits[2] = {
+            cast(tree, m, (he_vec3){x[0], x[1], x[2]}, (he_vec3){x[3], x[4], x[5]}, HUGE_VAL),
+            closest(tree, m, (he_vec3){x[6], x[7], x[8]}, HUGE_VAL)};
+        assert_int_equal(hits[1].face == HE_NONE, he_mesh_faces(m) == 0);
+        for (int i = 0; i < 2; i++) {
+            const he_hit *h = &hits[i];
+            assert_true(h->face == HE_NONE || (h->distance >= 0 && h->distance <= DBL_MAX &&
+                                               he_vec3_is_finite(h->point) && h->weight[0] >= 0 &&
+                                               h->weight[1] >= 0 && h->weight[2] >= 0));
+        }
+        he_ids pairs = {0};
+        uint64_t budget = UINT64_MAX;
+        bool complete;
+        assert_int_equal(he_bvh_intersections(tree, m, 1000, &budget, &pairs, &complete, NULL),
+                         HE_OK);
+        he_ids_clear(&pairs);
+        he_bvh_free(tree);
+        he_mesh_free(m);
+    }
+}
+
+/* --- orientation --- */
+
+static void orientation_is_exact_where_doubles_round(void **state)
+{
+    (void)state;
+    /* Points of a plane that doubles hold exactly, moved by one unit in the last place. */
+    uint64_t seed = 41;
+    for (int i = 0; i < 2000; i++) {
+        double base = ldexp(1, (int)(query_random(&seed) % 30));
+        he_vec3 p[4];
+        for (int k = 0; k < 4; k++) {
+            double x = (double)(query_random(&seed) % 1000),
+                   y = (double)(query_random(&seed) % 1000);
+            p[k] = (he_vec3){base + x, base + y, 3 * (base + x) - 2 * (base + y)};
+        }
+        assert_int_equal(he_orient3(p[0], p[1], p[2], p[3]), 0);
+        he_vec2 a = {p[0].x, p[0].y}, b = {p[1].x, p[1].y}, c = {p[2].x, p[2].y};
+        int turn = he_orient2(a, b, c);
+        he_vec3 up = p[3], down = p[3];
+        up.z = nextafter(up.z, HUGE_VAL);
+        down.z = nextafter(down.z, -HUGE_VAL);
+        assert_int_equal(he_orient3(p[0], p[1], p[2], down), turn);
+        assert_int_equal(he_orient3(p[0], p[1], p[2], up), -turn);
+    }
+    he_vec2 a = {0.1, 0.1}, b = {0.3, 0.3}, on = {0.7, 0.7}, left = {0.7, nextafter(0.7, 1)};
+    assert_int_equal(he_orient2(a, b, on), 0);
+    assert_int_equal(he_orient2(a, b, left), 1);
+    assert_int_equal(he_orient2(b, a, left), -1);
+}
+
+/* --- intersections --- */
+
+static void triangles_meet_where_they_should_not(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *what;
+        he_vec3 b[3]; /* against (0,0,0) (2,0,0) (0,2,0) */
+        bool meet;
+    } rows[] = {
+        {"far away", {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}}, false},
+        {"above", {{0, 0, 1}, {2, 0, 1}, {0, 2, 1}}, false},
+        {"through the middle", {{0.5, 0.5, -1}, {0.5, 0.5, 1}, {3, 3, 0}}, true},
+        {"touching the inside with a corner", {{0.5, 0.5, 0}, {1, 1, 1}, {1, 0, 1}}, true},
+        {"beside, in the plane", {{3, 0, 0}, {5, 0, 0}, {3, 2, 0}}, false},
+        {"inside, in the plane", {{0.1, 0.1, 0}, {0.5, 0.1, 0}, {0.1, 0.5, 0}}, true},
+        {"around, in the plane", {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, true},
+        {"a neighbour", {{2, 0, 0}, {0, 0, 0}, {1, -1, 0}}, false},
+        {"a neighbour that stands up", {{2, 0, 0}, {0, 0, 0}, {1, 1, 1}}, false},
+        {"a neighbour folded back", {{2, 0, 0}, {0, 0, 0}, {1, 1, 0}}, true},
+        {"twice the same", {{2, 0, 0}, {0, 0, 0}, {0, 2, 0}}, true},
+        {"at a corner", {{0, 0, 0}, {-1, 0, 1}, {0, -1, 1}}, false},
+        {"at a corner, above", {{0, 0, 0}, {1, 0, 1}, {0, 1, 1}}, false},
+        {"at a corner, through", {{0, 0, 0}, {1, 1, -1}, {1, 1, 1}}, true},
+        {"at a corner, in the plane", {{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}}, false},
+        {"at a corner, in the plane, over", {{0, 0, 0}, {1, 1, 0}, {1, 2, 0}}, true},
+        {"at a corner, along a side", {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}}, true},
+        {"without area", {{0, 0, -1}, {0.5, 0.5, 0}, {1, 1, 1}}, false},
+    };
+    const he_vec3 a[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        for (int turn = 0; turn < 18; turn++) {
+            he_vec3 c[3], d[3];
+            for (int k = 0; k < 3; k++) {
+                c[k] = a[(k + turn) % 3];
+                d[k] = rows[i].b[turn < 9 ? (k + turn / 3) % 3 : (3 - k + turn / 3) % 3];
+            }
+            if (he_triangles_meet(c, d) != rows[i].meet ||
+                he_triangles_meet(d, c) != rows[i].meet) {
+                fail_msg("%s, turned %d", rows[i].what, turn);
+            }
+        }
+    }
+}
+
+static void pairs_of(const he_mesh *m, size_t most, he_ids *pairs, bool *complete)
+{
+    he_bvh *tree = tree_of(m);
+    uint64_t budget = UINT64_MAX;
+    pairs->count = 0;
+    assert_int_equal(he_bvh_intersections(tree, m, most, &budget, pairs, complete, NULL), HE_OK);
+    he_bvh_free(tree);
+}
+
+static void shapes_do_not_meet_themselves(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double args[4];
+    } rows[] = {{"cube", {1}},
+                {"icosphere", {3, 1}},
+                {"dodecahedron", {1}},
+                {"grid", {20, 20, 1, 1}},
+                {"uv_sphere", {12, 7, 1}},
+                {"torus", {16, 8, 2, 0.5}},
+                {"cylinder", {12, 1, 2, 0}}};
+    he_ids pairs = {0};
+    bool complete;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const double *a = rows[i].args;
+        he_mesh *m = query_shape(rows[i].name, a[0], a[1], a[2], a[3]);
+        pairs_of(m, 1000, &pairs, &complete);
+        if (pairs.count > 0 || !complete) {
+            fail_msg("%s: faces %u and %u", rows[i].name, pairs.ids[0], pairs.ids[1]);
+        }
+        he_mesh_free(m);
+    }
+    he_ids_clear(&pairs);
+}
+
+static void pairs_are_those_that_trying_all_finds(void **state)
+{
+    (void)state;
+    uint64_t seed = 51;
+    he_ids pairs = {0};
+    size_t met = 0;
+    for (int round = 0; round < 40; round++) {
+        he_mesh *m = tangle(&seed);
+        he_bvh *tree = tree_of(m);
+        uint32_t faces = he_mesh_faces(m);
+        bool *wanted = calloc((size_t)faces * faces, sizeof *wanted), complete;
+        assert_non_null(wanted);
+        size_t count = 0;
+        for (uint32_t i = 0; i < tree->count; i++) {
+            for (uint32_t k = 0; k < tree->count; k++) {
+                he_vec3 a[3], b[3];
+                uint32_t f = tree->triangles[i].face, g = tree->triangles[k].face;
+                for (int j = 0; j < 3; j++) {
+                    a[j] = m->c.position[tree->triangles[i].vertex[j]];
+                    b[j] = m->c.position[tree->triangles[k].vertex[j]];
+                }
+                if (f < g && !wanted[f * faces + g] && he_triangles_meet(a, b)) {
+                    wanted[f * faces + g] = true;
+                    count++;
+                }
+            }
+        }
+        pairs_of(m, SIZE_MAX, &pairs, &complete);
+        assert_true(complete);
+        assert_int_equal(pairs.count, 2 * count);
+        for (size_t i = 0; i < pairs.count; i += 2) {
+            assert_true(wanted[pairs.ids[i] * faces + pairs.ids[i + 1]]);
+        }
+        met += count;
+        if (count > 1) {
+            pairs_of(m, 1, &pairs, &complete);
+            assert_true(!complete && pairs.count >= 2);
+        }
+        free(wanted);
+        he_bvh_free(tree);
+        he_mesh_free(m);
+    }
+    assert_true(met > 100);
+    he_ids_clear(&pairs);
+}
+
+static void starved_trees_and_searches_say_so(void **state)
+{
+    (void)state;
+    uint64_t seed = 61;
+    he_mesh *m = tangle(&seed), *polygon = fixture_mesh("01234567");
+    const he_mesh *meshes[] = {m, polygon};
+    for (int i = 0; i < 2; i++) {
+        for (long n = 1;; n++) {
+            he_bvh *tree = NULL;
+            he_ids pairs = {0};
+            bool complete;
+            uint64_t budget = UINT64_MAX;
+            fixture_fail_at(n);
+            he_status status = he_bvh_new(meshes[i], &tree, NULL);
+            if (status == HE_OK) {
+                status =
+                    he_bvh_intersections(tree, meshes[i], 1000, &budget, &pairs, &complete, NULL);
+            }
+            bool failed = status != HE_OK;
+            assert_true(!failed || status == HE_NO_MEMORY);
+            assert_true(!failed || pairs.count == 0);
+            bool done = fixture_memory.calls < n;
+            fixture_memory_back();
+            he_ids_clear(&pairs);
+            he_bvh_free(tree);
+            if (done) {
+                assert_false(failed);
+                break;
+            }
+        }
+    }
+    he_mesh_free(m);
+    he_mesh_free(polygon);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rays_hit_what_trying_all_triangles_finds),
+        cmocka_unit_test(a_closed_surface_has_no_cracks),
+        cmocka_unit_test(edges_and_vertices_are_hit_once_in_the_least_face),
+        cmocka_unit_test(a_ray_needs_a_direction),
+        cmocka_unit_test(rays_from_far_out_along_an_axis_are_exact),
+        cmocka_unit_test(the_nearest_point_is_that_of_all_triangles),
+        cmocka_unit_test(nearest_points_of_a_cube),
+        cmocka_unit_test(faces_without_area_are_the_segments_they_look_like),
+        cmocka_unit_test(a_tree_of_triangles_in_one_place_has_a_budget),
+        cmocka_unit_test(hostile_coordinates_give_finite_hits),
+        cmocka_unit_test(orientation_is_exact_where_doubles_round),
+        cmocka_unit_test(triangles_meet_where_they_should_not),
+        cmocka_unit_test(shapes_do_not_meet_themselves),
+        cmocka_unit_test(pairs_are_those_that_trying_all_finds),
+        cmocka_unit_test(starved_trees_and_searches_say_so),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
