@@ -164,14 +164,24 @@ static const api_example examples[] = {
      .target = "/v1/meshes/kite/query",
      .consumes = "application/json",
      .request = "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"vertex\":2}},"
-                "{\"find\":\"halfedge\",\"vertices\":[0,2]},{\"get\":{\"face\":1}}]}",
+                "{\"find\":\"halfedge\",\"vertices\":[0,2]},{\"get\":{\"face\":1}},"
+                "{\"measure\":\"dihedral\",\"of\":{\"edge\":0}},"
+                "{\"measure\":\"normal\",\"of\":{\"faces\":\"all\"}},"
+                "{\"ray\":{\"origin\":[0,0.5,2],\"direction\":[0,0,-1]}},"
+                "{\"closest\":[0,0.5,2],\"max\":1},{\"self_intersections\":{}}]}",
      .status = 200,
      .produces = "application/json",
-     .response = "{\"revision\":1,\"results\":[{\"revision\":1,\"of\":{\"vertex\":2},"
-                 "\"relation\":\"faces\",\"ids\":[1,0]},{\"halfedge\":5},{\"id\":1,"
-                 "\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,8],"
-                 "\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
-                 "0.6666666666666666,0]}]}"},
+     .response =
+         "{\"revision\":1,\"results\":[{\"revision\":1,\"of\":{\"vertex\":2},"
+         "\"relation\":\"faces\",\"ids\":[1,0]},{\"halfedge\":5},{\"id\":1,"
+         "\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,8],"
+         "\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
+         "0.6666666666666666,0]},{\"revision\":1,\"of\":{\"edge\":0},\"measure\":\"dihedral\","
+         "\"value\":null},{\"measure\":\"normal\",\"components\":3,\"values\":[[0,0,1],"
+         "[0,0,1]]},{\"hit\":{\"face\":1,\"distance\":2,\"point\":[0,0.5,0],"
+         "\"barycentric\":[{\"vertex\":0,\"weight\":0.5},{\"vertex\":3,"
+         "\"weight\":0.5}]}},{\"closest\":null},{\"pairs\":[],\"total\":0,"
+         "\"complete\":true}]}"},
     {.route = "traverse_post",
      .target = "/v1/meshes/kite/traverse",
      .consumes = "application/json",

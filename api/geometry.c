@@ -142,7 +142,7 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
     api_exchange *x = g->x;
     he_error err = {0};
     geometry_step outcome = MISSING;
-    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh);
+    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh, API_DERIVED_SLOTS);
     if (kept->value != NULL) {
         he_status status = bring_forward(x, kept->value, mesh, &err);
         if (status == HE_OK) {
@@ -156,19 +156,19 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
             outcome = fail(x, &err);
         }
     }
-    x->store->derived_end(x->store->self, x->mesh);
+    x->store->derived_end(x->store->self, x->mesh, API_DERIVED_SLOTS);
     return outcome;
 }
 
 /* Keep them, unless somebody was faster: then they are freed. */
 static bool keep(api_exchange *x, he_slots *slots)
 {
-    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh);
+    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh, API_DERIVED_SLOTS);
     bool first = kept->value == NULL;
     if (first) {
         *kept = (api_derived){slots, free_slots};
     }
-    x->store->derived_end(x->store->self, x->mesh);
+    x->store->derived_end(x->store->self, x->mesh, API_DERIVED_SLOTS);
     if (!first) {
         he_slots_free(slots);
     }

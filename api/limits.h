@@ -52,7 +52,8 @@ enum {
     API_MAX_AS = 64,           /* characters of an "as" name */
     API_MAX_QUERIES = 10000,   /* questions of one query */
     API_MAX_PATH_STEPS = 4096, /* of a traversal's path */
-    API_MAX_WALK = 10000000    /* half-edges a walk may answer with, or a query look at */
+    API_MAX_WALK = 10000000,   /* half-edges a walk may answer with, or a query look at */
+    API_MAX_PAIRS = 1 << 20    /* of faces that meet; of polygons perhaps fewer */
 };
 
 /* Above these a costly request leaves the worker for the job pool (API_WORK). */

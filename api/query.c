@@ -44,44 +44,48 @@ static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
 
 /* --- octets --- */
 
+/* One block after another, all little-endian. */
+enum { BLOCKS = 2 };
+
 typedef struct octets {
-    he_dense dense; /* little-endian */
-    size_t sent;    /* bytes */
+    he_dense dense;
+    double *values;
+    struct {
+        const void *bytes;
+        size_t length;
+    } blocks[BLOCKS];
+    size_t sent;
 } octets;
 
 static void free_octets(void *stream)
 {
     octets *o = stream;
     he_dense_clear(&o->dense);
+    he_mem_free(o->values);
     he_mem_free(o);
-}
-
-/* Copy what of `ids` lies at `*at` bytes, which is moved on; or move `*at` past them. */
-static size_t copy_ids(const he_ids *ids, size_t *at, char *buffer, size_t size)
-{
-    size_t bytes = ids->count * sizeof *ids->ids;
-    if (*at >= bytes) {
-        *at -= bytes;
-        return 0;
-    }
-    size_t length = bytes - *at < size ? bytes - *at : size;
-    memcpy(buffer, (const char *)ids->ids + *at, length);
-    *at = 0;
-    return length;
 }
 
 static int64_t read_octets(void *stream, char *buffer, size_t size)
 {
     octets *o = stream;
-    size_t at = o->sent;
-    size_t length = copy_ids(&o->dense.offsets, &at, buffer, size);
-    length += copy_ids(&o->dense.ids, &at, buffer + length, size - length);
-    o->sent += length;
-    return (int64_t)length;
+    size_t at = o->sent, written = 0;
+    for (int i = 0; i < BLOCKS; i++) {
+        size_t length = o->blocks[i].length;
+        if (at >= length) {
+            at -= length;
+            continue;
+        }
+        size_t part = length - at < size - written ? length - at : size - written;
+        memcpy(buffer + written, (const char *)o->blocks[i].bytes + at, part);
+        written += part;
+        at = 0;
+    }
+    o->sent += written;
+    return (int64_t)written;
 }
 
 /* Nothing where the machine has this order already: compilers see that. */
-static void order_bytes(he_ids *list)
+static void order_ids(octets *o, int block, he_ids *list)
 {
     for (size_t i = 0; i < list->count; i++) {
         uint32_t id = list->ids[i];
@@ -89,6 +93,41 @@ static void order_bytes(he_ids *list)
                                         (unsigned char)(id >> 16), (unsigned char)(id >> 24)};
         memcpy(&list->ids[i], bytes, sizeof bytes);
     }
+    o->blocks[block].bytes = list->ids;
+    o->blocks[block].length = list->count * sizeof *list->ids;
+}
+
+static void order_values(octets *o, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint64_t bits;
+        unsigned char bytes[8];
+        memcpy(&bits, &o->values[i], sizeof bits);
+        for (unsigned k = 0; k < 8; k++) {
+            bytes[k] = (unsigned char)(bits >> 8 * k);
+        }
+        memcpy(&o->values[i], bytes, sizeof bytes);
+    }
+    o->blocks[0].bytes = o->values;
+    o->blocks[0].length = count * sizeof *o->values;
+}
+
+static bool fill_octets(octets *o, api_asker *a, const api_in *question)
+{
+    size_t count;
+    if (api_measure_is_dense(question)) {
+        if (!api_measure_dense(a, question, &o->values, &count)) {
+            return false;
+        }
+        order_values(o, count);
+        return true;
+    }
+    if (!api_question_dense(a, question, &o->dense)) {
+        return false;
+    }
+    order_ids(o, 0, &o->dense.offsets);
+    order_ids(o, 1, &o->dense.ids);
+    return true;
 }
 
 static void answer_octets(api_exchange *x, api_asker *a, const api_in *question)
@@ -98,15 +137,12 @@ static void answer_octets(api_exchange *x, api_asker *a, const api_in *question)
         api_fail_memory(x);
         return;
     }
-    if (!api_question_dense(a, question, &o->dense)) {
-        he_mem_free(o);
+    if (!fill_octets(o, a, question)) {
+        free_octets(o);
         return;
     }
-    order_bytes(&o->dense.offsets);
-    order_bytes(&o->dense.ids);
-    size_t length = (o->dense.offsets.count + o->dense.ids.count) * sizeof(uint32_t);
-    api_answer_stream(x, 200, "application/octet-stream", (int64_t)length, read_octets, o,
-                      free_octets);
+    int64_t length = (int64_t)(o->blocks[0].length + o->blocks[1].length);
+    api_answer_stream(x, 200, "application/octet-stream", length, read_octets, o, free_octets);
 }
 
 /* --- which --- */
@@ -119,8 +155,8 @@ static void answer(api_exchange *x, api_asker *a)
         return;
     }
     if (strcmp(x->media_out, "application/octet-stream") == 0) {
-        bool dense = api_in_first(&queries, &first) && api_question_is_dense(&first) &&
-                     api_in_count(&queries) == 1;
+        bool dense = api_in_first(&queries, &first) && api_in_count(&queries) == 1 &&
+                     (api_question_is_dense(&first) || api_measure_is_dense(&first));
         if (dense) {
             answer_octets(x, a, &first);
             return;

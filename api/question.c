@@ -1,6 +1,7 @@
 #include "api/question.h"
 
 #include "api/elements.h"
+#include "api/tree.h"
 #include "mesh/walk.h"
 
 #include <assert.h>
@@ -33,7 +34,8 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
     if (!api_view_begin(x, &view)) {
         return;
     }
-    api_asker a = {.mesh = view.mesh,
+    api_asker a = {.x = x,
+                   .mesh = view.mesh,
                    .revision = x->info.revision,
                    .out = &x->out,
                    .arena = &x->arena,
@@ -43,6 +45,7 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
     api_view_end(x, &view);
     he_ids_clear(&a.first);
     he_ids_clear(&a.second);
+    api_tree_release(a.tree);
     if (a.spent) {
         api_text_empty(&x->text);
         api_out_init(&x->out, &x->text);
@@ -99,17 +102,7 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
            api_asker_refuse(a, &member, &err);
 }
 
-/* --- relations --- */
-
-/* A question about adjacency, decoded. */
-typedef struct asked {
-    const he_relation *relation;
-    unsigned flags;
-    bool dense;
-    uint32_t id;        /* unless dense */
-    const uint32_t *of; /* NULL: all */
-    size_t count;
-} asked;
+/* --- targets --- */
 
 /* {"vertices":...}: which kind is it plural of? */
 static bool find_plural(const api_in *of, he_kind *kind, api_in *member)
@@ -126,12 +119,11 @@ static bool find_plural(const api_in *of, he_kind *kind, api_in *member)
     return false;
 }
 
-bool api_question_is_dense(const api_in *question)
+bool api_target_is_dense(const api_in *of)
 {
-    api_in of, member;
+    api_in member;
     he_kind kind;
-    return api_in_is_object(question) && api_in_find(question, "relation", &of) &&
-           api_in_find(question, "of", &of) && find_plural(&of, &kind, &member);
+    return find_plural(of, &kind, &member);
 }
 
 /* A list of elements that live. */
@@ -151,7 +143,7 @@ static bool read_ids(api_asker *a, const api_in *list, he_kind kind, uint32_t **
     return true;
 }
 
-static bool read_many(api_asker *a, const api_in *list, he_kind kind, asked *out)
+static bool read_many(api_asker *a, const api_in *list, api_target *out)
 {
     static const char *const all[] = {"all", NULL};
     int choice;
@@ -159,18 +151,48 @@ static bool read_many(api_asker *a, const api_in *list, he_kind kind, asked *out
     if (api_in_is_string(list)) {
         return api_in_choice(list, all, &choice);
     }
-    if (!read_ids(a, list, kind, &ids, &out->count)) {
+    if (!read_ids(a, list, out->kind, &ids, &out->count)) {
         return false;
     }
     out->of = ids;
     return true;
 }
 
+bool api_asker_target(api_asker *a, const api_in *of, api_target *out)
+{
+    api_in member;
+    *out = (api_target){.dense = false};
+    if (!find_plural(of, &out->kind, &member)) {
+        return api_asker_element(a, of, ALL_KINDS, &out->kind, &out->id);
+    }
+    out->dense = true;
+    api_in second = member;
+    if (api_in_next(&second)) {
+        return api_in_fail(&second, API_UNKNOWN_MEMBER, "elements are named by one member");
+    }
+    return read_many(a, &member, out);
+}
+
+/* --- relations --- */
+
+/* A question about adjacency, decoded. */
+typedef struct asked {
+    const he_relation *relation;
+    unsigned flags;
+    api_target target;
+} asked;
+
+bool api_question_is_dense(const api_in *question)
+{
+    api_in of;
+    return api_in_is_object(question) && api_in_find(question, "relation", &of) &&
+           api_in_find(question, "of", &of) && api_target_is_dense(&of);
+}
+
 static bool read_relation(api_asker *a, const api_in *question, asked *out)
 {
     static const char *const members[] = {"relation", "of", "cw", NULL};
-    api_in relation, of, member, cw;
-    he_kind kind;
+    api_in relation, of, cw;
     int choice;
     bool clockwise = false;
     *out = (asked){0};
@@ -182,23 +204,14 @@ static bool read_relation(api_asker *a, const api_in *question, asked *out)
         return false;
     }
     out->flags = clockwise ? HE_CLOCKWISE : 0;
-    out->dense = find_plural(&of, &kind, &member);
-    if (out->dense) {
-        api_in second = member;
-        if (api_in_next(&second)) {
-            return api_in_fail(&second, API_UNKNOWN_MEMBER, "elements are named by one member");
-        }
-        if (!read_many(a, &member, kind, out)) {
-            return false;
-        }
-    } else if (!api_asker_element(a, &of, ALL_KINDS, &kind, &out->id)) {
+    if (!api_asker_target(a, &of, &out->target)) {
         return false;
     }
-    const char *const *names = api_relations(kind);
+    const char *const *names = api_relations(out->target.kind);
     if (!api_in_choice(&relation, names, &choice)) {
         return false;
     }
-    out->relation = he_relation_find(kind, names[choice], strlen(names[choice]));
+    out->relation = he_relation_find(out->target.kind, names[choice], strlen(names[choice]));
     return true;
 }
 
@@ -210,25 +223,26 @@ static uint64_t looked_at(const he_mesh *mesh, const asked *q, size_t ids)
         return ids;
     }
     uint64_t total = 0;
-    if (!q->dense) {
-        return he_face_degree(mesh, (he_face){q->id});
+    if (!q->target.dense) {
+        return he_face_degree(mesh, (he_face){q->target.id});
     }
-    for (size_t i = 0; q->of != NULL && i < q->count; i++) {
-        total += he_face_degree(mesh, (he_face){q->of[i]});
+    for (size_t i = 0; q->target.of != NULL && i < q->target.count; i++) {
+        total += he_face_degree(mesh, (he_face){q->target.of[i]});
     }
-    return q->of != NULL ? total : he_mesh_count(mesh, HE_HALFEDGE);
+    return q->target.of != NULL ? total : he_mesh_count(mesh, HE_HALFEDGE);
 }
 
 static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_dense *out)
 {
     assert(q->relation != NULL); /* api_relations lists none that he_relation_find does not know */
     he_error err = {0};
-    uint64_t count = q->of != NULL ? q->count : he_mesh_count(a->mesh, q->relation->of);
+    uint64_t count =
+        q->target.of != NULL ? q->target.count : he_mesh_count(a->mesh, q->relation->of);
     if (count >= a->left) {
         return api_asker_exceed(a, question);
     }
-    if (he_relation_dense(a->mesh, q->relation, q->of, q->count, q->flags, a->left, out, &err) !=
-        HE_OK) {
+    if (he_relation_dense(a->mesh, q->relation, q->target.of, q->target.count, q->flags, a->left,
+                          out, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }
     api_asker_pay(a, count + looked_at(a->mesh, q, out->ids.count));
@@ -248,7 +262,7 @@ static bool ask_relation(api_asker *a, const api_in *question)
     if (!read_relation(a, question, &q)) {
         return false;
     }
-    if (q.dense) {
+    if (q.target.dense) {
         he_dense dense = {0};
         if (!find_dense(a, question, &q, &dense)) {
             return false;
@@ -261,11 +275,11 @@ static bool ask_relation(api_asker *a, const api_in *question)
         return true;
     }
     a->first.count = 0;
-    if (he_relation_append(a->mesh, q.relation, q.id, q.flags, &a->first, &err) != HE_OK) {
+    if (he_relation_append(a->mesh, q.relation, q.target.id, q.flags, &a->first, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }
     api_asker_pay(a, looked_at(a->mesh, &q, a->first.count));
-    api_write_adjacency(a->out, a->revision, q.relation, q.id, &a->first);
+    api_write_adjacency(a->out, a->revision, q.relation, q.target.id, &a->first);
     return true;
 }
 
@@ -334,8 +348,10 @@ bool api_question_ask(api_asker *a, const api_in *question)
     static const struct {
         const char *member;
         bool (*ask)(api_asker *a, const api_in *question);
-    } kinds[] = {
-        {"relation", ask_relation}, {"walk", api_walk_ask}, {"find", ask_find}, {"get", ask_get}};
+    } kinds[] = {{"relation", ask_relation},   {"walk", api_walk_ask},
+                 {"find", ask_find},           {"get", ask_get},
+                 {"measure", api_measure_ask}, {"ray", api_ray_ask},
+                 {"closest", api_closest_ask}, {"self_intersections", api_self_intersections_ask}};
     api_in member;
     if (!api_in_object(question)) {
         return false;
@@ -351,5 +367,6 @@ bool api_question_ask(api_asker *a, const api_in *question)
         return kinds[i].ask(a, question);
     }
     return api_in_fail(question, API_MISSING_MEMBER,
-                       "\"relation\", \"walk\", \"find\" or \"get\" is missing");
+                       "\"relation\", \"walk\", \"find\", \"get\", \"measure\", \"ray\", "
+                       "\"closest\" or \"self_intersections\" is missing");
 }

@@ -5,6 +5,11 @@
  *     {"find":"halfedge","vertices":[1,2]}                 the half-edge between two vertices
  *     {"get":{"edge":3}}                                   an element
  *     {"walk":"rings","from":{"vertex":5},"depth":2}       a walk, see traverse.c
+ *     {"measure":"dihedral","of":{"edge":3}}               a length, normal, curvature: measure.c
+ *     {"ray":{"origin":[0,0,9],"direction":[0,0,-1]}}      what is hit, is near, or meets:
+ * spatial.c
+ *     {"closest":[0,0,9]}
+ *     {"self_intersections":{"limit":100}}
  *
  * POST .../traverse takes one walk, POST .../query a list of any of them; both come here.
  *
@@ -19,7 +24,10 @@
 #include "api/view.h"
 #include "query/adjacency.h"
 
+struct api_tree;
+
 typedef struct api_asker {
+    api_exchange *x;
     const he_mesh *mesh;
     uint64_t revision;
     api_out *out;
@@ -28,6 +36,7 @@ typedef struct api_asker {
     bool on_worker; /* what is not left is looked for on the job pool */
     bool spent;     /* it has to be */
     he_ids first, second;
+    struct api_tree *tree; /* once asked for: see tree.h */
 } api_asker;
 
 /* Call `answer` with the mesh at hand; it writes onto x->out and answers, or leaves a problem or
@@ -44,7 +53,29 @@ bool api_walk_ask(api_asker *a, const api_in *walk);
 bool api_question_is_dense(const api_in *question);
 bool api_question_dense(api_asker *a, const api_in *question, he_dense *out);
 
-/* --- for traverse.c --- */
+/* Is this a measure of many elements? Then find its values, `*count` of them; `out` is the caller's
+ * to free. What has no value is NaN. */
+bool api_measure_is_dense(const api_in *question);
+bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count);
+
+/* --- for traverse.c, measure.c and spatial.c --- */
+bool api_measure_ask(api_asker *a, const api_in *question);
+bool api_ray_ask(api_asker *a, const api_in *question);
+bool api_closest_ask(api_asker *a, const api_in *question);
+bool api_self_intersections_ask(api_asker *a, const api_in *question);
+
+/* What a question is about: {"vertex":5}, {"vertices":[1,2]}, {"vertices":"all"}. */
+typedef struct api_target {
+    he_kind kind;
+    bool dense;
+    uint32_t id;        /* unless dense */
+    const uint32_t *of; /* NULL: all */
+    size_t count;
+} api_target;
+
+bool api_target_is_dense(const api_in *of);
+/* Elements that live. */
+bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 #define API_KIND_BIT(kind) (1u << (kind))
 /* {"vertex":5}, an element that lives and is of one of the kinds in this set of bits. */
 bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);

@@ -345,8 +345,11 @@ static const api_route routes[] = {
      .request = "query",
      .response = "query_results",
      .summary = "Ask many questions at once",
-     .doc = "Adjacency, walks, elements and half-edges between vertices, all of one revision. One "
-            "dense question may be answered as octets."},
+     .doc =
+         "Adjacency, walks, elements, half-edges between vertices, measures, rays, nearest points "
+         "and self-intersections, all of one revision. One question about many elements may be "
+         "answered as octets: of a relation n + 1 offsets and the ids as 32-bit integers, of a "
+         "measure doubles, NaN for null; all little-endian."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/traverse",
      .name = "traverse_post",

@@ -264,6 +264,32 @@ static const member answers[] = {
 
     {"found", "halfedge", "id?", REQUIRED, "From the first vertex to the second."},
 
+    {"measured", "revision", "count", REQUIRED, NULL},
+    {"measured", "of", "#of", REQUIRED, NULL},
+    {"measured", "measure", "#measure_name", REQUIRED, NULL},
+    {"measured", "value", "#measured_value", REQUIRED, "Null where there is none."},
+
+    {"measured_many", "measure", "#measure_name", REQUIRED, NULL},
+    {"measured_many", "components", "count", REQUIRED, "1, or 3 of a vector."},
+    {"measured_many", "values", "*#measured_value", REQUIRED, "One for each element."},
+
+    {"share", "vertex", "id", REQUIRED, NULL},
+    {"share", "weight", "number", REQUIRED, "Above 0; all of a place sum to 1."},
+
+    {"place", "face", "id", REQUIRED, "The one with the least id where there are several."},
+    {"place", "distance", "number", REQUIRED, NULL},
+    {"place", "point", "point", REQUIRED, NULL},
+    {"place", "barycentric", "+#share", REQUIRED,
+     "Of the face's triangle: 3 corners, 2 on an edge of it, 1 at a vertex."},
+
+    {"ray_hit", "hit", "#place?", REQUIRED, "Null where the ray meets nothing."},
+
+    {"nearest", "closest", "#place?", REQUIRED, "Null where no face is near enough."},
+
+    {"intersections", "pairs", "*#pair", REQUIRED, "Faces, the lesser id first; in rising order."},
+    {"intersections", "total", "count", REQUIRED, "Pairs that were found."},
+    {"intersections", "complete", "flag", REQUIRED, "When false there may be more."},
+
     {"query_results", "revision", "count", REQUIRED, NULL},
     {"query_results", "results", "*#answer", REQUIRED, "In the order of the questions."},
 
@@ -393,6 +419,28 @@ static const member requests[] = {
 
     {"get_query", "get", "#of", REQUIRED, NULL},
 
+    {"measure_query", "measure", "#measure_name", REQUIRED, "Which there are depends on the kind."},
+    {"measure_query", "of", "#of_any", REQUIRED, NULL},
+    {"measure_query", "weights", "#weights", OPTIONAL,
+     "Normals of vertices: how faces share in them; angle if not said."},
+    {"measure_query", "crease", "number", OPTIONAL,
+     "Normals of half-edges, needed there: the angle in radians, 0 to pi, beyond which an edge "
+     "stays sharp."},
+
+    {"ray", "origin", "point", REQUIRED, NULL},
+    {"ray", "direction", "point", REQUIRED, "Of any length but zero."},
+    {"ray", "max", "number", OPTIONAL, "The distance it reaches; without, any."},
+
+    {"ray_query", "ray", "#ray", REQUIRED, NULL},
+
+    {"closest_query", "closest", "point", REQUIRED, NULL},
+    {"closest_query", "max", "number", OPTIONAL, "The distance to look in; without, any."},
+
+    {"pair_limit", "limit", "count", OPTIONAL, "Pairs to list; 100 without."},
+
+    {"intersections_query", "self_intersections", "#pair_limit", REQUIRED,
+     "Pairs of faces that share a point which is no corner of both."},
+
     {"query", "queries", "*#question", REQUIRED, NULL},
 
     {"walk", "walk", "#walk_name", REQUIRED, NULL},
@@ -491,6 +539,11 @@ static const struct {
                "{\"$ref\":\"#/components/schemas/dense\"},"
                "{\"$ref\":\"#/components/schemas/walked\"},"
                "{\"$ref\":\"#/components/schemas/found\"},"
+               "{\"$ref\":\"#/components/schemas/measured\"},"
+               "{\"$ref\":\"#/components/schemas/measured_many\"},"
+               "{\"$ref\":\"#/components/schemas/ray_hit\"},"
+               "{\"$ref\":\"#/components/schemas/nearest\"},"
+               "{\"$ref\":\"#/components/schemas/intersections\"},"
                "{\"$ref\":\"#/components/schemas/element\"},"
                "{\"$ref\":\"#/components/schemas/problem\"}]}"},
     {"of", "{\"type\":\"object\",\"propertyNames\":"
@@ -508,7 +561,22 @@ static const struct {
     {"question", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/relation_query\"},"
                  "{\"$ref\":\"#/components/schemas/find_query\"},"
                  "{\"$ref\":\"#/components/schemas/get_query\"},"
+                 "{\"$ref\":\"#/components/schemas/measure_query\"},"
+                 "{\"$ref\":\"#/components/schemas/ray_query\"},"
+                 "{\"$ref\":\"#/components/schemas/closest_query\"},"
+                 "{\"$ref\":\"#/components/schemas/intersections_query\"},"
                  "{\"$ref\":\"#/components/schemas/walk\"}]}"},
+    {"measure_name",
+     "{\"enum\":[\"normal\",\"area\",\"angle_defect\",\"mean_curvature\",\"gaussian_curvature\","
+     "\"angle\",\"length\",\"dihedral\",\"cotangent\",\"centroid\"],\"description\":\"Of vertices "
+     "normal, area (the mixed one), angle_defect, mean_curvature, gaussian_curvature; of "
+     "half-edges "
+     "angle and normal, at the corner; of edges length, dihedral (convex above 0), cotangent (the "
+     "weight); of faces normal, area, centroid. Angles are in radians.\"}"},
+    {"measured_value",
+     "{\"oneOf\":[{\"type\":\"number\"},{\"$ref\":\"#/components/schemas/point\"},"
+     "{\"type\":\"null\"}]}"},
+    {"weights", "{\"enum\":[\"area\",\"angle\",\"uniform\"]}"},
     {"walk_name", "{\"enum\":[\"path\",\"loop\",\"rings\",\"breadth_first\",\"shortest_path\","
                   "\"edge_loop\",\"edge_ring\"]}"},
     {"step_name", "{\"enum\":[\"next\",\"prev\",\"twin\"]}"},

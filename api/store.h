@@ -34,7 +34,13 @@ typedef struct api_mesh_info {
     bool busy; /* claimed by a long edit, see `claim` */
 } api_mesh_info;
 
-/* Something a handler derives from a mesh, keeps with it, and brings forward as it changes. */
+/* What handlers derive from a mesh and keep with it, one of each kind. */
+typedef enum api_derived_kind {
+    API_DERIVED_SLOTS, /* of GET .../geometry, brought forward as the mesh changes */
+    API_DERIVED_TREE,  /* of rays and nearest points, of one revision: see tree.h */
+    API_DERIVED_COUNT
+} api_derived_kind;
+
 typedef struct api_derived {
     void *value; /* NULL: nothing is kept */
     void (*destroy)(void *value);
@@ -139,11 +145,11 @@ typedef struct api_store {
     bool (*cache_get)(void *self, api_mesh *mesh, void *value, size_t size);
     void (*cache_put)(void *self, api_mesh *mesh, const void *value, size_t size);
 
-    /* The place of the one derived object a mesh has, for its holder alone until derived_end: taken
-     * after the read lock or without it, and never for longer than a worker may take. The store
+    /* The place of a derived object, for its holder alone until derived_end: taken after the read
+     * lock or without it, one at a time, and never for longer than a worker may take. The store
      * destroys what is in it when memory is short, and with the mesh. */
-    api_derived *(*derived_begin)(void *self, api_mesh *mesh);
-    void (*derived_end)(void *self, api_mesh *mesh);
+    api_derived *(*derived_begin)(void *self, api_mesh *mesh, api_derived_kind kind);
+    void (*derived_end)(void *self, api_mesh *mesh, api_derived_kind kind);
     /* What the revision changed, in either direction; NULL when that is not kept. Under the read
      * lock. */
     const he_delta *(*revision_delta)(void *self, api_mesh *mesh, uint64_t revision);

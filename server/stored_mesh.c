@@ -45,7 +45,9 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     pthread_mutex_init(&mesh->past_lock, NULL);
     pthread_mutex_init(&mesh->cache_lock, NULL);
     srv_keys_init(&mesh->keys, secret);
-    pthread_mutex_init(&mesh->derived_lock, NULL);
+    for (int kind = 0; kind < API_DERIVED_COUNT; kind++) {
+        pthread_mutex_init(&mesh->derived[kind].lock, NULL);
+    }
     atomic_init(&mesh->uses, 1);
     mesh->journal = journal;
     copy_name(mesh->info.id, sizeof mesh->info.id, id);
@@ -63,9 +65,13 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
 
 static void drop_derived(api_mesh *mesh)
 {
-    if (mesh->derived.value != NULL) {
-        mesh->derived.destroy(mesh->derived.value);
-        mesh->derived = (api_derived){NULL, NULL};
+    for (int kind = 0; kind < API_DERIVED_COUNT; kind++) {
+        api_derived *place = srv_derived_begin(NULL, mesh, (api_derived_kind)kind);
+        if (place->value != NULL) {
+            place->destroy(place->value);
+            *place = (api_derived){NULL, NULL};
+        }
+        srv_derived_end(NULL, mesh, (api_derived_kind)kind);
     }
 }
 
@@ -86,7 +92,9 @@ void srv_mesh_release(api_mesh *mesh)
     pthread_mutex_destroy(&mesh->snapshot_lock);
     pthread_mutex_destroy(&mesh->past_lock);
     pthread_mutex_destroy(&mesh->cache_lock);
-    pthread_mutex_destroy(&mesh->derived_lock);
+    for (int kind = 0; kind < API_DERIVED_COUNT; kind++) {
+        pthread_mutex_destroy(&mesh->derived[kind].lock);
+    }
     he_mem_free(mesh);
 }
 
@@ -178,17 +186,17 @@ void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size)
     pthread_mutex_unlock(&mesh->cache_lock);
 }
 
-api_derived *srv_derived_begin(void *self, api_mesh *mesh)
+api_derived *srv_derived_begin(void *self, api_mesh *mesh, api_derived_kind kind)
 {
     (void)self;
-    pthread_mutex_lock(&mesh->derived_lock);
-    return &mesh->derived;
+    pthread_mutex_lock(&mesh->derived[kind].lock);
+    return &mesh->derived[kind].place;
 }
 
-void srv_derived_end(void *self, api_mesh *mesh)
+void srv_derived_end(void *self, api_mesh *mesh, api_derived_kind kind)
 {
     (void)self;
-    pthread_mutex_unlock(&mesh->derived_lock);
+    pthread_mutex_unlock(&mesh->derived[kind].lock);
 }
 
 const he_delta *srv_revision_delta(void *self, api_mesh *mesh, uint64_t revision)
@@ -201,7 +209,5 @@ void srv_mesh_shed(api_mesh *mesh)
 {
     srv_copy_shed(mesh);
     srv_keys_shed(&mesh->keys);
-    pthread_mutex_lock(&mesh->derived_lock);
     drop_derived(mesh);
-    pthread_mutex_unlock(&mesh->derived_lock);
 }

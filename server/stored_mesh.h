@@ -50,8 +50,10 @@ struct api_mesh {
     uint64_t cache_revision;
 
     srv_keys keys;
-    pthread_mutex_t derived_lock;
-    api_derived derived;
+    struct {
+        pthread_mutex_t lock;
+        api_derived place;
+    } derived[API_DERIVED_COUNT];
 };
 
 /* Takes `content`. NULL when memory is out. */
@@ -71,8 +73,8 @@ const he_mesh *srv_read_begin(void *self, api_mesh *mesh, api_mesh_info *info);
 void srv_read_end(void *self, api_mesh *mesh);
 bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size);
 void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size);
-api_derived *srv_derived_begin(void *self, api_mesh *mesh);
-void srv_derived_end(void *self, api_mesh *mesh);
+api_derived *srv_derived_begin(void *self, api_mesh *mesh, api_derived_kind kind);
+void srv_derived_end(void *self, api_mesh *mesh, api_derived_kind kind);
 const he_delta *srv_revision_delta(void *self, api_mesh *mesh, uint64_t revision);
 bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
 void srv_history_facts(void *self, api_mesh *mesh, struct api_history *out);

@@ -69,9 +69,10 @@ HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_
                                          he_error *err);
 
 /* Normals of corners, smooth but for creases: the mean, weighted by the corners' angles, over the
- * faces that are reached about the half-edge's origin without crossing a hole or an edge whose faces'
- * normals differ by more than `crease`, in [0, pi]. A degenerate face goes with the one clockwise of
- * it, so that it parts no others. Zero on boundary half-edges, and where the mean has no direction.
+ * faces that are reached about the half-edge's origin without crossing a hole or an edge whose
+ * faces' normals differ by more than `crease`, in [0, pi]. A degenerate face goes with the one
+ * clockwise of it, so that it parts no others. Zero on boundary half-edges, and where the mean has
+ * no direction.
  *
  * The one costs the faces about its origin; the whole mesh's fill an array of one entry for each
  * issued half-edge in linear time. HE_NO_MEMORY; HE_CORRUPT leaves the array half written. */

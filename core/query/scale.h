@@ -43,7 +43,8 @@ static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
         return false;
     }
     a = he_vec3_scale(a, ldexp(1, -he_exponent_of(extent)));
-    *out = he_vec3_scale(a, 1 / he_vec3_length(a));
+    double length = he_vec3_length(a);
+    *out = (he_vec3){a.x / length, a.y / length, a.z / length}; /* along an axis exactly 1 */
     return true;
 }
 

@@ -182,6 +182,40 @@ static const refusal bad_questions[] = {
     {NULL, "{\"get\":{\"edge\":2},\"cw\":true}", 400, "unknown_member", "/cw"},
     {NULL, "{\"walk\":\"loop\",\"from\":{\"halfedge\":99}}", 422, "no_such_element",
      "/from/halfedge"},
+    /* measures */
+    {NULL, "{\"measure\":\"length\"}", 400, "missing_member", ""},
+    {NULL, "{\"measure\":1,\"of\":{\"edge\":4}}", 400, "wrong_type", "/measure"},
+    {NULL, "{\"measure\":\"length\",\"of\":{\"face\":1}}", 400, "bad_value", "/measure"},
+    {NULL, "{\"measure\":\"area\",\"of\":{\"face\":0}}", 422, "deleted_element", "/of/face"},
+    {NULL, "{\"measure\":\"area\",\"of\":{\"faces\":[1,99]}}", 422, "no_such_element",
+     "/of/faces/1"},
+    {NULL, "{\"measure\":\"area\",\"of\":{\"face\":1},\"cw\":true}", 400, "unknown_member", "/cw"},
+    {NULL, "{\"measure\":\"normal\",\"of\":{\"vertex\":1},\"weights\":\"mass\"}", 400, "bad_value",
+     "/weights"},
+    {NULL, "{\"measure\":\"normal\",\"of\":{\"face\":1},\"weights\":\"area\"}", 400,
+     "unknown_member", "/weights"},
+    {NULL, "{\"measure\":\"normal\",\"of\":{\"halfedge\":4}}", 400, "missing_member", ""},
+    {NULL, "{\"measure\":\"normal\",\"of\":{\"halfedge\":4},\"crease\":3.2}", 400, "bad_value",
+     "/crease"},
+    {NULL, "{\"measure\":\"normal\",\"of\":{\"halfedge\":4},\"crease\":-1e-300}", 400, "bad_value",
+     "/crease"},
+    {NULL, "{\"measure\":\"angle\",\"of\":{\"halfedge\":4},\"crease\":1}", 400, "unknown_member",
+     "/crease"},
+    /* rays, nearest points, intersections */
+    {NULL, "{\"ray\":{\"origin\":[0,0,0]}}", 400, "missing_member", "/ray"},
+    {NULL, "{\"ray\":{\"origin\":[0,0],\"direction\":[0,0,1]}}", 400, "bad_value", "/ray/origin"},
+    {NULL, "{\"ray\":{\"origin\":[0,0,0],\"direction\":[0,-0.0,0]}}", 400, "bad_value",
+     "/ray/direction"},
+    {NULL, "{\"ray\":{\"origin\":[0,0,0],\"direction\":[0,0,1],\"max\":-1}}", 400, "bad_value",
+     "/ray/max"},
+    {NULL, "{\"ray\":{\"origin\":[0,0,0],\"direction\":[0,0,1],\"min\":1}}", 400, "unknown_member",
+     "/ray/min"},
+    {NULL, "{\"ray\":[0,0,0]}", 400, "wrong_type", "/ray"},
+    {NULL, "{\"closest\":{\"vertex\":1}}", 400, "wrong_type", "/closest"},
+    {NULL, "{\"closest\":[0,0,0],\"max\":\"far\"}", 400, "wrong_type", "/max"},
+    {NULL, "{\"self_intersections\":true}", 400, "wrong_type", "/self_intersections"},
+    {NULL, "{\"self_intersections\":{\"limit\":1048577}}", 400, "bad_value",
+     "/self_intersections/limit"},
 };
 
 static const char *text_of(const cJSON *object, const char *name)
@@ -281,6 +315,12 @@ static void octets_answer_one_dense_question(void **state)
     assert_int_equal(status_of(b, "POST", target, "Accept", octets, single), 406);
     assert_int_equal(status_of(b, "POST", target, "Accept", octets, "{\"queries\":[]}"), 406);
     assert_int_equal(status_of(b, "POST", target, "Accept", octets, dead), 422);
+    static const char measure[] =
+        "{\"queries\":[{\"measure\":\"length\",\"of\":{\"edges\":\"all\"}}]}";
+    static const char ray[] =
+        "{\"queries\":[{\"ray\":{\"origin\":[0,0,0],\"direction\":[0,0,1]}}]}";
+    assert_int_equal(status_of(b, "POST", target, "Accept", octets, measure), 200);
+    assert_int_equal(status_of(b, "POST", target, "Accept", octets, ray), 406);
     assert_int_equal(status_of(b, "POST", target, "Accept", "text/html", dense), 406);
     const char *const both[] = {"Accept", "application/json;q=0.5, application/octet-stream", NULL};
     bench_reply r = bench_send(b, "POST", target, both, single);
@@ -478,6 +518,16 @@ static void long_questions_leave_the_worker(void **state)
                  "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"edges\":\"all\"}}]}", true);
     expect_place(b, query, "application/octet-stream",
                  "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"edges\":\"all\"}}]}", true);
+    expect_place(b, query, NULL,
+                 "{\"queries\":[{\"measure\":\"mean_curvature\",\"of\":{\"vertices\":[7,99]}}]}",
+                 false);
+    expect_place(b, query, NULL,
+                 "{\"queries\":[{\"measure\":\"mean_curvature\",\"of\":{\"vertices\":\"all\"}}]}",
+                 true);
+    /* The first who asks has the tree made, the next one asks it where he is. */
+    expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", true);
+    expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", false);
+    expect_place(b, query, NULL, "{\"queries\":[{\"self_intersections\":{}}]}", true);
     bench_free(b);
 }
 
@@ -640,6 +690,16 @@ static void every_allocation_may_fail(void **state)
                        "{\"queries\":[{\"get\":{\"face\":1}},{\"get\":{\"face\":0}},"
                        "{\"relation\":\"faces\",\"of\":{\"vertices\":[1,2]}},"
                        "{\"find\":\"halfedge\",\"vertices\":[1,2]}]}");
+    try_without_memory(b, query, NULL,
+                       "{\"queries\":[{\"measure\":\"mean_curvature\",\"of\":{\"vertex\":1}},"
+                       "{\"measure\":\"normal\",\"of\":{\"halfedges\":\"all\"},\"crease\":1},"
+                       "{\"measure\":\"normal\",\"of\":{\"vertices\":\"all\"}},"
+                       "{\"measure\":\"cotangent\",\"of\":{\"edges\":[4,5]}}]}");
+    try_without_memory(b, query, NULL,
+                       "{\"queries\":[{\"ray\":{\"origin\":[0,0,0],\"direction\":[0,0,1]}},"
+                       "{\"closest\":[0,0,1]},{\"self_intersections\":{}}]}");
+    try_without_memory(b, query, "application/octet-stream",
+                       "{\"queries\":[{\"measure\":\"normal\",\"of\":{\"faces\":\"all\"}}]}");
     try_without_memory(b, query, "application/octet-stream",
                        "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"edges\":\"all\"}}]}");
     bench_free(b);
