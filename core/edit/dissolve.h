@@ -14,7 +14,8 @@
  *        | /   f   \ |               |           |
  *        o-----------o               o-----------o
  *
- * The inverse of face_poke. Corners keep their values. `face` is f and may be NULL.
+ * The inverse of face_poke. Corners keep their values; what is interpolated becomes the mean of the
+ * faces. `face` is f and may be NULL.
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_VERTEX; HE_REPEATED_CORNER when the
  * ring of the faces about v passes a vertex twice, HE_TOO_FEW_CORNERS when it has only two;

@@ -475,6 +475,9 @@ static void test_edge_and_face_values(void **state)
     assert_value(m, HE_FACE, 1, 10);
     he_mesh_free(m);
     m = after(HEXAGON, HE_FACE, HE_INTERPOLATE, "vertex_dissolve vertex=0");
+    assert_value(m, HE_FACE, 0, 25);
+    he_mesh_free(m);
+    m = after(HEXAGON, HE_FACE, HE_COPY, "vertex_dissolve vertex=0");
     assert_value(m, HE_FACE, 0, 0);
     he_mesh_free(m);
     m = after(QCUBE, HE_FACE, HE_COPY, "vertex_bevel vertex=0 width=0.1");
