@@ -1,7 +1,7 @@
 /* Arrays kept up to date by the changes of GET .../geometry?since=, against all rows fetched anew.
  *
  * EDITS (3000) and SEED (from the clock) come from the environment. */
-#include "tests/api/request.h"
+#include "tests/api/arrays.h"
 
 #include "mesh/walk.h"
 #include "model/random.h"
@@ -20,169 +20,6 @@
 #include <time.h>
 
 #include <cmocka.h>
-
-enum { HEADER = 96, ROW = 16, VERTEX_PART = 0, TRIANGLE_PART = 1 };
-
-static uint32_t u32_at(const char *p)
-{
-    const unsigned char *b = (const unsigned char *)p;
-    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-}
-
-static uint64_t u64_at(const char *p)
-{
-    return u32_at(p) | (uint64_t)u32_at(p + 4) << 32;
-}
-
-/* --- a client --- */
-
-typedef struct client {
-    uint64_t revision, layout; /* 0: nothing yet */
-    char *rows[2];
-    uint32_t count[2];
-    char frame[32];
-    uint64_t whole, changes, bytes; /* answers so far, and the bytes of changes */
-} client;
-
-static void forget(client *c)
-{
-    free(c->rows[VERTEX_PART]);
-    free(c->rows[TRIANGLE_PART]);
-    *c = (client){0};
-}
-
-static void grow(client *c, int part, uint32_t count)
-{
-    assert_true(count >= c->count[part]);
-    c->rows[part] = realloc(c->rows[part], (size_t)count * ROW + 1);
-    assert_non_null(c->rows[part]);
-    memset(c->rows[part] + (size_t)c->count[part] * ROW, 0, (size_t)(count - c->count[part]) * ROW);
-    c->count[part] = count;
-}
-
-static void put_part(client *c, int part, const char *at, uint64_t base, uint32_t sent)
-{
-    if (base == 0) {
-        assert_int_equal(sent, c->count[part]);
-        memcpy(c->rows[part], at, (size_t)sent * ROW);
-        return;
-    }
-    const char *row = at + (size_t)(sent + 3) / 4 * ROW;
-    for (uint32_t i = 0; i < sent; i++) {
-        uint32_t place = u32_at(at + 4 * (size_t)i);
-        assert_true(place < c->count[part]);
-        assert_true(i == 0 || place > u32_at(at + 4 * (size_t)(i - 1)));
-        memcpy(c->rows[part] + (size_t)place * ROW, row + (size_t)i * ROW, ROW);
-    }
-    for (size_t i = sent; i % 4 != 0; i++) {
-        assert_int_equal(u32_at(at + 4 * i), 0);
-    }
-}
-
-static void apply(client *c, const char *body, size_t length)
-{
-    assert_true(length >= HEADER);
-    assert_memory_equal(body, "HEDG", 4);
-    assert_int_equal(u32_at(body + 4), 2);
-    uint64_t base = u64_at(body + 16), layout = u64_at(body + 80);
-    uint64_t part[2] = {u64_at(body + 24), u64_at(body + 32)};
-    assert_true(length == HEADER + part[0] + part[1]);
-    if (base == 0) {
-        client fresh = {.whole = c->whole + 1, .changes = c->changes, .bytes = c->bytes};
-        forget(c);
-        *c = fresh;
-        c->layout = layout;
-        memcpy(c->frame, body + 48, sizeof c->frame);
-    } else {
-        assert_true(base == c->revision && layout == c->layout);
-        assert_memory_equal(c->frame, body + 48, sizeof c->frame);
-        c->changes++;
-        c->bytes += length;
-    }
-    const char *at = body + HEADER;
-    for (int i = 0; i < 2; i++) {
-        uint32_t sent = u32_at(body + 88 + 4 * i);
-        grow(c, i, u32_at(body + 40 + 4 * i));
-        assert_true(part[i] ==
-                    (base == 0 ? 0 : (uint64_t)(sent + 3) / 4 * ROW) + (uint64_t)sent * ROW);
-        put_part(c, i, at, base, sent);
-        at += part[i];
-    }
-    c->revision = u64_at(body + 8);
-}
-
-static bench_reply ask(api_bench *b, const char *mesh, const client *c)
-{
-    char target[200];
-    int used = snprintf(target, sizeof target, "/v1/meshes/%s/geometry", mesh);
-    if (c->layout != 0) {
-        snprintf(target + used, sizeof target - (size_t)used, "?since=%" PRIu64 "&layout=%" PRIu64,
-                 c->revision, c->layout);
-    }
-    return bench_send(b, "GET", target, NULL, NULL);
-}
-
-static void update(api_bench *b, const char *mesh, client *c)
-{
-    bench_reply r = ask(b, mesh, c);
-    if (r.status != 200) {
-        fail_msg("%d %s", r.status, r.body);
-    }
-    apply(c, r.body, r.length);
-    bench_reply_free(&r);
-}
-
-static void assert_same(const client *a, const client *b)
-{
-    assert_true(a->revision == b->revision && a->layout == b->layout);
-    assert_memory_equal(a->frame, b->frame, sizeof a->frame);
-    for (int i = 0; i < 2; i++) {
-        assert_int_equal(a->count[i], b->count[i]);
-        assert_memory_equal(a->rows[i], b->rows[i], (size_t)a->count[i] * ROW);
-    }
-}
-
-/* Each live face's triangles in order in one run, and nothing else but zeros; each vertex its
- * row. */
-static void check_rows(const client *c, const he_mesh *m)
-{
-    he_frame frame;
-    memcpy(&frame, c->frame, sizeof frame);
-    he_drawing d;
-    he_drawing_walk walk = {0};
-    uint32_t faces = 0;
-    assert_int_equal(he_drawing_init(&d, m, &frame, NULL), HE_OK);
-    bool *seen = calloc(m->c.faces.issued + 1, sizeof *seen);
-    assert_non_null(seen);
-    for (uint32_t slot = 0; slot < c->count[TRIANGLE_PART]; slot++) {
-        const char *row = c->rows[TRIANGLE_PART] + (size_t)slot * ROW;
-        uint32_t words[4] = {u32_at(row), u32_at(row + 4), u32_at(row + 8), u32_at(row + 12)};
-        if (words[0] == words[1]) {
-            assert_true((words[0] | words[2] | words[3]) == 0 && walk.left == 0);
-            continue;
-        }
-        uint32_t face = words[3] & ((1u << HE_DRAWN_SIDES) - 1), wanted[HE_DRAWN_ROW];
-        if (walk.left == 0) {
-            assert_true(he_face_is_live(m, (he_face){face}) && !seen[face]);
-            seen[face] = true;
-            faces++;
-            he_drawing_begin(&d, face, &walk);
-        }
-        assert_true(he_drawing_next(&d, &walk, wanted));
-        assert_memory_equal(wanted, words, sizeof words);
-    }
-    assert_true(walk.left == 0);
-    assert_int_equal(faces, he_mesh_faces(m));
-    assert_int_equal(c->count[VERTEX_PART], he_mesh_issued(m, HE_VERTEX));
-    for (uint32_t v = 0; v < c->count[VERTEX_PART]; v++) {
-        float row[HE_DRAWN_ROW];
-        he_drawing_vertex(&d, v, row);
-        assert_memory_equal(row, c->rows[VERTEX_PART] + (size_t)v * ROW, ROW);
-        assert_true(row[0] * row[0] + row[1] * row[1] + row[2] * row[2] <= 1.000001f);
-    }
-    free(seen);
-    he_drawing_clear(&d);
-}
 
 /* --- random edits --- */
 
@@ -405,7 +242,7 @@ static void test_patched_arrays_equal_fresh_ones(void **state)
     uint64_t edits = from_environment("EDITS", 3000);
     printf("note: SEED=%" PRIu64 "\n", seed);
     world w = begin(seed);
-    client often = {0}, seldom = {0}, fresh = {0};
+    arrays often = {0}, seldom = {0}, fresh = {0};
     while (w.done < edits) {
         uint32_t dice = md_below(&w.r, 100);
         if (dice < 75) {
@@ -419,16 +256,16 @@ static void test_patched_arrays_equal_fresh_ones(void **state)
             put(w.b, starts[md_below(&w.r, STARTS)]);
         }
         if (md_chance(&w.r, 40)) {
-            update(w.b, "m", &often);
+            arrays_update(w.b, "m", &often);
         }
         if (md_chance(&w.r, 4)) {
-            update(w.b, "m", &seldom);
-            update(w.b, "m", &often);
-            forget(&fresh);
-            update(w.b, "m", &fresh);
-            assert_same(&often, &fresh);
-            assert_same(&seldom, &fresh);
-            check_rows(&fresh, w.store->read_begin(w.store->self, w.mesh, NULL));
+            arrays_update(w.b, "m", &seldom);
+            arrays_update(w.b, "m", &often);
+            arrays_forget(&fresh);
+            arrays_update(w.b, "m", &fresh);
+            arrays_assert_same(&often, &fresh);
+            arrays_assert_same(&seldom, &fresh);
+            arrays_check(&fresh, w.store->read_begin(w.store->self, w.mesh, NULL));
             w.store->read_end(w.store->self, w.mesh);
         }
     }
@@ -438,9 +275,9 @@ static void test_patched_arrays_equal_fresh_ones(void **state)
            " bytes, %" PRIu64 " fetched whole; seldom %" PRIu64 " and %" PRIu64 "\n",
            w.done, w.stepped, often.changes, often.bytes / often.changes, often.whole,
            seldom.changes, seldom.whole);
-    forget(&often);
-    forget(&seldom);
-    forget(&fresh);
+    arrays_forget(&often);
+    arrays_forget(&seldom);
+    arrays_forget(&fresh);
     end(&w);
 }
 
@@ -466,13 +303,13 @@ static void test_nothing_changed_is_a_header(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0};
-    update(w.b, "m", &c);
-    bench_reply r = ask(w.b, "m", &c);
+    arrays c = {0};
+    arrays_update(w.b, "m", &c);
+    bench_reply r = arrays_ask(w.b, "m", &c);
     assert_int_equal(r.length, HEADER);
-    assert_true(u64_at(r.body + 16) == c.revision);
+    assert_true(arrays_u64(r.body + 16) == c.revision);
     bench_reply_free(&r);
-    forget(&c);
+    arrays_forget(&c);
     end(&w);
 }
 
@@ -480,16 +317,16 @@ static void test_an_edit_costs_what_it_touched(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0};
-    update(w.b, "m", &c);
+    arrays c = {0};
+    arrays_update(w.b, "m", &c);
     post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":5}");
-    bench_reply r = ask(w.b, "m", &c);
+    bench_reply r = arrays_ask(w.b, "m", &c);
     /* A vertex, and two quadrilaterals that became pentagons: four slots freed, six taken. */
-    assert_int_equal(u32_at(r.body + 88), 1);
-    assert_true(u32_at(r.body + 92) <= 10);
+    assert_int_equal(arrays_u32(r.body + 88), 1);
+    assert_true(arrays_u32(r.body + 92) <= 10);
     assert_true(r.length <= HEADER + 16 + 16 + 48 + 160);
     bench_reply_free(&r);
-    forget(&c);
+    arrays_forget(&c);
     end(&w);
 }
 
@@ -498,10 +335,10 @@ static void test_tags(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0};
-    bench_reply whole = ask(w.b, "m", &c);
-    apply(&c, whole.body, whole.length);
-    bench_reply none = ask(w.b, "m", &c);
+    arrays c = {0};
+    bench_reply whole = arrays_ask(w.b, "m", &c);
+    arrays_apply(&c, whole.body, whole.length);
+    bench_reply none = arrays_ask(w.b, "m", &c);
     assert_string_not_equal(bench_header(&whole, "ETag"), bench_header(&none, "ETag"));
     const char *const headers[] = {"If-None-Match", bench_header(&whole, "ETag"), NULL};
     bench_reply same = bench_send(w.b, "GET", "/v1/meshes/m/geometry", headers, NULL);
@@ -521,7 +358,7 @@ static void test_tags(void **state)
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         bench_reply_free(all[i]);
     }
-    forget(&c);
+    arrays_forget(&c);
     end(&w);
 }
 
@@ -529,8 +366,8 @@ static void test_hostile_parameters(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0};
-    update(w.b, "m", &c);
+    arrays c = {0};
+    arrays_update(w.b, "m", &c);
     char target[200];
     static const char *const bad[] = {"since=1",
                                       "layout=1",
@@ -549,38 +386,38 @@ static void test_hostile_parameters(void **state)
         bench_reply_free(&r);
     }
     /* A revision that is still to come is refused; of another layout nothing is known. */
-    client ahead = {.revision = c.revision + 1, .layout = c.layout};
-    bench_reply r = ask(w.b, "m", &ahead);
+    arrays ahead = {.revision = c.revision + 1, .layout = c.layout};
+    bench_reply r = arrays_ask(w.b, "m", &ahead);
     assert_int_equal(r.status, 400);
     bench_reply_free(&r);
     ahead.layout ^= 2;
-    r = ask(w.b, "m", &ahead);
+    r = arrays_ask(w.b, "m", &ahead);
     assert_int_equal(r.status, 200);
-    assert_true(u64_at(r.body + 16) == 0 && u64_at(r.body + 80) == c.layout);
+    assert_true(arrays_u64(r.body + 16) == 0 && arrays_u64(r.body + 80) == c.layout);
     bench_reply_free(&r);
     /* What was before the slots were made is not remembered. */
     poke(w.b, 0);
     poke(w.b, 1);
     put(w.b, starts[1]);
-    client before = {0};
-    update(w.b, "m", &before);
+    arrays before = {0};
+    arrays_update(w.b, "m", &before);
     assert_true(before.layout != c.layout);
     before.revision--;
-    r = ask(w.b, "m", &before);
-    assert_true(r.status == 200 && u64_at(r.body + 16) == 0);
-    assert_true(u64_at(r.body + 80) == before.layout);
+    r = arrays_ask(w.b, "m", &before);
+    assert_true(r.status == 200 && arrays_u64(r.body + 16) == 0);
+    assert_true(arrays_u64(r.body + 80) == before.layout);
     bench_reply_free(&r);
-    forget(&before);
-    forget(&c);
+    arrays_forget(&before);
+    arrays_forget(&c);
     end(&w);
 }
 
 /* --- when a layout ends --- */
 
-static uint64_t layout_after(world *w, client *c, const char *body)
+static uint64_t layout_after(world *w, arrays *c, const char *body)
 {
     post(w->b, "/v1/meshes/m/edits", body);
-    update(w->b, "m", c);
+    arrays_update(w->b, "m", c);
     return c->layout;
 }
 
@@ -588,13 +425,13 @@ static void test_a_layout_ends_when_it_must(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0};
-    update(w.b, "m", &c);
+    arrays c = {0};
+    arrays_update(w.b, "m", &c);
     uint64_t first = c.layout;
     /* Faces that come and go, steps, a vertex that stays inside. */
     assert_true(layout_after(&w, &c, "{\"op\":\"face_delete\",\"faces\":[1,2,3,4,5]}") == first);
     post(w.b, "/v1/meshes/m/undo", NULL);
-    update(w.b, "m", &c);
+    arrays_update(w.b, "m", &c);
     assert_true(c.layout == first);
     assert_true(layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,0.01]}") ==
                 first);
@@ -611,7 +448,7 @@ static void test_a_layout_ends_when_it_must(void **state)
     uint64_t fourth = layout_after(&w, &c, "{\"op\":\"compact\"}");
     assert_true(fourth != third);
     put(w.b, starts[1]);
-    update(w.b, "m", &c);
+    arrays_update(w.b, "m", &c);
     uint64_t fifth = c.layout;
     assert_true(fifth != fourth);
     /* More than half of the slots without a face. */
@@ -626,7 +463,7 @@ static void test_a_layout_ends_when_it_must(void **state)
     }
     assert_true(layout_after(&w, &c, "{\"op\":\"face_delete\",\"face\":50}") != fifth);
     assert_int_equal(c.count[TRIANGLE_PART], 2 * 47);
-    forget(&c);
+    arrays_forget(&c);
     end(&w);
 }
 
@@ -635,20 +472,20 @@ static void test_a_large_mesh(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0}, fresh = {0};
+    arrays c = {0}, fresh = {0};
     put(w.b, "{\"shape\":\"torus\",\"major_segments\":100,\"minor_segments\":60}");
-    update(w.b, "m", &c);
+    arrays_update(w.b, "m", &c);
     poke(w.b, 77);
-    update(w.b, "m", &c);
+    arrays_update(w.b, "m", &c);
     assert_true(c.whole == 1 && c.changes == 1 && c.bytes < 300);
     /* Many rows, but not most. */
     post(w.b, "/v1/meshes/m/edits",
          "{\"op\":\"transform\",\"matrix\":[1,0,0,0.001,0,1,0,0,0,0,1,0,0,0,0,1]}");
-    update(w.b, "m", &c);
-    update(w.b, "m", &fresh);
-    assert_same(&c, &fresh);
-    forget(&c);
-    forget(&fresh);
+    arrays_update(w.b, "m", &c);
+    arrays_update(w.b, "m", &fresh);
+    arrays_assert_same(&c, &fresh);
+    arrays_forget(&c);
+    arrays_forget(&fresh);
     end(&w);
 }
 
@@ -657,7 +494,7 @@ static void test_a_face_of_many_corners(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0}, fresh = {0};
+    arrays c = {0}, fresh = {0};
     size_t capacity = 400 * 30, used = 0;
     char *body = malloc(capacity);
     assert_non_null(body);
@@ -673,15 +510,15 @@ static void test_a_face_of_many_corners(void **state)
     snprintf(body + used, capacity - used, "]]}");
     put(w.b, body);
     free(body);
-    update(w.b, "m", &c);
+    arrays_update(w.b, "m", &c);
     post(w.b, "/v1/meshes/m/edits", "{\"op\":\"vertex_move\",\"vertex\":7,\"by\":[0,0.5,0]}");
-    update(w.b, "m", &c);
-    update(w.b, "m", &fresh);
-    assert_same(&c, &fresh);
-    check_rows(&c, w.store->read_begin(w.store->self, w.mesh, NULL));
+    arrays_update(w.b, "m", &c);
+    arrays_update(w.b, "m", &fresh);
+    arrays_assert_same(&c, &fresh);
+    arrays_check(&c, w.store->read_begin(w.store->self, w.mesh, NULL));
     w.store->read_end(w.store->self, w.mesh);
-    forget(&c);
-    forget(&fresh);
+    arrays_forget(&c);
+    arrays_forget(&fresh);
     end(&w);
 }
 
@@ -704,9 +541,9 @@ static void test_each_allocation_failing(void **state)
 {
     (void)state;
     world w = begin(1);
-    client c = {0}, fresh = {0};
+    arrays c = {0}, fresh = {0};
     unsigned refused = 0;
-    update(w.b, "m", &c);
+    arrays_update(w.b, "m", &c);
     for (long n = 1, before = -1; before != (long)refused || n < 10; n++) {
         before = refused;
         post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":7}");
@@ -723,7 +560,7 @@ static void test_each_allocation_failing(void **state)
         bool answered = bench_try(w.b, "GET", target, NULL, NULL, 0, &r);
         he_mem_set_hook(NULL);
         if (answered && r.status == 200) {
-            apply(&c, r.body, r.length);
+            arrays_apply(&c, r.body, r.length);
         } else {
             assert_true(!answered || r.status == 507 || r.status == 500);
             refused++;
@@ -731,15 +568,15 @@ static void test_each_allocation_failing(void **state)
         if (answered) {
             bench_reply_free(&r);
         }
-        update(w.b, "m", &c);
-        forget(&fresh);
-        update(w.b, "m", &fresh);
-        assert_same(&c, &fresh);
+        arrays_update(w.b, "m", &c);
+        arrays_forget(&fresh);
+        arrays_update(w.b, "m", &fresh);
+        arrays_assert_same(&c, &fresh);
     }
     assert_true(refused > 5);
     assert_true(c.whole == 1);
-    forget(&c);
-    forget(&fresh);
+    arrays_forget(&c);
+    arrays_forget(&fresh);
     end(&w);
 }
 
@@ -753,12 +590,12 @@ typedef struct crowd {
 static void *follow(void *context)
 {
     crowd *all = context;
-    client c = {0};
+    arrays c = {0};
     do {
-        update(all->w->b, "m", &c);
+        arrays_update(all->w->b, "m", &c);
     } while (atomic_load(&all->writing));
-    update(all->w->b, "m", &c);
-    client *last = malloc(sizeof *last);
+    arrays_update(all->w->b, "m", &c);
+    arrays *last = malloc(sizeof *last);
     assert_non_null(last);
     *last = c;
     return last;
@@ -771,7 +608,7 @@ static void test_many_bring_forward_at_once(void **state)
     world w = begin(5);
     crowd all = {.w = &w};
     pthread_t reader[READERS];
-    client fresh = {0};
+    arrays fresh = {0};
     atomic_init(&all.writing, 1);
     for (int i = 0; i < READERS; i++) {
         assert_int_equal(pthread_create(&reader[i], NULL, follow, &all), 0);
@@ -786,15 +623,15 @@ static void test_many_bring_forward_at_once(void **state)
         }
     }
     atomic_store(&all.writing, 0);
-    update(w.b, "m", &fresh);
+    arrays_update(w.b, "m", &fresh);
     for (int i = 0; i < READERS; i++) {
         void *last = NULL;
         assert_int_equal(pthread_join(reader[i], &last), 0);
-        assert_same(last, &fresh);
-        forget(last);
+        arrays_assert_same(last, &fresh);
+        arrays_forget(last);
         free(last);
     }
-    forget(&fresh);
+    arrays_forget(&fresh);
     end(&w);
 }
 
