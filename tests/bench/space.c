@@ -47,8 +47,8 @@ static he_mesh *torus(void)
     he_mesh *m;
     he_soup_init(&soup, NULL);
     for (uint32_t i = 0; i < VERTICES; i++) {
-        double u = i % SIDE * TURN, v = (double)(i / SIDE) * TURN,
-               r = 1 + 0.01 * random_number() / 8;
+        uint32_t minor = i % SIDE, major = i / SIDE;
+        double u = minor * TURN, v = major * TURN, r = 1 + 0.01 * random_number() / 8;
         he_vec3 p = {(3 + r * cos(v)) * cos(u), (3 + r * cos(v)) * sin(u), r * sin(v)};
         require(he_soup_add_vertex(&soup, p, NULL));
     }

@@ -52,7 +52,8 @@ static he_mesh *grid(uint32_t columns)
     uint32_t across = columns + 1;
     he_soup_init(&soup, NULL);
     for (uint32_t i = 0; i < across * across; i++) {
-        he_vec3 p = {i % across, i / across, 0};
+        uint32_t column = i % across, row = i / across;
+        he_vec3 p = {column, row, 0};
         assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
     }
     for (uint32_t i = 0; i < columns * columns; i++) {
