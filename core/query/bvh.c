@@ -280,7 +280,7 @@ void he_bvh_free(he_bvh *tree)
 
 he_status he_bvh_new(const he_mesh *m, he_bvh **out, he_error *err)
 {
-    uint32_t count;
+    uint32_t count = 0;
     he_box bounds;
     he_status status = count_triangles(m, &count, err);
     if (status != HE_OK) {
