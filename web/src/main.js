@@ -14,6 +14,7 @@ import { Session } from './session.js';
 import { Statistics } from './statistics.js';
 import { Toasts } from './toast.js';
 import { Tools } from './tools.js';
+import { Trial } from './trial.js';
 import { Uploads } from './upload.js';
 import { Work } from './work.js';
 
@@ -22,6 +23,9 @@ const CLICK_PIXELS = 4;
 
 // Browsers refuse an address that changes often: this long after the camera's last move.
 const LINK_DELAY = 250;
+
+// What works on all of a mesh is not tried beforehand on one of more faces.
+const MOST_TRIED = 100000;
 
 const SPLIT_TITLES = {
     edge_split: 'Split the edge and the faces beside it',
@@ -74,9 +78,22 @@ const list = new MeshList(
         onError: fail,
     },
 );
+const trial = new Trial(page('verdict'), tryOut);
 const tools = new Tools(
-    { select: page('operation'), form: page('parameters') },
-    { onRun: (operation) => run(operation).catch(fail), onError: fail },
+    { select: page('operation'), form: page('parameters'), search: page('operation-search') },
+    {
+        onRun: (operation) => run(operation).catch(fail),
+        onTouch: (operation, error) => {
+            if (error === null) {
+                trial.ask(operation);
+            } else {
+                trial.refuse(error);
+            }
+        },
+        onArm: setPickMode,
+        meshes: async () => (await api.listMeshes()).items,
+        onError: fail,
+    },
 );
 new Uploads(
     {
@@ -112,7 +129,15 @@ function importOf({ counts, import: report }) {
     return [...sizes, ...found].join(', ');
 }
 
+async function tryOut(operation, signal) {
+    const { mesh, shown: content, busy } = session;
+    const isDear =
+        tools.isWhole(operation.op) && content?.summary.counts.faces > MOST_TRIED;
+    return mesh === null || busy || isDear ? null : api.tryEdit(mesh, operation, signal);
+}
+
 async function run(operation) {
+    trial.clear();
     if (!tools.isWhole(operation.op)) {
         await session.run(operation);
         return;
@@ -309,8 +334,23 @@ canvas.addEventListener('pointerup', (event) => {
     const screen = { matrix: renderer.matrix, width: box.width, height: box.height, x, y };
     const seen = renderer.look(x, y, REACH);
     const chosen = choose(pickMode(), session.shown.geometry, seen, screen);
-    session.selection.pick(chosen, event.shiftKey).catch(fail);
+    const act = tools.isArmed ? giveToField(chosen) : session.selection.pick(chosen, event.shiftKey);
+    act.catch(fail);
 });
+
+// What pick.js chose goes to the field of the form that waits for it.
+async function giveToField(chosen) {
+    const id = chosen === null ? null : await session.selection.idOf(chosen);
+    if (id !== null) {
+        const isVertex = chosen.kind === 'vertex';
+        const place = isVertex
+            ? (await api.getElement(session.mesh, 'vertex', id)).position
+            : undefined;
+        if (tools.isArmed) {
+            tools.take(id, place);
+        }
+    }
+}
 
 function setPickMode(mode) {
     document.querySelector(`input[name="pick"][value="${mode}"]`).checked = true;
@@ -329,7 +369,9 @@ function frameSelection() {
 }
 
 function openTool(name) {
-    if (!tools.open(name)) {
+    if (tools.has(name)) {
+        tools.open(name);
+    } else {
         toasts.show({ title: 'Not here', detail: `This server has no operation ${name}.` });
     }
 }
@@ -421,7 +463,7 @@ listenToKeys(canvas, {
     undo,
     redo,
     help: () => page('help').showModal(),
-    clear: () => session.selection.clear(),
+    clear: () => (tools.isArmed ? tools.disarm() : session.selection.clear()),
 });
 page('keys').append(...keyList());
 page('pick-modes').addEventListener('change', () => setPickMode(pickMode()));
