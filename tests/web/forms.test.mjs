@@ -108,6 +108,16 @@ test('what an edit would make or why not is said before it is sent', async (t) =
     await waitForFrame(page, { revision: 2 });
 });
 
+test('what an edit would make is asked again when another client has edited', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE, { allowed: [/status of 4\d\d/] });
+    await choose(page, 'face_poke');
+    await field(page, 'face').fill('2');
+    await expectVerdict(page, 'Would make: +1 V +4 E +3 F');
+    await post(daemon, `/${mesh}/edits`, { ops: [{ op: 'face_delete', face: 2 }] });
+    await waitForFrame(page, { revision: 2 });
+    await expectVerdict(page, /Would be refused/);
+});
+
 test('only the last of what is typed is tried', async (t) => {
     const { page } = await openMesh(t, CUBE);
     const tried = [];

@@ -1,8 +1,10 @@
 // main.js - puts the page together: session in the middle, panels and renderer around it.
 
 import * as api from './api.js';
+import { Direct } from './direct.js';
 import { formatCount, make } from './dom.js';
 import { framing } from './framing.js';
+import { begin, drag } from './gesture.js';
 import { History } from './history.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
@@ -119,6 +121,23 @@ new Uploads(
         onError: fail,
     },
 );
+const directTools = ['move', 'extrude', 'inset'];
+const direct = new Direct(
+    canvas,
+    {
+        note: page('direct-note'),
+        hint: page('direct-hint'),
+        amount: page('direct-amount'),
+        buttons: Object.fromEntries(directTools.map((tool) => [tool, page(`direct-${tool}`)])),
+    },
+    {
+        begin: (tool) =>
+            renderer && begin(tool, session.selection.chosen, session.shown.geometry),
+        drag: (gesture, moved) => drag(gesture, renderer.view, moved),
+        onShow: (lines) => renderer?.preview(lines),
+        onRun: (operation) => run(operation).catch(fail),
+    },
+);
 const renderer = makeRenderer();
 
 function importOf({ counts, import: report }) {
@@ -138,6 +157,7 @@ async function tryOut(operation, signal) {
 
 async function run(operation) {
     trial.clear();
+    direct.cancel();
     if (!tools.isWhole(operation.op)) {
         await session.run(operation);
         return;
@@ -219,6 +239,16 @@ function update(what, change) {
     }
     if (isNew || what === 'change' || what === 'selection') {
         showSelection();
+        if (what === 'mesh' || what === 'selection') {
+            direct.cancel();
+        } else {
+            direct.refresh();
+        }
+        if (what === 'mesh') {
+            trial.clear();
+        } else if (what !== 'selection') {
+            trial.askAgain();
+        }
     }
     if (what === 'gone') {
         refreshList().catch(fail);
@@ -302,6 +332,7 @@ function showState() {
     page('goto-id').disabled = mesh === null;
     page('goto-button').disabled = mesh === null;
     tools.setEnabled(ready);
+    direct.setEnabled(ready);
     history.setEnabled(ready);
     showConnection();
     page('loading').hidden = loading === null;
@@ -334,7 +365,9 @@ canvas.addEventListener('pointerup', (event) => {
     const screen = { matrix: renderer.matrix, width: box.width, height: box.height, x, y };
     const seen = renderer.look(x, y, REACH);
     const chosen = choose(pickMode(), session.shown.geometry, seen, screen);
-    const act = tools.isArmed ? giveToField(chosen) : session.selection.pick(chosen, event.shiftKey);
+    const act = tools.isArmed
+        ? giveToField(chosen)
+        : session.selection.pick(chosen, event.shiftKey);
     act.catch(fail);
 });
 
@@ -373,6 +406,33 @@ function openTool(name) {
         tools.open(name);
     } else {
         toasts.show({ title: 'Not here', detail: `This server has no operation ${name}.` });
+    }
+}
+
+// The form of a tool for what is selected, where it is not used in the view.
+const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
+
+// Arm a tool of the view, or show the form where nothing is selected that it fits. The form of what
+// is selected is shown beside it, for who wants numbers.
+function startDirect(tool, isKey) {
+    const name = FORMS[tool];
+    const isThere = isKey ? direct.arm(tool) : direct.toggle(tool);
+    if (!tools.has(name) || !isThere) {
+        direct.cancel();
+        openTool(name);
+    } else if (direct.isArmed && session.selection.last.kind === name.split('_')[0]) {
+        tools.show(name);
+    }
+}
+
+// What Esc gives up: the nearest to hand.
+function giveUp() {
+    if (direct.isArmed) {
+        direct.cancel();
+    } else if (tools.isArmed) {
+        tools.disarm();
+    } else {
+        session.selection.clear();
     }
 }
 
@@ -456,14 +516,15 @@ listenToKeys(canvas, {
     frame: frameSelection,
     zoomIn: () => renderer?.zoom(true),
     zoomOut: () => renderer?.zoom(false),
-    move: () => openTool('vertex_move'),
-    extrude: () => openTool('face_extrude'),
-    inset: () => openTool('face_inset'),
+    move: () => startDirect('move', true),
+    extrude: () => startDirect('extrude', true),
+    inset: () => startDirect('inset', true),
+    split: () => page('split').click(),
     remove: removeSelection,
     undo,
     redo,
     help: () => page('help').showModal(),
-    clear: () => (tools.isArmed ? tools.disarm() : session.selection.clear()),
+    clear: giveUp,
 });
 page('keys').append(...keyList());
 page('pick-modes').addEventListener('change', () => setPickMode(pickMode()));
@@ -478,6 +539,9 @@ page('redo').addEventListener('click', redo);
 page('show-boundary').addEventListener('change', (event) => {
     session.showBoundary(event.target.checked).catch(fail);
 });
+for (const tool of directTools) {
+    page(`direct-${tool}`).addEventListener('click', () => startDirect(tool, false));
+}
 page('fit').addEventListener('click', () => renderer.fit());
 page('refresh').addEventListener('click', () => refreshList().catch(fail));
 for (const button of document.querySelectorAll('.upload')) {

@@ -10,6 +10,7 @@ export class Trial {
     #attempt;
     #timer = 0;
     #running = null;
+    #asked = null; // the operation that was asked about last
 
     // `attempt(operation, signal)` gives the server's answer, or null where it is not to be asked.
     constructor(box, attempt) {
@@ -20,20 +21,33 @@ export class Trial {
     // Try an operation soon; only the last counts. Null where the form does not say one yet.
     ask(operation) {
         this.clear();
+        this.#asked = operation;
         if (operation !== null) {
             this.#timer = setTimeout(() => this.#run(operation), DELAY);
+        }
+    }
+
+    // The mesh has changed: what was said of it may hold no longer.
+    askAgain() {
+        if (this.#asked !== null) {
+            this.ask(this.#asked);
         }
     }
 
     // Say that what the form says cannot be sent.
     refuse(error) {
         this.clear();
+        this.#sayRefused(error);
+    }
+
+    #sayRefused(error) {
         this.#say(`Would be refused: ${error.detail || error.message}`, true);
     }
 
     clear() {
         clearTimeout(this.#timer);
         this.#running?.abort();
+        this.#asked = null;
         this.#say('', false);
     }
 
@@ -48,7 +62,7 @@ export class Trial {
         } catch (error) {
             // That there is no connection is shown elsewhere.
             if (!running.signal.aborted && error.status !== 0) {
-                this.refuse(error);
+                this.#sayRefused(error);
             }
         }
     }
