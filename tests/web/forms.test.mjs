@@ -138,6 +138,32 @@ test('only the last of what is typed is tried', async (t) => {
     assert.deepEqual(tried, [3]);
 });
 
+test('what works on all of a large mesh is not tried', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE);
+    await page.route(`**/v1/meshes/${mesh}`, async (route) => {
+        const answer = await route.fetch();
+        const summary = await answer.json();
+        summary.counts.faces = 100_001;
+        await route.fulfill({ json: summary });
+    });
+    await post(daemon, `/${mesh}/edits`, { ops: [{ op: 'face_poke', face: 1 }] });
+    await waitForFrame(page, { revision: 2 });
+    await page.locator('#sizes').filter({ hasText: '100,001' }).waitFor();
+    const tried = [];
+    page.on('request', (request) => {
+        if (request.url().endsWith('/edits')) {
+            tried.push(request.postDataJSON().ops[0].op);
+        }
+    });
+    await choose(page, 'triangulate');
+    // Timers of one length end in the order they began: this one after that of the dry run.
+    await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 300)));
+    await choose(page, 'face_poke');
+    await field(page, 'face').fill('2');
+    await expectVerdict(page, 'Would make');
+    assert.deepEqual(tried, ['face_poke']);
+});
+
 test('operations are grouped and searched, and a mesh is one of a list', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE);
     const { id: other } = await post(daemon, '', { name: 'other', shape: 'torus' });
