@@ -144,6 +144,11 @@ export async function projector(page, daemon, mesh) {
         at(ids) {
             return toCanvas(middle(ids));
         },
+        // The pixel of a place in the mesh's own coordinates.
+        atPlace(position) {
+            const { origin, scale } = geometry.frame;
+            return toCanvas(new Vector3(...position.map((x, i) => (x - origin[i]) * scale)));
+        },
         // The pixel in the middle of a half-edge's arrow.
         async arrow(id) {
             const halfedge = await get(daemon, `/${mesh}/halfedges/${id}`);

@@ -66,6 +66,12 @@ export async function setMode(page, mode) {
     await page.getByRole('radio', { name: mode, exact: true }).check();
 }
 
+// Is a request or an answer that of an edit, and not of a dry run?
+export function isEdit(message) {
+    const request = message.request?.() ?? message;
+    return request.url().endsWith('/edits') && request.postDataJSON()?.dry_run !== true;
+}
+
 export async function expectToast(page, pattern) {
     const toast = page.getByRole('alert').filter({ hasText: pattern });
     await toast.waitFor();

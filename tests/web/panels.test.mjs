@@ -5,7 +5,7 @@ import { after, before, test } from 'node:test';
 
 import { checkAccessible, launch, openPage, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { expectToast, goTo, openMesh as open, press, setMode } from './page.mjs';
+import { expectToast, goTo, isEdit, openMesh as open, press, setMode } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -78,7 +78,7 @@ test('measures are rounded for the eye, and whole in their titles', async (t) =>
 
 // Apply the form as it is filled and give the operation that was sent.
 async function apply(page) {
-    const sent = page.waitForRequest((request) => request.url().endsWith('/edits'));
+    const sent = page.waitForRequest(isEdit);
     await page.getByRole('button', { name: 'Apply' }).click();
     const { ops } = (await sent).postDataJSON();
     assert.equal(ops.length, 1);

@@ -7,6 +7,7 @@ import { after, before, test } from 'node:test';
 import { unpack } from '../../web/src/geometry.js';
 import { launch, openPage, waitForFrame } from './browser.mjs';
 import { get, getGeometry, post, startDaemon } from './daemon.mjs';
+import { isEdit } from './page.mjs';
 import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 
 const EDITS = Number(process.env.EDITS ?? 1000);
@@ -111,7 +112,7 @@ async function actOnPage(page, daemon, mesh, below, issued) {
     } else if (dice === 1 && redo > 0) {
         await page.getByRole('button', { name: 'Redo', exact: true }).click();
     } else {
-        const answer = page.waitForResponse((one) => one.url().endsWith('/edits'));
+        const answer = page.waitForResponse(isEdit);
         await page.locator('#param-vertex').fill(`${below(issued.vertices)}`);
         await page.locator('#param-by').fill('0 0 0.01');
         await page.getByRole('button', { name: 'Apply' }).click();

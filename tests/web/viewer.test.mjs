@@ -15,7 +15,7 @@ import {
     waitForFrame,
 } from './browser.mjs';
 import { get, getAll, post, startDaemon } from './daemon.mjs';
-import { checkInspector, click, expectToast, openMesh as open, setMode } from './page.mjs';
+import { checkInspector, click, expectToast, isEdit, openMesh as open, setMode } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -403,7 +403,7 @@ test('a refusal is shown in the words of the server', async (t) => {
     await waitForFrame(page, { selection: 'vertex:0' });
     await click(page, place.at([1]), ['Shift']);
     await waitForFrame(page, { selection: 'vertex:0 vertex:1' });
-    const refused = page.waitForResponse((answer) => answer.url().endsWith('/edits'));
+    const refused = page.waitForResponse(isEdit);
     await page.getByRole('button', { name: 'Split' }).click();
     const problem = await (await refused).json();
     assert.equal(problem.status, 422);

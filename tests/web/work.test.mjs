@@ -5,7 +5,7 @@ import { after, before, test } from 'node:test';
 
 import { checkAccessible, launch, openPage, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { expectToast, openMesh as open } from './page.mjs';
+import { expectToast, isEdit, openMesh as open } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -102,7 +102,7 @@ async function runWhole(page, name) {
 
 test('an operation on the whole mesh shows how far it is, and how it ended', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, { shape: 'icosphere', subdivisions: 2 });
-    const asked = page.waitForRequest((request) => request.url().endsWith('/edits'));
+    const asked = page.waitForRequest(isEdit);
     const release = await keepRunning(page);
     await runWhole(page, 'compact');
     assert.equal((await asked).headers().prefer, 'respond-async');
@@ -117,7 +117,7 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
     assert.ok(await page.locator('#work').isHidden());
     assert.equal((await get(daemon, `/${mesh}`)).revision, 2);
     // A small one asks for no job.
-    const small = page.waitForRequest((request) => request.url().endsWith('/edits'));
+    const small = page.waitForRequest(isEdit);
     await page.locator('#operation').selectOption('face_poke');
     await page.locator('#param-face').fill('0');
     await page.getByRole('button', { name: 'Apply' }).click();

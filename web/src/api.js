@@ -233,6 +233,17 @@ export function edit(mesh, operation, revision, work = null) {
     return postJson(`${meshPath(mesh)}/edits`, body, work);
 }
 
+// What an edit of the mesh as it is now would do; nothing is changed. Null where that takes long.
+export async function tryEdit(mesh, operation, signal) {
+    const answer = await request(`${meshPath(mesh)}/edits`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ dry_run: true, ops: [operation] }),
+        signal,
+    });
+    return answer.status === 200 ? answer.json() : null;
+}
+
 // The last step, or all that were done since a revision.
 export function undo(mesh, revision, to = undefined) {
     const body = { expected_revision: revision, to_revision: to };

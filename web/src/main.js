@@ -1,8 +1,10 @@
 // main.js - puts the page together: session in the middle, panels and renderer around it.
 
 import * as api from './api.js';
+import { Direct } from './direct.js';
 import { formatCount, make } from './dom.js';
 import { framing } from './framing.js';
+import { begin, drag } from './gesture.js';
 import { History } from './history.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
@@ -14,6 +16,7 @@ import { Session } from './session.js';
 import { Statistics } from './statistics.js';
 import { Toasts } from './toast.js';
 import { Tools } from './tools.js';
+import { Trial } from './trial.js';
 import { Uploads } from './upload.js';
 import { Work } from './work.js';
 
@@ -22,6 +25,9 @@ const CLICK_PIXELS = 4;
 
 // Browsers refuse an address that changes often: this long after the camera's last move.
 const LINK_DELAY = 250;
+
+// What works on all of a mesh is not tried beforehand on one of more faces.
+const MOST_TRIED = 100000;
 
 const SPLIT_TITLES = {
     edge_split: 'Split the edge and the faces beside it',
@@ -74,9 +80,22 @@ const list = new MeshList(
         onError: fail,
     },
 );
+const trial = new Trial(page('verdict'), tryOut);
 const tools = new Tools(
-    { select: page('operation'), form: page('parameters') },
-    { onRun: (operation) => run(operation).catch(fail), onError: fail },
+    { select: page('operation'), form: page('parameters'), search: page('operation-search') },
+    {
+        onRun: (operation) => run(operation).catch(fail),
+        onTouch: (operation, error) => {
+            if (error === null) {
+                trial.ask(operation);
+            } else {
+                trial.refuse(error);
+            }
+        },
+        onArm: setPickMode,
+        meshes: async () => (await api.listMeshes()).items,
+        onError: fail,
+    },
 );
 new Uploads(
     {
@@ -102,6 +121,23 @@ new Uploads(
         onError: fail,
     },
 );
+const directTools = ['move', 'extrude', 'inset'];
+const direct = new Direct(
+    canvas,
+    {
+        note: page('direct-note'),
+        hint: page('direct-hint'),
+        amount: page('direct-amount'),
+        buttons: Object.fromEntries(directTools.map((tool) => [tool, page(`direct-${tool}`)])),
+    },
+    {
+        begin: (tool) =>
+            renderer && begin(tool, session.selection.chosen, session.shown.geometry),
+        drag: (gesture, moved) => drag(gesture, renderer.view, moved),
+        onShow: (lines) => renderer?.preview(lines),
+        onRun: (operation) => run(operation).catch(fail),
+    },
+);
 const renderer = makeRenderer();
 
 function importOf({ counts, import: report }) {
@@ -112,7 +148,16 @@ function importOf({ counts, import: report }) {
     return [...sizes, ...found].join(', ');
 }
 
+async function tryOut(operation, signal) {
+    const { mesh, shown: content, busy } = session;
+    const isDear =
+        tools.isWhole(operation.op) && content?.summary.counts.faces > MOST_TRIED;
+    return mesh === null || busy || isDear ? null : api.tryEdit(mesh, operation, signal);
+}
+
 async function run(operation) {
+    trial.clear();
+    direct.cancel();
     if (!tools.isWhole(operation.op)) {
         await session.run(operation);
         return;
@@ -194,6 +239,16 @@ function update(what, change) {
     }
     if (isNew || what === 'change' || what === 'selection') {
         showSelection();
+        if (what === 'mesh' || what === 'selection') {
+            direct.cancel();
+        } else {
+            direct.refresh();
+        }
+        if (what === 'mesh') {
+            trial.clear();
+        } else if (what !== 'selection') {
+            trial.askAgain();
+        }
     }
     if (what === 'gone') {
         refreshList().catch(fail);
@@ -277,6 +332,7 @@ function showState() {
     page('goto-id').disabled = mesh === null;
     page('goto-button').disabled = mesh === null;
     tools.setEnabled(ready);
+    direct.setEnabled(ready);
     history.setEnabled(ready);
     showConnection();
     page('loading').hidden = loading === null;
@@ -309,8 +365,25 @@ canvas.addEventListener('pointerup', (event) => {
     const screen = { matrix: renderer.matrix, width: box.width, height: box.height, x, y };
     const seen = renderer.look(x, y, REACH);
     const chosen = choose(pickMode(), session.shown.geometry, seen, screen);
-    session.selection.pick(chosen, event.shiftKey).catch(fail);
+    const act = tools.isArmed
+        ? giveToField(chosen)
+        : session.selection.pick(chosen, event.shiftKey);
+    act.catch(fail);
 });
+
+// What pick.js chose goes to the field of the form that waits for it.
+async function giveToField(chosen) {
+    const id = chosen === null ? null : await session.selection.idOf(chosen);
+    if (id !== null) {
+        const isVertex = chosen.kind === 'vertex';
+        const place = isVertex
+            ? (await api.getElement(session.mesh, 'vertex', id)).position
+            : undefined;
+        if (tools.isArmed) {
+            tools.take(id, place);
+        }
+    }
+}
 
 function setPickMode(mode) {
     document.querySelector(`input[name="pick"][value="${mode}"]`).checked = true;
@@ -329,8 +402,37 @@ function frameSelection() {
 }
 
 function openTool(name) {
-    if (!tools.open(name)) {
+    if (tools.has(name)) {
+        tools.open(name);
+    } else {
         toasts.show({ title: 'Not here', detail: `This server has no operation ${name}.` });
+    }
+}
+
+// The form of a tool for what is selected, where it is not used in the view.
+const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
+
+// Arm a tool of the view, or show the form where nothing is selected that it fits. The form of what
+// is selected is shown beside it, for who wants numbers.
+function startDirect(tool, isKey) {
+    const name = FORMS[tool];
+    const isThere = isKey ? direct.arm(tool) : direct.toggle(tool);
+    if (!tools.has(name) || !isThere) {
+        direct.cancel();
+        openTool(name);
+    } else if (direct.isArmed && session.selection.last.kind === name.split('_')[0]) {
+        tools.show(name);
+    }
+}
+
+// What Esc gives up: the nearest to hand.
+function giveUp() {
+    if (direct.isArmed) {
+        direct.cancel();
+    } else if (tools.isArmed) {
+        tools.disarm();
+    } else {
+        session.selection.clear();
     }
 }
 
@@ -414,14 +516,15 @@ listenToKeys(canvas, {
     frame: frameSelection,
     zoomIn: () => renderer?.zoom(true),
     zoomOut: () => renderer?.zoom(false),
-    move: () => openTool('vertex_move'),
-    extrude: () => openTool('face_extrude'),
-    inset: () => openTool('face_inset'),
+    move: () => startDirect('move', true),
+    extrude: () => startDirect('extrude', true),
+    inset: () => startDirect('inset', true),
+    split: () => page('split').click(),
     remove: removeSelection,
     undo,
     redo,
     help: () => page('help').showModal(),
-    clear: () => session.selection.clear(),
+    clear: giveUp,
 });
 page('keys').append(...keyList());
 page('pick-modes').addEventListener('change', () => setPickMode(pickMode()));
@@ -436,6 +539,9 @@ page('redo').addEventListener('click', redo);
 page('show-boundary').addEventListener('change', (event) => {
     session.showBoundary(event.target.checked).catch(fail);
 });
+for (const tool of directTools) {
+    page(`direct-${tool}`).addEventListener('click', () => startDirect(tool, false));
+}
 page('fit').addEventListener('click', () => renderer.fit());
 page('refresh').addEventListener('click', () => refreshList().catch(fail));
 for (const button of document.querySelectorAll('.upload')) {

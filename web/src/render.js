@@ -5,6 +5,7 @@
 // so that a test can wait for a frame instead of for a time.
 
 import {
+    AlwaysDepth,
     BufferAttribute,
     BufferGeometry,
     Color,
@@ -69,6 +70,7 @@ const BACKGROUND = 0x0e1116;
 const CHOSEN = 0xffb347;
 const CHOSEN_START = 0x7a4a10; // where a selected half-edge begins
 const BOUNDARY = 0x35d0e6;
+const PREVIEW = 0xf4f6fa;
 // Of half-edges by their role, see around.js; also in style.css.
 const ARROWS = {
     self: 0xffb347,
@@ -81,6 +83,7 @@ const DOT_SIZE = 7; // CSS pixels, as all sizes here
 const MARK_SIZE = 13;
 const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
+const PREVIEW_WIDTH = 2;
 const EDGE_WIDTH = 0.75; // on each side of an edge
 const RAISED = 0.996; // of the distance, as dots in shaders.js
 
@@ -104,6 +107,7 @@ export class Renderer {
     #lines;
     #hiddenLines;
     #boundary;
+    #preview;
     #arrows;
     #marks;
     #allVertices = false;
@@ -229,6 +233,16 @@ export class Renderer {
         this.#draw();
     }
 
+    // Lines over everything, of what is about to be done: coordinates of ends in pairs, or null.
+    preview(coordinates) {
+        const geometry = new LineSegmentsGeometry();
+        if (coordinates !== null && coordinates.length > 0) {
+            geometry.setPositions(coordinates);
+        }
+        this.#replace(this.#preview, geometry, (coordinates?.length ?? 0) > 0);
+        this.#draw();
+    }
+
     // All vertices as dots, or only the isolated ones, which nothing else shows.
     showVertices(all) {
         this.#allVertices = all;
@@ -273,6 +287,14 @@ export class Renderer {
         this.#controls.update();
         this.#draw();
         this.#onMove();
+    }
+
+    // Where the camera is and how it is turned: its own axes, and the canvas in CSS pixels.
+    get view() {
+        this.#camera.updateMatrixWorld();
+        const { elements } = this.#camera.matrixWorld;
+        const [right, up, back, position] = [0, 4, 8, 12].map((at) => elements.slice(at, at + 3));
+        return { right, up, back, position, height: this.#canvas.clientHeight };
     }
 
     // Where the camera stands and what it looks at: six numbers.
@@ -389,6 +411,11 @@ export class Renderer {
         this.#boundary.material.linewidth = BOUNDARY_WIDTH;
         this.#boundary.material.vertexColors = false;
         this.#boundary.material.color.set(BOUNDARY);
+        this.#preview = new LineSegments2(new LineSegmentsGeometry(), line(AlwaysDepth, 1));
+        this.#preview.material.linewidth = PREVIEW_WIDTH;
+        this.#preview.material.vertexColors = false;
+        this.#preview.material.color.set(PREVIEW);
+        this.#preview.visible = false;
         this.#arrows = new Mesh(
             new BufferGeometry(),
             new RawShaderMaterial({
@@ -411,6 +438,7 @@ export class Renderer {
             this.#hiddenLines,
             this.#lines,
             this.#marks,
+            this.#preview,
         ]);
         this.#pickDots = new Points(this.#dots.geometry, dots(DOT_PICK, dotUniforms));
         this.#add(this.#pickScene, [

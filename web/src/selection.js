@@ -67,16 +67,20 @@ export class Selection {
             this.clear();
             return;
         }
-        const { kind, id, from, to } = chosen;
+        const id = await this.idOf(chosen);
+        if (id !== null) {
+            await this.select(chosen.kind, id, also);
+        }
+    }
+
+    // The id of what pick.js chose, or null where it is gone meanwhile.
+    async idOf({ kind, id, from, to }) {
         if (id !== undefined) {
-            await this.select(kind, id, also);
-            return;
+            return id;
         }
         const halfedge = await api.findHalfedge(this.#mesh, from, to);
-        if (halfedge !== null) {
-            // The half-edges of edge e are 2e and 2e + 1.
-            await this.select(kind, kind === 'edge' ? Math.floor(halfedge / 2) : halfedge, also);
-        }
+        // The half-edges of edge e are 2e and 2e + 1.
+        return halfedge !== null && kind === 'edge' ? Math.floor(halfedge / 2) : halfedge;
     }
 
     // Follow a link of the selected half-edge: 'next', 'prev' or 'twin'.

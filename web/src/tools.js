@@ -1,18 +1,21 @@
 // tools.js - a form for each operation of the server's table, its elements taken from the
 // selection. Nothing here knows any operation: a new row of the table appears by itself.
 
-import { Problem } from './api.js';
 import { make } from './dom.js';
+import {
+    KINDS,
+    inputFor,
+    isComplete,
+    isList,
+    isPlace,
+    kindOf,
+    readField,
+    toggleWord,
+} from './fields.js';
 
-const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
-const KINDS = Object.values(PLURALS);
-
-const HINTS = {
-    point: 'x y z',
-    points: 'x y z, one or more',
-    matrix: '16 numbers',
-    mesh: 'id of a mesh',
-};
+// What operations begin with, as groups of the list; what begins otherwise is of the whole mesh.
+const GROUPS = { vertex: 'Vertex', edge: 'Edge', face: 'Face', loop: 'Loop', hole: 'Loop' };
+const GROUP_NAMES = [...new Set(Object.values(GROUPS)), 'Mesh'];
 
 // What an element that is selected says of elements of other kinds.
 const LINKS = {
@@ -26,21 +29,39 @@ export class Tools {
     #select;
     #form;
     #onRun;
+    #onTouch;
+    #onArm;
+    #meshes;
+    #search;
+    #armed = null; // the field that takes what is clicked
     #operations = [];
     #selection = [];
     #isEnabled = true;
     #isChosen = false; // an operation was chosen, and is kept whatever is selected
-    #fields = new Map(); // parameter's name -> {param, read(), input}
+    #fields = new Map(); // parameter's name -> {param, input, button, isTaken}
 
     // `onRun(operation)` is called with what the form says, and shows what goes wrong.
-    constructor({ select, form }, { onRun, onError }) {
+    // `onTouch(operation, error)` after the form was changed: null where it is not complete, or the
+    // error in it. `onArm(kind)` when a field waits for elements of a kind, `meshes()` lists meshes.
+    constructor({ select, form, search }, { onRun, onTouch, onArm, meshes, onError }) {
         this.#select = select;
         this.#form = form;
+        this.#search = search;
         this.#onRun = onRun;
+        this.#onTouch = onTouch;
+        this.#onArm = onArm;
+        this.#meshes = () => meshes().catch((error) => (onError(error), []));
+        search.addEventListener('input', () => this.#list());
+        search.addEventListener('keydown', (event) => {
+            if (event.key === 'Enter' && this.#operation !== undefined) {
+                this.open(this.#operation.name);
+            }
+        });
         select.addEventListener('change', () => {
             this.#isChosen = true;
             this.#build();
         });
+        form.addEventListener('input', (event) => this.#typed(event.target));
         form.addEventListener('submit', (event) => {
             event.preventDefault();
             try {
@@ -53,10 +74,38 @@ export class Tools {
 
     setOperations(operations) {
         this.#operations = operations;
-        this.#select.replaceChildren(
-            ...operations.map(({ name }) => make('option', { value: name }, name)),
+        this.#list();
+    }
+
+    // The operations that what is searched for is in, by what they work on.
+    #list() {
+        const words = this.#search.value.toLowerCase().split(/\s+/);
+        const chosen = this.#select.value;
+        const found = this.#operations.filter(({ name, doc }) =>
+            words.every((word) => `${name} ${doc}`.toLowerCase().includes(word)),
         );
-        this.#build();
+        const groups = GROUP_NAMES.map((label) => {
+            const names = found.map(({ name }) => name).filter((name) => groupOf(name) === label);
+            return make(
+                'optgroup',
+                { label },
+                ...names.map((name) => make('option', { value: name }, name)),
+            );
+        });
+        this.#select.replaceChildren(...groups.filter((group) => group.children.length > 0));
+        if (found.some(({ name }) => name === chosen)) {
+            this.#select.value = chosen;
+        }
+        if (this.#select.value !== chosen || this.#fields.size === 0) {
+            this.#build();
+        }
+    }
+
+    #listAll() {
+        if (this.#search.value !== '') {
+            this.#search.value = '';
+            this.#list();
+        }
     }
 
     // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the
@@ -69,10 +118,73 @@ export class Tools {
         }
         const fitting = this.#operations.find((operation) => this.#fits(operation));
         if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#operation)) {
+            this.#listAll();
             this.#select.value = fitting.name;
             this.#build();
         } else {
             this.#fill();
+            this.#touch();
+        }
+    }
+
+    // --- what is clicked ---
+
+    // Does a field wait for what is clicked?
+    get isArmed() {
+        return this.#armed !== null;
+    }
+
+    disarm() {
+        this.#arm(null);
+    }
+
+    // An element that was clicked for the field that waits; `place` is where a vertex is.
+    take(id, place) {
+        const { param, input } = this.#armed;
+        this.#armed.isTaken = true;
+        if (isPlace(param)) {
+            input.value = place.join(' ');
+        } else {
+            input.value = isList(param) ? toggleWord(input.value, id) : `${id}`;
+        }
+        this.#typed(input);
+        if (!isList(param)) {
+            this.#arm(null);
+        }
+    }
+
+    #arm(field) {
+        this.#armed?.button.setAttribute('aria-pressed', 'false');
+        this.#armed = field;
+        if (field !== null) {
+            field.button.setAttribute('aria-pressed', 'true');
+            this.#onArm(kindOf(field.param));
+        }
+    }
+
+    // Of parameters that stand for each other only the last that was said is kept.
+    #typed(input) {
+        const fields = [...this.#fields.values()];
+        const { param } = fields.find((field) => field.input === input);
+        const others = fields.filter((field) => field.input !== input);
+        if (param.group !== undefined && input.value.trim() !== '') {
+            for (const other of others.filter((one) => one.param.group === param.group)) {
+                other.input.value = '';
+            }
+        }
+        this.#touch();
+    }
+
+    // Say what the form says, once an operation was chosen.
+    #touch() {
+        if (!this.#isChosen || this.#operation === undefined) {
+            return;
+        }
+        try {
+            const isReady = isComplete([...this.#fields.values()]);
+            this.#onTouch(isReady ? this.#read() : null, null);
+        } catch (error) {
+            this.#onTouch(null, error);
         }
     }
 
@@ -83,7 +195,7 @@ export class Tools {
 
     setEnabled(enabled) {
         this.#isEnabled = enabled;
-        for (const button of this.#form.querySelectorAll('button')) {
+        for (const button of this.#form.querySelectorAll('button[type="submit"]')) {
             button.disabled = !enabled;
         }
     }
@@ -103,18 +215,24 @@ export class Tools {
         return this.#operations.find((operation) => operation.name === name)?.size === 'whole';
     }
 
-    // Show the form of an operation with the focus in its first field that is empty. False when the
-    // server has none of this name.
-    open(name) {
-        if (!this.#operations.some((operation) => operation.name === name)) {
-            return false;
-        }
+    // Has the server an operation of this name?
+    has(name) {
+        return this.#operations.some((operation) => operation.name === name);
+    }
+
+    // Show the form of an operation that there is.
+    show(name) {
+        this.#listAll();
         this.#isChosen = true;
         this.#select.value = name;
         this.#build();
+    }
+
+    // The same with the focus in its first field that is empty.
+    open(name) {
+        this.show(name);
         const inputs = [...this.#form.querySelectorAll('input, select')];
         (inputs.find((input) => input.value === '') ?? inputs[0])?.focus();
-        return true;
     }
 
     get #operation() {
@@ -123,6 +241,7 @@ export class Tools {
 
     #build() {
         const operation = this.#operation;
+        this.#arm(null);
         this.#fields.clear();
         const params = operation?.params ?? [];
         const rows = params.map((param) => this.#row(param, othersOf(params, param)));
@@ -137,38 +256,56 @@ export class Tools {
         );
         this.#form.hidden = operation === undefined;
         this.#fill();
+        this.#touch();
     }
 
     // `others` are the parameters that may be given in its place.
     #row(param, others) {
-        const input = inputFor(param);
+        const input = inputFor(param, this.#meshes);
         input.id = `param-${param.name}`;
         input.title = param.doc;
-        this.#fields.set(param.name, { param, input });
+        const field = { param, input, button: null, isTaken: false };
+        this.#fields.set(param.name, field);
         const isOptional = !param.required && param.type !== 'flag';
         const marks = [...others.map(({ name }) => `or ${name}`), isOptional && 'optional'];
         return make(
             'div',
             { className: 'field' },
             make('label', { htmlFor: input.id }, param.name),
-            input,
+            kindOf(param) === null ? input : this.#withButton(field),
             make('span', { className: 'small' }, marks.filter(Boolean).join(', ')),
         );
     }
 
+    #withButton(field) {
+        field.button = make(
+            'button',
+            {
+                type: 'button',
+                'aria-label': `Pick ${field.param.name} in the view`,
+                'aria-pressed': 'false',
+                onclick: () => this.#arm(this.#armed === field ? null : field),
+            },
+            'Pick',
+        );
+        return make('div', { className: 'picked' }, field.input, field.button);
+    }
+
     // Elements of a parameter's kind, in the order they were selected; parameters of one kind share
-    // them out. Of a group only the first that fits is filled.
+    // them out. Of a group only the first that fits is filled, and what was clicked for a field
+    // stays.
     #fill() {
         const left = new Map(KINDS.map((kind) => [kind, this.#ids(kind)]));
-        const groups = new Set();
-        for (const { param, input } of this.#fields.values()) {
-            const kind = PLURALS[param.type] ?? param.type;
-            if (!KINDS.includes(kind)) {
+        const fields = [...this.#fields.values()];
+        const groups = new Set(fields.filter((one) => one.isTaken).map(({ param }) => param.group));
+        groups.delete(undefined);
+        for (const { param, input, isTaken } of fields) {
+            const kind = kindOf(param);
+            if (kind === null || isPlace(param) || isTaken) {
                 continue;
             }
             const ids = groups.has(param.group) ? [] : left.get(kind);
-            const many = param.plural !== undefined || param.type in PLURALS;
-            const taken = ids.splice(0, many ? ids.length : 1);
+            const taken = ids.splice(0, isList(param) ? ids.length : 1);
             input.value = taken.join(' ');
             if (param.group !== undefined && taken.length > 0) {
                 groups.add(param.group);
@@ -185,8 +322,8 @@ export class Tools {
 
     #read() {
         const operation = { op: this.#operation.name };
-        for (const { param, input } of this.#fields.values()) {
-            const [name, value] = readField(param, input);
+        for (const field of this.#fields.values()) {
+            const [name, value] = readField(field);
             if (value !== undefined) {
                 operation[name] = value;
             }
@@ -199,89 +336,12 @@ function keyOf(selection) {
     return selection.map(({ kind, id }) => `${kind}:${id}`).join();
 }
 
+function groupOf(name) {
+    return GROUPS[name.split('_')[0]] ?? 'Mesh';
+}
+
 function othersOf(params, { name, group }) {
     return group === undefined
         ? []
         : params.filter((other) => other.group === group && other.name !== name);
-}
-
-function inputFor(param) {
-    if (param.type === 'flag') {
-        return make('input', { type: 'checkbox', checked: param.default === true });
-    }
-    if (param.type === 'choice') {
-        const options = param.choices.map((choice) => make('option', { value: choice }, choice));
-        const select = make('select', {}, ...options);
-        select.value = param.default ?? param.choices[0];
-        return select;
-    }
-    const input = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
-    input.placeholder = hintFor(param);
-    return input;
-}
-
-// What stands in an empty field. A number that is left out is the server's to choose.
-function hintFor({ type, default: usual, required, nullable }) {
-    if (type === 'number') {
-        return usual === undefined ? (required ? 'number' : 'left out') : `${usual}`;
-    }
-    return HINTS[type] ?? (nullable ? 'id or none' : 'id');
-}
-
-// [member, value] of a field; undefined where it is left out. The server judges what is missing or
-// out of range: it knows better and says why.
-function readField(param, input) {
-    const { name, type } = param;
-    if (type === 'flag') {
-        return [name, input.checked];
-    }
-    const text = input.value.trim();
-    if (type === 'choice') {
-        return [name, text];
-    }
-    if (text === '') {
-        return [name, param.nullable ? null : undefined];
-    }
-    if (type === 'mesh') {
-        return [name, text];
-    }
-    if (param.nullable && text === 'none') {
-        return [name, null];
-    }
-    const numbers = text
-        .split(/[\s,;]+/)
-        .filter((word) => word !== '')
-        .map((word) => toNumber(word, name));
-    if (type === 'points') {
-        const points = [];
-        for (let i = 0; i < numbers.length; i += 3) {
-            points.push(numbers.slice(i, i + 3));
-        }
-        return [name, points.length === 1 ? points[0] : points];
-    }
-    if (type === 'point' || type === 'matrix' || type in PLURALS) {
-        return [name, numbers];
-    }
-    if (numbers.length === 1) {
-        return [name, numbers[0]];
-    }
-    if (param.plural === undefined) {
-        throw new Problem({
-            title: 'One number',
-            detail: `${name} is one number, not \u201c${text}\u201d.`,
-        });
-    }
-    return [param.plural, numbers];
-}
-
-// Digits as people write them: what else JavaScript reads, such as 0x10, is a slip.
-function toNumber(word, name) {
-    const value = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(word) ? Number(word) : NaN;
-    if (!Number.isFinite(value)) {
-        throw new Problem({
-            title: 'Not a number',
-            detail: `${name}: \u201c${word}\u201d is not a number.`,
-        });
-    }
-    return value;
 }
