@@ -76,17 +76,6 @@ void api_attribute_path(const api_exchange *x, char out[API_LOCATION])
 
 /* --- as JSON --- */
 
-static uint32_t next_live(const he_mesh *mesh, he_kind kind, uint64_t from)
-{
-    uint32_t issued = he_mesh_issued(mesh, kind);
-    for (uint64_t id = from; id < issued; id++) {
-        if (he_mesh_is_live(mesh, kind, (uint32_t)id)) {
-            return (uint32_t)id;
-        }
-    }
-    return HE_NONE;
-}
-
 static void begin_values(api_exchange *x, const he_mesh *mesh, const he_column *column)
 {
     api_out_object_begin(&x->out);
@@ -136,8 +125,9 @@ static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *c
         return;
     }
     size_t count = 0;
-    uint32_t id = next_live(mesh, x->kind, from);
-    for (; count < limit && id != HE_NONE; id = next_live(mesh, x->kind, (uint64_t)id + 1)) {
+    uint32_t id = he_mesh_next_live(mesh, x->kind, from);
+    for (; count < limit && id != HE_NONE;
+         id = he_mesh_next_live(mesh, x->kind, (uint64_t)id + 1)) {
         ids[count++] = id;
     }
     begin_values(x, mesh, column);

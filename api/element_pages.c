@@ -5,17 +5,6 @@
 
 #include <string.h>
 
-static uint32_t next_live(const he_mesh *mesh, he_kind kind, uint64_t from)
-{
-    uint32_t issued = he_mesh_issued(mesh, kind);
-    for (uint64_t id = from; id < issued; id++) {
-        if (he_mesh_is_live(mesh, kind, (uint32_t)id)) {
-            return (uint32_t)id;
-        }
-    }
-    return HE_NONE;
-}
-
 /* --- a page --- */
 
 static uint64_t page_limit(const api_exchange *x)
@@ -45,10 +34,10 @@ static void write_page(api_exchange *x, const he_mesh *mesh, uint64_t from)
     api_out_key_u64(&x->out, "revision", x->info.revision);
     api_out_key(&x->out, "items");
     api_out_array_begin(&x->out);
-    uint32_t id = next_live(mesh, x->kind, from);
+    uint32_t id = he_mesh_next_live(mesh, x->kind, from);
     for (uint64_t i = 0; i < limit && id != HE_NONE && x->text.length < API_MAX_PAGE_BYTES; i++) {
         api_write_element(&x->out, mesh, x->kind, id);
-        id = next_live(mesh, x->kind, (uint64_t)id + 1);
+        id = he_mesh_next_live(mesh, x->kind, (uint64_t)id + 1);
     }
     api_out_array_end(&x->out);
     write_next(x, id);
@@ -113,7 +102,7 @@ static void fill(lines *l)
     while (!l->ended && !l->text.failed && l->text.length < LINES_BUFFER) {
         api_out out;
         api_out_init(&out, &l->text);
-        uint32_t id = next_live(l->mesh, l->kind, l->next);
+        uint32_t id = he_mesh_next_live(l->mesh, l->kind, l->next);
         if (id == HE_NONE) {
             write_end(l, &out);
         } else {

@@ -16,16 +16,6 @@ void he_appended_clear(he_appended *appended)
     he_ids_clear(&appended->faces);
 }
 
-static size_t slot_of(const he_mesh *m, const he_column *column)
-{
-    size_t slot = 0;
-    while (m->c.columns[slot] != column) {
-        slot++;
-        assert(slot < m->c.column_count);
-    }
-    return slot;
-}
-
 static he_status check_clash(const he_column *own, const he_column *theirs, he_error *err)
 {
     if (own->type == theirs->type && own->components == theirs->components &&
@@ -102,7 +92,7 @@ static he_status join_labels(he_mesh *m, const he_column *own, const he_column *
             status = he_attribute_put(m, copy, err);
         }
         if (status == HE_OK) {
-            out->slot = slot_of(m, copy);
+            out->slot = he_mesh_column_slot(m, copy);
         } else {
             he_column_free(copy);
         }
@@ -129,7 +119,7 @@ static he_status add_column(he_mesh *m, const he_column *theirs, target *out, he
         status = he_mesh_add_column(m, column, err);
     }
     if (status == HE_OK) {
-        out->slot = slot_of(m, column);
+        out->slot = he_mesh_column_slot(m, column);
     } else {
         he_column_free(column);
     }
@@ -145,7 +135,7 @@ static he_status match_column(he_mesh *m, const he_column *theirs, target *out, 
     if (theirs->domain == HE_MESH_KIND) {
         return HE_OK;
     }
-    out->slot = slot_of(m, own);
+    out->slot = he_mesh_column_slot(m, own);
     return theirs->labels == NULL || theirs->labels == own->labels
                ? HE_OK
                : join_labels(m, own, theirs, out, err);

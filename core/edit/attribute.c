@@ -5,16 +5,6 @@
 
 #include <math.h>
 
-static size_t slot_of(const he_mesh *m, const he_column *column)
-{
-    size_t slot = 0;
-    while (m->c.columns[slot] != column) {
-        slot++;
-        assert(slot < m->c.column_count);
-    }
-    return slot;
-}
-
 he_status he_attribute_put(he_mesh *m, he_column *takes, he_error *err)
 {
     const he_column *old = he_mesh_find_column(m, takes->domain, takes->name);
@@ -31,7 +21,7 @@ he_status he_attribute_put(he_mesh *m, he_column *takes, he_error *err)
         return status;
     }
     if (old != NULL) {
-        status = he_mesh_drop_column(m, slot_of(m, old), err);
+        status = he_mesh_drop_column(m, he_mesh_column_slot(m, old), err);
     }
     if (status == HE_OK) {
         status = he_mesh_add_column(m, takes, err);
@@ -41,14 +31,14 @@ he_status he_attribute_put(he_mesh *m, he_column *takes, he_error *err)
 
 he_status he_attribute_drop(he_mesh *m, const he_column *column, he_error *err)
 {
-    return he_mesh_drop_column(m, slot_of(m, column), err);
+    return he_mesh_drop_column(m, he_mesh_column_slot(m, column), err);
 }
 
 he_status he_attribute_write(he_mesh *m, const he_column *column, const uint32_t *ids, size_t count,
                              const void *values, bool same, he_error *err)
 {
     he_kind domain = column->domain;
-    size_t slot = slot_of(m, column), row_bytes = column->row_bytes;
+    size_t slot = he_mesh_column_slot(m, column), row_bytes = column->row_bytes;
     he_status status = HE_OK;
     if (ids != NULL) {
         status = he_list_require(m, domain, ids, count, HE_REPEATED_ELEMENT, err);

@@ -3,6 +3,7 @@
 #include "mesh/content.h"
 #include "mesh/walk.h"
 
+#include <assert.h>
 #include <string.h>
 
 he_mesh *he_mesh_new(void)
@@ -110,6 +111,17 @@ bool he_mesh_is_live(const he_mesh *mesh, he_kind kind, uint32_t id)
     return id == 0;
 }
 
+uint32_t he_mesh_next_live(const he_mesh *mesh, he_kind kind, uint64_t from)
+{
+    uint32_t issued = he_mesh_issued(mesh, kind);
+    for (uint64_t id = from; id < issued; id++) {
+        if (he_mesh_is_live(mesh, kind, (uint32_t)id)) {
+            return (uint32_t)id;
+        }
+    }
+    return HE_NONE;
+}
+
 he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id, he_error *err)
 {
     if (he_mesh_is_live(mesh, kind, id)) {
@@ -143,6 +155,16 @@ const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const 
         }
     }
     return NULL;
+}
+
+size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column)
+{
+    size_t slot = 0;
+    while (mesh->c.columns[slot] != column) {
+        slot++;
+        assert(slot < mesh->c.column_count);
+    }
+    return slot;
 }
 
 /* Columns are equal when every row is, rows of defaults that only one stores included. */

@@ -113,6 +113,8 @@ uint32_t he_mesh_count(const he_mesh *mesh, he_kind kind);
 /* The high-water mark: how many ids of this kind were ever issued. */
 uint32_t he_mesh_issued(const he_mesh *mesh, he_kind kind);
 bool he_mesh_is_live(const he_mesh *mesh, he_kind kind, uint32_t id);
+/* The first live id from `from` on, HE_NONE where there is none. */
+uint32_t he_mesh_next_live(const he_mesh *mesh, he_kind kind, uint64_t from);
 /* HE_OK, HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT with the element named. */
 HE_NODISCARD he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id,
                                        he_error *err);
@@ -122,5 +124,7 @@ size_t he_mesh_columns(const he_mesh *mesh);
 /* The i-th slot, NULL when its column was dropped. */
 const he_column *he_mesh_column(const he_mesh *mesh, size_t i);
 const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const char *name);
+/* Where a column of the mesh stands among its slots. */
+size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column);
 
 #endif

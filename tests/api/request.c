@@ -311,3 +311,26 @@ void bench_reply_free(bench_reply *r)
     api_free(r->exchange);
     *r = (bench_reply){0};
 }
+
+bench_reply bench_get(api_bench *b, const char *target)
+{
+    return bench_send(b, "GET", target, NULL, NULL);
+}
+
+bench_reply bench_post(api_bench *b, const char *target, const char *body)
+{
+    return bench_send(b, "POST", target, NULL, body);
+}
+
+bench_reply bench_expect(int status, bench_reply r)
+{
+    if (r.status != status) {
+        fail_msg("%d instead of %d: %.300s", r.status, status, r.body);
+    }
+    return r;
+}
+
+void bench_done(bench_reply r)
+{
+    bench_reply_free(&r);
+}

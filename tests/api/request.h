@@ -43,4 +43,11 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
 const char *bench_header(const bench_reply *r, const char *name); /* "" when absent */
 void bench_reply_free(bench_reply *r);
 
+/* The usual cases. */
+bench_reply bench_get(api_bench *b, const char *target);
+bench_reply bench_post(api_bench *b, const char *target, const char *body);
+/* The answer as it came; with another status the test fails and says what came instead. */
+bench_reply bench_expect(int status, bench_reply r);
+void bench_done(bench_reply r);
+
 #endif

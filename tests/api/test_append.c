@@ -14,24 +14,6 @@
 
 #define TRIANGLE "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2]]}"
 
-static bench_reply expect(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %.300s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static void done(bench_reply r)
-{
-    bench_reply_free(&r);
-}
-
-static bench_reply post(api_bench *b, const char *target, const char *body)
-{
-    return bench_send(b, "POST", target, NULL, body);
-}
-
 static bench_reply put(api_bench *b, const char *target, const char *body)
 {
     return bench_send(b, "PUT", target, NULL, body);
@@ -48,10 +30,10 @@ static int count_of(api_bench *b, const char *mesh, const char *kind)
 {
     char target[100];
     (void)snprintf(target, sizeof target, "/v1/meshes/%s", mesh);
-    bench_reply r = expect(200, bench_send(b, "GET", target, NULL, NULL));
+    bench_reply r = bench_expect(200, bench_send(b, "GET", target, NULL, NULL));
     const cJSON *counts = cJSON_GetObjectItem(r.json, "counts");
     int count = (int)cJSON_GetObjectItem(counts, kind)->valuedouble;
-    done(r);
+    bench_done(r);
     return count;
 }
 
@@ -59,8 +41,8 @@ static api_bench *begin(void)
 {
     api_bench *b = bench_new();
     assert_non_null(b);
-    done(expect(201, put(b, "/v1/meshes/box", "{\"shape\":\"cube\"}")));
-    done(expect(201, put(b, "/v1/meshes/tile", TRIANGLE)));
+    bench_done(bench_expect(201, put(b, "/v1/meshes/box", "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(201, put(b, "/v1/meshes/tile", TRIANGLE)));
     return b;
 }
 
@@ -68,17 +50,18 @@ static void the_other_mesh_comes_in_and_its_elements_can_be_named(void **state)
 {
     (void)state;
     api_bench *b = begin();
-    bench_reply r = expect(
-        200, post(b, "/v1/meshes/box/edits",
-                  "{\"ops\":[{\"op\":\"append\",\"mesh\":\"tile\",\"as\":\"a\"},"
-                  "{\"op\":\"vertex_move\",\"vertices\":[\"$a.vertices\"],\"by\":[5,0,0]},"
-                  "{\"op\":\"face_delete\",\"face\":\"$a.faces.0\",\"keep_isolated\":true}]}"));
+    bench_reply r = bench_expect(
+        200,
+        bench_post(b, "/v1/meshes/box/edits",
+                   "{\"ops\":[{\"op\":\"append\",\"mesh\":\"tile\",\"as\":\"a\"},"
+                   "{\"op\":\"vertex_move\",\"vertices\":[\"$a.vertices\"],\"by\":[5,0,0]},"
+                   "{\"op\":\"face_delete\",\"face\":\"$a.faces.0\",\"keep_isolated\":true}]}"));
     const cJSON *made = cJSON_GetObjectItem(r.json, "created");
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(made, "vertices")), 3);
-    done(r);
+    bench_done(r);
     assert_int_equal(count_of(b, "box", "vertices"), 11);
     assert_int_equal(count_of(b, "tile", "faces"), 1);
-    done(expect(200, post(b, "/v1/meshes/box/undo", NULL)));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/box/undo", NULL)));
     assert_int_equal(count_of(b, "box", "vertices"), 8);
     bench_free(b);
 }
@@ -87,10 +70,10 @@ static void a_mesh_may_be_appended_to_itself_as_it_was(void **state)
 {
     (void)state;
     api_bench *b = begin();
-    done(expect(200, post(b, "/v1/meshes/tile/edits",
-                          "{\"ops\":[{\"op\":\"append\",\"mesh\":\"tile\"},"
-                          "{\"op\":\"append\",\"mesh\":\"tile\"},"
-                          "{\"op\":\"append\",\"mesh\":\"box\"}]}")));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/tile/edits",
+                                            "{\"ops\":[{\"op\":\"append\",\"mesh\":\"tile\"},"
+                                            "{\"op\":\"append\",\"mesh\":\"tile\"},"
+                                            "{\"op\":\"append\",\"mesh\":\"box\"}]}")));
     assert_int_equal(count_of(b, "tile", "faces"), 9);
     assert_int_equal(count_of(b, "tile", "components"), 4);
     bench_free(b);
@@ -100,8 +83,9 @@ static void a_dry_run_appends_nothing(void **state)
 {
     (void)state;
     api_bench *b = begin();
-    done(expect(200, post(b, "/v1/meshes/box/edits",
-                          "{\"op\":\"append\",\"mesh\":\"tile\",\"dry_run\":true}")));
+    bench_done(
+        bench_expect(200, bench_post(b, "/v1/meshes/box/edits",
+                                     "{\"op\":\"append\",\"mesh\":\"tile\",\"dry_run\":true}")));
     assert_int_equal(count_of(b, "box", "faces"), 6);
     bench_free(b);
 }
@@ -126,10 +110,11 @@ static void what_cannot_be_had_is_refused_at_its_place(void **state)
     };
     api_bench *b = begin();
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-        bench_reply r = expect(refused[i].status, post(b, "/v1/meshes/box/edits", refused[i].body));
+        bench_reply r =
+            bench_expect(refused[i].status, bench_post(b, "/v1/meshes/box/edits", refused[i].body));
         assert_string_equal(text_of(&r, "code"), refused[i].code);
         assert_string_equal(text_of(&r, "pointer"), refused[i].pointer);
-        done(r);
+        bench_done(r);
     }
     assert_int_equal(count_of(b, "box", "faces"), 6);
     bench_free(b);
@@ -144,13 +129,13 @@ static void no_request_names_more_meshes_than_it_may(void **state)
     for (int i = 0; i <= API_MAX_OTHERS; i++) {
         char target[64];
         (void)snprintf(target, sizeof target, "/v1/meshes/t%d", i);
-        done(expect(201, put(b, target, TRIANGLE)));
+        bench_done(bench_expect(201, put(b, target, TRIANGLE)));
         api_text_add_format(&body, "%s{\"op\":\"append\",\"mesh\":\"t%d\"}", i > 0 ? "," : "", i);
     }
     api_text_add(&body, "]}", sizeof "]}");
-    bench_reply r = expect(413, post(b, "/v1/meshes/box/edits", body.bytes));
+    bench_reply r = bench_expect(413, bench_post(b, "/v1/meshes/box/edits", body.bytes));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
-    done(r);
+    bench_done(r);
     assert_int_equal(count_of(b, "box", "faces"), 6);
     api_text_clear(&body);
     bench_free(b);
@@ -164,12 +149,12 @@ static void attributes_of_one_name_and_two_types_are_refused(void **state)
         "{\"type\":\"float\",\"components\":3}",
     };
     api_bench *b = begin();
-    done(expect(201, put(b, "/v1/meshes/box/attributes/vertices/heat", bodies[0])));
-    done(expect(201, put(b, "/v1/meshes/tile/attributes/vertices/heat", bodies[1])));
-    bench_reply r =
-        expect(422, post(b, "/v1/meshes/box/edits", "{\"op\":\"append\",\"mesh\":\"tile\"}"));
+    bench_done(bench_expect(201, put(b, "/v1/meshes/box/attributes/vertices/heat", bodies[0])));
+    bench_done(bench_expect(201, put(b, "/v1/meshes/tile/attributes/vertices/heat", bodies[1])));
+    bench_reply r = bench_expect(
+        422, bench_post(b, "/v1/meshes/box/edits", "{\"op\":\"append\",\"mesh\":\"tile\"}"));
     assert_string_equal(text_of(&r, "code"), "attribute_clash");
-    done(r);
+    bench_done(r);
     bench_free(b);
 }
 
@@ -182,16 +167,17 @@ static void no_mesh_gets_more_attributes_than_it_may(void **state)
         char target[100];
         (void)snprintf(target, sizeof target, "/v1/meshes/%s/attributes/vertices/a%d",
                        i % 2 ? "box" : "tile", i);
-        done(expect(201, put(b, target, "{\"type\":\"bool\",\"components\":1}")));
+        bench_done(bench_expect(201, put(b, target, "{\"type\":\"bool\",\"components\":1}")));
     }
-    done(expect(200, post(b, "/v1/meshes/box/edits",
-                          "{\"op\":\"append\",\"mesh\":\"tile\",\"dry_run\":true}")));
-    done(expect(201, put(b, "/v1/meshes/box/attributes/vertices/b",
-                         "{\"type\":\"bool\",\"components\":1}")));
-    bench_reply r =
-        expect(413, post(b, "/v1/meshes/box/edits", "{\"op\":\"append\",\"mesh\":\"tile\"}"));
+    bench_done(
+        bench_expect(200, bench_post(b, "/v1/meshes/box/edits",
+                                     "{\"op\":\"append\",\"mesh\":\"tile\",\"dry_run\":true}")));
+    bench_done(bench_expect(201, put(b, "/v1/meshes/box/attributes/vertices/b",
+                                     "{\"type\":\"bool\",\"components\":1}")));
+    bench_reply r = bench_expect(
+        413, bench_post(b, "/v1/meshes/box/edits", "{\"op\":\"append\",\"mesh\":\"tile\"}"));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
-    done(r);
+    bench_done(r);
     bench_free(b);
 }
 
@@ -200,11 +186,13 @@ static void a_large_mesh_takes_in_and_is_taken_in(void **state)
 {
     (void)state;
     api_bench *b = begin();
-    done(expect(201,
-                put(b, "/v1/meshes/wide", "{\"shape\":\"grid\",\"columns\":300,\"rows\":300}")));
-    done(expect(200, post(b, "/v1/meshes/wide/edits", "{\"op\":\"append\",\"mesh\":\"wide\"}")));
+    bench_done(bench_expect(
+        201, put(b, "/v1/meshes/wide", "{\"shape\":\"grid\",\"columns\":300,\"rows\":300}")));
+    bench_done(bench_expect(
+        200, bench_post(b, "/v1/meshes/wide/edits", "{\"op\":\"append\",\"mesh\":\"wide\"}")));
     assert_int_equal(count_of(b, "wide", "faces"), 2 * 300 * 300);
-    done(expect(200, post(b, "/v1/meshes/tile/edits", "{\"op\":\"append\",\"mesh\":\"wide\"}")));
+    bench_done(bench_expect(
+        200, bench_post(b, "/v1/meshes/tile/edits", "{\"op\":\"append\",\"mesh\":\"wide\"}")));
     assert_int_equal(count_of(b, "tile", "faces"), 2 * 300 * 300 + 1);
     bench_free(b);
 }

@@ -4,6 +4,7 @@
 
 #include "api/limits.h"
 #include "tests/model/random.h"
+#include "tests/seed.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -17,17 +18,9 @@
 
 static const char OCTETS[] = "application/octet-stream";
 
-static bench_reply expect(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
 static void send(api_bench *b, int status, const char *method, const char *target, const char *body)
 {
-    bench_reply r = expect(status, bench_send(b, method, target, NULL, body));
+    bench_reply r = bench_expect(status, bench_send(b, method, target, NULL, body));
     bench_reply_free(&r);
 }
 
@@ -35,7 +28,7 @@ static void send(api_bench *b, int status, const char *method, const char *targe
 static char *read_all(api_bench *b, const char *target, const char *accept, size_t *length)
 {
     const char *const headers[] = {"Accept", accept, NULL};
-    bench_reply r = expect(200, bench_send(b, "GET", target, headers, NULL));
+    bench_reply r = bench_expect(200, bench_send(b, "GET", target, headers, NULL));
     char *copy = malloc(r.length + 1);
     assert_non_null(copy);
     memcpy(copy, r.body, r.length + 1);
@@ -117,7 +110,7 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
             fill(r, type, body, rows * count);
             const char *const headers[] = {"Content-Type", OCTETS, NULL};
             bench_reply reply =
-                expect(201, bench_send_bytes(b, "PUT", target, headers, body, length));
+                bench_expect(201, bench_send_bytes(b, "PUT", target, headers, body, length));
             bench_reply_free(&reply);
             *strchr(target, '?') = '\0';
             size_t got;
@@ -150,14 +143,14 @@ static char *dump(api_bench *b, const char *mesh, size_t *length)
         free(body);
     }
     snprintf(target, sizeof target, "/v1/meshes/%s/attributes", mesh);
-    bench_reply list = expect(200, bench_send(b, "GET", target, NULL, NULL));
+    bench_reply list = bench_expect(200, bench_send(b, "GET", target, NULL, NULL));
     const cJSON *item;
     cJSON_ArrayForEach(item, cJSON_GetObjectItem(list.json, "attributes"))
     {
         snprintf(target, sizeof target, "/v1/meshes/%s/attributes/%s/%s", mesh,
                  cJSON_GetObjectItem(item, "domain")->valuestring,
                  cJSON_GetObjectItem(item, "name")->valuestring);
-        bench_reply r = expect(200, bench_send(b, "GET", target, NULL, NULL));
+        bench_reply r = bench_expect(200, bench_send(b, "GET", target, NULL, NULL));
         char *values = cJSON_PrintUnformatted(cJSON_GetObjectItem(r.json, "values"));
         assert_true(used + strlen(values) < sizeof text);
         memcpy(text + used, values, strlen(values));
@@ -172,14 +165,6 @@ static char *dump(api_bench *b, const char *mesh, size_t *length)
     copy[used] = '\0';
     *length = used;
     return copy;
-}
-
-static uint64_t seed_of_run(void)
-{
-    const char *text = getenv("SEED");
-    uint64_t seed = text != NULL ? strtoull(text, NULL, 10) : (uint64_t)time(NULL);
-    printf("note: SEED=%llu\n", (unsigned long long)seed);
-    return seed;
 }
 
 static void documents_carry_every_value(void **state)
@@ -578,7 +563,7 @@ static void documents_are_read_whole_or_not_at_all(void **state)
 
 static uint64_t revision_of(api_bench *b)
 {
-    bench_reply r = expect(200, bench_send(b, "GET", "/v1/meshes/m", NULL, NULL));
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m", NULL, NULL));
     uint64_t revision = (uint64_t)cJSON_GetObjectItem(r.json, "revision")->valuedouble;
     bench_reply_free(&r);
     return revision;
@@ -622,16 +607,16 @@ static void sets_stand_for_lists(void **state)
          "{\"ids\":[0,2,5],\"value\":true}");
     send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/kind",
          "{\"ids\":{\"selected\":true},\"values\":[4,5,6]}");
-    bench_reply r = expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
-                                           "{\"op\":\"face_triangulate\","
-                                           "\"faces\":{\"selected\":true}}"));
+    bench_reply r = bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
+                                                 "{\"op\":\"face_triangulate\","
+                                                 "\"faces\":{\"selected\":true}}"));
     assert_non_null(strstr(r.body, "\"faces\":[6,7,8]"));
     bench_reply_free(&r);
     r = bench_send(b, "GET", "/v1/meshes/m/attributes/faces/kind", NULL, NULL);
     assert_non_null(strstr(r.body, "\"values\":[4,0,5,0,0,6,4,5,6]"));
     bench_reply_free(&r);
-    r = expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
-                               "{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}"));
+    r = bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
+                                     "{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}"));
     assert_non_null(strstr(r.body, "\"faces\":[0,2,5,6,7,8]"));
     bench_reply_free(&r);
     bench_free(b);
@@ -651,7 +636,7 @@ static void what_changes_nothing_makes_no_revision(void **state)
     send(b, 200, "PUT", "/v1/meshes/m/attributes/faces/b", "{\"type\":\"bool\",\"dry_run\":true}");
     send(b, 200, "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL);
     const char *const headers[] = {"Content-Type", OCTETS, NULL};
-    bench_reply octets = expect(
+    bench_reply octets = bench_expect(
         200, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/faces/b?type=bool&dry_run=true",
                               headers, "\0\1\0\1\0\1", 6));
     bench_reply_free(&octets);
@@ -676,7 +661,7 @@ static void what_cannot_be_undone_says_so(void **state)
     for (int i = 0; i < 2; i++) {
         char body[80];
         snprintf(body, sizeof body, "{\"ids\":\"all\",\"value\":true%s}", dry[i]);
-        bench_reply r = expect(200, bench_send(b, "PATCH", FLAG, NULL, body));
+        bench_reply r = bench_expect(200, bench_send(b, "PATCH", FLAG, NULL, body));
         assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
         bench_reply_free(&r);
         send(b, then[i], "GET", "/v1/meshes/m?revision=2", NULL);
@@ -693,7 +678,7 @@ static void the_history_counts_what_was_written(void **state)
     send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
     send(b, 200, "PATCH", FLAG, "{\"ids\":[1,2],\"value\":true}");
     send(b, 200, "DELETE", FLAG, NULL);
-    bench_reply r = expect(200, bench_send(b, "GET", "/v1/meshes/m/edits", NULL, NULL));
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/edits", NULL, NULL));
     static const int modified[] = {0, 2, 0};
     const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
     for (size_t i = 0; i < 3; i++, entry = entry->next) {
@@ -732,7 +717,7 @@ static void a_page_leads_to_the_next(void **state)
     char target[400] = "/v1/meshes/m/attributes/vertices/a%20%22%C3%A4?limit=3";
     unsigned ids = 0;
     for (;;) {
-        bench_reply r = expect(200, bench_send(b, "GET", target, NULL, NULL));
+        bench_reply r = bench_expect(200, bench_send(b, "GET", target, NULL, NULL));
         ids += (unsigned)cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "ids"));
         const char *link = bench_header(&r, "Link");
         if (link[0] == '\0') {

@@ -15,29 +15,6 @@
 
 enum { MANY = 10000 };
 
-static bench_reply expect(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %.300s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static void done(bench_reply r)
-{
-    bench_reply_free(&r);
-}
-
-static bench_reply post(api_bench *b, const char *target, const char *body)
-{
-    return bench_send(b, "POST", target, NULL, body);
-}
-
-static bench_reply get(api_bench *b, const char *target)
-{
-    return bench_send(b, "GET", target, NULL, NULL);
-}
-
 /* `count` edge splits, each of an edge that the one before made; `last` in place of the last. */
 static void write_chain(api_text *body, const char *before, size_t count, const char *last)
 {
@@ -60,8 +37,9 @@ static void write_chain(api_text *body, const char *before, size_t count, const 
 static api_bench *begin(void)
 {
     api_bench *b = bench_new();
-    done(expect(201, post(b, "/v1/meshes?id=m", "{\"shape\":\"icosahedron\"}")));
-    done(expect(200, post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":3}")));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", "{\"shape\":\"icosahedron\"}")));
+    bench_done(bench_expect(
+        200, bench_post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":3}")));
     return b;
 }
 
@@ -86,9 +64,9 @@ typedef struct state_of {
 
 static state_of take(api_bench *b)
 {
-    return (state_of){copy_of(b), expect(200, get(b, "/v1/meshes/m/content")),
-                      expect(200, get(b, "/v1/meshes/m/faces?limit=10000")),
-                      expect(200, get(b, "/v1/meshes/m/edits"))};
+    return (state_of){copy_of(b), bench_expect(200, bench_get(b, "/v1/meshes/m/content")),
+                      bench_expect(200, bench_get(b, "/v1/meshes/m/faces?limit=10000")),
+                      bench_expect(200, bench_get(b, "/v1/meshes/m/edits"))};
 }
 
 /* Was nothing changed since? */
@@ -104,17 +82,17 @@ static void expect_same(api_bench *b, state_of *before)
     assert_string_equal(before->faces.body, now.faces.body);
     assert_string_equal(before->history.body, now.history.body);
     he_mesh_free(now.mesh);
-    done(now.content);
-    done(now.faces);
-    done(now.history);
+    bench_done(now.content);
+    bench_done(now.faces);
+    bench_done(now.history);
 }
 
 static void state_free(state_of *state)
 {
     he_mesh_free(state->mesh);
-    done(state->content);
-    done(state->faces);
-    done(state->history);
+    bench_done(state->content);
+    bench_done(state->faces);
+    bench_done(state->history);
 }
 
 static const char *text_of(const bench_reply *r, const char *member)
@@ -133,8 +111,8 @@ static void ten_thousand_are_one_revision_and_one_step(void **state)
     api_bench *b = begin();
     api_text body = {0};
     write_chain(&body, "", MANY, NULL);
-    bench_reply before = expect(200, get(b, "/v1/meshes/m/content"));
-    bench_reply r = expect(200, post(b, "/v1/meshes/m/edits", body.bytes));
+    bench_reply before = bench_expect(200, bench_get(b, "/v1/meshes/m/content"));
+    bench_reply r = bench_expect(200, bench_post(b, "/v1/meshes/m/edits", body.bytes));
     assert_int_equal(number_of(&r, "revision"), 3);
     const cJSON *results = cJSON_GetObjectItem(r.json, "results"), *result;
     assert_int_equal(cJSON_GetArraySize(results), MANY);
@@ -146,11 +124,11 @@ static void ten_thousand_are_one_revision_and_one_step(void **state)
     const cJSON *created = cJSON_GetObjectItem(r.json, "created");
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(created, "vertices")), MANY);
     bench_reply_free(&r);
-    r = expect(200, get(b, "/v1/meshes/m/edits"));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
     assert_int_equal(number_of(&r, "undo"), 2);
     bench_reply_free(&r);
-    done(expect(200, post(b, "/v1/meshes/m/undo", NULL)));
-    r = expect(200, get(b, "/v1/meshes/m/content"));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/content"));
     assert_string_equal(r.body, before.body);
     bench_reply_free(&r);
     bench_reply_free(&before);
@@ -184,7 +162,8 @@ static void the_last_of_ten_thousand_undoes_all_before_it(void **state)
     api_text body = {0};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         write_chain(&body, "", MANY, cases[i].last);
-        bench_reply r = expect(cases[i].status, post(b, "/v1/meshes/m/edits", body.bytes));
+        bench_reply r =
+            bench_expect(cases[i].status, bench_post(b, "/v1/meshes/m/edits", body.bytes));
         assert_string_equal(text_of(&r, "code"), cases[i].code);
         assert_string_equal(text_of(&r, "pointer"), cases[i].pointer);
         bench_reply_free(&r);
@@ -202,13 +181,13 @@ static void a_dry_run_tells_the_answer_and_changes_nothing(void **state)
     state_of before = take(b);
     api_text body = {0};
     write_chain(&body, "\"dry_run\":true,", MANY, NULL);
-    bench_reply dry = expect(200, post(b, "/v1/meshes/m/edits", body.bytes));
+    bench_reply dry = bench_expect(200, bench_post(b, "/v1/meshes/m/edits", body.bytes));
     assert_string_equal(bench_header(&dry, "ETag"), "");
     expect_same(b, &before);
     assert_true(cJSON_IsTrue(cJSON_GetObjectItem(dry.json, "dry_run")));
     cJSON_DeleteItemFromObject(dry.json, "dry_run");
     write_chain(&body, "", MANY, NULL);
-    bench_reply real = expect(200, post(b, "/v1/meshes/m/edits", body.bytes));
+    bench_reply real = bench_expect(200, bench_post(b, "/v1/meshes/m/edits", body.bytes));
     assert_true(cJSON_Compare(dry.json, real.json, true));
     bench_reply_free(&dry);
     bench_reply_free(&real);
@@ -242,7 +221,8 @@ static void the_list_may_stand_anywhere_in_its_document(void **state)
     };
     api_bench *b = begin();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        bench_reply r = expect(cases[i].status, post(b, "/v1/meshes/m/edits", cases[i].body));
+        bench_reply r =
+            bench_expect(cases[i].status, bench_post(b, "/v1/meshes/m/edits", cases[i].body));
         if (cases[i].pointer != NULL && cases[i].pointer[0] != '\0') {
             assert_string_equal(text_of(&r, "pointer"), cases[i].pointer);
         }
@@ -291,7 +271,7 @@ static void a_list_costs_its_text_and_its_results(void **state)
     static const he_mem_hook hook = {count, NULL};
     he_mem_set_hook(&hook);
     api_bench *b = bench_new();
-    done(expect(201, post(b, "/v1/meshes?id=m", "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", "{\"shape\":\"cube\"}")));
     api_text body = {0};
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
     for (int i = 0; i < 60000; i++) {

@@ -10,6 +10,7 @@
 #include "mesh/write.h"
 #include "op/op.h"
 #include "server/limits.h"
+#include "tests/seed.h"
 
 #include <inttypes.h>
 #include <pthread.h>
@@ -54,14 +55,6 @@ static void put(api_bench *b, const char *obj)
 static void put_mesh(api_bench *b)
 {
     put(b, OBJ);
-}
-
-static uint64_t seed_of_run(void)
-{
-    const char *given = getenv("SEED");
-    uint64_t seed = given != NULL ? strtoull(given, NULL, 10) : (uint64_t)time(NULL);
-    printf("note: SEED=%" PRIu64 "\n", seed);
-    return seed;
 }
 
 /* --- tests ---------------------------------------------------------------------------------- */

@@ -25,18 +25,11 @@ static const struct {
 
 enum { FILES = sizeof files / sizeof *files };
 
-static bench_reply expect(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
 static api_bench *with_cube(void)
 {
     api_bench *b = bench_new();
-    bench_reply r = expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}"));
+    bench_reply r =
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}"));
     bench_reply_free(&r);
     return b;
 }
@@ -46,7 +39,7 @@ static bench_reply export(api_bench *b, size_t i)
     char target[100];
     snprintf(target, sizeof target, "/v1/meshes/m/content?format=%s&encoding=%s", files[i].format,
              files[i].encoding);
-    return expect(200, bench_send(b, "GET", target, NULL, NULL));
+    return bench_expect(200, bench_send(b, "GET", target, NULL, NULL));
 }
 
 static void import(api_bench *b, const char *target, const char *type, const bench_reply *file,
@@ -54,7 +47,7 @@ static void import(api_bench *b, const char *target, const char *type, const ben
 {
     const char *const headers[] = {"Content-Type", type, NULL};
     bench_reply r =
-        expect(201, bench_send_bytes(b, "POST", target, headers, file->body, file->length));
+        bench_expect(201, bench_send_bytes(b, "POST", target, headers, file->body, file->length));
     const cJSON *counts = cJSON_GetObjectItem(r.json, "counts");
     const cJSON *report = cJSON_GetObjectItem(r.json, "import");
     assert_int_equal(cJSON_GetObjectItem(counts, "vertices")->valueint, files[i].vertices);
@@ -99,11 +92,11 @@ static void each_encoding_has_its_tag(void **state)
     }
     /* what is written unless an encoding is named, by format and by media type */
     static const char *const accept[] = {"Accept", "model/ply", NULL};
-    bench_reply r = expect(200, bench_send(b, "GET", "/v1/meshes/m/content", accept, NULL));
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/content", accept, NULL));
     assert_string_equal(bench_header(&r, "Content-Type"), "model/ply");
     assert_string_equal(bench_header(&r, "ETag"), tags[3]);
     bench_reply_free(&r);
-    r = expect(200, bench_send(b, "GET", "/v1/meshes/m/content?format=stl", NULL, NULL));
+    r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/content?format=stl", NULL, NULL));
     assert_string_equal(bench_header(&r, "Content-Type"), "model/stl");
     assert_string_equal(bench_header(&r, "ETag"), tags[6]);
     assert_non_null(strstr(bench_header(&r, "Content-Disposition"), "m.stl"));
@@ -125,7 +118,7 @@ static void encodings_that_do_not_exist(void **state)
     };
     api_bench *b = with_cube();
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
-        bench_reply r = expect(400, bench_send(b, "GET", targets[i], NULL, NULL));
+        bench_reply r = bench_expect(400, bench_send(b, "GET", targets[i], NULL, NULL));
         assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "bad_parameter");
         bench_reply_free(&r);
     }

@@ -1,6 +1,8 @@
 /* The arrays to draw from, against the polygons of the mesh. */
 #include "tests/api/specimens.h"
 
+#include "unit/fixture.h"
+
 enum { HEADER = 96, ROW = 16 };
 
 static const char PATH[] = "/v1/meshes/m/geometry";
@@ -263,18 +265,6 @@ static void test_refusals(void **state)
 
 /* --- memory --- */
 
-static long allocations, failing;
-
-static void *fail_one(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    return ++allocations == failing ? NULL : realloc(memory, size);
-}
-
 /* Each allocation in turn fails: the answer is whole or a refusal, never something between. */
 static void test_each_allocation_failing(void **state)
 {
@@ -293,14 +283,12 @@ static void test_each_allocation_failing(void **state)
     arrays whole = fetch(b);
     unsigned refused = 0;
     bool done = false;
-    for (failing = 1; !done; failing++) {
-        static const he_mem_hook hook = {fail_one, NULL};
+    for (long failing = 1; !done; failing++) {
         bench_reply r = {0};
-        allocations = 0;
-        he_mem_set_hook(&hook);
+        fixture_fail_at(failing);
         bool answered = bench_try(b, "GET", PATH, NULL, NULL, 0, &r);
-        done = allocations < failing;
-        he_mem_set_hook(NULL);
+        done = fixture_memory.calls < failing;
+        fixture_memory_back();
         if (answered && r.status == 200) {
             assert_int_equal(r.length, whole.reply.length);
             assert_memory_equal(r.body, whole.reply.body, r.length);

@@ -7,7 +7,7 @@
 #include "model/random.h"
 #include "op/op.h"
 #include "query/drawing.h"
-#include "mesh/build.h"
+#include "unit/fixture.h"
 
 #include <inttypes.h>
 #include <pthread.h>
@@ -524,18 +524,6 @@ static void test_a_face_of_many_corners(void **state)
 
 /* --- memory --- */
 
-static long allocations, failing;
-
-static void *fail_one(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    return ++allocations == failing ? NULL : realloc(memory, size);
-}
-
 /* Each allocation in turn fails: the answer is whole or a refusal, and the slots go on to serve. */
 static void test_each_allocation_failing(void **state)
 {
@@ -552,13 +540,10 @@ static void test_each_allocation_failing(void **state)
         char target[200];
         snprintf(target, sizeof target, "/v1/meshes/m/geometry?since=%" PRIu64 "&layout=%" PRIu64,
                  c.revision, c.layout);
-        static const he_mem_hook hook = {fail_one, NULL};
         bench_reply r = {0};
-        allocations = 0;
-        failing = n;
-        he_mem_set_hook(&hook);
+        fixture_fail_at(n);
         bool answered = bench_try(w.b, "GET", target, NULL, NULL, 0, &r);
-        he_mem_set_hook(NULL);
+        fixture_memory_back();
         if (answered && r.status == 200) {
             arrays_apply(&c, r.body, r.length);
         } else {

@@ -4,6 +4,7 @@
 
 #include "mesh/walk.h"
 #include "tests/model/random.h"
+#include "tests/seed.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -17,40 +18,11 @@
 
 enum { MOST = 400, BODY = 160, TARGET = 200 };
 
-static uint64_t seed_of_run(void)
-{
-    const char *given = getenv("SEED");
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
-                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
-    printf("note: SEED=%" PRIu64 "\n", seed);
-    return seed;
-}
-
-static bench_reply expect(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static bench_reply get(api_bench *b, const char *target)
-{
-    return bench_send(b, "GET", target, NULL, NULL);
-}
-
 static bench_reply post(api_bench *b, const char *what, const char *body)
 {
     char target[TARGET];
     snprintf(target, sizeof target, "/v1/meshes/m/%s", what);
     return bench_send(b, "POST", target, NULL, body);
-}
-
-static void done(bench_reply r)
-{
-    bench_reply_free(&r);
 }
 
 static double number_of(const cJSON *object, const char *name)
@@ -67,9 +39,9 @@ static const char *code_of(const bench_reply *r)
 
 static uint64_t head_of(api_bench *b)
 {
-    bench_reply r = expect(200, get(b, "/v1/meshes/m/edits?limit=1"));
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?limit=1"));
     uint64_t revision = (uint64_t)number_of(r.json, "revision");
-    done(r);
+    bench_done(r);
     return revision;
 }
 
@@ -89,12 +61,12 @@ static char *dump(api_bench *b, uint64_t revision)
                      revision);
         }
         const char *const *accept = i == 4 ? document : lines;
-        bench_reply r = expect(200, bench_send(b, "GET", target, accept, NULL));
+        bench_reply r = bench_expect(200, bench_send(b, "GET", target, accept, NULL));
         text = realloc(text, length + r.length + 1);
         assert_non_null(text);
         memcpy(text + length, r.body, r.length + 1);
         length += r.length;
-        done(r);
+        bench_done(r);
     }
     return text;
 }
@@ -265,7 +237,7 @@ static void take_steps(api_bench *b, model *m, bool undo, int steps, bench_reply
     he_mesh *after = content_of(b);
     check_sets(&r, before, after);
     he_mesh_free(after);
-    done(r);
+    bench_done(r);
 }
 
 static void step_by_count(api_bench *b, model *m, md_random *random, bool undo)
@@ -279,9 +251,9 @@ static void step_by_count(api_bench *b, model *m, md_random *random, bool undo)
     if (steps > left) {
         assert_int_equal(r.status, 409);
         assert_string_equal(code_of(&r), undo ? "nothing_to_undo" : "nothing_to_redo");
-        done(r);
+        bench_done(r);
     } else {
-        take_steps(b, m, undo, (int)steps, expect(200, r), before);
+        take_steps(b, m, undo, (int)steps, bench_expect(200, r), before);
     }
     he_mesh_free(before);
 }
@@ -297,9 +269,9 @@ static void step_to_revision(api_bench *b, model *m, md_random *random, bool und
     if (steps < 0) {
         assert_int_equal(r.status, 409);
         assert_string_equal(code_of(&r), "unreachable_revision");
-        done(r);
+        bench_done(r);
     } else {
-        take_steps(b, m, undo, steps, expect(200, r), before);
+        take_steps(b, m, undo, steps, bench_expect(200, r), before);
     }
     he_mesh_free(before);
     char *now = dump(b, 0);
@@ -322,7 +294,7 @@ static void edit_once(api_bench *b, model *m, md_random *random)
         check_sets(&r, before, after);
         he_mesh_free(after);
     }
-    done(r);
+    bench_done(r);
     he_mesh_free(before);
 }
 
@@ -346,8 +318,8 @@ static void every_revision_stays_what_it_was(void **state)
     api_bench *b = bench_new();
     model *m = calloc(1, sizeof *m);
     assert_non_null(m);
-    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                                            "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
     m->head = 1;
     note_head(b, m);
     while (m->head < MOST - 60) {
@@ -360,13 +332,13 @@ static void every_revision_stays_what_it_was(void **state)
         step_by_count(b, m, &random, false);
     }
     char *last = dump(b, 0);
-    done(expect(200, post(b, "undo", "{\"to_revision\":1}")));
+    bench_done(bench_expect(200, post(b, "undo", "{\"to_revision\":1}")));
     char *first = dump(b, 0);
     assert_string_equal(first, m->dumps[1]);
     uint64_t steps = m->done_count;
     char body[BODY];
     snprintf(body, sizeof body, "{\"steps\":%" PRIu64 "}", steps);
-    done(expect(200, post(b, "redo", body)));
+    bench_done(bench_expect(200, post(b, "redo", body)));
     char *again = dump(b, 0);
     assert_string_equal(again, last);
     printf("note: %" PRIu64 " revisions, %zu steps deep\n", m->head, deepest);
@@ -397,8 +369,8 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
     md_random random = {seed_of_run()};
     api_bench *b = bench_new_within(BUDGET);
     char *dumps[EDITS + 2] = {NULL}, body[BODY], target[TARGET];
-    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                                            "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
     dumps[1] = dump(b, 0);
     uint64_t head = 1, dropped = 0;
     for (int i = 0; i < EDITS; i++) {
@@ -406,14 +378,15 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
         he_mesh *mesh = content_of(b);
         random_op(mesh, &random, body);
         he_mesh_free(mesh);
-        done(step ? post(b, md_below(&random, 2) ? "undo" : "redo", NULL) : post(b, "edits", body));
+        bench_done(step ? post(b, md_below(&random, 2) ? "undo" : "redo", NULL)
+                        : post(b, "edits", body));
         uint64_t now = head_of(b);
         if (now == head) {
             continue;
         }
         head = now;
         dumps[head] = dump(b, 0);
-        bench_reply r = expect(200, get(b, "/v1/meshes/m/edits"));
+        bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
         assert_true(number_of(r.json, "bytes") <= BUDGET);
         assert_int_equal(number_of(r.json, "budget"), BUDGET);
         assert_true(number_of(r.json, "dropped") >= (double)dropped);
@@ -422,15 +395,15 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
         const cJSON *entries = cJSON_GetObjectItemCaseSensitive(r.json, "entries");
         assert_int_equal(cJSON_GetArraySize(entries) + (int)dropped, head - 1);
         assert_true(oldest >= 1 + dropped);
-        done(r);
+        bench_done(r);
         char *then = dump(b, oldest);
         assert_string_equal(then, dumps[oldest]);
         free(then);
         if (oldest > 1) {
             snprintf(target, sizeof target, "/v1/meshes/m?revision=%" PRIu64, oldest - 1);
-            r = expect(410, get(b, target));
+            r = bench_expect(410, bench_get(b, target));
             assert_string_equal(code_of(&r), "revision_gone");
-            done(r);
+            bench_done(r);
             snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", oldest - 1);
             r = post(b, "undo", body);
             assert_true(r.status == 410 || r.status == 200);
@@ -442,7 +415,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
                 free(dumps[head]);
                 dumps[head] = dump(b, 0);
             }
-            done(r);
+            bench_done(r);
         }
     }
     assert_true(dropped > 0);
@@ -457,32 +430,32 @@ static void an_edit_beyond_the_budget_says_that_the_history_ends(void **state)
 {
     (void)state;
     api_bench *b = bench_new_within(4000);
-    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                "{\"shape\":\"icosphere\",\"subdivisions\":2}")));
-    bench_reply r = expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":1}"));
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                                            "{\"shape\":\"icosphere\",\"subdivisions\":2}")));
+    bench_reply r = bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":1}"));
     assert_null(cJSON_GetObjectItem(r.json, "undoable"));
-    done(r);
+    bench_done(r);
     static const char large[] =
         "{\"op\":\"transform\",\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]%s}";
     char body[BODY];
     snprintf(body, sizeof body, large, ",\"dry_run\":true");
-    r = expect(200, post(b, "edits", body));
+    r = bench_expect(200, post(b, "edits", body));
     assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
-    done(r);
-    done(expect(200, get(b, "/v1/meshes/m?revision=1")));
+    bench_done(r);
+    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m?revision=1")));
     snprintf(body, sizeof body, large, "");
-    r = expect(200, post(b, "edits", body));
+    r = bench_expect(200, post(b, "edits", body));
     assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
-    done(r);
-    r = expect(200, get(b, "/v1/meshes/m/edits"));
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
     assert_int_equal(number_of(r.json, "oldest"), 3);
     assert_int_equal(number_of(r.json, "undo"), 0);
     const cJSON *newest = cJSON_GetObjectItem(r.json, "entries")->child;
     assert_true(cJSON_IsFalse(cJSON_GetObjectItem(newest, "undoable")));
     assert_true(number_of(newest, "bytes") > 4000);
-    done(r);
-    done(expect(410, get(b, "/v1/meshes/m?revision=2")));
-    done(expect(409, post(b, "undo", NULL)));
+    bench_done(r);
+    bench_done(bench_expect(410, bench_get(b, "/v1/meshes/m?revision=2")));
+    bench_done(bench_expect(409, post(b, "undo", NULL)));
     bench_free(b);
 }
 
@@ -491,10 +464,11 @@ static void an_edit_beyond_the_budget_says_that_the_history_ends(void **state)
 static api_bench *poked(void)
 {
     api_bench *b = bench_new();
-    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
-    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":0}")));
-    done(expect(200, post(b, "edits", "{\"op\":\"face_delete\",\"face\":1}")));
-    done(expect(200, post(b, "undo", NULL)));
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":0}")));
+    bench_done(bench_expect(200, post(b, "edits", "{\"op\":\"face_delete\",\"face\":1}")));
+    bench_done(bench_expect(200, post(b, "undo", NULL)));
     return b;
 }
 
@@ -525,21 +499,21 @@ static void elements_are_those_of_the_revision(void **state)
     };
     api_bench *b = poked();
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        done(expect(rows[i].status, get(b, rows[i].target)));
+        bench_done(bench_expect(rows[i].status, bench_get(b, rows[i].target)));
     }
-    bench_reply r = expect(404, get(b, "/v1/meshes/m?revision=5"));
+    bench_reply r = bench_expect(404, bench_get(b, "/v1/meshes/m?revision=5"));
     assert_string_equal(code_of(&r), "no_such_revision");
-    done(r);
-    r = expect(200, get(b, "/v1/meshes/m?revision=3"));
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m?revision=3"));
     const cJSON *counts = cJSON_GetObjectItem(r.json, "counts");
     assert_int_equal(number_of(r.json, "revision"), 3);
     assert_int_equal(number_of(counts, "faces"), 8);
     assert_int_equal(number_of(counts, "boundary_loops"), 1);
-    done(r);
+    bench_done(r);
     /* The summary that is kept is that of the present. */
-    r = expect(200, get(b, "/v1/meshes/m"));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(number_of(cJSON_GetObjectItem(r.json, "counts"), "faces"), 9);
-    done(r);
+    bench_done(r);
     bench_free(b);
 }
 
@@ -553,16 +527,16 @@ static void a_tag_names_the_revision_that_was_read(void **state)
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
         char target[TARGET], etag[100];
         snprintf(target, sizeof target, "/v1/meshes/m%s", targets[i]);
-        bench_reply r = expect(200, get(b, target));
+        bench_reply r = bench_expect(200, bench_get(b, target));
         snprintf(etag, sizeof etag, "%s", bench_header(&r, "ETag"));
         assert_non_null(strstr(etag, "-2-"));
-        done(r);
+        bench_done(r);
         const char *const known[] = {"If-None-Match", etag, NULL};
-        done(expect(304, bench_send(b, "GET", target, known, NULL)));
+        bench_done(bench_expect(304, bench_send(b, "GET", target, known, NULL)));
         /* Of the present it says nothing. */
         *strstr(target, "revision=2") = '\0';
         target[strlen(target) - 1] = '\0';
-        done(expect(200, bench_send(b, "GET", target, known, NULL)));
+        bench_done(bench_expect(200, bench_send(b, "GET", target, known, NULL)));
     }
     bench_free(b);
 }
@@ -572,17 +546,17 @@ static void an_earlier_revision_can_be_copied(void **state)
 {
     (void)state;
     api_bench *b = poked();
-    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
-    bench_reply r = expect(201, post(b, "copy?revision=3", "{\"id\":\"c\"}"));
+    bench_done(bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    bench_reply r = bench_expect(201, post(b, "copy?revision=3", "{\"id\":\"c\"}"));
     assert_int_equal(number_of(cJSON_GetObjectItem(r.json, "counts"), "faces"), 8);
     assert_int_equal(number_of(r.json, "revision"), 1);
-    done(r);
-    bench_reply then = expect(200, get(b, "/v1/meshes/m/faces?revision=3"));
-    r = expect(200, get(b, "/v1/meshes/c/faces"));
+    bench_done(r);
+    bench_reply then = bench_expect(200, bench_get(b, "/v1/meshes/m/faces?revision=3"));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/c/faces"));
     assert_true(cJSON_Compare(cJSON_GetObjectItem(r.json, "items"),
                               cJSON_GetObjectItem(then.json, "items"), true));
-    done(then);
-    done(r);
+    bench_done(then);
+    bench_done(r);
     bench_free(b);
 }
 
@@ -592,7 +566,7 @@ static void the_history_tells_what_each_revision_did(void **state)
 {
     (void)state;
     api_bench *b = poked();
-    bench_reply r = expect(200, get(b, "/v1/meshes/m/edits"));
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
     const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
     static const struct {
         const char *action, *op;
@@ -614,7 +588,7 @@ static void the_history_tells_what_each_revision_did(void **state)
         assert_int_equal(cJSON_IsTrue(cJSON_GetObjectItem(entry, "undoable")), i == 2);
     }
     assert_null(entry);
-    done(r);
+    bench_done(r);
     bench_free(b);
 }
 
@@ -623,24 +597,24 @@ static void a_page_of_the_history_goes_on_where_it_was(void **state)
     (void)state;
     api_bench *b = poked();
     char target[400];
-    bench_reply r = expect(200, get(b, "/v1/meshes/m/edits?limit=2&since=1"));
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?limit=2&since=1"));
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 2);
     snprintf(target, sizeof target, "/v1/meshes/m/edits?limit=2&cursor=%s",
              cJSON_GetObjectItem(r.json, "next")->valuestring);
-    done(r);
-    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
-    r = expect(200, get(b, target));
+    bench_done(r);
+    bench_done(bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    r = bench_expect(200, bench_get(b, target));
     const cJSON *entries = cJSON_GetObjectItem(r.json, "entries");
     assert_int_equal(cJSON_GetArraySize(entries), 1);
     assert_int_equal(number_of(entries->child, "revision"), 2);
     assert_true(cJSON_IsNull(cJSON_GetObjectItem(r.json, "next")));
-    done(r);
-    r = expect(200, get(b, "/v1/meshes/m/edits?since=4"));
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?since=4"));
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 1);
-    done(r);
-    r = expect(200, get(b, "/v1/meshes/m/edits?since=99"));
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?since=99"));
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 0);
-    done(r);
+    bench_done(r);
     bench_free(b);
 }
 
@@ -670,11 +644,11 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     api_bench *b = poked();
     char *before = dump(b, 0);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        bench_reply r = expect(rows[i].status, post(b, rows[i].what, rows[i].body));
+        bench_reply r = bench_expect(rows[i].status, post(b, rows[i].what, rows[i].body));
         if (rows[i].code != NULL) {
             assert_string_equal(code_of(&r), rows[i].code);
         }
-        done(r);
+        bench_done(r);
         assert_int_equal(head_of(b), 4);
     }
     char *after = dump(b, 0);
@@ -682,15 +656,15 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     free(before);
     free(after);
     /* To where it is already takes no step, and makes no revision. */
-    bench_reply r = expect(200, post(b, "undo", "{\"to_revision\":2}"));
+    bench_reply r = bench_expect(200, post(b, "undo", "{\"to_revision\":2}"));
     assert_int_equal(number_of(r.json, "revision"), 4);
-    done(r);
+    bench_done(r);
     /* What was undone and edited over can be read, and not stepped to. */
-    done(expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
-    r = expect(409, post(b, "undo", "{\"to_revision\":3}"));
+    bench_done(bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    r = bench_expect(409, post(b, "undo", "{\"to_revision\":3}"));
     assert_string_equal(code_of(&r), "unreachable_revision");
-    done(r);
-    done(expect(200, get(b, "/v1/meshes/m?revision=3")));
+    bench_done(r);
+    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m?revision=3")));
     bench_free(b);
 }
 
@@ -735,7 +709,7 @@ static void every_allocation_of_a_reader_may_fail(void **state)
                 assert_true(r.status == 200 || (more && (r.status == 507 || r.status == 503)));
                 bench_reply_free(&r);
             }
-            done(expect(200, get(b, targets[i])));
+            bench_done(bench_expect(200, bench_get(b, targets[i])));
             bench_free(b);
         }
     }

@@ -9,40 +9,22 @@
 
 #include <cmocka.h>
 
-static bench_reply expect(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static void done(bench_reply r)
-{
-    bench_reply_free(&r);
-}
-
 static bench_reply keyed(api_bench *b, const char *method, const char *target, const char *key,
                          const char *body)
 {
     return bench_send(b, method, target, (const char *const[]){"Idempotency-Key", key, NULL}, body);
 }
 
-static bench_reply get(api_bench *b, const char *target)
-{
-    return bench_send(b, "GET", target, NULL, NULL);
-}
-
 static void refused(int status, const char *code, bench_reply r)
 {
-    r = expect(status, r);
+    r = bench_expect(status, r);
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, code);
     bench_reply_free(&r);
 }
 
 static int revision(api_bench *b)
 {
-    bench_reply r = expect(200, get(b, "/v1/meshes/m"));
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     int value = cJSON_GetObjectItem(r.json, "revision")->valueint;
     bench_reply_free(&r);
     return value;
@@ -52,19 +34,20 @@ static int revision(api_bench *b)
 static api_bench *begin(void)
 {
     api_bench *b = bench_new();
-    done(expect(201, bench_send(b, "POST", "/v1/meshes?id=m", NULL, "{\"shape\":\"cube\"}")));
+    bench_done(
+        bench_expect(201, bench_send(b, "POST", "/v1/meshes?id=m", NULL, "{\"shape\":\"cube\"}")));
     for (int face = 2; face < 5; face++) {
         char body[64];
         snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", face);
-        done(expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL, body)));
+        bench_done(bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL, body)));
     }
-    done(expect(200, bench_send(b, "POST", "/v1/meshes/m/undo", NULL, NULL)));
+    bench_done(bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/undo", NULL, NULL)));
     return b;
 }
 
 static char *list_of(api_bench *b)
 {
-    bench_reply list = expect(200, get(b, "/v1/meshes"));
+    bench_reply list = bench_expect(200, bench_get(b, "/v1/meshes"));
     char *text = strdup(list.body);
     assert_non_null(text);
     bench_reply_free(&list);
@@ -94,11 +77,11 @@ static void a_write_is_done_once_and_answered_twice(void **state)
     static const char *const headers[] = {"ETag", "Location", "Content-Type", "Cache-Control"};
     for (size_t i = 0; i < sizeof writes / sizeof *writes; i++) {
         api_bench *b = begin();
-        bench_reply first = expect(
+        bench_reply first = bench_expect(
             writes[i].status, keyed(b, writes[i].method, writes[i].target, "k", writes[i].body));
         assert_string_equal(bench_header(&first, "Idempotency-Replayed"), "");
         char *before = list_of(b);
-        bench_reply again = expect(
+        bench_reply again = bench_expect(
             writes[i].status, keyed(b, writes[i].method, writes[i].target, "k", writes[i].body));
         char *after = list_of(b);
         assert_string_equal(before, after);
@@ -123,7 +106,7 @@ static void a_key_is_of_one_request(void **state)
     (void)state;
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
     api_bench *b = begin();
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     int now = revision(b);
     refused(422, "idempotency_mismatch",
             keyed(b, "POST", "/v1/meshes/m/edits", "k", "{\"op\":\"face_poke\",\"face\":2}"));
@@ -135,10 +118,10 @@ static void a_key_is_of_one_request(void **state)
                        (const char *const[]){"Idempotency-Key", "k", NULL}, "{}"));
     assert_int_equal(revision(b), now);
     /* Another key, another mesh and the store's own keys are others. */
-    done(expect(200,
-                keyed(b, "POST", "/v1/meshes/m/edits", "K", "{\"op\":\"face_poke\",\"face\":2}")));
-    done(expect(201, keyed(b, "POST", "/v1/meshes?id=n", "k", "{\"shape\":\"cube\"}")));
-    done(expect(200, keyed(b, "POST", "/v1/meshes/n/edits", "k", poke)));
+    bench_done(bench_expect(
+        200, keyed(b, "POST", "/v1/meshes/m/edits", "K", "{\"op\":\"face_poke\",\"face\":2}")));
+    bench_done(bench_expect(201, keyed(b, "POST", "/v1/meshes?id=n", "k", "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/n/edits", "k", poke)));
     refused(422, "idempotency_mismatch",
             keyed(b, "POST", "/v1/meshes?id=o", "k", "{\"shape\":\"cube\"}"));
     bench_free(b);
@@ -159,10 +142,10 @@ static void keys_are_short_and_visible(void **state)
     refused(400, "bad_header", keyed(b, "POST", "/v1/meshes/m/edits", key, poke));
     assert_int_equal(revision(b), 5);
     key[255] = '\0';
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", key, poke)));
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "\"a-quoted-one\"",
-                           "{\"op\":\"face_poke\",\"face\":2}")));
-    done(expect(200, keyed(b, "GET", "/v1/meshes/m", "", NULL)));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", key, poke)));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "\"a-quoted-one\"",
+                                       "{\"op\":\"face_poke\",\"face\":2}")));
+    bench_done(bench_expect(200, keyed(b, "GET", "/v1/meshes/m", "", NULL)));
     bench_free(b);
 }
 
@@ -171,11 +154,11 @@ static void a_refusal_may_be_tried_again(void **state)
     (void)state;
     static const char split[] = "{\"expected_revision\":6,\"op\":\"face_poke\",\"face\":1}";
     api_bench *b = begin();
-    done(expect(412, keyed(b, "POST", "/v1/meshes/m/edits", "k", split)));
-    done(expect(400, keyed(b, "POST", "/v1/meshes/m/edits", "k", "{")));
-    done(expect(200, bench_send(b, "POST", "/v1/meshes/m/redo", NULL, NULL)));
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", split)));
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", split)));
+    bench_done(bench_expect(412, keyed(b, "POST", "/v1/meshes/m/edits", "k", split)));
+    bench_done(bench_expect(400, keyed(b, "POST", "/v1/meshes/m/edits", "k", "{")));
+    bench_done(bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/redo", NULL, NULL)));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", split)));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", split)));
     assert_int_equal(revision(b), 7);
     bench_free(b);
 }
@@ -185,26 +168,27 @@ static void undo_forgets_no_key_and_removal_all(void **state)
     (void)state;
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
     api_bench *b = begin();
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
-    done(expect(200, bench_send(b, "POST", "/v1/meshes/m/undo", NULL, NULL)));
-    bench_reply r = expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
+    bench_done(bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/undo", NULL, NULL)));
+    bench_reply r = bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 6);
     bench_reply_free(&r);
     assert_int_equal(revision(b), 7);
 
-    done(expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
-    done(expect(404, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
-    done(expect(201, keyed(b, "POST", "/v1/meshes?id=m", "new", "{\"shape\":\"cube\"}")));
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
+    bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
+    bench_done(bench_expect(404, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
+    bench_done(
+        bench_expect(201, keyed(b, "POST", "/v1/meshes?id=m", "new", "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 2);
 
     /* The create was answered, and is not done again. */
-    done(expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
-    r = expect(201, keyed(b, "POST", "/v1/meshes?id=m", "new", "{\"shape\":\"cube\"}"));
+    bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
+    r = bench_expect(201, keyed(b, "POST", "/v1/meshes?id=m", "new", "{\"shape\":\"cube\"}"));
     assert_string_equal(bench_header(&r, "Location"), "/v1/meshes/m");
     assert_null(api_answer_of(r.exchange)->mesh);
     bench_reply_free(&r);
-    done(expect(404, get(b, "/v1/meshes/m")));
+    bench_done(bench_expect(404, bench_get(b, "/v1/meshes/m")));
     bench_free(b);
 }
 
@@ -215,11 +199,11 @@ static void a_huge_answer_is_given_again_without_its_body(void **state)
     static const char move[] =
         "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}";
     api_bench *b = bench_new();
-    done(expect(201, bench_send(b, "POST", "/v1/meshes?id=m", NULL,
-                                "{\"shape\":\"grid\",\"columns\":900,\"rows\":800}")));
-    bench_reply first = expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", move));
+    bench_done(bench_expect(201, bench_send(b, "POST", "/v1/meshes?id=m", NULL,
+                                            "{\"shape\":\"grid\",\"columns\":900,\"rows\":800}")));
+    bench_reply first = bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", move));
     assert_true(first.length > 4 << 20);
-    bench_reply again = expect(204, keyed(b, "POST", "/v1/meshes/m/edits", "k", move));
+    bench_reply again = bench_expect(204, keyed(b, "POST", "/v1/meshes/m/edits", "k", move));
     assert_string_equal(bench_header(&again, "ETag"), bench_header(&first, "ETag"));
     assert_string_equal(bench_header(&again, "Idempotency-Replayed"), "true");
     assert_int_equal(revision(b), 2);
@@ -240,16 +224,16 @@ static void a_key_is_busy_while_its_job_is_and_then_gives_its_answer(void **stat
     (void)state;
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
     api_bench *b = begin();
-    bench_reply job = expect(202, keyed_job(b, poke));
+    bench_reply job = bench_expect(202, keyed_job(b, poke));
     refused(409, "idempotency_in_progress", keyed(b, "POST", "/v1/meshes/m/edits", "k", poke));
     refused(409, "idempotency_in_progress", keyed_job(b, poke));
     refused(422, "idempotency_mismatch", keyed(b, "POST", "/v1/meshes/m/undo", "k", NULL));
     bench_run_jobs(b, 1);
-    bench_reply kept = expect(200, get(b, bench_header(&job, "Location")));
-    bench_reply again = expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke));
+    bench_reply kept = bench_expect(200, bench_get(b, bench_header(&job, "Location")));
+    bench_reply again = bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke));
     assert_string_equal(bench_header(&again, "Idempotency-Replayed"), "true");
     assert_true(cJSON_Compare(cJSON_GetObjectItem(kept.json, "result"), again.json, true));
-    done(expect(200, keyed_job(b, poke)));
+    bench_done(bench_expect(200, keyed_job(b, poke)));
     assert_int_equal(revision(b), 6);
     bench_reply_free(&job);
     bench_reply_free(&kept);
@@ -263,23 +247,24 @@ static void a_job_that_came_to_nothing_gives_its_key_back(void **state)
     static const char wrong[] = "{\"op\":\"face_poke\",\"face\":99}";
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
     api_bench *b = begin();
-    done(expect(202, keyed_job(b, wrong)));
+    bench_done(bench_expect(202, keyed_job(b, wrong)));
     bench_run_jobs(b, 1);
-    bench_reply job = expect(202, keyed_job(b, poke));
-    done(expect(202, bench_send(b, "DELETE", bench_header(&job, "Location"), NULL, NULL)));
+    bench_reply job = bench_expect(202, keyed_job(b, poke));
+    bench_done(
+        bench_expect(202, bench_send(b, "DELETE", bench_header(&job, "Location"), NULL, NULL)));
     bench_reply_free(&job);
     bench_run_jobs(b, 1);
     bench_limit_jobs(b, 0);
     refused(503, "too_many_jobs", keyed_job(b, poke));
-    done(expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
+    bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 6);
     /* The mesh, and its keys with it, may go while one is busy. */
     bench_limit_jobs(b, 1);
-    done(expect(202, bench_send(b, "POST", "/v1/meshes/m/edits",
-                                (const char *const[]){"Idempotency-Key", "other", "Prefer",
-                                                      "respond-async", NULL},
-                                "{\"op\":\"face_poke\",\"face\":5}")));
-    done(expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
+    bench_done(bench_expect(202, bench_send(b, "POST", "/v1/meshes/m/edits",
+                                            (const char *const[]){"Idempotency-Key", "other",
+                                                                  "Prefer", "respond-async", NULL},
+                                            "{\"op\":\"face_poke\",\"face\":5}")));
+    bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     bench_run_jobs(b, 1);
     bench_free(b);
 }

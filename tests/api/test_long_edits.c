@@ -4,6 +4,7 @@
 
 #include "api/jobs.h"
 #include "tests/model/random.h"
+#include "tests/seed.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -21,14 +22,6 @@ static int send(api_bench *b, const char *method, const char *target, const char
     int status = r.status;
     bench_reply_free(&r);
     return status;
-}
-
-static uint64_t seed_of_run(void)
-{
-    const char *given = getenv("SEED");
-    uint64_t seed = given != NULL ? strtoull(given, NULL, 10) : (uint64_t)time(NULL);
-    printf("note: SEED=%" PRIu64 "\n", seed);
-    return seed;
 }
 
 static const char *prefer_async(void *context, const char *name)

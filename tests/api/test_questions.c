@@ -302,19 +302,6 @@ static void dense_answers_are_offsets_and_ids(void **state)
     for_each_specimen(try_dense);
 }
 
-static bench_reply require(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static void done(bench_reply r)
-{
-    bench_reply_free(&r);
-}
-
 /* As octets, in problems of single questions, and of a walk. */
 static void questions_are_of_the_revision(void **state)
 {
@@ -340,12 +327,13 @@ static void questions_are_of_the_revision(void **state)
         {"/v1/meshes/p/undo", NULL},
     };
     for (size_t i = 0; i < sizeof past / sizeof *past; i++) {
-        done(require(i == 0 ? 201 : 200, bench_send(b, "POST", past[i][0], NULL, past[i][1])));
+        bench_done(
+            bench_expect(i == 0 ? 201 : 200, bench_send(b, "POST", past[i][0], NULL, past[i][1])));
     }
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char target[80];
         snprintf(target, sizeof target, "/v1/meshes/p/query?revision=%d", rows[i].revision);
-        bench_reply r = require(200, bench_send(b, "POST", target, NULL, gone));
+        bench_reply r = bench_expect(200, bench_send(b, "POST", target, NULL, gone));
         assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, rows[i].revision);
         const cJSON *result = cJSON_GetObjectItem(r.json, "results")->child;
         const char *const codes[] = {rows[i].first, rows[i].second};
@@ -354,21 +342,25 @@ static void questions_are_of_the_revision(void **state)
             assert_string_equal(code == NULL ? "" : code->valuestring,
                                 codes[q] == NULL ? "" : codes[q]);
         }
-        done(r);
+        bench_done(r);
         snprintf(target, sizeof target, "/v1/meshes/p/query?revision=%d", rows[i].revision);
-        r = require(200, bench_send(b, "POST", target, octets, dense));
+        r = bench_expect(200, bench_send(b, "POST", target, octets, dense));
         uint32_t end;
         memcpy(&end, r.body + 4 * (size_t)rows[i].faces, sizeof end);
         assert_int_equal(r.length, 4 * ((size_t)rows[i].faces + 1 + end));
-        done(r);
+        bench_done(r);
         snprintf(target, sizeof target, "/v1/meshes/p/traverse?revision=%d", rows[i].revision);
-        r = require(rows[i].walked == 0 ? 422 : 200, bench_send(b, "POST", target, NULL, walk));
+        r = bench_expect(rows[i].walked == 0 ? 422 : 200,
+                         bench_send(b, "POST", target, NULL, walk));
         assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "ids")), rows[i].walked);
-        done(r);
+        bench_done(r);
     }
-    done(require(404, bench_send(b, "POST", "/v1/meshes/p/query?revision=5", NULL, gone)));
-    done(require(404, bench_send(b, "POST", "/v1/meshes/p/traverse?revision=5", NULL, walk)));
-    done(require(400, bench_send(b, "POST", "/v1/meshes/p/traverse?revision=0", NULL, walk)));
+    bench_done(
+        bench_expect(404, bench_send(b, "POST", "/v1/meshes/p/query?revision=5", NULL, gone)));
+    bench_done(
+        bench_expect(404, bench_send(b, "POST", "/v1/meshes/p/traverse?revision=5", NULL, walk)));
+    bench_done(
+        bench_expect(400, bench_send(b, "POST", "/v1/meshes/p/traverse?revision=0", NULL, walk)));
     bench_free(b);
 }
 

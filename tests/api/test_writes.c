@@ -13,29 +13,6 @@
 
 #include <cmocka.h>
 
-static bench_reply expect(int status, bench_reply r)
-{
-    if (r.status != status) {
-        fail_msg("%d instead of %d: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static void done(bench_reply r)
-{
-    bench_reply_free(&r);
-}
-
-static bench_reply post(api_bench *b, const char *target, const char *body)
-{
-    return bench_send(b, "POST", target, NULL, body);
-}
-
-static bench_reply get(api_bench *b, const char *target)
-{
-    return bench_send(b, "GET", target, NULL, NULL);
-}
-
 static const char *text_of(const bench_reply *r, const char *member)
 {
     const cJSON *value = cJSON_GetObjectItem(r->json, member);
@@ -150,16 +127,18 @@ static const write writes[] = {
 static api_bench *begin(void)
 {
     api_bench *b = bench_new();
-    done(expect(201, post(b, "/v1/meshes?id=m&name=first", "{\"shape\":\"cube\"}")));
+    bench_done(
+        bench_expect(201, bench_post(b, "/v1/meshes?id=m&name=first", "{\"shape\":\"cube\"}")));
     for (int face = 2; face < 5; face++) {
         char body[64];
         snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", face);
-        done(expect(200, post(b, "/v1/meshes/m/edits", body)));
+        bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/edits", body)));
     }
-    done(expect(201, bench_send(b, "PUT", "/v1/meshes/m/attributes/faces/kind", NULL,
-                                "{\"type\":\"float\",\"default\":1}")));
-    done(expect(200, post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":5}")));
-    done(expect(200, post(b, "/v1/meshes/m/undo", NULL)));
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m/attributes/faces/kind", NULL,
+                                            "{\"type\":\"float\",\"default\":1}")));
+    bench_done(bench_expect(
+        200, bench_post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":5}")));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
     return b;
 }
 
@@ -172,7 +151,7 @@ static char *state_of(api_bench *b)
     char *state = calloc(1, 1 << 16);
     assert_non_null(state);
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
-        bench_reply r = get(b, targets[i]);
+        bench_reply r = bench_get(b, targets[i]);
         /* What a mesh takes includes room that a refused edit had asked for. */
         char *bytes = strstr(r.body, "\"memory_bytes\":");
         if (bytes != NULL) {
@@ -217,7 +196,7 @@ static bool try_write(const write *w, long fail_at, bool sticky)
                              NULL};
     size_t length = w->body == NULL ? 0 : strlen(w->body);
     if (w->how == BEFORE) {
-        done(bench_send_bytes(b, w->method, w->target, headers, w->body, length));
+        bench_done(bench_send_bytes(b, w->method, w->target, headers, w->body, length));
     }
     char *before = state_of(b);
     memory.calls = 0;
@@ -244,7 +223,7 @@ static bool try_write(const write *w, long fail_at, bool sticky)
             expect_done_once(b, w, headers, &r);
         }
         if (r.status == 201) {
-            done(expect(200, get(b, bench_header(&r, "Location"))));
+            bench_done(bench_expect(200, bench_get(b, bench_header(&r, "Location"))));
         }
     }
     if (sent) {
@@ -363,7 +342,8 @@ static void a_stale_write_shows_a_state(void **state)
 {
     (void)state;
     api_bench *b = begin();
-    bench_reply r = expect(412, post(b, "/v1/meshes/m/undo", "{\"expected_revision\":2}"));
+    bench_reply r =
+        bench_expect(412, bench_post(b, "/v1/meshes/m/undo", "{\"expected_revision\":2}"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 7);
     assert_non_null(strstr(text_of(&r, "detail"), "not at revision 2"));
     assert_non_null(api_answer_of(r.exchange)->mesh);
@@ -377,16 +357,16 @@ static void a_write_is_never_not_modified(void **state)
 {
     (void)state;
     api_bench *b = begin();
-    bench_reply r = expect(200, get(b, "/v1/meshes/m"));
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     char next[128];
     snprintf(next, sizeof next, "%s", bench_header(&r, "ETag"));
     bench_reply_free(&r);
     char *metadata = strchr(next, '-') + 1;
     *metadata = (char)(*metadata + 1);
-    done(expect(200, bench_send(b, "PATCH", "/v1/meshes/m",
-                                (const char *const[]){"If-None-Match", next, NULL},
-                                "{\"name\":\"second\"}")));
-    r = expect(200, get(b, "/v1/meshes/m"));
+    bench_done(bench_expect(200, bench_send(b, "PATCH", "/v1/meshes/m",
+                                            (const char *const[]){"If-None-Match", next, NULL},
+                                            "{\"name\":\"second\"}")));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_string_equal(bench_header(&r, "ETag"), next);
     bench_reply_free(&r);
     bench_free(b);
@@ -400,8 +380,8 @@ static void lists_of_operations_have_a_price(void **state)
     enum { SIDE = 100, TRANSFORMS = 3000, REFERENCES = 2000 };
     api_text body = {0};
     api_bench *b = bench_new();
-    done(expect(201,
-                post(b, "/v1/meshes?id=m", "{\"shape\":\"grid\",\"columns\":100,\"rows\":100}")));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m",
+                                            "{\"shape\":\"grid\",\"columns\":100,\"rows\":100}")));
 
     api_text_add_string(&body, "{\"ops\":[");
     for (int i = 0; i < TRANSFORMS; i++) {
@@ -410,7 +390,7 @@ static void lists_of_operations_have_a_price(void **state)
                             i == 0 ? "" : ",");
     }
     api_text_add(&body, "]}", sizeof "]}");
-    bench_reply r = expect(413, post(b, "/v1/meshes/m/edits", body.bytes));
+    bench_reply r = bench_expect(413, bench_post(b, "/v1/meshes/m/edits", body.bytes));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
     int at_most = API_MAX_EDITS_ELEMENTS / (SIDE * SIDE * 4);
     int refused = 0;
@@ -429,11 +409,11 @@ static void lists_of_operations_have_a_price(void **state)
     }
     api_text_add(&body, "]}]}", sizeof "]}]}");
     assert_false(body.failed);
-    r = expect(413, post(b, "/v1/meshes/m/edits", body.bytes));
+    r = bench_expect(413, bench_post(b, "/v1/meshes/m/edits", body.bytes));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
     bench_reply_free(&r);
 
-    r = expect(200, get(b, "/v1/meshes/m"));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
     bench_reply_free(&r);
     bench_free(b);
@@ -485,9 +465,10 @@ static void huge_elements_are_no_work_for_a_worker(void **state)
         {"g", "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}", API_WORK},
     };
     api_bench *b = bench_new();
-    done(expect(201, post(b, "/v1/meshes?id=p", "{\"shape\":\"polygon\",\"sides\":30000}")));
-    done(expect(201,
-                post(b, "/v1/meshes?id=g", "{\"shape\":\"grid\",\"columns\":9000,\"rows\":1}")));
+    bench_done(bench_expect(
+        201, bench_post(b, "/v1/meshes?id=p", "{\"shape\":\"polygon\",\"sides\":30000}")));
+    bench_done(bench_expect(
+        201, bench_post(b, "/v1/meshes?id=g", "{\"shape\":\"grid\",\"columns\":9000,\"rows\":1}")));
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char path[64];
         snprintf(path, sizeof path, "/v1/meshes/%s/edits", cases[i].mesh);
@@ -519,30 +500,32 @@ static void refusals_name_the_value_and_the_limit(void **state)
     api_bench *b = begin();
     char target[400] = "/v1/meshes?name=";
     memset(target + strlen(target), 'n', 257);
-    bench_reply r = expect(400, post(b, target, "{\"shape\":\"cube\"}"));
+    bench_reply r = bench_expect(400, bench_post(b, target, "{\"shape\":\"cube\"}"));
     assert_string_equal(text_of(&r, "code"), "bad_parameter");
     assert_non_null(strstr(text_of(&r, "detail"), "256"));
     bench_reply_free(&r);
-    r = expect(400, get(b, "/v1/meshes/m/vertices?limit=10001"));
+    r = bench_expect(400, bench_get(b, "/v1/meshes/m/vertices?limit=10001"));
     assert_string_equal(text_of(&r, "detail"),
                         "\"limit\" cannot be \"10001\": a whole number from 1 to 10000");
     bench_reply_free(&r);
-    r = expect(400, get(b, "/v1/meshes/m/components?by=face"));
+    r = bench_expect(400, bench_get(b, "/v1/meshes/m/components?by=face"));
     assert_string_equal(text_of(&r, "detail"), "\"by\" cannot be \"face\": vertex, edge");
     bench_reply_free(&r);
-    r = expect(422, post(b, "/v1/meshes", "{\"vertices\":[[0,0,0]],\"faces\":[[0,1,2]]}"));
+    r = bench_expect(422,
+                     bench_post(b, "/v1/meshes", "{\"vertices\":[[0,0,0]],\"faces\":[[0,1,2]]}"));
     assert_string_equal(text_of(&r, "pointer"), "/faces/0/1");
     bench_reply_free(&r);
     has_supported(
-        expect(406, bench_send(b, "GET", "/v1/meshes/m/content",
-                               (const char *const[]){"Accept", "text/plain", NULL}, NULL)),
+        bench_expect(406, bench_send(b, "GET", "/v1/meshes/m/content",
+                                     (const char *const[]){"Accept", "text/plain", NULL}, NULL)),
         "model/obj");
-    has_supported(expect(415, bench_send(b, "POST", "/v1/meshes",
-                                         (const char *const[]){"Content-Type",
-                                                               "application/octet-stream", NULL},
-                                         "?")),
-                  "model/x-off");
-    r = expect(200, get(b, "/v1/meshes/m/edits?limit=1"));
+    has_supported(
+        bench_expect(
+            415, bench_send(b, "POST", "/v1/meshes",
+                            (const char *const[]){"Content-Type", "application/octet-stream", NULL},
+                            "?")),
+        "model/x-off");
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?limit=1"));
     assert_non_null(strstr(bench_header(&r, "Link"), "rel=\"next\""));
     assert_non_null(strstr(bench_header(&r, "Link"), text_of(&r, "next")));
     bench_reply_free(&r);

@@ -6,28 +6,18 @@
 set -eu
 hedged=$1 bare=$2 rounds=${3:-5} seconds=${4:-3}
 command -v wrk >/dev/null || { echo "http.sh: wrk is not installed" >&2; exit 1; }
-work=$(mktemp -d)
-mkfifo "$work/stdin" "$work/log" "$work/port"
-daemon= bare_pid= drain=
-trap 'kill $daemon $bare_pid $drain 2>/dev/null || :; rm -rf "$work"' EXIT INT TERM
+. "$(dirname "$0")/daemon.sh"
+mkfifo "$work/stdin" "$work/port"
 
 # The access log is on: it is what a user has.
-"$hedged" --listen 127.0.0.1:0 --workers 1 2>"$work/log" &
-daemon=$!
-exec 4<"$work/log"
-base=
-while [ -z "$base" ] && read -r line <&4; do
-    case $line in *"listening on "*) base=${line##*listening on } ;; esac
-done
-cat <&4 >/dev/null &
-drain=$!
+daemon_start "$hedged" --workers 1
 curl -sf -o /dev/null -H 'Content-Type: application/json' "$base/v1/meshes?id=bench" \
     -d '{"shape":"icosphere","subdivisions":4}'
 element=$base/v1/meshes/bench/faces/1000
 adjacency=$base/v1/meshes/bench/vertices/100/faces
 
 "$bare" 1 "$(curl -sf "$element")" <"$work/stdin" >"$work/port" &
-bare_pid=$!
+others=$!
 exec 3>"$work/stdin"
 read -r port <"$work/port"
 

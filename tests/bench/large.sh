@@ -5,19 +5,8 @@
 #   large.sh HEDGED [SIDE]      SIDE x SIDE quads (1024)
 set -eu
 hedged=$1 side=${2:-1024}
-work=$(mktemp -d)
-mkfifo "$work/log"
-daemon= drain=
-trap 'kill $daemon $drain 2>/dev/null || :; rm -rf "$work"' EXIT INT TERM
-"$hedged" --listen 127.0.0.1:0 2>"$work/log" &
-daemon=$!
-exec 4<"$work/log"
-base=
-while [ -z "$base" ] && read -r line <&4; do
-    case $line in *"listening on "*) base=${line##*listening on } ;; esac
-done
-cat <&4 >/dev/null &
-drain=$!
+. "$(dirname "$0")/daemon.sh"
+daemon_start "$hedged"
 meshes=$base/v1/meshes
 
 memory() { awk '/VmRSS/ { r = $2 } /VmHWM/ { h = $2 }

@@ -74,6 +74,19 @@ void reply_free(reply *r)
     *r = (reply){0};
 }
 
+void reply_done(reply r)
+{
+    reply_free(&r);
+}
+
+reply reply_expect(long status, reply r)
+{
+    if (r.status != status) {
+        fail_msg("status %ld instead of %ld: %.300s", r.status, status, r.body);
+    }
+    return r;
+}
+
 static struct curl_slist *header_list(const char *const *headers, bool has_body)
 {
     struct curl_slist *list = NULL;

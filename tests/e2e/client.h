@@ -17,6 +17,9 @@ typedef struct reply {
 } reply;
 
 void reply_free(reply *r);
+void reply_done(reply r);
+/* The answer as it came; with another status the test fails and says what came instead. */
+reply reply_expect(long status, reply r);
 /* A header of the answer into `value`, "" when absent. */
 const char *reply_header(const reply *r, const char *name, char *value, size_t size);
 /* A member of the JSON body by path, such as "counts.vertices" or "items.0.id". Fails the test when

@@ -3,6 +3,7 @@
 #include "tests/e2e/client.h"
 
 #include "tests/model/random.h"
+#include "tests/seed.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -35,14 +36,6 @@ static int stop(void **state)
     return daemon_stop(server);
 }
 
-static reply expect(long status, reply r)
-{
-    if (r.status != status) {
-        fail_msg("status %ld instead of %ld: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
 /* All half-edges with their links and all positions. `revision` 0 is the present. */
 static char *dump(uint64_t revision)
 {
@@ -52,9 +45,9 @@ static char *dump(uint64_t revision)
         snprintf(which, sizeof which, "?revision=%" PRIu64, revision);
     }
     snprintf(path, sizeof path, "/v1/meshes/m/halfedges%s", which);
-    reply links = expect(200, client_send(http, "GET", path, NULL, 0, lines));
+    reply links = reply_expect(200, client_send(http, "GET", path, NULL, 0, lines));
     snprintf(path, sizeof path, "/v1/meshes/m/content%s", which);
-    reply content = expect(200, client_get(http, path));
+    reply content = reply_expect(200, client_get(http, path));
     char *text = malloc(links.length + content.length + 1);
     assert_non_null(text);
     memcpy(text, links.body, links.length);
@@ -96,13 +89,10 @@ static uint64_t change(md_random *random)
 static void every_depth_is_what_it_was(void **state)
 {
     (void)state;
-    const char *given = getenv("SEED");
-    uint64_t seed = given != NULL ? strtoull(given, NULL, 10) : (uint64_t)time(NULL);
-    md_random random = {seed};
-    printf("note: SEED=%" PRIu64 "\n", seed);
+    md_random random = {seed_of_run()};
     static const char ball[] = "{\"shape\":\"icosphere\",\"subdivisions\":1}";
     reply r = client_send(http, "PUT", "/v1/meshes/m", ball, sizeof ball - 1, NULL);
-    r = expect(201, r);
+    r = reply_expect(201, r);
     reply_free(&r);
     char *dumps[REVISIONS + 1] = {NULL};
     uint64_t head = 1;
@@ -125,7 +115,7 @@ static void every_depth_is_what_it_was(void **state)
     free(first);
     while (send("redo", NULL) != 0) {
     }
-    r = expect(200, client_get(http, "/v1/meshes/m/edits"));
+    r = reply_expect(200, client_get(http, "/v1/meshes/m/edits"));
     assert_int_equal((int)reply_number(&r, "oldest"), 1);
     reply_free(&r);
     for (size_t i = 0; i <= REVISIONS; i++) {

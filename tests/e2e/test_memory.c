@@ -11,22 +11,9 @@
 
 #include <cmocka.h>
 
-static reply expect(long status, reply r)
-{
-    if (r.status != status) {
-        fail_msg("status %ld instead of %ld: %.300s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static void done(reply r)
-{
-    reply_free(&r);
-}
-
 static double counted(client *c, const char *member)
 {
-    reply r = expect(200, client_get(c, "/v1/meshes"));
+    reply r = reply_expect(200, client_get(c, "/v1/meshes"));
     double value = reply_number(&r, member);
     reply_free(&r);
     return value;
@@ -37,7 +24,7 @@ static void put_grid(client *c, const char *path, int side, long status)
     char body[128];
     int length =
         snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
-    done(expect(status, client_send(c, "PUT", path, body, (size_t)length, NULL)));
+    reply_done(reply_expect(status, client_send(c, "PUT", path, body, (size_t)length, NULL)));
 }
 
 static const char lift[] = "{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]}";
@@ -72,19 +59,19 @@ static void what_is_counted_is_what_is_taken(void **state)
     const double start[2] = {counted(c, "memory_bytes"), resident(d)};
     put_grid(c, "/v1/meshes/m", 1000, 201);
     compare(c, d, start, "a million quads");
-    done(expect(200, client_get(c, "/v1/meshes/m/content?format=stl")));
+    reply_done(reply_expect(200, client_get(c, "/v1/meshes/m/content?format=stl")));
     compare(c, d, start, "with a snapshot");
     for (int i = 0; i < 3; i++) {
-        done(expect(200, client_post(c, "/v1/meshes/m/edits", lift)));
+        reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/edits", lift)));
     }
     compare(c, d, start, "with three revisions of each vertex");
     for (int i = 0; i < 2000; i++) {
         char body[80];
         snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", 100 * i);
-        done(expect(200, client_post(c, "/v1/meshes/m/edits", body)));
+        reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/edits", body)));
     }
     compare(c, d, start, "with 2,000 faces poked");
-    done(expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
+    reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
     put_grid(c, "/v1/meshes/m", 700, 200);
     compare(c, d, start, "replaced by half as many");
     client_free(c);
@@ -104,7 +91,7 @@ static void what_does_not_fit_the_budget_is_refused(void **state)
     char path[64], body[64];
     assert_true(counted(c, "memory_budget") == 40 << 20);
     put_grid(c, "/v1/meshes/m", SIDE, 201);
-    reply before = expect(200, client_get(c, "/v1/meshes/m/content"));
+    reply before = reply_expect(200, client_get(c, "/v1/meshes/m/content"));
     int made = 0;
     long status = 201;
     for (; made < MANY && status == 201; made++) {
@@ -128,23 +115,23 @@ static void what_does_not_fit_the_budget_is_refused(void **state)
     }
     assert_int_equal(status, 507);
     assert_true(counted(c, "memory_bytes") <= counted(c, "memory_budget"));
-    reply r = expect(200, client_get(c, "/v1/meshes/m/vertices/77"));
+    reply r = reply_expect(200, client_get(c, "/v1/meshes/m/vertices/77"));
     assert_int_equal((int)reply_number(&r, "position.2"), edits);
     reply_free(&r);
-    r = expect(200, client_get(c, "/v1/meshes/m/vertices/77/faces"));
+    r = reply_expect(200, client_get(c, "/v1/meshes/m/vertices/77/faces"));
     assert_int_equal((int)reply_number(&r, "revision"), 1 + edits);
     reply_free(&r);
     for (int i = 0; i < made - 1; i++) {
         snprintf(path, sizeof path, "/v1/meshes/g%d", i);
-        done(expect(204, client_send(c, "DELETE", path, NULL, 0, NULL)));
+        reply_done(reply_expect(204, client_send(c, "DELETE", path, NULL, 0, NULL)));
     }
 
     /* And there is room again, with nothing half done left behind. */
-    done(expect(200, client_post(c, "/v1/meshes/m/edits", lift)));
+    reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/edits", lift)));
     for (int i = 0; i < edits + 1; i++) {
-        done(expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
+        reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
     }
-    reply after = expect(200, client_get(c, "/v1/meshes/m/content"));
+    reply after = reply_expect(200, client_get(c, "/v1/meshes/m/content"));
     assert_string_equal(before.body, after.body);
     put_grid(c, "/v1/meshes/again", SIDE, 201);
     reply_free(&before);

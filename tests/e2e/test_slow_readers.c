@@ -23,19 +23,6 @@ enum { SIDE = 1000 };
 
 enum { SLOW = 4, RECEIVE_BUFFER = 1 << 16, FIRST = 1024, EDITS = 20 };
 
-static reply expect(long status, reply r)
-{
-    if (r.status != status) {
-        fail_msg("status %ld instead of %ld: %.300s", r.status, status, r.body);
-    }
-    return r;
-}
-
-static void done(reply r)
-{
-    reply_free(&r);
-}
-
 typedef struct slow_client {
     int fd;
     char first[FIRST];
@@ -113,8 +100,9 @@ static void slow_downloads_delay_nobody(void **state)
     char body[128];
     int length =
         snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE, SIDE);
-    done(expect(201, client_send(c, "PUT", "/v1/meshes/m", body, (size_t)length, NULL)));
-    reply before = expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
+    reply_done(
+        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", body, (size_t)length, NULL)));
+    reply before = reply_expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
 
     static slow_client slow[SLOW];
     for (int i = 0; i < SLOW; i++) {
@@ -122,19 +110,19 @@ static void slow_downloads_delay_nobody(void **state)
     }
     for (int i = 0; i < EDITS; i++) {
         snprintf(body, sizeof body, "{\"op\":\"vertex_move\",\"vertex\":%d,\"by\":[0,0,1]}", i);
-        done(expect(200, client_post(c, "/v1/meshes/m/edits", body)));
+        reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/edits", body)));
         snprintf(body, sizeof body, "/v1/meshes/m/vertices/%d", i);
-        reply r = expect(200, client_get(c, body));
+        reply r = reply_expect(200, client_get(c, body));
         assert_true(reply_number(&r, "position.2") == 1);
         reply_free(&r);
-        done(expect(200, client_get(c, "/v1/meshes/m/faces/0/edges")));
+        reply_done(reply_expect(200, client_get(c, "/v1/meshes/m/faces/0/edges")));
     }
-    done(expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
-    done(expect(200, client_get(c, "/v1/meshes/m")));
-    reply after = expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
+    reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));
+    reply_done(reply_expect(200, client_get(c, "/v1/meshes/m")));
+    reply after = reply_expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
     assert_true(after.length != before.length ||
                 memcmp(after.body, before.body, after.length) != 0);
-    done(expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL)));
+    reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL)));
 
     /* And each of them gets the mesh as it was when it asked. */
     for (int i = 0; i < SLOW; i++) {

@@ -29,15 +29,6 @@ static int stop(void **state)
     return daemon_stop(server);
 }
 
-/* Expect a status; says what came instead. */
-static reply expect(long status, reply r)
-{
-    if (r.status != status) {
-        fail_msg("status %ld instead of %ld: %s", r.status, status, r.body);
-    }
-    return r;
-}
-
 static void expect_counts(const reply *r, int vertices, int edges, int faces)
 {
     assert_int_equal((int)reply_number(r, "counts.vertices"), vertices);
@@ -48,7 +39,7 @@ static void expect_counts(const reply *r, int vertices, int edges, int faces)
 /* Create, and give the path of the mesh. */
 static void create(const char *json, char path[128])
 {
-    reply r = expect(201, client_post(http, "/v1/meshes", json));
+    reply r = reply_expect(201, client_post(http, "/v1/meshes", json));
     snprintf(path, 128, "/v1/meshes/%s", reply_string(&r, "id"));
     char location[128];
     assert_string_equal(reply_header(&r, "Location", location, sizeof location), path);
@@ -62,11 +53,6 @@ static const char *below(const char *path, const char *rest)
     return text;
 }
 
-static void done(reply r)
-{
-    reply_free(&r);
-}
-
 static void test_document_edit_walk_undo(void **state)
 {
     (void)state;
@@ -74,7 +60,7 @@ static void test_document_edit_walk_undo(void **state)
     create("{\"name\":\"square\",\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0]],"
            "\"faces\":[[0,1,2],[0,2,3]]}",
            mesh);
-    reply r = expect(200, client_get(http, mesh));
+    reply r = reply_expect(200, client_get(http, mesh));
     expect_counts(&r, 4, 5, 2);
     assert_string_equal(reply_string(&r, "name"), "square");
     assert_int_equal((int)reply_number(&r, "revision"), 1);
@@ -84,61 +70,61 @@ static void test_document_edit_walk_undo(void **state)
     reply_free(&r);
 
     /* The diagonal 2-0 is edge 2; splitting it makes 4 triangles. */
-    r = expect(200, client_post(http, below(mesh, "/edits"),
-                                "{\"op\":\"edge_split\",\"edge\":2,\"t\":0.5}"));
+    r = reply_expect(200, client_post(http, below(mesh, "/edits"),
+                                      "{\"op\":\"edge_split\",\"edge\":2,\"t\":0.5}"));
     assert_int_equal((int)reply_number(&r, "revision"), 2);
     assert_int_equal((int)reply_number(&r, "results.0.vertex"), 4);
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "created.edges")), 3);
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "created.faces")), 2);
     reply_free(&r);
-    r = expect(200, client_get(http, mesh));
+    r = reply_expect(200, client_get(http, mesh));
     expect_counts(&r, 5, 8, 4);
     reply_free(&r);
 
-    r = expect(200, client_get(http, below(mesh, "/vertices/4")));
+    r = reply_expect(200, client_get(http, below(mesh, "/vertices/4")));
     assert_int_equal((int)reply_number(&r, "degree"), 4);
     assert_true(reply_number(&r, "position.0") == 0.5);
     assert_true(cJSON_IsFalse(reply_find(&r, "boundary")));
     reply_free(&r);
-    r = expect(200, client_get(http, below(mesh, "/vertices/4/faces")));
+    r = reply_expect(200, client_get(http, below(mesh, "/vertices/4/faces")));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "ids")), 4);
     assert_string_equal(reply_string(&r, "relation"), "faces");
     reply_free(&r);
 
     /* Walk around face 0 by its links alone. */
-    r = expect(200, client_get(http, below(mesh, "/faces/0")));
+    r = reply_expect(200, client_get(http, below(mesh, "/faces/0")));
     int first = (int)reply_number(&r, "halfedge"), h = first, steps = 0;
     reply_free(&r);
     do {
         char path[64];
         snprintf(path, sizeof path, "/halfedges/%d", h);
-        r = expect(200, client_get(http, below(mesh, path)));
+        r = reply_expect(200, client_get(http, below(mesh, path)));
         assert_int_equal((int)reply_number(&r, "face"), 0);
         h = (int)reply_number(&r, "next");
         reply_free(&r);
     } while (h != first && ++steps < 10);
     assert_int_equal(steps, 2);
 
-    r = expect(200, client_post(http, below(mesh, "/undo"), NULL));
+    r = reply_expect(200, client_post(http, below(mesh, "/undo"), NULL));
     assert_int_equal((int)reply_number(&r, "revision"), 3);
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "deleted.faces")), 2);
     reply_free(&r);
-    r = expect(200, client_get(http, mesh));
+    r = reply_expect(200, client_get(http, mesh));
     expect_counts(&r, 4, 5, 2);
     reply_free(&r);
-    done(expect(410, client_get(http, below(mesh, "/vertices/4"))));
-    done(expect(404, client_get(http, below(mesh, "/vertices/5"))));
-    done(expect(409, client_post(http, below(mesh, "/undo"), NULL)));
-    r = expect(200, client_post(http, below(mesh, "/redo"), NULL));
+    reply_done(reply_expect(410, client_get(http, below(mesh, "/vertices/4"))));
+    reply_done(reply_expect(404, client_get(http, below(mesh, "/vertices/5"))));
+    reply_done(reply_expect(409, client_post(http, below(mesh, "/undo"), NULL)));
+    r = reply_expect(200, client_post(http, below(mesh, "/redo"), NULL));
     assert_int_equal((int)reply_number(&r, "created.vertices.0"), 4);
     reply_free(&r);
-    done(expect(409, client_post(http, below(mesh, "/redo"), "{}")));
-    r = expect(200, client_get(http, below(mesh, "/edits")));
+    reply_done(reply_expect(409, client_post(http, below(mesh, "/redo"), "{}")));
+    r = reply_expect(200, client_get(http, below(mesh, "/edits")));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "entries")), 3);
     assert_int_equal((int)reply_number(&r, "undo"), 1);
     reply_free(&r);
-    done(expect(204, client_send(http, "DELETE", mesh, NULL, 0, NULL)));
-    done(expect(404, client_get(http, mesh)));
+    reply_done(reply_expect(204, client_send(http, "DELETE", mesh, NULL, 0, NULL)));
+    reply_done(reply_expect(404, client_get(http, mesh)));
 }
 
 static void test_atomic_list(void **state)
@@ -146,50 +132,51 @@ static void test_atomic_list(void **state)
     (void)state;
     char mesh[128];
     create("{\"shape\":\"cube\",\"size\":2}", mesh);
-    reply r = expect(200, client_post(http, below(mesh, "/edits"),
-                                      "{\"expected_revision\":1,\"ops\":["
-                                      "{\"op\":\"face_poke\",\"face\":3,\"as\":\"a\"},"
-                                      "{\"op\":\"vertex_move\",\"vertex\":\"$a.vertex\","
-                                      "\"to\":[0,0,3]}]}"));
+    reply r = reply_expect(200, client_post(http, below(mesh, "/edits"),
+                                            "{\"expected_revision\":1,\"ops\":["
+                                            "{\"op\":\"face_poke\",\"face\":3,\"as\":\"a\"},"
+                                            "{\"op\":\"vertex_move\",\"vertex\":\"$a.vertex\","
+                                            "\"to\":[0,0,3]}]}"));
     assert_int_equal((int)reply_number(&r, "revision"), 2);
     int apex = (int)reply_number(&r, "results.0.vertex");
     reply_free(&r);
     char path[64];
     snprintf(path, sizeof path, "/vertices/%d", apex);
-    r = expect(200, client_get(http, below(mesh, path)));
+    r = reply_expect(200, client_get(http, below(mesh, path)));
     assert_true(reply_number(&r, "position.2") == 3);
     reply_free(&r);
 
     /* The second operation is refused: the first is as if it had never been. */
-    reply before = expect(200, client_get(http, below(mesh, "/content")));
-    r = expect(422, client_post(http, below(mesh, "/edits"),
-                                "{\"ops\":[{\"op\":\"face_poke\",\"face\":0},"
-                                "{\"op\":\"edge_flip\",\"edge\":999}]}"));
+    reply before = reply_expect(200, client_get(http, below(mesh, "/content")));
+    r = reply_expect(422, client_post(http, below(mesh, "/edits"),
+                                      "{\"ops\":[{\"op\":\"face_poke\",\"face\":0},"
+                                      "{\"op\":\"edge_flip\",\"edge\":999}]}"));
     assert_string_equal(reply_string(&r, "code"), "no_such_element");
     assert_string_equal(reply_string(&r, "pointer"), "/ops/1");
     assert_string_equal(reply_string(&r, "element.kind"), "edge");
     assert_int_equal((int)reply_number(&r, "element.id"), 999);
     reply_free(&r);
-    reply after = expect(200, client_get(http, below(mesh, "/content")));
+    reply after = reply_expect(200, client_get(http, below(mesh, "/content")));
     assert_string_equal(before.body, after.body);
     reply_free(&before);
     reply_free(&after);
 
-    r = expect(412, client_post(http, below(mesh, "/edits"),
-                                "{\"expected_revision\":1,\"op\":\"face_poke\",\"face\":0}"));
+    r = reply_expect(412, client_post(http, below(mesh, "/edits"),
+                                      "{\"expected_revision\":1,\"op\":\"face_poke\",\"face\":0}"));
     assert_int_equal((int)reply_number(&r, "revision"), 2);
     reply_free(&r);
-    r = expect(200, client_post(http, below(mesh, "/edits"),
-                                "{\"dry_run\":true,\"op\":\"face_poke\",\"face\":0}"));
+    r = reply_expect(200, client_post(http, below(mesh, "/edits"),
+                                      "{\"dry_run\":true,\"op\":\"face_poke\",\"face\":0}"));
     int promised = (int)reply_number(&r, "results.0.vertex");
     reply_free(&r);
-    r = expect(200, client_get(http, mesh));
+    r = reply_expect(200, client_get(http, mesh));
     assert_int_equal((int)reply_number(&r, "revision"), 2);
     reply_free(&r);
-    r = expect(200, client_post(http, below(mesh, "/edits"), "{\"op\":\"face_poke\",\"face\":0}"));
+    r = reply_expect(200,
+                     client_post(http, below(mesh, "/edits"), "{\"op\":\"face_poke\",\"face\":0}"));
     assert_int_equal((int)reply_number(&r, "results.0.vertex"), promised);
     reply_free(&r);
-    r = expect(200, client_get(http, below(mesh, "/check")));
+    r = reply_expect(200, client_get(http, below(mesh, "/check")));
     assert_true(cJSON_IsTrue(reply_find(&r, "valid")));
     reply_free(&r);
 }
@@ -198,7 +185,7 @@ static void expect_no_effect(const char *mesh, const char *edit)
 {
     static const char *const kinds[] = {"vertices", "edges", "faces"};
     static const char *const sets[] = {"created", "deleted", "modified", "parents", "merged"};
-    reply r = expect(200, client_post(http, below(mesh, "/edits"), edit));
+    reply r = reply_expect(200, client_post(http, below(mesh, "/edits"), edit));
     assert_int_equal((int)reply_number(&r, "revision"), 1);
     for (size_t i = 0; i < 5; i++) {
         for (size_t j = 0; j < 3; j++) {
@@ -207,11 +194,11 @@ static void expect_no_effect(const char *mesh, const char *edit)
         }
     }
     reply_free(&r);
-    r = expect(200, client_get(http, below(mesh, "/edits")));
+    r = reply_expect(200, client_get(http, below(mesh, "/edits")));
     assert_int_equal((int)reply_number(&r, "revision"), 1);
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "entries")), 0);
     reply_free(&r);
-    done(expect(409, client_post(http, below(mesh, "/undo"), NULL)));
+    reply_done(reply_expect(409, client_post(http, below(mesh, "/undo"), NULL)));
 }
 
 static void test_edits_without_effect_make_no_revision(void **state)
@@ -232,8 +219,8 @@ static void test_file_in_and_out(void **state)
     static const char obj[] = "# two triangles\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
                               "f 1 2 3\nf 1 3 4\n";
     static const char *const type[] = {"Content-Type: model/obj", NULL};
-    reply r =
-        expect(201, client_send(http, "POST", "/v1/meshes?name=file", obj, sizeof obj - 1, type));
+    reply r = reply_expect(
+        201, client_send(http, "POST", "/v1/meshes?name=file", obj, sizeof obj - 1, type));
     expect_counts(&r, 4, 5, 2);
     assert_string_equal(reply_string(&r, "import.format"), "obj");
     char mesh[128];
@@ -243,17 +230,17 @@ static void test_file_in_and_out(void **state)
     for (size_t i = 0; i < 3; i++) {
         char path[64];
         snprintf(path, sizeof path, "/content?format=%s", formats[i]);
-        reply file = expect(200, client_get(http, below(mesh, path)));
+        reply file = reply_expect(200, client_get(http, below(mesh, path)));
         static const char *const octets[] = {"Content-Type: application/octet-stream", NULL};
-        reply again =
-            expect(201, client_send(http, "POST", "/v1/meshes", file.body, file.length, octets));
+        reply again = reply_expect(
+            201, client_send(http, "POST", "/v1/meshes", file.body, file.length, octets));
         expect_counts(&again, 4, 5, 2);
         assert_string_equal(reply_string(&again, "import.format"), formats[i]);
         reply_free(&file);
         reply_free(&again);
     }
     static const char bad[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n";
-    r = expect(422, client_send(http, "POST", "/v1/meshes", bad, sizeof bad - 1, type));
+    r = reply_expect(422, client_send(http, "POST", "/v1/meshes", bad, sizeof bad - 1, type));
     assert_non_null(strstr(reply_string(&r, "detail"), "line 4"));
     reply_free(&r);
 }
@@ -263,87 +250,90 @@ static void test_every_other_route(void **state)
     (void)state;
     char mesh[128], value[256];
     create("{\"shape\":\"icosphere\",\"subdivisions\":3}", mesh);
-    reply r = expect(200, client_get(http, mesh));
+    reply r = reply_expect(200, client_get(http, mesh));
     expect_counts(&r, 642, 1920, 1280);
     assert_true(reply_number(&r, "volume") > 4 && reply_number(&r, "volume") < 4.19);
     const char *tag = reply_header(&r, "ETag", value, sizeof value);
     char condition[300];
     snprintf(condition, sizeof condition, "If-None-Match: %s", tag);
-    done(expect(304,
-                client_send(http, "GET", mesh, NULL, 0, (const char *const[]){condition, NULL})));
+    reply_done(reply_expect(
+        304, client_send(http, "GET", mesh, NULL, 0, (const char *const[]){condition, NULL})));
     reply_free(&r);
-    r = expect(200, client_send(http, "HEAD", mesh, NULL, 0, NULL));
+    r = reply_expect(200, client_send(http, "HEAD", mesh, NULL, 0, NULL));
     assert_int_equal(r.length, 0);
     reply_free(&r);
-    r = expect(200, client_get(http, "/v1/meshes?limit=2"));
+    r = reply_expect(200, client_get(http, "/v1/meshes?limit=2"));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "items")), 2);
     char next[300];
     snprintf(next, sizeof next, "/v1/meshes?cursor=%s", reply_string(&r, "next"));
     reply_free(&r);
-    done(expect(200, client_get(http, next)));
+    reply_done(reply_expect(200, client_get(http, next)));
 
     static const char *const patch[] = {"Content-Type: application/merge-patch+json", NULL};
-    r = expect(200, client_send(http, "PATCH", mesh, "{\"name\":\"ball\"}", 15, patch));
+    r = reply_expect(200, client_send(http, "PATCH", mesh, "{\"name\":\"ball\"}", 15, patch));
     assert_string_equal(reply_string(&r, "name"), "ball");
     reply_free(&r);
-    r = expect(201, client_post(http, below(mesh, "/copy"), "{\"id\":\"twin-1\"}"));
+    r = reply_expect(201, client_post(http, below(mesh, "/copy"), "{\"id\":\"twin-1\"}"));
     expect_counts(&r, 642, 1920, 1280);
     reply_free(&r);
-    done(expect(409, client_post(http, below(mesh, "/copy"), "{\"id\":\"twin-1\"}")));
+    reply_done(reply_expect(409, client_post(http, below(mesh, "/copy"), "{\"id\":\"twin-1\"}")));
 
     const char *cube = "{\"shape\":\"cube\"}";
-    r = expect(200, client_send(http, "PUT", "/v1/meshes/twin-1", cube, strlen(cube), NULL));
+    r = reply_expect(200, client_send(http, "PUT", "/v1/meshes/twin-1", cube, strlen(cube), NULL));
     expect_counts(&r, 8, 12, 6);
     reply_free(&r);
     static const char *const absent[] = {"If-None-Match: *", NULL};
-    done(expect(412, client_send(http, "PUT", "/v1/meshes/twin-1", cube, strlen(cube), absent)));
-    done(expect(201, client_send(http, "PUT", "/v1/meshes/new", cube, strlen(cube), absent)));
+    reply_done(reply_expect(
+        412, client_send(http, "PUT", "/v1/meshes/twin-1", cube, strlen(cube), absent)));
+    reply_done(
+        reply_expect(201, client_send(http, "PUT", "/v1/meshes/new", cube, strlen(cube), absent)));
 
-    r = expect(200, client_get(http, below(mesh, "/faces?limit=100")));
+    r = reply_expect(200, client_get(http, below(mesh, "/faces?limit=100")));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "items")), 100);
     reply_free(&r);
     static const char *const lines[] = {"Accept: application/x-ndjson", NULL};
-    r = expect(200, client_send(http, "GET", below(mesh, "/halfedges"), NULL, 0, lines));
+    r = reply_expect(200, client_send(http, "GET", below(mesh, "/halfedges"), NULL, 0, lines));
     assert_non_null(strstr(r.body, "{\"end\":true,\"count\":3840}"));
     reply_free(&r);
-    done(expect(200, client_get(http, below(mesh, "/edges/17"))));
-    r = expect(200, client_get(http, below(mesh, "/halfedges/17/ring?cw=true")));
+    reply_done(reply_expect(200, client_get(http, below(mesh, "/edges/17"))));
+    r = reply_expect(200, client_get(http, below(mesh, "/halfedges/17/ring?cw=true")));
     assert_int_equal((int)reply_number(&r, "ids.0"), 17);
     reply_free(&r);
-    r = expect(200, client_post(http, below(mesh, "/traverse"),
-                                "{\"walk\":\"rings\",\"from\":{\"vertex\":5},\"depth\":2}"));
+    r = reply_expect(200, client_post(http, below(mesh, "/traverse"),
+                                      "{\"walk\":\"rings\",\"from\":{\"vertex\":5},\"depth\":2}"));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "rings")), 3);
     reply_free(&r);
-    r = expect(200, client_post(http, below(mesh, "/query"),
-                                "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"vertex\":5}},"
-                                "{\"get\":{\"edge\":3}},{\"find\":\"halfedge\","
-                                "\"vertices\":[0,1]}]}"));
+    r = reply_expect(200,
+                     client_post(http, below(mesh, "/query"),
+                                 "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"vertex\":5}},"
+                                 "{\"get\":{\"edge\":3}},{\"find\":\"halfedge\","
+                                 "\"vertices\":[0,1]}]}"));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "results")), 3);
     reply_free(&r);
-    r = expect(200, client_get(http, below(mesh, "/boundaries")));
+    r = reply_expect(200, client_get(http, below(mesh, "/boundaries")));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "loops")), 0);
     reply_free(&r);
-    r = expect(200, client_get(http, below(mesh, "/components?by=edge")));
+    r = reply_expect(200, client_get(http, below(mesh, "/components?by=edge")));
     assert_int_equal((int)reply_number(&r, "components.0.faces"), 1280);
     reply_free(&r);
-    r = expect(200, client_get(http, "/v1/operations"));
+    r = reply_expect(200, client_get(http, "/v1/operations"));
     assert_true(cJSON_GetArraySize(reply_find(&r, "operations")) >= 18);
     reply_free(&r);
-    r = expect(200, client_get(http, "/v1/openapi.json"));
+    r = reply_expect(200, client_get(http, "/v1/openapi.json"));
     assert_string_equal(reply_string(&r, "openapi"), "3.1.0");
     reply_free(&r);
-    done(expect(200, client_get(http, "/livez")));
-    done(expect(200, client_get(http, "/readyz")));
-    r = expect(200, client_get(http, "/version"));
+    reply_done(reply_expect(200, client_get(http, "/livez")));
+    reply_done(reply_expect(200, client_get(http, "/readyz")));
+    r = reply_expect(200, client_get(http, "/version"));
     assert_true(strlen(reply_string(&r, "version")) > 0);
     reply_free(&r);
-    done(expect(200, client_get(http, "/")));
-    done(expect(200, client_get(http, "/problems/link_condition")));
-    done(expect(404, client_get(http, "/problems/none")));
-    r = expect(405, client_send(http, "DELETE", "/v1/meshes", NULL, 0, NULL));
+    reply_done(reply_expect(200, client_get(http, "/")));
+    reply_done(reply_expect(200, client_get(http, "/problems/link_condition")));
+    reply_done(reply_expect(404, client_get(http, "/problems/none")));
+    r = reply_expect(405, client_send(http, "DELETE", "/v1/meshes", NULL, 0, NULL));
     assert_non_null(strstr(reply_header(&r, "Allow", value, sizeof value), "POST"));
     reply_free(&r);
-    done(expect(404, client_get(http, "/nothing")));
+    reply_done(reply_expect(404, client_get(http, "/nothing")));
 }
 
 int main(void)

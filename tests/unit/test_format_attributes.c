@@ -6,6 +6,7 @@
 #include "mesh/write.h"
 #include "mesh/compact.h"
 #include "model/random.h"
+#include "tests/seed.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -128,13 +129,8 @@ static void expect_column(const he_mesh *m, const he_import *import, const attri
 static void round_trip(const char *format, const char *encoding, const attribute *attributes,
                        size_t count)
 {
-    const char *given = getenv("SEED");
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
-                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
-    printf("note: SEED=%" PRIu64 " %s %s\n", seed, format, encoding);
-    md_random random = {seed};
+    printf("note: %s %s\n", format, encoding);
+    md_random random = {seed_of_run()};
     for (int round = 0; round < 20; round++) {
         he_mesh *m = worn_grid(&random, attributes, count);
         he_notes notes;

@@ -6,6 +6,7 @@
 #include "edit/vertex.h"
 #include "model/random.h"
 #include "query/slots.h"
+#include "tests/seed.h"
 
 #include <math.h>
 #include <time.h>
@@ -165,12 +166,9 @@ static void check_changes(const world *w, const uint32_t *before, uint32_t count
 static void test_runs_of_all_lengths(void **state)
 {
     (void)state;
-    const char *given = getenv("SEED");
-    uint64_t seed = given == NULL ? (uint64_t)time(NULL) : strtoull(given, NULL, 10);
     uint32_t layouts = 0, reused = 0;
-    printf("note: SEED=%llu\n", (unsigned long long)seed);
     world w;
-    open_world(&w, seed);
+    open_world(&w, seed_of_run());
     for (int round = 0; round < 4000; round++) {
         uint32_t count = w.slots->count, *before = malloc((count + 1) * sizeof *before);
         assert_non_null(before);

@@ -7,22 +7,12 @@
 #include "mesh/replay.h"
 #include "mesh/write.h"
 #include "tests/model/random.h"
+#include "tests/seed.h"
 
 #include <inttypes.h>
 #include <time.h>
 
 enum { ENTRIES = 60, LOG = 400 };
-
-static uint64_t seed_of_run(void)
-{
-    const char *given = getenv("SEED");
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
-                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
-    printf("note: SEED=%" PRIu64 "\n", seed);
-    return seed;
-}
 
 /* The log of one mesh, as a server would keep it, with the mesh as it was after each entry. */
 typedef struct entry {

@@ -8,6 +8,7 @@
 #include "server/replay_walk.h"
 #include "server/store.h"
 #include "tests/model/random.h"
+#include "tests/seed.h"
 
 #include <inttypes.h>
 #include <pthread.h>
@@ -18,17 +19,6 @@ enum { MOST = 300 };
 
 static srv_store *store;
 static api_store api;
-
-static uint64_t seed_of_run(void)
-{
-    const char *given = getenv("SEED");
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
-                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
-    printf("note: SEED=%" PRIu64 "\n", seed);
-    return seed;
-}
 
 static api_mesh *open_mesh(uint64_t budget)
 {

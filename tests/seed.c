@@ -1,0 +1,17 @@
+#include "tests/seed.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+uint64_t seed_of_run(void)
+{
+    const char *given = getenv("SEED");
+    struct timespec now;
+    (void)clock_gettime(CLOCK_REALTIME, &now);
+    uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
+                                  : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
+    printf("note: SEED=%" PRIu64 "\n", seed);
+    return seed;
+}
