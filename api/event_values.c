@@ -6,13 +6,11 @@
 
 #include <string.h>
 
-/* A column that the delta added or dropped. */
-typedef enum fate { STAYS, ADDED, DROPPED } fate;
-
+/* What a delta did to a slot for columns: one put in the place of another is both. */
 typedef struct slot {
-    he_ids rows; /* touched; of an added one all that do not hold the default */
-    fate fate;
-    const he_column *dropped;
+    he_ids rows;              /* touched; of an added column all that do not hold the default */
+    const he_column *dropped; /* that was there before, else NULL */
+    bool added;               /* the column that is there now came with the delta */
 } slot;
 
 typedef struct touched {
@@ -32,17 +30,14 @@ static void touched_clear(touched *t)
     he_mem_free(t->slots);
 }
 
-/* A column is added once in its life and dropped once, so a second record takes back the first. */
 static void note_column(touched *t, const he_delta *delta, const he_record *r, bool undone)
 {
     slot *s = &t->slots[r->row];
-    bool added = (r->column == HE_COL_COLUMN_ADDED) != undone;
-    if (s->fate != STAYS) {
-        s->fate = STAYS;
-    } else {
-        s->fate = added ? ADDED : DROPPED;
-        s->dropped = added ? NULL : delta->objects[r->before];
+    bool adds = (r->column == HE_COL_COLUMN_ADDED) != undone;
+    if (!adds && !s->added) {
+        s->dropped = delta->objects[r->before];
     }
+    s->added = adds;
 }
 
 static he_status note_record(touched *t, const he_delta *delta, const he_record *r, bool undone,
@@ -117,7 +112,7 @@ static he_status find_touched(touched *t, const he_mesh *mesh, const he_delta *d
     }
     for (size_t i = 0; i < t->slot_count && status == HE_OK; i++) {
         const he_column *column = he_mesh_column(mesh, i);
-        if (t->slots[i].fate == ADDED) {
+        if (t->slots[i].added) {
             t->slots[i].rows.count = 0;
             status = note_all_rows(&t->slots[i], column, err);
         } else if (column != NULL) {
@@ -255,24 +250,38 @@ static void write_dropped(api_out *out, const he_column *column)
     api_out_object_end(out);
 }
 
-/* Dropped before added: one may have the name of the other. */
-static void write_columns(api_out *out, const he_mesh *mesh, const touched *t, fate which)
+static void write_columns_dropped(api_out *out, const touched *t)
 {
     bool open = false;
     for (size_t i = 0; i < t->slot_count; i++) {
-        if (t->slots[i].fate != which) {
+        if (t->slots[i].dropped == NULL) {
             continue;
         }
         if (!open) {
-            api_out_key(out, which == ADDED ? "attributes_added" : "attributes_dropped");
+            api_out_key(out, "attributes_dropped");
             api_out_array_begin(out);
             open = true;
         }
-        if (which == ADDED) {
-            write_added(out, he_mesh_column(mesh, i));
-        } else {
-            write_dropped(out, t->slots[i].dropped);
+        write_dropped(out, t->slots[i].dropped);
+    }
+    if (open) {
+        api_out_array_end(out);
+    }
+}
+
+static void write_columns_added(api_out *out, const he_mesh *mesh, const touched *t)
+{
+    bool open = false;
+    for (size_t i = 0; i < t->slot_count; i++) {
+        if (!t->slots[i].added) {
+            continue;
         }
+        if (!open) {
+            api_out_key(out, "attributes_added");
+            api_out_array_begin(out);
+            open = true;
+        }
+        write_added(out, he_mesh_column(mesh, i));
     }
     if (open) {
         api_out_array_end(out);
@@ -285,8 +294,9 @@ he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *de
     touched t = {0};
     he_status status = find_touched(&t, mesh, delta, undone, err);
     if (status == HE_OK) {
-        write_columns(out, mesh, &t, DROPPED);
-        write_columns(out, mesh, &t, ADDED);
+        /* Dropped before added: one may have the name of the other. */
+        write_columns_dropped(out, &t);
+        write_columns_added(out, mesh, &t);
         api_out_key(out, "values");
         api_out_object_begin(out);
         write_vertices(out, mesh, &t.vertices);

@@ -164,6 +164,41 @@ static void columns_that_come_and_go_are_told(void **state)
     bench_free(b);
 }
 
+/* A column that takes the place of one with its name and type loses the values of the other. */
+static void a_column_written_over_is_told(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *method, *target, *body;
+    } steps[] = {
+        {"PUT", "attributes/faces/a", "{\"type\":\"bool\",\"default\":false}"},
+        {"PATCH", "attributes/faces/a", "{\"ids\":[1],\"value\":true}"},
+        {"PUT", "attributes/faces/a", "{\"type\":\"bool\"}"},
+        {"PUT", "attributes/faces/a", "{\"type\":\"float\",\"value\":0.5}"},
+        {"DELETE", "attributes/faces/a", NULL},
+        {"POST", "undo", NULL},
+        {"POST", "undo", "{\"steps\":3}"},
+        {"POST", "redo", "{\"steps\":2}"},
+        {"POST", "redo", "{\"steps\":2}"},
+    };
+    api_bench *b = bench_new();
+    mirror copy = {0};
+    put_mesh(b);
+    listener *l = stream_open(b, "/v1/meshes/m/events", "", NULL);
+    stream_dump(b, &copy);
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        char target[64];
+        (void)snprintf(target, sizeof target, "/v1/meshes/m/%s", steps[i].target);
+        int status = send(b, steps[i].method, target, steps[i].body);
+        assert_true(status == 200 || status == 201);
+        assert_int_equal(stream_follow(b, l, &copy), 0);
+        stream_require(b, &copy, steps[i].method);
+    }
+    stream_close(l);
+    mirror_clear(&copy);
+    bench_free(b);
+}
+
 #define POKE "{\"op\":\"face_poke\",\"face\":0}"
 
 static void what_is_no_edit_has_events_of_its_own(void **state)
@@ -539,6 +574,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_operation_undo_and_redo_is_told_exactly),
         cmocka_unit_test(columns_that_come_and_go_are_told),
+        cmocka_unit_test(a_column_written_over_is_told),
         cmocka_unit_test(what_is_no_edit_has_events_of_its_own),
         cmocka_unit_test(the_list_of_meshes_counts_listeners),
         cmocka_unit_test(a_large_edit_is_only_announced),
