@@ -4,11 +4,11 @@
 #include "api/problem.h"
 #include "server/clock.h"
 #include "server/held.h"
+#include "server/http_admit.h"
 #include "server/http_framing.h"
 #include "server/http_gate.h"
 #include "server/http_live.h"
 #include "server/http_wire.h"
-#include "server/random.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -46,8 +46,7 @@ enum {
     SWALLOW = 256 * 1024,     /* of a refused body, rather than close the connection */
     ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once */
     LIVE_BLOCK = 1024,        /* the same, where thousands wait; used by HTTP/1.0 only */
-    BACKLOG = 1024,
-    ID_PREFIX = 8
+    BACKLOG = 1024
 };
 
 struct srv_http {
@@ -56,8 +55,7 @@ struct srv_http {
     srv_deadlines *deadlines;
     srv_live *live;
     unsigned port;
-    char id_prefix[ID_PREFIX + 1];
-    _Atomic uint64_t next_id;
+    srv_ids ids;
     _Atomic bool stopping;
     srv_gate gate;
 };
@@ -171,39 +169,6 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
 }
 
 /* --- answering --- */
-
-static bool is_id_character(char c)
-{
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '.' ||
-           c == '_' || c == '-';
-}
-
-static void choose_id(request *r, const srv_head *head)
-{
-    const srv_field *given = srv_head_find(head, "X-Request-Id");
-    bool fits = given != NULL && given->value_length > 0 && given->value_length <= SRV_REQUEST_ID;
-    for (size_t i = 0; fits && i < given->value_length; i++) {
-        fits = is_id_character(given->value[i]);
-    }
-    if (fits) {
-        memcpy(r->request_id, given->value, given->value_length);
-        r->request_id[given->value_length] = '\0';
-        return;
-    }
-    /* The server's prefix and a counter in hexadecimal, without the cost of printf. */
-    uint64_t number = atomic_fetch_add_explicit(&r->http->next_id, 1, memory_order_relaxed);
-    char *at = r->request_id + ID_PREFIX;
-    memcpy(r->request_id, r->http->id_prefix, ID_PREFIX);
-    *at++ = '-';
-    int shift = 60;
-    while (shift > 0 && number >> shift == 0) {
-        shift -= 4;
-    }
-    for (; shift >= 0; shift -= 4) {
-        *at++ = "0123456789abcdef"[number >> shift & 15];
-    }
-    *at = '\0';
-}
 
 static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
 {
@@ -469,39 +434,21 @@ static const char *header_value(void *context, const char *name)
     return MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
 }
 
-static const char *field_value(const srv_head *head, const char *name)
-{
-    const srv_field *field = srv_head_find(head, name);
-    return field == NULL ? NULL : field->value;
-}
-
-/* May this server, now, run this request? Fills r->refusal, and r->close where the connection is
- * in the way rather than the request. */
+/* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
 static bool admit(request *r, const srv_head *head, const srv_framing *framing)
 {
     srv_http *http = r->http;
-    const srv_policy *policy = http->options.policy;
+    uint64_t most = http->options.deadlines.max_connections;
     if (atomic_load(&http->stopping)) {
         r->close = true;
         return api_problem_set(&r->refusal, API_NOT_READY, "the server is stopping");
     }
-    if (srv_deadlines_count(http->deadlines) > http->options.deadlines.max_connections) {
+    if (srv_deadlines_count(http->deadlines) > most) {
         r->close = true;
         return api_problem_set(&r->refusal, API_OVERLOADED,
-                               "more than %" PRIu64 " connections are open",
-                               http->options.deadlines.max_connections);
+                               "more than %" PRIu64 " connections are open", most);
     }
-    const char *host = framing->host;
-    size_t length = host == NULL ? 0 : strlen(host);
-    if (framing->authority != NULL &&
-        !srv_policy_host(policy, framing->authority, framing->authority_length, &r->refusal)) {
-        return false;
-    }
-    const char *origin = field_value(head, "Origin");
-    r->cors = srv_policy_cors(policy, origin);
-    return srv_policy_host(policy, host, length, &r->refusal) &&
-           srv_policy_origin(policy, r->method, host, origin, field_value(head, "Sec-Fetch-Site"),
-                             &r->refusal);
+    return srv_admit(http->options.policy, head, framing, &r->cors, &r->refusal);
 }
 
 static void begin_exchange(request *r, const srv_framing *framing)
@@ -547,7 +494,7 @@ static enum MHD_Result read_head(request *r, const char *method, const char *ver
     head.bytes = 0;
     MHD_get_connection_values_n(r->connection, MHD_HEADER_KIND, gather_field, &head);
     memcpy(r->method, method, strnlen(method, SRV_METHOD));
-    choose_id(r, &head);
+    srv_admit_name(&head, &r->http->ids, r->request_id);
     srv_gate_enter(&r->http->gate);
     r->counted = true;
     r->state = BODY;
@@ -725,7 +672,7 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     }
     http->options = *options;
     srv_gate_init(&http->gate);
-    srv_random_id(http->id_prefix, ID_PREFIX);
+    srv_ids_init(&http->ids);
     http->deadlines = srv_deadlines_new(&options->deadlines);
     http->live = srv_live_new(options->heartbeat_micros);
     if (http->deadlines == NULL || http->live == NULL) {
