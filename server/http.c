@@ -5,8 +5,10 @@
 #include "server/clock.h"
 #include "server/held.h"
 #include "server/http_admit.h"
+#include "server/http_ahead.h"
 #include "server/http_framing.h"
 #include "server/http_gate.h"
+#include "server/http_lists.h"
 #include "server/http_live.h"
 #include "server/http_wire.h"
 
@@ -35,7 +37,8 @@
  *
  * While WORK or HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
  * or the hold resumes it exactly once. An answer that goes on is DONE and suspended again and again
- * by `pull`: see http_live.h. */
+ * by `pull_live`: see http_live.h. So is one that is slow to make, by `pull_ahead`: http_ahead.h.
+ */
 typedef enum state { FRESH, BODY, WORK, HELD, DONE, CUT } state;
 
 enum {
@@ -73,6 +76,7 @@ typedef struct request {
     uint64_t announced; /* Content-Length; UINT64_MAX when chunked */
     uint64_t swallowed; /* since the answer was known */
     char request_id[SRV_REQUEST_ID + 1];
+    srv_lists lists;
     const char *cors; /* the origin to be named, NULL: none */
     bool close;
 
@@ -83,6 +87,7 @@ typedef struct request {
     bool preflight;
     srv_hold hold;
     srv_stream stream;
+    srv_ahead ahead;
     int status;
 
     char method[SRV_METHOD + 1];
@@ -160,7 +165,9 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
     if (r->aside) {
         srv_gate_resume(&http->gate);
     }
+    srv_ahead_clear(&r->ahead);
     api_free(r->exchange);
+    srv_lists_clear(&r->lists);
     api_text_clear(&r->text);
     he_mem_free(r);
     if (counted) {
@@ -184,6 +191,45 @@ static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
     return complete ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
 }
 
+static void resume_ahead(srv_ahead *ahead)
+{
+    request *r = (request *)((char *)ahead - offsetof(request, ahead));
+    MHD_resume_connection(r->connection);
+}
+
+/* The connection is not suspended any more. */
+static void come_back(request *r)
+{
+    if (r->aside) {
+        r->aside = false;
+        srv_gate_resume(&r->http->gate);
+    }
+}
+
+/* The same for an answer that is slow to make. */
+static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
+{
+    (void)position;
+    request *r = context;
+    const api_answer *answer = api_answer_of(r->exchange);
+    come_back(r);
+    r->ahead.read = answer->read;
+    r->ahead.context = answer->context;
+    r->ahead.resume = resume_ahead;
+    int64_t got = srv_ahead_take(&r->ahead, buffer, size);
+    if (got > 0) {
+        r->bytes_out += (uint64_t)got;
+        return (ssize_t)got;
+    }
+    if (got == SRV_AHEAD_WAIT && srv_gate_wait(&r->http->gate)) {
+        r->aside = true;
+        MHD_suspend_connection(r->connection);
+        srv_ahead_make(&r->ahead, r->http->options.makers);
+        return 0;
+    }
+    return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
 static void resume_stream(srv_stream *stream)
 {
     request *r = (request *)((char *)stream - offsetof(request, stream));
@@ -196,10 +242,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     (void)position;
     request *r = context;
     const api_answer *answer = api_answer_of(r->exchange);
-    if (r->aside) {
-        r->aside = false;
-        srv_gate_resume(&r->http->gate);
-    }
+    come_back(r);
     if (r->stream.live == NULL) {
         srv_live_begin(r->http->live, &r->stream, answer->live, answer->idle, resume_stream);
     }
@@ -224,12 +267,7 @@ static void describe(request *r, srv_wire *wire)
     *wire = (srv_wire){.close = r->close};
     if (r->exchange != NULL) {
         const api_answer *answer = api_answer_of(r->exchange);
-        wire->status = answer->status;
-        for (size_t i = 0; i < answer->header_count; i++) {
-            srv_wire_add(wire, answer->headers[i].name, answer->headers[i].value);
-        }
-        wire->bytes = answer->bytes;
-        wire->length = answer->length;
+        srv_wire_answer(wire, answer);
         /* With all of the body read there is nothing left to be mistaken for a request. */
         wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
     } else {
@@ -255,9 +293,14 @@ static struct MHD_Response *response_of(request *r, const srv_wire *wire)
 {
     struct MHD_Response *response;
     if (is_streamed(r)) {
-        response = MHD_create_response_from_callback(
-            wire->length < 0 ? MHD_SIZE_UNKNOWN : (uint64_t)wire->length,
-            is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK, is_live(r) ? pull_live : pull, r, NULL);
+        bool slow = api_answer_of(r->exchange)->slow;
+        response = MHD_create_response_from_callback(wire->length < 0 ? MHD_SIZE_UNKNOWN
+                                                                      : (uint64_t)wire->length,
+                                                     is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK,
+                                                     is_live(r) ? pull_live
+                                                     : slow     ? pull_ahead
+                                                                : pull,
+                                                     r, NULL);
     } else {
         /* The bytes are the exchange's and live until the request has completed. */
         response = MHD_create_response_from_buffer((size_t)wire->length, (void *)wire->bytes,
@@ -431,7 +474,8 @@ static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, cons
 static const char *header_value(void *context, const char *name)
 {
     request *r = context;
-    return MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
+    const char *list = srv_lists_find(&r->lists, name);
+    return list != NULL ? list : MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
 }
 
 /* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
@@ -447,6 +491,9 @@ static bool admit(request *r, const srv_head *head, const srv_framing *framing)
         r->close = true;
         return api_problem_set(&r->refusal, API_OVERLOADED,
                                "more than %" PRIu64 " connections are open", most);
+    }
+    if (!srv_lists_join(&r->lists, head)) {
+        return api_problem_set(&r->refusal, HE_NO_MEMORY, "no memory for the request");
     }
     return srv_admit(http->options.policy, head, framing, &r->cors, &r->refusal);
 }
