@@ -51,9 +51,10 @@ void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight)
     srv_wire_add(wire, "Vary", "Origin");
     if (preflight) {
         srv_wire_add(wire, "Access-Control-Allow-Methods", "GET, HEAD, POST, PUT, PATCH, DELETE");
-        srv_wire_add(wire, "Access-Control-Allow-Headers",
-                     "Accept, Content-Encoding, Content-Type, Idempotency-Key, If-Match, If-None-Match, "
-                     "Last-Event-ID, Prefer, X-Request-Id");
+        srv_wire_add(
+            wire, "Access-Control-Allow-Headers",
+            "Accept, Content-Encoding, Content-Type, Idempotency-Key, If-Match, If-None-Match, "
+            "Last-Event-ID, Prefer, X-Request-Id");
         srv_wire_add(wire, "Access-Control-Max-Age", "600");
     } else {
         srv_wire_add(wire, "Access-Control-Expose-Headers",
