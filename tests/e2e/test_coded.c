@@ -121,20 +121,20 @@ static void bombs_stay_small(void **state)
     for (size_t i = 0; i < 2; i++) {
         size_t length, before = peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
-        reply r = expect(413, send_coded(c, "POST", "/v1/meshes", both[i], "model/obj", zeros,
-                                         length));
+        reply r =
+            expect(413, send_coded(c, "POST", "/v1/meshes", both[i], "model/obj", zeros, length));
         assert_string_equal(reply_string(&r, "code"), "body_too_large");
         reply_free(&r);
-        done(expect(400, send_coded(c, "POST", "/v1/meshes", both[i], "application/json", zeros,
-                                    length)));
+        done(expect(
+            400, send_coded(c, "POST", "/v1/meshes", both[i], "application/json", zeros, length)));
         done(expect(413, send_coded(c, "POST", "/v1/meshes/m/edits", both[i], "application/json",
                                     zeros, length)));
         free(zeros);
         char *blanks = bomb_of(both[i], ' ', &length);
         static const char *const types[] = {"application/json", "model/obj", "model/x-off"};
         for (size_t k = 0; k < sizeof types / sizeof *types; k++) {
-            done(expect(413, send_coded(c, "PUT", "/v1/meshes/b", both[i], types[k], blanks,
-                                        length)));
+            done(expect(413,
+                        send_coded(c, "PUT", "/v1/meshes/b", both[i], types[k], blanks, length)));
         }
         /* A bomb in a bomb is only bytes to whoever reads it. */
         size_t folded;
@@ -275,8 +275,8 @@ static void it_can_be_switched_off(void **state)
     client *c = client_new(d);
     char value[40];
     put_grid(c, "/v1/meshes/m", 30);
-    reply r = expect(200, client_send(c, "GET", targets[0], NULL, 0,
-                                      ARGUMENTS("Accept-Encoding: gzip, zstd")));
+    reply r = expect(
+        200, client_send(c, "GET", targets[0], NULL, 0, ARGUMENTS("Accept-Encoding: gzip, zstd")));
     assert_string_equal(reply_header(&r, "Content-Encoding", value, sizeof value), "");
     reply_free(&r);
     /* Bodies are taken all the same. */
