@@ -28,7 +28,7 @@ CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
 CFLAGS   := -std=c11 -pthread -g $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
 # Lazy: evaluated when a program is linked, after .ci/deps has run.
-DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson) -lm
+DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd) -lm
 TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
 
 # Asserts stay in the release: a daemon that stops is better than one that overwrites a mesh.

@@ -1,5 +1,6 @@
 #include "api/admit.h"
 
+#include "api/coded.h"
 #include "format/number.h"
 
 #include <stdio.h>
@@ -173,7 +174,8 @@ bool api_refuse_size(api_exchange *x)
     if (x->route->body_kind == API_BODY_NONE) {
         return api_fail(x, API_UNEXPECTED_BODY, "%s takes no body here", x->request.method);
     }
-    return api_fail(x, API_BODY_TOO_LARGE, "the body exceeds %llu bytes",
+    return api_fail(x, API_BODY_TOO_LARGE, "the body %s %llu bytes",
+                    x->unpack == NULL ? "exceeds" : "unfolds to more than",
                     (unsigned long long)api_body_cap(x));
 }
 
@@ -197,14 +199,7 @@ static bool check_content_type(api_exchange *x)
 
 static bool check_body(api_exchange *x)
 {
-    static const char *const identity[] = {"identity", NULL};
     const api_request *r = &x->request;
-    const char *coding = api_header_of(x, "Content-Encoding");
-    if (coding != NULL && !api_equal_nocase(coding, "identity")) {
-        api_fail(x, API_UNSUPPORTED_ENCODING, "\"%.60s\" is not taken", coding);
-        x->problem.supported = identity;
-        return false;
-    }
     bool empty = !r->has_body || (r->has_length && r->length == 0);
     if (empty) {
         bool optional =
@@ -215,7 +210,7 @@ static bool check_body(api_exchange *x)
         return api_refuse_size(x);
     }
     /* A body without a length may yet be empty: then it is like none. */
-    return x->route->body_kind == API_BODY_NONE || check_content_type(x);
+    return x->route->body_kind == API_BODY_NONE || (api_coded_body(x) && check_content_type(x));
 }
 
 static bool check_accept(api_exchange *x)
@@ -237,5 +232,5 @@ static bool check_accept(api_exchange *x)
 
 bool api_admit(api_exchange *x)
 {
-    return find_route(x) && find_mesh(x) && check_body(x) && check_accept(x);
+    return find_route(x) && find_mesh(x) && check_body(x) && check_accept(x) && api_coded_accept(x);
 }

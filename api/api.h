@@ -67,6 +67,7 @@ typedef struct api_answer {
      * connection is then cut, so that the client notices). Never blocks on a lock for long. */
     const char *bytes;
     int64_t length; /* -1: unknown, only with read */
+    bool slow;      /* with read: it computes for milliseconds, not on a thread others wait for */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
     /* Instead of both: an answer that goes on, and what to send now and then when it has nothing.
@@ -97,6 +98,7 @@ typedef struct api_options {
      * are; NULL: not told. */
     void (*memory)(uint64_t *used, uint64_t *budget);
     const api_jobs *jobs; /* NULL: nothing becomes a job, and no route shows any */
+    bool plain_answers;   /* never coded, whatever a client accepts */
 } api_options;
 
 /* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */

@@ -1,5 +1,6 @@
 #include "api/etag.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -38,8 +39,21 @@ static bool is_any(const char *header)
     return header[blanks] == '*' && header[blanks + 1 + strspn(header + blanks + 1, " \t")] == '\0';
 }
 
-bool api_etag_listed(const char *header, const char *etag)
+void api_etag_code(const char *etag, api_coding coding, char out[API_ETAG])
 {
+    size_t length = strlen(etag);
+    assert(length > 1 && length < API_ETAG);
+    if (coding == API_IDENTITY) {
+        memcpy(out, etag, length + 1);
+    } else {
+        snprintf(out, API_ETAG, "%.*s-%s\"", (int)length - 1, etag, api_coding_name(coding));
+    }
+}
+
+bool api_etag_listed(const char *header, const char *etag, const api_codings *codings,
+                     api_coding *found)
+{
+    *found = API_IDENTITY;
     if (is_any(header)) {
         return true;
     }
@@ -47,8 +61,13 @@ bool api_etag_listed(const char *header, const char *etag)
     const char *tag;
     size_t length;
     while (next_tag(&header, &weak, &tag, &length)) {
-        if (length == strlen(etag) && memcmp(tag, etag, length) == 0) {
-            return true;
+        for (api_coding c = 0; c < API_CODING_COUNT; c++) {
+            char coded[API_ETAG];
+            api_etag_code(etag, c, coded);
+            if (codings->allowed[c] && length == strlen(coded) && memcmp(tag, coded, length) == 0) {
+                *found = c;
+                return true;
+            }
         }
     }
     return false;

@@ -452,17 +452,26 @@ void api_answer_etag(api_exchange *x, const char *representation)
     api_answer_header(x, "ETag", etag);
 }
 
+bool api_not_modified_since(api_exchange *x, const char *etag)
+{
+    char coded[API_ETAG];
+    api_coding coding;
+    const char *none = api_header_of(x, "If-None-Match");
+    if (none == NULL || !api_etag_listed(none, etag, &x->codings, &coding)) {
+        api_answer_header(x, "ETag", etag);
+        return false;
+    }
+    api_etag_code(etag, coding, coded);
+    api_answer_header(x, "ETag", coded);
+    api_answer_empty(x, 304);
+    return true;
+}
+
 bool api_not_modified(api_exchange *x, const char *representation)
 {
     char etag[API_ETAG];
-    const char *none = api_header_of(x, "If-None-Match");
     api_etag_write(&x->info, representation, etag);
-    api_answer_header(x, "ETag", etag);
-    if (none == NULL || !api_etag_listed(none, etag)) {
-        return false;
-    }
-    api_answer_empty(x, 304);
-    return true;
+    return api_not_modified_since(x, etag);
 }
 
 bool api_not_modified_yet(api_exchange *x, const char *representation)

@@ -31,8 +31,10 @@
 #include "api/json_out.h"
 #include "api/limits.h"
 #include "api/media.h"
+#include "api/pack.h"
 #include "api/prefer.h"
 #include "api/routes.h"
+#include "api/unpack.h"
 
 struct api_service {
     const api_store *store;
@@ -71,10 +73,14 @@ struct api_exchange {
     const char *key;       /* Idempotency-Key, NULL without one or where the row takes none */
     api_hash hash;         /* of a keyed request */
     api_claim *claim;      /* on the key; NULL: none, or it was settled */
+    api_coding coding_in;  /* of the body */
+    api_codings codings;   /* the answer may have */
 
     /* --- its body --- */
     api_text body;
-    uint64_t received; /* bytes */
+    uint64_t arrived;   /* bytes, as they were sent */
+    uint64_t received;  /* unfolded */
+    api_unpack *unpack; /* NULL: of a body that is plain, or has ended */
     api_document document;
     bool has_root;
     api_in root;   /* of a control document */
@@ -107,6 +113,8 @@ struct api_exchange {
     void *stream;
     void (*free_stream)(void *stream);
     api_source live;
+    api_pack *pack; /* codes the answer, or holds all of it; NULL: neither */
+    char *coded;    /* all of it */
 };
 
 /* --- query parameters: checked against the row already, so these cannot fail --- */
@@ -185,6 +193,8 @@ void api_answer_header_format(api_exchange *x, const char *name, const char *for
 void api_answer_etag(api_exchange *x, const char *representation);
 /* Puts the ETag; true when If-None-Match names it, and then 304 was answered. */
 bool api_not_modified(api_exchange *x, const char *representation);
+/* The same with a tag that is no mesh's. */
+bool api_not_modified_since(api_exchange *x, const char *etag);
 /* The same before a snapshot is taken, which a client with the present state does not need. True as
  * well where the mesh is gone. */
 bool api_not_modified_yet(api_exchange *x, const char *representation);

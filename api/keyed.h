@@ -3,9 +3,10 @@
  * Rows with API_KEYED or API_KEYED_NEW read the header (draft-ietf-httpapi-idempotency-key-header):
  * 1 to API_KEY_LENGTH visible characters, quoted or not, taken as they stand. With API_KEYED the
  * key is one of the mesh and dies with it, with API_KEYED_NEW one of the store. A request is the
- * same when method, path, query, Content-Type and each byte of the body are; of these a keyed hash
- * of 128 bits is kept, since bodies are too large to keep. Preconditions are not part of it: a
- * write that is asked for again meets the revision it made.
+ * same when method, path, query, Content-Type and each byte of the body are, its content coding
+ * undone: how it was packed for the way says nothing about what is asked. Of these a keyed hash of
+ * 128 bits is kept, since bodies are too large to keep. Preconditions are not part of it: a write
+ * that is asked for again meets the revision it made.
  *
  * Answers of 2xx are kept. Refusals are not, so that the client may try again once their reason is
  * gone; neither are failures. */

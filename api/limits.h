@@ -17,6 +17,19 @@
     ((uint64_t)1 << 30) /* a mesh document or file; api_options.max_upload \
                          */
 
+/* Coded bodies. What is unfolded counts against the limits above like a body sent plain; what is
+ * sent does too. Beyond the first API_UNPACK_FREE bytes a body may unfold to API_UNPACK_RATIO times
+ * what of it has arrived: mesh files unfold to ten times their size, zeros to a thousand. A frame
+ * of zstd may look back over a window of 8 MiB, which is as much as RFC 9659 lets a sender ask for.
+ */
+#define API_UNPACK_FREE ((uint64_t)1 << 20)
+enum { API_UNPACK_RATIO = 100, API_UNPACK_WINDOW = 23 /* power of two */ };
+
+/* Answers are coded when they have more than API_PACK_FROM bytes. Those up to API_PACK_AT_ONCE are
+ * coded as a whole, which takes half a millisecond; of longer ones that much is in hand at a time.
+ */
+enum { API_PACK_FROM = 1024, API_PACK_AT_ONCE = 64 * 1024 };
+
 /* JSON */
 enum {
     API_MAX_DEPTH = 32,    /* nesting of arrays and objects */

@@ -188,3 +188,25 @@ bool api_header_has(const char *header, const char *token)
     }
     return false;
 }
+
+bool api_media_next(const char **at, api_weighed *out)
+{
+    piece list = {*at, *at == NULL ? 0 : strlen(*at)}, entry, part, name, value;
+    while (next_piece(&list, ',', &entry)) {
+        *at = list.at;
+        piece rest = entry;
+        if (!next_piece(&rest, ';', &part) || part.length == 0) {
+            continue;
+        }
+        bool fits = part.length <= API_WEIGHED_NAME;
+        memcpy(out->name, fits ? part.at : "?", fits ? part.length : 1);
+        out->name[fits ? part.length : 1] = '\0';
+        out->q = 1000;
+        while (next_piece(&rest, ';', &part)) {
+            bool weight = split_parameter(part, &name, &value) && equal(name.at, name.length, "q");
+            out->q = weight ? read_q(value) : -1;
+        }
+        return true;
+    }
+    return false;
+}

@@ -16,6 +16,16 @@ bool api_media_is(const char *content_type, const char *type);
  * well formed is passed over. */
 int api_media_choose(const char *accept, const char *const *offers);
 
+/* One entry of a list such as Accept-Encoding, "gzip;q=0.5". */
+enum { API_WEIGHED_NAME = 31 };
+typedef struct api_weighed {
+    char name[API_WEIGHED_NAME + 1]; /* "?" where it is longer */
+    int q;                           /* thousandths; -1 where it is not well formed */
+} api_weighed;
+
+/* Step through such a list, which may be NULL; empty entries are passed over. False at the end. */
+bool api_media_next(const char **at, api_weighed *out);
+
 /* Does a comma separated header hold this token, letter case aside ("return=minimal")? */
 bool api_header_has(const char *header, const char *token);
 

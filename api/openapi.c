@@ -150,6 +150,20 @@ static void write_header(api_out *out, const char *name, const char *doc, bool r
     api_out_object_end(out);
 }
 
+static bool is_stream(const api_route *route)
+{
+    return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
+}
+
+/* Of every answer with a body, events aside. */
+static void write_coding_headers(api_out *out)
+{
+    api_out_key(out, "Content-Encoding");
+    api_schema_ref(out, "headers", "Content-Encoding");
+    api_out_key(out, "Vary");
+    api_schema_ref(out, "headers", "Vary");
+}
+
 static bool answers(const api_route *route, int status)
 {
     const int *at = route->statuses;
@@ -164,7 +178,8 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     bool writes = (route->flags & API_WRITES) != 0;
     bool tagged = answers(route, 304) || (writes && answers(route, status == 204 ? 200 : status));
     tagged = tagged && status != 202;
-    if (!tagged && status != 202 && route->headers[0] == NULL) {
+    bool coded = status != 204 && !is_stream(route);
+    if (!tagged && status != 202 && route->headers[0] == NULL && !coded) {
         return;
     }
     api_out_key(out, "headers");
@@ -188,6 +203,9 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     }
     for (size_t i = 0; status == 200 && route->headers[i] != NULL; i++) {
         write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
+    }
+    if (coded) {
+        write_coding_headers(out);
     }
     api_out_object_end(out);
 }
@@ -225,6 +243,8 @@ static const struct {
 } headed_problems[] = {
     {405, "not_allowed", "Allow", "The methods of the path.", true},
     {409, "conflict", "Retry-After", "Seconds, where waiting helps.", false},
+    {415, "unsupported", "Accept-Encoding", "The codings that are taken, where it was that.",
+     false},
     {503, "unavailable", "Retry-After", "Seconds.", true},
 };
 enum { HEADED_PROBLEMS = sizeof headed_problems / sizeof *headed_problems };
@@ -283,7 +303,15 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(out, "If-Match", "ETag of the state the request was made for.");
         write_header_parameter(out, "If-None-Match", "ETag of a state it must not meet, or *.");
     }
-    if (route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0) {
+    if (route->body_kind != API_BODY_NONE) {
+        write_header_parameter(
+            out, "Content-Encoding",
+            "gzip (with one member or several) or zstd (with one frame or several, and windows up "
+            "to 8 MiB): the body is unfolded as it arrives, and may not exceed the limit of a "
+            "plain "
+            "one nor, beyond the first MiB, 100 times what was sent. One coding, not several.");
+    }
+    if (is_stream(route)) {
         write_header_parameter(out, "Last-Event-ID",
                                "Id of the last event the client has seen; wins over `since`.");
     }
@@ -386,13 +414,33 @@ static void write_problem(api_out *out, const char *name, const char *header, co
     api_out_key(out, name);
     api_out_object_begin(out);
     api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
+    api_out_key(out, "headers");
+    api_out_object_begin(out);
     if (header != NULL) {
-        api_out_key(out, "headers");
-        api_out_object_begin(out);
         write_header(out, header, doc, required);
-        api_out_object_end(out);
     }
+    write_coding_headers(out);
+    api_out_object_end(out);
     write_content(out, problem, "problem", NULL, example_problem, NULL);
+    api_out_object_end(out);
+}
+
+static void write_shared_headers(api_out *out)
+{
+    static const char *const codings[] = {"gzip", "zstd", NULL};
+    api_out_key(out, "headers");
+    api_out_object_begin(out);
+    api_out_key(out, "Content-Encoding");
+    api_out_object_begin(out);
+    api_out_key_string(out, "description",
+                       "The coding of the body, where Accept-Encoding asked for one.");
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    api_schema_choices(out, "enum", codings);
+    api_out_object_end(out);
+    api_out_object_end(out);
+    write_header(out, "Vary", "What of the request the answer depends on.", false);
     api_out_object_end(out);
 }
 
@@ -406,6 +454,7 @@ static void write_components(api_out *out)
     api_operation_schemas_write(out);
     api_shape_schema_write(out);
     api_out_object_end(out);
+    write_shared_headers(out);
     api_out_key(out, "responses");
     api_out_object_begin(out);
     write_problem(out, "problem", NULL, NULL, false);
@@ -427,7 +476,9 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_key_string(out, "version", version);
     api_out_key_string(out, "description",
                        "Half-edge meshes over HTTP. Every GET answers HEAD too. Every refusal is "
-                       "application/problem+json.");
+                       "application/problem+json. Bodies of more than 1 KiB are sent in gzip or "
+                       "zstd where Accept-Encoding likes that best; their ETag is one of its own, "
+                       "and as good in If-Match.");
     api_out_key(out, "license");
     api_out_object_begin(out);
     api_out_key_string(out, "name", "MIT");

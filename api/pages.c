@@ -55,19 +55,13 @@ void api_page_get(api_exchange *x)
         api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
         return;
     }
-    if (etag != NULL) {
-        api_answer_header(x, "ETag", etag);
-    }
     api_answer_header(x, "Cache-Control",
                       immutable ? "public, max-age=31536000, immutable" : "no-cache");
     if (strncmp(type, "text/html", 9) == 0) {
         api_answer_header(x, "Content-Security-Policy", viewer_policy);
         api_answer_header(x, "Referrer-Policy", "no-referrer");
     }
-    const char *none = api_header_of(x, "If-None-Match");
-    if (none != NULL && etag != NULL && api_etag_listed(none, etag)) {
-        api_answer_empty(x, 304);
-    } else {
+    if (etag == NULL || !api_not_modified_since(x, etag)) {
         api_answer_bytes(x, 200, type, bytes, length);
     }
 }

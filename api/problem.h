@@ -66,6 +66,10 @@
     X(BAD_FRAMING, "bad_framing", 400, "The request is ambiguous",                                 \
       "The message has headers that leave open where its body ends or which host it is for. The "  \
       "connection is closed.")                                                                     \
+    X(BAD_ENCODING, "bad_encoding", 400, "The body is not what Content-Encoding says",             \
+      "The bytes do not follow the coding, a checksum or length in them does not hold, something " \
+      "else follows, or the body ends too early. The detail names the byte, counted from 0 in "    \
+      "the body as it was sent.")                                                                  \
     X(UNAUTHORIZED, "unauthorized", 401, "A token is needed",                                      \
       "The request carries no token, or one that is not known.")                                   \
     X(FORBIDDEN, "forbidden", 403, "This is not allowed",                                          \
@@ -87,7 +91,8 @@
     X(METHOD_NOT_ALLOWED, "method_not_allowed", 405, "The path does not take this method",         \
       "The Allow header lists the methods it takes.")                                              \
     X(NOT_ACCEPTABLE, "not_acceptable", 406, "No acceptable representation",                       \
-      "None of the media types this route answers with is allowed by the Accept header.")          \
+      "None of the media types this route answers with is allowed by the Accept header, or no "    \
+      "content coding by Accept-Encoding. `supported` lists them.")                                \
     X(TIMEOUT, "timeout", 408, "The request took too long to arrive",                              \
       "The request was not complete within the server's deadline.")                                \
     X(MESH_EXISTS, "mesh_exists", 409, "The id is taken", "Another mesh has this id.")             \
@@ -114,13 +119,15 @@
       "If-None-Match: * asks that the mesh does not exist, and it does; or If-Match asks that it " \
       "does, and it does not.")                                                                    \
     X(BODY_TOO_LARGE, "body_too_large", 413, "The body is too large",                              \
-      "The body exceeds the limit of its route.")                                                  \
+      "The body exceeds the limit of its route. A coded one may also unfold to too many times "    \
+      "what was sent, or want too large a window: sent plain, or with less effort, it may do.")    \
     X(URI_TOO_LONG, "uri_too_long", 414, "The path and query are too long",                        \
       "Path and query together may have 8192 characters.")                                         \
     X(UNSUPPORTED_MEDIA_TYPE, "unsupported_media_type", 415, "The media type is not supported",    \
       "The Content-Type is none of those the route reads; `supported` lists them.")                \
     X(UNSUPPORTED_ENCODING, "unsupported_encoding", 415, "The content coding is not supported",    \
-      "Bodies are taken as they are: Content-Encoding may only be identity.")                      \
+      "Content-Encoding may be gzip, zstd or identity, and one of them only. Accept-Encoding and " \
+      "`supported` list them.")                                                                    \
     X(WRONG_HOST, "wrong_host", 421, "The Host is not one this server answers for",                \
       "Host must name localhost, a loopback address or a configured name, so that a web page "     \
       "cannot reach a local server through a name of its own.")                                    \

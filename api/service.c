@@ -1,6 +1,7 @@
 #include "api/api.h"
 
 #include "api/admit.h"
+#include "api/coded.h"
 #include "api/job_out.h"
 #include "api/keyed.h"
 
@@ -83,6 +84,9 @@ static void answer_problem(api_exchange *x)
     if (x->problem.code == API_METHOD_NOT_ALLOWED) {
         put_header(x, "Allow", x->allow);
     }
+    if (x->problem.code == API_UNSUPPORTED_ENCODING) {
+        put_header(x, "Accept-Encoding", api_codings_list);
+    }
     if (x->answer.status == 503 || x->problem.code == API_MESH_BUSY ||
         x->problem.code == API_IDEMPOTENCY_BUSY) {
         put_header(x, "Retry-After", "1");
@@ -134,7 +138,9 @@ static api_step finish(api_exchange *x)
     put_header(x, "X-Content-Type-Options", "nosniff");
     /* A tag is worth keeping: the client asks again with it. Nothing else is. */
     put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
-    if (varies(x->route)) {
+    if (api_coded_varies(x)) {
+        put_header(x, "Vary", varies(x->route) ? "Accept, Accept-Encoding" : "Accept-Encoding");
+    } else if (varies(x->route)) {
         put_header(x, "Vary", "Accept");
     }
     if (x->has_info && x->mesh != NULL) {
@@ -142,6 +148,9 @@ static api_step finish(api_exchange *x)
         x->answer.record = x->info.record;
     }
     api_keyed_settle(x);
+    if (x->phase != API_PHASE_JOB) {
+        api_coded_answer(x); /* what is kept of the answer, here or of a job, is plain */
+    }
     x->phase = API_PHASE_DONE;
     return API_READY;
 }
@@ -151,7 +160,7 @@ static api_step finish(api_exchange *x)
 static api_step finish_early(api_exchange *x)
 {
     x->answer.close =
-        x->request.has_body && (!x->request.has_length || x->received < x->request.length);
+        x->request.has_body && (!x->request.has_length || x->arrived < x->request.length);
     return finish(x);
 }
 
@@ -220,6 +229,8 @@ static api_exchange *exchange_new(api_service *service, const api_request *reque
     x->store = service->store;
     x->kind = HE_KIND_COUNT;
     x->answer.route = "-";
+    x->coding_in = API_IDENTITY;
+    x->codings = (api_codings){.allowed = {[API_IDENTITY] = true}, .best = API_IDENTITY};
     api_out_init(&x->out, &x->text);
     if (!copy_request(x, request)) {
         api_arena_clear(&x->arena);
@@ -242,6 +253,7 @@ api_exchange *api_detach(api_exchange *x)
     answer->route = x->route;
     answer->answer.route = x->answer.route;
     answer->prefer = x->prefer;
+    answer->codings = x->codings;
     api_job job;
     const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
     api_store_status status =
@@ -260,6 +272,25 @@ api_exchange *api_detach(api_exchange *x)
     return answer;
 }
 
+/* Some of the body, unfolded. */
+static bool take_body(void *context, const char *bytes, size_t length)
+{
+    api_exchange *x = context;
+    x->received += length;
+    api_keyed_body(x, bytes, length);
+    if (x->received > api_body_cap(x)) {
+        api_refuse_size(x);
+    } else if (x->route->body_kind == API_BODY_UPLOAD) {
+        x->route->body(x, bytes, length);
+    } else {
+        api_text_add(&x->body, bytes, length);
+        if (x->body.failed) {
+            api_fail_memory(x);
+        }
+    }
+    return x->problem.code == HE_OK && !x->answered;
+}
+
 static bool begin(api_exchange *x)
 {
     if (!api_admit(x) || !api_keyed_begin(x)) {
@@ -267,6 +298,12 @@ static bool begin(api_exchange *x)
     }
     x->prefer = api_prefer_read(api_header_of(x, "Prefer"));
     x->body.maximum = (size_t)api_body_cap(x);
+    if (x->coding_in != API_IDENTITY) {
+        x->unpack = api_unpack_new(x->coding_in, take_body, x);
+        if (x->unpack == NULL) {
+            return api_fail_memory(x);
+        }
+    }
     if (x->route->begin != NULL) {
         x->route->begin(x);
     }
@@ -290,22 +327,28 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length)
     if (x->phase != API_PHASE_BODY) {
         return API_READY;
     }
-    x->received += length;
+    x->arrived += length;
     if (length == 0) {
         return API_MORE;
     }
-    api_keyed_body(x, bytes, length);
-    if (x->received > api_body_cap(x)) {
-        api_refuse_size(x);
-    } else if (x->route->body_kind == API_BODY_UPLOAD) {
-        x->route->body(x, bytes, length);
+    bool good;
+    if (x->arrived > api_body_cap(x)) {
+        good = api_refuse_size(x);
+    } else if (x->unpack != NULL) {
+        good = api_unpack_feed(x->unpack, bytes, length, &x->problem);
     } else {
-        api_text_add(&x->body, bytes, length);
-        if (x->body.failed) {
-            api_fail_memory(x);
-        }
+        good = take_body(x, bytes, length);
     }
-    return x->problem.code == HE_OK && !x->answered ? API_MORE : finish_early(x);
+    return good ? API_MORE : finish_early(x);
+}
+
+/* With its memory, which may be megabytes. */
+static bool end_coding(api_exchange *x)
+{
+    bool good = x->unpack == NULL || api_unpack_end(x->unpack, &x->problem);
+    api_unpack_free(x->unpack);
+    x->unpack = NULL;
+    return good;
 }
 
 static bool parse_body(api_exchange *x)
@@ -375,7 +418,7 @@ api_step api_end(api_exchange *x)
     if (x->phase != API_PHASE_BODY) {
         return API_READY;
     }
-    if (!api_keyed_claim(x)) {
+    if (!end_coding(x) || !api_keyed_claim(x)) {
         return finish(x);
     }
     /* Reading a large document takes its time too. */
@@ -418,6 +461,9 @@ void api_free(api_exchange *x)
     if (x->free_state != NULL) {
         x->free_state(x->state);
     }
+    api_unpack_free(x->unpack);
+    api_pack_free(x->pack);
+    he_mem_free(x->coded);
     api_document_clear(&x->document);
     api_text_clear(&x->body);
     api_text_clear(&x->text);

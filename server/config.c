@@ -45,6 +45,8 @@ static const option options[] = {
      "memory for everything; 0 takes three quarters of what there is"},
     {"undo-budget", BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
      "memory for the history of one mesh; the oldest edits go first"},
+    {"no-compression", FLAG, MEMBER(no_compression), "0", NULL, 0, 0,
+     "send answers as they are, whatever coding a client accepts"},
     {"max-meshes", COUNT, MEMBER(max_meshes), "10000", "N", 1, 10000000, "meshes at once"},
     {"workers", COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0 takes one a core"},

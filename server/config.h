@@ -27,6 +27,7 @@ typedef struct srv_config {
     uint64_t memory_budget; /* bytes; 0: three quarters of what there is */
     uint64_t undo_budget;   /* bytes a mesh */
     uint64_t max_meshes;
+    bool no_compression;
 
     uint64_t workers, jobs; /* threads; 0: one a core */
     uint64_t job_queue;

@@ -17,7 +17,8 @@ enum {
     LOG_RING = 8192,
     STOP_MILLIS = 4000, /* of the five seconds a stop may take */
     OWN_FILES = 48,     /* descriptors that are not connections */
-    DRAIN_FILES = 64
+    DRAIN_FILES = 64,
+    MAKER_QUEUE = 1024 /* pieces of answers; beyond it workers make them */
 };
 
 typedef struct daemon_parts {
@@ -25,7 +26,7 @@ typedef struct daemon_parts {
     api_store interface;
     srv_assets *assets;
     api_service *service;
-    srv_jobs *jobs;
+    srv_jobs *jobs, *makers;
     srv_board *board;
     api_jobs board_interface;
     srv_access_log *log;
@@ -95,7 +96,8 @@ static bool open_jobs(daemon_parts *parts, const srv_config *config)
 {
     parts->jobs =
         srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
-    return parts->jobs != NULL || fail("no memory or threads to start");
+    parts->makers = srv_jobs_new(cores(), MAKER_QUEUE);
+    return (parts->jobs != NULL && parts->makers != NULL) || fail("no memory or threads to start");
 }
 
 static bool open_store(daemon_parts *parts, const srv_config *config)
@@ -159,6 +161,7 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
                                                             .ready_context = parts,
                                                             .memory = count_memory,
                                                             .jobs = &parts->board_interface,
+                                                            .plain_answers = config->no_compression,
                                                         });
     if (config->log == SRV_LOG_ACCESS) {
         parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
@@ -185,6 +188,7 @@ static bool open_http(daemon_parts *parts, const srv_config *config)
         .service = parts->service,
         .store = parts->store,
         .jobs = parts->jobs,
+        .makers = parts->makers,
         .log = parts->log,
         .policy = &parts->policy,
         .heartbeat_micros = config->heartbeat * 1000000,
@@ -248,6 +252,7 @@ int srv_daemon_run(const srv_config *config)
         }
     }
     srv_jobs_free(parts.jobs);
+    srv_jobs_free(parts.makers);
     srv_board_free(parts.board);
     api_service_free(parts.service);
     srv_store_free(parts.store);

@@ -4,11 +4,13 @@
 #include "api/problem.h"
 #include "server/clock.h"
 #include "server/held.h"
+#include "server/http_admit.h"
+#include "server/http_ahead.h"
 #include "server/http_framing.h"
 #include "server/http_gate.h"
+#include "server/http_lists.h"
 #include "server/http_live.h"
 #include "server/http_wire.h"
-#include "server/random.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -35,7 +37,8 @@
  *
  * While WORK or HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
  * or the hold resumes it exactly once. An answer that goes on is DONE and suspended again and again
- * by `pull`: see http_live.h. */
+ * by `pull_live`: see http_live.h. So is one that is slow to make, by `pull_ahead`: http_ahead.h.
+ */
 typedef enum state { FRESH, BODY, WORK, HELD, DONE, CUT } state;
 
 enum {
@@ -46,8 +49,7 @@ enum {
     SWALLOW = 256 * 1024,     /* of a refused body, rather than close the connection */
     ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once */
     LIVE_BLOCK = 1024,        /* the same, where thousands wait; used by HTTP/1.0 only */
-    BACKLOG = 1024,
-    ID_PREFIX = 8
+    BACKLOG = 1024
 };
 
 struct srv_http {
@@ -56,8 +58,7 @@ struct srv_http {
     srv_deadlines *deadlines;
     srv_live *live;
     unsigned port;
-    char id_prefix[ID_PREFIX + 1];
-    _Atomic uint64_t next_id;
+    srv_ids ids;
     _Atomic bool stopping;
     srv_gate gate;
 };
@@ -75,6 +76,7 @@ typedef struct request {
     uint64_t announced; /* Content-Length; UINT64_MAX when chunked */
     uint64_t swallowed; /* since the answer was known */
     char request_id[SRV_REQUEST_ID + 1];
+    srv_lists lists;
     const char *cors; /* the origin to be named, NULL: none */
     bool close;
 
@@ -85,6 +87,7 @@ typedef struct request {
     bool preflight;
     srv_hold hold;
     srv_stream stream;
+    srv_ahead ahead;
     int status;
 
     char method[SRV_METHOD + 1];
@@ -162,7 +165,9 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
     if (r->aside) {
         srv_gate_resume(&http->gate);
     }
+    srv_ahead_clear(&r->ahead);
     api_free(r->exchange);
+    srv_lists_clear(&r->lists);
     api_text_clear(&r->text);
     he_mem_free(r);
     if (counted) {
@@ -171,39 +176,6 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
 }
 
 /* --- answering --- */
-
-static bool is_id_character(char c)
-{
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '.' ||
-           c == '_' || c == '-';
-}
-
-static void choose_id(request *r, const srv_head *head)
-{
-    const srv_field *given = srv_head_find(head, "X-Request-Id");
-    bool fits = given != NULL && given->value_length > 0 && given->value_length <= SRV_REQUEST_ID;
-    for (size_t i = 0; fits && i < given->value_length; i++) {
-        fits = is_id_character(given->value[i]);
-    }
-    if (fits) {
-        memcpy(r->request_id, given->value, given->value_length);
-        r->request_id[given->value_length] = '\0';
-        return;
-    }
-    /* The server's prefix and a counter in hexadecimal, without the cost of printf. */
-    uint64_t number = atomic_fetch_add_explicit(&r->http->next_id, 1, memory_order_relaxed);
-    char *at = r->request_id + ID_PREFIX;
-    memcpy(r->request_id, r->http->id_prefix, ID_PREFIX);
-    *at++ = '-';
-    int shift = 60;
-    while (shift > 0 && number >> shift == 0) {
-        shift -= 4;
-    }
-    for (; shift >= 0; shift -= 4) {
-        *at++ = "0123456789abcdef"[number >> shift & 15];
-    }
-    *at = '\0';
-}
 
 static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
 {
@@ -219,6 +191,45 @@ static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
     return complete ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
 }
 
+static void resume_ahead(srv_ahead *ahead)
+{
+    request *r = (request *)((char *)ahead - offsetof(request, ahead));
+    MHD_resume_connection(r->connection);
+}
+
+/* The connection is not suspended any more. */
+static void come_back(request *r)
+{
+    if (r->aside) {
+        r->aside = false;
+        srv_gate_resume(&r->http->gate);
+    }
+}
+
+/* The same for an answer that is slow to make. */
+static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
+{
+    (void)position;
+    request *r = context;
+    const api_answer *answer = api_answer_of(r->exchange);
+    come_back(r);
+    r->ahead.read = answer->read;
+    r->ahead.context = answer->context;
+    r->ahead.resume = resume_ahead;
+    int64_t got = srv_ahead_take(&r->ahead, buffer, size);
+    if (got > 0) {
+        r->bytes_out += (uint64_t)got;
+        return (ssize_t)got;
+    }
+    if (got == SRV_AHEAD_WAIT && srv_gate_wait(&r->http->gate)) {
+        r->aside = true;
+        MHD_suspend_connection(r->connection);
+        srv_ahead_make(&r->ahead, r->http->options.makers);
+        return 0;
+    }
+    return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
 static void resume_stream(srv_stream *stream)
 {
     request *r = (request *)((char *)stream - offsetof(request, stream));
@@ -231,10 +242,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     (void)position;
     request *r = context;
     const api_answer *answer = api_answer_of(r->exchange);
-    if (r->aside) {
-        r->aside = false;
-        srv_gate_resume(&r->http->gate);
-    }
+    come_back(r);
     if (r->stream.live == NULL) {
         srv_live_begin(r->http->live, &r->stream, answer->live, answer->idle, resume_stream);
     }
@@ -259,12 +267,7 @@ static void describe(request *r, srv_wire *wire)
     *wire = (srv_wire){.close = r->close};
     if (r->exchange != NULL) {
         const api_answer *answer = api_answer_of(r->exchange);
-        wire->status = answer->status;
-        for (size_t i = 0; i < answer->header_count; i++) {
-            srv_wire_add(wire, answer->headers[i].name, answer->headers[i].value);
-        }
-        wire->bytes = answer->bytes;
-        wire->length = answer->length;
+        srv_wire_answer(wire, answer);
         /* With all of the body read there is nothing left to be mistaken for a request. */
         wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
     } else {
@@ -290,9 +293,14 @@ static struct MHD_Response *response_of(request *r, const srv_wire *wire)
 {
     struct MHD_Response *response;
     if (is_streamed(r)) {
-        response = MHD_create_response_from_callback(
-            wire->length < 0 ? MHD_SIZE_UNKNOWN : (uint64_t)wire->length,
-            is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK, is_live(r) ? pull_live : pull, r, NULL);
+        bool slow = api_answer_of(r->exchange)->slow;
+        response = MHD_create_response_from_callback(wire->length < 0 ? MHD_SIZE_UNKNOWN
+                                                                      : (uint64_t)wire->length,
+                                                     is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK,
+                                                     is_live(r) ? pull_live
+                                                     : slow     ? pull_ahead
+                                                                : pull,
+                                                     r, NULL);
     } else {
         /* The bytes are the exchange's and live until the request has completed. */
         response = MHD_create_response_from_buffer((size_t)wire->length, (void *)wire->bytes,
@@ -466,42 +474,28 @@ static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, cons
 static const char *header_value(void *context, const char *name)
 {
     request *r = context;
-    return MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
+    const char *list = srv_lists_find(&r->lists, name);
+    return list != NULL ? list : MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
 }
 
-static const char *field_value(const srv_head *head, const char *name)
-{
-    const srv_field *field = srv_head_find(head, name);
-    return field == NULL ? NULL : field->value;
-}
-
-/* May this server, now, run this request? Fills r->refusal, and r->close where the connection is
- * in the way rather than the request. */
+/* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
 static bool admit(request *r, const srv_head *head, const srv_framing *framing)
 {
     srv_http *http = r->http;
-    const srv_policy *policy = http->options.policy;
+    uint64_t most = http->options.deadlines.max_connections;
     if (atomic_load(&http->stopping)) {
         r->close = true;
         return api_problem_set(&r->refusal, API_NOT_READY, "the server is stopping");
     }
-    if (srv_deadlines_count(http->deadlines) > http->options.deadlines.max_connections) {
+    if (srv_deadlines_count(http->deadlines) > most) {
         r->close = true;
         return api_problem_set(&r->refusal, API_OVERLOADED,
-                               "more than %" PRIu64 " connections are open",
-                               http->options.deadlines.max_connections);
+                               "more than %" PRIu64 " connections are open", most);
     }
-    const char *host = framing->host;
-    size_t length = host == NULL ? 0 : strlen(host);
-    if (framing->authority != NULL &&
-        !srv_policy_host(policy, framing->authority, framing->authority_length, &r->refusal)) {
-        return false;
+    if (!srv_lists_join(&r->lists, head)) {
+        return api_problem_set(&r->refusal, HE_NO_MEMORY, "no memory for the request");
     }
-    const char *origin = field_value(head, "Origin");
-    r->cors = srv_policy_cors(policy, origin);
-    return srv_policy_host(policy, host, length, &r->refusal) &&
-           srv_policy_origin(policy, r->method, host, origin, field_value(head, "Sec-Fetch-Site"),
-                             &r->refusal);
+    return srv_admit(http->options.policy, head, framing, &r->cors, &r->refusal);
 }
 
 static void begin_exchange(request *r, const srv_framing *framing)
@@ -547,7 +541,7 @@ static enum MHD_Result read_head(request *r, const char *method, const char *ver
     head.bytes = 0;
     MHD_get_connection_values_n(r->connection, MHD_HEADER_KIND, gather_field, &head);
     memcpy(r->method, method, strnlen(method, SRV_METHOD));
-    choose_id(r, &head);
+    srv_admit_name(&head, &r->http->ids, r->request_id);
     srv_gate_enter(&r->http->gate);
     r->counted = true;
     r->state = BODY;
@@ -725,7 +719,7 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     }
     http->options = *options;
     srv_gate_init(&http->gate);
-    srv_random_id(http->id_prefix, ID_PREFIX);
+    srv_ids_init(&http->ids);
     http->deadlines = srv_deadlines_new(&options->deadlines);
     http->live = srv_live_new(options->heartbeat_micros);
     if (http->deadlines == NULL || http->live == NULL) {

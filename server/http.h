@@ -23,6 +23,7 @@ typedef struct srv_http_options {
     api_service *service;
     srv_store *store;
     srv_jobs *jobs;
+    srv_jobs *makers;    /* for answers that are made while they are sent: http_ahead.h */
     srv_access_log *log; /* NULL: none */
     const srv_policy *policy;
     srv_deadline_options deadlines;

@@ -10,6 +10,16 @@ void srv_wire_add(srv_wire *wire, const char *name, const char *value)
     }
 }
 
+void srv_wire_answer(srv_wire *wire, const api_answer *answer)
+{
+    wire->status = answer->status;
+    for (size_t i = 0; i < answer->header_count; i++) {
+        srv_wire_add(wire, answer->headers[i].name, answer->headers[i].value);
+    }
+    wire->bytes = answer->bytes;
+    wire->length = answer->length;
+}
+
 void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *request_id,
                       api_text *text)
 {
@@ -41,9 +51,10 @@ void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight)
     srv_wire_add(wire, "Vary", "Origin");
     if (preflight) {
         srv_wire_add(wire, "Access-Control-Allow-Methods", "GET, HEAD, POST, PUT, PATCH, DELETE");
-        srv_wire_add(wire, "Access-Control-Allow-Headers",
-                     "Accept, Content-Type, Idempotency-Key, If-Match, If-None-Match, "
-                     "Last-Event-ID, Prefer, X-Request-Id");
+        srv_wire_add(
+            wire, "Access-Control-Allow-Headers",
+            "Accept, Content-Encoding, Content-Type, Idempotency-Key, If-Match, If-None-Match, "
+            "Last-Event-ID, Prefer, X-Request-Id");
         srv_wire_add(wire, "Access-Control-Max-Age", "600");
     } else {
         srv_wire_add(wire, "Access-Control-Expose-Headers",

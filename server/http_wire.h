@@ -22,6 +22,8 @@ typedef struct srv_wire {
 } srv_wire;
 
 void srv_wire_add(srv_wire *wire, const char *name, const char *value);
+/* What api answers. */
+void srv_wire_answer(srv_wire *wire, const api_answer *answer);
 /* A problem that was found before or beside api, written into `text`, which `wire` then borrows.
  * NULL is no problem but 204 without a body. */
 void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *request_id,

@@ -101,7 +101,19 @@ static void test_framing(void **state)
          415},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Content-Type: application/json\r\n"
          "Content-Encoding: gzip\r\nContent-Length: 2\r\n\r\n{}",
+         400},
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST "Content-Type: application/json\r\n"
+         "Content-Encoding: gzip, gzip\r\nContent-Length: 2\r\n\r\n{}",
          415},
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST "Content-Type: application/json\r\n"
+         "Content-Encoding: gzip\r\nContent-Encoding: gzip\r\nContent-Length: 2\r\n\r\n{}",
+         415},
+        {"GET /livez HTTP/1.1\r\n" HOST
+         "Accept-Encoding: gzip\r\nAccept-Encoding: identity;q=0, *;q=0\r\n\r\n",
+         200},
+        {"GET /livez HTTP/1.1\r\n" HOST
+         "Accept-Encoding: identity;q=0\r\nAccept-Encoding: br\r\n\r\n",
+         406},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: http://evil.example\r\n"
          "Content-Type: application/json\r\nContent-Length: 16\r\n\r\n{\"shape\":\"cube\"}",
          403},

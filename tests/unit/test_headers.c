@@ -180,7 +180,105 @@ static void content_types_are_compared_without_parameters(void **state)
     assert_false(api_header_has(NULL, "return=minimal"));
 }
 
+static void content_codings_are_chosen_by_weight(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *header;
+        bool any;
+        api_coding best;
+        bool identity; /* is allowed */
+    } rows[] = {
+        {NULL, true, API_IDENTITY, true},
+        {"", true, API_IDENTITY, true},
+        {" , ", true, API_IDENTITY, true},
+        {"gzip", true, API_GZIP, true},
+        {"GZip", true, API_GZIP, true},
+        {"x-gzip", true, API_GZIP, true},
+        {"zstd", true, API_ZSTD, true},
+        {"gzip, zstd", true, API_ZSTD, true},
+        {"gzip, deflate, br, zstd", true, API_ZSTD, true},
+        {"gzip, deflate, br", true, API_GZIP, true},
+        {"gzip;q=1, zstd;q=0.999", true, API_GZIP, true},
+        {"gzip;q=0.5 , zstd ; q=0.6", true, API_ZSTD, true},
+        {"gzip;Q=0.5, zstd;q=0.4", true, API_GZIP, true},
+        {"gzip;q=0.001", true, API_GZIP, true},
+        {"gzip;q=0.0", true, API_IDENTITY, true},
+        {"gzip;q=0, zstd;q=0.000", true, API_IDENTITY, true},
+        {"gzip;q=0.5, identity", true, API_IDENTITY, true},
+        {"gzip;q=0.5, identity;q=0.5", true, API_GZIP, true},
+        {"gzip;q=0.5, identity;q=0.6", true, API_IDENTITY, true},
+        {"gzip, identity;q=0", true, API_GZIP, false},
+        {"identity;q=0", false, API_IDENTITY, false},
+        {"identity;q=0, br", false, API_IDENTITY, false},
+        {"*", true, API_ZSTD, true},
+        {"*;q=0", false, API_IDENTITY, false},
+        {"*;q=0, identity;q=0.1", true, API_IDENTITY, true},
+        {"*;q=0, gzip", true, API_GZIP, false},
+        {"gzip;q=0, *", true, API_ZSTD, true},
+        {"zstd;q=0, *;q=0.5, identity;q=0", true, API_GZIP, false},
+        {"br, *;q=0.1", true, API_ZSTD, true},
+        {"gzip;q=2", true, API_IDENTITY, true},
+        {"gzip;q=-1, zstd;q=0.5", true, API_ZSTD, true},
+        {"gzip;q=0.1234", true, API_IDENTITY, true},
+        {"gzip;level=9", true, API_IDENTITY, true},
+        {"gzip;q", true, API_IDENTITY, true},
+        {"gzip, gzip;q=0", true, API_GZIP, true},
+        {"gzipped, zstandard, averylongnameofacodingthatnobodyhasheardof", true, API_IDENTITY,
+         true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        api_codings codings;
+        bool any = api_coding_choose(rows[i].header, &codings);
+        if (any != rows[i].any || codings.best != rows[i].best ||
+            codings.allowed[API_IDENTITY] != rows[i].identity) {
+            fail_msg("%s: %d %s", rows[i].header, any, api_coding_name(codings.best));
+        }
+    }
+}
+
+static void one_content_coding_is_taken(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *header;
+        bool taken;
+        api_coding coding;
+    } rows[] = {
+        {NULL, true, API_IDENTITY},
+        {"", true, API_IDENTITY},
+        {"identity", true, API_IDENTITY},
+        {"gzip", true, API_GZIP},
+        {"X-GZIP", true, API_GZIP},
+        {" zstd ,", true, API_ZSTD},
+        {"gzip, gzip", false, 0},
+        {"gzip,zstd", false, 0},
+        {"identity, gzip", false, 0},
+        {"br", false, 0},
+        {"deflate", false, 0},
+        {"compress", false, 0},
+        {"gzip;q=1", false, 0},
+        {"*", false, 0},
+        {"gzip zstd", false, 0},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        api_coding coding;
+        bool taken = api_coding_of_body(rows[i].header, &coding);
+        if (taken != rows[i].taken || (taken && coding != rows[i].coding)) {
+            fail_msg("%s", rows[i].header);
+        }
+    }
+}
+
 static const api_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
+
+/* Is a tag listed, by a client that accepts gzip, and in this coding? */
+static bool listed(const char *header, const char *etag, api_coding coding)
+{
+    const api_codings codings = {.allowed = {[API_GZIP] = true, [API_IDENTITY] = true}};
+    api_coding found = API_CODING_COUNT;
+    return api_etag_listed(header, etag, &codings, &found) && found == coding;
+}
 
 static void entity_tags_name_state_and_representation(void **state)
 {
@@ -188,16 +286,22 @@ static void entity_tags_name_state_and_representation(void **state)
     char etag[API_ETAG];
     api_etag_write(&facts, "obj", etag);
     assert_string_equal(etag, "\"0000000000000abc-2-41-obj\"");
-    assert_true(api_etag_listed("\"x\", W/\"0000000000000abc-2-41-obj\"", etag));
-    assert_true(api_etag_listed(" * ", etag));
-    assert_false(api_etag_listed("\"0000000000000abc-2-41-stl\"", etag));
-    assert_false(api_etag_listed("0000000000000abc-2-41-obj", etag));
-    assert_false(api_etag_listed("", etag));
-    assert_false(api_etag_listed("\"", etag));
+    assert_true(listed("\"x\", W/\"0000000000000abc-2-41-obj\"", etag, API_IDENTITY));
+    assert_true(listed(" * ", etag, API_IDENTITY));
+    assert_false(listed("\"0000000000000abc-2-41-stl\"", etag, API_IDENTITY));
+    assert_false(listed("0000000000000abc-2-41-obj", etag, API_IDENTITY));
+    assert_false(listed("", etag, API_IDENTITY));
+    assert_false(listed("\"", etag, API_IDENTITY));
+    /* In a coding, too, that the client accepts. */
+    assert_true(listed("\"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
+    assert_true(listed("\"y\", \"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
+    assert_false(listed("\"0000000000000abc-2-41-obj-zstd\"", etag, API_ZSTD));
+    assert_false(listed("\"0000000000000abc-2-41-obj-identity\"", etag, API_IDENTITY));
     /* For a write any representation of the present state will do. */
     assert_true(api_etag_is_present("\"0000000000000abc-2-41-stl\"", &facts));
     assert_true(api_etag_is_present("\"a\",\"0000000000000abc-2-41-obj\"", &facts));
     assert_true(api_etag_is_present("*", &facts));
+    assert_true(api_etag_is_present("\"0000000000000abc-2-41-obj-gzip\"", &facts));
     assert_false(api_etag_is_present("W/\"0000000000000abc-2-41-obj\"", &facts));
     assert_false(api_etag_is_present("\"0000000000000abc-2-4-obj\"", &facts));
     assert_false(api_etag_is_present("\"0000000000000abc-2-411-obj\"", &facts));
@@ -262,6 +366,8 @@ int main(void)
         cmocka_unit_test(accept_is_read_with_its_weights),
         cmocka_unit_test(content_types_are_compared_without_parameters),
         cmocka_unit_test(entity_tags_name_state_and_representation),
+        cmocka_unit_test(content_codings_are_chosen_by_weight),
+        cmocka_unit_test(one_content_coding_is_taken),
         cmocka_unit_test(cursors_come_back_or_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

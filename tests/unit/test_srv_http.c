@@ -76,7 +76,7 @@ enum { CONNECTIONS = 20 };
 static srv_store *store;
 static api_store interface;
 static api_service *service;
-static srv_jobs *jobs;
+static srv_jobs *jobs, *makers;
 static srv_http *http;
 static const srv_policy policy;
 
@@ -86,6 +86,7 @@ static int start(void **state)
     slow.appended = 0;
     slow.durable = 0;
     jobs = srv_jobs_new(1, 1);
+    makers = srv_jobs_new(1, 1);
     store = srv_store_new(&(srv_store_options){
         .undo_budget = 1 << 20,
         .max_meshes = 100,
@@ -100,6 +101,7 @@ static int start(void **state)
         .service = service,
         .store = store,
         .jobs = jobs,
+        .makers = makers,
         .policy = &policy,
         .deadlines = {.idle = 20,
                       .head = 20,
@@ -126,6 +128,7 @@ static int stop(void **state)
     bool stopped = http == NULL || srv_http_stop(http, 20000);
     http = NULL;
     srv_jobs_free(jobs);
+    srv_jobs_free(makers);
     api_service_free(service);
     srv_store_free(store);
     return stopped ? 0 : -1;

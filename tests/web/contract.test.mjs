@@ -8,6 +8,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
 
 import { Contract } from './contract.mjs';
 import { startDaemon } from './daemon.mjs';
@@ -37,7 +38,8 @@ function message(headers, body) {
 // What a request and its answer leave in a file of traffic.
 async function ask(method, target, body, headers = {}) {
     const all = body === undefined ? headers : { 'content-type': 'application/json', ...headers };
-    const answer = await fetch(daemon.url + target, { method, headers: all, body });
+    const plain = { ...all, 'accept-encoding': 'identity' }; // fetch would hide a coding
+    const answer = await fetch(daemon.url + target, { method, headers: plain, body });
     return {
         method,
         target,
@@ -70,6 +72,16 @@ function answeringHead(change) {
     return ({ answer, ...rest }) => ({ ...rest, answer: { ...answer, head: change(answer.head) } });
 }
 
+// The same as it would have been sent in gzip.
+function gzipped({ head, body }) {
+    const packed = gzipSync(Buffer.from(body, 'base64'));
+    return {
+        head: `${head}Content-Encoding: gzip\r\n`,
+        body: packed.toString('base64'),
+        length: packed.length,
+    };
+}
+
 function without(name) {
     return answeringHead((head) => head.replace(new RegExp(`^${name}:.*\r\n`, 'im'), ''));
 }
@@ -97,6 +109,14 @@ test('what the daemon says is what it promises', async () => {
     const real = [SUMMARY, HALFEDGE, PAGE, LINES, ABSENT, NOWHERE, WRONG_METHOD, OPTIONS, HEAD];
     for (const request of [...real, COPY, POKE, MOVE, OBJ, QUERY]) {
         assert.deepEqual(contract.check(await ask(...request)).wrong, [], request.join(' '));
+    }
+});
+
+test('what it says in gzip is what it promises', async () => {
+    for (const request of [SUMMARY, PAGE, LINES, ABSENT, COPY, POKE]) {
+        const { answer, ...rest } = await ask(...request);
+        const found = contract.check({ ...rest, answer: gzipped(answer) });
+        assert.deepEqual(found.wrong, [], request.join(' '));
     }
 });
 
@@ -175,6 +195,19 @@ const lies = [
     ['a body of another type', COPY,
         (e) => ({ ...e, request: message([['content-type', 'text/plain']], '{}') }),
         /text\/plain is not declared, and/],
+    ['a member nobody declared, in gzip', HALFEDGE, (e) => {
+        const { answer, ...rest } = answeringJson((h) => { h.more = 1; })(e);
+        return { ...rest, answer: gzipped(answer) };
+    }, /unevaluated/],
+    ['a bad body in gzip that was taken', POKE, (e) => {
+        const request = rewrite(e.request, (text) => text.replace('0', '"0"'));
+        return { ...e, request: gzipped(request) };
+    }, /body/],
+    ['a coding that is not declared', HALFEDGE,
+        answeringHead((head) => `${head}Content-Encoding: br\r\n`), /Content-Encoding: /],
+    ['a coding of nothing', OPTIONS, (e) => ({ ...e, method: 'DELETE', status: 204,
+        target: '/v1/meshes/square', answer: message([['content-encoding', 'gzip']], '') }),
+        /content-encoding is not declared/],
     ['a bad question that was answered', QUERY,
         (e) => ({ ...e, request: rewrite(e.request, (text) => text.replace('"get"', '"got"')) }),
         /queries/],

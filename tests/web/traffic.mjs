@@ -2,7 +2,8 @@
 // check-traffic.mjs compares it with the served OpenAPI document.
 //
 // Browsers, generated clients and the commands of the README then need no recorder of their own.
-// Lines are those of tests/traffic.h.
+// Lines are those of tests/traffic.h. Of the codings a browser accepts gzip is passed on, which node
+// can undo to look inside.
 
 import { appendFileSync } from 'node:fs';
 import { Agent, createServer, request as send } from 'node:http';
@@ -21,10 +22,15 @@ function forwarded(rawHeaders) {
     for (let i = 0; i < rawHeaders.length; i += 2) {
         const [name, value] = [rawHeaders[i], rawHeaders[i + 1]];
         if (!OWN.has(name.toLowerCase())) {
-            kept[name] = kept[name] === undefined ? value : [kept[name], value].flat();
+            const known = name.toLowerCase() === 'accept-encoding' ? gzipOf(value) : value;
+            kept[name] = kept[name] === undefined ? known : [kept[name], known].flat();
         }
     }
     return kept;
+}
+
+function gzipOf(codings) {
+    return /\bgzip\b/.test(codings) ? 'gzip' : 'identity';
 }
 
 // Collects the message of a stream as it passes by.

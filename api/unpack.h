@@ -1,0 +1,38 @@
+/* unpack.h - a coded body (gzip or zstd), unfolded as it arrives.
+ *
+ *     api_unpack_new -> api_unpack_feed ... -> api_unpack_end
+ *
+ * Members of gzip and frames of zstd may follow one another, as their RFCs allow, skippable frames
+ * among them; all together are one body. What is unfolded goes on in pieces of at most
+ * API_UNPACK_PIECE bytes and is not kept. Refused, with the byte of the coded body it was seen at:
+ *
+ *   bad_encoding    400  bytes that are not of the coding, its checksum or length does not hold,
+ *                        something follows that is none, the body ends in the middle
+ *   body_too_large  413  it unfolds to more than API_UNPACK_RATIO times what has arrived, beyond
+ * the first API_UNPACK_FREE bytes; a frame wants a larger window than API_UNPACK_WINDOW no_memory
+ * 507
+ *
+ * What the body may come to is the business of who takes the pieces. */
+#ifndef HE_API_UNPACK_H
+#define HE_API_UNPACK_H
+
+#include "api/coding.h"
+#include "api/problem.h"
+
+typedef struct api_unpack api_unpack;
+
+enum { API_UNPACK_PIECE = 32 * 1024 };
+
+/* `coding` is not identity. `take` gets the pieces, and is false when it wants no more. NULL when
+ * memory is out. */
+api_unpack *api_unpack_new(api_coding coding,
+                           bool (*take)(void *context, const char *bytes, size_t length),
+                           void *context);
+void api_unpack_free(api_unpack *u);
+/* False when it is refused, with the problem filled, or when `take` wants no more. Neither it nor
+ * end is called again then. */
+bool api_unpack_feed(api_unpack *u, const char *bytes, size_t length, api_problem *problem);
+/* The body ends here; one of no bytes at all is good. */
+bool api_unpack_end(api_unpack *u, api_problem *problem);
+
+#endif

@@ -1,0 +1,303 @@
+/* Content codings of a real daemon: bombs that stay small, answers coded while they are sent, and
+ * clients that go away in the middle. */
+#include "tests/e2e/client.h"
+
+#include "tests/codings.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static const char *const both[] = {"gzip", "zstd"};
+
+static reply expect(long status, reply r)
+{
+    if (r.status != status) {
+        fail_msg("status %ld instead of %ld: %.300s", r.status, status, r.body);
+    }
+    return r;
+}
+
+static void done(reply r)
+{
+    reply_free(&r);
+}
+
+static void put_grid(client *c, const char *path, int side)
+{
+    char body[128];
+    int length =
+        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
+    done(expect(201, client_send(c, "PUT", path, body, (size_t)length, NULL)));
+}
+
+static reply send_coded(client *c, const char *method, const char *path, const char *coding,
+                        const char *type, const void *body, size_t length)
+{
+    char encoding[60], content[60];
+    snprintf(encoding, sizeof encoding, "Content-Encoding: %s", coding);
+    snprintf(content, sizeof content, "Content-Type: %s", type);
+    return client_send(c, method, path, body, length, ARGUMENTS(encoding, content));
+}
+
+static void unfold(reply *r, const char *coding)
+{
+    char value[40];
+    size_t length;
+    assert_string_equal(reply_header(r, "Content-Encoding", value, sizeof value), coding);
+    char *plain = coding_unpack(coding, r->body, r->length, &length);
+    assert_non_null(plain);
+    free(r->body);
+    r->body = plain;
+    r->length = length;
+}
+
+/* The most memory the daemon ever held, in bytes. */
+static size_t peak(const daemon_process *d)
+{
+    char path[64], line[128];
+    unsigned long kib = 0;
+    snprintf(path, sizeof path, "/proc/%d/status", daemon_pid(d));
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) != NULL) {
+        if (sscanf(line, "VmHWM: %lu", &kib) == 1) {
+            break;
+        }
+    }
+    fclose(file);
+    return kib * 1024;
+}
+
+/* A sanitizer's own memory is not the daemon's. */
+static void expect_rise(const daemon_process *d, size_t before, size_t most, const char *what)
+{
+    size_t rise = peak(d) - before;
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+    print_message("note: %s: %.1f MB more at most\n", what, (double)rise / 1e6);
+    assert_true(rise <= most);
+#else
+    (void)rise;
+    (void)most;
+    (void)what;
+#endif
+}
+
+/* 10 GiB in 10 MiB of gzip, or less of zstd: members or frames of 10 MiB, one after another. */
+static char *bomb_of(const char *coding, char fill, size_t *length)
+{
+    enum { PART = 10 << 20, PARTS = 1024 };
+    size_t one;
+    char *part = malloc(PART);
+    assert_non_null(part);
+    memset(part, fill, PART);
+    char *packed = coding_pack(coding, part, PART, &one);
+    free(part);
+    char *bomb = malloc(PARTS * one);
+    assert_non_null(bomb);
+    for (size_t i = 0; i < PARTS; i++) {
+        memcpy(bomb + i * one, packed, one);
+    }
+    free(packed);
+    *length = PARTS * one;
+    return bomb;
+}
+
+static void bombs_stay_small(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off"));
+    client *c = client_new(d);
+    put_grid(c, "/v1/meshes/m", 10);
+    for (size_t i = 0; i < 2; i++) {
+        size_t length, before = peak(d);
+        char *zeros = bomb_of(both[i], '\0', &length);
+        reply r =
+            expect(413, send_coded(c, "POST", "/v1/meshes", both[i], "model/obj", zeros, length));
+        assert_string_equal(reply_string(&r, "code"), "body_too_large");
+        reply_free(&r);
+        done(expect(
+            400, send_coded(c, "POST", "/v1/meshes", both[i], "application/json", zeros, length)));
+        done(expect(413, send_coded(c, "POST", "/v1/meshes/m/edits", both[i], "application/json",
+                                    zeros, length)));
+        free(zeros);
+        char *blanks = bomb_of(both[i], ' ', &length);
+        static const char *const types[] = {"application/json", "model/obj", "model/x-off"};
+        for (size_t k = 0; k < sizeof types / sizeof *types; k++) {
+            done(expect(413,
+                        send_coded(c, "PUT", "/v1/meshes/b", both[i], types[k], blanks, length)));
+        }
+        /* A bomb in a bomb is only bytes to whoever reads it. */
+        size_t folded;
+        char *nested = coding_pack(both[1 - i], blanks, length, &folded);
+        r = send_coded(c, "PUT", "/v1/meshes/b", both[1 - i], "model/obj", nested, folded);
+        assert_true(r.status == 400 || r.status == 413);
+        reply_free(&r);
+        free(nested);
+        free(blanks);
+        expect_rise(d, before, 24 << 20, both[i]);
+    }
+    done(expect(404, client_get(c, "/v1/meshes/b")));
+    done(expect(200, client_get(c, "/v1/meshes/m")));
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* A coded body that comes byte by byte, each a chunk of its own. */
+static void pieces_may_be_of_one_byte(void **state)
+{
+    (void)state;
+    static const char body[] = "{\"shape\":\"cube\",\"size\":3}";
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off"));
+    for (size_t i = 0; i < 2; i++) {
+        size_t length, at;
+        char *packed = coding_pack(both[i], body, sizeof body - 1, &length), request[4096];
+        at = (size_t)snprintf(request, sizeof request,
+                              "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\n"
+                              "Content-Type: application/json\r\nContent-Encoding: %s\r\n"
+                              "Transfer-Encoding: chunked\r\n\r\n",
+                              both[i]);
+        for (size_t k = 0; k < length; k++) {
+            memcpy(request + at, "1\r\n?\r\n", 6);
+            request[at + 3] = packed[k];
+            at += 6;
+        }
+        memcpy(request + at, "0\r\n\r\n", 5);
+        char *answer = client_raw(d, request, at + 5, 1, false);
+        assert_int_equal(client_raw_status(answer), 201);
+        assert_non_null(strstr(answer, "\"vertices\":8,"));
+        free(answer);
+        free(packed);
+    }
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+static const char *const targets[] = {
+    "/v1/meshes/m/content?format=obj",
+    "/v1/meshes/m/content?format=ply",
+    "/v1/meshes/m/geometry",
+    "/v1/meshes/m/vertices?limit=10000",
+};
+
+enum { TARGETS = sizeof targets / sizeof *targets, SIDE = 400 };
+
+static void large_answers_are_coded_as_they_are_sent(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off"));
+    client *c = client_new(d);
+    char value[40];
+    put_grid(c, "/v1/meshes/m", SIDE);
+    for (size_t i = 0; i < TARGETS; i++) {
+        reply plain = expect(200, client_get(c, targets[i]));
+        size_t before = peak(d);
+        for (size_t k = 0; k < 2; k++) {
+            char accept[60];
+            snprintf(accept, sizeof accept, "Accept-Encoding: %s", both[k]);
+            reply r = expect(200, client_send(c, "GET", targets[i], NULL, 0, ARGUMENTS(accept)));
+            assert_true(r.length < plain.length);
+            assert_string_equal(reply_header(&r, "Content-Length", value, sizeof value), "");
+            unfold(&r, both[k]);
+            assert_int_equal(r.length, plain.length);
+            assert_memory_equal(r.body, plain.body, r.length);
+            reply_free(&r);
+        }
+        expect_rise(d, before, 6 << 20, targets[i]);
+        reply_free(&plain);
+    }
+    /* What is coded at once has a length, and HEAD the same one. */
+    const char *const zstd[] = {"Accept-Encoding: gzip;q=0.5, zstd", NULL};
+    char length[40];
+    reply r = expect(200, client_send(c, "GET", "/v1/meshes/m/faces?limit=50", NULL, 0, zstd));
+    snprintf(length, sizeof length, "%zu", r.length);
+    assert_string_equal(reply_header(&r, "Content-Length", value, sizeof value), length);
+    unfold(&r, "zstd");
+    reply_free(&r);
+    r = expect(200, client_send(c, "HEAD", "/v1/meshes/m/faces?limit=50", NULL, 0, zstd));
+    assert_string_equal(reply_header(&r, "Content-Length", value, sizeof value), length);
+    reply_free(&r);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* Some that read the beginning of a long answer, slowly, and go away; others go on all the time. */
+static void clients_go_away_while_it_is_coded(void **state)
+{
+    (void)state;
+    enum { CLIENTS = 8, ROUNDS = 6 };
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off"));
+    client *c = client_new(d);
+    put_grid(c, "/v1/meshes/m", SIDE);
+    for (int round = 0; round < ROUNDS; round++) {
+        int fds[CLIENTS];
+        for (int i = 0; i < CLIENTS; i++) {
+            char request[200], byte;
+            fds[i] = client_connect(d, 4096);
+            int length = snprintf(request, sizeof request,
+                                  "GET %s HTTP/1.1\r\nHost: localhost\r\n"
+                                  "Accept-Encoding: %s\r\n\r\n",
+                                  targets[i % TARGETS], both[round % 2]);
+            assert_int_equal(send(fds[i], request, (size_t)length, MSG_NOSIGNAL), length);
+            for (int k = 0; k < i * 100; k++) {
+                assert_int_equal(recv(fds[i], &byte, 1, 0), 1);
+            }
+        }
+        done(expect(200, client_get(c, "/v1/meshes/m/vertices/0")));
+        for (int i = 0; i < CLIENTS; i++) {
+            close(fds[i]);
+        }
+    }
+    /* And some are there when it stops. */
+    int left = client_connect(d, 4096);
+    static const char request[] = "GET /v1/meshes/m/content?format=obj HTTP/1.1\r\n"
+                                  "Host: localhost\r\nAccept-Encoding: gzip\r\n\r\n";
+    char byte;
+    assert_int_equal(send(left, request, sizeof request - 1, MSG_NOSIGNAL), sizeof request - 1);
+    assert_int_equal(recv(left, &byte, 1, 0), 1);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+    close(left);
+}
+
+static void it_can_be_switched_off(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off", "--no-compression"));
+    client *c = client_new(d);
+    char value[40];
+    put_grid(c, "/v1/meshes/m", 30);
+    reply r = expect(
+        200, client_send(c, "GET", targets[0], NULL, 0, ARGUMENTS("Accept-Encoding: gzip, zstd")));
+    assert_string_equal(reply_header(&r, "Content-Encoding", value, sizeof value), "");
+    reply_free(&r);
+    /* Bodies are taken all the same. */
+    static const char body[] = "{\"shape\":\"cube\"}";
+    size_t length;
+    char *packed = coding_pack("gzip", body, sizeof body - 1, &length);
+    done(expect(201,
+                send_coded(c, "POST", "/v1/meshes", "x-gzip", "application/json", packed, length)));
+    free(packed);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bombs_stay_small),
+        cmocka_unit_test(pieces_may_be_of_one_byte),
+        cmocka_unit_test(large_answers_are_coded_as_they_are_sent),
+        cmocka_unit_test(clients_go_away_while_it_is_coded),
+        cmocka_unit_test(it_can_be_switched_off),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,544 @@
+/* Bodies in gzip and zstd: packed by api/pack.h, unfolded by api/unpack.h, and what is refused. */
+#include "tests/unit/fixture.h"
+
+#include "api/limits.h"
+#include "api/pack.h"
+#include "api/unpack.h"
+
+#include <zstd.h>
+
+typedef struct bytes {
+    char *data;
+    size_t length, capacity;
+} bytes;
+
+static void add(bytes *b, const void *data, size_t length)
+{
+    if (b->length + length > b->capacity) {
+        b->capacity = 2 * (b->length + length);
+        b->data = realloc(b->data, b->capacity);
+        assert_non_null(b->data);
+    }
+    if (length > 0) {
+        memcpy(b->data + b->length, data, length);
+    }
+    b->length += length;
+}
+
+static bool take(void *context, const char *data, size_t length)
+{
+    assert_true(length > 0 && length <= API_UNPACK_PIECE);
+    add(context, data, length);
+    return true;
+}
+
+/* Numbers as a mesh file has them: they pack to about a third. */
+static bytes text_of(size_t length)
+{
+    bytes b = {0};
+    uint32_t random = 1;
+    while (b.length < length) {
+        char line[80];
+        random = random * 1664525 + 1013904223;
+        size_t n = (size_t)snprintf(line, sizeof line, "v %u.%u 0.5 1\n", random >> 28,
+                                    random >> 20 & 255);
+        add(&b, line, n < length - b.length ? n : length - b.length);
+    }
+    return b;
+}
+
+/* A reader of some bytes, a few at a time. */
+typedef struct source {
+    const bytes *of;
+    size_t at, step;
+} source;
+
+static int64_t read_source(void *context, char *buffer, size_t size)
+{
+    source *s = context;
+    size_t left = s->of->length - s->at, n = left < size ? left : size;
+    n = n < s->step ? n : s->step;
+    if (n > 0) {
+        memcpy(buffer, s->of->data + s->at, n);
+    }
+    s->at += n;
+    return (int64_t)n;
+}
+
+/* Pull a pack empty, `size` bytes at a time. */
+static bytes pull(api_pack *pack, size_t size)
+{
+    bytes out = {0};
+    char *buffer = malloc(size);
+    assert_non_null(buffer);
+    int64_t got;
+    while ((got = api_pack_read(pack, buffer, size)) > 0) {
+        add(&out, buffer, (size_t)got);
+    }
+    assert_int_equal(got, 0);
+    free(buffer);
+    return out;
+}
+
+static bytes pack_bytes(api_coding coding, const bytes *plain)
+{
+    api_plain from = {.bytes = plain->data == NULL ? "" : plain->data, .length = plain->length};
+    const char *whole;
+    size_t length;
+    api_pack *pack = api_pack_new(coding, &from);
+    assert_non_null(pack);
+    bool is_whole = api_pack_whole(pack, &whole, &length);
+    assert_int_equal(is_whole, plain->length <= API_PACK_AT_ONCE);
+    if (is_whole) {
+        assert_int_equal(length, plain->length);
+        assert_memory_equal(whole, from.bytes, length);
+    }
+    assert_true(api_pack_begin(pack));
+    bytes out = pull(pack, 65536);
+    api_pack_free(pack);
+    return out;
+}
+
+/* Unfold in pieces of `step` bytes; false with `problem` where it is refused. */
+static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *out,
+                   api_problem *problem)
+{
+    *problem = (api_problem){0};
+    *out = (bytes){0};
+    api_unpack *u = api_unpack_new(coding, take, out);
+    assert_non_null(u);
+    bool good = true;
+    for (size_t at = 0; at < coded->length && good; at += step) {
+        size_t n = coded->length - at < step ? coded->length - at : step;
+        /* of its own, so that a sanitizer sees what is read beyond it */
+        char *piece = malloc(n);
+        assert_non_null(piece);
+        memcpy(piece, coded->data + at, n);
+        good = api_unpack_feed(u, piece, n, problem);
+        free(piece);
+    }
+    good = good && api_unpack_end(u, problem);
+    assert_int_equal(good, problem->code == HE_OK);
+    api_unpack_free(u);
+    return good;
+}
+
+static void expect_unfolded(api_coding coding, const bytes *coded, size_t step, const bytes *plain)
+{
+    bytes out;
+    api_problem problem;
+    if (!unfold(coding, coded, step, &out, &problem)) {
+        fail_msg("%s of %zu bytes by %zu: %s", api_coding_name(coding), plain->length, step,
+                 problem.detail);
+    }
+    assert_int_equal(out.length, plain->length);
+    if (out.length > 0) {
+        assert_memory_equal(out.data, plain->data, out.length);
+    }
+    free(out.data);
+}
+
+static void expect_refused(api_coding coding, const bytes *coded, size_t step, int code,
+                           const char *detail)
+{
+    bytes out;
+    api_problem problem;
+    assert_false(unfold(coding, coded, step, &out, &problem));
+    if (problem.code != code || strstr(problem.detail, detail) == NULL) {
+        fail_msg("not %s: %s", detail, problem.detail);
+    }
+    free(out.data);
+}
+
+static const api_coding both[] = {API_GZIP, API_ZSTD};
+
+static void bodies_of_all_sizes_come_back(void **state)
+{
+    (void)state;
+    static const size_t sizes[] = {0, 1, 2, 255, 256, 257, 5000, 65536, 65537, 400000};
+    static const size_t steps[] = {1, 2, 3, 7, 1000, 32768, 1 << 20};
+    for (size_t c = 0; c < 2; c++) {
+        for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+            bytes plain = text_of(sizes[i]), coded = pack_bytes(both[c], &plain);
+            assert_true(plain.length < 5000 || coded.length < plain.length / 2);
+            for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+                expect_unfolded(both[c], &coded, steps[k], &plain);
+            }
+            free(plain.data);
+            free(coded.data);
+        }
+    }
+}
+
+/* Tags are strong: the bytes must not depend on who reads how. */
+static void the_same_body_packs_to_the_same_bytes(void **state)
+{
+    (void)state;
+    static const size_t steps[] = {1, 100, 4096, 70000, 1 << 20};
+    bytes plain = text_of(300000);
+    for (size_t c = 0; c < 2; c++) {
+        bytes first = pack_bytes(both[c], &plain);
+        for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+            source from = {&plain, 0, steps[i]};
+            const char *whole;
+            size_t length;
+            api_pack *pack =
+                api_pack_new(both[c], &(api_plain){.read = read_source, .context = &from});
+            assert_non_null(pack);
+            assert_false(api_pack_whole(pack, &whole, &length));
+            assert_true(api_pack_begin(pack));
+            bytes again = pull(pack, steps[sizeof steps / sizeof *steps - 1 - i]);
+            assert_int_equal(again.length, first.length);
+            assert_memory_equal(again.data, first.data, first.length);
+            free(again.data);
+            api_pack_free(pack);
+        }
+        free(first.data);
+    }
+    free(plain.data);
+}
+
+static int64_t break_off(void *context, char *buffer, size_t size)
+{
+    int *left = context;
+    memset(buffer, 'x', size);
+    return (*left)-- > 0 ? (int64_t)size : -1;
+}
+
+static void a_body_that_breaks_off_is_not_ended(void **state)
+{
+    (void)state;
+    for (size_t c = 0; c < 2; c++) {
+        for (int pieces = 0; pieces < 4; pieces++) {
+            int left = pieces;
+            char buffer[1000];
+            const char *whole;
+            size_t length;
+            api_pack *pack =
+                api_pack_new(both[c], &(api_plain){.read = break_off, .context = &left});
+            assert_non_null(pack);
+            assert_false(api_pack_whole(pack, &whole, &length) && pieces > 0);
+            assert_true(api_pack_begin(pack));
+            int64_t got;
+            while ((got = api_pack_read(pack, buffer, sizeof buffer)) > 0) {
+            }
+            assert_int_equal(got, -1);
+            api_pack_free(pack);
+        }
+    }
+}
+
+static void what_cannot_be_coded_is_passed_on(void **state)
+{
+    (void)state;
+    bytes plain = text_of(200000);
+    source from = {&plain, 0, 1000};
+    const char *whole;
+    size_t length;
+    api_pack *pack = api_pack_new(API_GZIP, &(api_plain){.read = read_source, .context = &from});
+    assert_non_null(pack);
+    assert_false(api_pack_whole(pack, &whole, &length));
+    api_pack_give_up(pack);
+    bytes out = pull(pack, 777);
+    assert_int_equal(out.length, plain.length);
+    assert_memory_equal(out.data, plain.data, out.length);
+    api_pack_free(pack);
+    free(out.data);
+    free(plain.data);
+}
+
+/* Skippable frames of zstd: a magic number, a length, and that many bytes. */
+static void add_skippable(bytes *b, uint32_t length)
+{
+    const unsigned char head[8] = {
+        0x5A, 0x2A, 0x4D, 0x18, (unsigned char)length, (unsigned char)(length >> 8), 0, 0};
+    add(b, head, sizeof head);
+    for (uint32_t i = 0; i < length; i++) {
+        add(b, "!", 1);
+    }
+}
+
+static void members_and_frames_follow_one_another(void **state)
+{
+    (void)state;
+    for (size_t c = 0; c < 2; c++) {
+        bytes plain = {0}, coded = {0};
+        for (size_t i = 0; i < 5; i++) {
+            bytes part = text_of(i * 700), packed = pack_bytes(both[c], &part);
+            if (both[c] == API_ZSTD) {
+                add_skippable(&coded, (uint32_t)(i * 100));
+            }
+            add(&plain, part.data, part.length);
+            add(&coded, packed.data, packed.length);
+            free(part.data);
+            free(packed.data);
+        }
+        if (both[c] == API_ZSTD) {
+            add_skippable(&coded, 3);
+        }
+        for (size_t step = 1; step < 40; step++) {
+            expect_unfolded(both[c], &coded, step, &plain);
+        }
+        free(plain.data);
+        free(coded.data);
+    }
+}
+
+static void a_body_that_ends_too_early_is_refused_wherever(void **state)
+{
+    (void)state;
+    bytes plain = text_of(3000);
+    for (size_t c = 0; c < 2; c++) {
+        bytes coded = pack_bytes(both[c], &plain);
+        for (size_t length = 1; length < coded.length; length++) {
+            char place[40];
+            snprintf(place, sizeof place, "byte %zu of the %s body", length,
+                     api_coding_name(both[c]));
+            expect_refused(both[c], &(bytes){coded.data, length, 0}, 1000, API_BAD_ENCODING, place);
+        }
+        free(coded.data);
+    }
+    free(plain.data);
+}
+
+static void what_follows_the_coding_is_refused_at_its_byte(void **state)
+{
+    (void)state;
+    bytes plain = text_of(3000);
+    for (size_t c = 0; c < 2; c++) {
+        bytes coded = pack_bytes(both[c], &plain);
+        char place[40];
+        snprintf(place, sizeof place, "byte %zu of the %s body: no ", coded.length,
+                 api_coding_name(both[c]));
+        add(&coded, "garbage", 7);
+        for (size_t step = 1; step < 12; step++) {
+            expect_refused(both[c], &coded, step, API_BAD_ENCODING, place);
+        }
+        free(coded.data);
+    }
+    free(plain.data);
+}
+
+/* Of a header some bits say nothing; all others show. */
+static void no_flipped_bit_gives_another_body(void **state)
+{
+    (void)state;
+    bytes plain = text_of(600);
+    for (size_t c = 0; c < 2; c++) {
+        bytes coded = pack_bytes(both[c], &plain);
+        size_t refused = 0;
+        for (size_t bit = 0; bit < 8 * coded.length; bit++) {
+            bytes out;
+            api_problem problem;
+            coded.data[bit / 8] = (char)(coded.data[bit / 8] ^ 1 << bit % 8);
+            if (unfold(both[c], &coded, 64, &out, &problem)) {
+                assert_int_equal(out.length, plain.length);
+                assert_memory_equal(out.data, plain.data, out.length);
+            } else {
+                assert_true(problem.code == API_BAD_ENCODING || problem.code == API_BODY_TOO_LARGE);
+                refused++;
+            }
+            free(out.data);
+            coded.data[bit / 8] = (char)(coded.data[bit / 8] ^ 1 << bit % 8);
+        }
+        assert_true(refused > 8 * coded.length - 8 * 10);
+        free(coded.data);
+    }
+    free(plain.data);
+}
+
+static void a_checksum_that_does_not_hold_is_named(void **state)
+{
+    (void)state;
+    bytes plain = text_of(3000);
+    bytes gzip = pack_bytes(API_GZIP, &plain), zstd = pack_bytes(API_ZSTD, &plain);
+    gzip.data[gzip.length - 8] ^= 1; /* CRC, then length */
+    expect_refused(API_GZIP, &gzip, 100, API_BAD_ENCODING, "incorrect data check");
+    gzip.data[gzip.length - 8] ^= 1;
+    gzip.data[gzip.length - 1] ^= 1;
+    expect_refused(API_GZIP, &gzip, 100, API_BAD_ENCODING, "incorrect length check");
+    zstd.data[zstd.length - 1] ^= 1;
+    char place[40];
+    snprintf(place, sizeof place, "byte %zu of", zstd.length - 4);
+    expect_refused(API_ZSTD, &zstd, 1 << 20, API_BAD_ENCODING, place);
+    free(plain.data);
+    free(gzip.data);
+    free(zstd.data);
+}
+
+static void other_codings_are_not_taken_for_these(void **state)
+{
+    (void)state;
+    static const char zlib[] = "x\x9c\x03\x00\x00\x00\x00\x01"; /* what "deflate" means */
+    static const char old[] = "\x27\xB5\x2F\xFD\x00\x00\x00";   /* zstd 0.7 */
+    static const char plain[] = "{\"shape\":\"cube\"}";
+    bytes empty = {0}, gzip = pack_bytes(API_GZIP, &empty), zstd = pack_bytes(API_ZSTD, &empty);
+    expect_refused(API_GZIP, &(bytes){(char *)(uintptr_t)zlib, 8, 0}, 8, API_BAD_ENCODING,
+                   "byte 0 of the gzip body: no member begins here");
+    expect_refused(API_ZSTD, &(bytes){(char *)(uintptr_t)old, 7, 0}, 7, API_BAD_ENCODING,
+                   "byte 0 of the zstd body: no frame begins here");
+    expect_refused(API_GZIP, &(bytes){(char *)(uintptr_t)plain, 16, 0}, 1, API_BAD_ENCODING,
+                   "byte 0");
+    expect_refused(API_ZSTD, &(bytes){(char *)(uintptr_t)plain, 16, 0}, 1, API_BAD_ENCODING,
+                   "byte 0");
+    expect_refused(API_GZIP, &zstd, 100, API_BAD_ENCODING, "byte 0");
+    expect_refused(API_ZSTD, &gzip, 100, API_BAD_ENCODING, "byte 0");
+    free(gzip.data);
+    free(zstd.data);
+}
+
+static bytes zeros_in(api_coding coding, size_t length)
+{
+    bytes zeros = {calloc(1, length), length, length};
+    assert_non_null(zeros.data);
+    bytes coded = pack_bytes(coding, &zeros);
+    free(zeros.data);
+    return coded;
+}
+
+static void a_bomb_is_refused_before_it_unfolds(void **state)
+{
+    (void)state;
+    for (size_t c = 0; c < 2; c++) {
+        bytes most = {calloc(1, API_UNPACK_FREE), API_UNPACK_FREE, API_UNPACK_FREE}, out;
+        bytes small = pack_bytes(both[c], &most), bomb = zeros_in(both[c], 200 << 20);
+        expect_unfolded(both[c], &small, 1000, &most); /* what is short may be dense */
+        for (size_t step = 100; step <= 10000; step *= 10) {
+            api_problem problem;
+            assert_false(unfold(both[c], &bomb, step, &out, &problem));
+            assert_int_equal(problem.code, API_BODY_TOO_LARGE);
+            assert_true(out.length <= API_UNPACK_FREE + API_UNPACK_RATIO * 10000);
+            free(out.data);
+        }
+        free(most.data);
+        free(small.data);
+        free(bomb.data);
+    }
+}
+
+/* A frame that says it may look back so far, as a power of two. */
+static bytes with_window(int log)
+{
+    bytes plain = text_of(100000), out = {0};
+    size_t room = ZSTD_compressBound(plain.length);
+    out = (bytes){malloc(room), 0, room};
+    assert_non_null(out.data);
+    ZSTD_CCtx *zstd = ZSTD_createCCtx();
+    assert_non_null(zstd);
+    ZSTD_CCtx_setParameter(zstd, ZSTD_c_windowLog, log);
+    ZSTD_CCtx_setParameter(zstd, ZSTD_c_contentSizeFlag, 0);
+    ZSTD_inBuffer in = {plain.data, plain.length, 0};
+    ZSTD_outBuffer to = {out.data, room, 0};
+    assert_false(ZSTD_isError(ZSTD_compressStream2(zstd, &to, &in, ZSTD_e_continue)));
+    assert_int_equal(ZSTD_compressStream2(zstd, &to, &in, ZSTD_e_end), 0);
+    out.length = to.pos;
+    ZSTD_freeCCtx(zstd);
+    free(plain.data);
+    return out;
+}
+
+static void a_window_may_be_so_large(void **state)
+{
+    (void)state;
+    bytes plain = text_of(100000);
+    bytes good = with_window(API_UNPACK_WINDOW), bad = with_window(API_UNPACK_WINDOW + 1);
+    expect_unfolded(API_ZSTD, &good, 1000, &plain);
+    expect_refused(API_ZSTD, &bad, 1000, API_BODY_TOO_LARGE, "a window of more than 8388608 bytes");
+    free(plain.data);
+    free(good.data);
+    free(bad.data);
+}
+
+static bool take_none(void *context, const char *data, size_t length)
+{
+    (void)data;
+    (void)length;
+    ++*(int *)context;
+    return false;
+}
+
+static void who_takes_may_have_enough(void **state)
+{
+    (void)state;
+    bytes plain = text_of(300000);
+    for (size_t c = 0; c < 2; c++) {
+        bytes coded = pack_bytes(both[c], &plain);
+        int calls = 0;
+        api_problem problem = {0};
+        api_unpack *u = api_unpack_new(both[c], take_none, &calls);
+        assert_non_null(u);
+        assert_false(api_unpack_feed(u, coded.data, coded.length, &problem));
+        assert_int_equal(calls, 1);
+        assert_int_equal(problem.code, HE_OK);
+        api_unpack_free(u);
+        free(coded.data);
+    }
+    free(plain.data);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    (void)state;
+    bytes plain = text_of(100000);
+    for (size_t c = 0; c < 2; c++) {
+        bytes coded = pack_bytes(both[c], &plain);
+        bool done = false;
+        for (long n = 1; !done; n++) {
+            bytes out = {0};
+            api_problem problem = {0};
+            fixture_fail_at(n);
+            api_unpack *u = api_unpack_new(both[c], take, &out);
+            done = u != NULL && api_unpack_feed(u, coded.data, coded.length, &problem) &&
+                   api_unpack_end(u, &problem);
+            api_unpack_free(u);
+            fixture_memory_back();
+            assert_true(done || u == NULL || problem.code == HE_NO_MEMORY);
+            assert_true(done == (n > fixture_memory.calls));
+            free(out.data);
+        }
+        done = false;
+        for (long n = 1; !done; n++) {
+            const char *whole;
+            size_t length;
+            fixture_fail_at(n);
+            api_pack *pack =
+                api_pack_new(both[c], &(api_plain){.bytes = plain.data, .length = plain.length});
+            done = pack != NULL && !api_pack_whole(pack, &whole, &length) && api_pack_begin(pack);
+            if (pack != NULL && !done) {
+                api_pack_give_up(pack);
+            }
+            if (pack != NULL) {
+                /* All memory is taken by now. */
+                bytes out = pull(pack, 1000);
+                assert_int_equal(out.length, done ? coded.length : plain.length);
+                free(out.data);
+            }
+            api_pack_free(pack);
+            fixture_memory_back();
+            assert_true(done == (n > fixture_memory.calls));
+        }
+        free(coded.data);
+    }
+    free(plain.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bodies_of_all_sizes_come_back),
+        cmocka_unit_test(the_same_body_packs_to_the_same_bytes),
+        cmocka_unit_test(a_body_that_breaks_off_is_not_ended),
+        cmocka_unit_test(what_cannot_be_coded_is_passed_on),
+        cmocka_unit_test(members_and_frames_follow_one_another),
+        cmocka_unit_test(a_body_that_ends_too_early_is_refused_wherever),
+        cmocka_unit_test(what_follows_the_coding_is_refused_at_its_byte),
+        cmocka_unit_test(no_flipped_bit_gives_another_body),
+        cmocka_unit_test(a_checksum_that_does_not_hold_is_named),
+        cmocka_unit_test(other_codings_are_not_taken_for_these),
+        cmocka_unit_test(a_bomb_is_refused_before_it_unfolds),
+        cmocka_unit_test(a_window_may_be_so_large),
+        cmocka_unit_test(who_takes_may_have_enough),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
