@@ -95,6 +95,38 @@ static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he
     return status;
 }
 
+/* How many edges of queue[begin..end) clash when faces are `turned`, or as they are; each is met
+ * from both sides. */
+static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, bool turned)
+{
+    const he_soup *soup = o->soup;
+    uint64_t count = 0;
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t f = o->queue[i], last = he_soup_end(soup, f);
+        for (uint32_t c = soup->starts[f]; c < last; c++) {
+            uint32_t mate = o->mate[c];
+            if (mate == HE_NONE) {
+                continue;
+            }
+            bool same = soup->corners[mate] == soup->corners[c];
+            bool differ = o->state[f] != o->state[o->face_of[mate]];
+            count += turned ? same != differ : same;
+        }
+    }
+    return count;
+}
+
+/* Of a component that cannot be oriented: where turning does not leave fewer clashes, none is. */
+static void settle_clashing(orienting *o, uint32_t begin, uint32_t end)
+{
+    if (clashes_of(o, begin, end, true) < clashes_of(o, begin, end, false)) {
+        return;
+    }
+    for (uint32_t i = begin; i < end; i++) {
+        o->state[o->queue[i]] = KEPT;
+    }
+}
+
 /* The smaller part of queue[begin..end) is to be the one that is turned. */
 static void settle(orienting *o, uint32_t begin, uint32_t end)
 {
@@ -183,6 +215,9 @@ he_status he_mend_orient(he_mend *m, bool force, he_error *err)
             status = refuse(m, err);
         }
         if (status == HE_OK) {
+            if (!fits) {
+                settle_clashing(&o, begin, end);
+            }
             settle(&o, begin, end);
         }
     }

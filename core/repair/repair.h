@@ -2,32 +2,37 @@
  *
  *     reader -> he_soup -> he_repair_soup -> he_build -> he_repair_mesh -> mesh
  *
- * Repairs are applied in the order of their rows, whatever the order in which they are asked for:
+ * Repairs are applied in this order, whatever the order in which they are asked for.
  *
- *   weld             Vertices at most `tolerance` apart become one. In the order of their numbers,
- *                    each joins the first vertex kept so far that is near enough, or is kept. So
- *                    none moves further than the tolerance, kept ones are further apart than that,
- *                    and chains do not creep. With tolerance 0 only equal positions meet (-0 is 0).
- *   drop_degenerate  Faces of less than three corners, or with two at one vertex, are left out.
- *   drop_duplicates  Of faces with the same corners, begun anywhere and wound either way, the first
- *                    is kept.
- *   orient           Faces are turned until all that share an edge run along it in opposite
- *                    directions, as far as edges of two faces lead; the larger part of a component
- *                    keeps its direction, the part of its first face where they are equal. Where a
- *                    component cannot be oriented (a Moebius band) the soup is refused, unless it
- * is to be split as well: then it is wound consistently along a tree of its faces, and cut where
- * that does not meet itself. split            Every fan of faces gets its vertex for itself: the
- * fan of the first corner keeps it, the others get copies, numbered after all vertices in the order
- * of their first corners. Faces hang together in a fan where they run along an edge in opposite
- * directions. Where more than two have an edge, they are paired in their order, each with the first
- * that waits and runs the other way (two solids that touch come apart); the rest is cut off. After
- * Gueziec, Taubin, Lazarus and Horn, "Cutting and stitching: converting sets of polygons to
- * manifold surfaces" (2001). fill             Holes of at most `hole_edges` edges are closed by one
- * polygon each. Those that pass a vertex twice, and the rim of a single face, are left.
+ * weld: vertices at most `tolerance` apart become one. In the order of their numbers, each joins
+ * the first of those kept so far that is near enough, or is kept. So none moves further than the
+ * tolerance, kept ones are further apart than that, and chains do not creep. With tolerance 0 only
+ * equal positions meet (-0 is 0).
  *
- * Vertices and faces keep their order, attributes go with their elements (those of the vertex or
- * face that is kept; a copy has its parent's), corners' with the corners. Every repair takes time
- * linear in the soup, and a few numbers of memory for each corner. */
+ * drop_degenerate: faces of less than three corners, or with two at one vertex, are left out.
+ *
+ * drop_duplicates: of faces with the same corners, begun anywhere and wound either way, the first
+ * is kept.
+ *
+ * orient: faces are turned until all that share an edge run along it in opposite directions, as far
+ * as edges of two faces lead. The larger part of a component keeps its direction; the part of its
+ * first face, where they are equal. Where a component cannot be oriented (a Moebius band) the soup
+ * is refused, unless it is to be split as well: then it is wound consistently along a tree of its
+ * faces, or left where that makes no fewer of them clash, and cut where they do.
+ *
+ * split: every fan of faces gets its vertex for itself. The fan of the first corner keeps it, the
+ * others get copies, numbered after all vertices in the order of their first corners. Faces hang
+ * together in a fan where they run along an edge in opposite directions. Where more than two have
+ * an edge, they are paired in their order, each with the first that waits and runs the other way
+ * (two solids that touch come apart); the rest is cut off. After Gueziec, Taubin, Lazarus and Horn,
+ * "Cutting and stitching: converting sets of polygons to manifold surfaces" (2001).
+ *
+ * fill: holes of at most `hole_edges` edges are closed by one polygon each. Those that pass a
+ * vertex twice, and the rim of a single face, are left.
+ *
+ * Vertices and faces keep their order. Attributes go with their elements: those of the vertex or
+ * face that is kept, its parent's with a copy, those of corners with the corners. Every repair
+ * takes time linear in the soup, and a few numbers of memory for each corner. */
 #ifndef HE_REPAIR_REPAIR_H
 #define HE_REPAIR_REPAIR_H
 

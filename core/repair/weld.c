@@ -1,18 +1,20 @@
 /* weld: vertices that are near one another become one.
  *
- * Kept vertices lie in a hash table of cells of 2.5 tolerances, so that all that is within the
- * tolerance of a point is in its own cell or the neighbour on the nearer side: 8 cells. The half
- * tolerance to spare covers the rounding of the division. Coordinates so large that it does not
- * (2^48 cells from 0) look on both sides; those where even the next double is out of reach (2^53
- * cells) are cells of their own, as all are when the tolerance is 0. A cell holds few kept
- * vertices, since they are further apart than the tolerance. */
+ * Kept vertices lie in a hash table of cells of 4 tolerances. What is within the tolerance of a
+ * point is in its own cell or, where the point is near a side, in the neighbour there: 8 cells at
+ * most, 4 on the average. NEAR is a quarter and some to spare, which covers the rounding of the
+ * division. Coordinates so large that it does not (2^46 cells from 0) look on both sides; those
+ * where even the next double is out of reach (2^53 cells) are cells of their own, as all are when
+ * the tolerance is 0. A cell holds few kept vertices, since they are further apart than the
+ * tolerance. */
 #include "repair/mend.h"
 
 #include <math.h>
 #include <string.h>
 
-#define CELL     2.5
-#define FAR_CELL 0x1p48
+#define CELL     4.0
+#define NEAR     0.3
+#define FAR_CELL 0x1p46
 #define LONE     0x1p53
 
 typedef struct slot {
@@ -51,10 +53,10 @@ static size_t cells_of(const table *t, double x, double cells[3])
     }
     size_t count = 0;
     cells[count++] = cell;
-    if (at - cell < 0.5 || fabs(at) >= FAR_CELL) {
+    if (at - cell <= NEAR || fabs(at) >= FAR_CELL) {
         cells[count++] = cell - 1;
     }
-    if (at - cell >= 0.5 || fabs(at) >= FAR_CELL) {
+    if (at - cell >= 1 - NEAR || fabs(at) >= FAR_CELL) {
         cells[count++] = cell + 1;
     }
     return count;
