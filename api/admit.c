@@ -14,11 +14,15 @@ static bool refuse_parameter(api_exchange *x, const api_parameter *parameter, co
                  parameter->max);
     } else if (parameter->type == API_PARAM_TEXT) {
         snprintf(taken, sizeof taken, "at most %.0f bytes", parameter->max);
-    } else if (parameter->type == API_PARAM_CHOICE) {
-        size_t used = 0;
+    } else if (parameter->type == API_PARAM_NUMBER) {
+        snprintf(taken, sizeof taken, "a number from %g to %g", parameter->min, parameter->max);
+    } else if (parameter->choices != NULL) {
+        bool many = parameter->type == API_PARAM_CHOICES;
+        size_t used = (size_t)snprintf(taken, sizeof taken, "%s", many ? "some of " : "");
+        size_t begin = used;
         for (const char *const *c = parameter->choices; *c != NULL && used < sizeof taken; c++) {
             used += (size_t)snprintf(taken + used, sizeof taken - used, "%s%s",
-                                     used > 0 ? ", " : "", *c);
+                                     used > begin ? ", " : "", *c);
         }
     }
     return api_fail(x, API_BAD_PARAMETER, "\"%s\" cannot be \"%.100s\": %s", parameter->name, value,
@@ -41,6 +45,17 @@ static bool check_parameter(api_exchange *x, const api_parameter *parameter, con
         uint64_t number;
         good = he_u64_parse(value, end, &number, &used) == HE_OK && value + used == end &&
                (double)number >= parameter->min && (double)number <= parameter->max;
+        break;
+    }
+    case API_PARAM_NUMBER: {
+        double number;
+        good = he_double_parse(value, end, HE_JSON_NUMBER, &number, &used) == HE_OK &&
+               value + used == end && number >= parameter->min && number <= parameter->max;
+        break;
+    }
+    case API_PARAM_CHOICES: {
+        unsigned set;
+        good = api_choices_parse(parameter->choices, value, &set);
         break;
     }
     case API_PARAM_CHOICE:

@@ -520,6 +520,70 @@ bool api_attributes_in_feed(api_attributes_in *in, const char **at, const char *
     return true;
 }
 
+static bool goes_with_edges(const item *one)
+{
+    he_kind domain = one->column->domain;
+    return one->has_values && (domain == HE_EDGE || domain == HE_HALFEDGE);
+}
+
+bool api_attributes_in_has_edges(const api_attributes_in *in)
+{
+    size_t i = 0;
+    while (i < in->count && !goes_with_edges(&in->items[i])) {
+        i++;
+    }
+    return i < in->count;
+}
+
+/* from[i] is the row of the document that row i of the mesh has. */
+static bool gather(item *one, const uint32_t *from, size_t count)
+{
+    size_t size = one->column->row_bytes;
+    unsigned char *values = he_mem_array(NULL, count, size);
+    if (values == NULL) {
+        return false;
+    }
+    for (size_t i = 0; i < count; i++) {
+        memcpy(values + i * size, one->values + from[i] * size, size);
+    }
+    he_mem_free(one->values);
+    one->values = values;
+    one->count = count;
+    return true;
+}
+
+bool api_attributes_in_repair(api_attributes_in *in, const he_repaired *done, size_t vertices,
+                              size_t faces, api_problem *problem)
+{
+    for (size_t i = 0; i < in->count; i++) {
+        item *one = &in->items[i];
+        bool of_faces = one->column->domain == HE_FACE;
+        const uint32_t *from = of_faces ? done->face_from : done->vertex_from;
+        size_t count = of_faces ? faces : vertices;
+        if (goes_with_edges(one)) {
+            api_problem_set(problem, HE_UNSUPPORTED,
+                            "values of %s go with edges that the repairs change",
+                            he_kind_plural(one->column->domain));
+            api_problem_set_pointer(problem, "/attributes/%zu/values", i);
+            return false;
+        }
+        if (!one->has_values || one->column->domain == HE_MESH_KIND) {
+            continue;
+        }
+        if (one->count != count) {
+            api_problem_set(problem, HE_BAD_VALUE, "%zu values are given for %zu %s", one->count,
+                            count, he_kind_plural(one->column->domain));
+            problem->status = 422;
+            api_problem_set_pointer(problem, "/attributes/%zu/values", i);
+            return false;
+        }
+        if (from != NULL && !gather(one, from, of_faces ? done->faces : done->vertices)) {
+            return api_problem_set(problem, HE_NO_MEMORY, "no memory for the attributes");
+        }
+    }
+    return true;
+}
+
 bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *problem)
 {
     for (size_t i = 0; i < in->count; i++) {

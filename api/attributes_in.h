@@ -16,6 +16,7 @@
 #define HE_API_ATTRIBUTES_IN_H
 
 #include "api/json_in.h"
+#include "repair/repair.h"
 
 typedef struct api_attributes_in api_attributes_in;
 
@@ -26,6 +27,12 @@ void api_attributes_in_free(api_attributes_in *in);
  * refused, at *at. */
 bool api_attributes_in_feed(api_attributes_in *in, const char **at, const char *end, bool *done,
                             api_problem *problem);
+/* Are there values of edges or half-edges? */
+bool api_attributes_in_has_edges(const api_attributes_in *in);
+/* The document of `vertices` and `faces` was repaired before it was built: so are the values of
+ * these. Those of edges and half-edges are refused, for they go with edges that are no longer. */
+bool api_attributes_in_repair(api_attributes_in *in, const he_repaired *done, size_t vertices,
+                              size_t faces, api_problem *problem);
 /* Add what was read to the mesh, after a good end. */
 bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *problem);
 

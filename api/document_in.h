@@ -19,6 +19,7 @@
 
 #include "api/json_in.h"
 #include "mesh/build.h"
+#include "repair/repair.h"
 
 typedef struct api_document_in api_document_in;
 
@@ -36,8 +37,12 @@ bool api_document_in_end(api_document_in *in, api_problem *problem);
 he_soup *api_document_in_soup(api_document_in *in);
 bool api_document_in_has_vertices(const api_document_in *in);
 bool api_document_in_has_faces(const api_document_in *in);
-/* Add the attributes to the mesh the document made. */
-bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, api_problem *problem);
+/* Add the attributes to the mesh the document made. Where its soup was repaired first, it had so
+ * many vertices and faces before. */
+bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, const he_repaired *done,
+                                size_t vertices, size_t faces, api_problem *problem);
+/* Are there attributes that no repaired document can keep? */
+bool api_document_in_has_edges(const api_document_in *in);
 /* The other members as one object; valid until the reader is freed. Their refusals go to the
  * problem that was given to api_document_in_end. */
 const api_in *api_document_in_rest(const api_document_in *in);

@@ -77,12 +77,31 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
         api_out_key_number(out, "minimum", parameter->min);
         api_out_key_number(out, "maximum", parameter->max);
         break;
+    case API_PARAM_NUMBER:
+        api_out_key_string(out, "type", "number");
+        api_out_key_number(out, "minimum", parameter->min);
+        api_out_key_number(out, "maximum", parameter->max);
+        break;
     case API_PARAM_CHOICE:
         api_out_key_string(out, "type", "string");
         api_schema_choices(out, "enum", parameter->choices);
         break;
+    case API_PARAM_CHOICES:
+        api_out_key_string(out, "type", "array");
+        api_out_key(out, "items");
+        api_out_object_begin(out);
+        api_out_key_string(out, "type", "string");
+        api_schema_choices(out, "enum", parameter->choices);
+        api_out_object_end(out);
+        api_out_key_u64(out, "minItems", 1);
+        api_out_key_bool(out, "uniqueItems", true);
+        break;
     }
     api_out_object_end(out);
+    if (parameter->type == API_PARAM_CHOICES) {
+        api_out_key_string(out, "style", "form");
+        api_out_key_bool(out, "explode", false);
+    }
     api_out_object_end(out);
 }
 

@@ -2,6 +2,7 @@
 
 #include "api/json_out.h"
 #include "api/limits.h"
+#include "repair/repair.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -54,6 +55,9 @@ static const struct {
     [HE_NONMANIFOLD_EDGE] = {422, "An edge has at most two faces, one on each side."},
     [HE_ORIENTATION] = {422, "Faces that share an edge run along it in opposite directions, so "
                              "that all wind the same way."},
+    [HE_NOT_ORIENTABLE] = {422, "Around a strip of faces the sides change over, as on a Moebius "
+                                "band: however its faces are turned, two of them clash. With "
+                                "repair=orient,split it is cut there."},
     [HE_DOUBLED_EDGE] = {422, "Two vertices are joined by at most one edge."},
     [HE_CLOSED_FAN] = {422, "The faces about a vertex form one closed fan, or any number of open "
                             "ones: a closed fan shares its vertex with no other."},
@@ -168,6 +172,21 @@ void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     problem->has_pointer = true;
 }
 
+void api_problem_set_repairs(api_problem *problem, unsigned repairs)
+{
+    size_t used = strlen(problem->detail);
+    problem->repairs = repairs;
+    for (unsigned r = 0, named = 0; r < HE_REPAIR_COUNT; r++) {
+        if ((repairs >> r & 1) != 0) {
+            int length =
+                snprintf(problem->detail + used, sizeof problem->detail - used, "%s%s",
+                         named++ == 0 ? "; it passes with repair=" : ",", he_repair_names[r]);
+            used += length > 0 ? (size_t)length : 0;
+            used = used < sizeof problem->detail ? used : sizeof problem->detail - 1;
+        }
+    }
+}
+
 bool api_problem_set_core(api_problem *problem, const he_error *err)
 {
     if (problem->code != HE_OK) {
@@ -274,6 +293,16 @@ void api_problem_write(const api_problem *problem, const char *request_id, api_t
     }
     if (problem->report != NULL) {
         write_report(problem, &out);
+    }
+    if (problem->repairs != 0) {
+        api_out_key(&out, "repair");
+        api_out_array_begin(&out);
+        for (unsigned r = 0; r < HE_REPAIR_COUNT; r++) {
+            if ((problem->repairs >> r & 1) != 0) {
+                api_out_string(&out, he_repair_names[r]);
+            }
+        }
+        api_out_array_end(&out);
     }
     if (problem->has_revision) {
         api_out_key_u64(&out, "revision", problem->revision);

@@ -175,6 +175,7 @@ typedef struct api_problem {
     bool has_revision; /* the present one, with 412 */
     uint64_t revision;
     const he_report *report;      /* `elements` and `total`, borrowed; NULL: none */
+    unsigned repairs;             /* the set that lets the body pass (repair.h); 0: none */
     bool report_pointers;         /* add "/faces/3/1" to each: the body is a mesh document */
     const char *const *supported; /* with 406 and 415, ends in NULL, borrowed */
 } api_problem;
@@ -197,6 +198,9 @@ bool api_problem_set_core(api_problem *problem, const he_error *err);
 bool api_problem_set_path(api_problem *problem, const he_error *err);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/* Name the repairs that would let the body pass, in `detail` too. */
+void api_problem_set_repairs(api_problem *problem, unsigned repairs);
 
 /* Where in a mesh document a defect is: "/faces/3/1". */
 enum { API_DEFECT_POINTER = 40 };

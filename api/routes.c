@@ -2,7 +2,9 @@
 
 #include "api/attribute_value.h"
 #include "api/handlers.h"
+#include "repair/repair.h"
 
+#include <float.h>
 #include <string.h>
 
 /* --- media types --- */
@@ -68,6 +70,24 @@ static const api_parameter encoding = {
     0,          encodings,        "Text or binary, where a format has both; binary if not said."};
 static const api_parameter name = {
     "name", API_PARAM_TEXT, 0, API_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
+static const api_parameter repair = {
+    "repair",
+    API_PARAM_CHOICES,
+    0,
+    0,
+    he_repair_names,
+    "What may be done to what the structure cannot hold: these repairs in this order, whatever the "
+    "order here. weld makes vertices within the tolerance one; drop_degenerate leaves out faces "
+    "without three different corners, drop_duplicates those with the corners of an earlier face; "
+    "orient turns faces so that neighbours agree; split gives every fan of faces a vertex of its "
+    "own; fill closes small holes."};
+static const api_parameter tolerance = {
+    "tolerance", API_PARAM_NUMBER,
+    0,           DBL_MAX,
+    NULL,        "How far apart the vertices may be that weld makes one; 0 if not said."};
+static const api_parameter hole_edges = {
+    "hole_edges",  API_PARAM_U64, 3,
+    API_MAX_EXACT, NULL,          "The most edges of a hole that fill closes; 16 if not said."};
 static const api_parameter identity = {
     "id",        API_PARAM_TEXT, 0,
     API_MAX_URI, NULL,           "Id of the mesh to be made; the server chooses without."};
@@ -119,13 +139,13 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
-     .parameters = {&format, &name, &identity},
+     .parameters = {&format, &name, &identity, &repair, &tolerance, &hole_edges},
      .statuses = {201, 202, 409, 413, 415, 422},
      .request = "create",
      .response = "created",
      .summary = "Create a mesh",
      .doc = "From a mesh document, a shape, or a file. What the structure cannot hold is refused "
-            "with each offending element."},
+            "with each offending element, and with the repairs that would let it pass."},
 
     /* one mesh */
     {.method = "GET",
@@ -162,7 +182,7 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
-     .parameters = {&format, &name},
+     .parameters = {&format, &name, &repair, &tolerance, &hole_edges},
      .statuses = {200, 201, 202, 204, 409, 412, 413, 415, 422},
      .request = "create",
      .response = "created",
@@ -608,6 +628,26 @@ size_t api_route_count(void)
 const api_route *api_route_at(size_t i)
 {
     return &routes[i];
+}
+
+bool api_choices_parse(const char *const *choices, const char *list, unsigned *out)
+{
+    *out = 0;
+    for (const char *at = list;; at++) {
+        size_t length = strcspn(at, ","), i = 0;
+        while (choices[i] != NULL &&
+               (strlen(choices[i]) != length || memcmp(choices[i], at, length) != 0)) {
+            i++;
+        }
+        if (choices[i] == NULL || (*out >> i & 1) != 0) {
+            return false;
+        }
+        *out |= 1u << i;
+        at += length;
+        if (*at == '\0') {
+            return true;
+        }
+    }
 }
 
 const int *api_route_common(void)

@@ -24,10 +24,12 @@ typedef enum api_body_kind {
 } api_body_kind;
 
 typedef enum api_param_type {
-    API_PARAM_TEXT,  /* of at most `max` bytes */
-    API_PARAM_FLAG,  /* true or false */
-    API_PARAM_U64,   /* a whole number within min and max */
-    API_PARAM_CHOICE /* one of `choices` */
+    API_PARAM_TEXT,   /* of at most `max` bytes */
+    API_PARAM_FLAG,   /* true or false */
+    API_PARAM_U64,    /* a whole number within min and max */
+    API_PARAM_NUMBER, /* a finite number within min and max */
+    API_PARAM_CHOICE, /* one of `choices` */
+    API_PARAM_CHOICES /* some of them, joined by commas, each once */
 } api_param_type;
 
 typedef struct api_parameter {
@@ -82,6 +84,9 @@ typedef struct api_route {
 
 size_t api_route_count(void);
 const api_route *api_route_at(size_t i);
+/* The set of `choices` that a list of them joined by commas names, a bit each; false where it names
+ * another, one twice, or none. */
+bool api_choices_parse(const char *const *choices, const char *list, unsigned *out);
 /* Statuses any route may answer, those included that the server finds reasons for; ends in 0. */
 const int *api_route_common(void);
 

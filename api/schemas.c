@@ -79,7 +79,7 @@ static const member answers[] = {
     {"import", "format", "text", REQUIRED, NULL},
     {"import", "vertices", "count", REQUIRED, NULL},
     {"import", "faces", "count", REQUIRED, NULL},
-    {"import", "repairs", "nothing", REQUIRED, "Files are taken as they are or refused."},
+    {"import", "repairs", "*#repair", REQUIRED, "What was asked for, in the order it was done."},
     {"import", "warnings", "*#warning", REQUIRED, NULL},
     {"import", "more_warnings", "count", OPTIONAL, "How many are not listed."},
 
@@ -88,7 +88,26 @@ static const member answers[] = {
     {"warning", "count", "count", REQUIRED, "How often."},
     {"warning", "line", "count", OPTIONAL, "Where first, in a text."},
     {"warning", "byte", "count", OPTIONAL, "Where first, in a binary file."},
-    {"warning", "vertices", "*id", OPTIONAL, "bowtie: the first 100."},
+    {"warning", "lines", "*count", OPTIONAL, "Where, of the first 100 of all warnings."},
+    {"warning", "bytes", "*count", OPTIONAL, "The same in a binary file."},
+    {"warning", "vertices", "*id", OPTIONAL, "bowtie, isolated_vertices: the first 100."},
+
+    {"repair", "repair", "#repair_name", REQUIRED, NULL},
+    {"repair", "count", "count", REQUIRED,
+     "Vertices or faces gone, faces turned, or what was made."},
+    {"repair", "gone", "*id", OPTIONAL, "The first 100, numbered from 0 as in the body."},
+    {"repair", "into", "*id", OPTIONAL, "For each of these the id of the one that is kept."},
+    {"repair", "lines", "*count", OPTIONAL, "For each its line."},
+    {"repair", "bytes", "*count", OPTIONAL, "For each its first byte, in a binary file."},
+    {"repair", "faces", "*id", OPTIONAL, "orient, fill: the first 100 turned or made."},
+    {"repair", "components", "count", OPTIONAL, "orient: in which faces were turned."},
+    {"repair", "not_orientable", "count", OPTIONAL, "orient: components that are left to split."},
+    {"repair", "clashes", "*id", OPTIONAL, "A face of each of these, of the first 100."},
+    {"repair", "vertices", "count", OPTIONAL, "split: how many had several fans."},
+    {"repair", "parents", "#parents", OPTIONAL, "split: the first 100."},
+    {"repair", "left", "count", OPTIONAL, "fill: boundary loops that stay."},
+    {"repair", "tolerance", "number", OPTIONAL, "weld: the one that was used."},
+    {"repair", "hole_edges", "count", OPTIONAL, "fill: the one that was used."},
 
     {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
 
@@ -362,6 +381,7 @@ static const member answers[] = {
     {"problem", "element", "#problem_element", OPTIONAL, NULL},
     {"problem", "elements", "*#problem_element", OPTIONAL, "The first 100."},
     {"problem", "total", "count", OPTIONAL, "How many there are in all."},
+    {"problem", "repair", "*#repair_name", OPTIONAL, "The body passes with these repairs."},
     {"problem", "revision", "count", OPTIONAL, "The present one, with 412."},
     {"problem", "supported", "*text", OPTIONAL, "With 406 and 415."},
     {"problem", "request_id", "text", OPTIONAL, NULL},
@@ -508,6 +528,8 @@ static const struct {
                "m\":0}},\"required\":[\"problems\"],\"additionalProperties\":{\"type\":\"integer"
                "\",\"minimum\":0}}"},
     {"element_kind", "{\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\",\"mesh\"]}"},
+    {"repair_name", "{\"enum\":[\"weld\",\"drop_degenerate\",\"drop_duplicates\",\"orient\","
+                    "\"split\",\"fill\"]}"},
     {"op_size", "{\"enum\":[\"local\",\"whole\"]}"},
     {"action", "{\"enum\":[\"edit\",\"undo\",\"redo\",\"replace\"]}"},
     {"connection", "{\"enum\":[\"edge\",\"vertex\"]}"},
@@ -623,7 +645,6 @@ static void write_base(api_out *out, const char *type, size_t length)
         {"flag", "\"type\":\"boolean\""},
         {"text", "\"type\":\"string\""},
         {"time", "\"type\":\"string\",\"format\":\"date-time\""},
-        {"nothing", "\"type\":\"array\",\"maxItems\":0"},
     };
     for (size_t i = 0; i < sizeof bases / sizeof bases[0]; i++) {
         if (strlen(bases[i].name) == length && memcmp(bases[i].name, type, length) == 0) {

@@ -2,7 +2,9 @@
 
 #include "algo/shape.h"
 #include "api/document_in.h"
+#include "api/repairs.h"
 #include "format/format.h"
+#include "mesh/walk.h"
 #include "query/topology.h"
 
 #include <string.h>
@@ -11,7 +13,7 @@
 enum { SNIFF_BYTES = 512 };
 
 /* Of the making of a mesh; what is left is its summary's. */
-static const double SHAPE_SHARE = 0.2, BUILD_SHARE = 0.7;
+static const double SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7, FILL_SHARE = 0.75;
 
 typedef struct upload {
     he_limits limits;
@@ -29,8 +31,12 @@ typedef struct upload {
     const char *name;
 
     he_report report;
-    uint64_t vertices, faces; /* as read */
+    he_repair_plan plan;
+    he_repaired repaired;
+    size_t vertices, faces; /* as read */
     he_ids bowties;
+    uint64_t isolated;   /* vertices */
+    he_ids isolated_ids; /* the first */
 } upload;
 
 static void free_upload(void *state)
@@ -41,7 +47,9 @@ static void free_upload(void *state)
     if (u->has_import) {
         he_import_clear(&u->import);
     }
+    he_repaired_clear(&u->repaired);
     he_ids_clear(&u->bowties);
+    he_ids_clear(&u->isolated_ids);
     he_mem_free(u);
 }
 
@@ -67,6 +75,9 @@ bool api_upload_begin(api_exchange *x)
     x->state = u;
     x->free_state = free_upload;
     u->limits.bytes = 4 * x->service->options.max_upload;
+    if (!api_repairs_read(x, &u->plan)) {
+        return false;
+    }
     const char *name = api_param_text(x, "format");
     if (name == NULL && strcmp(x->media_in, "application/octet-stream") == 0) {
         return true; /* the first bytes will tell */
@@ -232,7 +243,8 @@ uint64_t api_upload_elements(const api_exchange *x)
         return size.vertices + size.corners;
     }
     const he_soup *soup = soup_of(u);
-    return soup->vertex_count + soup->corner_count;
+    uint64_t elements = soup->vertex_count + soup->corner_count;
+    return u->plan.which == 0 ? elements : 2 * elements; /* repairs read it as often as building */
 }
 
 const char *api_upload_name(const api_exchange *x)
@@ -241,9 +253,26 @@ const char *api_upload_name(const api_exchange *x)
     return u->name;
 }
 
+/* Which repairs would let the body pass. That none is found for want of memory leaves the refusal
+ * what it is. */
+static unsigned advise(upload *u, const he_error *err)
+{
+    unsigned which = 0;
+    bool is_structural = u->report.total > 0 || err->status == HE_NOT_ORIENTABLE;
+    if (!is_structural || (u->document != NULL && api_document_in_has_edges(u->document))) {
+        return 0;
+    }
+    return he_repair_advise(soup_of(u), u->plan.which, &which, NULL) == HE_OK ? which : 0;
+}
+
+/* Everything is named as in the body, whatever was repaired before it was refused. */
 static bool refuse(api_exchange *x, upload *u, he_error *err)
 {
-    if (u->document == NULL) {
+    if (u->report.total > 0) {
+        he_repaired_report(&u->repaired, &u->report);
+        he_report_fail(&u->report, err);
+    }
+    if (u->document == NULL && u->shape == NULL) {
         he_import_locate(&u->import, err);
     }
     api_fail_core(x, err);
@@ -256,7 +285,48 @@ static bool refuse(api_exchange *x, upload *u, he_error *err)
             api_problem_set_pointer(&x->problem, "%s", pointer);
         }
     }
+    unsigned which = advise(u, err);
+    if (which != 0) {
+        api_problem_set_repairs(&x->problem, which);
+    }
     return false;
+}
+
+/* Vertices without a face, the first of them with their ids. */
+static he_status find_isolated(upload *u, const he_mesh *mesh, he_error *err)
+{
+    he_status status = HE_OK;
+    uint32_t count = he_mesh_issued(mesh, HE_VERTEX);
+    for (uint32_t v = 0; v < count && status == HE_OK; v++) {
+        if (he_vertex_halfedge(mesh, (he_vertex){v}).i != HE_NONE) {
+            continue;
+        }
+        if (u->isolated++ < API_PROBLEM_ELEMENTS) {
+            status = he_ids_add(&u->isolated_ids, v, err);
+        }
+    }
+    return status;
+}
+
+/* From the repaired soup on. */
+static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
+{
+    he_error err = {0};
+    if (u->document != NULL && !api_document_in_attributes(u->document, mesh, &u->repaired,
+                                                           u->vertices, u->faces, &x->problem)) {
+        return false;
+    }
+    he_mesh_watch(mesh, x->watch);
+    he_watch_span(x->watch, FILL_SHARE);
+    he_status status = he_repair_mesh(mesh, &u->plan, &u->repaired, &err);
+    if (status == HE_OK) {
+        status = he_bowties_find(mesh, &u->bowties, &err);
+    }
+    if (status == HE_OK) {
+        status = find_isolated(u, mesh, &err);
+    }
+    he_mesh_watch(mesh, NULL);
+    return status == HE_OK || api_fail_core(x, &err);
 }
 
 bool api_upload_build(api_exchange *x, he_mesh **out)
@@ -276,29 +346,49 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     soup->limits.watch = x->watch;
     u->vertices = soup->vertex_count;
     u->faces = soup->face_count;
-    he_watch_span(x->watch, BUILD_SHARE);
-    he_status status = he_build(soup, HE_BUILD_TAKE, &mesh, &u->report, &err);
+    he_status status = HE_OK;
+    if (u->plan.which != 0) {
+        he_watch_span(x->watch, REPAIR_SHARE);
+        status = he_repair_soup(soup, &u->plan, &u->repaired, &err);
+    }
+    if (status == HE_OK) {
+        he_watch_span(x->watch, BUILD_SHARE);
+        status = he_build(soup, HE_BUILD_TAKE, &mesh, &u->report, &err);
+    }
     if (soup == &made) {
         he_soup_clear(&made);
     }
     if (status != HE_OK) {
         return refuse(x, u, &err);
     }
-    if (u->document != NULL && !api_document_in_attributes(u->document, mesh, &x->problem)) {
+    if (!finish(x, u, mesh)) {
         he_mesh_free(mesh);
         return false;
-    }
-    if (he_bowties_find(mesh, &u->bowties, &err) != HE_OK) {
-        he_mesh_free(mesh);
-        return api_fail_core(x, &err);
     }
     *out = mesh;
     return true;
 }
 
-static void write_note(api_out *out, const he_note *note)
+/* "lines":[7,12], or "bytes", of the first things it counts. */
+static void write_spots(api_out *out, const he_notes *notes, size_t i)
+{
+    if (notes->items[i].place == HE_PLACE_NONE || notes->items[i].count == 1) {
+        return;
+    }
+    api_out_key(out, notes->items[i].place == HE_PLACE_LINE ? "lines" : "bytes");
+    api_out_array_begin(out);
+    for (size_t k = 0; k < notes->spot_count; k++) {
+        if (notes->spots[k].note == i) {
+            api_out_u64(out, notes->spots[k].at);
+        }
+    }
+    api_out_array_end(out);
+}
+
+static void write_note(api_out *out, const he_notes *notes, size_t i)
 {
     char text[HE_ERROR_TEXT];
+    const he_note *note = &notes->items[i];
     he_note_text(note, text, sizeof text);
     api_out_object_begin(out);
     api_out_key_string(out, "code", note->code);
@@ -307,18 +397,30 @@ static void write_note(api_out *out, const he_note *note)
     if (note->place != HE_PLACE_NONE) {
         api_out_key_u64(out, note->place == HE_PLACE_LINE ? "line" : "byte", note->at);
     }
+    write_spots(out, notes, i);
     api_out_object_end(out);
 }
 
-static void write_bowties(api_out *out, const he_ids *bowties)
+/* What is unusual about vertices of the mesh; the first has its place, where it came from one. */
+static void write_vertices(api_out *out, const upload *u, const char *code, const char *detail,
+                           uint64_t count, const he_ids *ids)
 {
-    size_t named =
-        bowties->count < API_PROBLEM_ELEMENTS ? bowties->count : (size_t)API_PROBLEM_ELEMENTS;
+    size_t named = ids->count < API_PROBLEM_ELEMENTS ? ids->count : (size_t)API_PROBLEM_ELEMENTS;
+    const he_places *places = u->has_import ? &u->import.vertices : NULL;
+    if (count == 0) {
+        return;
+    }
     api_out_object_begin(out);
-    api_out_key_string(out, "code", "bowtie");
-    api_out_key_string(out, "detail", "fans of faces meet at a vertex without sharing an edge");
-    api_out_key_u64(out, "count", bowties->count);
-    api_out_key_ids(out, "vertices", bowties->ids, named);
+    api_out_key_string(out, "code", code);
+    api_out_key_string(out, "detail", detail);
+    api_out_key_u64(out, "count", count);
+    if (places != NULL && places->unit != HE_PLACE_NONE && places->count > 0) {
+        uint32_t v = ids->ids[0];
+        v = u->repaired.vertex_from == NULL ? v : u->repaired.vertex_from[v];
+        api_out_key_u64(out, places->unit == HE_PLACE_LINE ? "line" : "byte",
+                        he_places_find(places, v));
+    }
+    api_out_key_ids(out, "vertices", ids->ids, named);
     api_out_object_end(out);
 }
 
@@ -334,17 +436,16 @@ void api_upload_write_report(api_exchange *x)
                                           : "json");
     api_out_key_u64(out, "vertices", u->vertices);
     api_out_key_u64(out, "faces", u->faces);
-    api_out_key(out, "repairs");
-    api_out_array_begin(out);
-    api_out_array_end(out);
+    api_repairs_write(out, &u->plan, &u->repaired, u->has_import ? &u->import : NULL);
     api_out_key(out, "warnings");
     api_out_array_begin(out);
     for (size_t i = 0; u->has_import && i < u->import.notes.count; i++) {
-        write_note(out, &u->import.notes.items[i]);
+        write_note(out, &u->import.notes, i);
     }
-    if (u->bowties.count > 0) {
-        write_bowties(out, &u->bowties);
-    }
+    write_vertices(out, u, "bowtie", "fans of faces meet at a vertex without sharing an edge",
+                   u->bowties.count, &u->bowties);
+    write_vertices(out, u, "isolated_vertices", "no face has these vertices", u->isolated,
+                   &u->isolated_ids);
     api_out_array_end(out);
     if (u->has_import && u->import.notes.more > 0) {
         api_out_key_u64(out, "more_warnings", u->import.notes.more);

@@ -157,9 +157,9 @@ void he_import_locate(const he_import *import, he_error *err)
     if (err->place != HE_PLACE_NONE) {
         return;
     }
-    if (err->kind == HE_VERTEX && err->id < import->soup.vertex_count) {
+    if (err->kind == HE_VERTEX) {
         places = &import->vertices;
-    } else if (err->kind == HE_FACE && err->id < import->soup.face_count) {
+    } else if (err->kind == HE_FACE) {
         places = &import->faces;
     }
     if (places != NULL && places->count > 0) {

@@ -36,7 +36,7 @@ typedef struct he_import {
 } he_import;
 
 void he_import_clear(he_import *import);
-/* Give an error that names a vertex or face, such as he_build's, its place in the input. */
+/* Give an error that names a vertex or face of the input, such as he_build's, its place there. */
 void he_import_locate(const he_import *import, he_error *err);
 
 /* What a format's reader does; `state` is its own. `into` is the import to fill, which outlives the

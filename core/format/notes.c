@@ -12,6 +12,13 @@ void he_quote(const char *begin, const char *end, char *text, size_t size)
     text[length] = '\0';
 }
 
+static void add_spot(he_notes *notes, size_t note, he_place place, uint64_t at)
+{
+    if (place != HE_PLACE_NONE && notes->spot_count < HE_NOTE_SPOTS) {
+        notes->spots[notes->spot_count++] = (he_note_spot){note, at};
+    }
+}
+
 void he_notes_add(he_notes *notes, const char *code, const char *text, const char *subject,
                   size_t length, he_place place, uint64_t at)
 {
@@ -21,6 +28,7 @@ void he_notes_add(he_notes *notes, const char *code, const char *text, const cha
         he_note *note = &notes->items[i];
         if (strcmp(note->code, code) == 0 && strcmp(note->subject, name) == 0) {
             note->count++;
+            add_spot(notes, i, place, at);
             return;
         }
     }
@@ -31,6 +39,7 @@ void he_notes_add(he_notes *notes, const char *code, const char *text, const cha
     he_note *note = &notes->items[notes->count++];
     *note = (he_note){.code = code, .text = text, .count = 1, .place = place, .at = at};
     memcpy(note->subject, name, sizeof name);
+    add_spot(notes, notes->count - 1, place, at);
 }
 
 void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count)

@@ -1,7 +1,8 @@
 /* notes.h - what a reader or writer has to say besides success: content it passed over, or could
  * not carry.
  *
- * Notes of one code and subject are counted, not repeated. There is room for HE_NOTES of them and
+ * Notes of one code and subject are counted, not repeated; of the first HE_NOTE_SPOTS things the
+ * places are kept. There is room for HE_NOTES of them and
  * no memory to run out of; `more` counts what found no room. */
 #ifndef HE_FORMAT_NOTES_H
 #define HE_FORMAT_NOTES_H
@@ -10,7 +11,7 @@
 
 #include <stddef.h>
 
-enum { HE_NOTES = 32, HE_NOTE_SUBJECT = 80 };
+enum { HE_NOTES = 32, HE_NOTE_SUBJECT = 80, HE_NOTE_SPOTS = 100 };
 
 typedef struct he_note {
     const char *code;              /* a stable slug, static */
@@ -21,10 +22,18 @@ typedef struct he_note {
     uint64_t at;
 } he_note;
 
+/* Where one of the things was that a note counts. */
+typedef struct he_note_spot {
+    size_t note; /* its index */
+    uint64_t at;
+} he_note_spot;
+
 typedef struct he_notes {
     he_note items[HE_NOTES];
     size_t count;
     uint64_t more;
+    he_note_spot spots[HE_NOTE_SPOTS]; /* of all notes together, the first ones */
+    size_t spot_count;
 } he_notes;
 
 /* `subject` (may be NULL) is cut to fit and made printable. */

@@ -24,7 +24,7 @@ void he_defect_text(const he_defect *d, char *text, size_t size)
     }
 }
 
-static he_status refuse(const he_report *report, he_error *err)
+he_status he_report_fail(const he_report *report, he_error *err)
 {
     const he_defect *first = &report->defects[0];
     char text[HE_ERROR_TEXT];
@@ -307,7 +307,7 @@ static he_status build_links(he_soup *soup, unsigned flags, he_content *k, size_
     k->boundary_halfedges = b.boundary_count;
     status = check_fans(&b, report, total, err);
     if (status == HE_OK && *total > 0) {
-        status = refuse(report, err);
+        status = he_report_fail(report, err);
     }
     if (status != HE_OK) {
         goto out;
@@ -341,7 +341,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         status = he_soup_check_faces(soup, report, &total, err);
     }
     if (status == HE_OK && total > 0) {
-        status = refuse(report, err);
+        status = he_report_fail(report, err);
     }
     if (status != HE_OK) {
         goto out;
@@ -356,7 +356,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         status = he_soup_pair(soup, mate, &edges, report, &total, err);
     }
     if (status == HE_OK && total > 0) {
-        status = refuse(report, err);
+        status = he_report_fail(report, err);
     }
     if (status == HE_OK && edges > HE_MAX_ROWS) {
         status =

@@ -71,6 +71,8 @@ typedef struct he_report {
 
 /* One sentence, for people. */
 void he_defect_text(const he_defect *defect, char *text, size_t size);
+/* Fail with the first of a report that has any. */
+he_status he_report_fail(const he_report *report, he_error *err);
 
 /* The mesh is the caller's. Any defect fails with the reason of the first and its element; all of
  * them are in `report` (may be NULL). HE_NO_MEMORY, HE_IDS_EXHAUSTED, HE_CANCELLED. The soup is

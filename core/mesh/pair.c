@@ -124,16 +124,30 @@ static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entr
 
 typedef struct pairing {
     const he_soup *soup;
-    uint32_t *mate;
+    uint32_t *mate; /* NULL: only number the edges */
+    uint32_t *edge; /* of each corner; NULL: not wanted */
     size_t edges;
     he_report *report;
     uint64_t *total;
 } pairing;
 
-/* Entry `b` runs along the same edge as the earlier entry `a`. */
+/* Nobody before entry `a` runs along its edge. */
+static void begin_edge(pairing *p, const filed *a)
+{
+    if (p->edge != NULL) {
+        p->edge[a->corner] = (uint32_t)p->edges;
+    }
+    p->edges++;
+}
+
+/* Entry `b` runs along the same edge as the earlier entry `a`, the first of it. */
 static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
 {
     uint32_t far = b->far & ~DOWNWARD;
+    if (p->edge != NULL) {
+        p->edge[b->corner] = p->edge[a->corner];
+        return;
+    }
     if (p->mate[a->corner] != HE_NONE) {
         he_report_add(p->report, p->total,
                       (he_defect){HE_NONMANIFOLD_EDGE, HE_FACE, he_soup_face_of(p->soup, b->corner),
@@ -161,7 +175,7 @@ static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t 
         if (k < i) {
             pair_up(p, low, &entries[k], &entries[i]);
         } else {
-            p->edges++;
+            begin_edge(p, &entries[i]);
         }
     }
 }
@@ -177,7 +191,7 @@ static void pair_large(pairing *p, uint32_t low, const filed *entries, uint32_t 
             pair_up(p, low, &entries[k], &entries[i]);
         } else {
             first[far] = i;
-            p->edges++;
+            begin_edge(p, &entries[i]);
         }
     }
 }
@@ -187,9 +201,10 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_report *report,
-                       uint64_t *total, he_error *err)
+/* Meet all corners of each edge, in the order of the soup. */
+static he_status visit_edges(pairing *p, he_error *err)
 {
+    const he_soup *soup = p->soup;
     he_status status = HE_OK;
     const size_t vertices = soup->vertex_count;
     uint32_t *starts = he_mem_array(NULL, soup->vertex_count + 2, sizeof *starts);
@@ -203,10 +218,6 @@ he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_re
     if (status != HE_OK) {
         goto out;
     }
-    for (size_t c = 0; c < soup->corner_count; c++) {
-        mate[c] = HE_NONE;
-    }
-    pairing p = {soup, mate, 0, report, total};
     for (size_t v = 0; v < vertices; v++) {
         uint32_t begin = starts[v], end = starts[v + 1];
         status = he_watch_at(soup->limits.watch, v + 2 * vertices, 3 * vertices, err);
@@ -214,7 +225,7 @@ he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_re
             goto out;
         }
         if (end - begin <= SMALL_BUCKET) {
-            pair_small(&p, (uint32_t)v, entries + begin, end - begin);
+            pair_small(p, (uint32_t)v, entries + begin, end - begin);
             continue;
         }
         if (first == NULL) {
@@ -224,12 +235,35 @@ he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_re
                 goto out;
             }
         }
-        pair_large(&p, (uint32_t)v, entries, begin, end, first);
+        pair_large(p, (uint32_t)v, entries, begin, end, first);
     }
-    *edges = p.edges;
 out:
     he_mem_free(starts);
     he_mem_free(entries);
     he_mem_free(first);
+    return status;
+}
+
+he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_report *report,
+                       uint64_t *total, he_error *err)
+{
+    pairing p = {.soup = soup, .mate = mate, .report = report, .total = total};
+    for (size_t c = 0; c < soup->corner_count; c++) {
+        mate[c] = HE_NONE;
+    }
+    he_status status = visit_edges(&p, err);
+    if (status == HE_OK) {
+        *edges = p.edges;
+    }
+    return status;
+}
+
+he_status he_soup_number_edges(const he_soup *soup, uint32_t *edge, size_t *edges, he_error *err)
+{
+    pairing p = {.soup = soup, .edge = edge};
+    he_status status = visit_edges(&p, err);
+    if (status == HE_OK) {
+        *edges = p.edges;
+    }
     return status;
 }

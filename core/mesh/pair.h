@@ -1,4 +1,5 @@
-/* pair.h - which corners of a soup run along the same edge: the first half of he_build. */
+/* pair.h - which corners of a soup run along the same edge: the first half of he_build, and what
+ * repairs start from. */
 #ifndef HE_MESH_PAIR_H
 #define HE_MESH_PAIR_H
 
@@ -18,6 +19,11 @@ HE_NODISCARD he_status he_soup_check_faces(const he_soup *soup, he_report *repor
  * *total. *edges is the number of edges. */
 HE_NODISCARD he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges,
                                     he_report *report, uint64_t *total, he_error *err);
+
+/* edge[c] = the number of the edge from corner c to the next of its face, whatever the direction
+ * and however many faces share it. Room and faces as above. */
+HE_NODISCARD he_status he_soup_number_edges(const he_soup *soup, uint32_t *edge, size_t *edges,
+                                            he_error *err);
 
 /* The end of face f's corners. */
 static inline uint32_t he_soup_end(const he_soup *soup, size_t f)

@@ -38,6 +38,7 @@
     X(REPEATED_CORNER, "repeated_corner", "A face would visit a vertex twice")                \
     X(NONMANIFOLD_EDGE, "nonmanifold_edge", "An edge would have more than two faces")         \
     X(ORIENTATION, "orientation", "Two faces would run along an edge in the same direction")  \
+    X(NOT_ORIENTABLE, "not_orientable", "Faces cannot be turned so that all agree")           \
     X(DOUBLED_EDGE, "doubled_edge", "Two edges would join the same two vertices")             \
     X(CLOSED_FAN, "closed_fan", "A closed fan would share its vertex with another fan")       \
     /* what an edit asks of its place */                                                      \

@@ -58,6 +58,14 @@ typedef struct write {
 static const write writes[] = {
     {"POST", "/v1/meshes?id=new", 201, "{\"shape\":\"cube\"}", {NULL}, ONCE},
     {"POST", "/v1/meshes", 201, "{\"vertices\":[[0,0,0]],\"faces\":[]}", {NULL}, ONCE},
+    {"POST",
+     "/v1/meshes?repair=weld,drop_degenerate,drop_duplicates,orient,split,fill",
+     201,
+     "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0,0,1],[1,1,1]],\"faces\":[[0,1,2],[1,2,0],"
+     "[3,3,1],[1,0,3],[0,1,5],[4,2,1]],\"attributes\":[{\"domain\":\"vertices\",\"name\":\"n\","
+     "\"type\":\"uint32\",\"values\":[0,1,2,3,4,5]}]}",
+     {NULL},
+     ONCE},
     {"PUT", "/v1/meshes/new", 201, "{\"shape\":\"cube\"}", {NULL}, ONCE},
     {"PUT", "/v1/meshes/m", 200, "{\"shape\":\"octahedron\"}", {NULL}, ONCE},
     {"PUT", "/v1/meshes/m", 204, "{\"shape\":\"octahedron\"}", {"Prefer", "return=minimal"}, ONCE},

@@ -24,13 +24,14 @@ const MEDIA_TYPES = {
 
 // What the server (or the way to it) refused: an RFC 9457 problem.
 export class Problem extends Error {
-    constructor({ status = 0, title = '', detail = '', code = '', pointer = '' }) {
+    constructor({ status = 0, title = '', detail = '', code = '', pointer = '', repair = [] }) {
         super(detail || title);
         this.status = status;
         this.title = title;
         this.detail = detail;
         this.code = code;
         this.pointer = pointer;
+        this.repair = repair;
     }
 }
 
@@ -289,21 +290,23 @@ async function finish(first, work) {
     return job.result ?? null;
 }
 
-// Create a mesh of a file; `onProgress` gets the sent part, 0 to 1. Returns the new mesh's summary.
+// Create a mesh of a file; `onProgress` gets the sent part, 0 to 1; `repairs` are to be applied.
+// Returns the new mesh's summary.
 // fetch cannot tell how much was sent, hence XMLHttpRequest.
-export async function upload(file, onProgress, work) {
-    const { status, answer } = await send(file, onProgress, work);
+export async function upload(file, onProgress, work, repairs = []) {
+    const { status, answer } = await send(file, onProgress, work, repairs);
     onProgress(1);
     return status === 202 ? finish(answer, work) : answer;
 }
 
-function send(file, onProgress, work) {
+function send(file, onProgress, work, repairs) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;
     const type = MEDIA_TYPES[file.name.slice(dot + 1).toLowerCase()];
     return new Promise((resolve, reject) => {
         const sender = new XMLHttpRequest();
-        sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}`);
+        const repair = repairs.length > 0 ? `&repair=${repairs.join(',')}` : '';
+        sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}${repair}`);
         sender.setRequestHeader('Content-Type', type ?? (file.type || 'application/octet-stream'));
         sender.setRequestHeader('Prefer', 'respond-async');
         sender.upload.onprogress = (event) => {

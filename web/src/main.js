@@ -118,7 +118,7 @@ new Uploads(
             await session.open(summary.id);
             toasts.tell(`Read ${file.name}`, importOf(summary));
         },
-        onError: fail,
+        onError: (error, again) => toasts.show(error, again),
     },
 );
 const directTools = ['move', 'extrude', 'inset'];

@@ -15,14 +15,24 @@ export class Toasts {
         this.#region = region;
     }
 
-    // Show an error: the server's words where it has any.
-    show(error) {
+    // Show an error: the server's words where it has any. `again` (a label and what to run) is a
+    // button that mends it.
+    show(error, again) {
         const title = error.title || 'Something went wrong';
         const detail = error.detail || error.message || String(error);
         // The page sends one operation at a time: that it is the first says nothing.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
-        this.#add('alert', title, `${detail}${where}`);
+        const toast = this.#add('alert', title, `${detail}${where}`);
+        if (again) {
+            const onclick = () => {
+                toast.remove();
+                again.run();
+            };
+            toast.firstElementChild.append(
+                make('button', { type: 'button', onclick }, again.label),
+            );
+        }
     }
 
     // Show what went well.

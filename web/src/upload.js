@@ -10,7 +10,8 @@ export class Uploads {
     #depth = 0;
 
     // `send(file, onProgress, work)` uploads one file; `onDone(summary, file)` gets what became of
-    // it; `work` shows it, see work.js.
+    // it; `work` shows it, see work.js. `onError(error, again)`: where repairs let the file pass,
+    // `again` has their names as its label and sends it once more with them.
     constructor({ input, work, area }, { send, onDone, onError }) {
         this.#work = work;
         this.#area = area;
@@ -59,11 +60,18 @@ export class Uploads {
 
     #add(files) {
         for (const file of files) {
-            this.#queue = this.#queue.then(() => this.#upload(file));
+            this.#queue = this.#queue.then(() => this.#upload(file, []));
         }
     }
 
-    async #upload(file) {
+    #again(file, repairs) {
+        const run = () => {
+            this.#queue = this.#queue.then(() => this.#upload(file, repairs));
+        };
+        return { label: `Upload with ${repairs.join(', ')}`, run };
+    }
+
+    async #upload(file, repairs) {
         this.#work.start(`Uploading ${file.name}`, true);
         try {
             const onProgress = (part) => {
@@ -72,9 +80,9 @@ export class Uploads {
                 }
                 this.#work.show({ progress: part });
             };
-            await this.#onDone(await this.#send(file, onProgress, this.#work), file);
+            await this.#onDone(await this.#send(file, onProgress, this.#work, repairs), file);
         } catch (error) {
-            this.#onError(error);
+            this.#onError(error, error.repair?.length > 0 && this.#again(file, error.repair));
         } finally {
             this.#work.end();
         }

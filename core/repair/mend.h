@@ -1,0 +1,45 @@
+/* mend.h - the soup under repair, shared by the files of this room. */
+#ifndef HE_REPAIR_MEND_H
+#define HE_REPAIR_MEND_H
+
+#include "repair/repair.h"
+
+typedef struct he_mend {
+    he_soup *soup;
+    he_repaired *out;
+    bool has_corner_values; /* attributes whose rows follow the corners */
+    uint32_t *corner_from;  /* the input's corner of each; NULL: all kept their number */
+} he_mend;
+
+static inline void he_mend_name(he_repair_account *account, uint32_t a, uint32_t b)
+{
+    if (account->named < HE_REPAIR_NAMED) {
+        account->pairs[account->named++] = (he_repair_pair){a, b};
+    }
+}
+static inline uint32_t he_mend_input(const uint32_t *from, uint32_t i)
+{
+    return from == NULL ? i : from[i];
+}
+/* A list 0, 1, 2... of `count`, with room for `room`. NULL when memory is out. */
+uint32_t *he_mend_same(size_t count, size_t room);
+/* Make sure that there is m->corner_from, if it is wanted. */
+HE_NODISCARD he_status he_mend_corners(he_mend *m, he_error *err);
+/* Does a corner name no vertex? */
+bool he_mend_has_bad_index(const he_soup *soup);
+/* face_of[c] = the face that has corner c. */
+void he_mend_faces(const he_soup *soup, uint32_t *face_of);
+
+/* The repairs. Faces are proper for those below, as he_soup_check_faces has it. */
+HE_NODISCARD he_status he_mend_weld(he_mend *m, double tolerance, he_error *err);
+HE_NODISCARD he_status he_mend_drop_degenerate(he_mend *m, he_error *err);
+/* --- */
+HE_NODISCARD he_status he_mend_drop_duplicates(he_mend *m, he_error *err);
+/* With `force` what cannot be oriented is turned as well as may be, else it fails. */
+HE_NODISCARD he_status he_mend_orient(he_mend *m, bool force, he_error *err);
+HE_NODISCARD he_status he_mend_split(he_mend *m, he_error *err);
+
+/* Would he_build refuse the soup, whose faces are turned as they are to be, unless it is split? */
+HE_NODISCARD he_status he_mend_needs_split(const he_soup *soup, bool *out, he_error *err);
+
+#endif

@@ -1,0 +1,303 @@
+/* split: a vertex for each fan.
+ *
+ * Corners are mates where their faces stay joined along an edge. About a vertex, corner c is
+ * followed by the one after its mate, and preceded by the mate of the one before it:
+ *
+ *            v                     c leaves v; so do the corner after mate(c), in the face on
+ *          / | \                   the other side of c's edge, and mate(before(c)).
+ *      c  /  |  \  mate(before(c))
+ *        /   |   \
+ *       o----o----o
+ *
+ * When every fan has a copy of its own, corners that were not mates may still run along the same
+ * edge: both ends of a fan that reaches around a vertex, say. Two of them run in opposite
+ * directions then, since the fan winds consistently, and he_build joins them. Where mates meet
+ * others so, more than two share the edge: they are no mates any longer, and the fans are found
+ * again. The second time none are left, because all corners along such an edge are ends of fans,
+ * and a fan has two. */
+#include "mesh/pair.h"
+#include "repair/mend.h"
+
+#include <string.h>
+
+typedef struct splitting {
+    const he_soup *soup;
+    uint32_t *mate, *face_of;
+    uint32_t *to;      /* each corner's vertex afterwards */
+    uint32_t *parents; /* of the copies */
+    size_t copies, capacity;
+    bool is_crowded;  /* an edge has more than two corners, or two in one direction */
+    bool has_closed;  /* a vertex has a closed fan and another */
+    uint64_t *done;   /* corners whose fan is found */
+    uint64_t *taken;  /* vertices that a fan has */
+    uint64_t *closed; /* vertices whose first fan is closed */
+} splitting;
+
+static he_status no_memory(const he_soup *soup, he_error *err)
+{
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory to split %zu faces apart", soup->face_count);
+}
+
+static uint32_t after(const splitting *s, uint32_t c)
+{
+    uint32_t f = s->face_of[c];
+    return c + 1 < he_soup_end(s->soup, f) ? c + 1 : s->soup->starts[f];
+}
+
+static uint32_t before(const splitting *s, uint32_t c)
+{
+    uint32_t f = s->face_of[c];
+    return (c > s->soup->starts[f] ? c : he_soup_end(s->soup, f)) - 1;
+}
+
+/* Pair the corners of every edge: each with the first one waiting that runs the other way. All that
+ * wait at an edge run the same way, so they are a queue, chained by `mate`. */
+static he_status pair(splitting *s, he_error *err)
+{
+    const he_soup *soup = s->soup;
+    size_t edges = 0;
+    uint32_t *edge_of = s->to; /* lent until the fans are found */
+    uint32_t *head = NULL, *tail = NULL;
+    he_status status = he_soup_number_edges(soup, edge_of, &edges, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    head = he_mem_array(NULL, edges, sizeof *head);
+    tail = he_mem_zero(edges + 1, sizeof *tail);
+    if (head == NULL || tail == NULL) {
+        he_mem_free(head);
+        he_mem_free(tail);
+        return no_memory(soup, err);
+    }
+    for (size_t e = 0; e < edges; e++) {
+        head[e] = HE_NONE;
+    }
+    for (uint32_t c = 0; c < soup->corner_count; c++) {
+        uint32_t e = edge_of[c], first = head[e];
+        if (first != HE_NONE && soup->corners[first] != soup->corners[c]) {
+            head[e] = s->mate[first];
+            s->mate[first] = c;
+            s->mate[c] = first;
+            continue;
+        }
+        s->mate[c] = HE_NONE;
+        if (first == HE_NONE) {
+            head[e] = c;
+        } else {
+            s->mate[tail[e]] = c;
+        }
+        tail[e] = c;
+    }
+    for (size_t e = 0; e < edges; e++) {
+        s->is_crowded = s->is_crowded || (head[e] != HE_NONE && s->mate[head[e]] != HE_NONE);
+        for (uint32_t c = head[e]; c != HE_NONE;) {
+            uint32_t waits = s->mate[c];
+            s->mate[c] = HE_NONE;
+            c = waits;
+        }
+        tail[e] = 0;
+    }
+    for (size_t c = 0; c < soup->corner_count; c++) {
+        s->is_crowded = ++tail[edge_of[c]] > 2 || s->is_crowded;
+    }
+    he_mem_free(head);
+    he_mem_free(tail);
+    return HE_OK;
+}
+
+static he_status add_copy(splitting *s, uint32_t parent, he_error *err)
+{
+    if (s->copies == s->capacity) {
+        size_t capacity = he_mem_grown(s->capacity, s->copies + 1);
+        uint32_t *parents = he_mem_array(s->parents, capacity, sizeof *parents);
+        if (parents == NULL) {
+            return no_memory(s->soup, err);
+        }
+        s->parents = parents;
+        s->capacity = capacity;
+    }
+    s->parents[s->copies++] = parent;
+    return HE_OK;
+}
+
+/* The vertex of the fan that corner c begins, or a part of it when that is open. */
+static he_status find_fan(splitting *s, uint32_t c, he_error *err)
+{
+    uint32_t v = s->soup->corners[c], vertex = v;
+    bool is_first = !he_bits_get(s->taken, v);
+    if (!is_first) {
+        vertex = (uint32_t)(s->soup->vertex_count + s->copies);
+        he_status status = add_copy(s, v, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    he_bits_set(s->taken, v);
+    bool is_closed = false;
+    uint32_t at = c;
+    do {
+        s->to[at] = vertex;
+        he_bits_set(s->done, at);
+        uint32_t mate = s->mate[at];
+        at = mate == HE_NONE ? HE_NONE : after(s, mate);
+        is_closed = at == c;
+    } while (at != HE_NONE && !is_closed);
+    for (at = c; !is_closed && (at = s->mate[before(s, at)]) != HE_NONE;) {
+        s->to[at] = vertex;
+        he_bits_set(s->done, at);
+    }
+    if (is_first && is_closed) {
+        he_bits_set(s->closed, v);
+    } else if (!is_first && (is_closed || he_bits_get(s->closed, v))) {
+        s->has_closed = true;
+    }
+    return HE_OK;
+}
+
+static void clear_bits(uint64_t *bits, size_t count)
+{
+    memset(bits, 0, (count + 63) / 64 * sizeof *bits);
+}
+
+static he_status find_fans(splitting *s, he_error *err)
+{
+    const he_soup *soup = s->soup;
+    he_status status = HE_OK;
+    clear_bits(s->done, soup->corner_count);
+    clear_bits(s->taken, soup->vertex_count);
+    clear_bits(s->closed, soup->vertex_count);
+    s->copies = 0;
+    for (uint32_t c = 0; c < soup->corner_count && status == HE_OK; c++) {
+        status = he_watch_at(soup->limits.watch, c, soup->corner_count, err);
+        if (status == HE_OK && !he_bits_get(s->done, c)) {
+            status = find_fan(s, c, err);
+        }
+    }
+    return status;
+}
+
+/* Part the mates that meet others along the same edge; *found says that there were some. */
+static he_status part(splitting *s, bool *found, he_error *err)
+{
+    const he_soup *soup = s->soup;
+    he_soup now = *soup; /* as it would be; only read */
+    size_t edges = 0;
+    now.corners = s->to;
+    now.vertex_count += s->copies;
+    uint32_t *met = NULL;
+    uint32_t *edge_of = he_mem_array(NULL, soup->corner_count, sizeof *edge_of);
+    he_status status = HE_OK;
+    *found = false;
+    if (edge_of == NULL) {
+        return no_memory(soup, err);
+    }
+    status = he_soup_number_edges(&now, edge_of, &edges, err);
+    if (status == HE_OK) {
+        met = he_mem_zero(edges + 1, sizeof *met);
+        status = met == NULL ? no_memory(soup, err) : HE_OK;
+    }
+    for (size_t c = 0; c < soup->corner_count && status == HE_OK; c++) {
+        met[edge_of[c]]++;
+    }
+    for (size_t c = 0; c < soup->corner_count && status == HE_OK; c++) {
+        if (met[edge_of[c]] > 2) {
+            *found = *found || s->mate[c] != HE_NONE;
+            s->mate[c] = HE_NONE;
+        }
+    }
+    he_mem_free(edge_of);
+    he_mem_free(met);
+    return status;
+}
+
+static void clear(splitting *s)
+{
+    he_mem_free(s->mate);
+    he_mem_free(s->face_of);
+    he_mem_free(s->to);
+    he_mem_free(s->parents);
+    he_mem_free(s->done);
+    he_mem_free(s->taken);
+    he_mem_free(s->closed);
+}
+
+static he_status plan(splitting *s, he_error *err)
+{
+    const he_soup *soup = s->soup;
+    s->mate = he_mem_array(NULL, soup->corner_count, sizeof *s->mate);
+    s->face_of = he_mem_array(NULL, soup->corner_count, sizeof *s->face_of);
+    s->to = he_mem_array(NULL, soup->corner_count, sizeof *s->to);
+    s->done = he_bits_new(soup->corner_count);
+    s->taken = he_bits_new(soup->vertex_count);
+    s->closed = he_bits_new(soup->vertex_count);
+    if (s->mate == NULL || s->face_of == NULL || s->to == NULL || s->done == NULL ||
+        s->taken == NULL || s->closed == NULL) {
+        return no_memory(soup, err);
+    }
+    bool again = false;
+    he_mend_faces(soup, s->face_of);
+    he_status status = pair(s, err);
+    if (status == HE_OK) {
+        status = find_fans(s, err);
+    }
+    if (status == HE_OK && s->is_crowded) {
+        status = part(s, &again, err);
+    }
+    if (status == HE_OK && again) {
+        status = find_fans(s, err);
+    }
+    return status;
+}
+
+/* Nothing of the soup is written before all memory is there. */
+static he_status apply(he_mend *m, splitting *s, he_error *err)
+{
+    he_soup *soup = m->soup;
+    he_repaired *out = m->out;
+    he_repair_account *account = &out->accounts[HE_REPAIR_SPLIT];
+    size_t old = soup->vertex_count, all = old + s->copies;
+    uint32_t *from = out->vertex_from == NULL ? he_mend_same(old, all)
+                                              : he_mem_array(out->vertex_from, all, sizeof *from);
+    if (from == NULL) {
+        return no_memory(soup, err);
+    }
+    out->vertex_from = from;
+    he_status status = HE_OK;
+    clear_bits(s->taken, old);
+    for (size_t i = 0; i < s->copies && status == HE_OK; i++) {
+        uint32_t parent = s->parents[i];
+        from[old + i] = from[parent];
+        status = he_soup_add_vertex(soup, soup->positions[parent], err);
+        he_mend_name(account, (uint32_t)(old + i), parent);
+        account->parts += !he_bits_get(s->taken, parent);
+        he_bits_set(s->taken, parent);
+    }
+    account->count = s->copies;
+    out->vertices = all;
+    if (status == HE_OK) {
+        memcpy(soup->corners, s->to, soup->corner_count * sizeof *soup->corners);
+    }
+    return status;
+}
+
+he_status he_mend_split(he_mend *m, he_error *err)
+{
+    splitting s = {.soup = m->soup};
+    he_status status = plan(&s, err);
+    if (status == HE_OK && s.copies > 0) {
+        status = apply(m, &s, err);
+    }
+    clear(&s);
+    return status;
+}
+
+he_status he_mend_needs_split(const he_soup *soup, bool *out, he_error *err)
+{
+    splitting s = {.soup = soup};
+    he_status status = plan(&s, err);
+    if (status == HE_OK) {
+        *out = s.is_crowded || s.has_closed;
+    }
+    clear(&s);
+    return status;
+}
