@@ -62,10 +62,30 @@ static size_t join(const char *p, const char *end, char *to)
     return length;
 }
 
+he_status he_spans_set_label(he_spans *spans, size_t face, const char *text, size_t length,
+                             he_error *err)
+{
+    uint32_t value = 0;
+    he_status status = HE_OK;
+    if (spans->labels == NULL) {
+        spans->labels = he_labels_new();
+        if (spans->labels == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
+        }
+    }
+    /* the default row is 0, so 0 must be the empty name, even after a failed attempt */
+    if (he_labels_count(spans->labels) == 0) {
+        status = he_labels_add(spans->labels, "", 0, &value, err);
+    }
+    if (status == HE_OK) {
+        status = he_labels_add(spans->labels, text, length, &value, err);
+    }
+    return status == HE_OK ? he_spans_set(spans, face, value, err) : status;
+}
+
 he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, const char *p,
                             he_notes *notes, he_error *err)
 {
-    uint32_t value;
     he_status status = HE_OK;
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
@@ -88,23 +108,7 @@ he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, c
         length = widen(name, length, name + room);
         text = name + room;
     }
-    if (spans->labels == NULL) {
-        spans->labels = he_labels_new();
-        if (spans->labels == NULL) {
-            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
-            goto out;
-        }
-    }
-    /* the default row is 0, so 0 must be the empty name, even after a failed attempt */
-    if (he_labels_count(spans->labels) == 0) {
-        status = he_labels_add(spans->labels, "", 0, &value, err);
-    }
-    if (status == HE_OK) {
-        status = he_labels_add(spans->labels, text, length, &value, err);
-    }
-    if (status == HE_OK) {
-        status = he_spans_set(spans, face, value, err);
-    }
+    status = he_spans_set_label(spans, face, text, length, err);
 out:
     he_mem_free(name);
     return status;
