@@ -21,6 +21,7 @@ static const he_format formats[] = {
                         "face attributes in extras", "halfedge attributes in extras"),
         .sniff = he_glb_sniff,
         .reading = &he_glb_reading,
+        .writing = &he_glb_writing,
     },
     {
         .name = "gltf",
