@@ -60,6 +60,24 @@ static const api_example examples[] = {
                  "\"memory_bytes\":312,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"off\","
                  "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
+    {.route = "meshes_create",
+     .target = "/v1/meshes?id=tile-gltf",
+     .consumes = "model/gltf+json",
+     .request = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,"
+                "\"uri\":\"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],"
+                "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{"
+                "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+                "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+     .status = 201,
+     .produces = "application/json",
+     .response = "{\"id\":\"tile-gltf\",\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":3,"
+                 "\"halfedges\":6,\"edges\":3,\"faces\":1,\"boundary_loops\":1,"
+                 "\"isolated_vertices\":0,\"components\":1,\"components_by_edge\":1},\"euler\":1,"
+                 "\"genus\":0,\"closed\":false,\"manifold\":true,\"degrees\":{\"3\":1},"
+                 "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":0.5,\"volume\":null,"
+                 "\"memory_bytes\":312,\"created\":\"2026-01-01T12:00:00.000Z\","
+                 "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"gltf\","
+                 "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
     {.route = "meshes_list",
      .target = "/v1/meshes",
      .status = 200,
@@ -69,7 +87,9 @@ static const api_example examples[] = {
                  "{\"id\":\"kite\",\"name\":\"kite\",\"revision\":1,\"counts\":{\"vertices\":4,"
                  "\"halfedges\":10,\"edges\":5,\"faces\":2}},{\"id\":\"tile\",\"name\":\"tile\","
                  "\"revision\":1,\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,"
-                 "\"faces\":1}},{\"id\":\"tile-off\",\"name\":\"\",\"revision\":1,"
+                 "\"faces\":1}},{\"id\":\"tile-gltf\",\"name\":\"\",\"revision\":1,"
+                 "\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,\"faces\":1}},"
+                 "{\"id\":\"tile-off\",\"name\":\"\",\"revision\":1,"
                  "\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,\"faces\":1}}],"
                  "\"next\":null,\"listeners\":0}"},
     {.route = "mesh_get",

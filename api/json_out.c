@@ -1,7 +1,7 @@
 #include "api/json_out.h"
 
-#include "api/utf8.h"
 #include "format/number.h"
+#include "mesh/utf8.h"
 
 #include <assert.h>
 #include <math.h>
@@ -115,7 +115,7 @@ static void add_string(api_text *text, const char *bytes, size_t length)
             i++;
             continue;
         }
-        size_t size = c < 0x80 ? 0 : api_utf8_character(bytes + i, length - i);
+        size_t size = c < 0x80 ? 0 : he_utf8_character(bytes + i, length - i);
         if (size > 0) {
             i += size;
             continue;

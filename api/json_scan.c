@@ -1,8 +1,8 @@
 #include "api/json_scan.h"
 
 #include "api/limits.h"
-#include "api/utf8.h"
 #include "format/number.h"
+#include "mesh/utf8.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -184,7 +184,7 @@ static bool scan_string(scan *s)
         } else if (c < 0x20) {
             return refuse(s, API_MALFORMED_JSON, "a control character stands raw in a string");
         } else {
-            size_t size = api_utf8_character(s->at, (size_t)(s->end - s->at));
+            size_t size = he_utf8_character(s->at, (size_t)(s->end - s->at));
             if (size == 0) {
                 return refuse(s, API_MALFORMED_JSON, "the string is not UTF-8");
             }

@@ -1,7 +1,7 @@
 #include "api/path.h"
 
 #include "api/store.h"
-#include "api/utf8.h"
+#include "mesh/utf8.h"
 
 #include <string.h>
 
@@ -43,7 +43,7 @@ static const char *decode(const char *raw, size_t length, int code, bool slash, 
         out[used++] = c;
     }
     out[used] = '\0';
-    if (!api_is_utf8(out, used)) {
+    if (!he_is_utf8(out, used)) {
         api_problem_set(problem, code, "the text is not UTF-8");
         return NULL;
     }

@@ -14,16 +14,13 @@ static const char *const merge_patch[] = {"application/merge-patch+json", "appli
 static const char *const octets[] = {"application/octet-stream", NULL};
 static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
 static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
-static const char *const mesh_in[] = {"application/json",
-                                      "model/obj",
-                                      "model/x-off",
-                                      "model/ply",
-                                      "application/ply",
-                                      "model/stl",
-                                      "application/octet-stream",
-                                      NULL};
-static const char *const mesh_out[] = {"application/json", "model/obj", "model/x-off",
-                                       "model/ply",        "model/stl", NULL};
+static const char *const mesh_in[] = {
+    "application/json",         "model/obj", "model/x-off",       "model/ply",
+    "application/ply",          "model/stl", "model/gltf-binary", "model/gltf+json",
+    "application/octet-stream", NULL};
+static const char *const mesh_out[] = {
+    "application/json", "model/obj",         "model/x-off", "model/ply",
+    "model/stl",        "model/gltf-binary", NULL};
 static const char *const event_stream[] = {"text/event-stream", NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
@@ -39,7 +36,7 @@ static const char *const anything[] = {"text/html",
 
 /* --- query parameters --- */
 
-static const char *const formats[] = {"obj", "off", "ply", "stl", "json", NULL};
+static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "gltf", "json", NULL};
 static const char *const encodings[] = {"ascii", "binary", "binary_big_endian", NULL};
 static const char *const connections[] = {"vertex", "edge", NULL};
 

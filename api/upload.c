@@ -111,7 +111,10 @@ static bool choose(api_exchange *x, upload *u)
     while (blank < u->head_length && strchr(" \t\r\n", u->head[blank]) != NULL) {
         blank++;
     }
-    bool json = blank < u->head_length && u->head[blank] == '{';
+    /* glTF is JSON too, with a member that our document has not */
+    const he_format *gltf = he_format_find("gltf");
+    bool json =
+        blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
     const he_format *format = json ? NULL : he_format_sniff(u->head, u->head_length);
     if (!json && (format == NULL || format->reading == NULL)) {
         api_fail(x, API_UNSUPPORTED_MEDIA_TYPE,

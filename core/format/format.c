@@ -1,5 +1,6 @@
 #include "format/format.h"
 
+#include "format/gltf.h"
 #include "format/obj.h"
 #include "format/off.h"
 #include "format/ply.h"
@@ -10,6 +11,28 @@
 #define LIST(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 static const he_format formats[] = {
+    {
+        .name = "glb",
+        .doc = "glTF 2.0 in its binary container, without anything outside the file",
+        .media_types = LIST("model/gltf-binary"),
+        .extensions = LIST("glb"),
+        .encodings = LIST("binary"),
+        .carries = LIST("triangles", "polygons in extras", "isolated vertices", "vertex attributes",
+                        "face attributes in extras", "halfedge attributes in extras"),
+        .sniff = he_glb_sniff,
+        .reading = &he_glb_reading,
+        .writing = &he_glb_writing,
+    },
+    {
+        .name = "gltf",
+        .doc = "glTF 2.0 as JSON, its buffers in data: URIs",
+        .media_types = LIST("model/gltf+json"),
+        .extensions = LIST("gltf"),
+        .encodings = LIST("ascii"),
+        .carries = LIST("triangles"),
+        .sniff = he_gltf_sniff,
+        .reading = &he_gltf_reading,
+    },
     {
         .name = "off",
         .doc = "Object File Format, text: OFF with any of the prefixes ST, C and N",

@@ -1,5 +1,7 @@
 #include "format/spans.h"
 
+#include "mesh/utf8.h"
+
 #include <string.h>
 
 void he_spans_clear(he_spans *spans)
@@ -27,39 +29,6 @@ he_status he_spans_set(he_spans *spans, size_t face, uint32_t value, he_error *e
         changes->count = n + 2;
     }
     return status;
-}
-
-/* The length of the UTF-8 sequence at `p`, 0 when it is none. Table 3-7 of the Unicode standard. */
-static size_t sequence(const unsigned char *p, const unsigned char *end)
-{
-    size_t length = *p < 0x80 ? 1 : *p < 0xC2 ? 0 : *p < 0xE0 ? 2 : *p < 0xF0 ? 3 : 4;
-    if (*p > 0xF4 || length > (size_t)(end - p)) {
-        return 0;
-    }
-    for (size_t i = 1; i < length; i++) {
-        unsigned low = 0x80, high = 0xBF;
-        if (i == 1) {
-            low = *p == 0xE0 ? 0xA0 : *p == 0xF0 ? 0x90 : low;
-            high = *p == 0xED ? 0x9F : *p == 0xF4 ? 0x8F : high;
-        }
-        if (p[i] < low || p[i] > high) {
-            return 0;
-        }
-    }
-    return length;
-}
-
-static bool is_utf8(const char *text, size_t size)
-{
-    const unsigned char *p = (const unsigned char *)text, *end = p + size;
-    while (p < end) {
-        size_t length = sequence(p, end);
-        if (length == 0) {
-            return false;
-        }
-        p += length;
-    }
-    return true;
 }
 
 /* Latin-1 as UTF-8; `to` has room for twice the bytes. */
@@ -93,10 +62,30 @@ static size_t join(const char *p, const char *end, char *to)
     return length;
 }
 
+he_status he_spans_set_label(he_spans *spans, size_t face, const char *text, size_t length,
+                             he_error *err)
+{
+    uint32_t value = 0;
+    he_status status = HE_OK;
+    if (spans->labels == NULL) {
+        spans->labels = he_labels_new();
+        if (spans->labels == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
+        }
+    }
+    /* the default row is 0, so 0 must be the empty name, even after a failed attempt */
+    if (he_labels_count(spans->labels) == 0) {
+        status = he_labels_add(spans->labels, "", 0, &value, err);
+    }
+    if (status == HE_OK) {
+        status = he_labels_add(spans->labels, text, length, &value, err);
+    }
+    return status == HE_OK ? he_spans_set(spans, face, value, err) : status;
+}
+
 he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, const char *p,
                             he_notes *notes, he_error *err)
 {
-    uint32_t value;
     he_status status = HE_OK;
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
@@ -113,29 +102,13 @@ he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, c
         }
     }
     const char *text = name;
-    if (!is_utf8(name, length)) {
+    if (!he_is_utf8(name, length)) {
         he_notes_add(notes, "not_utf8", "read as Latin-1: a name that is not UTF-8", name, length,
                      HE_PLACE_LINE, line->number);
         length = widen(name, length, name + room);
         text = name + room;
     }
-    if (spans->labels == NULL) {
-        spans->labels = he_labels_new();
-        if (spans->labels == NULL) {
-            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
-            goto out;
-        }
-    }
-    /* the default row is 0, so 0 must be the empty name, even after a failed attempt */
-    if (he_labels_count(spans->labels) == 0) {
-        status = he_labels_add(spans->labels, "", 0, &value, err);
-    }
-    if (status == HE_OK) {
-        status = he_labels_add(spans->labels, text, length, &value, err);
-    }
-    if (status == HE_OK) {
-        status = he_spans_set(spans, face, value, err);
-    }
+    status = he_spans_set_label(spans, face, text, length, err);
 out:
     he_mem_free(name);
     return status;

@@ -1,9 +1,9 @@
 #include "format/stl.h"
 
+#include "format/cuts.h"
 #include "format/export.h"
 #include "format/number.h"
 #include "format/weld.h"
-#include "mesh/triangulation.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,102 +16,28 @@ enum { HEADER_BYTES = 80 };
 typedef struct stl_writer {
     const he_mesh *mesh;
     bool text;
-    he_ids cuts; /* three vertices a triangle, of all faces that are none */
+    he_cuts cuts;
+    he_cut_walk walk;
     part part;
-    uint32_t row;  /* next face */
-    uint32_t left; /* triangles of the face that has begun, or 0 */
-    bool is_cut;   /* the face */
-    size_t cut;    /* next of cuts */
 } stl_writer;
 
 static void stl_close(void *state)
 {
     stl_writer *w = state;
-    he_ids_clear(&w->cuts);
+    he_cuts_clear(&w->cuts);
     he_mem_free(w);
 }
 
 /* --- what is known before the first byte --- */
 
-/* About the first corner. */
-static void add_fan(he_ids *cuts, const he_mesh *m, he_halfedge first)
+static void note_cuts(const he_cuts *cuts, he_notes *notes)
 {
-    uint32_t apex = he_origin(m, first).i;
-    he_halfedge h = he_next(m, first);
-    for (he_halfedge k = he_next(m, h); k.i != first.i; h = k, k = he_next(m, k)) {
-        cuts->ids[cuts->count++] = apex;
-        cuts->ids[cuts->count++] = he_origin(m, h).i;
-        cuts->ids[cuts->count++] = he_origin(m, k).i;
-    }
-}
-
-/* Of all faces. */
-typedef struct cutting {
-    uint64_t polygons, turned, fans;
-    uint64_t steps;
-} cutting;
-
-/* Diagonals avoid the edges there are where they can: an edge that is doubled would have more than
- * two faces when the file is read again. */
-static he_status cut_face(stl_writer *w, he_halfedge first, cutting *done, he_error *err)
-{
-    he_triangulation cut;
-    size_t corners = 3 * ((size_t)he_loop_length(w->mesh, first) - 2);
-    he_status status = he_ids_reserve(&w->cuts, corners, err);
-    if (status != HE_OK) {
-        return status;
-    }
-    status = HE_LIMIT;
-    if (done->steps < HE_TRIANGULATION_STEPS) {
-        status =
-            he_triangulation_make(w->mesh, first, HE_ANY_DIAGONALS | HE_AVOID_EDGES, &cut, err);
-    }
-    if (status == HE_DOUBLED_EDGE) {
-        status = he_triangulation_make(w->mesh, first, HE_ANY_DIAGONALS, &cut, err);
-    }
-    if (status == HE_LIMIT) {
-        add_fan(&w->cuts, w->mesh, first);
-        done->fans++;
-        done->steps = HE_TRIANGULATION_STEPS;
-        return HE_OK;
-    }
-    if (status != HE_OK) {
-        return status;
-    }
-    done->steps += cut.steps;
-    for (size_t i = 0; i < corners; i++) {
-        he_halfedge h = {cut.flat.halfedge[cut.corners[i]]};
-        w->cuts.ids[w->cuts.count++] = he_origin(w->mesh, h).i;
-    }
-    done->turned += cut.degenerate;
-    he_triangulation_clear(&cut);
-    return HE_OK;
-}
-
-static he_status cut_faces(stl_writer *w, he_notes *notes, he_error *err)
-{
-    cutting done = {0};
-    for (uint32_t f = 0; f < w->mesh->c.faces.issued; f++) {
-        if (!he_face_is_live(w->mesh, (he_face){f}) || he_face_degree(w->mesh, (he_face){f}) == 3) {
-            continue;
-        }
-        done.polygons++;
-        he_error reason = {0};
-        he_status status = cut_face(w, he_face_halfedge(w->mesh, (he_face){f}), &done, &reason);
-        if (status != HE_OK) {
-            if (err != NULL) {
-                *err = reason;
-            }
-            return status;
-        }
-    }
-    he_notes_add_count(notes, "triangulated", "cut into triangles: a face", done.polygons);
+    he_notes_add_count(notes, "triangulated", "cut into triangles: a face", cuts->polygons);
     he_notes_add_count(notes, "turned_triangles",
                        "cut into triangles some of which have no area or are turned over: a face",
-                       done.turned);
+                       cuts->turned);
     he_notes_add_count(notes, "fans", "cut into a fan, since cutting took too much: a face",
-                       done.fans);
-    return HE_OK;
+                       cuts->fans);
 }
 
 /* What becomes of vertices when there are only positions. */
@@ -160,8 +86,9 @@ static he_status stl_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     }
     w->mesh = mesh;
     w->text = encoding != 0;
-    he_status status = cut_faces(w, notes, err);
+    he_status status = he_cuts_make(mesh, &w->cuts, err);
     if (status == HE_OK) {
+        note_cuts(&w->cuts, notes);
         status = note_vertices(w, notes, err);
     }
     if (status != HE_OK) {
@@ -273,36 +200,16 @@ static char *write_header(const stl_writer *w, char *p)
     return put_word(corners - 2 * c->faces.live, end);
 }
 
-/* The next triangle of the face `row`, and on to the next face after the last. */
-static void next_triangle(stl_writer *w, he_vec3 *corners)
-{
-    const he_mesh *m = w->mesh;
-    he_halfedge h = he_face_halfedge(m, (he_face){w->row});
-    if (w->left == 0) {
-        w->left = he_loop_length(m, h) - 2;
-        w->is_cut = w->left > 1;
-    }
-    for (unsigned i = 0; i < 3; i++, h = he_next(m, h)) {
-        uint32_t v = w->is_cut ? w->cuts.ids[w->cut++] : he_origin(m, h).i;
-        corners[i] = m->c.position[v];
-    }
-    w->left--;
-    w->row += w->left == 0;
-}
-
 static char *write_facets(stl_writer *w, char *p, const char *end)
 {
     while (end - p >= HE_WRITE_ROOM) {
-        if (w->row == w->mesh->c.faces.issued) {
+        uint32_t v[3];
+        if (!he_cuts_next(&w->cuts, &w->walk, v)) {
             w->part = END;
             return w->text ? he_export_text("endsolid\n", p) : p;
         }
-        if (!he_face_is_live(w->mesh, (he_face){w->row})) {
-            w->row++;
-            continue;
-        }
-        he_vec3 corners[3];
-        next_triangle(w, corners);
+        const he_vec3 *position = w->mesh->c.position;
+        he_vec3 corners[3] = {position[v[0]], position[v[1]], position[v[2]]};
         p = w->text ? write_text(corners, p) : write_binary(corners, p);
     }
     return p;

@@ -21,6 +21,7 @@ static const struct {
     {"ply", "binary_big_endian", "model/ply", 8, 6},
     {"stl", "ascii", "model/stl", 8, 12},
     {"stl", "binary", "model/stl", 8, 12},
+    {"glb", "binary", "model/gltf-binary", 8, 6},
 };
 
 enum { FILES = sizeof files / sizeof *files };
@@ -114,7 +115,8 @@ static void encodings_that_do_not_exist(void **state)
         "/v1/meshes/m/content?format=json&encoding=ascii",
         "/v1/meshes/m/content?encoding=binary",
         "/v1/meshes/m/content?format=ply&encoding=utf-8",
-        "/v1/meshes/m/content?format=glb",
+        "/v1/meshes/m/content?format=glb&encoding=ascii",
+        "/v1/meshes/m/content?format=gltf",
     };
     api_bench *b = with_cube();
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
@@ -142,6 +144,8 @@ static void a_wrong_file_names_its_place(void **state)
          "byte", 114},
         {"model/stl", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 -0\nvertex 1 0 0\nendfacet\n", "line",
          2},
+        {"model/gltf-binary", "glTF", "byte", 4},
+        {"model/gltf+json", "{\"asset\":{\"version\":\"1.0\"}}", "byte", 20},
     };
     api_bench *b = with_cube();
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -158,6 +162,35 @@ static void a_wrong_file_names_its_place(void **state)
     bench_free(b);
 }
 
+/* A file of JSON is told from our own document by its type, its name, or its first bytes. */
+static void gltf_is_read_and_what_is_outside_never(void **state)
+{
+    (void)state;
+    static const char *const types[] = {"model/gltf+json", "application/octet-stream"};
+    static const char inside[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"data:;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,"
+        "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+        "\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}";
+    static const char outside[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,"
+        "\"uri\":\"file:///etc/hostname\"}]}";
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < 2; i++) {
+        const char *const headers[] = {"Content-Type", types[i], NULL};
+        bench_reply r = expect(201, bench_send(b, "POST", "/v1/meshes", headers, inside));
+        const cJSON *report = cJSON_GetObjectItem(r.json, "import");
+        assert_string_equal(cJSON_GetObjectItem(report, "format")->valuestring, "gltf");
+        assert_int_equal(cJSON_GetObjectItem(report, "faces")->valueint, 1);
+        bench_reply_free(&r);
+        r = expect(422, bench_send(b, "POST", "/v1/meshes", headers, outside));
+        assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "unsupported");
+        assert_non_null(strstr(r.body, "buffers/0/uri: a buffer outside the file"));
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -165,6 +198,7 @@ int main(void)
         cmocka_unit_test(each_encoding_has_its_tag),
         cmocka_unit_test(encodings_that_do_not_exist),
         cmocka_unit_test(a_wrong_file_names_its_place),
+        cmocka_unit_test(gltf_is_read_and_what_is_outside_never),
     };
     return cmocka_run_group_tests_name("files", tests, NULL, NULL);
 }

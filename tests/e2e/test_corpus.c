@@ -23,8 +23,7 @@ static void test_files_of_the_corpus(void **state)
     }
     daemon_process *d = daemon_start(NULL);
     char command[256], line[512], last[512] = "";
-    snprintf(command, sizeof command,
-             "python3 " CHECKER " --base %s --only '(?i)[.](obj|off|ply|stl)$' 2>&1",
+    snprintf(command, sizeof command, "python3 " CHECKER " --base %s --roundtrip 2>&1",
              daemon_url(d));
     FILE *output = popen(command, "r");
     assert_non_null(output);

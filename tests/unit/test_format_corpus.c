@@ -2,6 +2,8 @@
  * where CORPUS= says): what the manifest expects of each. */
 #include "unit/format_fixture.h"
 
+#include "format/export.h"
+
 static const char *corpus;
 
 /* Column k of a line of a table with tabs, into `text`. */
@@ -63,8 +65,13 @@ static void check_export(const he_format *format, const char *encoding, const he
         assert_int_equal(s->face_count, wanted->corner_count - 2 * wanted->face_count);
     } else {
         assert_int_equal(s->vertex_count, wanted->vertex_count);
-        assert_memory_equal(s->positions, wanted->positions,
-                            wanted->vertex_count * sizeof(he_vec3));
+        for (size_t i = 0; i < wanted->vertex_count; i++) {
+            he_vec3 p = wanted->positions[i];
+            if (strcmp(format->name, "glb") == 0) {
+                p = (he_vec3){he_narrow(p.x), he_narrow(p.y), he_narrow(p.z)};
+            }
+            assert_memory_equal(&s->positions[i], &p, sizeof p);
+        }
         assert_int_equal(s->corner_count, wanted->corner_count);
         assert_memory_equal(s->corners, wanted->corners, wanted->corner_count * sizeof(uint32_t));
     }
@@ -114,7 +121,8 @@ static void check_file(const char *line, const char *format)
         fixture_check(mesh);
         assert_int_equal(he_mesh_edges(mesh), strtoul(e, NULL, 10));
         for (size_t i = 0; he_format_at(i) != NULL; i++) {
-            for (size_t k = 0; he_format_at(i)->encodings[k] != NULL; k++) {
+            bool written = he_format_at(i)->writing != NULL;
+            for (size_t k = 0; written && he_format_at(i)->encodings[k] != NULL; k++) {
                 check_export(he_format_at(i), he_format_at(i)->encodings[k], mesh, &import.soup);
             }
         }

@@ -19,6 +19,7 @@ const MEDIA_TYPES = {
     ply: 'model/ply',
     stl: 'model/stl',
     glb: 'model/gltf-binary',
+    gltf: 'model/gltf+json',
     json: 'application/json',
 };
 

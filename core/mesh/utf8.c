@@ -1,6 +1,6 @@
-#include "api/utf8.h"
+#include "mesh/utf8.h"
 
-size_t api_utf8_character(const char *bytes, size_t length)
+size_t he_utf8_character(const char *bytes, size_t length)
 {
     const unsigned char *b = (const unsigned char *)bytes;
     if (b[0] < 0x80) {
@@ -21,10 +21,10 @@ size_t api_utf8_character(const char *bytes, size_t length)
     return overlong || surrogate || beyond ? 0 : size;
 }
 
-bool api_is_utf8(const char *bytes, size_t length)
+bool he_is_utf8(const char *bytes, size_t length)
 {
     for (size_t i = 0; i < length;) {
-        size_t size = api_utf8_character(bytes + i, length - i);
+        size_t size = he_utf8_character(bytes + i, length - i);
         if (size == 0) {
             return false;
         }

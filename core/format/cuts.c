@@ -1,0 +1,107 @@
+#include "format/cuts.h"
+
+#include "mesh/triangulation.h"
+
+void he_cuts_clear(he_cuts *cuts)
+{
+    he_ids_clear(&cuts->corners);
+}
+
+uint64_t he_cuts_count(const he_cuts *cuts)
+{
+    const he_content *c = &cuts->mesh->c;
+    return 2 * (uint64_t)c->edges.live - c->boundary_halfedges - 2 * (uint64_t)c->faces.live;
+}
+
+/* About the first corner. */
+static void add_fan(he_cuts *cuts, he_halfedge first)
+{
+    const he_mesh *m = cuts->mesh;
+    he_ids *ids = &cuts->corners;
+    he_halfedge h = he_next(m, first);
+    for (he_halfedge k = he_next(m, h); k.i != first.i; h = k, k = he_next(m, k)) {
+        ids->ids[ids->count++] = he_origin(m, first).i;
+        ids->ids[ids->count++] = he_origin(m, h).i;
+        ids->ids[ids->count++] = he_origin(m, k).i;
+    }
+    cuts->fans++;
+}
+
+static he_status cut_face(he_cuts *cuts, he_halfedge first, he_error *err)
+{
+    he_triangulation cut;
+    const he_mesh *m = cuts->mesh;
+    he_ids *ids = &cuts->corners;
+    size_t corners = 3 * ((size_t)he_loop_length(m, first) - 2);
+    he_status status = he_ids_reserve(ids, corners, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    status = HE_LIMIT;
+    if (cuts->steps < HE_TRIANGULATION_STEPS) {
+        status = he_triangulation_make(m, first, HE_ANY_DIAGONALS | HE_AVOID_EDGES, &cut, err);
+    }
+    if (status == HE_DOUBLED_EDGE) {
+        status = he_triangulation_make(m, first, HE_ANY_DIAGONALS, &cut, err);
+    }
+    if (status == HE_LIMIT) {
+        add_fan(cuts, first);
+        cuts->steps = HE_TRIANGULATION_STEPS;
+        return HE_OK;
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    cuts->steps += cut.steps;
+    for (size_t i = 0; i < corners; i++) {
+        he_halfedge h = {cut.flat.halfedge[cut.corners[i]]};
+        ids->ids[ids->count++] = he_origin(m, h).i;
+    }
+    cuts->turned += cut.degenerate;
+    he_triangulation_clear(&cut);
+    return HE_OK;
+}
+
+he_status he_cuts_make(const he_mesh *mesh, he_cuts *out, he_error *err)
+{
+    he_cuts made = {.mesh = mesh};
+    for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
+        if (!he_face_is_live(mesh, (he_face){f}) || he_face_degree(mesh, (he_face){f}) == 3) {
+            continue;
+        }
+        made.polygons++;
+        he_error reason = {0};
+        he_status status = cut_face(&made, he_face_halfedge(mesh, (he_face){f}), &reason);
+        if (status != HE_OK) {
+            he_cuts_clear(&made);
+            if (err != NULL) {
+                *err = reason;
+            }
+            return status;
+        }
+    }
+    *out = made;
+    return HE_OK;
+}
+
+bool he_cuts_next(const he_cuts *cuts, he_cut_walk *walk, uint32_t vertices[3])
+{
+    const he_mesh *m = cuts->mesh;
+    while (walk->face < m->c.faces.issued && !he_face_is_live(m, (he_face){walk->face})) {
+        walk->face++;
+    }
+    if (walk->face == m->c.faces.issued) {
+        return false;
+    }
+    he_halfedge h = he_face_halfedge(m, (he_face){walk->face});
+    if (walk->left == 0) {
+        walk->left = he_loop_length(m, h) - 2;
+        walk->is_cut = walk->left > 1;
+    }
+    for (unsigned i = 0; i < 3; i++, h = he_next(m, h)) {
+        vertices[i] = walk->is_cut ? cuts->corners.ids[walk->corner++] : he_origin(m, h).i;
+    }
+    walk->left--;
+    walk->face += walk->left == 0;
+    return true;
+}

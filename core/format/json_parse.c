@@ -1,0 +1,372 @@
+/* he_json_parse of json.h. */
+#include "format/json.h"
+
+#include "format/notes.h"
+#include "format/number.h"
+#include "mesh/utf8.h"
+
+#include <string.h>
+
+typedef struct scan {
+    he_json *json;
+    const char *at, *end;
+    uint32_t open[HE_JSON_DEPTH]; /* arrays and objects */
+    size_t depth;
+    he_error *err;
+} scan;
+
+static he_status refuse(const scan *s, const char *text)
+{
+    uint64_t at = s->json->offset + (uint64_t)(s->at - s->json->text);
+    return he_fail_at(s->err, HE_SYNTAX, HE_PLACE_BYTE, at, "JSON: %s", text);
+}
+
+static void skip_blanks(scan *s)
+{
+    while (s->at < s->end &&
+           (*s->at == ' ' || *s->at == '\n' || *s->at == '\r' || *s->at == '\t')) {
+        s->at++;
+    }
+}
+
+/* Make a value that begins here and, so far, is alone. */
+static he_status add_value(scan *s)
+{
+    he_json *json = s->json;
+    if (json->count == HE_JSON_VALUES) {
+        return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE,
+                          json->offset + (uint64_t)(s->at - json->text),
+                          "JSON of more than %zu values", HE_JSON_VALUES);
+    }
+    if (json->count == json->capacity) {
+        size_t capacity = he_mem_grown(json->capacity, json->count + 1);
+        he_json_value *values = he_mem_array(json->values, capacity, sizeof *values);
+        if (values == NULL) {
+            return he_fail_plain(s->err, HE_NO_MEMORY, "no memory for %zu values", capacity);
+        }
+        json->values = values;
+        json->capacity = capacity;
+    }
+    uint32_t number = (uint32_t)json->count++;
+    json->values[number] = (he_json_value){(uint32_t)(s->at - json->text), number + 1};
+    return HE_OK;
+}
+
+static he_status scan_word(scan *s, const char *word)
+{
+    size_t length = strlen(word);
+    if ((size_t)(s->end - s->at) < length || memcmp(s->at, word, length) != 0) {
+        return refuse(s, "a value is expected here");
+    }
+    s->at += length;
+    return HE_OK;
+}
+
+static he_status scan_number(scan *s)
+{
+    double value;
+    size_t used;
+    he_status status = he_double_parse(s->at, s->end, HE_JSON_NUMBER, &value, &used);
+    if (status == HE_SYNTAX) {
+        return refuse(s, "this is not a number");
+    }
+    if (status != HE_OK) {
+        return he_fail_at(s->err, status, HE_PLACE_BYTE,
+                          s->json->offset + (uint64_t)(s->at - s->json->text),
+                          "the number does not fit a double");
+    }
+    s->at += used;
+    return HE_OK;
+}
+
+/* Four hexadecimal digits at `p`, or -1. */
+static int scan_hex(const char *p, const char *end)
+{
+    int value = 0;
+    for (int i = 0; i < 4; i++, p++) {
+        int digit = p >= end                 ? -1
+                    : *p >= '0' && *p <= '9' ? *p - '0'
+                    : *p >= 'a' && *p <= 'f' ? *p - 'a' + 10
+                    : *p >= 'A' && *p <= 'F' ? *p - 'A' + 10
+                                             : -1;
+        if (digit < 0) {
+            return -1;
+        }
+        value = value * 16 + digit;
+    }
+    return value;
+}
+
+static he_status scan_escape(scan *s)
+{
+    const char *p = s->at + 1;
+    if (p == s->end || *p == '\0' || strchr("\"\\/bfnrtu", *p) == NULL) {
+        return refuse(s, "this is not an escape");
+    }
+    if (*p != 'u') {
+        s->at += 2;
+        return HE_OK;
+    }
+    int unit = scan_hex(p + 1, s->end);
+    size_t length = 6;
+    if (unit >= 0xD800 && unit <= 0xDFFF) {
+        bool pair = unit < 0xDC00 && s->end - p >= 7 && p[5] == '\\' && p[6] == 'u';
+        int low = pair ? scan_hex(p + 7, s->end) : -1;
+        unit = low >= 0xDC00 && low <= 0xDFFF ? unit : -1;
+        length = 12;
+    }
+    if (unit <= 0) {
+        return refuse(s, unit == 0 ? "a null character is not taken in strings"
+                                   : "\\u needs four hexadecimal digits, and surrogates a pair");
+    }
+    s->at += length;
+    return HE_OK;
+}
+
+static he_status scan_string(scan *s)
+{
+    he_status status = HE_OK;
+    s->at++;
+    while (s->at < s->end && status == HE_OK) {
+        unsigned char c = (unsigned char)*s->at;
+        if (c == '"') {
+            s->at++;
+            return HE_OK;
+        }
+        if (c == '\\') {
+            status = scan_escape(s);
+        } else if (c < 0x20) {
+            status = refuse(s, "a control character stands raw in a string");
+        } else {
+            size_t size = he_utf8_character(s->at, (size_t)(s->end - s->at));
+            status = size == 0 ? refuse(s, "the string is not UTF-8") : HE_OK;
+            s->at += size;
+        }
+    }
+    return status == HE_OK ? refuse(s, "the string does not end") : status;
+}
+
+/* --- members that are given twice --- */
+
+static uint64_t hash_name(const he_json *json, uint32_t name, char *text, size_t size)
+{
+    uint64_t h = (uint64_t)(uintptr_t)json->values * 0x9E3779B97F4A7C15;
+    size_t length = he_json_string(json, name, text, size);
+    for (size_t i = 0; i < length; i++) {
+        h = (h ^ (unsigned char)text[i]) * 0x100000001B3;
+        h ^= h >> 29;
+    }
+    return h * 0xBF58476D1CE4E5B9;
+}
+
+static he_status repeated(const scan *s, uint32_t name)
+{
+    char text[60], quoted[60];
+    size_t length = he_json_string(s->json, name, text, sizeof text);
+    he_quote(text, text + length, quoted, sizeof quoted);
+    return he_fail_at(s->err, HE_SYNTAX, HE_PLACE_BYTE, he_json_place(s->json, name),
+                      "JSON: the member '%s' is given twice", quoted);
+}
+
+/* Names longer than this are compared by their first bytes and refused as too long. */
+enum { NAME_ROOM = 1024, FEW = 12 };
+
+static he_status check_few(const scan *s, uint32_t object)
+{
+    const he_json *json = s->json;
+    uint32_t names[FEW];
+    size_t count = 0;
+    for (uint32_t i = he_json_first(json, object); i != HE_NONE;
+         i = he_json_after(json, object, i)) {
+        char text[NAME_ROOM];
+        he_json_string(json, i, text, sizeof text);
+        for (size_t k = 0; k < count; k++) {
+            if (he_json_is(json, names[k], text)) {
+                return repeated(s, i);
+            }
+        }
+        names[count++] = i;
+    }
+    return HE_OK;
+}
+
+static he_status check_many(const scan *s, uint32_t object, size_t count)
+{
+    const he_json *json = s->json;
+    size_t size = 32;
+    while (size < 2 * count) {
+        size *= 2;
+    }
+    uint32_t *slots = he_mem_zero(size, sizeof *slots);
+    he_status status = HE_OK;
+    if (slots == NULL) {
+        return he_fail_plain(s->err, HE_NO_MEMORY, "no memory for %zu members", count);
+    }
+    for (uint32_t i = he_json_first(json, object); i != HE_NONE && status == HE_OK;
+         i = he_json_after(json, object, i)) {
+        char text[NAME_ROOM];
+        size_t slot = (size_t)(hash_name(json, i, text, sizeof text) >> 20) & (size - 1);
+        while (slots[slot] != 0 && !he_json_is(json, slots[slot], text)) {
+            slot = (slot + 1) & (size - 1);
+        }
+        status = slots[slot] != 0 ? repeated(s, i) : HE_OK;
+        slots[slot] = i;
+    }
+    he_mem_free(slots);
+    return status;
+}
+
+static he_status check_members(const scan *s, uint32_t object)
+{
+    const he_json *json = s->json;
+    size_t count = 0;
+    for (uint32_t i = he_json_first(json, object); i != HE_NONE;
+         i = he_json_after(json, object, i)) {
+        size_t length;
+        he_json_raw(json, i, &length);
+        if (length >= NAME_ROOM) {
+            return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE, he_json_place(json, i),
+                              "JSON: a member's name of more than %d bytes", (int)NAME_ROOM - 1);
+        }
+        count++;
+    }
+    return count <= FEW ? check_few(s, object) : check_many(s, object, count);
+}
+
+/* --- values --- */
+
+static he_status close_value(scan *s)
+{
+    uint32_t value = s->open[--s->depth];
+    s->json->values[value].next = (uint32_t)s->json->count;
+    s->at++;
+    return he_json_type(s->json, value) == '{' ? check_members(s, value) : HE_OK;
+}
+
+static he_status scan_key(scan *s)
+{
+    skip_blanks(s);
+    if (s->at == s->end || *s->at != '"') {
+        return refuse(s, "a member's name in quotes is expected here");
+    }
+    he_status status = add_value(s);
+    if (status == HE_OK) {
+        status = scan_string(s);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    skip_blanks(s);
+    if (s->at == s->end || *s->at != ':') {
+        return refuse(s, "':' is expected here");
+    }
+    s->at++;
+    return HE_OK;
+}
+
+/* A value, or the bracket that opens one: `*opened` says which. */
+static he_status scan_value(scan *s, bool *opened)
+{
+    *opened = false;
+    skip_blanks(s);
+    if (s->at == s->end) {
+        return refuse(s, "the text ends where a value is expected");
+    }
+    he_status status = add_value(s);
+    if (status != HE_OK) {
+        return status;
+    }
+    switch (*s->at) {
+    case '"':
+        return scan_string(s);
+    case 't':
+        return scan_word(s, "true");
+    case 'f':
+        return scan_word(s, "false");
+    case 'n':
+        return scan_word(s, "null");
+    case '{':
+    case '[':
+        if (s->depth == HE_JSON_DEPTH) {
+            return refuse(s, "nesting is deeper than 128 levels");
+        }
+        s->open[s->depth++] = (uint32_t)s->json->count - 1;
+        s->at++;
+        *opened = true;
+        return HE_OK;
+    default:
+        return *s->at == '-' || (*s->at >= '0' && *s->at <= '9')
+                   ? scan_number(s)
+                   : refuse(s, "a value is expected here");
+    }
+}
+
+static char bracket_of(const scan *s)
+{
+    return he_json_type(s->json, s->open[s->depth - 1]) == '{' ? '}' : ']';
+}
+
+/* After a value: close what ends here. `*more` is true where another value follows. */
+static he_status scan_after(scan *s, bool *more)
+{
+    *more = false;
+    while (s->depth > 0) {
+        skip_blanks(s);
+        if (s->at < s->end && *s->at == ',') {
+            s->at++;
+            *more = true;
+            return HE_OK;
+        }
+        if (s->at == s->end || *s->at != bracket_of(s)) {
+            return refuse(s, "',' or the closing bracket is expected here");
+        }
+        he_status status = close_value(s);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    return HE_OK;
+}
+
+static he_status scan_text(scan *s)
+{
+    bool more = true;
+    he_status status = HE_OK;
+    while (more && status == HE_OK) {
+        bool opened = false;
+        if (s->depth > 0 && bracket_of(s) == '}') {
+            status = scan_key(s);
+        }
+        if (status == HE_OK) {
+            status = scan_value(s, &opened);
+        }
+        if (status == HE_OK && opened) {
+            skip_blanks(s);
+            if (s->at == s->end || *s->at != bracket_of(s)) {
+                continue;
+            }
+            status = close_value(s);
+        }
+        if (status == HE_OK) {
+            status = scan_after(s, &more);
+        }
+    }
+    skip_blanks(s);
+    return status == HE_OK && s->at != s->end ? refuse(s, "something follows the value") : status;
+}
+
+he_status he_json_parse(he_json *json, const char *text, size_t length, uint64_t offset,
+                        he_error *err)
+{
+    *json = (he_json){.text = text, .length = length, .offset = offset};
+    if (length > HE_JSON_TEXT) {
+        return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, offset, "JSON of more than %zu bytes",
+                          HE_JSON_TEXT);
+    }
+    scan s = {.json = json, .at = text, .end = text + length, .err = err};
+    he_status status = scan_text(&s);
+    if (status != HE_OK) {
+        he_json_clear(json);
+    }
+    return status;
+}

@@ -1,0 +1,402 @@
+/* GLB and glTF files: what is read of their geometry. */
+#include "unit/gltf_file.h"
+
+#include <math.h>
+
+static const uint32_t two[] = {0, 1, 2, 0, 2, 3};
+
+static void a_square_of_two_triangles(void **state)
+{
+    (void)state;
+    he_import import = square_import("{" DATA "," MESHES "}");
+    expect_counts(&import, 4, 2, 6);
+    expect_corners(&import, two, 6);
+    assert_memory_equal(import.soup.positions, square, sizeof square);
+    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.soup.column_count, 0);
+    uint64_t bin = he_places_find(&import.vertices, 0);
+    assert_int_equal(import.vertices.unit, HE_PLACE_BYTE);
+    assert_int_equal(he_places_find(&import.vertices, 3), bin + 36);
+    assert_int_equal(he_places_find(&import.faces, 0), bin + 48);
+    assert_int_equal(he_places_find(&import.faces, 1), bin + 54);
+    he_mesh *mesh = build_import(&import);
+    fixture_counts(mesh, 4, 5, 2);
+    he_mesh_free(mesh);
+    he_import_clear(&import);
+}
+
+static void every_mode_and_every_type_of_index(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *primitive;
+        uint32_t corners[6];
+        size_t faces;
+    } rows[] = {
+        {"'indices':1,'mode':4", {0, 1, 2, 0, 2, 3}, 2},
+        {"'indices':2,'mode':5", {0, 1, 3, 1, 2, 3}, 2},
+        {"'indices':3,'mode':6", {1, 2, 0, 2, 3, 0}, 2},
+        {"'mode':5", {0, 1, 2, 1, 3, 2}, 2},
+        {"'mode':6", {1, 2, 0, 2, 3, 0}, 2},
+        {"'mode':6.0", {1, 2, 0, 2, 3, 0}, 2},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char json[2000];
+        snprintf(json, sizeof json,
+                 "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0},%s}]}]}",
+                 rows[i].primitive);
+        he_import import = square_import(json);
+        expect_counts(&import, 4, rows[i].faces, 3 * rows[i].faces);
+        expect_corners(&import, rows[i].corners, 3 * rows[i].faces);
+        he_import_clear(&import);
+    }
+    /* corners as they come: the triangle of the first three */
+    he_import import = square_import(
+        "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[{'bufferView':0,'componentType':5126,"
+        "'count':3,'type':'VEC3'}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
+    expect_corners(&import, two, 3);
+    he_import_clear(&import);
+}
+
+static void points_and_lines_are_left_out(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0},'mode':0},"
+        "{'attributes':{'POSITION':0},'mode':1},{'attributes':{'POSITION':0},'mode':2},"
+        "{'attributes':{'POSITION':0},'mode':3},{'attributes':{'COLOR_0':4}}," PRIMITIVE "]}]}");
+    expect_counts(&import, 4, 2, 6);
+    assert_int_equal(find_note(&import.notes, "skipped_points", "")->count, 1);
+    assert_int_equal(find_note(&import.notes, "skipped_lines", "")->count, 3);
+    assert_int_equal(find_note(&import.notes, "no_positions", "")->count, 1);
+    he_import_clear(&import);
+}
+
+/* --- nodes --- */
+
+static void expect_position(const he_import *import, size_t v, double x, double y, double z)
+{
+    he_vec3 p = import->soup.positions[v];
+    if (fabs(p.x - x) > 1e-12 || fabs(p.y - y) > 1e-12 || fabs(p.z - z) > 1e-12) {
+        fail_msg("vertex %zu is at %g %g %g, not %g %g %g", v, p.x, p.y, p.z, x, y, z);
+    }
+}
+
+static void nodes_move_what_they_place(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *nodes;
+        double at[3]; /* where vertex 2, at 1 1 0, comes to */
+        bool mirrored;
+    } rows[] = {
+        {"{'mesh':0}", {1, 1, 0}, false},
+        {"{'mesh':0,'translation':[10,20,30]}", {11, 21, 30}, false},
+        {"{'mesh':0,'scale':[2,3,4]}", {2, 3, 0}, false},
+        /* a quarter turn about z */
+        {"{'mesh':0,'rotation':[0,0,0.70710678118654752,0.70710678118654752]}", {-1, 1, 0}, false},
+        {"{'mesh':0,'translation':[1,0,0],'scale':[2,2,2],"
+         "'rotation':[0,0,0.70710678118654752,0.70710678118654752]}",
+         {-1, 2, 0},
+         false},
+        /* columns */
+        {"{'mesh':0,'matrix':[0,2,0,0, -2,0,0,0, 0,0,2,0, 1,0,0,1]}", {-1, 2, 0}, false},
+        {"{'children':[1],'translation':[5,0,0]},{'mesh':0,'scale':[2,2,2]}", {7, 2, 0}, false},
+        {"{'children':[1],'scale':[2,2,2]},{'mesh':0,'translation':[5,0,0]}", {12, 2, 0}, false},
+        {"{'mesh':0,'scale':[-1,1,1]}", {-1, 1, 0}, true},
+        {"{'mesh':0,'scale':[-1,-1,1]}", {-1, -1, 0}, false},
+        {"{'children':[1],'scale':[1,-2,1]},{'mesh':0,'scale':[-3,1,1]}", {-3, -2, 0}, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        static const uint32_t turned[] = {0, 2, 1, 0, 3, 2};
+        char json[2500];
+        snprintf(json, sizeof json, "{" DATA "," MESHES ",'scenes':[{'nodes':[0]}],'nodes':[%s]}",
+                 rows[i].nodes);
+        he_import import = square_import(json);
+        expect_counts(&import, 4, 2, 6);
+        expect_position(&import, 2, rows[i].at[0], rows[i].at[1], rows[i].at[2]);
+        expect_corners(&import, rows[i].mirrored ? turned : two, 6);
+        const he_note *note = find_note(&import.notes, "mirrored", "");
+        assert_true((note != NULL) == rows[i].mirrored);
+        assert_true(note == NULL || note->count == 2);
+        he_import_clear(&import);
+    }
+}
+
+static void a_mesh_of_several_nodes_comes_several_times(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" DATA "," MESHES ",'scene':0,'scenes':[{'nodes':[0,2]}],'nodes':[{'mesh':0,"
+        "'children':[1]},{'mesh':0,'translation':[0,0,1]},{'mesh':0,'translation':[0,0,2]}]}");
+    static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7, 8, 9, 10, 8, 10, 11};
+    expect_counts(&import, 12, 6, 18);
+    expect_corners(&import, corners, 18);
+    expect_position(&import, 4, 0, 0, 1);
+    expect_position(&import, 8, 0, 0, 2);
+    assert_int_equal(find_note(&import.notes, "instances", "")->count, 2);
+    he_mesh_free(build_import(&import));
+    he_import_clear(&import);
+}
+
+static void the_scene_that_is_named_is_read(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *rest;
+        double z;
+        size_t vertices;
+    } rows[] = {
+        {"'scene':1,'scenes':[{'nodes':[0]},{'nodes':[1]}],", 1, 4},
+        {"'scene':0,'scenes':[{'nodes':[0]},{'nodes':[1]}],", 0, 4},
+        {"'scenes':[{'nodes':[1]},{'nodes':[0]}],", 1, 4},
+        {"", 0, 8}, /* the nodes that are no children */
+        {"'scenes':[{}],", 0, 0},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char json[2500];
+        snprintf(json, sizeof json,
+                 "{" DATA "," MESHES ",%s'nodes':[{'mesh':0},{'mesh':0,'translation':[0,0,1]}]}",
+                 rows[i].rest);
+        he_import import = square_import(json);
+        assert_int_equal(import.soup.vertex_count, rows[i].vertices);
+        if (rows[i].vertices > 0) {
+            expect_position(&import, 0, 0, 0, rows[i].z);
+        }
+        assert_int_equal(find_note(&import.notes, "unused_meshes", "") != NULL,
+                         rows[i].vertices == 0);
+        assert_int_equal(find_note(&import.notes, "other_scenes", "") != NULL, i < 3);
+        he_import_clear(&import);
+    }
+}
+
+/* --- accessors --- */
+
+static void sparse_accessors(void **state)
+{
+    (void)state;
+    /* positions 1 and 2 of zeros, and 0 and 2 of those there are, from the bytes of the corners */
+    static const struct {
+        const char *view, *indices;
+        double at[4][3];
+    } rows[] = {
+        {"", "'bufferView':5", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}}},
+        {"'bufferView':0,", "'bufferView':6", {{1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
+    };
+    for (size_t i = 0; i < 2; i++) {
+        char json[2500];
+        snprintf(json, sizeof json,
+                 "{" ASSET "," BUFFERS ",'bufferViews':[{'buffer':0,'byteLength':48},{'buffer':0,"
+                 "'byteOffset':48,'byteLength':12},{},{},{'buffer':0,'byteOffset':12,"
+                 "'byteLength':24},{'buffer':0,'byteOffset':50,'byteLength':4},{'buffer':0,"
+                 "'byteOffset':54,'byteLength':4}],"
+                 "'accessors':[{%s'componentType':5126,'count':4,'type':'VEC3','sparse':{"
+                 "'count':2,'indices':{%s,'componentType':5123},'values':{'bufferView':4}}},"
+                 "{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}]," MESHES "}",
+                 rows[i].view, rows[i].indices);
+        he_import import = square_import(json);
+        expect_counts(&import, 4, 2, 6);
+        assert_memory_equal(import.soup.positions, rows[i].at, sizeof rows[i].at);
+        he_import_clear(&import);
+    }
+}
+
+static void quantized_positions(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" ASSET "," BUFFERS "," VIEWS ",'extensionsUsed':['KHR_mesh_quantization'],"
+        "'extensionsRequired':['KHR_mesh_quantization'],'accessors':["
+        "{'bufferView':4,'componentType':5121,'count':4,'type':'VEC3','normalized':true},"
+        "{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'},"
+        "{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3'},"
+        "{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3','normalized':true}],"
+        "'meshes':[{'primitives':[" PRIMITIVE ",{'attributes':{'POSITION':2},'indices':1},"
+        "{'attributes':{'POSITION':3},'indices':1}]}]}");
+    expect_position(&import, 3, 0.2, 0.4, 0.8);
+    expect_position(&import, 4, -1, 0, 0);
+    expect_position(&import, 7, 51, 102, -52);
+    expect_position(&import, 11, 51 / 127.0, 102 / 127.0, -52 / 127.0);
+    assert_int_equal(import.notes.count, 0);
+    he_import_clear(&import);
+}
+
+static void buffers_in_uris(void **state)
+{
+    (void)state;
+    /* three corners of the square, then nothing */
+    static const char triangle[] =
+        "{'asset':{'version':'2.0'},'buffers':[{'byteLength':36,'uri':'data:application/"
+        "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA'}],"
+        "'bufferViews':[{'buffer':0,'byteLength':36}],'accessors':[{'bufferView':0,"
+        "'componentType':5126,'count':3,'type':'VEC3'}],"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}";
+    char json[sizeof triangle];
+    for (size_t i = 0; i < sizeof triangle; i++) {
+        json[i] = triangle[i] == '\'' ? '"' : triangle[i];
+    }
+    glb_file f;
+    glb_make(&f, triangle, NULL, 0);
+    for (int i = 0; i < 2; i++) {
+        he_import import = {0};
+        he_error err = {0};
+        he_status status = i == 0 ? read_bytes("glb", f.bytes, f.length, &import, &err)
+                                  : read_bytes("gltf", json, strlen(json), &import, &err);
+        if (status != HE_OK) {
+            fail_msg("%s", err.text);
+        }
+        expect_counts(&import, 3, 1, 3);
+        assert_memory_equal(import.soup.positions, square, 3 * sizeof *square);
+        /* places are in the JSON */
+        assert_int_equal(he_places_find(&import.faces, 0),
+                         (i == 0 ? f.json : 0) +
+                             (size_t)(strstr(triangle, "{'attributes'") - triangle));
+        he_import_clear(&import);
+    }
+    assert_ptr_equal(he_format_sniff(json, strlen(json)), he_format_find("gltf"));
+    assert_ptr_equal(he_format_sniff(f.bytes, 20), he_format_find("glb"));
+    assert_null(he_format_sniff("{\"vertices\":[]}", 15));
+}
+
+/* --- attributes --- */
+
+static void attributes_of_vertices(void **state)
+{
+    (void)state;
+    static const uint32_t colors[] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
+    he_import import = square_import(
+        "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':0,'COLOR_0':4,"
+        "'_HEAT':3,'_':3,'other':3,'TEXCOORD_0':0,'COLOR_1':0,'COLOR_01':0,'TANGENT':0,"
+        "'_position':0,'JOINTS_0':4,'_any\\u0041':4},'indices':1}]}]}");
+    expect_u32s(&import, HE_VERTEX, "color", 3, colors, 4);
+    expect_u32s(&import, HE_VERTEX, "HEAT", 1, (uint32_t[]){0, 1, 2, 3}, 4);
+    const he_column *normal = find_column(&import, HE_VERTEX, "normal");
+    assert_int_equal(normal->type, HE_FLOAT);
+    assert_int_equal(normal->rule, HE_INTERPOLATE);
+    for (size_t i = 0; i < 12; i++) {
+        float value;
+        memcpy(&value, normal->data + 4 * i, sizeof value);
+        assert_true((double)value == square[i / 3][i % 3]);
+    }
+    assert_int_equal(find_column(&import, HE_VERTEX, "color1")->type, HE_FLOAT);
+    const he_column *any = find_column(&import, HE_VERTEX, "anyA");
+    assert_int_equal(any->type, HE_FLOAT);
+    float first;
+    memcpy(&first, any->data, sizeof first);
+    assert_true(first == 1);
+    static const char *const ignored[] = {"_",       "other",     "TEXCOORD_0", "COLOR_01",
+                                          "TANGENT", "_position", "JOINTS_0"};
+    for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++) {
+        assert_non_null(find_note(&import.notes, "ignored_attribute", ignored[i]));
+    }
+    assert_int_equal(import.soup.column_count, 5);
+    he_import_clear(&import);
+}
+
+static void directions_turn_with_their_node(void **state)
+{
+    (void)state;
+    /* the corner 1 1 0 as a normal: stretched twice along x, it leans to y; mirrored, it still
+     * points away from the turned triangle */
+    static const struct {
+        const char *node;
+        double x, y;
+    } rows[] = {{"'scale':[2,1,1]", 0.4472135955, 0.894427191},
+                {"'scale':[-2,1,1]", -0.4472135955, 0.894427191},
+                {"'scale':[5,5,5]", 0.70710678, 0.70710678}};
+    for (size_t i = 0; i < 3; i++) {
+        char json[2500];
+        snprintf(json, sizeof json,
+                 "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':0},"
+                 "'indices':1}]}],'nodes':[{'mesh':0,%s}]}",
+                 rows[i].node);
+        he_import import = square_import(json);
+        float n[3];
+        memcpy(n, find_column(&import, HE_VERTEX, "normal")->data + 24, sizeof n);
+        assert_true(fabs((double)n[0] - rows[i].x) < 1e-6 && fabs((double)n[1] - rows[i].y) < 1e-6);
+        he_import_clear(&import);
+    }
+}
+
+static void attributes_of_some_primitives(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" DATA ",'meshes':[{'primitives':[" PRIMITIVE ",{'attributes':{'POSITION':0,"
+        "'COLOR_0':4},'indices':1}," PRIMITIVE ",{'attributes':{'POSITION':0,'COLOR_0':0},"
+        "'indices':1}]}]}");
+    static const uint32_t colors[24] = {0,   0, 0, 0, 0,   0, 0, 0, 0,   0,  0,   0,
+                                        255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
+    expect_u32s(&import, HE_VERTEX, "color", 3, colors, 8);
+    assert_int_equal(find_note(&import.notes, "vertices_without", "color")->count, 12);
+    assert_int_equal(find_note(&import.notes, "attribute_types", "COLOR_0")->count, 1);
+    he_import_clear(&import);
+}
+
+static void names_are_attributes_of_faces(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" DATA ",'materials':[{'name':'St\\u00e4hl'},{}],'meshes':[{'name':'plate','primitives':["
+        "{'attributes':{'POSITION':0},'indices':1,'material':0},{'attributes':{'POSITION':0},"
+        "'indices':1,'material':1}," PRIMITIVE "]}],'nodes':[{'mesh':0},{'mesh':0,'name':'lid',"
+        "'translation':[0,0,1]}]}");
+    static const char *const materials[] = {"St\xC3\xA4hl", "material_1", ""};
+    for (size_t f = 0; f < 12; f++) {
+        assert_string_equal(face_label(&import, "object", f), f < 6 ? "plate" : "lid");
+        assert_string_equal(face_label(&import, "material", f), materials[f / 2 % 3]);
+    }
+    he_import_clear(&import);
+}
+
+static void what_has_no_place_is_noted(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,"
+        "'targets':[{'POSITION':0}]}]}],'images':[{'uri':'file:///etc/passwd'}],"
+        "'skins':[{'joints':[0]}],'animations':[{}],'extensionsUsed':['KHR_materials_unlit',"
+        "'ACME_thing'],'extensionsRequired':['KHR_materials_unlit'],"
+        "'extras':{'a':[1,{'b':null}]}}");
+    static const char *const codes[] = {"ignored_targets", "ignored_images", "ignored_skins",
+                                        "ignored_animations"};
+    for (size_t i = 0; i < 4; i++) {
+        assert_non_null(find_note(&import.notes, codes[i], ""));
+    }
+    assert_non_null(find_note(&import.notes, "ignored_extension", "ACME_thing"));
+    he_import_clear(&import);
+    unsigned char bin[SQUARE_BYTES];
+    glb_file f;
+    square_bin(bin);
+    glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
+    glb_word(&f, 4);
+    glb_word(&f, 0x12345678);
+    glb_word(&f, 0);
+    f.bytes[8] = (unsigned char)f.length;
+    f.bytes[9] = (unsigned char)(f.length >> 8);
+    he_error err = {0};
+    assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_OK);
+    assert_non_null(find_note(&import.notes, "ignored_chunk", ""));
+    he_import_clear(&import);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_square_of_two_triangles),
+        cmocka_unit_test(every_mode_and_every_type_of_index),
+        cmocka_unit_test(points_and_lines_are_left_out),
+        cmocka_unit_test(nodes_move_what_they_place),
+        cmocka_unit_test(a_mesh_of_several_nodes_comes_several_times),
+        cmocka_unit_test(the_scene_that_is_named_is_read),
+        cmocka_unit_test(sparse_accessors),
+        cmocka_unit_test(quantized_positions),
+        cmocka_unit_test(buffers_in_uris),
+        cmocka_unit_test(attributes_of_vertices),
+        cmocka_unit_test(directions_turn_with_their_node),
+        cmocka_unit_test(attributes_of_some_primitives),
+        cmocka_unit_test(names_are_attributes_of_faces),
+        cmocka_unit_test(what_has_no_place_is_noted),
+    };
+    return cmocka_run_group_tests_name("format_glb", tests, NULL, NULL);
+}

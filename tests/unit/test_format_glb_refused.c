@@ -1,0 +1,519 @@
+/* GLB and glTF files that are wrong: each is refused, at a byte and with its path in the JSON. */
+#include "unit/gltf_file.h"
+
+#include <time.h>
+
+static void containers(void **state)
+{
+    (void)state;
+    unsigned char bin[SQUARE_BYTES];
+    glb_file good;
+    square_bin(bin);
+    glb_make(&good, "{" DATA "," MESHES "}", bin, sizeof bin);
+    size_t json = good.bin - 8 - 20, at = good.bin - 8;
+    /* cut anywhere */
+    for (size_t length = 0; length < good.length; length++) {
+        he_import import = {0};
+        he_error err = {0};
+        assert_int_equal(read_pieces("glb", good.bytes, length, 0, NULL, &import, &err), HE_SYNTAX);
+        assert_int_equal(err.place, HE_PLACE_BYTE);
+        assert_int_equal(err.at, length);
+    }
+    const struct {
+        size_t where;
+        uint32_t word;
+        he_status status;
+        uint64_t at;
+        const char *words;
+    } rows[] = {
+        {0, 0x46546C68, HE_SYNTAX, 0, "not a GLB file"},
+        {4, 1, HE_UNSUPPORTED, 4, "version 1, not 2"},
+        {4, 3, HE_UNSUPPORTED, 4, "version 3, not 2"},
+        {8, 19, HE_SYNTAX, 8, "holds no chunk"},
+        {8, (uint32_t)good.length + 4, HE_SYNTAX, good.length, "ends before"},
+        {8, (uint32_t)good.length - 4, HE_SYNTAX, at, "a chunk of 96 bytes"},
+        {8, 0xFFFFFFFF, HE_SYNTAX, good.length, "ends before the 4294967295"},
+        {12, 0xFFFFFFF0, HE_SYNTAX, 12, "a chunk of 4294967280 bytes"},
+        {12, (uint32_t)json + 2, HE_SYNTAX, 12, "no multiple of 4"},
+        {16, 0x004E4942, HE_SYNTAX, 16, "the first chunk is not \"JSON\""},
+        {at + 4, 0x4E4F534A, HE_SYNTAX, at + 4, "a second JSON chunk"},
+        {at, 0xFFFFFFF0, HE_SYNTAX, at, "a chunk of 4294967280 bytes"},
+        {at, 97, HE_SYNTAX, at, "a chunk of 97 bytes"},
+        {at, 95, HE_SYNTAX, at, "no multiple of 4"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        glb_file f = good;
+        f.length = rows[i].where;
+        glb_word(&f, rows[i].word);
+        expect_refused_at_byte("glb", f.bytes, good.length, rows[i].status, rows[i].at,
+                               rows[i].words);
+    }
+    glb_file f = good;
+    glb_word(&f, 0);
+    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "goes on after");
+    /* a third chunk that is BIN */
+    f = good;
+    glb_word(&f, 0);
+    glb_word(&f, 0x004E4942);
+    f.bytes[8] = (unsigned char)f.length;
+    f.bytes[9] = (unsigned char)(f.length >> 8);
+    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length + 4,
+                           "not the second one");
+    /* a chunk that is missing, and one that is empty */
+    glb_make(&f, "{" DATA "," MESHES "}", NULL, 0);
+    he_import import = {0};
+    he_error err = {0};
+    assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_BAD_VALUE);
+    assert_non_null(strstr(err.text, "buffers/0: the buffer has no bytes in the file"));
+    glb_make(&f, "{" DATA "," MESHES "}", bin, 0);
+    assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_BAD_VALUE);
+    assert_non_null(strstr(err.text, "buffers/0: a buffer of 96 bytes of which 0 are there"));
+    glb_make(&f, "", NULL, 0);
+    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, 20, "the text ends");
+    expect_refused_at_byte("gltf", "", 0, HE_SYNTAX, 0, "the text ends");
+}
+
+static void json_to_the_letter(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        he_status status;
+        uint64_t at;
+        const char *words;
+    } rows[] = {
+        {"{\"asset\":{\"version\":\"2.0\"}", HE_SYNTAX, 26, "closing bracket"},
+        {"{\"asset\":{\"version\":\"2.0\"}},", HE_SYNTAX, 27, "something follows"},
+        {"\xEF\xBB\xBF{}", HE_SYNTAX, 0, "a value is expected"},
+        {"{\"a\":1,}", HE_SYNTAX, 7, "a member's name"},
+        {"{\"a\" 1}", HE_SYNTAX, 5, "':' is expected"},
+        {"[1,]", HE_SYNTAX, 3, "a value is expected"},
+        {"[1 2]", HE_SYNTAX, 3, "',' or the closing"},
+        {"[01]", HE_SYNTAX, 1, "not a number"},
+        {"[1.]", HE_SYNTAX, 1, "not a number"},
+        {"[-]", HE_SYNTAX, 1, "not a number"},
+        {"[1e999]", HE_NOT_FINITE, 1, "does not fit a double"},
+        {"[nan]", HE_SYNTAX, 1, "a value is expected"},
+        {"[tru]", HE_SYNTAX, 1, "a value is expected"},
+        {"[\"\\x\"]", HE_SYNTAX, 2, "not an escape"},
+        {"[\"\\u12\"]", HE_SYNTAX, 2, "four hexadecimal"},
+        {"[\"\\u0000\"]", HE_SYNTAX, 2, "a null character"},
+        {"[\"\\ud800\"]", HE_SYNTAX, 2, "surrogates a pair"},
+        {"[\"\\ud800\\u0041\"]", HE_SYNTAX, 2, "surrogates a pair"},
+        {"[\"\\udc00\"]", HE_SYNTAX, 2, "surrogates a pair"},
+        {"[\"a\nb\"]", HE_SYNTAX, 3, "a control character"},
+        {"[\"\xC0\x80\"]", HE_SYNTAX, 2, "not UTF-8"},
+        {"[\"abc", HE_SYNTAX, 5, "does not end"},
+        {"[\"abc\\", HE_SYNTAX, 5, "not an escape"},
+        {"{\"a\":1,\"b\":2,\"a\":3}", HE_SYNTAX, 13, "the member 'a' is given twice"},
+        {"[{\"a\":1,\"\\u0061\":3}]", HE_SYNTAX, 8, "the member 'a' is given twice"},
+        {"{\"a\":1,\"b\":2,\"c\":3,\"d\":4,\"e\":5,\"f\":6,\"g\":7,\"h\":8,\"i\":9,\"j\":10,"
+         "\"k\":11,\"l\":12,\"m\":13,\"c\":14}",
+         HE_SYNTAX, 83, "the member 'c' is given twice"},
+        {"[]", HE_SYNTAX, 0, "not a glTF asset"},
+        {"{}", HE_SYNTAX, 0, "not a glTF asset"},
+        {"3", HE_SYNTAX, 0, "not a glTF asset"},
+        {"{\"asset\":{}}", HE_SYNTAX, 9, "not a glTF asset"},
+        {"{\"asset\":{\"version\":2}}", HE_SYNTAX, 9, "not a glTF asset"},
+        {"{\"asset\":{\"version\":\"1.0\"}}", HE_UNSUPPORTED, 20, "asset/version: glTF of a"},
+        {"{\"asset\":{\"version\":\"20\"}}", HE_UNSUPPORTED, 20, "asset/version: glTF of a"},
+        {"{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", HE_UNSUPPORTED, 39,
+         "asset/minVersion"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        expect_refused_at_byte("gltf", rows[i].text, strlen(rows[i].text), rows[i].status,
+                               rows[i].at, rows[i].words);
+    }
+    static const char fine[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"x\":[\"\\ud83d\\ude00\\n\\u00e4\","
+        "-1.5e-3,true,false,null,{},[]]}";
+    he_import import = {0};
+    he_error err = {0};
+    assert_int_equal(read_bytes("gltf", fine, sizeof fine - 1, &import, &err), HE_OK);
+    expect_counts(&import, 0, 0, 0);
+    he_import_clear(&import);
+}
+
+/* One accessor in the place of the first, the rest as it is good. */
+#define WITH_ACCESSOR(a)                               \
+    "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" a \
+    ",{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}]," MESHES "}"
+#define WITH_VIEW(v)                                                                      \
+    "{" ASSET "," BUFFERS ",'bufferViews':[" v                                            \
+    ",{'buffer':0,'byteOffset':48,'byteLength':12}],'accessors':[{'bufferView':0,"        \
+    "'componentType':5126,'count':4,'type':'VEC3'},{'bufferView':1,'componentType':5123," \
+    "'count':6,'type':'SCALAR'}]," MESHES "}"
+#define WITH_PRIMITIVE(p) "{" DATA ",'meshes':[{'primitives':[" p "]}]}"
+#define WITH_NODES(n)     "{" DATA "," MESHES ",'scenes':[{'nodes':[0]}],'nodes':[" n "]}"
+#define WITH_SPARSE(s) \
+    WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','sparse':" s "}")
+
+static void references_and_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *json;
+        he_status status;
+        const char *words;
+    } rows[] = {
+        /* accessors */
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':0,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/count: 0 is not a whole number from 1"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4.5,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/count: 4.5 is not"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':-4,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/count: -4 is not"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':'4','type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/count: \"4\" is not"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'type':'VEC3'}"), HE_BAD_VALUE,
+         "accessors/0: 'count' is missing"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':5,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0: 5 elements of 12 bytes from byte 0 of a view of 48"},
+        {WITH_ACCESSOR("{'componentType':5126,'count':4000000000,'type':'VEC3'}"), HE_LIMIT,
+         "accessors/0: 4000000000 elements are more than a mesh can have"},
+        {WITH_ACCESSOR("{'componentType':5126,'count':9007199254740992,'type':'VEC3'}"), HE_LIMIT,
+         "accessors/0: 9007199254740992 elements"},
+        {WITH_ACCESSOR("{'componentType':5126,'count':9007199254740993000,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/count"},
+        {WITH_ACCESSOR("{'componentType':5126,'count':2000000000,'type':'VEC3'}"), HE_LIMIT,
+         "meshes/0/primitives/0: the scene makes more than"},
+        {WITH_ACCESSOR("{'bufferView':0,'byteOffset':4,'componentType':5126,'count':4,"
+                       "'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0: 4 elements of 12 bytes from byte 4"},
+        {WITH_ACCESSOR("{'bufferView':0,'byteOffset':9007199254740988,'componentType':5126,"
+                       "'count':4,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0: 4 elements"},
+        {WITH_ACCESSOR("{'bufferView':0,'byteOffset':18446744073709551604,'componentType':5126,"
+                       "'count':4,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/byteOffset"},
+        {WITH_ACCESSOR("{'bufferView':0,'byteOffset':-12,'componentType':5126,'count':4,"
+                       "'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/byteOffset: -12 is not"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5124,'count':4,'type':'VEC3'}"),
+         HE_BAD_VALUE, "there is no componentType 5124"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5130,'count':4,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0/componentType: 5130"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC5'}"),
+         HE_BAD_VALUE, "accessors/0: 'type' is not"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC2'}"),
+         HE_BAD_VALUE, "accessors/0: positions are VEC3"},
+        {WITH_ACCESSOR("{'bufferView':0,'componentType':5125,'count':4,'type':'VEC3'}"),
+         HE_BAD_VALUE, "accessors/0: positions are VEC3"},
+        {WITH_ACCESSOR("{'bufferView':7,'componentType':5126,'count':4,'type':'VEC3'}"),
+         HE_BAD_INDEX, "accessors/0/bufferView: there is no buffer view 7 of 5"},
+        {WITH_ACCESSOR("3"), HE_BAD_VALUE, "accessors/0: this is not an object"},
+        /* views and buffers */
+        {WITH_VIEW("{'byteLength':48}"), HE_BAD_VALUE, "bufferViews/0: 'buffer' is missing"},
+        {WITH_VIEW("{'buffer':1,'byteLength':48}"), HE_BAD_INDEX, "there is no buffer 1 of 1"},
+        {WITH_VIEW("{'buffer':0}"), HE_BAD_VALUE, "'byteLength' is missing"},
+        {WITH_VIEW("{'buffer':0,'byteLength':97}"), HE_BAD_VALUE, "bytes 0 to 97 of a buffer"},
+        {WITH_VIEW("{'buffer':0,'byteOffset':49,'byteLength':48}"), HE_BAD_VALUE,
+         "bufferViews/0: bytes 49 to 97 of a buffer of 96"},
+        {WITH_VIEW("{'buffer':0,'byteOffset':9007199254740991,'byteLength':9007199254740991}"),
+         HE_BAD_VALUE, "bufferViews/0: bytes"},
+        {WITH_VIEW("{'buffer':0,'byteOffset':-4,'byteLength':48}"), HE_BAD_VALUE,
+         "bufferViews/0/byteOffset: -4"},
+        {WITH_VIEW("{'buffer':0,'byteLength':48,'byteStride':2147483647}"), HE_BAD_VALUE,
+         "bufferViews/0/byteStride: 2147483647 is not a whole number from 0 to 252"},
+        {WITH_VIEW("{'buffer':0,'byteLength':48,'byteStride':4}"), HE_BAD_VALUE,
+         "elements of 12 bytes at a stride of 4"},
+        {WITH_VIEW("{'buffer':0,'byteLength':48,'byteStride':16}"), HE_BAD_VALUE,
+         "accessors/0: 4 elements"},
+        {"{" ASSET ",'buffers':[{'byteLength':97}]}", HE_BAD_VALUE, "of 97 bytes of which 96"},
+        {"{" ASSET ",'buffers':[{}]}", HE_BAD_VALUE, "buffers/0: 'byteLength' is missing"},
+        {"{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':4}]}", HE_BAD_VALUE,
+         "buffers/1: the buffer has no bytes"},
+        {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data.bin'}]}", HE_UNSUPPORTED,
+         "buffers/0/uri: a buffer outside the file"},
+        {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'http://169.254.169.254/'}]}",
+         HE_UNSUPPORTED, "buffers/0/uri: a buffer outside the file"},
+        {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:,abc'}]}", HE_UNSUPPORTED,
+         "buffers/0/uri: a data: URI that is not in base64"},
+        {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:;base64,A-=='}]}", HE_SYNTAX,
+         "buffers/0/uri: the data: URI is not base64"},
+        {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:;base64,AAAA'}]}", HE_BAD_VALUE,
+         "buffers/0: a buffer of 96 bytes of which 3"},
+        {"{" ASSET ",'buffers':3}", HE_BAD_VALUE, "buffers: this is not an array"},
+        {"{" ASSET ",'buffers':[{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}},"
+         "{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}}]}",
+         HE_UNSUPPORTED, "buffers/1: the buffer is there in EXT_meshopt_compression only"},
+        /* primitives */
+        {WITH_PRIMITIVE("{'indices':1}"), HE_BAD_VALUE, "'attributes' is missing"},
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':9}}"), HE_BAD_INDEX,
+         "meshes/0/primitives/0/attributes/POSITION: there is no accessor 9 of 5"},
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':4294967296}"), HE_BAD_INDEX,
+         "meshes/0/primitives/0/indices: there is no accessor 4294967296"},
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':0}"), HE_BAD_VALUE,
+         "accessors/0: indices are SCALAR"},
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':1,'mode':7}"), HE_BAD_VALUE,
+         "meshes/0/primitives/0/mode: 7 is not a whole number from 0 to 6"},
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':2}"), HE_BAD_VALUE,
+         "meshes/0/primitives/0: 4 corners are no whole number of triangles"},
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0,'_A':1},'indices':1}"), HE_BAD_VALUE,
+         "attributes/_A: 6 values for 4 vertices"},
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':1,'material':0}"), HE_BAD_INDEX,
+         "there is no material 0 of 0"},
+        {"{" DATA ",'meshes':[{'primitives':[1]}]}", HE_BAD_VALUE, "this is not an object"},
+        {"{" DATA ",'meshes':[{}]}", HE_BAD_VALUE, "meshes/0: 'primitives' is missing"},
+        /* nodes */
+        {WITH_NODES("{'mesh':1}"), HE_BAD_INDEX, "nodes/0/mesh: there is no mesh 1 of 1"},
+        {WITH_NODES("{'children':[1]}"), HE_BAD_INDEX, "there is no node 1 of 1"},
+        {WITH_NODES("{'children':[0]}"), HE_BAD_VALUE,
+         "nodes/0/children/0: node 0 is reached twice"},
+        {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
+        {WITH_NODES("{'children':[1,1]},{'mesh':0}"), HE_BAD_VALUE, "node 1 is reached twice"},
+        {WITH_NODES("{'matrix':[1,2,3]}"), HE_BAD_VALUE, "nodes/0/matrix: 16 numbers are needed"},
+        {WITH_NODES("{'matrix':[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}"), HE_BAD_VALUE, "last row"},
+        {WITH_NODES("{'scale':[1,2,3,4]}"), HE_BAD_VALUE, "nodes/0/scale: 3 numbers"},
+        {WITH_NODES("{'scale':[1,2,null]}"), HE_BAD_VALUE, "nodes/0/scale/2: this is not a number"},
+        {WITH_NODES("{'rotation':5}"), HE_BAD_VALUE, "nodes/0/rotation: 4 numbers"},
+        {WITH_NODES("{'mesh':0,'scale':[1e308,1e308,1]},{}"), HE_OK, ""},
+        {WITH_NODES("{'mesh':0,'scale':[1e308,1,1],'translation':[1e308,0,0]}"), HE_NOT_FINITE,
+         "not finite"},
+        {"{" DATA ",'scene':2,'scenes':[{}]}", HE_BAD_INDEX, "scene: there is no scene 2 of 1"},
+        /* sparse */
+        {WITH_SPARSE("{'count':2}"), HE_BAD_VALUE, "'indices' and 'values' are needed"},
+        {WITH_SPARSE("{'count':5,'indices':{'bufferView':1,'componentType':5123},'values':"
+                     "{'bufferView':0}}"),
+         HE_BAD_VALUE, "accessors/0/sparse/count: 5 is not a whole number from 1 to 4"},
+        {WITH_SPARSE("{'count':3,'indices':{'bufferView':1,'byteOffset':4,'componentType':5123},"
+                     "'values':{'bufferView':0}}"),
+         HE_BAD_INDEX, "accessors/0/sparse: index 0, number 1"},
+        {WITH_SPARSE("{'count':4,'indices':{'bufferView':1,'componentType':5126},'values':"
+                     "{'bufferView':0}}"),
+         HE_BAD_VALUE, "indices are of componentType"},
+        {WITH_SPARSE("{'count':4,'indices':{'bufferView':2,'componentType':5123},'values':"
+                     "{'bufferView':0}}"),
+         HE_BAD_VALUE, "sparse/indices: 4 elements of 2 bytes"},
+        {WITH_SPARSE("{'count':3,'indices':{'bufferView':1,'componentType':5123},'values':"
+                     "{'bufferView':1}}"),
+         HE_BAD_VALUE, "sparse/values: 3 elements of 12 bytes"},
+        {WITH_SPARSE("{'count':3,'indices':{'bufferView':1,'componentType':5123},'values':{}}"),
+         HE_BAD_VALUE, "sparse/values: 'bufferView' is missing"},
+        /* extensions */
+        {"{" ASSET ",'extensionsRequired':['KHR_draco_mesh_compression']}", HE_UNSUPPORTED,
+         "extensionsRequired/0: the file needs the extension KHR_draco_mesh_compression"},
+        {"{" ASSET ",'extensionsRequired':['KHR_mesh_quantization','EXT_meshopt_compression']}",
+         HE_UNSUPPORTED, "extensionsRequired/1: the file needs the extension EXT_meshopt"},
+        {"{" ASSET ",'extensionsRequired':['ACME_x']}", HE_UNSUPPORTED, "ACME_x"},
+        {"{" ASSET ",'accessors':[{'componentType':5126,'count':3,'type':'VEC3'}],'meshes':[{"
+         "'primitives':[{'attributes':{'POSITION':0},'extensions':{'KHR_draco_mesh_compression':"
+         "{}}}]}]}",
+         HE_UNSUPPORTED, "the primitive is there in KHR_draco_mesh_compression only"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].status == HE_OK) {
+            he_import import = square_import(rows[i].json);
+            he_import_clear(&import);
+        } else {
+            expect_json_refused(rows[i].json, rows[i].status, rows[i].words);
+        }
+    }
+}
+
+static void numbers_in_the_buffer(void **state)
+{
+    (void)state;
+    unsigned char bin[SQUARE_BYTES];
+    static const uint32_t bits[] = {0x7FC00000, 0x7F800000, 0xFF800000};
+    glb_file f;
+    for (size_t i = 0; i < 3; i++) {
+        square_bin(bin);
+        memcpy(bin + 28, &bits[i], 4);
+        glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
+        expect_refused_at_byte("glb", f.bytes, f.length, HE_NOT_FINITE, f.bin + 24, "not finite");
+    }
+    static const uint16_t bad[] = {4, 65535};
+    for (size_t i = 0; i < 2; i++) {
+        square_bin(bin);
+        memcpy(bin + 56, &bad[i], 2);
+        glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
+        expect_refused_at_byte("glb", f.bytes, f.length, HE_BAD_INDEX, f.bin + 56,
+                               "meshes/0/primitives/0: index");
+    }
+    /* not a number in what is no position is 0, with a note */
+    he_import import = {0};
+    he_error err = {0};
+    square_bin(bin);
+    memcpy(bin + 64, &bits[0], 4);
+    glb_make(&f,
+             "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
+             ",{'bufferView':3,'componentType':5126,'count':4,'type':'SCALAR'}],'meshes':[{"
+             "'primitives':[{'attributes':{'POSITION':0,'_A':5},'indices':1}]}]}",
+             bin, sizeof bin);
+    assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_OK);
+    assert_non_null(find_note(&import.notes, "not_finite", "A"));
+    he_import_clear(&import);
+}
+
+/* --- bombs --- */
+
+typedef struct writing {
+    char *text;
+    size_t length, room;
+} writing;
+
+static void put(writing *w, const char *text)
+{
+    size_t n = strlen(text);
+    if (w->length + n + 1 > w->room) {
+        w->room = 2 * (w->room + n) + 64;
+        w->text = realloc(w->text, w->room);
+        assert_non_null(w->text);
+    }
+    for (size_t i = 0; i <= n; i++) {
+        w->text[w->length + i] = text[i] == '\'' ? '"' : text[i];
+    }
+    w->length += n;
+}
+
+static void expect_bomb(writing *w, he_status wanted, const char *words)
+{
+    he_import import = {0};
+    he_error err = {0};
+    struct timespec from, to;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
+    he_status status = read_pieces("gltf", w->text, w->length, 0, NULL, &import, &err);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
+    if (status != wanted || strstr(err.text, words) == NULL) {
+        fail_msg("%.200s: %s: %s", w->text, he_status_slug(status), err.text);
+    }
+    print_message("%zu bytes, %.3f s: %s\n", w->length,
+                  (double)(to.tv_sec - from.tv_sec) + (double)(to.tv_nsec - from.tv_nsec) * 1e-9,
+                  status == HE_OK ? "read" : err.text);
+    if (status == HE_OK) {
+        he_import_clear(&import);
+    }
+    free(w->text);
+    *w = (writing){0};
+}
+
+static void bombs(void **state)
+{
+    (void)state;
+    writing w = {0};
+    char part[200];
+    /* nodes that double: 2^40 instances if each could have two parents */
+    put(&w, "{'asset':{'version':'2.0'},'scenes':[{'nodes':[0]}],'nodes':[");
+    for (int i = 0; i < 40; i++) {
+        snprintf(part, sizeof part, "{'children':[%d,%d]},", i + 1, i + 1);
+        put(&w, part);
+    }
+    put(&w, "{}]}");
+    expect_bomb(&w, HE_BAD_VALUE, "node 40 is reached twice");
+    /* text that is deeper than anybody can mean */
+    put(&w, "{'asset':{'version':'2.0'},'extras':");
+    for (int i = 0; i < 90000; i++) {
+        put(&w, i % 2 ? "{'a':" : "[");
+    }
+    expect_bomb(&w, HE_SYNTAX, "nesting is deeper than 128 levels");
+    /* zeros that take no bytes, once, and for many nodes and primitives */
+    static const char zeros[] = "'accessors':[{'componentType':5126,'count':%d,'type':'VEC3'}]";
+    put(&w, "{'asset':{'version':'2.0'},");
+    snprintf(part, sizeof part, zeros, 3000000);
+    put(&w, part);
+    put(&w, ",'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
+    expect_bomb(&w, HE_LIMIT, "meshes/0/primitives/0: the scene makes more than 64 MiB");
+    put(&w, "{'asset':{'version':'2.0'},");
+    snprintf(part, sizeof part, zeros, 30000);
+    put(&w, part);
+    put(&w, ",'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}],'nodes':[{}");
+    for (int i = 0; i < 100000; i++) {
+        put(&w, ",{'mesh':0}");
+    }
+    put(&w, "]}");
+    expect_bomb(&w, HE_LIMIT, "the scene makes more than");
+    put(&w, "{'asset':{'version':'2.0'},");
+    snprintf(part, sizeof part, zeros, 30000);
+    put(&w, part);
+    put(&w, ",'meshes':[{'primitives':[{'attributes':{'POSITION':0}}");
+    for (int i = 0; i < 100000; i++) {
+        put(&w, ",{'attributes':{'POSITION':0}}");
+    }
+    put(&w, "]}]}");
+    expect_bomb(&w, HE_LIMIT, "the scene makes more than");
+    /* attributes of one accessor under ever new names */
+    put(&w, "{'asset':{'version':'2.0'},");
+    snprintf(part, sizeof part, zeros, 30000);
+    put(&w, part);
+    put(&w, ",'meshes':[{'primitives':[{'attributes':{'POSITION':0");
+    for (int i = 0; i < 20000; i++) {
+        snprintf(part, sizeof part, ",'_A%d':0", i);
+        put(&w, part);
+    }
+    put(&w, "}}]}]}");
+    expect_bomb(&w, HE_LIMIT, "");
+    /* a primitive whose many members are looked through for every node */
+    put(&w, "{'asset':{'version':'2.0'},'meshes':[{'primitives':[{'attributes':{");
+    for (int i = 0; i < 100000; i++) {
+        snprintf(part, sizeof part, "%s'_%d':0", i > 0 ? "," : "", i);
+        put(&w, part);
+    }
+    put(&w, "}}]}],'nodes':[{}");
+    for (int i = 0; i < 100000; i++) {
+        put(&w, ",{'mesh':0}");
+    }
+    put(&w, "]}");
+    expect_bomb(&w, HE_LIMIT, "the scene makes more than");
+    /* a chain of nodes is followed without recursion, but not for ever */
+    for (int many = 0; many < 2; many++) {
+        int depth = many ? 70000 : 60000;
+        put(&w, "{'asset':{'version':'2.0'},'nodes':[");
+        for (int i = 0; i < depth; i++) {
+            snprintf(part, sizeof part, "{'children':[%d]},", i + 1);
+            put(&w, part);
+        }
+        put(&w, "{}]}");
+        expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "deeper than 65536 levels" : "");
+    }
+    /* as many values as a tree may have, and one object with all the members */
+    put(&w, "{'asset':{'version':'2.0'},'extras':[0");
+    for (int i = 0; i < (1 << 23); i++) {
+        put(&w, ",0");
+    }
+    put(&w, "]}");
+    expect_bomb(&w, HE_LIMIT, "JSON of more than 8388608 values");
+    put(&w, "{'asset':{'version':'2.0'},'extras':{'x':0");
+    for (int i = 0; i < 500000; i++) {
+        snprintf(part, sizeof part, ",'%d':0", i);
+        put(&w, part);
+    }
+    put(&w, "}}");
+    expect_bomb(&w, HE_OK, "");
+    put(&w, "{'asset':{'version':'2.0'},'nodes':[{}");
+    for (int i = 0; i < 1000000; i++) {
+        put(&w, ",{}");
+    }
+    put(&w, "]}");
+    expect_bomb(&w, HE_OK, "");
+}
+
+static void limits_of_the_caller(void **state)
+{
+    (void)state;
+    unsigned char bin[SQUARE_BYTES];
+    glb_file f;
+    square_bin(bin);
+    glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
+    const he_limits rows[] = {{.vertices = 3}, {.faces = 1}, {.corners = 5}, {.bytes = 100}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        he_import import = {0};
+        he_error err = {0};
+        assert_int_equal(read_pieces("glb", f.bytes, f.length, 0, &rows[i], &import, &err),
+                         HE_LIMIT);
+        assert_int_equal(err.place, HE_PLACE_BYTE);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(containers),
+        cmocka_unit_test(json_to_the_letter),
+        cmocka_unit_test(references_and_numbers),
+        cmocka_unit_test(numbers_in_the_buffer),
+        cmocka_unit_test(bombs),
+        cmocka_unit_test(limits_of_the_caller),
+    };
+    return cmocka_run_group_tests_name("format_glb_refused", tests, NULL, NULL);
+}

@@ -1,0 +1,321 @@
+/* GLB as it is written: read back to the same mesh here, to triangles elsewhere. */
+#include "unit/gltf_file.h"
+
+#include "mesh/write.h"
+
+#include <math.h>
+
+static const char *const specimens[] = {
+    "012",
+    "0123",
+    "012,023,031,132",
+    "0321,4567,0154,1265,2376,3047", /* a cube */
+    "01234567",                      /* an octagon */
+    "0123,3254,456",
+    "012,034,056", /* a bow-tie of three fans */
+    "0123,3245,5467",
+};
+
+static char *write_glb(const he_mesh *mesh, he_notes *notes, size_t *length)
+{
+    return write_bytes("glb", "binary", mesh, notes, length);
+}
+
+static he_import read_back(const char *bytes, size_t length)
+{
+    he_import import = {0};
+    he_error err = {0};
+    if (read_bytes("glb", bytes, length, &import, &err) != HE_OK) {
+        fail_msg("byte %llu: %s", (unsigned long long)err.at, err.text);
+    }
+    return import;
+}
+
+/* The file without what only hedge reads: the member gets another name. */
+static void hide_extras(char *bytes, size_t length)
+{
+    for (size_t i = 0; i + 7 < length; i++) {
+        if (memcmp(bytes + i, "\"hedge\":", 8) == 0) {
+            bytes[i + 1] = 'H';
+        }
+    }
+}
+
+static void expect_same_faces(const he_mesh *m, const he_import *import)
+{
+    size_t corner = 0;
+    assert_int_equal(import->soup.face_count, he_mesh_faces(m));
+    for (uint32_t f = 0; f < he_mesh_faces(m); f++) {
+        uint32_t first = m->c.face_halfedge[f], h = first;
+        assert_int_equal(import->soup.starts[f], corner);
+        do {
+            assert_int_equal(import->soup.corners[corner++], m->c.origin[h]);
+            h = m->c.next[h];
+        } while (h != first);
+    }
+    assert_int_equal(import->soup.corner_count, corner);
+}
+
+static void polygons_come_back(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof specimens / sizeof *specimens; i++) {
+        he_mesh *mesh = fixture_mesh(specimens[i]);
+        he_notes notes;
+        size_t length, triangles = 0;
+        char *bytes = write_glb(mesh, &notes, &length);
+        he_import import = read_back(bytes, length);
+        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.soup.vertex_count, he_mesh_vertices(mesh));
+        assert_memory_equal(import.soup.positions, mesh->c.position,
+                            he_mesh_vertices(mesh) * sizeof(he_vec3));
+        expect_same_faces(mesh, &import);
+        for (uint32_t f = 0; f < he_mesh_faces(mesh); f++) {
+            triangles += he_face_degree(mesh, (he_face){f}) - 2;
+        }
+        assert_int_equal(find_note(&notes, "triangulated", "") != NULL,
+                         triangles > he_mesh_faces(mesh));
+        he_import_clear(&import);
+        /* what others see */
+        hide_extras(bytes, length);
+        import = read_back(bytes, length);
+        expect_counts(&import, he_mesh_vertices(mesh), triangles, 3 * triangles);
+        he_import_clear(&import);
+        free(bytes);
+        he_mesh_free(mesh);
+    }
+}
+
+static void meshes_without_faces(void **state)
+{
+    (void)state;
+    for (uint32_t vertices = 0; vertices < 3; vertices++) {
+        he_soup soup;
+        he_mesh *mesh;
+        he_soup_init(&soup, NULL);
+        for (uint32_t v = 0; v < vertices; v++) {
+            assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){v, 1, 2}, NULL), HE_OK);
+        }
+        assert_int_equal(he_build(&soup, 0, &mesh, NULL, NULL), HE_OK);
+        he_soup_clear(&soup);
+        size_t length;
+        char *bytes = write_glb(mesh, NULL, &length);
+        he_import import = read_back(bytes, length);
+        expect_counts(&import, vertices, 0, 0);
+        assert_int_equal(import.notes.count, 0);
+        he_import_clear(&import);
+        hide_extras(bytes, length);
+        import = read_back(bytes, length);
+        expect_counts(&import, 0, 0, 0);
+        he_import_clear(&import);
+        free(bytes);
+        he_mesh_free(mesh);
+    }
+}
+
+static void many_vertices_have_long_indices(void **state)
+{
+    (void)state;
+    for (uint32_t vertices = 65535; vertices < 65537; vertices++) {
+        he_soup soup;
+        he_mesh *mesh;
+        he_soup_init(&soup, NULL);
+        for (uint32_t v = 0; v < vertices; v++) {
+            assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){v, v % 7, 0}, NULL), HE_OK);
+        }
+        uint32_t last[3] = {vertices - 3, vertices - 2, vertices - 1};
+        assert_int_equal(he_soup_add_face(&soup, last, 3, NULL), HE_OK);
+        assert_int_equal(he_build(&soup, 0, &mesh, NULL, NULL), HE_OK);
+        he_soup_clear(&soup);
+        size_t length;
+        char *bytes = write_encoded("glb", "binary", mesh, 4096, NULL, &length);
+        he_import import = {0};
+        he_error err = {0};
+        assert_int_equal(read_pieces("glb", bytes, length, 1000, NULL, &import, &err), HE_OK);
+        expect_corners(&import, last, 3);
+        const char *type = vertices < 65536 ? "\"componentType\":5123" : "\"componentType\":5125";
+        bytes[20 + 600] = '\0';
+        assert_non_null(strstr(bytes + 20, type));
+        he_import_clear(&import);
+        free(bytes);
+        he_mesh_free(mesh);
+    }
+}
+
+static void what_is_not_carried_is_said(void **state)
+{
+    (void)state;
+    he_mesh *mesh = mesh_of_text("obj", "v 0.1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1e300 0\nvt 0 0\nvt 1 0\n"
+                                        "vt 1 1\nusemtl steel \"1\"\nf 1/1 2/2 3/3 4/1\n");
+    he_column *column;
+    assert_int_equal(he_column_new("crease", HE_EDGE, HE_BOOL, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
+    assert_int_equal(he_column_new("mark", HE_FACE, HE_BOOL, 2, HE_DEFAULT, &column, NULL), HE_OK);
+    assert_int_equal(he_column_extend(column, 1, NULL), HE_OK);
+    memcpy(he_column_row(column, 0), (unsigned char[]){0, 1}, 2);
+    assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
+    he_notes notes;
+    size_t length;
+    char *bytes = write_glb(mesh, &notes, &length);
+    assert_int_equal(find_note(&notes, "rounded", "")->count, 2);
+    assert_int_equal(find_note(&notes, "triangulated", "")->count, 1);
+    assert_non_null(find_note(&notes, "attribute_lost", "edge crease"));
+    assert_non_null(find_note(&notes, "in_extras", "halfedge uv"));
+    assert_non_null(find_note(&notes, "in_extras", "face material"));
+    he_import import = read_back(bytes, length);
+    assert_string_equal(face_label(&import, "material", 0), "steel \"1\"");
+    assert_int_equal(find_column(&import, HE_FACE, "material")->rule, HE_COPY);
+    const he_column *mark = find_column(&import, HE_FACE, "mark");
+    assert_int_equal(mark->rule, HE_DEFAULT);
+    assert_memory_equal(mark->data, ((unsigned char[]){0, 1}), 2);
+    const double uv[] = {0, 0, 1, 0, 1, 1, 0, 0};
+    expect_doubles(&import, HE_HALFEDGE, "uv", 2, uv, 4);
+    assert_true(import.soup.positions[3].y == (double)3.40282347e38f);
+    he_import_clear(&import);
+    free(bytes);
+    he_mesh_free(mesh);
+}
+
+/* --- extras that do not fit --- */
+
+#define PRIVATE(list, hedge, node)                                                           \
+    "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST list                      \
+    "],'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,'extras':{'hedge':" \
+    "{" hedge "}}}]}],'nodes':[{'mesh':0" node "}]}"
+
+/* The degree 4 and the corners 0 1 2 3 are put where colours and strips were; what does not fit is
+ * left out, and the triangles stay. */
+static void extras_are_not_believed(void **state)
+{
+    (void)state;
+    static const char words[] =
+        ",{'bufferView':4,'componentType':5125,'count':1,'type':'SCALAR'}"                 /* 5 */
+        ",{'bufferView':3,'componentType':5125,'count':4,'type':'SCALAR'}"                 /* 6 */
+        ",{'bufferView':4,'componentType':5125,'count':2,'type':'SCALAR'}"                 /* 7 */
+        ",{'bufferView':4,'byteOffset':8,'componentType':5125,'count':1,'type':'SCALAR'}"; /* 8 */
+    static const struct {
+        const char *hedge, *node;
+        uint32_t degree;
+        uint32_t second;
+        uint32_t corner; /* of the last triangle */
+        size_t faces;
+        const char *column; /* that is made, or NULL */
+        bool fits;
+    } rows[] = {
+        {"'polygons':{'degrees':5,'corners':6}", "", 4, 0, 3, 1, NULL, true},
+        {"'polygons':{'degrees':5,'corners':6}", ",'scale':[1,1,1]", 4, 0, 3, 1, NULL, true},
+        {"'polygons':{'degrees':5,'corners':6}", ",'scale':[1,1,2]", 4, 0, 3, 2, NULL, false},
+        {"'polygons':{'degrees':5,'corners':6}", "", 3, 0, 3, 2, NULL, false},
+        {"'polygons':{'degrees':5,'corners':6}", "", 5, 0, 3, 2, NULL, false},
+        {"'polygons':{'degrees':5,'corners':6}", "", 0xFFFFFFFF, 0, 3, 2, NULL, false},
+        {"'polygons':{'degrees':7,'corners':6}", "", 4, 3, 3, 2, NULL, false},
+        {"'polygons':{'degrees':5}", "", 4, 0, 3, 2, NULL, false},
+        {"'polygons':{}", "", 4, 0, 3, 2, NULL, false},
+        {"'polygons':{'degrees':5,'corners':1}", "", 4, 0, 3, 2, NULL, false},
+        {"'polygons':{'degrees':99,'corners':6}", "", 4, 0, 3, 2, NULL, false},
+        {"'polygons':{'degrees':5,'corners':5}", "", 4, 0, 3, 2, NULL, false},
+        {"", "", 4, 0, 3, 2, NULL, true},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 4, 1, 3, 2, "n", true},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':5}]",
+         "", 4, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'double','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 4, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'edge','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 4, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 4, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint64','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 4, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':17,'rule':'copy',"
+         "'accessor':7}]",
+         "", 4, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'best',"
+         "'accessor':7}]",
+         "", 4, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'bool','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 1, 2, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'bool','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 1, 0, 3, 2, "n", true},
+        {"'columns':[{'domain':'face','name':'n','type':'float','components':1,'rule':'copy',"
+         "'accessor':7}]",
+         "", 0x7F800000, 0, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7,'labels':['a','b']}]",
+         "", 0, 1, 3, 2, "n", true},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7,'labels':['a','b']}]",
+         "", 0, 2, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'int32','components':1,'rule':'copy',"
+         "'accessor':7,'labels':['a','b']}]",
+         "", 0, 1, 3, 2, NULL, false},
+        {"'columns':[{'domain':'vertex','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':6},{'domain':'vertex','name':'n','type':'uint32','components':1,"
+         "'rule':'copy','accessor':6}]",
+         "", 0, 1, 3, 2, NULL, false},
+        {"'columns':3", "", 0, 1, 3, 2, NULL, true},
+        {"'columns':[3,{}]", "", 0, 1, 3, 2, NULL, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        unsigned char bin[SQUARE_BYTES];
+        char json[3000];
+        glb_file f;
+        snprintf(json, sizeof json, PRIVATE("%s", "%s", "%s"), words, rows[i].hedge, rows[i].node);
+        square_bin(bin);
+        memcpy(bin + 80, &rows[i].degree, 4);
+        memcpy(bin + 84, &rows[i].second, 4);
+        glb_make(&f, json, bin, sizeof bin);
+        he_import import = read_back((const char *)f.bytes, f.length);
+        assert_int_equal(import.soup.face_count, rows[i].faces);
+        assert_int_equal(find_note(&import.notes, "stale_extras", "") == NULL, rows[i].fits);
+        assert_true(rows[i].column == NULL || find_column(&import, HE_FACE, "n") != NULL);
+        assert_true(rows[i].column != NULL || find_column(&import, HE_FACE, "n") == NULL);
+        he_mesh_free(build_import(&import));
+        he_import_clear(&import);
+    }
+}
+
+/* The triangles were changed, the extras stayed. */
+static void polygons_of_other_triangles(void **state)
+{
+    (void)state;
+    he_mesh *mesh = fixture_mesh("0123,3254,456");
+    size_t length;
+    char *bytes = write_glb(mesh, NULL, &length);
+    size_t json = 0, at = 0;
+    memcpy(&json, bytes + 12, 4);
+    at = 20 + json + 8 + 7 * 12; /* indices of 16 bits behind seven positions */
+    for (size_t i = 0; i < 15; i++) {
+        char other[4096];
+        assert_true(length < sizeof other);
+        memcpy(other, bytes, length);
+        other[at + 2 * i] = 6;
+        he_import import = read_back(other, length);
+        bool same = bytes[at + 2 * i] == 6;
+        assert_int_equal(import.soup.face_count, same || i >= 12 ? 3 : 5);
+        he_import_clear(&import);
+    }
+    free(bytes);
+    he_mesh_free(mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(polygons_come_back),
+        cmocka_unit_test(meshes_without_faces),
+        cmocka_unit_test(many_vertices_have_long_indices),
+        cmocka_unit_test(what_is_not_carried_is_said),
+        cmocka_unit_test(extras_are_not_believed),
+        cmocka_unit_test(polygons_of_other_triangles),
+    };
+    return cmocka_run_group_tests_name("format_glb_write", tests, NULL, NULL);
+}
