@@ -178,12 +178,12 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
     api_bench *b = with_cube();
     for (size_t i = 0; i < 2; i++) {
         const char *const headers[] = {"Content-Type", types[i], NULL};
-        bench_reply r = expect(201, bench_send(b, "POST", "/v1/meshes", headers, inside));
+        bench_reply r = bench_expect(201, bench_send(b, "POST", "/v1/meshes", headers, inside));
         const cJSON *report = cJSON_GetObjectItem(r.json, "import");
         assert_string_equal(cJSON_GetObjectItem(report, "format")->valuestring, "gltf");
         assert_int_equal(cJSON_GetObjectItem(report, "faces")->valueint, 1);
         bench_reply_free(&r);
-        r = expect(422, bench_send(b, "POST", "/v1/meshes", headers, outside));
+        r = bench_expect(422, bench_send(b, "POST", "/v1/meshes", headers, outside));
         assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "unsupported");
         assert_non_null(strstr(r.body, "buffers/0/uri: a buffer outside the file"));
         bench_reply_free(&r);
