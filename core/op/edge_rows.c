@@ -218,7 +218,7 @@ const he_op he_edge_rows[] = {
                      "The new vertices, in the order of the new face."},
                     {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "Its sides, in the same order."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_BAD_VALUE,
-                     HE_LOW_DEGREE, HE_DEGENERATE_EDGE, HE_LOCKED_ELEMENT},
+                     HE_LOW_DEGREE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 1},
         .run = run_edge_bevel,
     },
