@@ -2,12 +2,11 @@
 
 #include "edit/list.h"
 #include "edit/point.h"
-#include "edit/ring.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
 /* Links of one rim half-edge: its own, those it had neighbours in, the face's and the vertex's. */
-enum { RIM_LINKS = 10 + HE_SETTLE_LINKS };
+enum { RIM_LINKS = 11 };
 
 static void region_clear(he_region *r)
 {
@@ -325,7 +324,11 @@ static void commit(he_mesh *m, const he_region *r, const he_vec3 *to, const he_r
     }
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
-        he_ring_settle(m, he_origin(m, h), h);
+        he_vertex v = he_origin(m, h);
+        /* A boundary half-edge it stores still leaves it; another may have gone along. */
+        if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
+            he_set_vertex_halfedge(m, v, h);
+        }
     }
 }
 
@@ -449,11 +452,13 @@ static he_status draw_all(he_mesh *m, const he_idmap *listed, bool joined, he_re
     if (done == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to keep regions apart");
     }
+    status = count > 1 ? he_watch_phase(m->watch, "drawing faces off", 1, err) : HE_OK;
     for (size_t i = 0; status == HE_OK && i < count; i++) {
         he_region r = {.faces = {.slots = NULL}};
         uint32_t index;
         bool added;
-        if (he_bits_get(done, i)) {
+        status = he_watch_at(m->watch, i, count, err);
+        if (status != HE_OK || he_bits_get(done, i)) {
             continue;
         }
         status = he_idmap_add(&r.faces, listed->ids.ids[i], &index, &added, err);

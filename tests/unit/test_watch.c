@@ -4,6 +4,7 @@
 #include "algo/shape.h"
 #include "edit/delaunay.h"
 #include "edit/erase.h"
+#include "edit/inset.h"
 #include "edit/plane_cut.h"
 #include "edit/plane_split.h"
 #include "edit/separate.h"
@@ -221,6 +222,15 @@ static he_status run_edge_delete(he_mesh *m)
     return he_edge_delete(m, edges, SIDE * SIDE, HE_KEEP_ISOLATED, NULL);
 }
 
+static he_status run_face_inset(he_mesh *m)
+{
+    static uint32_t faces[SIDE * SIDE / 5];
+    for (uint32_t i = 0; i < SIDE * SIDE / 5; i++) {
+        faces[i] = 5 * i;
+    }
+    return he_face_inset(m, faces, SIDE * SIDE / 5, false, 0.5, 0, NULL, NULL);
+}
+
 static he_status run_vertex_move(he_mesh *m)
 {
     static uint32_t vertices[SIDE * SIDE];
@@ -234,7 +244,7 @@ static he_status run_vertex_move(he_mesh *m)
 static he_status (*const operations[])(he_mesh *m) = {
     run_transform,   run_plane_split, run_delaunay,         run_triangulate,     run_compact,
     run_copy,        run_weld,        run_separate_bowties, run_delete_isolated, run_plane_cut,
-    run_face_delete, run_edge_delete, run_vertex_move};
+    run_face_delete, run_edge_delete, run_vertex_move,      run_face_inset};
 
 static he_status run_recorded(he_status (*operation)(he_mesh *m), he_mesh *mesh, listener *l)
 {
