@@ -358,10 +358,10 @@ static void commit(he_mesh *m, const plan *p, he_bridge *made)
     for (size_t k = 0; k < count; k++) {
         made->faces.ids[made->faces.count++] = close_face(m, p, k, &made->edges).i;
     }
-    for (size_t k = 0; k < count; k++) {
-        he_halfedge rung = {2 * made->edges.ids[k]};
-        he_ring_settle(m, he_origin(m, rung), rung);
-        he_ring_settle(m, he_target(m, rung), he_twin(rung));
+    /* Each once: at a corner of many rungs it turns about all of them. */
+    for (size_t k = 0; k < p->corners.ids.count; k++) {
+        he_vertex v = {p->corners.ids.ids[k]};
+        he_ring_settle(m, v, he_vertex_halfedge(m, v));
     }
 }
 
@@ -398,7 +398,7 @@ he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *ou
     }
     if (status == HE_OK) {
         he_need need = {.edges = (uint32_t)count, .faces = (uint32_t)count};
-        need.links = 3 * (p.a.count + p.b.count) + 2 * HE_SETTLE_LINKS * count;
+        need.links = 3 * (p.a.count + p.b.count) + HE_SETTLE_LINKS * p.corners.ids.count;
         status = he_reserve(m, need, err);
     }
     if (status == HE_OK) {
