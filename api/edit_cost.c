@@ -7,17 +7,19 @@ void api_edit_cost_clear(api_edit_cost *cost)
 {
     for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
         he_ids_clear(&cost->named[kind]);
+        he_ids_clear(&cost->reached[kind]);
     }
 }
 
 /* Beyond the most that a worker may look at it is enough to know that there are more. */
-static he_status gather(api_edit_cost *cost, he_kind kind, uint32_t id, he_error *err)
+static he_status gather(api_edit_cost *cost, const he_param *param, uint32_t id, he_error *err)
 {
+    he_ids *lists = (param->flags & HE_REACHES) != 0 ? cost->reached : cost->named;
     if (cost->count > API_COSTLY_ELEMENTS) {
         return HE_OK;
     }
     cost->count++;
-    return he_ids_add(&cost->named[kind], id, err);
+    return he_ids_add(&lists[param->kind], id, err);
 }
 
 he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error *err)
@@ -30,10 +32,10 @@ he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error 
             continue;
         }
         if (param->type == HE_PARAM_ELEMENT) {
-            status = gather(cost, param->kind, arg->id, err);
+            status = gather(cost, param, arg->id, err);
         } else if (param->type == HE_PARAM_ELEMENTS || param->type == HE_PARAM_CYCLE) {
             for (size_t j = 0; j < arg->count && status == HE_OK; j++) {
-                status = gather(cost, param->kind, arg->ids[j], err);
+                status = gather(cost, param, arg->ids[j], err);
             }
         }
     }
@@ -87,6 +89,74 @@ static uint64_t about(const he_mesh *mesh, he_kind kind, uint32_t id, uint64_t m
     return 0;
 }
 
+/* Corners of the faces about a vertex, and its edges at holes. */
+static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
+{
+    he_halfedge first = he_vertex_halfedge(mesh, v), h = first;
+    uint64_t count = 0;
+    if (he_is_isolated(mesh, v)) {
+        return 1;
+    }
+    do {
+        count += he_is_boundary_halfedge(mesh, h) ? 1 : steps(mesh, h, false, most);
+        h = he_turn_ccw(mesh, h);
+    } while (h.i != first.i && count < most);
+    return count;
+}
+
+/* Edges at the corners of a loop, or corners of the faces about them. */
+static uint64_t along(const he_mesh *mesh, he_halfedge first, bool faces, uint64_t most)
+{
+    he_halfedge h = first;
+    uint64_t count = 0;
+    do {
+        count +=
+            faces ? about_faces_of(mesh, he_origin(mesh, h), most) : steps(mesh, h, true, most);
+        h = he_next(mesh, h);
+    } while (h.i != first.i && count < most);
+    return count;
+}
+
+static uint64_t reach(const he_mesh *mesh, he_kind kind, uint32_t id, uint64_t most)
+{
+    uint64_t count = 0;
+    switch (kind) {
+    case HE_VERTEX:
+        return about_faces_of(mesh, (he_vertex){id}, most);
+    case HE_HALFEDGE:
+        return along(mesh, (he_halfedge){id}, false, most) +
+               reach(mesh, HE_EDGE, he_edge_of((he_halfedge){id}).i, most);
+    case HE_EDGE:
+        for (unsigned side = 0; side < 2; side++) {
+            he_halfedge h = he_edge_halfedge((he_edge){id}, side);
+            count += about_faces_of(mesh, he_origin(mesh, h), most);
+            count += he_is_boundary_halfedge(mesh, h) ? 1 : along(mesh, h, false, most);
+        }
+        return count;
+    case HE_FACE:
+        return along(mesh, he_face_halfedge(mesh, (he_face){id}), true, most);
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return count;
+}
+
+/* Of a list of one kind, added to `total` until that is more than `most`. */
+static uint64_t add_all(const he_mesh *mesh, he_kind kind, const he_ids *ids,
+                        uint64_t (*count)(const he_mesh *mesh, he_kind kind, uint32_t id,
+                                          uint64_t most),
+                        uint64_t total, uint64_t most)
+{
+    for (size_t i = 0; i < ids->count && total <= most; i++) {
+        uint32_t id = ids->ids[i];
+        if (id < he_mesh_issued(mesh, kind) && he_mesh_is_live(mesh, kind, id)) {
+            total += count(mesh, kind, id, most + 1);
+        }
+    }
+    return total;
+}
+
 bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint64_t most)
 {
     uint64_t total = 0;
@@ -94,13 +164,8 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
         return true;
     }
     for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
-        const he_ids *named = &cost->named[kind];
-        for (size_t i = 0; i < named->count && total <= most; i++) {
-            uint32_t id = named->ids[i];
-            if (id < he_mesh_issued(mesh, kind) && he_mesh_is_live(mesh, kind, id)) {
-                total += about(mesh, kind, id, most + 1);
-            }
-        }
+        total = add_all(mesh, kind, &cost->named[kind], about, total, most);
+        total = add_all(mesh, kind, &cost->reached[kind], reach, total, most);
     }
     return total > most;
 }

@@ -302,20 +302,29 @@ static void write_groups(api_out *out, const he_op *op)
     }
 }
 
-static void write_op_schema(api_out *out, const he_op *op)
+/* Begin the schema of an object with the operation's name as its member "op", and leave both it and
+ * its properties open. */
+static void begin_named(api_out *out, const he_op *op, const char *description)
 {
-    char name[80];
-    snprintf(name, sizeof name, "op_%s", op->name);
-    api_out_key(out, name);
     api_out_object_begin(out);
     api_out_key_string(out, "type", "object");
-    api_out_key_string(out, "description", op->doc);
+    if (description != NULL) {
+        api_out_key_string(out, "description", description);
+    }
     api_out_key(out, "properties");
     api_out_object_begin(out);
     api_out_key(out, "op");
     api_out_object_begin(out);
     api_out_key_string(out, "const", op->name);
     api_out_object_end(out);
+}
+
+static void write_op_schema(api_out *out, const he_op *op)
+{
+    char name[80];
+    snprintf(name, sizeof name, "op_%s", op->name);
+    api_out_key(out, name);
+    begin_named(out, op, op->doc);
     for (size_t i = 0; i < he_op_params(op); i++) {
         write_param_schema(out, &op->params[i]);
     }
@@ -403,14 +412,7 @@ static void write_result_schema(api_out *out, const he_result_row *result)
 /* What an operation gives back: its name, and those of its results that the call had. */
 static void write_done_schema(api_out *out, const he_op *op)
 {
-    api_out_object_begin(out);
-    api_out_key_string(out, "type", "object");
-    api_out_key(out, "properties");
-    api_out_object_begin(out);
-    api_out_key(out, "op");
-    api_out_object_begin(out);
-    api_out_key_string(out, "const", op->name);
-    api_out_object_end(out);
+    begin_named(out, op, NULL);
     for (size_t i = 0; i < he_op_results(op); i++) {
         write_result_schema(out, &op->results[i]);
     }

@@ -131,20 +131,6 @@ static double twist(const plan *p, uint32_t s)
     return sum;
 }
 
-static uint32_t least_twist(const plan *p)
-{
-    uint32_t best = 0;
-    double least = twist(p, 0);
-    for (uint32_t s = 1; s < p->b.count; s++) {
-        double sum = twist(p, s);
-        if (sum < least) {
-            least = sum;
-            best = s;
-        }
-    }
-    return best;
-}
-
 /* Is i of n less than half a loop from j of m? Each loop has at least three corners, so the side
  * that is behind can always go on, and no two rungs join the same corners: for that one side would
  * have to go round while the other stands still. */
@@ -167,16 +153,11 @@ static bool steps_along_a(const plan *p, uint32_t i, uint32_t j, uint32_t s)
            apart(p, (i + 1) % n, (s + j) % m) <= apart(p, i % n, (s + j + 1) % m);
 }
 
-static he_status choose_rungs(plan *p, he_error *err)
+/* The rungs by pairing s; there is room. */
+static void make_rungs(plan *p, uint32_t s)
 {
     uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count;
-    /* Two half-edges around a hole would be two edges between the same vertices. */
-    assert(n >= 3 && m >= 3);
-    he_status status = he_ids_reserve(&p->rungs, 2 * ((size_t)n + m), err);
-    if (status != HE_OK) {
-        return status;
-    }
-    uint32_t s = least_twist(p);
+    p->rungs.count = 0;
     for (uint32_t i = 0, j = 0; i < n || j < m;) {
         p->rungs.ids[p->rungs.count++] = i % n;
         p->rungs.ids[p->rungs.count++] = (s + j) % m;
@@ -184,7 +165,6 @@ static he_status choose_rungs(plan *p, he_error *err)
         j += n == m || !along_a;
         i += along_a;
     }
-    return HE_OK;
 }
 
 static he_status refuse_rung(const plan *p, uint32_t i, uint32_t j, he_error *err)
@@ -253,6 +233,88 @@ static he_status check_rungs(const plan *p, he_error *err)
     return status;
 }
 
+/* --- the pairing --- */
+
+/* Pass over each pairing that has a rung where an edge is. Corners of loops that pass no vertex
+ * twice are numbered as their vertices. */
+static void pass_over_joined(const plan *p, uint64_t *passed)
+{
+    uint32_t n = (uint32_t)p->a.count;
+    for (uint32_t i = 0; i < n; i++) {
+        he_halfedge first = {p->a.ids[i]}, h = first;
+        do {
+            uint32_t index = he_idmap_find(&p->corners, he_target(p->m, h).i);
+            if (index != HE_NONE && index >= n) {
+                he_bits_set(passed, (index - i) % n);
+            }
+            h = he_turn_ccw(p->m, h);
+        } while (h.i != first.i);
+    }
+}
+
+/* The pairing of least twist among those not passed over (NULL: among all); `count` when all are.
+ */
+static uint32_t least_twisted(const double *twists, uint32_t count, const uint64_t *passed)
+{
+    uint32_t best = count;
+    for (uint32_t s = 0; s < count; s++) {
+        bool open = passed == NULL || !he_bits_get(passed, s);
+        best = open && (best == count || twists[s] < twists[best]) ? s : best;
+    }
+    return best;
+}
+
+static he_status try_pairings(plan *p, const double *twists, uint64_t *passed, he_error *err)
+{
+    uint32_t count = (uint32_t)p->b.count;
+    if (p->a.count == count && !p->repeats) {
+        pass_over_joined(p, passed);
+    }
+    for (unsigned i = 0; i < HE_TWIST_TRIES; i++) {
+        he_error why = {.status = HE_OK};
+        uint32_t s = least_twisted(twists, count, passed);
+        if (s == count) {
+            break;
+        }
+        make_rungs(p, s);
+        he_status status = check_rungs(p, &why);
+        if (status != HE_DOUBLED_EDGE) {
+            if (status != HE_OK && err != NULL) {
+                *err = why;
+            }
+            return status;
+        }
+        he_bits_set(passed, s);
+    }
+    make_rungs(p, least_twisted(twists, count, NULL));
+    return check_rungs(p, err);
+}
+
+static he_status choose_rungs(plan *p, he_error *err)
+{
+    size_t n = p->a.count, m = p->b.count;
+    /* Two half-edges around a hole would be two edges between the same vertices. */
+    assert(n >= 3 && m >= 3);
+    he_status status = he_ids_reserve(&p->rungs, 2 * (n + m), err);
+    if (status != HE_OK) {
+        return status;
+    }
+    double *twists = he_mem_array(NULL, m, sizeof *twists);
+    uint64_t *passed = he_bits_new(m);
+    if (twists == NULL || passed == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu pairings", m);
+    }
+    for (uint32_t s = 0; status == HE_OK && s < m; s++) {
+        twists[s] = twist(p, s);
+    }
+    if (status == HE_OK) {
+        status = try_pairings(p, twists, passed, err);
+    }
+    he_mem_free(twists);
+    he_mem_free(passed);
+    return status;
+}
+
 /* --- writing --- */
 
 /* The face between the rungs from p_i to q_j and from p_k to q_l, of which at least one goes on. */
@@ -296,10 +358,10 @@ static void commit(he_mesh *m, const plan *p, he_bridge *made)
     for (size_t k = 0; k < count; k++) {
         made->faces.ids[made->faces.count++] = close_face(m, p, k, &made->edges).i;
     }
-    for (size_t k = 0; k < count; k++) {
-        he_halfedge rung = {2 * made->edges.ids[k]};
-        he_ring_settle(m, he_origin(m, rung), rung);
-        he_ring_settle(m, he_target(m, rung), he_twin(rung));
+    /* Each once: at a corner of many rungs it turns about all of them. */
+    for (size_t k = 0; k < p->corners.ids.count; k++) {
+        he_vertex v = {p->corners.ids.ids[k]};
+        he_ring_settle(m, v, he_vertex_halfedge(m, v));
     }
 }
 
@@ -319,7 +381,7 @@ static he_status make_plan(plan *p, he_halfedge a, he_halfedge b, he_error *err)
         find_scale(p);
         status = choose_rungs(p, err);
     }
-    return status == HE_OK ? check_rungs(p, err) : status;
+    return status;
 }
 
 he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *out, he_error *err)
@@ -336,7 +398,7 @@ he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *ou
     }
     if (status == HE_OK) {
         he_need need = {.edges = (uint32_t)count, .faces = (uint32_t)count};
-        need.links = 3 * (p.a.count + p.b.count) + 2 * HE_SETTLE_LINKS * count;
+        need.links = 3 * (p.a.count + p.b.count) + HE_SETTLE_LINKS * p.corners.ids.count;
         status = he_reserve(m, need, err);
     }
     if (status == HE_OK) {

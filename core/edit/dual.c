@@ -21,6 +21,10 @@ static he_status check_vertices(const he_mesh *m, he_error *err)
 {
     for (uint32_t i = 0; i < m->c.vertices.issued; i++) {
         he_vertex v = {i};
+        he_status status = he_watch_at(m->watch, i, m->c.vertices.issued, err);
+        if (status != HE_OK) {
+            return status;
+        }
         if (!he_vertex_is_live(m, v)) {
             continue;
         }
@@ -132,6 +136,7 @@ static he_halfedge star(const rows *r, he_halfedge h)
 static void link_rows(he_mesh *m, const rows *r)
 {
     for (uint32_t i = 0; i < r->edges; i++) {
+        he_watch_note(m->watch, i, r->edges);
         for (unsigned side = 0; side < 2 && he_edge_is_live(m, (he_edge){i}); side++) {
             he_halfedge h = he_edge_halfedge((he_edge){i}, side), s = star(r, h);
             he_set_next(m, s, star(r, he_turn_ccw(m, h)));
@@ -185,7 +190,7 @@ he_status he_dual(he_mesh *m, he_error *err)
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the rows of the dual");
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "checking", 0.3, err);
+        status = he_watch_phase(m->watch, "checking", 0.4, err);
     }
     if (status == HE_OK) {
         status = check(m, r.vertex, err);

@@ -1,12 +1,9 @@
 #include "edit/edge_bevel.h"
 
+#include "edit/bevel.h"
 #include "edit/point.h"
 #include "edit/ring.h"
 #include "mesh/marks.h"
-#include "query/geometry.h"
-
-/* Of the length of an edge, what a cut may take. */
-static const double MOST = 0.99;
 
 void he_bevel_clear(he_bevel *bevel)
 {
@@ -56,13 +53,6 @@ static he_status check_end(const he_mesh *m, const bevel_end *end, he_error *err
     if (end->ring.count < 2) {
         uint32_t v = he_origin(m, end->along).i;
         return he_fail(err, HE_LOW_DEGREE, HE_VERTEX, v, "vertex %u has only two edges", v);
-    }
-    for (size_t i = 0; i < end->ring.count; i++) {
-        he_edge e = he_edge_of(at(end, i));
-        if (!(he_edge_length(m, e) > 0)) {
-            return he_fail(err, HE_DEGENERATE_EDGE, HE_EDGE, e.i,
-                           "edge %u would be cut, but has no length", e.i);
-        }
     }
     return HE_OK;
 }
@@ -179,7 +169,7 @@ static he_vertex cut_at(const bevel_end *end, size_t i)
 /* From the end (0) to the other end of edge i (1), where the cut is. */
 static double part_of(const he_mesh *m, const bevel_end *end, size_t i, double width)
 {
-    return fmin(width / he_edge_length(m, he_edge_of(at(end, i))), MOST);
+    return he_bevel_part(m, at(end, i), width);
 }
 
 static void make_cuts(he_mesh *m, bevel_end *end, double width, he_bevel *made)

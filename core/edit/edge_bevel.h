@@ -29,7 +29,8 @@ typedef struct he_bevel {
  *
  * Other fans of such an end stay with it; d counts the edges of the fan with the edge only.
  *
- * No cut is farther along its edge than 0.99 of the length, so that none passes the other end.
+ * No cut is farther along its edge than 0.99 of the length, so that none passes the other end; an
+ * edge without length is cut half-way (bevel.h).
  *
  * The new vertices come in the order of the new face, from the one after the edge counter-clockwise
  * about the origin of half-edge 2e on: 1 to 6 above. They descend from their end, and have values
@@ -39,10 +40,9 @@ typedef struct he_bevel {
  * new face, whose stored half-edge leaves the first vertex.
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_BAD_VALUE unless width > 0;
- * HE_LOW_DEGREE for an interior end with two edges; HE_DEGENERATE_EDGE where an edge to be cut has
- * no length; HE_LOCKED_ELEMENT for what goes, or gets another end or corner (marks.h).
- * HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else he_bevel_clear frees it. Costs the fans
- * of both ends. */
+ * HE_LOW_DEGREE for an interior end with two edges; HE_LOCKED_ELEMENT for what goes, or gets
+ * another end or corner (marks.h). HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else
+ * he_bevel_clear frees it. Costs the fans of both ends. */
 HE_NODISCARD he_status he_edge_bevel(he_mesh *m, he_edge e, double width, he_bevel *out,
                                      he_error *err);
 void he_bevel_clear(he_bevel *bevel);

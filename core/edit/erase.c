@@ -1,10 +1,9 @@
 #include "edit/erase.h"
 
-#include "edit/cut.h"
 #include "edit/list.h"
-#include "edit/point.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
+#include "query/idmap.h"
 
 static bool edge_would_die(const he_mesh *m, he_halfedge h)
 {
@@ -106,19 +105,18 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     return status;
 }
 
-/* Has every face on this half-edge's edge, or about its origin, v as a corner, so that it goes with
- * the faces of v? */
-static bool goes_with(const he_mesh *m, he_halfedge h, he_vertex v)
+/* Is there no face left of h but one of these, which go? */
+static bool goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_face f = he_face_of(m, h);
-    return f.i == HE_NONE || he_face_corner(m, f, v).i != HE_NONE;
+    return f.i == HE_NONE || he_idmap_find(faces, f.i) != HE_NONE;
 }
 
-static bool origin_goes_with(const he_mesh *m, he_halfedge h, he_vertex v)
+static bool origin_goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_halfedge k = h;
     do {
-        if (!goes_with(m, k, v)) {
+        if (!goes(m, k, faces)) {
             return false;
         }
         k = he_turn_ccw(m, k);
@@ -126,36 +124,39 @@ static bool origin_goes_with(const he_mesh *m, he_halfedge h, he_vertex v)
     return true;
 }
 
-static he_status check_star_locks(const he_mesh *m, he_vertex v, he_leftover leftover,
+/* What goes with the faces about a vertex is unlocked. Locked corners are turned about once. */
+static he_status check_star_locks(const he_mesh *m, const he_idmap *faces, he_leftover leftover,
                                   he_error *err)
 {
     he_marks marks;
+    he_idmap corners = {.slots = NULL};
+    he_status status = HE_OK;
     if (!he_marks_find(m, &marks)) {
         return HE_OK;
     }
-    he_status status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
-    if (status != HE_OK || he_is_isolated(m, v)) {
-        return status;
-    }
-    he_halfedge first = he_vertex_halfedge(m, v), k = first;
-    do {
-        he_face f = he_face_of(m, k);
-        status = he_require_unlocked(&marks, HE_FACE, f.i, err);
-        for (he_halfedge h = k; status == HE_OK && f.i != HE_NONE;) {
-            if (goes_with(m, he_twin(h), v)) {
+    for (size_t i = 0; status == HE_OK && i < faces->ids.count; i++) {
+        he_halfedge first = he_face_halfedge(m, (he_face){faces->ids.ids[i]}), h = first;
+        status = he_require_unlocked(&marks, HE_FACE, faces->ids.ids[i], err);
+        while (status == HE_OK) {
+            uint32_t index, w = he_origin(m, h).i;
+            bool added = false;
+            if (goes(m, he_twin(h), faces)) {
                 status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(h).i, err);
             }
             if (status == HE_OK && leftover == HE_DROP_ISOLATED &&
-                he_is_locked(&marks, HE_VERTEX, he_origin(m, h).i) && origin_goes_with(m, h, v)) {
-                status = he_require_unlocked(&marks, HE_VERTEX, he_origin(m, h).i, err);
+                he_is_locked(&marks, HE_VERTEX, w)) {
+                status = he_idmap_add(&corners, w, &index, &added, err);
+            }
+            if (status == HE_OK && added && origin_goes(m, h, faces)) {
+                status = he_require_unlocked(&marks, HE_VERTEX, w, err);
             }
             h = he_next(m, h);
-            if (h.i == k.i) {
+            if (h.i == first.i) {
                 break;
             }
         }
-        k = he_turn_ccw(m, k);
-    } while (status == HE_OK && k.i != first.i);
+    }
+    he_idmap_clear(&corners);
     return status;
 }
 
@@ -191,8 +192,12 @@ he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_lef
     if (status != HE_OK) {
         return status;
     }
+    status = he_watch_phase(m->watch, "deleting faces", 1, err);
     for (size_t i = 0; status == HE_OK && i < count; i++) {
-        status = erase_one(m, (he_face){faces[i]}, leftover, err);
+        status = he_watch_at(m->watch, i, count, err);
+        if (status == HE_OK) {
+            status = erase_one(m, (he_face){faces[i]}, leftover, err);
+        }
     }
     return he_edit_end(m, &bracket, status);
 }
@@ -209,54 +214,66 @@ he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count, he_lef
     if (status != HE_OK) {
         return status;
     }
+    status = he_watch_phase(m->watch, "deleting edges", 1, err);
     for (size_t i = 0; i < 2 * count && status == HE_OK; i++) {
         he_halfedge h = he_edge_halfedge((he_edge){edges[i / 2]}, i % 2);
+        status = he_watch_at(m->watch, i, 2 * count, err);
         /* Gone already with a face it shares with an edge before it? */
-        if (he_edge_is_live(m, he_edge_of(h)) && !he_is_boundary_halfedge(m, h)) {
+        if (status == HE_OK && he_edge_is_live(m, he_edge_of(h)) &&
+            !he_is_boundary_halfedge(m, h)) {
             status = erase_one(m, he_face_of(m, h), leftover, err);
         }
     }
     return he_edit_end(m, &bracket, status);
 }
 
+static he_status find_star(const he_mesh *m, he_vertex v, he_idmap *faces, he_error *err)
+{
+    he_halfedge first = he_vertex_halfedge(m, v), h = first;
+    he_status status = HE_OK;
+    while (status == HE_OK && first.i != HE_NONE) {
+        uint32_t index, f = he_face_of(m, h).i;
+        bool added;
+        status = f == HE_NONE ? HE_OK : he_idmap_add(faces, f, &index, &added, err);
+        h = he_turn_ccw(m, h);
+        if (h.i == first.i) {
+            break;
+        }
+    }
+    return status;
+}
+
 he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover, he_error *err)
 {
-    he_ids faces = {0};
+    he_idmap faces = {.slots = NULL};
     he_need need = {.deleted_vertices = 1};
+    he_marks marks;
     he_status status = he_mesh_require(m, HE_VERTEX, v.i, err);
+    if (status == HE_OK && he_marks_find(m, &marks)) {
+        status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
+    }
     if (status == HE_OK) {
-        status = check_star_locks(m, v, leftover, err);
+        status = find_star(m, v, &faces, err);
     }
-    if (status != HE_OK) {
-        return status;
+    if (status == HE_OK) {
+        status = check_star_locks(m, &faces, leftover, err);
     }
-    if (!he_is_isolated(m, v)) {
-        he_halfedge first = he_vertex_halfedge(m, v), h = first;
-        do {
-            he_face f = he_face_of(m, h);
-            if (f.i != HE_NONE) {
-                status = he_ids_add(&faces, f.i, err);
-                if (status != HE_OK) {
-                    goto out;
-                }
-                add_need(m, f, false, &need);
-            }
-            h = he_turn_ccw(m, h);
-        } while (h.i != first.i);
+    for (size_t i = 0; i < faces.ids.count; i++) {
+        add_need(m, (he_face){faces.ids.ids[i]}, false, &need);
     }
-    status = he_reserve(m, need, err);
-    if (status != HE_OK) {
-        goto out;
+    if (status == HE_OK) {
+        status = he_reserve(m, need, err);
     }
-    /* Nothing below can fail. */
-    for (size_t i = 0; i < faces.count; i++) {
-        erase_face(m, (he_face){faces.ids[i]}, leftover);
+    if (status == HE_OK) {
+        /* Nothing below can fail. */
+        for (size_t i = 0; i < faces.ids.count; i++) {
+            erase_face(m, (he_face){faces.ids.ids[i]}, leftover);
+        }
+        if (he_vertex_is_live(m, v)) {
+            he_delete_vertex(m, v);
+        }
     }
-    if (he_vertex_is_live(m, v)) {
-        he_delete_vertex(m, v);
-    }
-out:
-    he_ids_clear(&faces);
+    he_idmap_clear(&faces);
     return status;
 }
 

@@ -63,5 +63,5 @@ he_status he_face_extrude(he_mesh *m, const uint32_t *faces, size_t count, bool 
                           const he_vec3 *by, double distance, he_region_parts *out, he_error *err)
 {
     pull p = {by, distance};
-    return he_region_draw(m, faces, count, region, (he_region_place){place, &p}, out, err);
+    return he_region_draw(m, faces, count, region, (he_region_place){place, &p, NULL}, out, err);
 }

@@ -247,6 +247,84 @@ static he_status place(const he_mesh *m, const he_region *r, void *context, he_v
     return status;
 }
 
+/* --- what is interpolated there --- */
+
+/* How far along `a` and `b`, from the corner between them, the point of the triangle lies that is
+ * nearest to `way`, but for rounding; *x and *y are 0 or more, and 1 at most together. Returns the
+ * square of what is missing. */
+static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, double *y)
+{
+    double aa = he_vec3_dot(a, a), ab = he_vec3_dot(a, b), bb = he_vec3_dot(b, b);
+    double wa = he_vec3_dot(way, a), wb = he_vec3_dot(way, b), square = aa * bb - ab * ab;
+    *x = square > 0 ? (wa * bb - wb * ab) / square : 0;
+    *y = square > 0 ? (wb * aa - wa * ab) / square : 0;
+    if (!(square > 0) || *y < 0) {
+        *x = aa > 0 ? wa / aa : 0;
+        *y = 0;
+    } else if (*x < 0) {
+        *x = 0;
+        *y = wb / bb;
+    }
+    *x = fmin(fmax(*x, 0), 1);
+    *y = fmin(fmax(*y, 0), 1);
+    if (*x + *y > 1) {
+        he_vec3 side = he_vec3_sub(b, a);
+        double along = he_vec3_dot(he_vec3_sub(way, a), side) / he_vec3_dot(side, side);
+        *y = fmin(fmax(along, 0), 1);
+        *x = 1 - *y;
+    }
+    he_vec3 missing = he_vec3_sub(way, he_vec3_add(he_vec3_scale(a, *x), he_vec3_scale(b, *y)));
+    return he_vec3_dot(missing, missing);
+}
+
+/* Try the two triangles at the origin of h in its face. */
+static void mix_in_face(const he_mesh *m, he_halfedge h, he_vec3 mean, he_vec3 to,
+                        he_region_mix *out, double *least)
+{
+    const he_vertex sides[2] = {he_target(m, h), he_origin(m, he_prev(m, h))};
+    he_vec3 from = he_position(m, he_origin(m, h)), middle = he_vec3_sub(mean, from);
+    he_vec3 way = he_vec3_sub(to, from);
+    for (unsigned i = 0; i < 2; i++) {
+        he_vec3 side = he_vec3_sub(he_position(m, sides[i]), from);
+        double scale = 1 / fmax(he_vec3_extent(middle), he_vec3_extent(side)), x, y;
+        if (!isfinite(scale)) {
+            continue;
+        }
+        double missing = find_in_triangle(he_vec3_scale(way, scale), he_vec3_scale(middle, scale),
+                                          he_vec3_scale(side, scale), &x, &y) /
+                         scale / scale;
+        if (missing < *least) {
+            *least = missing;
+            *out = (he_region_mix){h, sides[i], x, y};
+        }
+    }
+}
+
+static he_status mix(const he_mesh *m, const he_region *r, const he_vec3 *to, he_region_mix *out,
+                     he_error *err)
+{
+    he_vec3 *means = he_mem_array(NULL, r->faces.ids.count, sizeof *means);
+    if (means == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the means of faces");
+    }
+    for (size_t i = 0; i < r->faces.ids.count; i++) {
+        means[i] = he_loop_mean(m, he_face_halfedge(m, (he_face){r->faces.ids.ids[i]}));
+    }
+    size_t k = 0;
+    for (size_t i = 0; i < r->rim.count; i++) {
+        double least = INFINITY;
+        he_halfedge h = {r->rim.ids[i]};
+        out[i] = (he_region_mix){h, he_target(m, h), 0, 0};
+        mix_in_face(m, h, means[index_of(m, r, h.i)], to[i], &out[i], &least);
+        for (; k < r->inner.count && r->inner_at.ids[k] == i; k++) {
+            h.i = r->inner.ids[k];
+            mix_in_face(m, h, means[index_of(m, r, h.i)], to[i], &out[i], &least);
+        }
+    }
+    he_mem_free(means);
+    return HE_OK;
+}
+
 he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool region, double factor,
                         double distance, he_region_parts *out, he_error *err)
 {
@@ -258,5 +336,5 @@ he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool re
                                        : "the distance must be above 0, not %g",
                              by_factor ? factor : distance);
     }
-    return he_region_draw(m, faces, count, region, (he_region_place){place, &in}, out, err);
+    return he_region_draw(m, faces, count, region, (he_region_place){place, &in, mix}, out, err);
 }

@@ -20,7 +20,11 @@ enum { HE_INSET_STEPS = 1 << 22 };
  *
  * For one face of n corners V + n, E + 2n, F + n; for a region with a rim of r half-edges V + r,
  * E + 2r, F + r. The listed faces keep their ids and are the inner ones; what is inside a region
- * stays where it is. New vertices have the values of those they descend from.
+ * stays where it is.
+ *
+ * New vertices have copied values of those they descend from. Interpolated ones are those at their
+ * place in the region, as it is made up of triangles, in each face from the mean of its corners to
+ * two neighbours: of those about the rim corner the one that comes nearest to the place.
  *
  * With a `factor` above 0 and below 1 each rim corner goes this part of the way to the mean of its
  * face's corners, or of those means of the region's faces about it. With factor 0 the sides of the

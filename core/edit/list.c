@@ -1,7 +1,11 @@
 #include "edit/list.h"
 
-/* Up to this many ids are compared pairwise, which needs no memory. */
-enum { SHORT_LIST = 32 };
+#include "query/idmap.h"
+
+/* Up to this many ids are compared pairwise, which needs no memory. More get a bit for every id
+ * from the lowest to the highest, unless those are as many times more: clearing them would cost
+ * more than the list. */
+enum { SHORT_LIST = 32, SPARSE_LIST = 256 };
 
 static size_t short_repeat(const uint32_t *ids, size_t count)
 {
@@ -15,6 +19,27 @@ static size_t short_repeat(const uint32_t *ids, size_t count)
     return count;
 }
 
+static he_status sparse_repeat(const uint32_t *ids, size_t count, size_t *at, he_error *err)
+{
+    he_idmap seen = {.slots = NULL};
+    he_status status = HE_OK;
+    bool added = true;
+    size_t i = 0;
+    while (status == HE_OK && i < count) {
+        uint32_t index;
+        status = he_idmap_add(&seen, ids[i], &index, &added, err);
+        if (!added) {
+            break;
+        }
+        i++;
+    }
+    he_idmap_clear(&seen);
+    if (status == HE_OK) {
+        *at = i;
+    }
+    return status;
+}
+
 he_status he_list_repeat(const uint32_t *ids, size_t count, size_t *at, he_error *err)
 {
     if (count <= SHORT_LIST) {
@@ -25,6 +50,9 @@ he_status he_list_repeat(const uint32_t *ids, size_t count, size_t *at, he_error
     for (size_t i = 1; i < count; i++) {
         low = ids[i] < low ? ids[i] : low;
         high = ids[i] > high ? ids[i] : high;
+    }
+    if ((high - low) / SPARSE_LIST > count) {
+        return sparse_repeat(ids, count, at, err);
     }
     uint64_t *seen = he_bits_new((size_t)(high - low) + 1);
     if (seen == NULL) {

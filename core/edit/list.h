@@ -5,8 +5,7 @@
 #include "mesh/mesh.h"
 
 /* The index of the first id that an earlier place of the list holds too; `count` when all differ.
- * Fails only with HE_NO_MEMORY. Linear in the list and, beyond 32 ids, in the range of its ids by
- * one bit each. */
+ * Fails only with HE_NO_MEMORY. Linear in the list, wherever in a mesh its ids are. */
 HE_NODISCARD he_status he_list_repeat(const uint32_t *ids, size_t count, size_t *at, he_error *err);
 
 /* HE_OK, or what is wrong with the first bad id: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, and

@@ -42,6 +42,12 @@ static he_vec3 place(const he_merge_plan *p, uint32_t i)
     return mean;
 }
 
+static bool moves(const he_merge_plan *p, uint32_t i)
+{
+    he_vec3 from = he_position(p->m, (he_vertex){p->group.ids[i]}), to = place(p, i);
+    return from.x != to.x || from.y != to.y || from.z != to.z;
+}
+
 static he_status check_faces(const he_merge_plan *p, const he_marks *marks, he_error *err)
 {
     he_status status = HE_OK;
@@ -70,9 +76,8 @@ static he_status check_marks(he_merge_plan *p, he_error *err)
     he_status status = check_faces(p, &marks, err);
     for (uint32_t i = 0; status == HE_OK && i < p->group.count; i++) {
         he_vertex v = {p->group.ids[i]};
-        he_vec3 from = he_position(p->m, v), to = place(p, i);
-        bool moves = from.x != to.x || from.y != to.y || from.z != to.z;
-        if (goes_into_another(p, v) || moves) {
+        /* Only one that stays is asked for its place: that looks at all it takes in. */
+        if (goes_into_another(p, v) || moves(p, i)) {
             status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
         }
     }

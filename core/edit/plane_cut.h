@@ -13,9 +13,9 @@ typedef struct he_cut_parts {
     he_ids caps;                       /* the new faces, by the half-edges they began with */
 } he_cut_parts;
 
-/* plane_cut: V, E, F vary. The mesh is split along the plane (plane_split.h), with the default
- * tolerance of plane.h; then the faces of the other side go, with edges and vertices that have no
- * face left (erase.h), and isolated vertices on that side.
+/* plane_cut: V, E, F vary. The mesh is split along the plane (plane_split.h), with `tolerance` or,
+ * where that is NULL, the default of plane.h; then the faces of the other side go, with edges and
+ * vertices that have no face left (erase.h), and isolated vertices on that side.
  *
  *         o-----------o             o-----------o              o-----------o
  *        /           /|            /           /|             /           /|
@@ -36,8 +36,9 @@ typedef struct he_cut_parts {
  * vertex, when a loop leaves the plane along an older hole, and HE_REPEATED_CORNER when it passes a
  * vertex twice. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else he_cut_parts_clear frees
  * it. */
-HE_NODISCARD he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal, he_cut_side keep,
-                                    bool cap, he_cut_parts *out, he_error *err);
+HE_NODISCARD he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal,
+                                    const double *tolerance, he_cut_side keep, bool cap,
+                                    he_cut_parts *out, he_error *err);
 void he_cut_parts_clear(he_cut_parts *parts);
 
 #endif

@@ -2,12 +2,11 @@
 
 #include "edit/list.h"
 #include "edit/point.h"
-#include "edit/ring.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
 /* Links of one rim half-edge: its own, those it had neighbours in, the face's and the vertex's. */
-enum { RIM_LINKS = 10 + HE_SETTLE_LINKS };
+enum { RIM_LINKS = 11 };
 
 static void region_clear(he_region *r)
 {
@@ -191,13 +190,15 @@ static he_halfedge upright(const fresh *n, size_t i)
     return (he_halfedge){2 * (n->edge + 2 * (uint32_t)i + 1)};
 }
 
-static void make_rows(he_mesh *m, const he_region *r, const he_vec3 *to)
+static void make_rows(he_mesh *m, const he_region *r, const he_vec3 *to, const he_region_mix *mixes)
 {
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         he_vertex a = he_origin(m, h), w = he_new_vertex(m);
         he_set_position(m, w, to[i]);
-        he_carry_copy(m, HE_VERTEX, w.i, a.i);
+        if (mixes == NULL) {
+            he_carry_copy(m, HE_VERTEX, w.i, a.i);
+        }
         he_note_parent(m, HE_VERTEX, w.i, a.i);
         he_edge e = he_new_edge(m);
         he_carry_copy(m, HE_EDGE, e.i, he_edge_of(h).i);
@@ -257,10 +258,57 @@ static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
     he_set_face_halfedge(m, q, h);
 }
 
-static void commit(he_mesh *m, const he_region *r, const he_vec3 *to)
+/* The values of the new vertices that are mixed from corners of the same face as that of `last`,
+ * whose row holds the mean meanwhile. */
+static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, size_t first,
+                        size_t last, he_ids *corners)
+{
+    const uint32_t mean = n->vertex + (uint32_t)last;
+    he_halfedge in = mixes[last].in, h = in;
+    corners->count = 0;
+    do {
+        corners->ids[corners->count++] = he_origin(m, h).i;
+        h = he_next(m, h);
+    } while (h.i != in.i);
+    he_carry_mean(m, HE_VERTEX, mean, corners->ids, corners->count);
+    for (size_t i = first; i <= last; i++) {
+        const he_region_mix *mix = &mixes[i];
+        uint32_t below = he_origin(m, mix->in).i, w = n->vertex + (uint32_t)i;
+        if (w != mean) {
+            double rest = 1 - mix->mean;
+            he_carry_copy(m, HE_VERTEX, w, below);
+            he_carry_merge(m, HE_VERTEX, w, mix->beside.i, rest > 0 ? 1 - mix->side / rest : 1);
+            he_carry_merge(m, HE_VERTEX, w, mean, rest);
+        } else {
+            double rest = 1 - mix->side;
+            he_carry_merge(m, HE_VERTEX, w, below, rest > 0 ? mix->mean / rest : 0);
+            he_carry_merge(m, HE_VERTEX, w, mix->beside.i, rest);
+        }
+    }
+}
+
+static void carry_vertices(he_mesh *m, const he_region *r, const he_region_mix *mixes,
+                           const fresh *n, he_ids *corners)
+{
+    for (size_t first = 0; first < r->rim.count;) {
+        size_t last = first;
+        while (last + 1 < r->rim.count &&
+               he_face_of(m, mixes[last + 1].in).i == he_face_of(m, mixes[first].in).i) {
+            last++;
+        }
+        carry_mixes(m, mixes, n, first, last, corners);
+        first = last + 1;
+    }
+}
+
+static void commit(he_mesh *m, const he_region *r, const he_vec3 *to, const he_region_mix *mixes,
+                   he_ids *corners)
 {
     const fresh n = {m->c.vertices.issued, m->c.edges.issued, m->c.faces.issued};
-    make_rows(m, r, to);
+    make_rows(m, r, to, mixes);
+    if (mixes != NULL) {
+        carry_vertices(m, r, mixes, &n, corners);
+    }
     for (size_t i = 0; he_has_columns(m, HE_HALFEDGE) && i < r->rim.count; i++) {
         carry_corners(m, r, &n, i);
     }
@@ -276,7 +324,11 @@ static void commit(he_mesh *m, const he_region *r, const he_vec3 *to)
     }
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
-        he_ring_settle(m, he_origin(m, h), h);
+        he_vertex v = he_origin(m, h);
+        /* A boundary half-edge it stores still leaves it; another may have gone along. */
+        if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
+            he_set_vertex_halfedge(m, v, h);
+        }
     }
 }
 
@@ -311,12 +363,35 @@ static he_status add_parts(const he_mesh *m, const he_region *r, he_region_parts
     return status;
 }
 
+/* What the new vertices are made of, and room for the corners of a face. `*out` stays NULL where
+ * there is nothing to mix. */
+static he_status mix(const he_mesh *m, const he_region *r, he_region_place place, const he_vec3 *to,
+                     he_region_mix **out, he_ids *corners, he_error *err)
+{
+    uint32_t most = 0;
+    if (place.mix == NULL || !he_has_columns(m, HE_VERTEX)) {
+        return HE_OK;
+    }
+    *out = he_mem_zero(r->rim.count, sizeof **out);
+    if (*out == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the values of new vertices");
+    }
+    for (size_t i = 0; i < r->faces.ids.count; i++) {
+        uint32_t degree = he_face_degree(m, (he_face){r->faces.ids.ids[i]});
+        most = degree > most ? degree : most;
+    }
+    he_status status = he_ids_reserve(corners, most, err);
+    return status == HE_OK ? place.mix(m, r, to, *out, err) : status;
+}
+
 /* `r` holds the faces and is cleared. */
 static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_region_parts *out,
                           he_error *err)
 {
     he_idmap inside = {.slots = NULL};
     he_vec3 shift = {0, 0, 0}, *to = NULL;
+    he_region_mix *mixes = NULL;
+    he_ids corners = {0};
     bool shifts = false;
     he_status status = plan(m, r, err);
     if (status == HE_OK) {
@@ -333,12 +408,16 @@ static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_re
     if (status == HE_OK) {
         status = check_places(r, to, err);
     }
+    if (status == HE_OK) {
+        status = mix(m, r, place, to, &mixes, &corners, err);
+    }
     uint32_t count = (uint32_t)r->rim.count;
     he_need need = {.vertices = count,
                     .edges = 2 * count,
                     .faces = count,
                     .links = (size_t)count * RIM_LINKS + r->inner.count,
                     .positions = inside.ids.count,
+                    .attributes = mixes != NULL ? 2 * (size_t)count : 0,
                     .lineage = 3 * (size_t)count};
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
@@ -348,7 +427,7 @@ static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_re
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */
-        commit(m, r, to);
+        commit(m, r, to, mixes, &corners);
         for (size_t i = 0; i < inside.ids.count; i++) {
             he_vertex v = {inside.ids.ids[i]};
             he_vec3 p = he_position(m, v);
@@ -356,6 +435,8 @@ static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_re
         }
     }
     he_mem_free(to);
+    he_mem_free(mixes);
+    he_ids_clear(&corners);
     he_idmap_clear(&inside);
     region_clear(r);
     return status;
@@ -371,11 +452,13 @@ static he_status draw_all(he_mesh *m, const he_idmap *listed, bool joined, he_re
     if (done == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to keep regions apart");
     }
+    status = count > 1 ? he_watch_phase(m->watch, "drawing faces off", 1, err) : HE_OK;
     for (size_t i = 0; status == HE_OK && i < count; i++) {
         he_region r = {.faces = {.slots = NULL}};
         uint32_t index;
         bool added;
-        if (he_bits_get(done, i)) {
+        status = he_watch_at(m->watch, i, count, err);
+        if (status != HE_OK || he_bits_get(done, i)) {
             continue;
         }
         status = he_idmap_add(&r.faces, listed->ids.ids[i], &index, &added, err);

@@ -48,12 +48,24 @@ typedef struct he_region {
     he_ids inner, inner_at; /* other half-edges inside that leave the rim, and their corner */
 } he_region;
 
+/* What the interpolated values of a new vertex are made of: `mean` of the mean of the corners of
+ * the face of `in`, which leaves the vertex below it, `side` of `beside`, and else of that vertex.
+ */
+typedef struct he_region_mix {
+    he_halfedge in;
+    he_vertex beside;
+    double mean, side; /* 0 or more, and 1 at most together */
+} he_region_mix;
+
 /* Where the new vertices go: fill `to`, one for each corner of the rim. `*shift` is what the
- * vertices inside the region move by, when `*shifts` is set. May refuse. */
+ * vertices inside the region move by, when `*shifts` is set. May refuse. `mix` is for each what it
+ * is made of, after `to`; without it all have the values of those below them. */
 typedef struct he_region_place {
     he_status (*place)(const he_mesh *m, const he_region *region, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err);
     void *context;
+    he_status (*mix)(const he_mesh *m, const he_region *region, const he_vec3 *to,
+                     he_region_mix *out, he_error *err);
 } he_region_place;
 
 /* What was made, in order; {0} at first. */

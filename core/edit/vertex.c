@@ -45,28 +45,33 @@ he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count, he_
         return status;
     }
     size_t step = point_count == 1 ? 0 : 1;
-    for (size_t i = 0; i < count; i++) {
-        he_vertex v = {vertices[i]};
-        if (!he_point_is_finite(moved(m, v, how, points[i * step]))) {
-            return he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i,
-                           "vertex %u would have a position that is not finite", v.i);
-        }
-    }
     he_marks marks;
     bool marked = he_marks_find(m, &marks);
-    for (size_t i = 0; marked && status == HE_OK && i < count; i++) {
-        status = he_require_unlocked(&marks, HE_VERTEX, vertices[i], err);
+    status = he_watch_phase(m->watch, "checking", 0.5, err);
+    for (size_t i = 0; status == HE_OK && i < count; i++) {
+        he_vertex v = {vertices[i]};
+        status = he_watch_at(m->watch, i, count, err);
+        if (status == HE_OK && marked) {
+            status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
+        }
+        if (status == HE_OK && !he_point_is_finite(moved(m, v, how, points[i * step]))) {
+            status = he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i,
+                             "vertex %u would have a position that is not finite", v.i);
+        }
     }
-    if (status != HE_OK) {
-        return status;
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "moving", 1, err);
     }
-    status = he_reserve(m, (he_need){.positions = count}, err);
+    if (status == HE_OK) {
+        status = he_reserve(m, (he_need){.positions = count}, err);
+    }
     if (status != HE_OK) {
         return status;
     }
     /* Nothing below can fail. */
     for (size_t i = 0; i < count; i++) {
         he_vertex v = {vertices[i]};
+        he_watch_note(m->watch, i, count);
         he_set_position(m, v, moved(m, v, how, points[i * step]));
     }
     return HE_OK;

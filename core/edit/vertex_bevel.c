@@ -1,5 +1,6 @@
 #include "edit/vertex_bevel.h"
 
+#include "edit/bevel.h"
 #include "edit/point.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
@@ -44,17 +45,6 @@ static he_status check(const he_mesh *m, he_vertex v, double width, he_error *er
     return check_locks(m, v, err);
 }
 
-/* Where h is cut, from its origin (0) to its target (1). */
-static double cut_at(const he_mesh *m, he_halfedge h, double width)
-{
-    he_vec3 a = he_position(m, he_origin(m, h)), b = he_position(m, he_target(m, h));
-    double length = hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
-    if (!(length > 0)) {
-        return 0.5;
-    }
-    return width < HE_BEVEL_MOST * length ? width / length : HE_BEVEL_MOST;
-}
-
 /* The cut between h and the half-edge counter-clockwise of it, both of which still leave v: a new
  * edge in the face of h. Returns the half-edge that has no face yet. */
 static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, double t, double s)
@@ -92,14 +82,14 @@ static he_face commit(he_mesh *m, he_vertex v, double width, he_ids *vertices, h
 {
     he_halfedge first = he_vertex_halfedge(m, v), h = first, before = {HE_NONE};
     he_halfedge start = {HE_NONE};
-    double at_first = cut_at(m, first, width), t = at_first;
+    double at_first = he_bevel_part(m, first, width), t = at_first;
     he_vertex w = v;
     he_face f = he_new_face(m);
     do {
         /* The edge after the last is the first, whose end has not moved yet either: v does so at
          * last. */
         he_halfedge following = he_turn_ccw(m, h);
-        double s = following.i == first.i ? at_first : cut_at(m, following, width);
+        double s = following.i == first.i ? at_first : he_bevel_part(m, following, width);
         he_halfedge out = cut_corner(m, h, following, t, s);
         he_set_origin(m, out, w);
         he_set_face(m, out, f);

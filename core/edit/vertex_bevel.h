@@ -15,16 +15,15 @@
  *          /       \                    /           \         from it.
  *        o           o                o               o
  *
- * Every edge at v is cut at `width` from there, though never beyond HE_BEVEL_MOST of its length,
- * and half-way where that is 0: so the cuts do not pass the other ends. Edges and faces keep their
- * ids; each face has a corner more. Attributes of vertices and corners are taken along the edges.
- * The half-edge of the new face n leaves v, and half-edges 2e of the new edges run along it.
+ * Every edge at v is cut at `width` from there, though never beyond 0.99 of its length, and
+ * half-way where that is 0 (bevel.h): so the cuts do not pass the other ends. Edges and faces keep
+ * their ids; each face has a corner more. Attributes of vertices and corners are taken along the
+ * edges. The half-edge of the new face n leaves v, and half-edges 2e of the new edges run along it.
  *
  * New vertices and edges are appended to `vertices` and `edges`, counter-clockwise from v's stored
  * half-edge on; they and `face` may be NULL. Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT;
  * HE_BAD_VALUE unless width > 0; HE_BOUNDARY_VERTEX; HE_LOW_DEGREE for d < 3; HE_LOCKED_ELEMENT for
  * v, or an edge or face about it. HE_NO_MEMORY, HE_IDS_EXHAUSTED. */
-#define HE_BEVEL_MOST 0.99
 HE_NODISCARD he_status he_vertex_bevel(he_mesh *m, he_vertex v, double width, he_ids *vertices,
                                        he_ids *edges, he_face *face, he_error *err);
 

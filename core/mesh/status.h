@@ -61,7 +61,6 @@
     X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")               \
     X(LINK_CONDITION, "link_condition", "The link condition does not hold")                   \
     X(BRANCHING_CHAIN, "branching_chain", "A chain of edges branches at a vertex")            \
-    X(DEGENERATE_EDGE, "degenerate_edge", "An edge has no length")                            \
     X(SAME_LOOP, "same_loop", "Both half-edges lie on one loop")                              \
     X(SHARED_VERTEX, "shared_vertex", "The loops have a vertex in common")                    \
     X(LOOP_LENGTH, "loop_length", "The loops have different lengths")                         \

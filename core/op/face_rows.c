@@ -190,7 +190,7 @@ const he_op he_face_rows[] = {
         .params = {{.name = "edge",
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_EDGE,
-                    .flags = HE_REQUIRED,
+                    .flags = HE_REQUIRED | HE_REACHES,
                     .doc = "What goes; the face of its first half-edge stays."}},
         .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "The face that stays."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_SHARED_BOUNDARY,

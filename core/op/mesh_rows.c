@@ -34,7 +34,8 @@ static he_status run_plane_split(he_mesh *m, const he_arg *args, he_results *out
 static he_status run_plane_cut(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_cut_parts parts;
-    he_status status = he_plane_cut(m, args[0].points[0], args[1].points[0],
+    const double *tolerance = args[4].given ? &args[4].number : NULL;
+    he_status status = he_plane_cut(m, args[0].points[0], args[1].points[0], tolerance,
                                     (he_cut_side)args[2].choice, args[3].flag, &parts, err);
     if (status == HE_OK) {
         he_give_number(out, 0, parts.edges_split);
@@ -77,6 +78,29 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
     return status;
 }
 
+/* What plane_split and plane_cut have in common. */
+#define PLANE                                                           \
+    {.name = "point",                                                   \
+     .type = HE_PARAM_POINT,                                            \
+     .flags = HE_REQUIRED,                                              \
+     .doc = "Any point of the plane."},                                 \
+    {                                                                   \
+        .name = "normal", .type = HE_PARAM_POINT, .flags = HE_REQUIRED, \
+        .doc = "The direction it faces, of any length but zero."        \
+    }
+#define TOLERANCE                                                                        \
+    {                                                                                    \
+        .name = "tolerance", .type = HE_PARAM_NUMBER, .flags = HE_DERIVED,               \
+        .doc = "Vertices within this distance of the plane count as in it; 1e-9 of the " \
+               "longest side of the mesh's box when not given, or what rounding needs "  \
+               "where coordinates are larger than that."                                 \
+    }
+#define SPLIT_COUNTS                                                            \
+    {"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges got a vertex."}, \
+    {                                                                           \
+        "faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."    \
+    }
+
 /* In the order of he_cut_side. */
 static const char *const cut_sides[] = {"above", "below", NULL};
 
@@ -104,27 +128,14 @@ const he_op he_mesh_rows[] = {
         .doc = "Split the faces a plane crosses: a vertex on each edge it crosses, a diagonal in "
                "each face.",
         .size = HE_OP_WHOLE,
-        .params = {{.name = "point",
-                    .type = HE_PARAM_POINT,
-                    .flags = HE_REQUIRED,
-                    .doc = "Any point of the plane."},
-                   {.name = "normal",
-                    .type = HE_PARAM_POINT,
-                    .flags = HE_REQUIRED,
-                    .doc = "The direction it faces, of any length but zero."},
+        .params = {PLANE,
                    {.name = "face",
                     .plural = "faces",
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_FACE,
                     .doc = "What is cut; all faces when not given."},
-                   {.name = "tolerance",
-                    .type = HE_PARAM_NUMBER,
-                    .flags = HE_DERIVED,
-                    .doc = "Vertices within this distance of the plane count as in it; 1e-9 of the "
-                           "longest side of the mesh's box when not given, or what rounding needs "
-                           "where coordinates are larger than that."}},
-        .results = {{"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges got a vertex."},
-                    {"faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."},
+                   TOLERANCE},
+        .results = {SPLIT_COUNTS,
                     {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "The new vertices."},
                     {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The diagonals."},
                     {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces, one a diagonal."}},
@@ -137,14 +148,7 @@ const he_op he_mesh_rows[] = {
         .name = "plane_cut",
         .doc = "Split the mesh along a plane and delete what is on one side.",
         .size = HE_OP_WHOLE,
-        .params = {{.name = "point",
-                    .type = HE_PARAM_POINT,
-                    .flags = HE_REQUIRED,
-                    .doc = "Any point of the plane."},
-                   {.name = "normal",
-                    .type = HE_PARAM_POINT,
-                    .flags = HE_REQUIRED,
-                    .doc = "The direction it faces, of any length but zero."},
+        .params = {PLANE,
                    {.name = "keep",
                     .type = HE_PARAM_CHOICE,
                     .choices = cut_sides,
@@ -152,9 +156,9 @@ const he_op he_mesh_rows[] = {
                            "plane is below it when it faces up."},
                    {.name = "cap",
                     .type = HE_PARAM_FLAG,
-                    .doc = "Close each loop of the cut with a polygon."}},
-        .results = {{"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges got a vertex."},
-                    {"faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."},
+                    .doc = "Close each loop of the cut with a polygon."},
+                   TOLERANCE},
+        .results = {SPLIT_COUNTS,
                     {"faces_deleted", HE_RESULT_NUMBER, HE_FACE,
                      "How many faces went, the parts of those that were cut among them."},
                     {"caps", HE_RESULT_ELEMENTS, HE_FACE, "The polygons that close the cut."}},

@@ -28,11 +28,14 @@ typedef enum he_param_type {
 /* Flags of a parameter. */
 enum {
     HE_REQUIRED = 1,
-    HE_NULLABLE = 2,   /* an element that may be null: HE_NONE */
-    HE_EXCLUSIVE = 4,  /* the ends of the range are not in it */
-    HE_RANGE = 8,      /* min and max apply */
-    HE_DERIVED = 16,   /* a number whose default follows from the mesh, as `doc` says */
-    HE_COSTS_MESH = 32 /* where it is given, a local operation costs the mesh */
+    HE_NULLABLE = 2,    /* an element that may be null: HE_NONE */
+    HE_EXCLUSIVE = 4,   /* the ends of the range are not in it */
+    HE_RANGE = 8,       /* min and max apply */
+    HE_DERIVED = 16,    /* a number whose default follows from the mesh, as `doc` says */
+    HE_COSTS_MESH = 32, /* where it is given, a local operation costs the mesh */
+    /* Elements whose neighbours are looked at too: all corners of the faces about a vertex, all
+     * edges at the corners of a face or along a loop, both of an edge. */
+    HE_REACHES = 64
 };
 
 typedef struct he_param {

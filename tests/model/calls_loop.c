@@ -213,7 +213,7 @@ static uint64_t play_loop_split(const md_call *c, or_mesh *o, const he_mesh *m)
 /* --- plane_cut --- */
 
 /* Is some face so nearly in the plane, or so small there, that rounding decides where it faces? */
-static bool is_doubtful(const or_mesh *o, he_vec3 point, he_vec3 normal)
+static bool is_doubtful(const or_mesh *o, he_vec3 point, he_vec3 normal, double within)
 {
     double length = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
     for (uint32_t f = 0; f < o->faces; f++) {
@@ -228,7 +228,7 @@ static bool is_doubtful(const or_mesh *o, he_vec3 point, he_vec3 normal)
             up += normal.x * (p.y * q.z - p.z * q.y) + normal.y * (p.z * q.x - p.x * q.z) +
                   normal.z * (p.x * q.y - p.y * q.x);
         }
-        if (face->alive && furthest < 1e-6 * length && fabs(up) < 1e-6 * length) {
+        if (face->alive && furthest < (within + 1e-6) * length && fabs(up) < 1e-6 * length) {
             return true;
         }
     }
@@ -244,14 +244,20 @@ static bool draw_plane_cut(md_draft *d)
         keep->choice = (int)md_below(d->r, 2);
     }
     md_give_flag(d, "cap", md_chance(d->r, 60));
+    if (md_chance(d->r, 30)) {
+        md_give_number(d, "tolerance", md_chance(d->r, 5) ? -1 : md_unit(d->r) * 0.5);
+    }
+    const he_arg *tolerance = md_get(d->c, "tolerance");
     he_vec3 point = md_get(d->c, "point")->points[0];
     he_vec3 normal = md_get(d->c, "normal")->points[0];
     if (normal.x == 0 && normal.y == 0 && normal.z == 0) {
         return true;
     }
-    or_plane_size size = or_plane_measure(d->o, point, normal, NULL);
-    return !size.doubtful && !is_doubtful(d->o, point, normal) && size.crossed < OR_CORNERS / 2 &&
-           d->o->vertices + size.crossed < OR_VERTICES &&
+    or_plane_size size =
+        or_plane_measure(d->o, point, normal, tolerance->given ? &tolerance->number : NULL);
+    return !size.doubtful &&
+           !is_doubtful(d->o, point, normal, tolerance->given ? tolerance->number : 0) &&
+           size.crossed < OR_CORNERS / 2 && d->o->vertices + size.crossed < OR_VERTICES &&
            d->o->edges + 3 * size.crossed + size.cut < OR_EDGES &&
            d->o->faces + 2 * size.crossed + size.cut < OR_FACES && size.cut < OR_LIST &&
            size.longest < OR_CORNERS;
@@ -263,6 +269,7 @@ typedef struct cutting {
     or_mesh *o;
     he_mesh *copy;
     he_vec3 point, normal;
+    const double *tolerance;
     bool above;
     uint32_t gone[OR_FACES], count;
     uint32_t rim[OR_FACES], rims;
@@ -285,11 +292,12 @@ static uint64_t cut_faces(cutting *c)
                        ? he_origin(c->copy, he_face_halfedge(c->copy, (he_face){f})).i
                        : OR_NONE;
     }
-    uint64_t refused = or_plane_split(c->o, c->point, c->normal, NULL, NULL, 0, start);
+    uint64_t refused = or_plane_split(c->o, c->point, c->normal, c->tolerance, NULL, 0, start);
     if (refused != 0) {
         return refused;
     }
-    he_status status = he_plane_split(c->copy, c->point, c->normal, NULL, NULL, 0, NULL, NULL);
+    he_status status =
+        he_plane_split(c->copy, c->point, c->normal, c->tolerance, NULL, 0, NULL, NULL);
     if (status == HE_DOUBLED_EDGE && (c->o->may & OR_BIT(HE_DOUBLED_EDGE)) != 0) {
         return OR_BIT(HE_DOUBLED_EDGE);
     }
@@ -373,6 +381,9 @@ static uint64_t play_plane_cut(const md_call *call, or_mesh *o, const he_mesh *m
     c.point = md_get(call, "point")->points[0];
     c.normal = md_get(call, "normal")->points[0];
     c.above = md_get(call, "keep")->choice == 0;
+    if (md_get(call, "tolerance")->given) {
+        c.tolerance = &md_get(call, "tolerance")->number;
+    }
     uint64_t refused = cut_faces(&c);
     if (refused == 0) {
         refused = delete_side(&c);

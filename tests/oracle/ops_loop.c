@@ -41,18 +41,52 @@ static bool same_point(he_vec3 a, he_vec3 b)
 
 /* --- loop_bridge --- */
 
+static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
+{
+    he_vec3 p = o->vertex[v].at;
+    he_vec3 q = o->vertex[w].at;
+    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
+}
+
+/* Of the ways to pair the corners of loops of one length by which no two edges join the same two
+ * vertices: the least sum of squares, infinite when there is none. */
+static double least_twist(const or_mesh *o, const uint32_t *a, const uint32_t *b, uint32_t n)
+{
+    double least = INFINITY;
+    for (uint32_t s = 0; s < n; s++) {
+        double sum = 0;
+        bool doubled = false;
+        for (uint32_t i = 0; i < n; i++) {
+            uint32_t w = b[(s + n - i) % n];
+            sum += square_apart(o, a[i], w);
+            doubled = doubled || o->joined[a[i]][w] != OR_NONE;
+            for (uint32_t k = 0; k < i; k++) {
+                doubled = doubled || (a[k] == a[i] && b[(s + n - k) % n] == w);
+            }
+        }
+        least = doubled ? least : fmin(least, sum);
+    }
+    return least;
+}
+
 uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m)
 {
     if (overlap(a, n, b, m)) {
         return OR_BIT(HE_SHARED_VERTEX);
     }
-    /* Which corners are joined is hedge's choice, so is whether an edge is doubled. */
-    bool can_double = repeats(a, n) || repeats(b, m);
-    for (uint32_t i = 0; i < n; i++) {
+    o->twist = n == m ? least_twist(o, a, b, n) : 0;
+    if (o->twist == INFINITY) {
+        return OR_BIT(HE_DOUBLED_EDGE);
+    }
+    /* Between loops of different lengths hedge chooses corner by corner, so whether an edge is
+     * doubled is not known. */
+    bool can_double = false;
+    for (uint32_t i = 0; i < n && n != m; i++) {
         for (uint32_t k = 0; k < m; k++) {
             can_double = can_double || o->joined[a[i]][b[k]] != OR_NONE;
         }
     }
+    can_double = can_double || (n != m && (repeats(a, n) || repeats(b, m)));
     o->may |= can_double ? OR_BIT(HE_DOUBLED_EDGE) : 0;
     o->bridging = true;
     o->bridge[0] = (or_face){.alive = true, .count = n};
@@ -94,33 +128,17 @@ static bool is_in_strip(const or_mesh *o, const or_face *f)
                                 : f->count == 3 && sides[0] + sides[1] == 1;
 }
 
-static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
-{
-    he_vec3 p = o->vertex[v].at;
-    he_vec3 q = o->vertex[w].at;
-    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
-}
-
-/* Between loops of one length: does no other way round make shorter rungs? */
+/* Between loops of one length: does no other way round that is allowed make shorter rungs? */
 static bool is_least_twisted(const or_mesh *o)
 {
     const or_face *a = &o->bridge[0];
-    const or_face *b = &o->bridge[1];
     uint32_t n = a->count;
     double made = 0;
-    double least = INFINITY;
     for (uint32_t i = 0; i < n; i++) {
         uint32_t f = o->left[a->v[i]][a->v[(i + 1) % n]];
         made += square_apart(o, a->v[i], or_before(&o->face[f], a->v[i]));
     }
-    for (uint32_t s = 0; s < n; s++) {
-        double sum = 0;
-        for (uint32_t i = 0; i < n; i++) {
-            sum += square_apart(o, a->v[i], b->v[(s + n - i) % n]);
-        }
-        least = fmin(least, sum);
-    }
-    return made <= least + 1e-9 * (1 + least);
+    return made <= o->twist + 1e-9 * (1 + o->twist);
 }
 
 bool or_strip_is_right(const or_mesh *o, uint32_t first_new)

@@ -127,7 +127,6 @@ uint64_t or_edge_bevel(or_mesh *o, uint32_t e, double width)
     uint32_t g = o->left[ends[1]][ends[0]];
     uint32_t fan[2][OR_CORNERS];
     uint32_t n[2];
-    double shortest = HUGE_VAL;
     if (f == OR_NONE || g == OR_NONE) {
         return refused | OR_BIT(HE_BOUNDARY_EDGE);
     }
@@ -142,11 +141,9 @@ uint64_t or_edge_bevel(or_mesh *o, uint32_t e, double width)
             if (x != v) {
                 locked = locked || o->edge[o->joined[v][x]].locked;
                 locked = locked || (o->left[v][x] != OR_NONE && o->face[o->left[v][x]].locked);
-                shortest = fmin(shortest, distance(o->vertex[v].at, o->vertex[x].at));
             }
         }
     }
-    refused |= shortest > 0 ? 0 : OR_BIT(HE_DEGENERATE_EDGE);
     refused |= locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
     if (refused != 0) {
         return refused;
@@ -167,7 +164,8 @@ uint64_t or_edge_bevel(or_mesh *o, uint32_t e, double width)
             }
             he_vec3 a = o->vertex[v].at;
             he_vec3 b = o->vertex[x].at;
-            double t = fmin(width / distance(a, b), 0.99);
+            double length = distance(a, b);
+            double t = length > 0 ? fmin(width / length, 0.99) : 0.5;
             cut[x] = or_add_vertex(
                 o, (he_vec3){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)});
             o->vertex[cut[x]].near = true;

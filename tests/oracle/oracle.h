@@ -64,6 +64,7 @@ typedef struct or_mesh {
     uint64_t may;      /* refusals that depend on those triangles: hedge may give them or succeed */
     bool bridging;     /* loop_bridge: new faces of hedge's choice join these two loops */
     or_face bridge[2]; /* as they go round their holes */
+    double twist;      /* of the least twisted pairing without a doubled edge, if equally long */
     bool either;       /* edge_join: `joining` are the two edges of which one survives */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];

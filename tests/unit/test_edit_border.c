@@ -278,6 +278,38 @@ static void test_bevel_is_clamped(void **state)
     he_mesh_free(m);
 }
 
+static void test_both_bevels_cut_an_edge_without_length_halfway(void **state)
+{
+    (void)state;
+    static const char *const bevels[] = {"edge_bevel edge=0-1 width=0.25",
+                                         "vertex_bevel vertex=0 width=0.25"};
+    for (size_t i = 0; i < sizeof bevels / sizeof *bevels; i++) {
+        he_mesh *m = script_mesh(QCUBE, cube);
+        he_column *column = NULL;
+        assert_int_equal(he_column_new("a", HE_VERTEX, HE_DOUBLE, 1, HE_INTERPOLATE, &column, NULL),
+                         HE_OK);
+        assert_int_equal(he_column_extend(column, 8, NULL), HE_OK);
+        double value = 8;
+        memcpy(he_column_row(column, 3), &value, sizeof value);
+        assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+        script_prepare(m, "vertex_move vertex=3 to=0,0,0");
+        script_prepare(m, bevels[i]);
+        assert_valid(m);
+        /* The cut between 0 and 3, which is 3's neighbour that is none of its old ones. */
+        uint32_t cut = HE_NONE;
+        he_halfedge first = he_vertex_halfedge(m, (he_vertex){3}), h = first;
+        do {
+            uint32_t w = he_target(m, h).i;
+            cut = w == 0 || w > 7 ? w : cut;
+            h = he_turn_ccw(m, h);
+        } while (h.i != first.i);
+        assert_at(m, cut, 0, 0, 0);
+        memcpy(&value, he_column_value(he_mesh_find_column(m, HE_VERTEX, "a"), cut), sizeof value);
+        assert_true(fabs(value - 4) < 1e-12);
+        he_mesh_free(m);
+    }
+}
+
 static void test_bevel_beside_a_hole_keeps_the_end(void **state)
 {
     (void)state;
@@ -496,6 +528,7 @@ int main(void)
         cmocka_unit_test(test_extrude_shares_corners),
         cmocka_unit_test(test_bevel_of_a_cube),
         cmocka_unit_test(test_bevel_is_clamped),
+        cmocka_unit_test(test_both_bevels_cut_an_edge_without_length_halfway),
         cmocka_unit_test(test_bevel_beside_a_hole_keeps_the_end),
         cmocka_unit_test(test_bevel_at_the_ends_of_doubles),
         cmocka_unit_test(test_values_follow),

@@ -9,7 +9,9 @@
 
 #include <cmocka.h>
 
+#include "algo/shape.h"
 #include "mesh/write.h"
+#include "query/topology.h"
 
 #define QCUBE   "0123,7654,1045,2156,3267,0374"
 #define RING10  "401,430,512,541,652,734,874,845,985,956"
@@ -37,6 +39,7 @@ static void test_triangle(void **state)
     he_mesh *m = script_mesh("+++", NULL);
     script_prepare(m, "face_add vertices=0,1,2");
     assert_counts(m, 3, 3, 1);
+    assert_int_equal(he_mesh_count(m, HE_HALFEDGE), 6);
     assert_loops(m, "3");
     assert_face(m, 0, "012");
     assert_int_equal(he_origin(m, he_face_halfedge(m, (he_face){0})).i, 0);
@@ -167,6 +170,190 @@ static void test_cf1_join(void **state)
     assert_counts(m, 5, 6, 2);
     assert_int_equal(he_face_degree(m, kept), 4);
     he_mesh_free(m);
+}
+
+static void test_cf3_split_corners(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("0123,3245", NULL), *before = copy_of(m);
+    /* The edge comes into the corner of 3 in either face. */
+    script_prepare(m, "vertex_split_corners a=3-2 b=3-5");
+    assert_counts(m, 7, 8, 2);
+    script_prepare(m, "edge_collapse halfedge=6-3 t=1");
+    assert_counts(m, 6, 7, 2);
+    assert_true(he_mesh_equal_live(m, before));
+    he_mesh_free(before);
+
+    before = copy_of(m);
+    script_prepare(m, "vertex_split_corners a=2-3 b=2-1;edge_collapse halfedge=7-2 t=1");
+    assert_counts(m, 6, 7, 2);
+    assert_true(he_mesh_equal_live(m, before));
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+static void test_cf4_join(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("023,321,031,647,675,745", NULL);
+    assert_loops(m, "33");
+    script_prepare(m, "loop_join a=0-1 b=5-4");
+    assert_counts(m, 5, 9, 6);
+    assert_loops(m, "");
+    assert_int_equal(euler(m), 2);
+    he_mesh_free(m);
+}
+
+static void test_quad_and_triangle(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("0123,214", NULL);
+    script_prepare(m, "face_extrude face=0 by=0,0,1");
+    assert_counts(m, 9, 14, 6);
+    he_mesh_free(m);
+}
+
+static void test_cube_corner(void **state)
+{
+    (void)state;
+    for (unsigned v = 0; v < 8; v++) {
+        he_mesh *m = script_mesh(QCUBE, NULL);
+        char text[64];
+        snprintf(text, sizeof text, "vertex_bevel vertex=%u width=0.1", v);
+        script_prepare(m, text);
+        assert_counts(m, 10, 15, 7);
+        he_mesh_free(m);
+    }
+}
+
+/* A shape of the table, with so many arguments given. */
+static he_mesh *make(const char *name, const double *given, size_t count)
+{
+    double args[HE_SHAPE_PARAMS];
+    he_soup soup;
+    he_mesh *m = NULL;
+    const he_shape *shape = he_shape_find(name, strlen(name));
+    assert_non_null(shape);
+    he_shape_defaults(shape, args);
+    for (size_t i = 0; i < count; i++) {
+        args[i] = given[i];
+    }
+    assert_int_equal(he_shape_make(shape, args, NULL, &soup, NULL), HE_OK);
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    assert_valid(m);
+    return m;
+}
+
+static bool is_inner(const he_mesh *m, he_face f)
+{
+    he_halfedge first = he_face_halfedge(m, f), h = first;
+    do {
+        if (he_is_boundary_vertex(m, he_origin(m, h))) {
+            return false;
+        }
+        h = he_next(m, h);
+    } while (h.i != first.i);
+    return true;
+}
+
+static void test_grid_of_quads(void **state)
+{
+    (void)state;
+    static const double cells[] = {4, 4};
+    unsigned inner = 0;
+    for (uint32_t f = 0; f < 16; f++) {
+        he_mesh *m = make("grid", cells, 2);
+        assert_counts(m, 25, 40, 16);
+        if (is_inner(m, (he_face){f})) {
+            char text[64];
+            snprintf(text, sizeof text, "face_collapse face=%u", f);
+            script_prepare(m, text);
+            assert_counts(m, 22, 36, 15);
+            inner++;
+        }
+        he_mesh_free(m);
+    }
+    assert_int_equal(inner, 4);
+}
+
+static void test_torus_and_cylinder(void **state)
+{
+    (void)state;
+    static const double torus[] = {3, 3}, sides[] = {6, 1, 2, 0};
+    he_topology topology;
+    he_mesh *m = make("torus", torus, 2);
+    assert_counts(m, 9, 18, 9);
+    assert_int_equal(he_topology_find(m, &topology, NULL), HE_OK);
+    assert_int_equal(topology.euler, 0);
+    assert_true(topology.has_genus);
+    assert_int_equal(topology.genus, 1);
+    he_topology_clear(&topology);
+    he_mesh_free(m);
+
+    m = make("cylinder", sides, 4);
+    assert_loops(m, "66");
+    he_mesh_free(m);
+}
+
+static void test_solids(void **state)
+{
+    (void)state;
+    static const double three[] = {3};
+    static const struct {
+        const char *name;
+        size_t given;
+        uint32_t vertices, edges, faces;
+    } cases[] = {
+        {"icosphere", 1, 642, 1920, 1280},
+        {"cube", 0, 8, 12, 6},
+        {"dodecahedron", 0, 20, 30, 12},
+        {"icosahedron", 0, 12, 30, 20},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        he_mesh *m = make(cases[i].name, three, cases[i].given);
+        assert_counts(m, cases[i].vertices, cases[i].edges, cases[i].faces);
+        assert_int_equal(euler(m), 2);
+        he_mesh_free(m);
+    }
+}
+
+/* Not one bit: dead rows, ids that were issued and every attribute are compared. */
+static void test_a_refusal_leaves_everything(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *prepare, *operation;
+        he_status status;
+    } cases[] = {
+        {STRANGE, NULL, "face_add vertices=3,0,4", HE_CLOSED_FAN},
+        {RING10, "edge_delete edge=4-5", "edge_flip edge=1-4", HE_BOUNDARY_EDGE},
+        {RING10, NULL, "hole_fill halfedge=4-5", HE_NOT_BOUNDARY},
+        {"021,013,032,123", NULL, "face_collapse face=2", HE_LINK_CONDITION},
+        {"021,123,134", "vertex_delete vertex=4", "vertex_dissolve vertex=2", HE_BOUNDARY_VERTEX},
+        {"0123,3245", NULL, "vertex_split_corners a=3-0 b=3-0", HE_SAME_CORNER},
+        {"023,321,031,647,675,745", NULL, "loop_join a=0-1 b=0-2", HE_SHARED_VERTEX},
+        {"0341,142", NULL, "face_split face=0 from=0 to=2", HE_NOT_A_CORNER},
+        {QCUBE, NULL, "edge_cut edges=0-1,6-7", HE_DOUBLED_EDGE},
+        {QCUBE, NULL, "face_extrude faces=0,1,2,3,4,5 distance=1 region=1", HE_NO_RIM},
+        {QCUBE, NULL, "face_delete faces=0,1,2,1", HE_REPEATED_ELEMENT},
+        {QCUBE, "mark locked vertex=6", "vertex_move vertices=0,1,6 by=1,1,1", HE_LOCKED_ELEMENT},
+        {QCUBE, "face_delete face=2", "plane_cut point=3.5,0,0 normal=1,0,0 cap=1", HE_OPEN_LOOP},
+        {"012", NULL, "dual", HE_BOUNDARY_EDGE},
+        {"012,021", NULL, "dual", HE_TOO_FEW_CORNERS},
+        {"012+", NULL, "weld tolerance=-1", HE_BAD_VALUE},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        print_message("%s\n", cases[i].operation);
+        he_mesh *m = script_mesh(cases[i].mesh, NULL);
+        script_add_columns(m);
+        script_prepare(m, cases[i].prepare);
+        he_mesh *before = copy_of(m);
+        assert_int_equal(script_run(m, cases[i].operation, NULL, NULL), cases[i].status);
+        assert_equal(m, before);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
 }
 
 static void test_sb(void **state)
@@ -328,14 +515,29 @@ static void test_pillow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_empty),          cmocka_unit_test(test_triangle),
-        cmocka_unit_test(test_ring10_flip),    cmocka_unit_test(test_ring10_hole),
-        cmocka_unit_test(test_strange),        cmocka_unit_test(test_cube_holes),
-        cmocka_unit_test(test_checkerboard),   cmocka_unit_test(test_tetrahedron_does_not_collapse),
-        cmocka_unit_test(test_cf1_join),       cmocka_unit_test(test_sb),
-        cmocka_unit_test(test_split_and_flip), cmocka_unit_test(test_vertex_split_is_inverse),
-        cmocka_unit_test(test_inverses),       cmocka_unit_test(test_pillow),
+        cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_triangle),
+        cmocka_unit_test(test_ring10_flip),
+        cmocka_unit_test(test_ring10_hole),
+        cmocka_unit_test(test_strange),
+        cmocka_unit_test(test_cube_holes),
+        cmocka_unit_test(test_checkerboard),
+        cmocka_unit_test(test_tetrahedron_does_not_collapse),
+        cmocka_unit_test(test_cf1_join),
+        cmocka_unit_test(test_sb),
+        cmocka_unit_test(test_split_and_flip),
+        cmocka_unit_test(test_vertex_split_is_inverse),
+        cmocka_unit_test(test_inverses),
+        cmocka_unit_test(test_pillow),
         cmocka_unit_test(test_plane_split),
+        cmocka_unit_test(test_cf3_split_corners),
+        cmocka_unit_test(test_cf4_join),
+        cmocka_unit_test(test_quad_and_triangle),
+        cmocka_unit_test(test_cube_corner),
+        cmocka_unit_test(test_grid_of_quads),
+        cmocka_unit_test(test_solids),
+        cmocka_unit_test(test_torus_and_cylinder),
+        cmocka_unit_test(test_a_refusal_leaves_everything),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -259,6 +259,88 @@ static void a_region_keeps_what_is_inside_in_place(void **state)
     he_mesh_free(m);
 }
 
+/* A field that is linear in the plane has its own value at each new vertex. */
+static void values_of_an_inset_are_those_at_its_place(void **state)
+{
+    (void)state;
+    static const he_vec3 wide[] = {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}};
+    static const he_vec3 house[] = {{0, 0, 0}, {3, 0, 0}, {4, 2, 0}, {2, 3, 0}, {0, 2, 0}};
+    static const struct {
+        const char *mesh;
+        const he_vec3 *positions;
+        const char *operation;
+    } cases[] = {
+        {"0123,214", flat, "face_inset face=0 factor=0.5"},
+        {"0123,214", flat, "face_inset faces=0,1 factor=0.999"},
+        {"0123,214", flat, "face_inset faces=0,1 factor=0.25 region=1"},
+        {"012", flat, "face_inset face=0 distance=0.1"},
+        {"0123", wide, "face_inset face=0 distance=0.25"},
+        {"0123", wide, "face_inset face=0 distance=100"},
+        {"01234", house, "face_inset face=0 distance=0.5"},
+        {"01234", house, "face_inset face=0 factor=0.75"},
+        {NULL, NULL, "face_inset faces=5,6,9,10 distance=0.25 region=1"},
+        {NULL, NULL, "face_inset faces=5,6,9 distance=0.25 region=1"},
+        {NULL, NULL, "face_inset faces=5,6,9 factor=0.5 region=1"},
+        {NULL, NULL, "face_inset faces=0,1,2,3,4,8,12 distance=0.125 region=1"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        he_mesh *m =
+            cases[i].mesh == NULL ? grid(4) : script_mesh(cases[i].mesh, cases[i].positions);
+        uint32_t old = he_mesh_issued(m, HE_VERTEX);
+        he_column *field = add_column(m, "field", HE_VERTEX, HE_DOUBLE);
+        he_column *parent = add_column(m, "parent", HE_VERTEX, HE_DOUBLE);
+        field->rule = HE_INTERPOLATE;
+        parent->rule = HE_COPY;
+        for (uint32_t v = 0; v < old; v++) {
+            he_vec3 p = he_position(m, (he_vertex){v});
+            double value = 3 * p.x - 2 * p.y + 1, id = v;
+            memcpy(he_column_row(field, v), &value, sizeof value);
+            memcpy(he_column_row(parent, v), &id, sizeof id);
+        }
+        run(m, cases[i].operation);
+        for (uint32_t v = old; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            he_vec3 p = he_position(m, (he_vertex){v});
+            assert_true(fabs(number_at(field, v) - (3 * p.x - 2 * p.y + 1)) < 1e-12);
+            uint32_t below = (uint32_t)number_at(parent, v);
+            (void)edge_between(m, below, v);
+        }
+        he_mesh_free(m);
+    }
+}
+
+/* Not linear, but always between those of the corners. */
+static void values_of_an_inset_lie_between_those_of_its_corners(void **state)
+{
+    (void)state;
+    static const he_vec3 notched[] = {{0, 0, 0}, {20, 0, 0}, {20, 10, 0}, {10, 1, 0}, {0, 10, 0}};
+    static const he_vec3 point[] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
+    static const he_vec3 vast[] = {{-1e308, 0, 0},
+                                   {1e308, -1e308, 0},
+                                   {1e308, 1e308, 0},
+                                   {0, 1e308, 1e308},
+                                   {-1e308, 1e308, 0}};
+    const he_vec3 *const places[] = {notched, point, vast};
+    static const char *const operations[] = {"face_inset face=0 factor=0.9",
+                                             "face_inset face=0 distance=0.3"};
+    for (size_t i = 0; i < 6; i++) {
+        he_mesh *m = script_mesh("01234", places[i / 2]);
+        he_column *field = add_column(m, "field", HE_VERTEX, HE_DOUBLE);
+        field->rule = HE_INTERPOLATE;
+        for (uint32_t v = 0; v < 5; v++) {
+            double value = v % 2;
+            memcpy(he_column_row(field, v), &value, sizeof value);
+        }
+        he_error err = {.status = HE_OK};
+        he_status status = script_run(m, operations[i % 2], NULL, &err);
+        assert_true(status == HE_OK || status == HE_NO_NORMAL || status == HE_NOT_FINITE);
+        assert_valid(m);
+        for (uint32_t v = 5; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            assert_true(number_at(field, v) >= 0 && number_at(field, v) <= 1);
+        }
+        he_mesh_free(m);
+    }
+}
+
 static void a_factor_out_of_range_is_refused(void **state)
 {
     (void)state;
@@ -559,6 +641,8 @@ int main(void)
         cmocka_unit_test(an_inset_ends_before_a_side_vanishes),
         cmocka_unit_test(an_inset_ends_before_a_reflex_corner_meets_a_side),
         cmocka_unit_test(a_region_keeps_what_is_inside_in_place),
+        cmocka_unit_test(values_of_an_inset_are_those_at_its_place),
+        cmocka_unit_test(values_of_an_inset_lie_between_those_of_its_corners),
         cmocka_unit_test(a_factor_out_of_range_is_refused),
         cmocka_unit_test(a_collapsed_face_leaves_its_first_corner_at_the_mean),
         cmocka_unit_test(reversing_twice_leads_back_bit_for_bit),

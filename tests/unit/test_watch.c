@@ -4,10 +4,13 @@
 #include "algo/shape.h"
 #include "edit/delaunay.h"
 #include "edit/erase.h"
+#include "edit/inset.h"
+#include "edit/plane_cut.h"
 #include "edit/plane_split.h"
 #include "edit/separate.h"
 #include "edit/transform.h"
 #include "edit/triangulate.h"
+#include "edit/vertex.h"
 #include "edit/weld.h"
 #include "mesh/compact.h"
 #include "query/geometry.h"
@@ -195,9 +198,53 @@ static he_status run_copy(he_mesh *m)
     return status;
 }
 
+static he_status run_plane_cut(he_mesh *m)
+{
+    return he_plane_cut(m, (he_vec3){0.001, 0.002, 0}, (he_vec3){1, 0.7, 0}, NULL, HE_CUT_ABOVE,
+                        false, NULL, NULL);
+}
+
+static he_status run_face_delete(he_mesh *m)
+{
+    static uint32_t faces[SIDE * SIDE / 2];
+    for (uint32_t i = 0; i < SIDE * SIDE / 2; i++) {
+        faces[i] = 2 * i;
+    }
+    return he_face_delete(m, faces, SIDE * SIDE / 2, HE_DROP_ISOLATED, NULL);
+}
+
+static he_status run_edge_delete(he_mesh *m)
+{
+    static uint32_t edges[SIDE * SIDE];
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        edges[i] = i;
+    }
+    return he_edge_delete(m, edges, SIDE * SIDE, HE_KEEP_ISOLATED, NULL);
+}
+
+static he_status run_face_inset(he_mesh *m)
+{
+    static uint32_t faces[SIDE * SIDE / 5];
+    for (uint32_t i = 0; i < SIDE * SIDE / 5; i++) {
+        faces[i] = 5 * i;
+    }
+    return he_face_inset(m, faces, SIDE * SIDE / 5, false, 0.5, 0, NULL, NULL);
+}
+
+static he_status run_vertex_move(he_mesh *m)
+{
+    static uint32_t vertices[SIDE * SIDE];
+    const he_vec3 by = {0, 0, 1};
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        vertices[i] = i;
+    }
+    return he_vertex_move(m, vertices, SIDE * SIDE, HE_MOVE_BY, &by, 1, NULL);
+}
+
 static he_status (*const operations[])(he_mesh *m) = {
-    run_transform, run_plane_split, run_delaunay,         run_triangulate,    run_compact,
-    run_copy,      run_weld,        run_separate_bowties, run_delete_isolated};
+    run_transform,   run_plane_split, run_delaunay,         run_triangulate,     run_compact,
+    run_copy,        run_weld,        run_separate_bowties, run_delete_isolated, run_plane_cut,
+    run_face_delete, run_edge_delete, run_vertex_move,      run_face_inset};
 
 static he_status run_recorded(he_status (*operation)(he_mesh *m), he_mesh *mesh, listener *l)
 {

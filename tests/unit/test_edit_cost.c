@@ -1,0 +1,100 @@
+/* What an operation reaches is counted before a worker takes it on. */
+#include "fixture.h"
+
+#include "algo/shape.h"
+#include "api/edit_cost.h"
+
+enum { LONG = 5000 };
+
+/* A cone: one face of many corners, one vertex of as many edges. */
+static he_mesh *cone(void)
+{
+    double args[HE_SHAPE_PARAMS];
+    he_soup soup;
+    he_mesh *m = NULL;
+    const he_shape *shape = he_shape_find("cone", 4);
+    he_shape_defaults(shape, args);
+    args[0] = LONG;
+    assert_int_equal(he_shape_make(shape, args, NULL, &soup, NULL), HE_OK);
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    return m;
+}
+
+static uint32_t find_face(const he_mesh *m, bool is_long)
+{
+    uint32_t f = 0;
+    while ((he_face_degree(m, (he_face){f}) > 3) != is_long) {
+        f++;
+    }
+    return f;
+}
+
+static bool exceeds(const he_mesh *m, const char *name, const char *param, uint32_t id,
+                    uint64_t most)
+{
+    api_edit_cost cost = {.count = 0};
+    api_call call = {.op = he_op_find(name, strlen(name))};
+    assert_non_null(call.op);
+    he_op_defaults(call.op, call.args);
+    for (size_t i = 0; i < he_op_params(call.op); i++) {
+        if (strcmp(call.op->params[i].name, param) == 0) {
+            call.args[i].given = true;
+            call.args[i].id = id;
+            call.args[i].ids = &id;
+            call.args[i].count = 1;
+        }
+    }
+    assert_int_equal(api_edit_cost_add(&cost, &call, NULL), HE_OK);
+    bool result = api_edit_cost_exceeds(&cost, m, most);
+    api_edit_cost_clear(&cost);
+    return result;
+}
+
+static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state)
+{
+    (void)state;
+    he_mesh *m = cone();
+    uint32_t base = find_face(m, true), side = find_face(m, false);
+    he_halfedge rim = he_face_halfedge(m, (he_face){base}); /* from a corner of the base */
+    uint32_t corner = he_origin(m, rim).i, edge = he_edge_of(rim).i;
+    uint32_t other = he_twin(rim).i;
+    const struct {
+        const char *name, *param;
+        uint32_t id;
+        bool reaches;
+    } cases[] = {
+        {"vertex_move", "vertex", corner, false},
+        {"vertex_bevel", "vertex", corner, false},
+        {"vertex_dissolve", "vertex", corner, true},
+        {"vertex_delete", "vertex", corner, true},
+        {"vertex_weld", "vertex", corner, true},
+        {"edge_collapse", "edge", edge, true},
+        {"edge_collapse", "halfedge", rim.i, true},
+        {"face_join", "edge", edge, true},
+        {"edge_weld", "a", edge, true},
+        {"face_delete", "face", side, false},
+        {"face_poke", "face", base, true},
+        {"face_collapse", "face", side, true},
+        {"face_inset", "face", side, true},
+        {"loop_join", "a", other, true}, /* the tip is a corner of that side */
+        {"loop_join", "b", rim.i, true},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        print_message("%s %s\n", cases[i].name, cases[i].param);
+        assert_true(exceeds(m, cases[i].name, cases[i].param, cases[i].id, 100) ==
+                    cases[i].reaches);
+        assert_false(exceeds(m, cases[i].name, cases[i].param, cases[i].id, 20 * LONG));
+        /* Ids that name nothing cost nothing. */
+        assert_false(exceeds(m, cases[i].name, cases[i].param, HE_MAX_ROWS, 0));
+    }
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_lies_about_neighbours_counts_where_it_is_looked_at),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
