@@ -364,9 +364,7 @@ static uint64_t cap_loops(const cutting *c)
 static uint64_t play_plane_cut(const md_call *call, or_mesh *o, const he_mesh *m)
 {
     cutting c = {.o = o, .count = 0};
-    or_mesh *before = malloc(sizeof *before);
-    assert(before != NULL);
-    *before = *o;
+    or_lists *before = or_save(o);
     he_status status = he_mesh_copy(m, &c.copy, NULL);
     assert(status == HE_OK);
     (void)status;
@@ -381,10 +379,11 @@ static uint64_t play_plane_cut(const md_call *call, or_mesh *o, const he_mesh *m
         refused = cap_loops(&c);
     }
     if (refused != 0) {
-        *o = *before;
+        or_restore(o, before);
+    } else {
+        or_forget(before);
     }
     he_mesh_free(c.copy);
-    free(before);
     return refused;
 }
 

@@ -168,7 +168,7 @@ void md_shape(or_mesh *o, md_random *r)
             uint32_t b = o->face[f].v[(i + 1) % o->face[f].count];
             if (o->joined[a][b] == OR_NONE) {
                 o->edge[o->edges] = (or_edge){.alive = true, .a = a, .b = b};
-                o->joined[a][b] = o->joined[b][a] = o->edges++;
+                or_set_joined(o, o->edges++);
             }
         }
     }

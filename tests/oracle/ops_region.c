@@ -312,9 +312,7 @@ uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start)
     or_face was = o->face[f];
     uint32_t shift = or_place(&was, start);
     uint64_t refused = 0;
-    or_mesh *before = malloc(sizeof *before);
-    assert(before != NULL);
-    memcpy(before, o, sizeof *o);
+    or_lists *before = or_save(o);
     for (uint32_t k = 1; k < was.count && refused == 0; k++) {
         uint32_t u = was.v[(shift + k) % was.count];
         he_vec3 at = o->vertex[start].at;
@@ -328,9 +326,10 @@ uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start)
         }
     }
     if (refused != 0) {
-        memcpy(o, before, sizeof *o);
+        or_restore(o, before);
+    } else {
+        or_forget(before);
     }
-    free(before);
     return refused;
 }
 
@@ -361,9 +360,11 @@ uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count)
         return OR_BIT(beside ? HE_ORIENTATION : HE_BOWTIE);
     }
     for (uint32_t f = 0; f < o->faces; f++) {
-        or_face was = o->face[f];
-        for (uint32_t i = 0; i < was.count && chosen[f]; i++) {
-            o->face[f].v[i] = was.v[was.count - 1 - i];
+        or_face *face = &o->face[f];
+        for (uint32_t i = 0, k = face->count; chosen[f] && i + 1 < k; i++) {
+            uint32_t swap = face->v[i];
+            face->v[i] = face->v[--k];
+            face->v[k] = swap;
         }
     }
     return 0;
@@ -373,6 +374,8 @@ static uint64_t check_dual(const or_mesh *o)
 {
     uint64_t refused = 0;
     bool locked = false;
+    uint32_t pair[OR_EDGES][2];
+    uint32_t pairs = 0;
     for (uint32_t v = 0; v < o->vertices; v++) {
         if (o->vertex[v].alive) {
             uint32_t degree = or_degree(o, v);
@@ -388,15 +391,17 @@ static uint64_t check_dual(const or_mesh *o)
         if (!o->edge[e].alive) {
             continue;
         }
-        refused |= f == OR_NONE || g == OR_NONE ? OR_BIT(HE_BOUNDARY_EDGE) : 0;
         locked |= o->edge[e].locked;
-        for (uint32_t d = 0; d < e && f != OR_NONE && g != OR_NONE; d++) {
-            uint32_t x = o->left[o->edge[d].a][o->edge[d].b];
-            uint32_t y = o->left[o->edge[d].b][o->edge[d].a];
-            if (o->edge[d].alive && ((x == f && y == g) || (x == g && y == f))) {
-                refused |= OR_BIT(HE_DOUBLED_EDGE);
-            }
+        if (f == OR_NONE || g == OR_NONE) {
+            refused |= OR_BIT(HE_BOUNDARY_EDGE);
+            continue;
         }
+        for (uint32_t d = 0; d < pairs; d++) {
+            bool same = (pair[d][0] == f && pair[d][1] == g) || (pair[d][0] == g && pair[d][1] == f);
+            refused |= same ? OR_BIT(HE_DOUBLED_EDGE) : 0;
+        }
+        pair[pairs][0] = f;
+        pair[pairs++][1] = g;
     }
     for (uint32_t f = 0; f < o->faces; f++) {
         locked |= o->face[f].alive && o->face[f].locked;

@@ -109,7 +109,8 @@ uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep
 /* The first neighbour of v's only open fan, counter-clockwise: no face comes from it. */
 static uint32_t fan_start(const or_mesh *o, uint32_t v)
 {
-    for (uint32_t x = 0; x < o->vertices; x++) {
+    for (uint32_t i = 0; i < or_degree(o, v); i++) {
+        uint32_t x = o->around[v][i];
         if (o->left[v][x] != OR_NONE && o->left[x][v] == OR_NONE) {
             return x;
         }
@@ -255,9 +256,8 @@ void or_compact(or_mesh *o)
         }
     }
     o->faces = n;
-    /* Pairs of the old names are forgotten while their number is still known. */
+    o->vertices = vertices;
     uint64_t wrong = or_derive(o);
     assert(wrong == 0);
     (void)wrong;
-    o->vertices = vertices;
 }

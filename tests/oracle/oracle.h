@@ -7,6 +7,7 @@
  *
  *     left[a][b]    the face that runs from a to b, OR_NONE when none does
  *     joined[a][b]  the edge between a and b, OR_NONE when none does
+ *     around[a]     the degree[a] vertices b for which there is left[a][b] or left[b][a]
  *
  * An operation of the oracle answers with the set of all refusals that apply, one bit a status. The
  * set is empty when it succeeded. Which of several reasons hedge names is its own choice.
@@ -17,13 +18,17 @@
  *
  * What is locked or a feature is not the oracle's to know: it is told before each operation.
  *
- * Room is fixed (OR_VERTICES and so on): the model test starts a new mesh before it runs out. */
+ * There is room for a fan of a thousand triangles and what grows on it (OR_VERTICES and so on); the
+ * model test starts a new mesh before it runs out. Only what is used is ever touched, so a small
+ * mesh costs what a small mesh does. */
 #ifndef TESTS_ORACLE_ORACLE_H
 #define TESTS_ORACLE_ORACLE_H
 
 #include "mesh/mesh.h"
 
-enum { OR_VERTICES = 320, OR_EDGES = 1500, OR_FACES = 1000, OR_CORNERS = 96, OR_LIST = 256 };
+/* Rows of the tables are an odd number of cache lines long, so that a column of them is not all in
+ * one place of the cache. */
+enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200, OR_LIST = 1200 };
 
 #define OR_NONE        UINT32_MAX
 #define OR_BIT(status) (UINT64_C(1) << (unsigned)(status))
@@ -71,6 +76,11 @@ typedef struct or_mesh {
     or_face face[OR_FACES];
     uint32_t left[OR_VERTICES][OR_VERTICES];
     uint32_t joined[OR_VERTICES][OR_VERTICES];
+    uint32_t around[OR_VERTICES][OR_VERTICES];
+    uint32_t degree[OR_VERTICES];
+    /* What the tables hold: rows of vertices, and of each edge the pair it was joined under. */
+    uint32_t known_vertices, known_edges;
+    uint32_t pair[OR_EDGES][2];
 } or_mesh;
 
 or_mesh *or_new(void);
@@ -83,11 +93,26 @@ uint32_t or_add_vertex(or_mesh *o, he_vec3 at);
 uint32_t or_add_face(or_mesh *o, const uint32_t *v, uint32_t count);
 void or_remove_last_face(or_mesh *o);
 
+/* The lists as they are between two operations, to go back to. or_restore frees them too. */
+typedef struct or_lists {
+    uint32_t vertices, edges, faces;
+    or_vertex *vertex;
+    or_edge *edge;
+    or_face **face; /* each as long as its corners */
+} or_lists;
+
+or_lists *or_save(const or_mesh *o);
+void or_restore(or_mesh *o, or_lists *lists);
+void or_forget(or_lists *lists);
+
 /* --- looking -------------------------------------------------------------------------------- */
 
 /* Fill left and joined from the lists. Answers with what no mesh can hold: HE_TOO_FEW_CORNERS,
  * HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
 uint64_t or_derive(or_mesh *o);
+/* One entry of left, or of joined, by hand. */
+void or_set_left(or_mesh *o, uint32_t a, uint32_t b, uint32_t f);
+void or_set_joined(or_mesh *o, uint32_t e);
 
 uint32_t or_live_vertices(const or_mesh *o);
 uint32_t or_live_edges(const or_mesh *o);
