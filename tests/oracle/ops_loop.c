@@ -190,8 +190,7 @@ static uint64_t join_clashes(const or_mesh *o, const uint32_t *a, uint32_t fa, c
         for (uint32_t f = 0; f < e && after[e].alive; f++) {
             const or_edge *x = &after[e];
             const or_edge *y = &after[f];
-            if (y->alive &&
-                ((x->a == y->a && x->b == y->b) || (x->a == y->b && x->b == y->a))) {
+            if (y->alive && ((x->a == y->a && x->b == y->b) || (x->a == y->b && x->b == y->a))) {
                 refused |= OR_BIT(HE_DOUBLED_EDGE);
             }
         }

@@ -137,7 +137,36 @@ static he_vec3 direction_of(const or_mesh *o, const part *p, double *length, dou
     return (he_vec3){sum.x / *length, sum.y / *length, sum.z / *length};
 }
 
-bool or_faces_vaguely(const or_mesh *o, or_region region)
+static bool is_at(he_vec3 a, he_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool or_is_flat(const or_mesh *o, uint32_t f)
+{
+    const or_face *face = &o->face[f];
+    he_vec3 one = o->vertex[face->v[0]].at;
+    he_vec3 other = one;
+    for (uint32_t i = 0; i < face->count; i++) {
+        he_vec3 p = o->vertex[face->v[i]].at;
+        if (!is_at(p, one) && !is_at(other, one) && !is_at(p, other)) {
+            return false;
+        }
+        other = is_at(p, one) ? other : p;
+    }
+    return true;
+}
+
+static bool is_all_flat(const or_mesh *o, const part *p)
+{
+    bool flat = true;
+    for (uint32_t k = 0; k < p->count; k++) {
+        flat = flat && or_is_flat(o, p->faces[k]);
+    }
+    return flat;
+}
+
+bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset)
 {
     static part p;
     for (uint32_t i = 0; i < region.count; i++) {
@@ -145,7 +174,8 @@ bool or_faces_vaguely(const or_mesh *o, or_region region)
         double total;
         find_part(o, region, region.faces[i], &p);
         (void)direction_of(o, &p, &length, &total);
-        if (!(length > 1e-3 * total) || !(length_of(newell(o, region.faces[i])) > 1e-3)) {
+        bool clear = length > 1e-3 * total && length_of(newell(o, region.faces[i])) > 1e-3;
+        if (!clear && !(or_is_flat(o, region.faces[i]) && (inset || is_all_flat(o, &p)))) {
             return true;
         }
     }
@@ -190,15 +220,20 @@ static void draw_off(or_mesh *o, const part *p)
     }
 }
 
-/* The refusals of all parts; each is on its own, so the order in which they come does not matter.
- */
-static uint64_t check_all(const or_mesh *o, or_region region, bool moves_inside)
+static bool is_finite(he_vec3 a, he_vec3 b)
 {
-    static part p;
-    uint64_t refused = 0;
-    for (uint32_t i = 0; i < region.count; i++) {
-        find_part(o, region, region.faces[i], &p);
-        refused |= check_part(o, &p, moves_inside);
+    return isfinite(a.x + b.x) && isfinite(a.y + b.y) && isfinite(a.z + b.z);
+}
+
+/* What is wrong with where the part is to go. */
+static uint64_t check_shift(const or_mesh *o, const part *p, const he_vec3 *by)
+{
+    uint64_t refused = by == NULL && is_all_flat(o, p) ? OR_BIT(HE_NO_NORMAL) : 0;
+    for (uint32_t k = 0; k < p->count && by != NULL; k++) {
+        const or_face *face = &o->face[p->faces[k]];
+        for (uint32_t i = 0; i < face->count; i++) {
+            refused |= is_finite(o->vertex[face->v[i]].at, *by) ? 0 : OR_BIT(HE_NOT_FINITE);
+        }
     }
     return refused;
 }
@@ -207,7 +242,12 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
 {
     static part p;
     bool done[OR_FACES] = {false};
-    uint64_t refused = check_all(o, region, true);
+    uint64_t refused = 0;
+    /* Each part is on its own, so the order in which they come does not matter. */
+    for (uint32_t k = 0; k < region.count; k++) {
+        find_part(o, region, region.faces[k], &p);
+        refused |= check_part(o, &p, true) | check_shift(o, &p, by);
+    }
     for (uint32_t k = 0; k < region.count && refused == 0; k++) {
         if (is_done(region, k, done)) {
             continue;
@@ -258,23 +298,53 @@ static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
     he_vec3 sum = {0, 0, 0};
     uint32_t n = 0;
     for (uint32_t k = 0; k < p->count; k++) {
+        n += or_place(&o->face[p->faces[k]], v) != OR_NONE;
+    }
+    for (uint32_t k = 0; k < p->count; k++) {
         const or_face *face = &o->face[p->faces[k]];
         for (uint32_t i = 0; i < face->count && or_place(face, v) != OR_NONE; i++) {
             he_vec3 c = o->vertex[face->v[i]].at;
-            sum.x += c.x / face->count;
-            sum.y += c.y / face->count;
-            sum.z += c.z / face->count;
+            sum.x += c.x / face->count / n;
+            sum.y += c.y / face->count / n;
+            sum.z += c.z / face->count / n;
         }
-        n += or_place(face, v) != OR_NONE;
     }
-    return (he_vec3){sum.x / n, sum.y / n, sum.z / n};
+    return sum;
+}
+
+/* From a corner on the rim to the middle of what it belongs to. */
+static he_vec3 way_inside(const or_mesh *o, const part *p, uint32_t v)
+{
+    he_vec3 from = o->vertex[v].at;
+    he_vec3 to = middle(o, p, v);
+    return (he_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
+}
+
+/* What is wrong with where the rim is to go. */
+static uint64_t check_way(const or_mesh *o, const part *p, bool by_factor)
+{
+    uint64_t refused = 0;
+    for (uint32_t i = 0; i < p->rim; i++) {
+        if (by_factor) {
+            he_vec3 way = way_inside(o, p, p->from[i]);
+            refused |= is_finite(way, (he_vec3){0, 0, 0}) ? 0 : OR_BIT(HE_NOT_FINITE);
+        } else {
+            bool flat = or_is_flat(o, o->left[p->from[i]][p->to[i]]);
+            refused |= flat ? OR_BIT(HE_NO_NORMAL) : 0;
+        }
+    }
+    return refused;
 }
 
 uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance)
 {
     static part p;
     bool done[OR_FACES] = {false};
-    uint64_t refused = check_all(o, region, false);
+    uint64_t refused = 0;
+    for (uint32_t k = 0; k < region.count; k++) {
+        find_part(o, region, region.faces[k], &p);
+        refused |= check_part(o, &p, false) | check_way(o, &p, factor > 0);
+    }
     if (factor == 0 && !(distance > 0)) {
         refused |= OR_BIT(HE_BAD_VALUE);
     }
@@ -285,9 +355,7 @@ uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double dista
         find_part(o, region, region.faces[k], &p);
         double reach[OR_LIST * 4];
         for (uint32_t i = 0; i < p.rim; i++) {
-            he_vec3 a = o->vertex[p.from[i]].at;
-            he_vec3 c = middle(o, &p, p.from[i]);
-            he_vec3 way = {c.x - a.x, c.y - a.y, c.z - a.z};
+            he_vec3 way = way_inside(o, &p, p.from[i]);
             reach[i] = factor > 0 ? factor * length_of(way) : 4 * distance;
         }
         uint32_t first = o->vertices;
@@ -397,7 +465,8 @@ static uint64_t check_dual(const or_mesh *o)
             continue;
         }
         for (uint32_t d = 0; d < pairs; d++) {
-            bool same = (pair[d][0] == f && pair[d][1] == g) || (pair[d][0] == g && pair[d][1] == f);
+            bool same =
+                (pair[d][0] == f && pair[d][1] == g) || (pair[d][0] == g && pair[d][1] == f);
             refused |= same ? OR_BIT(HE_DOUBLED_EDGE) : 0;
         }
         pair[pairs][0] = f;

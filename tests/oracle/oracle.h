@@ -138,7 +138,7 @@ bool or_same_cycle(const or_face *f, const or_face *g);
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
 
 uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
-uint64_t or_vertex_move(or_mesh *o, uint32_t v, he_vec3 to);
+uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32_t count);
 uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated);
 /* left or right may be OR_NONE; to NULL leaves the new vertex where v is. */
 uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, const he_vec3 *to);
@@ -205,8 +205,10 @@ typedef struct or_region {
 } or_region;
 uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double distance);
 uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance);
-/* Is the direction a face, or the whole region, faces so uncertain that rounding decides? */
-bool or_faces_vaguely(const or_mesh *o, or_region region);
+/* Is the direction a face, or the whole region, faces so uncertain that rounding decides? Not where
+ * the corners are in two places only: such faces certainly have none. */
+bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
+bool or_is_flat(const or_mesh *o, uint32_t f);
 uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 
 /* NULL faces for all. */
