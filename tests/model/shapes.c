@@ -200,21 +200,25 @@ void md_fill_bowties(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* About one vertex, all the way round or not quite. */
+/* About one vertex: not quite all the way round, all the way, or closed by a face of as many sides.
+ */
 void md_fill_fan_1000(or_mesh *o, md_random *r)
 {
     const uint32_t fan = 1000;
     uint32_t hub = or_add_vertex(o, (he_vec3){0, 0, 0.3});
     uint32_t first = o->vertices;
-    bool open = md_chance(r, 30);
-    for (uint32_t i = 0; i < (open ? fan + 1 : fan); i++) {
+    uint32_t kind = md_below(r, 3);
+    for (uint32_t i = 0; i < (kind == 0 ? fan + 1 : fan); i++) {
         double angle = 6.283185307179586 * i / (fan + 1);
         double radius = 1 + md_unit(r);
         (void)or_add_vertex(o, (he_vec3){radius * cos(angle), radius * sin(angle), md_unit(r)});
     }
     for (uint32_t i = 0; i < fan; i++) {
-        uint32_t next = open ? i + 1 : (i + 1) % fan;
+        uint32_t next = kind == 0 ? i + 1 : (i + 1) % fan;
         (void)or_add_face(o, (uint32_t[]){hub, first + i, first + next}, 3);
+    }
+    if (kind == 2) {
+        md_add_row(o, first, fan, true);
     }
     shuffle(o, r);
 }

@@ -195,9 +195,9 @@ uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
 bool or_find_cycle(const or_mesh *o, const uint32_t e[3], uint32_t cycle[3]);
 /* Once plane_split has cut everything: on which side is a face? */
 bool or_face_is_above(const or_mesh *o, uint32_t f, he_vec3 normal);
-/* start[f] is the origin of the stored half-edge of face f, which is where its corners begin. `by`
- * NULL: `distance` along the normal. A factor of 0: by `distance`; where the corners of an inset
- * come to lie is only known to be near their old places. */
+/* (ops_region.c) start[f] is the origin of the stored half-edge of face f, where its corners begin.
+ * `by` NULL: `distance` along the normal. A factor of 0: by `distance`; where the corners of an
+ * inset come to lie is only known to be near their old places. */
 typedef struct or_region {
     const uint32_t *faces, *start;
     uint32_t count;
@@ -209,9 +209,9 @@ uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double dista
  * the corners are in two places only: such faces certainly have none. */
 bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
 bool or_is_flat(const or_mesh *o, uint32_t f);
-uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 
-/* NULL faces for all. */
+/* (ops_whole.c) NULL faces for all. */
+uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
 /* All of `other` that lives, with the ids in their order. */
