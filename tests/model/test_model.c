@@ -8,7 +8,7 @@
  * in all at the end. With ENOUGH edits every row must have succeeded; with ALL every row from every
  * start but files and the far mesh, and every refusal that some row declares must have been given.
  *
- * EDITS (100000) and SEED (from the clock) come from the environment. */
+ * EDITS (50000) and SEED (from the clock) come from the environment. */
 #include "mesh/check.h"
 #include "mesh/delta.h"
 #include "mesh/mem.h"
@@ -424,7 +424,7 @@ static void every_edit_agrees_with_the_oracle(void **state)
     assert_true(w != NULL && all != NULL && files != NULL);
     struct timespec now;
     (void)clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t edits = number_from("EDITS", 100000);
+    uint64_t edits = number_from("EDITS", 50000);
     w->seed = number_from("SEED", (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec);
     w->random.state = w->seed;
     w->oracle = or_new();
