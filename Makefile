@@ -197,7 +197,7 @@ coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
 
 # The long versions of what .ci/run does once.
 ROUNDS ?= 10
-proof: ## ROUNDS=10 of random edits: a million each, a tenth of that under ASan; 8 writers at once
+proof: ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once
 	+$(MAKE) $(HEDGED) $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)

@@ -1,6 +1,7 @@
 #include "model/arguments.h"
 
 #include "mesh/walk.h"
+#include "model/shapes.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -60,9 +61,14 @@ void md_give_ids(md_draft *d, const char *name, const uint32_t *ids, uint32_t co
     arg->id = ids[0];
 }
 
-static he_vec3 point(md_random *r)
+static he_vec3 point(md_draft *d)
 {
-    return (he_vec3){md_unit(r) * 4 - 2, md_unit(r) * 4 - 2, md_unit(r) * 4 - 2};
+    double reach = d->far ? MD_FAR : 2;
+    double at[3];
+    for (int i = 0; i < 3; i++) {
+        at[i] = (md_unit(d->r) * 2 - 1) * reach;
+    }
+    return (he_vec3){at[0], at[1], at[2]};
 }
 
 void md_give_points(md_draft *d, const char *name, uint32_t count, bool list)
@@ -70,7 +76,7 @@ void md_give_points(md_draft *d, const char *name, uint32_t count, bool list)
     size_t i = md_index(d->c, name);
     he_arg *arg = &d->c->args[i];
     for (uint32_t k = 0; k < count; k++) {
-        d->c->points[i][k] = point(d->r);
+        d->c->points[i][k] = point(d);
     }
     arg->given = true;
     arg->points = d->c->points[i];
@@ -93,9 +99,22 @@ uint32_t md_live(md_draft *d, he_kind kind)
     return issued;
 }
 
+static uint32_t busiest(const or_mesh *o)
+{
+    uint32_t most = 0;
+    for (uint32_t v = 0; v < o->vertices; v++) {
+        bool more = o->vertex[v].alive && or_degree(o, v) > or_degree(o, most);
+        most = more ? v : most;
+    }
+    return most;
+}
+
 uint32_t md_pick(md_draft *d, he_kind kind)
 {
     uint32_t issued = he_mesh_issued(d->m, kind);
+    if (kind == HE_VERTEX && md_chance(d->r, 8)) {
+        return busiest(d->o);
+    }
     if (md_chance(d->r, 94)) {
         return md_live(d, kind);
     }

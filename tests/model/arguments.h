@@ -30,6 +30,7 @@ typedef struct md_draft {
     const or_mesh *o;
     const he_mesh *m;
     md_random *r;
+    bool far; /* points too are as large as doubles get */
 } md_draft;
 
 void md_give_id(md_draft *d, const char *name, uint32_t id);

@@ -45,18 +45,13 @@ static uint64_t play_vertex_move(const md_call *c, or_mesh *o, const he_mesh *m)
     if (where->list && where->count != v->count) {
         refused |= OR_BIT(HE_BAD_VALUE);
     }
-    for (size_t i = 0; i < v->count && refused == 0; i++) {
-        refused |= o->vertex[v->ids[i]].locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
-    }
+    he_vec3 goal[MD_LIST];
     for (size_t i = 0; i < v->count && refused == 0; i++) {
         he_vec3 p = where->points[where->list ? i : 0];
-        if (by->given) {
-            he_vec3 at = o->vertex[v->ids[i]].at;
-            p = (he_vec3){at.x + p.x, at.y + p.y, at.z + p.z};
-        }
-        refused |= or_vertex_move(o, v->ids[i], p);
+        he_vec3 at = by->given ? o->vertex[v->ids[i]].at : (he_vec3){0, 0, 0};
+        goal[i] = (he_vec3){at.x + p.x, at.y + p.y, at.z + p.z};
     }
-    return refused;
+    return refused != 0 ? refused : or_vertex_move(o, v->ids, goal, (uint32_t)v->count);
 }
 
 static bool draw_vertex_delete(md_draft *d)
@@ -611,26 +606,26 @@ static uint64_t play_compact(const md_call *c, or_mesh *o, const he_mesh *m)
 }
 
 static const md_row rows[] = {
-    {"vertex_add", 1, draw_vertex_add, play_vertex_add, NULL},
-    {"vertex_move", 0, draw_vertex_move, play_vertex_move, NULL},
-    {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete, NULL},
-    {"vertex_split", 1, draw_vertex_split, play_vertex_split, NULL},
-    {"face_add", 1, draw_face_add, play_face_add, NULL},
-    {"face_delete", -1, draw_face_delete, play_face_delete, NULL},
-    {"face_split", 1, draw_face_split, play_face_split, NULL},
-    {"face_join", -1, draw_face_join, play_face_join, NULL},
-    {"face_poke", 1, draw_face_poke, play_face_poke, NULL},
-    {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate, NULL},
-    {"hole_fill", 1, draw_hole_fill, play_hole_fill, NULL},
-    {"edge_bisect", 1, draw_edge_cut, play_edge_bisect, NULL},
-    {"edge_join", -1, draw_edge_join, play_edge_join, NULL},
-    {"edge_split", 1, draw_edge_cut, play_edge_split, NULL},
-    {"edge_flip", 0, draw_edge, play_edge_flip, NULL},
-    {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse, NULL},
-    {"transform", 0, draw_transform, play_transform, NULL},
-    {"plane_split", 1, draw_plane_split, play_plane_split, NULL},
-    {"delaunay", 0, draw_delaunay, play_delaunay, follow_delaunay},
-    {"compact", 0, draw_compact, play_compact, NULL},
+    {"vertex_add", 1, draw_vertex_add, play_vertex_add, NULL, true},
+    {"vertex_move", 0, draw_vertex_move, play_vertex_move, NULL, true},
+    {"vertex_delete", -1, draw_vertex_delete, play_vertex_delete, NULL, true},
+    {"vertex_split", 1, draw_vertex_split, play_vertex_split, NULL, false},
+    {"face_add", 1, draw_face_add, play_face_add, NULL, true},
+    {"face_delete", -1, draw_face_delete, play_face_delete, NULL, true},
+    {"face_split", 1, draw_face_split, play_face_split, NULL, true},
+    {"face_join", -1, draw_face_join, play_face_join, NULL, true},
+    {"face_poke", 1, draw_face_poke, play_face_poke, NULL, false},
+    {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate, NULL, false},
+    {"hole_fill", 1, draw_hole_fill, play_hole_fill, NULL, false},
+    {"edge_bisect", 1, draw_edge_cut, play_edge_bisect, NULL, false},
+    {"edge_join", -1, draw_edge_join, play_edge_join, NULL, false},
+    {"edge_split", 1, draw_edge_cut, play_edge_split, NULL, false},
+    {"edge_flip", 0, draw_edge, play_edge_flip, NULL, true},
+    {"edge_collapse", -1, draw_edge_collapse, play_edge_collapse, NULL, false},
+    {"transform", 0, draw_transform, play_transform, NULL, false},
+    {"plane_split", 1, draw_plane_split, play_plane_split, NULL, false},
+    {"delaunay", 0, draw_delaunay, play_delaunay, follow_delaunay, false},
+    {"compact", 0, draw_compact, play_compact, NULL, true},
     {.name = NULL},
 };
 
@@ -666,9 +661,9 @@ static void choose(md_call *c, const char *name)
     c->op = he_op_at(c->row);
 }
 
-bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool room)
+bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool far, bool room)
 {
-    md_draft d = {c, o, m, r};
+    md_draft d = {c, o, m, r, far};
     c->row = md_below(r, (uint32_t)he_op_count());
     c->op = he_op_at(c->row);
     if (he_mesh_faces(m) > 0 && he_mesh_boundary_halfedges(m) == 0 && md_chance(r, 10)) {
@@ -680,7 +675,7 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
     if (row->growth < 0 && he_mesh_faces(m) < 8 && md_chance(r, 60)) {
         return false;
     }
-    return (room || row->growth <= 0) && row->draw(&d);
+    return (room || row->growth <= 0) && (!far || row->far) && row->draw(&d);
 }
 
 uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m)

@@ -180,10 +180,10 @@ static uint64_t play_edge_bevel(const md_call *c, or_mesh *o, const he_mesh *m)
 }
 
 const md_row md_border_rows[] = {
-    {"edge_delete", -1, draw_edge_delete, play_edge_delete, NULL},
-    {"edge_cut", 1, draw_edge_cut, play_edge_cut, NULL},
-    {"edge_weld", -1, draw_edge_weld, play_edge_weld, NULL},
-    {"edge_extrude", 1, draw_edge_extrude, play_edge_extrude, NULL},
-    {"edge_bevel", 1, draw_edge_bevel, play_edge_bevel, NULL},
+    {"edge_delete", -1, draw_edge_delete, play_edge_delete, NULL, true},
+    {"edge_cut", 1, draw_edge_cut, play_edge_cut, NULL, false},
+    {"edge_weld", -1, draw_edge_weld, play_edge_weld, NULL, false},
+    {"edge_extrude", 1, draw_edge_extrude, play_edge_extrude, NULL, true},
+    {"edge_bevel", 1, draw_edge_bevel, play_edge_bevel, NULL, false},
     {.name = NULL},
 };

@@ -14,7 +14,7 @@ static uint32_t draw_interior(md_draft *d)
     return v;
 }
 
-/* Have the faces about v no more corners than the oracle can hold? */
+/* Have the faces about v no more corners that it is not next to than the oracle can hold in one? */
 static bool has_room_about(const or_mesh *o, uint32_t v)
 {
     uint32_t corners = 0;
@@ -22,9 +22,9 @@ static bool has_room_about(const or_mesh *o, uint32_t v)
         return true;
     }
     for (uint32_t x = 0; x < o->vertices; x++) {
-        corners += o->left[v][x] != OR_NONE ? o->face[o->left[v][x]].count : 0;
+        corners += o->left[v][x] != OR_NONE ? o->face[o->left[v][x]].count - 2 : 0;
     }
-    return corners < OR_CORNERS;
+    return corners + 4 < OR_CORNERS;
 }
 
 static uint32_t stored_neighbour(const he_mesh *m, uint32_t v)
@@ -94,8 +94,7 @@ static bool draw_vertex_bevel(md_draft *d)
     uint32_t v = draw_interior(d);
     md_give_id(d, "vertex", v);
     md_give_number(d, "width", md_chance(d->r, 4) ? -md_unit(d->r) : md_unit(d->r) * 3 + 1e-3);
-    return has_room_about(d->o, v) &&
-           (or_require(d->o, HE_VERTEX, v) != 0 || or_degree(d->o, v) < 12);
+    return has_room_about(d->o, v);
 }
 
 static uint64_t play_vertex_bevel(const md_call *c, or_mesh *o, const he_mesh *m)
@@ -110,8 +109,8 @@ static uint64_t play_vertex_bevel(const md_call *c, or_mesh *o, const he_mesh *m
 }
 
 const md_row md_corner_rows[] = {
-    {"vertex_dissolve", -1, draw_vertex_dissolve, play_vertex_dissolve, NULL},
-    {"vertex_split_corners", 1, draw_vertex_split_corners, play_vertex_split_corners, NULL},
-    {"vertex_bevel", 1, draw_vertex_bevel, play_vertex_bevel, NULL},
+    {"vertex_dissolve", -1, draw_vertex_dissolve, play_vertex_dissolve, NULL, false},
+    {"vertex_split_corners", 1, draw_vertex_split_corners, play_vertex_split_corners, NULL, false},
+    {"vertex_bevel", 1, draw_vertex_bevel, play_vertex_bevel, NULL, false},
     {.name = NULL},
 };

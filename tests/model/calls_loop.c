@@ -10,9 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* What the model's meshes have room for. */
-enum { LONGEST = 48 };
-
 /* The origins along the loop of h; 0 when h does not live or its loop is too long. */
 static uint32_t loop_of(const he_mesh *m, uint32_t h, uint32_t loop[OR_CORNERS])
 {
@@ -27,7 +24,7 @@ static bool is_too_long(const he_mesh *m, uint32_t h)
     uint32_t loop[OR_CORNERS];
     bool lives = h < he_mesh_issued(m, HE_HALFEDGE) && he_mesh_is_live(m, HE_HALFEDGE, h);
     uint32_t n = loop_of(m, h, loop);
-    return lives && (n == 0 || n > LONGEST);
+    return lives && n == 0;
 }
 
 static bool on_one_loop(const he_mesh *m, uint32_t a, uint32_t b)
@@ -372,9 +369,7 @@ static uint64_t cap_loops(const cutting *c)
 static uint64_t play_plane_cut(const md_call *call, or_mesh *o, const he_mesh *m)
 {
     cutting c = {.o = o, .count = 0};
-    or_mesh *before = malloc(sizeof *before);
-    assert(before != NULL);
-    *before = *o;
+    or_lists *before = or_save(o);
     he_status status = he_mesh_copy(m, &c.copy, NULL);
     assert(status == HE_OK);
     (void)status;
@@ -392,17 +387,18 @@ static uint64_t play_plane_cut(const md_call *call, or_mesh *o, const he_mesh *m
         refused = cap_loops(&c);
     }
     if (refused != 0) {
-        *o = *before;
+        or_restore(o, before);
+    } else {
+        or_forget(before);
     }
     he_mesh_free(c.copy);
-    free(before);
     return refused;
 }
 
 const md_row md_loop_rows[] = {
-    {"loop_bridge", 1, draw_loop_bridge, play_loop_bridge, NULL},
-    {"loop_join", -1, draw_loop_join, play_loop_join, NULL},
-    {"loop_split", 1, draw_loop_split, play_loop_split, NULL},
-    {"plane_cut", -1, draw_plane_cut, play_plane_cut, NULL},
+    {"loop_bridge", 1, draw_loop_bridge, play_loop_bridge, NULL, false},
+    {"loop_join", -1, draw_loop_join, play_loop_join, NULL, false},
+    {"loop_split", 1, draw_loop_split, play_loop_split, NULL, false},
+    {"plane_cut", -1, draw_plane_cut, play_plane_cut, NULL, false},
     {.name = NULL},
 };

@@ -56,8 +56,25 @@ static void pick_patch(md_draft *d)
     md_give_ids(d, "faces", ids, n, true);
 }
 
+/* One whose corners are in two places only. */
+static bool pick_flat(md_draft *d)
+{
+    uint32_t start = md_below(d->r, d->o->faces + 1);
+    for (uint32_t i = 0; i < d->o->faces; i++) {
+        uint32_t f = (start + i) % d->o->faces;
+        if (d->o->face[f].alive && or_is_flat(d->o, f)) {
+            md_give_ids(d, "faces", &f, 1, true);
+            return true;
+        }
+    }
+    return false;
+}
+
 static void draw_faces(md_draft *d)
 {
+    if (md_chance(d->r, 15) && pick_flat(d)) {
+        return;
+    }
     if (md_chance(d->r, 60)) {
         pick_patch(d);
         md_give_flag(d, "region", md_chance(d->r, 80));
@@ -76,12 +93,12 @@ static or_region region_of(const md_call *c, const uint32_t *start)
 }
 
 /* With a distance the faces must have a direction that rounding cannot turn. */
-static bool is_clear(md_draft *d)
+static bool is_clear(md_draft *d, bool inset)
 {
     uint32_t start[OR_FACES];
     find_starts(d->m, start);
     return md_require_all(d->o, HE_FACE, md_get(d->c, "face")) != 0 ||
-           !or_faces_vaguely(d->o, region_of(d->c, start));
+           !or_faces_vaguely(d->o, region_of(d->c, start), inset);
 }
 
 static bool draw_face_extrude(md_draft *d)
@@ -90,12 +107,12 @@ static bool draw_face_extrude(md_draft *d)
     if (!have_room(d->o, md_get(d->c, "face"))) {
         return false;
     }
-    if (md_chance(d->r, 50)) {
+    if (d->far || md_chance(d->r, 50)) {
         md_give_points(d, "by", 1, false);
         return true;
     }
     md_give_number(d, "distance", md_unit(d->r) * 2 - 1);
-    return is_clear(d);
+    return is_clear(d, false);
 }
 
 static uint64_t play_face_extrude(const md_call *c, or_mesh *o, const he_mesh *m)
@@ -115,12 +132,12 @@ static bool draw_face_inset(md_draft *d)
     if (!have_room(d->o, md_get(d->c, "face"))) {
         return false;
     }
-    if (md_chance(d->r, 50)) {
+    if (d->far || md_chance(d->r, 50)) {
         md_give_number(d, "factor", 0.05 + 0.9 * md_unit(d->r));
         return true;
     }
     md_give_number(d, "distance", md_chance(d->r, 5) ? -1 : md_unit(d->r));
-    return is_clear(d);
+    return is_clear(d, true);
 }
 
 static uint64_t play_face_inset(const md_call *c, or_mesh *o, const he_mesh *m)
@@ -152,7 +169,11 @@ static uint64_t play_face_collapse(const md_call *c, or_mesh *o, const he_mesh *
 
 static bool draw_triangulate(md_draft *d)
 {
-    return md_chance(d->r, 20);
+    uint32_t polygons = 0;
+    for (uint32_t f = 0; f < d->o->faces; f++) {
+        polygons += d->o->face[f].alive && d->o->face[f].count > 3;
+    }
+    return polygons < OR_LIST && md_chance(d->r, 20);
 }
 
 static uint64_t play_triangulate(const md_call *c, or_mesh *o, const he_mesh *m)
@@ -237,7 +258,7 @@ static bool draw_append(md_draft *d)
         other_oracle = or_new();
     }
     he_mesh_free(other);
-    md_shape(other_oracle, d->r);
+    md_shape(other_oracle, d->r, md_fill_mixed);
     other = md_build(other_oracle);
     if (other == NULL || !md_mark(other, d->r) || (md_chance(d->r, 10) && !add_numbers(other))) {
         return false;
@@ -280,12 +301,12 @@ static uint64_t play_append(const md_call *c, or_mesh *o, const he_mesh *m)
 }
 
 const md_row md_region_rows[] = {
-    {"face_extrude", 1, draw_face_extrude, play_face_extrude, NULL},
-    {"face_inset", 1, draw_face_inset, play_face_inset, NULL},
-    {"face_collapse", -1, draw_face_collapse, play_face_collapse, NULL},
-    {"triangulate", 1, draw_triangulate, play_triangulate, NULL},
-    {"reverse", 0, draw_reverse, play_reverse, NULL},
-    {"dual", 0, draw_dual, play_dual, NULL},
-    {"append", 1, draw_append, play_append, NULL},
+    {"face_extrude", 1, draw_face_extrude, play_face_extrude, NULL, true},
+    {"face_inset", 1, draw_face_inset, play_face_inset, NULL, true},
+    {"face_collapse", -1, draw_face_collapse, play_face_collapse, NULL, false},
+    {"triangulate", 1, draw_triangulate, play_triangulate, NULL, false},
+    {"reverse", 0, draw_reverse, play_reverse, NULL, false},
+    {"dual", 0, draw_dual, play_dual, NULL, false},
+    {"append", 1, draw_append, play_append, NULL, false},
     {.name = NULL},
 };

@@ -244,10 +244,10 @@ static uint64_t play_delete_isolated(const md_call *c, or_mesh *o, const he_mesh
 }
 
 const md_row md_weld_rows[] = {
-    {"vertex_weld", -1, draw_vertex_weld, play_vertex_weld, NULL},
-    {"vertex_separate", 1, draw_vertex_separate, play_vertex_separate, NULL},
-    {"weld", -1, draw_weld, play_weld, NULL},
-    {"separate_bowties", 1, draw_seldom, play_separate_bowties, NULL},
-    {"delete_isolated", 0, draw_seldom, play_delete_isolated, NULL},
+    {"vertex_weld", -1, draw_vertex_weld, play_vertex_weld, NULL, false},
+    {"vertex_separate", 1, draw_vertex_separate, play_vertex_separate, NULL, false},
+    {"weld", -1, draw_weld, play_weld, NULL, false},
+    {"separate_bowties", 1, draw_seldom, play_separate_bowties, NULL, false},
+    {"delete_isolated", 0, draw_seldom, play_delete_isolated, NULL, false},
     {.name = NULL},
 };

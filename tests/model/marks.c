@@ -3,6 +3,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
+#include <string.h>
+
 static bool add(he_mesh *m, md_random *r, he_kind kind, const char *name)
 {
     he_column *column = NULL;
@@ -22,9 +24,50 @@ static bool add(he_mesh *m, md_random *r, he_kind kind, const char *name)
     return true;
 }
 
+/* Numbers of three kinds and any rule: what they become is not the oracle's to know, but they are
+ * undone, rolled back and reported like everything else. */
+static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
+{
+    static const he_type types[HE_KIND_COUNT] = {[HE_VERTEX] = HE_DOUBLE,
+                                                 [HE_HALFEDGE] = HE_FLOAT,
+                                                 [HE_EDGE] = HE_INT32,
+                                                 [HE_FACE] = HE_INT32};
+    he_column *column = NULL;
+    he_rule rule = (he_rule)md_below(r, HE_RULE_COUNT);
+    if (he_column_new("number", kind, types[kind], 2, rule, &column, NULL) != HE_OK) {
+        return false;
+    }
+    uint32_t rows = md_chance(r, 50) ? he_mesh_issued(m, kind) : 0;
+    if (he_column_extend(column, rows, NULL) != HE_OK ||
+        he_mesh_add_column(m, column, NULL) != HE_OK) {
+        he_column_free(column);
+        return false;
+    }
+    for (uint32_t i = 0; i < rows; i++) {
+        for (uint32_t k = 0; k < 2; k++) {
+            unsigned char *at = he_column_row(column, i) + k * he_type_bytes(column->type);
+            double d = md_unit(r);
+            float f = (float)d;
+            int32_t n = (int32_t)md_below(r, 9);
+            const void *from = column->type == HE_DOUBLE  ? (const void *)&d
+                               : column->type == HE_FLOAT ? (const void *)&f
+                                                          : (const void *)&n;
+            memcpy(at, from, he_type_bytes(column->type));
+        }
+    }
+    return true;
+}
+
 bool md_mark(he_mesh *m, md_random *r)
 {
     static const he_kind locked[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    static const he_kind numbered[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
+    bool numbers = md_chance(r, 30);
+    for (size_t i = 0; i < sizeof numbered / sizeof *numbered && numbers; i++) {
+        if (md_chance(r, 60) && !add_numbers(m, r, numbered[i])) {
+            return false;
+        }
+    }
     if (!md_chance(r, 30)) {
         return true;
     }

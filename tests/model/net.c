@@ -1,5 +1,6 @@
 #include "model/net.h"
 
+#include "mesh/column.h"
 #include "mesh/walk.h"
 
 #include <stdio.h>
@@ -12,6 +13,21 @@ static bool same_point(he_vec3 a, he_vec3 b)
     memcpy(bits[0], &a, sizeof a);
     memcpy(bits[1], &b, sizeof b);
     return memcmp(bits[0], bits[1], sizeof bits[0]) == 0;
+}
+
+/* Values of columns that came or went are in no set. */
+static bool same_values(const he_mesh *was, const he_mesh *is, he_kind domain, uint32_t row)
+{
+    for (size_t i = 0; i < he_mesh_columns(was); i++) {
+        const he_column *a = he_mesh_column(was, i);
+        const he_column *b =
+            a != NULL && a->domain == domain ? he_mesh_find_column(is, domain, a->name) : NULL;
+        if (b != NULL && b->type == a->type && b->row_bytes == a->row_bytes &&
+            memcmp(he_column_value(a, row), he_column_value(b, row), a->row_bytes) != 0) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static bool same_vertex(const he_mesh *was, const he_mesh *is, he_vertex v)
@@ -40,7 +56,8 @@ static bool same_face(const he_mesh *was, const he_mesh *is, he_face f)
         return false;
     }
     do {
-        if (he_origin(was, h).i != he_origin(is, h).i || he_next(was, h).i != he_next(is, h).i) {
+        if (he_origin(was, h).i != he_origin(is, h).i || he_next(was, h).i != he_next(is, h).i ||
+            !same_values(was, is, HE_HALFEDGE, h.i)) {
             return false;
         }
         h = he_next(was, h);
@@ -94,7 +111,8 @@ bool md_net_matches(const he_mesh *was, const he_mesh *is, const he_changes *cha
         for (uint32_t id = 0; id < issued; id++) {
             bool before = lives(was, kind, id);
             bool after = lives(is, kind, id);
-            bool other = before && after && !same_element(was, is, kind, id);
+            bool other = before && after &&
+                         !(same_element(was, is, kind, id) && same_values(was, is, kind, id));
             if (take(&changes->created[kind], &created, id) != (!before && after) ||
                 take(&changes->deleted[kind], &deleted, id) != (before && !after) ||
                 take(&changes->modified[kind], &modified, id) != other) {

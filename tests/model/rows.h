@@ -11,6 +11,7 @@ typedef struct md_row {
     bool (*draw)(md_draft *d);
     uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);
     bool (*follow)(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
+    bool far; /* right even where coordinates are as large as doubles get */
 } md_row;
 
 /* Beside those of calls.c; each array ends in a row without a name. */

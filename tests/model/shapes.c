@@ -1,134 +1,10 @@
 #include "model/shapes.h"
 
 #include "mesh/build.h"
+#include "model/parts.h"
 
 #include <assert.h>
-
-static uint32_t somewhere(or_mesh *o, md_random *r)
-{
-    return or_add_vertex(o, (he_vec3){md_unit(r) * 4 - 2, md_unit(r) * 4 - 2, md_unit(r) * 4 - 2});
-}
-
-static uint32_t add_vertices(or_mesh *o, md_random *r, uint32_t n)
-{
-    uint32_t first = o->vertices;
-    for (uint32_t i = 0; i < n; i++) {
-        (void)somewhere(o, r);
-    }
-    return first;
-}
-
-/* A face of the vertices from `first` on, in order or backwards. */
-static void add_row(or_mesh *o, uint32_t first, uint32_t n, bool backwards)
-{
-    uint32_t v[OR_CORNERS];
-    for (uint32_t i = 0; i < n; i++) {
-        v[i] = first + (backwards ? n - 1 - i : i);
-    }
-    (void)or_add_face(o, v, n);
-}
-
-static void add_quad(or_mesh *o, md_random *r, uint32_t triangles, const uint32_t q[4])
-{
-    if (!md_chance(r, triangles)) {
-        (void)or_add_face(o, q, 4);
-    } else {
-        (void)or_add_face(o, (uint32_t[]){q[0], q[1], q[2]}, 3);
-        (void)or_add_face(o, (uint32_t[]){q[0], q[2], q[3]}, 3);
-    }
-}
-
-static void polygon(or_mesh *o, md_random *r)
-{
-    uint32_t n = md_from(r, 3, 12);
-    uint32_t first = add_vertices(o, r, n);
-    add_row(o, first, n, false);
-    if (md_chance(r, 30)) {
-        add_row(o, first, n, true);
-    }
-}
-
-/* Two rings of n, with or without their caps. */
-static void prism(or_mesh *o, md_random *r)
-{
-    uint32_t n = md_from(r, 3, 12);
-    uint32_t first = add_vertices(o, r, 2 * n);
-    uint32_t triangles = md_below(r, 3) * 50;
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t k = (i + 1) % n;
-        add_quad(o, r, triangles, (uint32_t[]){first + i, first + k, first + n + k, first + n + i});
-    }
-    if (md_chance(r, 70)) {
-        add_row(o, first, n, true);
-    }
-    if (md_chance(r, 70)) {
-        add_row(o, first + n, n, false);
-    }
-}
-
-/* A fan about a vertex, closed below by another fan, by a polygon, or not; of three sides this is
- * the tetrahedron. */
-static void pyramid(or_mesh *o, md_random *r)
-{
-    uint32_t n = md_from(r, 3, 8);
-    uint32_t first = add_vertices(o, r, n);
-    uint32_t top = somewhere(o, r);
-    uint32_t below = md_below(r, 3);
-    uint32_t bottom = below == 0 ? somewhere(o, r) : 0;
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t k = (i + 1) % n;
-        (void)or_add_face(o, (uint32_t[]){first + i, first + k, top}, 3);
-        if (below == 0) {
-            (void)or_add_face(o, (uint32_t[]){first + k, first + i, bottom}, 3);
-        }
-    }
-    if (below == 1) {
-        add_row(o, first, n, true);
-    }
-}
-
-/* Cells of a grid, either direction of which may wrap: sheet, tube or torus. The white squares of a
- * checkerboard may be missing. */
-static void grid(or_mesh *o, md_random *r)
-{
-    bool wrap_x = md_chance(r, 40);
-    bool wrap_y = wrap_x && md_chance(r, 60);
-    bool board = !wrap_x && md_chance(r, 25);
-    uint32_t triangles = md_below(r, 3) * 50;
-    uint32_t columns = md_from(r, wrap_x ? 3 : 1, 5);
-    uint32_t rows = md_from(r, wrap_y ? 3 : 1, 5);
-    uint32_t across = wrap_x ? columns : columns + 1;
-    uint32_t along = wrap_y ? rows : rows + 1;
-    uint32_t first = add_vertices(o, r, across * along);
-    for (uint32_t y = 0; y < rows; y++) {
-        for (uint32_t x = 0; x < columns; x++) {
-            if (board && (x + y) % 2 == 1) {
-                continue;
-            }
-            uint32_t right = (x + 1) % across;
-            uint32_t up = (y + 1) % along;
-            add_quad(o, r, triangles,
-                     (uint32_t[]){first + y * across + x, first + y * across + right,
-                                  first + up * across + right, first + up * across + x});
-        }
-    }
-}
-
-/* Polygons that share nothing but one vertex. */
-static void bowtie(or_mesh *o, md_random *r)
-{
-    uint32_t fans = md_from(r, 2, 4);
-    uint32_t centre = somewhere(o, r);
-    for (uint32_t i = 0; i < fans; i++) {
-        uint32_t n = md_from(r, 2, 4);
-        uint32_t first = add_vertices(o, r, n);
-        uint32_t v[8] = {centre};
-        for (uint32_t k = 0; k < n; k++) {
-            v[1 + k] = first + k;
-        }
-        (void)or_add_face(o, v, n + 1);
-    }
-}
+#include <math.h>
 
 static void swap_faces(or_mesh *o, uint32_t f, uint32_t g)
 {
@@ -137,26 +13,256 @@ static void swap_faces(or_mesh *o, uint32_t f, uint32_t g)
     o->face[g] = swap;
 }
 
-void md_shape(or_mesh *o, md_random *r)
+static void shuffle(or_mesh *o, md_random *r)
 {
-    static void (*const shape[])(or_mesh *, md_random *) = {polygon, prism, pyramid,
-                                                            grid,    grid,  bowtie};
-    or_empty(o);
-    uint32_t parts = md_chance(r, 3) ? 0 : md_chance(r, 70) ? 1 : md_from(r, 2, 3);
-    for (uint32_t i = 0; i < parts; i++) {
-        shape[md_below(r, sizeof shape / sizeof shape[0])](o, r);
+    for (uint32_t i = 1; i < o->fresh; i++) {
+        swap_faces(o, i, md_below(r, i + 1));
     }
-    if (md_chance(r, 25)) {
-        (void)add_vertices(o, r, md_from(r, 1, 2));
-    }
-    uint32_t holes = md_chance(r, 40) ? md_below(r, 4) : 0;
+}
+
+static void make_holes(or_mesh *o, md_random *r, uint32_t holes)
+{
     for (uint32_t i = 0; i < holes && o->fresh > 0; i++) {
         swap_faces(o, md_below(r, o->fresh), o->fresh - 1);
         or_remove_last_face(o);
     }
-    for (uint32_t i = 1; i < o->fresh; i++) {
-        swap_faces(o, i, md_below(r, i + 1));
+}
+
+/* --- the families ---------------------------------------------------------------------------- */
+
+static void add_any_grid(or_mesh *o, md_random *r)
+{
+    md_sheet g = {.wrap_x = md_chance(r, 40), .triangles = md_below(r, 3) * 50};
+    g.wrap_y = g.wrap_x && md_chance(r, 60);
+    g.board = !g.wrap_x && md_chance(r, 25);
+    g.columns = md_from(r, g.wrap_x ? 3 : 1, 5);
+    g.rows = md_from(r, g.wrap_y ? 3 : 1, 5);
+    md_add_grid(o, r, g);
+}
+
+static void add_part(or_mesh *o, md_random *r)
+{
+    switch (md_below(r, 6)) {
+    case 0:
+        md_add_polygon(o, r, md_chance(r, 30));
+        break;
+    case 1:
+        md_add_prism(o, r, md_below(r, 3) * 50, 70);
+        break;
+    case 2:
+        md_add_pyramid(o, r, md_below(r, 3));
+        break;
+    case 3:
+        md_add_bowtie(o, r);
+        break;
+    default:
+        add_any_grid(o, r);
+        break;
     }
+}
+
+void md_fill_mixed(or_mesh *o, md_random *r)
+{
+    uint32_t parts = md_chance(r, 3) ? 0 : md_chance(r, 70) ? 1 : md_from(r, 2, 3);
+    for (uint32_t i = 0; i < parts; i++) {
+        add_part(o, r);
+    }
+    if (md_chance(r, 25)) {
+        (void)md_add_vertices(o, r, md_from(r, 1, 2));
+    }
+    make_holes(o, r, md_chance(r, 40) ? md_below(r, 4) : 0);
+    shuffle(o, r);
+}
+
+void md_fill_closed_triangles(or_mesh *o, md_random *r)
+{
+    if (md_chance(r, 50)) {
+        md_add_pyramid(o, r, 0);
+    } else {
+        uint32_t columns = md_from(r, 3, 6);
+        md_add_grid(o, r, (md_sheet){columns, md_from(r, 3, 6), true, true, false, 100});
+    }
+    shuffle(o, r);
+}
+
+void md_fill_open_triangles(or_mesh *o, md_random *r)
+{
+    uint32_t columns = md_from(r, 3, 7);
+    md_add_grid(o, r, (md_sheet){columns, md_from(r, 1, 7), md_chance(r, 40), false, false, 100});
+    make_holes(o, r, md_below(r, 4));
+    shuffle(o, r);
+}
+
+void md_fill_quads(or_mesh *o, md_random *r)
+{
+    bool tube = md_chance(r, 50);
+    uint32_t columns = md_from(r, 3, 7);
+    md_add_grid(o, r,
+                (md_sheet){columns, md_from(r, 3, 6), tube, tube && md_chance(r, 50), false, 0});
+    make_holes(o, r, md_below(r, 3));
+    shuffle(o, r);
+}
+
+/* Caps of 3 to 12 sides between quads, polygons on both sides of a hole or on one. */
+void md_fill_polygons(or_mesh *o, md_random *r)
+{
+    md_add_prism(o, r, 0, 100);
+    md_add_polygon(o, r, md_chance(r, 50));
+    md_add_polygon(o, r, md_chance(r, 50));
+    shuffle(o, r);
+}
+
+/* Of a mesh of quads; the last vertex takes its id. */
+static void drop_vertex(or_mesh *o, uint32_t v)
+{
+    uint32_t last = --o->vertices;
+    o->vertex[v] = o->vertex[last];
+    for (uint32_t f = 0; f < o->fresh; f++) {
+        for (uint32_t k = 0; k < 4; k++) {
+            o->face[f].v[k] = o->face[f].v[k] == last ? v : o->face[f].v[k];
+        }
+    }
+}
+
+/* Two tori of quads that share the rim of a hole in each. */
+void md_fill_genus_2(or_mesh *o, md_random *r)
+{
+    uint32_t torus[2];
+    uint32_t rim[2][4];
+    uint32_t triangles = md_below(r, 3) * 50;
+    for (int i = 0; i < 2; i++) {
+        torus[i] = o->fresh;
+        uint32_t columns = md_from(r, 4, 5);
+        md_add_grid(o, r, (md_sheet){columns, md_from(r, 4, 5), true, true, false, 0});
+        for (uint32_t k = 0; k < 4; k++) {
+            rim[i][k] = o->face[torus[i]].v[k];
+        }
+    }
+    /* The rims run against each other. */
+    for (uint32_t f = torus[1]; f < o->fresh; f++) {
+        for (uint32_t k = 0; k < 4; k++) {
+            for (uint32_t j = 0; j < 4; j++) {
+                if (o->face[f].v[k] == rim[1][j]) {
+                    o->face[f].v[k] = rim[0][(4 - j) % 4];
+                    break;
+                }
+            }
+        }
+    }
+    /* The highest first, so that what takes its place is no rim. */
+    static const int order[4] = {2, 3, 1, 0};
+    for (int k = 0; k < 4; k++) {
+        drop_vertex(o, rim[1][order[k]]);
+    }
+    swap_faces(o, torus[1], o->fresh - 1);
+    or_remove_last_face(o);
+    swap_faces(o, torus[0], o->fresh - 1);
+    or_remove_last_face(o);
+    uint32_t quads = o->fresh;
+    for (uint32_t f = 0; f < quads; f++) {
+        if (md_chance(r, triangles)) {
+            const uint32_t half[3] = {o->face[f].v[0], o->face[f].v[2], o->face[f].v[3]};
+            (void)or_add_face(o, half, 3);
+            o->face[f].count = 3;
+        }
+    }
+    shuffle(o, r);
+}
+
+void md_fill_components(or_mesh *o, md_random *r)
+{
+    uint32_t parts = md_from(r, 3, 5);
+    for (uint32_t i = 0; i < parts; i++) {
+        switch (md_below(r, 3)) {
+        case 0:
+            md_add_polygon(o, r, md_chance(r, 50));
+            break;
+        case 1:
+            md_add_prism(o, r, md_below(r, 3) * 50, 80);
+            break;
+        default:
+            md_add_pyramid(o, r, md_below(r, 3));
+            break;
+        }
+    }
+    (void)md_add_vertices(o, r, md_from(r, 0, 2));
+    shuffle(o, r);
+}
+
+void md_fill_bowties(or_mesh *o, md_random *r)
+{
+    if (md_chance(r, 50)) {
+        md_add_bowtie(o, r);
+        md_add_bowtie(o, r);
+    } else {
+        md_add_grid(o, r, (md_sheet){md_from(r, 2, 5), md_from(r, 2, 5), false, false, true, 50});
+    }
+    shuffle(o, r);
+}
+
+/* About one vertex: not quite all the way round, all the way, or closed by a face of as many sides.
+ */
+void md_fill_fan_1000(or_mesh *o, md_random *r)
+{
+    const uint32_t fan = 1000;
+    uint32_t hub = or_add_vertex(o, (he_vec3){0, 0, 0.3});
+    uint32_t first = o->vertices;
+    uint32_t kind = md_below(r, 3);
+    for (uint32_t i = 0; i < (kind == 0 ? fan + 1 : fan); i++) {
+        double angle = 6.283185307179586 * i / (fan + 1);
+        double radius = 1 + md_unit(r);
+        (void)or_add_vertex(o, (he_vec3){radius * cos(angle), radius * sin(angle), md_unit(r)});
+    }
+    for (uint32_t i = 0; i < fan; i++) {
+        uint32_t next = kind == 0 ? i + 1 : (i + 1) % fan;
+        (void)or_add_face(o, (uint32_t[]){hub, first + i, first + next}, 3);
+    }
+    if (kind == 2) {
+        md_add_row(o, first, fan, true);
+    }
+    shuffle(o, r);
+}
+
+void md_fill_triangle(or_mesh *o, md_random *r)
+{
+    md_add_row(o, md_add_vertices(o, r, 3), 3, false);
+}
+
+void md_fill_doubled_square(or_mesh *o, md_random *r)
+{
+    uint32_t first = md_add_vertices(o, r, 4);
+    md_add_row(o, first, 4, false);
+    md_add_row(o, first, 4, true);
+}
+
+void md_fill_tetrahedron(or_mesh *o, md_random *r)
+{
+    uint32_t v = md_add_vertices(o, r, 4);
+    (void)or_add_face(o, (uint32_t[]){v, v + 2, v + 1}, 3);
+    (void)or_add_face(o, (uint32_t[]){v, v + 1, v + 3}, 3);
+    (void)or_add_face(o, (uint32_t[]){v + 1, v + 2, v + 3}, 3);
+    (void)or_add_face(o, (uint32_t[]){v + 2, v, v + 3}, 3);
+}
+
+/* Where the sum of two coordinates may be beyond the range of doubles. */
+void md_fill_far(or_mesh *o, md_random *r)
+{
+    md_add_grid(o, r, (md_sheet){md_from(r, 1, 3), md_from(r, 1, 3), false, false, false, 50});
+    md_add_polygon(o, r, md_chance(r, 50));
+    for (uint32_t v = 0; v < o->vertices; v++) {
+        o->vertex[v].at.x *= MD_FAR / 2;
+        o->vertex[v].at.y *= MD_FAR / 2;
+        o->vertex[v].at.z *= MD_FAR / 2;
+    }
+    shuffle(o, r);
+}
+
+/* --- giving ids ------------------------------------------------------------------------------ */
+
+void md_shape(or_mesh *o, md_random *r, void (*fill)(or_mesh *, md_random *))
+{
+    or_empty(o);
+    fill(o, r);
     o->faces = o->fresh;
     o->fresh = 0;
     uint64_t wrong = or_derive(o);
@@ -168,7 +274,7 @@ void md_shape(or_mesh *o, md_random *r)
             uint32_t b = o->face[f].v[(i + 1) % o->face[f].count];
             if (o->joined[a][b] == OR_NONE) {
                 o->edge[o->edges] = (or_edge){.alive = true, .a = a, .b = b};
-                o->joined[a][b] = o->joined[b][a] = o->edges++;
+                or_set_joined(o, o->edges++);
             }
         }
     }

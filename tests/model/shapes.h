@@ -1,4 +1,4 @@
-/* shapes.h - random small meshes to start from: closed and open, triangles to 12-gons, with
+/* shapes.h - random meshes to start from, by family: closed and open, triangles to 12-gons, with
  * handles, bow-ties, several components, isolated vertices, or nothing at all. */
 #ifndef TESTS_MODEL_SHAPES_H
 #define TESTS_MODEL_SHAPES_H
@@ -6,9 +6,27 @@
 #include "model/random.h"
 #include "oracle/oracle.h"
 
+/* Coordinates of the far mesh end here: two of them need not have a sum. */
+#define MD_FAR 1.6e308
+
+/* Add vertices and faces to an empty oracle. */
+void md_fill_mixed(or_mesh *o, md_random *r); /* a bit of everything but the last five */
+void md_fill_closed_triangles(or_mesh *o, md_random *r);
+void md_fill_open_triangles(or_mesh *o, md_random *r);
+void md_fill_quads(or_mesh *o, md_random *r);
+void md_fill_polygons(or_mesh *o, md_random *r);
+void md_fill_genus_2(or_mesh *o, md_random *r);
+void md_fill_components(or_mesh *o, md_random *r);
+void md_fill_bowties(or_mesh *o, md_random *r);
+void md_fill_fan_1000(or_mesh *o, md_random *r);
+void md_fill_triangle(or_mesh *o, md_random *r);
+void md_fill_doubled_square(or_mesh *o, md_random *r);
+void md_fill_tetrahedron(or_mesh *o, md_random *r);
+void md_fill_far(or_mesh *o, md_random *r);
+
 /* Fill an empty oracle. Edges get the ids he_build promises: by first appearance, running as that
  * face does. */
-void md_shape(or_mesh *o, md_random *r);
+void md_shape(or_mesh *o, md_random *r, void (*fill)(or_mesh *, md_random *));
 /* The same through he_build; NULL when it refuses. */
 he_mesh *md_build(const or_mesh *o);
 

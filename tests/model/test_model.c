@@ -1,15 +1,22 @@
-/* Random edits against the oracle: after each, success or refusal, counts, ids, cycles, ends, links
- * and rings must be what oracle.h says; a refusal or a failed allocation must leave the mesh as it
- * was; undo, redo and rollback must lead back bit for bit; the reported sets must be the ones a
- * comparison of both states finds.
+/* Random edits against the oracle, from every start of starts.h: after each, success or refusal,
+ * counts, ids, cycles, ends, links and rings must be what oracle.h says, and he_check must pass; a
+ * refusal or a failed allocation must leave the mesh as it was; undo, redo and rollback must lead
+ * back bit for bit; the reported sets must be the ones a comparison of both states finds. On every
+ * start, large ones too, all this is of the whole mesh and after every edit.
  *
- * EDITS (100000) and SEED (from the clock) come from the environment. */
+ * Each start has its share of the edits. What was seen is printed start by start, row by row, and
+ * in all at the end. With ENOUGH edits every row must have succeeded; with ALL every row from every
+ * start but files and the far mesh, and every refusal that some row declares must have been given.
+ *
+ * EDITS (50000) and SEED (from the clock) come from the environment. */
+#include "mesh/check.h"
 #include "mesh/delta.h"
 #include "mesh/mem.h"
 #include "model/calls.h"
+#include "model/limits.h"
 #include "model/marks.h"
 #include "model/net.h"
-#include "model/shapes.h"
+#include "model/starts.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -21,7 +28,7 @@
 
 #include <cmocka.h>
 
-enum { STEPS = 12, ROWS = 256, ENOUGH = 20000 };
+enum { STEPS = 12, ENOUGH = 20000, ALL = 1000000 };
 
 /* An edit that can be undone, and the mesh before it. */
 typedef struct step {
@@ -29,21 +36,17 @@ typedef struct step {
     he_mesh *before;
 } step;
 
-typedef struct tally {
-    uint64_t done;
-    uint64_t refused[HE_STATUS_COUNT];
-    uint32_t starved; /* the highest N for which the N-th allocation failed */
-} tally;
-
 typedef struct world {
-    uint64_t seed, meshes, edits, steps_undone, rehearsals;
+    uint64_t seed;
     md_random random;
+    const md_start *start;
+    md_tally *tally; /* of this start */
+    uint32_t faces_at_first;
     or_mesh *oracle;
     he_mesh *mesh;
     step step[STEPS];
     size_t steps;
     md_call call;
-    tally tally[ROWS];
 } world;
 
 /* --- failing ------------------------------------------------------------------------------- */
@@ -65,8 +68,8 @@ static void stop(const world *w, const char *what, const char *detail)
 {
     char text[MD_CALL_TEXT];
     md_describe(&w->call, text);
-    print_error("SEED=%" PRIu64 ", edit %" PRIu64 ": %s\n%s: %s\n", w->seed, w->edits, text, what,
-                detail);
+    print_error("SEED=%" PRIu64 ", start %s, edit %" PRIu64 ": %s\n%s: %s\n", w->seed,
+                w->start->name, w->tally->edits, text, what, detail);
     if (he_mesh_faces(w->mesh) < 40) {
         print_error("the oracle's faces now:\n");
         show_faces(w->oracle);
@@ -111,12 +114,13 @@ static void *resize_until(void *context, void *memory, size_t size)
     return realloc(memory, size);
 }
 
-/* Run the call with the first, second, third ... allocation failing, until one runs to its end. */
+/* Run the call with the first, second, third ... allocation failing, until one runs to its end. Of
+ * very many not all are tried. */
 static he_status run_starved(world *w, const he_mesh *before, const he_delta *delta,
                              he_results *results, he_error *err)
 {
-    tally *t = &w->tally[w->call.row];
-    for (uint32_t n = 0;; n++) {
+    md_row_tally *t = &w->tally->row[w->call.row];
+    for (uint32_t n = 0;; n += 1 + n / 50) {
         famine f = {.left = n, .lasts = md_chance(&w->random, 50)};
         const he_mem_hook hook = {resize_until, &f};
         he_mem_set_hook(&hook);
@@ -130,7 +134,7 @@ static he_status run_starved(world *w, const he_mesh *before, const he_delta *de
         require(w, he_mesh_equal(w->mesh, before), "a failed allocation changed the mesh");
         require(w, delta == NULL || (delta->count == 0 && delta->object_count == 0),
                 "a failed allocation left records");
-        require(w, n < 1000, "allocations without end");
+        require(w, n < 100000, "allocations without end");
     }
 }
 
@@ -185,6 +189,10 @@ static void undo_and_redo(world *w)
         require_net(w, was, w->step[i].delta, true);
         he_mesh_free(was);
     }
+    he_problem problem;
+    size_t problems = 0;
+    require(w, he_check(w->mesh, &problem, 1, &problems, NULL) == HE_OK && problems == 0,
+            "undo led to a mesh that fails the check");
     for (size_t i = to; i < w->steps; i++) {
         he_delta_redo(w->step[i].delta, w->mesh);
         const he_mesh *then = i + 1 < w->steps ? w->step[i + 1].before : now;
@@ -192,7 +200,7 @@ static void undo_and_redo(world *w)
     }
     require(w, he_mesh_equal(w->mesh, now), "undo and redo are not each other's inverse");
     he_mesh_free(now);
-    w->steps_undone += w->steps - to;
+    w->tally->undone += w->steps - to;
 }
 
 /* Run the call and take it back as if it had never been published. */
@@ -204,7 +212,7 @@ static void rehearse(world *w, const he_mesh *before)
     he_status status = he_op_run(w->call.op, w->mesh, w->call.args, &results, &err);
     he_delta_rollback(w->mesh, mark);
     require(w, he_mesh_equal(w->mesh, before), "rollback led elsewhere");
-    w->rehearsals += status == HE_OK;
+    w->tally->rolled_back += status == HE_OK;
     he_results_clear(&results);
 }
 
@@ -245,7 +253,7 @@ static void succeeded(world *w, uint64_t expected, he_mesh *before, he_delta *de
         stop(w, "hedge accepted what the oracle refuses",
              he_status_slug((he_status)__builtin_ctzll(expected)));
     }
-    w->tally[w->call.row].done++;
+    w->tally->row[w->call.row].done++;
     if (!md_follow(&w->call, w->oracle, results, text)) {
         stop(w, "hedge did what the oracle does not", text);
     }
@@ -284,21 +292,32 @@ static void refused(world *w, uint64_t expected, he_status status, const he_erro
     require(w, he_mesh_equal(w->mesh, before), "a refusal changed the mesh");
     require(w, delta == NULL || (delta->count == 0 && delta->object_count == 0),
             "a refusal left records");
-    w->tally[w->call.row].refused[status]++;
+    w->tally->row[w->call.row].refused[status]++;
     he_delta_free(delta);
     he_mesh_free(before);
 }
 
-static bool has_room(const or_mesh *o)
+/* Nothing makes more than some hundred elements, or some for each corner of the longest face or
+ * hole and each neighbour. */
+static bool has_room(const world *w)
 {
-    return o->vertices < OR_VERTICES - 12 && o->edges < OR_EDGES - 300 &&
-           o->faces < OR_FACES - 300 && or_live_faces(o) < 120;
+    const or_mesh *o = w->oracle;
+    uint32_t most = 0;
+    for (uint32_t f = 0; f < o->faces; f++) {
+        most = o->face[f].alive && o->face[f].count > most ? o->face[f].count : most;
+    }
+    for (uint32_t v = 0; v < o->vertices; v++) {
+        most = or_degree(o, v) > most ? or_degree(o, v) : most;
+    }
+    return o->vertices + most + 12 < OR_VERTICES && o->edges + 3 * most + 300 < OR_EDGES &&
+           o->faces + 2 * most + 300 < OR_FACES && or_live_faces(o) < w->faces_at_first + 100;
 }
 
 static void edit(world *w)
 {
     int tries = 0;
-    while (!md_draw(&w->call, w->oracle, w->mesh, &w->random, has_room(w->oracle))) {
+    bool room = has_room(w);
+    while (!md_draw(&w->call, w->oracle, w->mesh, &w->random, w->start->far, room)) {
         require(w, ++tries < 10000, "no call suits this mesh");
     }
     he_mesh *before = copy_of(w);
@@ -315,13 +334,15 @@ static void edit(world *w)
                            ? run_starved(w, before, delta, &results, &err)
                            : he_op_run(w->call.op, w->mesh, w->call.args, &results, &err);
     (void)he_mesh_record(w->mesh, NULL);
-    w->edits++;
+    w->tally->edits++;
     if (status == HE_OK) {
         succeeded(w, expected, before, delta, &results);
     } else {
         refused(w, expected, status, &err, before, delta);
     }
     he_results_clear(&results);
+    w->tally->faces =
+        he_mesh_faces(w->mesh) > w->tally->faces ? he_mesh_faces(w->mesh) : w->tally->faces;
     if (md_chance(&w->random, 4)) {
         undo_and_redo(w);
     }
@@ -329,85 +350,126 @@ static void edit(world *w)
 
 /* --- the run -------------------------------------------------------------------------------- */
 
-static void show_row(const he_op *op, const tally *t)
-{
-    char given[512] = "";
-    char missing[512] = "";
-    size_t g = 0;
-    size_t n = 0;
-    for (int s = 0; s < HE_STATUS_COUNT; s++) {
-        const char *slug = he_status_slug((he_status)s);
-        if (t->refused[s] > 0 && g < sizeof given) {
-            g += (size_t)snprintf(given + g, sizeof given - g, " %s %" PRIu64, slug, t->refused[s]);
-        }
-    }
-    for (size_t i = 0; i < HE_OP_REFUSALS && op->refusals[i] != HE_OK; i++) {
-        if (t->refused[op->refusals[i]] == 0 && n < sizeof missing) {
-            n += (size_t)snprintf(missing + n, sizeof missing - n, " %s",
-                                  he_status_slug(op->refusals[i]));
-        }
-    }
-    printf("note: %-16s %7" PRIu64 " done, N-th allocation up to %u; refused:%s%s%s\n", op->name,
-           t->done, t->starved, g > 0 ? given : " never", n > 0 ? "; never:" : "", missing);
-}
-
 static uint64_t number_from(const char *name, uint64_t fallback)
 {
     const char *text = getenv(name);
     return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
 }
 
+/* One mesh, for a while. */
+static void live(world *w, uint64_t edits)
+{
+    char text[OR_TEXT] = "";
+    w->mesh = md_begin(w->start, w->oracle, &w->random);
+    assert_non_null(w->mesh);
+    assert_true(md_mark(w->mesh, &w->random));
+    w->call.op = he_op_at(0);
+    he_op_defaults(w->call.op, w->call.args);
+    if (!or_matches(w->oracle, w->mesh, text)) {
+        stop(w, "the built mesh is not the oracle's", text);
+    }
+    w->faces_at_first = he_mesh_faces(w->mesh);
+    uint32_t life = md_from(&w->random, 10, 150);
+    for (uint32_t i = 0; i < life && w->tally->edits < edits; i++) {
+        if (he_mesh_faces(w->mesh) == 0 && md_chance(&w->random, 20)) {
+            break;
+        }
+        edit(w);
+    }
+    forget_steps(w);
+    he_mesh_free(w->mesh);
+    w->tally->meshes++;
+}
+
+static void start_from(world *w, const md_start *start, uint64_t edits, md_tally *tally)
+{
+    char name[MD_START_NAME + 16];
+    w->start = start;
+    w->tally = tally;
+    while (tally->edits < edits) {
+        live(w, edits);
+    }
+    (void)snprintf(name, sizeof name, "%s%s", start->file == NULL ? "note: start " : "start ",
+                   start->name);
+    md_tally_print(tally, name);
+    md_tally_print_rows(tally, "    ");
+    (void)fflush(stdout);
+}
+
+/* Files get too few edits for the rarest rows, the far mesh does not suit them all. */
+static void require_all_rows(const md_start *start, const md_tally *tally)
+{
+    if (start->file == NULL && !start->far && md_tally_idle(tally) > 0) {
+        fail_msg("from start %s %zu rows never succeeded", start->name, md_tally_idle(tally));
+    }
+}
+
+static void run_limits(md_tally *all)
+{
+    md_tally tally = {.edits = 0};
+    const char *wrong = md_limits_run(&tally);
+    if (wrong != NULL) {
+        fail_msg("an edit that takes too long: %s", wrong);
+    }
+    md_tally_print(&tally, "note: start limits");
+    md_tally_add(all, &tally);
+}
+
 static void every_edit_agrees_with_the_oracle(void **state)
 {
     (void)state;
     world *w = calloc(1, sizeof *w);
-    assert_non_null(w);
+    md_tally *all = calloc(1, sizeof *all);
+    md_tally *files = calloc(1, sizeof *files);
+    assert_true(w != NULL && all != NULL && files != NULL);
     struct timespec now;
     (void)clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t edits = number_from("EDITS", 100000);
+    uint64_t edits = number_from("EDITS", 50000);
     w->seed = number_from("SEED", (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec);
     w->random.state = w->seed;
     w->oracle = or_new();
     printf("note: SEED=%" PRIu64 " EDITS=%" PRIu64 "\n", w->seed, edits);
     (void)fflush(stdout);
-    assert_true(he_op_count() <= ROWS);
+    assert_true(he_op_count() <= MD_ROWS);
     if (md_missing() != NULL) {
         fail_msg("tests/model/calls.c has no line for %s", md_missing());
     }
-    while (w->edits < edits) {
-        char text[OR_TEXT] = "";
-        md_shape(w->oracle, &w->random);
-        w->mesh = md_build(w->oracle);
-        assert_non_null(w->mesh);
-        assert_true(md_mark(w->mesh, &w->random));
-        w->call.op = he_op_at(0);
-        he_op_defaults(w->call.op, w->call.args);
-        if (!or_matches(w->oracle, w->mesh, text)) {
-            stop(w, "the built mesh is not the oracle's", text);
+    md_starts starts = md_starts_find();
+    double share = 0;
+    for (size_t i = 0; i < starts.count; i++) {
+        md_tally *tally = calloc(1, sizeof *tally);
+        assert_non_null(tally);
+        uint64_t done = all->edits;
+        share += starts.start[i].share;
+        uint64_t until = i + 1 < starts.count ? (uint64_t)(share * (double)edits) : edits;
+        start_from(w, &starts.start[i], until > done ? until - done : 0, tally);
+        md_tally_add(all, tally);
+        if (edits >= ALL) {
+            require_all_rows(&starts.start[i], tally);
         }
-        uint32_t life = md_from(&w->random, 10, 150);
-        for (uint32_t i = 0; i < life && w->edits < edits; i++) {
-            if (he_mesh_faces(w->mesh) == 0 && md_chance(&w->random, 20)) {
-                break;
-            }
-            edit(w);
+        if (starts.start[i].file != NULL) {
+            md_tally_add(files, tally);
         }
-        forget_steps(w);
-        he_mesh_free(w->mesh);
-        w->meshes++;
+        free(tally);
     }
-    printf("note: %" PRIu64 " edits on %" PRIu64 " meshes, %" PRIu64 " steps undone and redone, "
-           "%" PRIu64 " rolled back\n",
-           w->edits, w->meshes, w->steps_undone, w->rehearsals);
-    size_t idle = 0;
-    for (size_t i = 0; i < he_op_count(); i++) {
-        show_row(he_op_at(i), &w->tally[i]);
-        idle += w->tally[i].done == 0;
+    printf("note: %zu ", starts.files);
+    md_tally_print(files, "files");
+    if (edits >= ALL) {
+        run_limits(all);
     }
+    md_tally_print(all, "note: in all");
+    md_tally_print_rows(all, "note: ");
+    (void)fflush(stdout);
     if (edits >= ENOUGH) {
-        assert_int_equal(idle, 0);
+        assert_int_equal(md_tally_idle(all), 0);
     }
+    if (edits >= ALL) {
+        assert_int_equal(md_tally_missing(all), 0);
+    }
+    md_starts_clear(&starts);
     or_free(w->oracle);
+    free(files);
+    free(all);
     free(w);
 }
 

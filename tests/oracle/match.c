@@ -22,7 +22,8 @@ static bool differ(char text[OR_TEXT], const char *format, ...)
 /* The corners of hedge's face f, false when its loop does not come back. */
 static bool read_face(const he_mesh *m, uint32_t f, or_face *out)
 {
-    *out = (or_face){.alive = false};
+    out->alive = out->locked = false;
+    out->count = 0;
     if (f >= he_mesh_issued(m, HE_FACE) || !he_face_is_live(m, (he_face){f})) {
         return false;
     }
@@ -117,9 +118,8 @@ static bool adopt_edges(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     }
     uint32_t expected = 0;
     for (uint32_t a = 0; a < o->vertices; a++) {
-        for (uint32_t b = 0; b < a; b++) {
-            bool side = o->left[a][b] != OR_NONE || o->left[b][a] != OR_NONE;
-            expected += side && o->joined[a][b] == OR_NONE;
+        for (uint32_t i = 0; i < or_degree(o, a); i++) {
+            expected += o->around[a][i] < a && o->joined[a][o->around[a][i]] == OR_NONE;
         }
     }
     uint32_t made = he_mesh_issued(m, HE_EDGE) - o->edges;
@@ -137,7 +137,7 @@ static bool adopt_edges(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
             return differ(text, "new edge %u joins %u and %u", e, a, b);
         }
         o->edge[e] = (or_edge){.alive = true, .a = a, .b = b};
-        o->joined[a][b] = o->joined[b][a] = e;
+        or_set_joined(o, e);
     }
     o->edges += made;
     return true;

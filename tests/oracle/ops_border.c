@@ -29,7 +29,7 @@ typedef struct part {
     bool face[OR_FACES];
 } part;
 
-enum { PARTS = 40, AROUND = 200 };
+enum { PARTS = 40, AROUND = OR_CORNERS };
 
 /* The faces about one vertex; those with the same number belong together. */
 typedef struct around {
@@ -272,15 +272,17 @@ uint64_t or_edge_weld(or_mesh *o, uint32_t ea, uint32_t eb, or_keep keep)
             }
         }
     }
+    or_edge after[OR_EDGES];
     for (uint32_t e = 0; e < o->edges; e++) {
-        for (uint32_t k = 0; k < e; k++) {
-            uint32_t a = became(o->edge[e].a, goes, stays);
-            uint32_t b = became(o->edge[e].b, goes, stays);
-            uint32_t c = became(o->edge[k].a, goes, stays);
-            uint32_t d = became(o->edge[k].b, goes, stays);
+        after[e] = o->edge[e];
+        after[e].a = became(o->edge[e].a, goes, stays);
+        after[e].b = became(o->edge[e].b, goes, stays);
+        for (uint32_t k = 0; k < e && after[e].alive; k++) {
+            const or_edge *x = &after[e];
+            const or_edge *y = &after[k];
             bool both = (e == ea && k == eb) || (e == eb && k == ea);
-            if (o->edge[e].alive && o->edge[k].alive && !both &&
-                ((a == c && b == d) || (a == d && b == c))) {
+            if (y->alive && !both &&
+                ((x->a == y->a && x->b == y->b) || (x->a == y->b && x->b == y->a))) {
                 refused |= OR_BIT(HE_DOUBLED_EDGE);
             }
         }

@@ -44,7 +44,7 @@ static double excess(const or_mesh *o, uint32_t e)
 static void say(or_mesh *o, uint32_t f, uint32_t what)
 {
     for (uint32_t i = 0; i < o->face[f].count; i++) {
-        o->left[o->face[f].v[i]][or_after(&o->face[f], o->face[f].v[i])] = what;
+        or_set_left(o, o->face[f].v[i], or_after(&o->face[f], o->face[f].v[i]), what);
     }
 }
 
@@ -69,12 +69,12 @@ bool or_delaunay_flip(or_mesh *o, uint32_t e, bool looked[], char *text, size_t 
     }
     for (int i = 0; i < 2; i++) {
         for (uint32_t k = 0; k < 3; k++) {
-            o->left[was[i].v[k]][or_after(&was[i], was[i].v[k])] = OR_NONE;
+            or_set_left(o, was[i].v[k], or_after(&was[i], was[i].v[k]), OR_NONE);
             looked[o->joined[was[i].v[k]][or_after(&was[i], was[i].v[k])]] = true;
         }
     }
     o->joined[a][b] = o->joined[b][a] = OR_NONE;
-    o->joined[o->edge[e].a][o->edge[e].b] = o->joined[o->edge[e].b][o->edge[e].a] = e;
+    or_set_joined(o, e);
     say(o, f, f);
     say(o, g, g);
     return true;

@@ -157,12 +157,11 @@ static bool is_side(const or_face *f, uint32_t a, uint32_t b)
 static bool can_double(const or_mesh *o, const or_face *f, const or_face *g)
 {
     for (uint32_t i = 0; i < f->count; i++) {
-        for (uint32_t k = 0; k < i; k++) {
+        for (uint32_t k = 0; k < i && (g == NULL || or_place(g, f->v[i]) != OR_NONE); k++) {
             uint32_t a = f->v[i];
             uint32_t b = f->v[k];
             bool taken = g == NULL ? o->joined[a][b] != OR_NONE
-                                   : or_place(g, a) != OR_NONE && or_place(g, b) != OR_NONE &&
-                                         !is_side(g, a, b);
+                                   : or_place(g, b) != OR_NONE && !is_side(g, a, b);
             if (taken && !is_side(f, a, b)) {
                 return true;
             }

@@ -200,18 +200,15 @@ static uint64_t join_clashes(const or_mesh *o, const uint32_t *a, uint32_t fa, c
             }
         }
     }
+    or_edge after[OR_EDGES];
     for (uint32_t e = 0; e < o->edges; e++) {
-        for (uint32_t f = 0; f < e; f++) {
-            const or_edge *x = &o->edge[e];
-            const or_edge *y = &o->edge[f];
-            if (!x->alive || !y->alive || is_edge_of(o, b, n, e) || is_edge_of(o, b, n, f)) {
-                continue;
-            }
-            uint32_t xa = becomes(a, b, n, x->a);
-            uint32_t xb = becomes(a, b, n, x->b);
-            uint32_t ya = becomes(a, b, n, y->a);
-            uint32_t yb = becomes(a, b, n, y->b);
-            if ((xa == ya && xb == yb) || (xa == yb && xb == ya)) {
+        after[e].alive = o->edge[e].alive && !is_edge_of(o, b, n, e);
+        after[e].a = becomes(a, b, n, o->edge[e].a);
+        after[e].b = becomes(a, b, n, o->edge[e].b);
+        for (uint32_t f = 0; f < e && after[e].alive; f++) {
+            const or_edge *x = &after[e];
+            const or_edge *y = &after[f];
+            if (y->alive && ((x->a == y->a && x->b == y->b) || (x->a == y->b && x->b == y->a))) {
                 refused |= OR_BIT(HE_DOUBLED_EDGE);
             }
         }

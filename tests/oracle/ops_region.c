@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* --- parts: which of the listed faces go together, and where they end ------------------------ */
@@ -137,7 +136,36 @@ static he_vec3 direction_of(const or_mesh *o, const part *p, double *length, dou
     return (he_vec3){sum.x / *length, sum.y / *length, sum.z / *length};
 }
 
-bool or_faces_vaguely(const or_mesh *o, or_region region)
+static bool is_at(he_vec3 a, he_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool or_is_flat(const or_mesh *o, uint32_t f)
+{
+    const or_face *face = &o->face[f];
+    he_vec3 one = o->vertex[face->v[0]].at;
+    he_vec3 other = one;
+    for (uint32_t i = 0; i < face->count; i++) {
+        he_vec3 p = o->vertex[face->v[i]].at;
+        if (!is_at(p, one) && !is_at(other, one) && !is_at(p, other)) {
+            return false;
+        }
+        other = is_at(p, one) ? other : p;
+    }
+    return true;
+}
+
+static bool is_all_flat(const or_mesh *o, const part *p)
+{
+    bool flat = true;
+    for (uint32_t k = 0; k < p->count; k++) {
+        flat = flat && or_is_flat(o, p->faces[k]);
+    }
+    return flat;
+}
+
+bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset)
 {
     static part p;
     for (uint32_t i = 0; i < region.count; i++) {
@@ -145,7 +173,8 @@ bool or_faces_vaguely(const or_mesh *o, or_region region)
         double total;
         find_part(o, region, region.faces[i], &p);
         (void)direction_of(o, &p, &length, &total);
-        if (!(length > 1e-3 * total) || !(length_of(newell(o, region.faces[i])) > 1e-3)) {
+        bool clear = length > 1e-3 * total && length_of(newell(o, region.faces[i])) > 1e-3;
+        if (!clear && !(or_is_flat(o, region.faces[i]) && (inset || is_all_flat(o, &p)))) {
             return true;
         }
     }
@@ -190,15 +219,20 @@ static void draw_off(or_mesh *o, const part *p)
     }
 }
 
-/* The refusals of all parts; each is on its own, so the order in which they come does not matter.
- */
-static uint64_t check_all(const or_mesh *o, or_region region, bool moves_inside)
+static bool is_finite(he_vec3 a, he_vec3 b)
 {
-    static part p;
-    uint64_t refused = 0;
-    for (uint32_t i = 0; i < region.count; i++) {
-        find_part(o, region, region.faces[i], &p);
-        refused |= check_part(o, &p, moves_inside);
+    return isfinite(a.x + b.x) && isfinite(a.y + b.y) && isfinite(a.z + b.z);
+}
+
+/* What is wrong with where the part is to go. */
+static uint64_t check_shift(const or_mesh *o, const part *p, const he_vec3 *by)
+{
+    uint64_t refused = by == NULL && is_all_flat(o, p) ? OR_BIT(HE_NO_NORMAL) : 0;
+    for (uint32_t k = 0; k < p->count && by != NULL; k++) {
+        const or_face *face = &o->face[p->faces[k]];
+        for (uint32_t i = 0; i < face->count; i++) {
+            refused |= is_finite(o->vertex[face->v[i]].at, *by) ? 0 : OR_BIT(HE_NOT_FINITE);
+        }
     }
     return refused;
 }
@@ -207,7 +241,12 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
 {
     static part p;
     bool done[OR_FACES] = {false};
-    uint64_t refused = check_all(o, region, true);
+    uint64_t refused = 0;
+    /* Each part is on its own, so the order in which they come does not matter. */
+    for (uint32_t k = 0; k < region.count; k++) {
+        find_part(o, region, region.faces[k], &p);
+        refused |= check_part(o, &p, true) | check_shift(o, &p, by);
+    }
     for (uint32_t k = 0; k < region.count && refused == 0; k++) {
         if (is_done(region, k, done)) {
             continue;
@@ -258,23 +297,53 @@ static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
     he_vec3 sum = {0, 0, 0};
     uint32_t n = 0;
     for (uint32_t k = 0; k < p->count; k++) {
+        n += or_place(&o->face[p->faces[k]], v) != OR_NONE;
+    }
+    for (uint32_t k = 0; k < p->count; k++) {
         const or_face *face = &o->face[p->faces[k]];
         for (uint32_t i = 0; i < face->count && or_place(face, v) != OR_NONE; i++) {
             he_vec3 c = o->vertex[face->v[i]].at;
-            sum.x += c.x / face->count;
-            sum.y += c.y / face->count;
-            sum.z += c.z / face->count;
+            sum.x += c.x / face->count / n;
+            sum.y += c.y / face->count / n;
+            sum.z += c.z / face->count / n;
         }
-        n += or_place(face, v) != OR_NONE;
     }
-    return (he_vec3){sum.x / n, sum.y / n, sum.z / n};
+    return sum;
+}
+
+/* From a corner on the rim to the middle of what it belongs to. */
+static he_vec3 way_inside(const or_mesh *o, const part *p, uint32_t v)
+{
+    he_vec3 from = o->vertex[v].at;
+    he_vec3 to = middle(o, p, v);
+    return (he_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
+}
+
+/* What is wrong with where the rim is to go. */
+static uint64_t check_way(const or_mesh *o, const part *p, bool by_factor)
+{
+    uint64_t refused = 0;
+    for (uint32_t i = 0; i < p->rim; i++) {
+        if (by_factor) {
+            he_vec3 way = way_inside(o, p, p->from[i]);
+            refused |= is_finite(way, (he_vec3){0, 0, 0}) ? 0 : OR_BIT(HE_NOT_FINITE);
+        } else {
+            bool flat = or_is_flat(o, o->left[p->from[i]][p->to[i]]);
+            refused |= flat ? OR_BIT(HE_NO_NORMAL) : 0;
+        }
+    }
+    return refused;
 }
 
 uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance)
 {
     static part p;
     bool done[OR_FACES] = {false};
-    uint64_t refused = check_all(o, region, false);
+    uint64_t refused = 0;
+    for (uint32_t k = 0; k < region.count; k++) {
+        find_part(o, region, region.faces[k], &p);
+        refused |= check_part(o, &p, false) | check_way(o, &p, factor > 0);
+    }
     if (factor == 0 && !(distance > 0)) {
         refused |= OR_BIT(HE_BAD_VALUE);
     }
@@ -285,9 +354,7 @@ uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double dista
         find_part(o, region, region.faces[k], &p);
         double reach[OR_LIST * 4];
         for (uint32_t i = 0; i < p.rim; i++) {
-            he_vec3 a = o->vertex[p.from[i]].at;
-            he_vec3 c = middle(o, &p, p.from[i]);
-            he_vec3 way = {c.x - a.x, c.y - a.y, c.z - a.z};
+            he_vec3 way = way_inside(o, &p, p.from[i]);
             reach[i] = factor > 0 ? factor * length_of(way) : 4 * distance;
         }
         uint32_t first = o->vertices;
@@ -303,177 +370,4 @@ uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double dista
         (void)wrong;
     }
     return refused;
-}
-
-/* --- the others ------------------------------------------------------------------------------ */
-
-uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start)
-{
-    or_face was = o->face[f];
-    uint32_t shift = or_place(&was, start);
-    uint64_t refused = 0;
-    or_mesh *before = malloc(sizeof *before);
-    assert(before != NULL);
-    memcpy(before, o, sizeof *o);
-    for (uint32_t k = 1; k < was.count && refused == 0; k++) {
-        uint32_t u = was.v[(shift + k) % was.count];
-        he_vec3 at = o->vertex[start].at;
-        he_vec3 goes = o->vertex[u].at;
-        bool same = at.x == goes.x && at.y == goes.y && at.z == goes.z;
-        refused = or_edge_collapse(o, u, start, (double)k / (k + 1), same ? &at : NULL);
-        if (refused == 0) {
-            uint64_t wrong = or_derive(o);
-            assert(wrong == 0);
-            (void)wrong;
-        }
-    }
-    if (refused != 0) {
-        memcpy(o, before, sizeof *o);
-    }
-    free(before);
-    return refused;
-}
-
-uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count)
-{
-    bool chosen[OR_FACES] = {false};
-    bool beside = false;
-    bool touched = false;
-    bool at[OR_VERTICES] = {false};
-    for (uint32_t i = 0; i < count && faces != NULL; i++) {
-        chosen[faces[i]] = true;
-    }
-    for (uint32_t f = 0; f < o->faces; f++) {
-        chosen[f] = o->face[f].alive && (faces == NULL || chosen[f]);
-        for (uint32_t i = 0; i < o->face[f].count && chosen[f]; i++) {
-            at[o->face[f].v[i]] = true;
-        }
-    }
-    for (uint32_t f = 0; f < o->faces; f++) {
-        const or_face *face = &o->face[f];
-        for (uint32_t i = 0; i < face->count && face->alive && !chosen[f]; i++) {
-            uint32_t g = o->left[face->v[(i + 1) % face->count]][face->v[i]];
-            touched |= at[face->v[i]];
-            beside |= g != OR_NONE && chosen[g];
-        }
-    }
-    if (beside || touched) {
-        return OR_BIT(beside ? HE_ORIENTATION : HE_BOWTIE);
-    }
-    for (uint32_t f = 0; f < o->faces; f++) {
-        or_face was = o->face[f];
-        for (uint32_t i = 0; i < was.count && chosen[f]; i++) {
-            o->face[f].v[i] = was.v[was.count - 1 - i];
-        }
-    }
-    return 0;
-}
-
-static uint64_t check_dual(const or_mesh *o)
-{
-    uint64_t refused = 0;
-    bool locked = false;
-    for (uint32_t v = 0; v < o->vertices; v++) {
-        if (o->vertex[v].alive) {
-            uint32_t degree = or_degree(o, v);
-            refused |= degree == 0  ? OR_BIT(HE_ISOLATED_VERTEX)
-                       : degree < 3 ? OR_BIT(HE_TOO_FEW_CORNERS)
-                                    : 0;
-            locked |= o->vertex[v].locked;
-        }
-    }
-    for (uint32_t e = 0; e < o->edges; e++) {
-        uint32_t f = o->left[o->edge[e].a][o->edge[e].b];
-        uint32_t g = o->left[o->edge[e].b][o->edge[e].a];
-        if (!o->edge[e].alive) {
-            continue;
-        }
-        refused |= f == OR_NONE || g == OR_NONE ? OR_BIT(HE_BOUNDARY_EDGE) : 0;
-        locked |= o->edge[e].locked;
-        for (uint32_t d = 0; d < e && f != OR_NONE && g != OR_NONE; d++) {
-            uint32_t x = o->left[o->edge[d].a][o->edge[d].b];
-            uint32_t y = o->left[o->edge[d].b][o->edge[d].a];
-            if (o->edge[d].alive && ((x == f && y == g) || (x == g && y == f))) {
-                refused |= OR_BIT(HE_DOUBLED_EDGE);
-            }
-        }
-    }
-    for (uint32_t f = 0; f < o->faces; f++) {
-        locked |= o->face[f].alive && o->face[f].locked;
-    }
-    return refused | (locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0);
-}
-
-uint64_t or_dual(or_mesh *o)
-{
-    uint64_t refused = check_dual(o);
-    uint32_t name[OR_FACES];
-    uint32_t vertices = o->vertices;
-    uint32_t faces = o->faces;
-    if (refused != 0) {
-        return refused;
-    }
-    for (uint32_t f = 0; f < faces; f++) {
-        const or_face *face = &o->face[f];
-        if (!face->alive) {
-            continue;
-        }
-        he_vec3 sum = {0, 0, 0};
-        for (uint32_t i = 0; i < face->count; i++) {
-            he_vec3 p = o->vertex[face->v[i]].at;
-            sum = (he_vec3){sum.x + p.x, sum.y + p.y, sum.z + p.z};
-        }
-        double n = face->count;
-        name[f] = or_add_vertex(o, (he_vec3){sum.x / n, sum.y / n, sum.z / n});
-        o->vertex[name[f]].near = true;
-    }
-    for (uint32_t v = 0; v < vertices; v++) {
-        uint32_t cycle[OR_CORNERS];
-        uint32_t n = 0;
-        uint32_t first;
-        if (!o->vertex[v].alive || or_neighbours(o, v, &first, 1) == 0) {
-            continue;
-        }
-        uint32_t x = first;
-        do {
-            cycle[n++] = name[o->left[v][x]];
-            x = or_turn(o, v, x);
-        } while (x != first);
-        (void)or_add_face(o, cycle, n);
-    }
-    for (uint32_t v = 0; v < vertices; v++) {
-        o->vertex[v].alive = false;
-    }
-    for (uint32_t e = 0; e < o->edges; e++) {
-        o->edge[e].alive = false;
-    }
-    for (uint32_t f = 0; f < faces; f++) {
-        o->face[f].alive = false;
-    }
-    return 0;
-}
-
-void or_append(or_mesh *o, const or_mesh *other)
-{
-    uint32_t name[OR_VERTICES];
-    for (uint32_t v = 0; v < other->vertices; v++) {
-        if (other->vertex[v].alive) {
-            name[v] = or_add_vertex(o, other->vertex[v].at);
-        }
-    }
-    for (uint32_t e = 0; e < other->edges; e++) {
-        if (other->edge[e].alive) {
-            o->edge[o->edges++] =
-                (or_edge){.alive = true, .a = name[other->edge[e].a], .b = name[other->edge[e].b]};
-        }
-    }
-    for (uint32_t f = 0; f < other->faces; f++) {
-        uint32_t v[OR_CORNERS];
-        for (uint32_t i = 0; i < other->face[f].count && other->face[f].alive; i++) {
-            v[i] = name[other->face[f].v[i]];
-        }
-        if (other->face[f].alive) {
-            (void)or_add_face(o, v, other->face[f].count);
-        }
-    }
 }

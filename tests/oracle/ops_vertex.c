@@ -9,14 +9,19 @@ uint64_t or_vertex_add(or_mesh *o, he_vec3 at)
     return 0;
 }
 
-uint64_t or_vertex_move(or_mesh *o, uint32_t v, he_vec3 to)
+uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32_t count)
 {
-    if (!isfinite(to.x) || !isfinite(to.y) || !isfinite(to.z)) {
-        return OR_BIT(HE_NOT_FINITE);
+    uint64_t refused = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        bool finite = isfinite(to[i].x) && isfinite(to[i].y) && isfinite(to[i].z);
+        refused |= finite ? 0 : OR_BIT(HE_NOT_FINITE);
+        refused |= o->vertex[v[i]].locked ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
     }
-    o->vertex[v].at = to;
-    o->vertex[v].near = true;
-    return 0;
+    for (uint32_t i = 0; i < count && refused == 0; i++) {
+        o->vertex[v[i]].at = to[i];
+        o->vertex[v[i]].near = true;
+    }
+    return refused;
 }
 
 /* Faces go; then edges that no face runs along; then corners of those faces that have no face. */
@@ -109,7 +114,8 @@ uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep
 /* The first neighbour of v's only open fan, counter-clockwise: no face comes from it. */
 static uint32_t fan_start(const or_mesh *o, uint32_t v)
 {
-    for (uint32_t x = 0; x < o->vertices; x++) {
+    for (uint32_t i = 0; i < or_degree(o, v); i++) {
+        uint32_t x = o->around[v][i];
         if (o->left[v][x] != OR_NONE && o->left[x][v] == OR_NONE) {
             return x;
         }
@@ -255,9 +261,8 @@ void or_compact(or_mesh *o)
         }
     }
     o->faces = n;
-    /* Pairs of the old names are forgotten while their number is still known. */
+    o->vertices = vertices;
     uint64_t wrong = or_derive(o);
     assert(wrong == 0);
     (void)wrong;
-    o->vertices = vertices;
 }

@@ -29,7 +29,11 @@ uint64_t or_edge_extrude(or_mesh *o, const uint32_t *e, uint32_t count, he_vec3 
         to[begin] = end;
         from[end] = begin;
     }
-    for (uint32_t v = 0; v < issued && refused == 0; v++) {
+    for (uint32_t v = 0; v < issued; v++) {
+        he_vec3 at = o->vertex[v].at;
+        bool finite = isfinite(at.x + by.x) && isfinite(at.y + by.y) && isfinite(at.z + by.z);
+        bool moves = from[v] != OR_NONE || to[v] != OR_NONE;
+        refused |= moves && !finite ? OR_BIT(HE_NOT_FINITE) : 0;
         if (from[v] != OR_NONE && to[v] != OR_NONE && or_closes_beside(o, v, from[v], to[v])) {
             refused |= OR_BIT(HE_CLOSED_FAN);
         }

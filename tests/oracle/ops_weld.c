@@ -8,16 +8,17 @@
 /* --- vertices made one ---------------------------------------------------------------------- */
 
 /* Corners become what they join; neighbours that are the same are one. */
-static or_face drawn_together(const or_face *f, const uint32_t *to)
+static void draw_together(or_face *f, const uint32_t *to)
 {
-    or_face drawn = *f;
-    drawn.count = 0;
+    uint32_t first = to[f->v[0]];
+    uint32_t n = 0;
     for (uint32_t i = 0; i < f->count; i++) {
-        if (to[f->v[i]] != to[f->v[(i + 1) % f->count]]) {
-            drawn.v[drawn.count++] = to[f->v[i]];
+        uint32_t next = i + 1 < f->count ? to[f->v[i + 1]] : first;
+        if (to[f->v[i]] != next) {
+            f->v[n++] = to[f->v[i]];
         }
     }
-    return drawn;
+    f->count = n;
 }
 
 static bool repeats(const or_face *f)
@@ -35,7 +36,9 @@ static uint64_t clashes(const or_mesh *o, const bool *skip)
 {
     static uint8_t uses[OR_VERTICES][OR_VERTICES];
     uint64_t refused = 0;
-    memset(uses, 0, sizeof uses);
+    for (uint32_t a = 0; a < o->vertices; a++) {
+        memset(uses[a], 0, o->vertices);
+    }
     for (uint32_t f = 0; f < o->faces; f++) {
         for (uint32_t i = 0; o->face[f].alive && !skip[f] && i < o->face[f].count; i++) {
             uses[o->face[f].v[i]][o->face[f].v[(i + 1) % o->face[f].count]]++;
@@ -59,7 +62,7 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
     bool none[OR_FACES] = {false};
     for (uint32_t f = 0; f < o->faces; f++) {
         if (o->face[f].alive) {
-            o->face[f] = drawn_together(&o->face[f], to);
+            draw_together(&o->face[f], to);
             o->face[f].alive = o->face[f].count >= 3;
             if (o->face[f].alive && repeats(&o->face[f])) {
                 return OR_BIT(HE_REPEATED_CORNER);
@@ -104,12 +107,22 @@ static void weld_edges(or_mesh *o, const uint32_t *to)
     }
 }
 
+static bool has_faces(const or_lists *was, uint32_t v)
+{
+    for (uint32_t e = 0; e < was->edges; e++) {
+        if (was->edge[e].alive && (was->edge[e].a == v || was->edge[e].b == v)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool is_at(he_vec3 a, he_vec3 b)
 {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-static void weld_vertices(or_mesh *o, const or_mesh *was, const uint32_t *to, bool mean)
+static void weld_vertices(or_mesh *o, const or_lists *was, const uint32_t *to, bool mean)
 {
     for (uint32_t v = 0; v < o->vertices; v++) {
         he_vec3 sum = {0, 0, 0};
@@ -128,13 +141,13 @@ static void weld_vertices(or_mesh *o, const or_mesh *was, const uint32_t *to, bo
             o->vertex[v].near = true;
         }
         o->vertex[v].alive &= to[v] == v;
-        if (n == 1 && or_degree(was, v) > 0 && or_degree(o, v) == 0) {
+        if (n == 1 && has_faces(was, v) && or_degree(o, v) == 0) {
             o->vertex[v].alive = false;
         }
     }
 }
 
-static uint64_t locked_by_weld(const or_mesh *o, const or_mesh *was, const uint32_t *to)
+static uint64_t locked_by_weld(const or_mesh *o, const or_lists *was, const uint32_t *to)
 {
     bool locked = false;
     for (uint32_t v = 0; v < o->vertices; v++) {
@@ -148,7 +161,7 @@ static uint64_t locked_by_weld(const or_mesh *o, const or_mesh *was, const uint3
                   (!o->edge[e].alive || to[old->a] != old->a || to[old->b] != old->b);
     }
     for (uint32_t f = 0; f < o->faces; f++) {
-        const or_face *old = &was->face[f];
+        const or_face *old = was->face[f];
         bool changed = !o->face[f].alive;
         for (uint32_t i = 0; i < old->count; i++) {
             changed |= old->alive && to[old->v[i]] != old->v[i];
@@ -160,8 +173,7 @@ static uint64_t locked_by_weld(const or_mesh *o, const or_mesh *was, const uint3
 
 uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean)
 {
-    or_mesh *was = malloc(sizeof *was);
-    *was = *o;
+    or_lists *was = or_save(o);
     uint64_t refused = weld_faces(o, to);
     if (refused == 0) {
         weld_edges(o, to);
@@ -172,9 +184,10 @@ uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean)
         refused = locked_by_weld(o, was, to);
     }
     if (refused != 0) {
-        *o = *was;
+        or_restore(o, was);
+    } else {
+        or_forget(was);
     }
-    free(was);
     return refused;
 }
 

@@ -1,6 +1,7 @@
 #include "oracle/oracle.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +11,7 @@ or_mesh *or_new(void)
     assert(o != NULL);
     memset(o->left, 0xFF, sizeof o->left);
     memset(o->joined, 0xFF, sizeof o->joined);
-    o->vertices = 0;
+    o->known_vertices = o->known_edges = 0;
     or_empty(o);
     return o;
 }
@@ -22,10 +23,67 @@ void or_free(or_mesh *o)
 
 static void forget_pairs(or_mesh *o)
 {
-    for (uint32_t a = 0; a < o->vertices; a++) {
-        memset(o->left[a], 0xFF, o->vertices * sizeof o->left[a][0]);
-        memset(o->joined[a], 0xFF, o->vertices * sizeof o->joined[a][0]);
+    for (uint32_t a = 0; a < o->known_vertices; a++) {
+        for (uint32_t i = 0; i < o->degree[a]; i++) {
+            uint32_t b = o->around[a][i];
+            o->left[a][b] = o->left[b][a] = OR_NONE;
+        }
+        o->degree[a] = 0;
     }
+    for (uint32_t e = 0; e < o->known_edges; e++) {
+        uint32_t a = o->pair[e][0];
+        uint32_t b = o->pair[e][1];
+        o->joined[a][b] = o->joined[b][a] = OR_NONE;
+    }
+    o->known_vertices = o->known_edges = 0;
+}
+
+static bool beside(const or_mesh *o, uint32_t a, uint32_t b)
+{
+    return o->left[a][b] != OR_NONE || o->left[b][a] != OR_NONE;
+}
+
+static void add_around(or_mesh *o, uint32_t a, uint32_t b)
+{
+    for (; o->known_vertices <= a; o->known_vertices++) {
+        o->degree[o->known_vertices] = 0;
+    }
+    o->around[a][o->degree[a]++] = b;
+}
+
+static void remove_around(or_mesh *o, uint32_t a, uint32_t b)
+{
+    uint32_t i = 0;
+    while (o->around[a][i] != b) {
+        i++;
+    }
+    o->around[a][i] = o->around[a][--o->degree[a]];
+}
+
+void or_set_left(or_mesh *o, uint32_t a, uint32_t b, uint32_t f)
+{
+    bool was = beside(o, a, b);
+    o->left[a][b] = f;
+    bool is = beside(o, a, b);
+    if (!was && is) {
+        add_around(o, a, b);
+        add_around(o, b, a);
+    } else if (was && !is) {
+        remove_around(o, a, b);
+        remove_around(o, b, a);
+    }
+}
+
+void or_set_joined(or_mesh *o, uint32_t e)
+{
+    uint32_t a = o->edge[e].a;
+    uint32_t b = o->edge[e].b;
+    for (; o->known_edges <= e; o->known_edges++) {
+        o->pair[o->known_edges][0] = o->pair[o->known_edges][1] = a;
+    }
+    o->pair[e][0] = a;
+    o->pair[e][1] = b;
+    o->joined[a][b] = o->joined[b][a] = e;
 }
 
 void or_empty(or_mesh *o)
@@ -34,6 +92,64 @@ void or_empty(or_mesh *o)
     o->vertices = o->edges = o->faces = o->fresh = o->cuts = 0;
     o->either = o->by_plane = o->bridging = false;
     o->may = 0;
+}
+
+static or_face *copy_face(const or_face *f)
+{
+    size_t size = offsetof(or_face, v) + f->count * sizeof f->v[0];
+    or_face *copy = malloc(size);
+    assert(copy != NULL);
+    memcpy(copy, f, size);
+    return copy;
+}
+
+or_lists *or_save(const or_mesh *o)
+{
+    or_lists *lists = malloc(sizeof *lists);
+    assert(lists != NULL && o->cuts == 0 && o->fresh == 0 && o->may == 0);
+    lists->vertices = o->vertices;
+    lists->edges = o->edges;
+    lists->faces = o->faces;
+    lists->vertex = malloc((o->vertices + 1) * sizeof *lists->vertex);
+    lists->edge = malloc((o->edges + 1) * sizeof *lists->edge);
+    lists->face = malloc((o->faces + 1) * sizeof *lists->face);
+    assert(lists->vertex != NULL && lists->edge != NULL && lists->face != NULL);
+    memcpy(lists->vertex, o->vertex, o->vertices * sizeof *lists->vertex);
+    memcpy(lists->edge, o->edge, o->edges * sizeof *lists->edge);
+    for (uint32_t f = 0; f < o->faces; f++) {
+        lists->face[f] = copy_face(&o->face[f]);
+    }
+    return lists;
+}
+
+void or_forget(or_lists *lists)
+{
+    for (uint32_t f = 0; f < lists->faces; f++) {
+        free(lists->face[f]);
+    }
+    free(lists->face);
+    free(lists->edge);
+    free(lists->vertex);
+    free(lists);
+}
+
+void or_restore(or_mesh *o, or_lists *lists)
+{
+    or_decline(o);
+    o->fresh = 0;
+    o->vertices = lists->vertices;
+    o->edges = lists->edges;
+    o->faces = lists->faces;
+    memcpy(o->vertex, lists->vertex, o->vertices * sizeof *lists->vertex);
+    memcpy(o->edge, lists->edge, o->edges * sizeof *lists->edge);
+    for (uint32_t f = 0; f < o->faces; f++) {
+        const or_face *was = lists->face[f];
+        memcpy(&o->face[f], was, offsetof(or_face, v) + was->count * sizeof was->v[0]);
+    }
+    uint64_t wrong = or_derive(o);
+    assert(wrong == 0);
+    (void)wrong;
+    or_forget(lists);
 }
 
 uint32_t or_add_vertex(or_mesh *o, he_vec3 at)
@@ -110,29 +226,23 @@ uint32_t or_before(const or_face *f, uint32_t v)
 
 uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t room)
 {
-    uint32_t n = 0;
-    for (uint32_t x = 0; x < o->vertices; x++) {
-        if ((o->left[v][x] != OR_NONE || o->left[x][v] != OR_NONE) && n < room) {
-            out[n++] = x;
-        }
-    }
+    uint32_t n = or_degree(o, v);
+    n = n < room ? n : room;
+    memcpy(out, o->around[v], n * sizeof *out);
     return n;
 }
 
 uint32_t or_degree(const or_mesh *o, uint32_t v)
 {
-    uint32_t n = 0;
-    for (uint32_t x = 0; x < o->vertices; x++) {
-        n += o->left[v][x] != OR_NONE || o->left[x][v] != OR_NONE;
-    }
-    return n;
+    return v < o->known_vertices ? o->degree[v] : 0;
 }
 
 /* Open fans: each begins at a neighbour no face comes from. */
 static uint32_t open_fans(const or_mesh *o, uint32_t v)
 {
     uint32_t n = 0;
-    for (uint32_t x = 0; x < o->vertices; x++) {
+    for (uint32_t i = 0; i < or_degree(o, v); i++) {
+        uint32_t x = o->around[v][i];
         n += o->left[v][x] != OR_NONE && o->left[x][v] == OR_NONE;
     }
     return n;
@@ -169,7 +279,8 @@ static bool fans_can_be_held(const or_mesh *o, uint32_t v)
     uint32_t degree = or_degree(o, v);
     uint32_t seen = 0;
     bool open = false;
-    for (uint32_t x = 0; x < o->vertices; x++) {
+    for (uint32_t i = 0; i < degree; i++) {
+        uint32_t x = o->around[v][i];
         if (o->left[v][x] != OR_NONE && o->left[x][v] == OR_NONE) {
             open = true;
             for (uint32_t y = x; y != OR_NONE && seen <= degree; y = or_turn(o, v, y)) {
@@ -177,15 +288,12 @@ static bool fans_can_be_held(const or_mesh *o, uint32_t v)
             }
         }
     }
-    for (uint32_t x = 0; x < o->vertices && !open && degree > 0; x++) {
-        if (o->left[v][x] != OR_NONE) {
-            uint32_t y = x;
-            do {
-                y = or_turn(o, v, y);
-                seen++;
-            } while (y != x && y != OR_NONE && seen <= degree);
-            break;
-        }
+    if (!open && degree > 0) {
+        uint32_t x = o->around[v][0];
+        do {
+            x = or_turn(o, v, x);
+            seen++;
+        } while (x != o->around[v][0] && x != OR_NONE && seen <= degree);
     }
     return seen == degree;
 }
@@ -211,13 +319,12 @@ uint64_t or_derive(or_mesh *o)
             if (o->left[a][b] != OR_NONE) {
                 wrong |= OR_BIT(HE_ORIENTATION);
             }
-            o->left[a][b] = f;
+            or_set_left(o, a, b, f);
         }
     }
     for (uint32_t e = 0; e < o->edges; e++) {
         if (o->edge[e].alive) {
-            o->joined[o->edge[e].a][o->edge[e].b] = e;
-            o->joined[o->edge[e].b][o->edge[e].a] = e;
+            or_set_joined(o, e);
         }
     }
     for (uint32_t v = 0; v < o->vertices && wrong == 0; v++) {

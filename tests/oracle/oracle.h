@@ -7,6 +7,7 @@
  *
  *     left[a][b]    the face that runs from a to b, OR_NONE when none does
  *     joined[a][b]  the edge between a and b, OR_NONE when none does
+ *     around[a]     the degree[a] vertices b for which there is left[a][b] or left[b][a]
  *
  * An operation of the oracle answers with the set of all refusals that apply, one bit a status. The
  * set is empty when it succeeded. Which of several reasons hedge names is its own choice.
@@ -17,13 +18,17 @@
  *
  * What is locked or a feature is not the oracle's to know: it is told before each operation.
  *
- * Room is fixed (OR_VERTICES and so on): the model test starts a new mesh before it runs out. */
+ * There is room for a fan of a thousand triangles and what grows on it (OR_VERTICES and so on); the
+ * model test starts a new mesh before it runs out. Only what is used is ever touched, so a small
+ * mesh costs what a small mesh does. */
 #ifndef TESTS_ORACLE_ORACLE_H
 #define TESTS_ORACLE_ORACLE_H
 
 #include "mesh/mesh.h"
 
-enum { OR_VERTICES = 320, OR_EDGES = 1500, OR_FACES = 1000, OR_CORNERS = 96, OR_LIST = 256 };
+/* Rows of the tables are an odd number of cache lines long, so that a column of them is not all in
+ * one place of the cache. */
+enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200, OR_LIST = 1200 };
 
 #define OR_NONE        UINT32_MAX
 #define OR_BIT(status) (UINT64_C(1) << (unsigned)(status))
@@ -72,6 +77,11 @@ typedef struct or_mesh {
     or_face face[OR_FACES];
     uint32_t left[OR_VERTICES][OR_VERTICES];
     uint32_t joined[OR_VERTICES][OR_VERTICES];
+    uint32_t around[OR_VERTICES][OR_VERTICES];
+    uint32_t degree[OR_VERTICES];
+    /* What the tables hold: rows of vertices, and of each edge the pair it was joined under. */
+    uint32_t known_vertices, known_edges;
+    uint32_t pair[OR_EDGES][2];
 } or_mesh;
 
 or_mesh *or_new(void);
@@ -84,11 +94,26 @@ uint32_t or_add_vertex(or_mesh *o, he_vec3 at);
 uint32_t or_add_face(or_mesh *o, const uint32_t *v, uint32_t count);
 void or_remove_last_face(or_mesh *o);
 
+/* The lists as they are between two operations, to go back to. or_restore frees them too. */
+typedef struct or_lists {
+    uint32_t vertices, edges, faces;
+    or_vertex *vertex;
+    or_edge *edge;
+    or_face **face; /* each as long as its corners */
+} or_lists;
+
+or_lists *or_save(const or_mesh *o);
+void or_restore(or_mesh *o, or_lists *lists);
+void or_forget(or_lists *lists);
+
 /* --- looking -------------------------------------------------------------------------------- */
 
 /* Fill left and joined from the lists. Answers with what no mesh can hold: HE_TOO_FEW_CORNERS,
  * HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
 uint64_t or_derive(or_mesh *o);
+/* One entry of left, or of joined, by hand. */
+void or_set_left(or_mesh *o, uint32_t a, uint32_t b, uint32_t f);
+void or_set_joined(or_mesh *o, uint32_t e);
 
 uint32_t or_live_vertices(const or_mesh *o);
 uint32_t or_live_edges(const or_mesh *o);
@@ -114,7 +139,7 @@ bool or_same_cycle(const or_face *f, const or_face *g);
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
 
 uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
-uint64_t or_vertex_move(or_mesh *o, uint32_t v, he_vec3 to);
+uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32_t count);
 uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated);
 /* left or right may be OR_NONE; to NULL leaves the new vertex where v is. */
 uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, const he_vec3 *to);
@@ -171,9 +196,9 @@ uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
 bool or_find_cycle(const or_mesh *o, const uint32_t e[3], uint32_t cycle[3]);
 /* Once plane_split has cut everything: on which side is a face? */
 bool or_face_is_above(const or_mesh *o, uint32_t f, he_vec3 normal);
-/* start[f] is the origin of the stored half-edge of face f, which is where its corners begin. `by`
- * NULL: `distance` along the normal. A factor of 0: by `distance`; where the corners of an inset
- * come to lie is only known to be near their old places. */
+/* (ops_region.c) start[f] is the origin of the stored half-edge of face f, where its corners begin.
+ * `by` NULL: `distance` along the normal. A factor of 0: by `distance`; where the corners of an
+ * inset come to lie is only known to be near their old places. */
 typedef struct or_region {
     const uint32_t *faces, *start;
     uint32_t count;
@@ -181,11 +206,13 @@ typedef struct or_region {
 } or_region;
 uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double distance);
 uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance);
-/* Is the direction a face, or the whole region, faces so uncertain that rounding decides? */
-bool or_faces_vaguely(const or_mesh *o, or_region region);
-uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
+/* Is the direction a face, or the whole region, faces so uncertain that rounding decides? Not where
+ * the corners are in two places only: such faces certainly have none. */
+bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
+bool or_is_flat(const or_mesh *o, uint32_t f);
 
-/* NULL faces for all. */
+/* (ops_whole.c) NULL faces for all. */
+uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
 /* All of `other` that lives, with the ids in their order. */

@@ -2,9 +2,9 @@
  * produced and no other, V, E and F move as declared, the checker passes, a refusal or a failed
  * allocation leaves the mesh bit-identical, and the delta undoes and redoes. */
 #include "edit_script.h"
+#include "giants.h"
 #include "scenarios.h"
 
-#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -12,8 +12,6 @@
 #include <string.h>
 
 #include <cmocka.h>
-
-#include "mesh/build.h"
 
 #define QCUBE   "0123,7654,1045,2156,3267,0374"
 #define TETRA   "021,013,032,123"
@@ -492,46 +490,6 @@ static void test_scenarios(void **state)
     }
 }
 
-/* A star of so many points that cutting its ears is more work than allowed. */
-static he_mesh *huge_star(void)
-{
-    enum { CORNERS = 50000 };
-    he_soup soup;
-    he_mesh *m = NULL;
-    he_soup_init(&soup, NULL);
-    assert_int_equal(he_soup_begin_face(&soup, NULL), HE_OK);
-    for (uint32_t i = 0; i < CORNERS; i++) {
-        double angle = 6.283185307179586 * i / CORNERS, radius = i % 2 ? 1 : 0.5;
-        he_vec3 p = {radius * cos(angle), radius * sin(angle), 0};
-        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
-        assert_int_equal(he_soup_add_corner(&soup, i, NULL), HE_OK);
-    }
-    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
-    he_soup_clear(&soup);
-    return m;
-}
-
-/* Two rows of points, joined so that flips grow with the square of their number. */
-static he_mesh *two_rows(void)
-{
-    enum { ROW = 1000 };
-    he_soup soup;
-    he_mesh *m = NULL;
-    he_soup_init(&soup, NULL);
-    for (uint32_t i = 0; i < 2 * ROW; i++) {
-        he_vec3 p = {i % ROW, i < ROW ? 0 : 1, 0};
-        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
-    }
-    for (uint32_t i = 0; i + 1 < ROW; i++) {
-        const uint32_t lower[3] = {i, i + 1, ROW}, upper[3] = {ROW + i + 1, ROW + i, ROW - 1};
-        assert_int_equal(he_soup_add_face(&soup, lower, 3, NULL), HE_OK);
-        assert_int_equal(he_soup_add_face(&soup, upper, 3, NULL), HE_OK);
-    }
-    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
-    he_soup_clear(&soup);
-    return m;
-}
-
 static void test_limit(void **state)
 {
     (void)state;
@@ -544,7 +502,9 @@ static void test_limit(void **state)
         "face_collapse face=0",
     };
     for (unsigned i = 0; i < sizeof operations / sizeof *operations; i++) {
-        he_mesh *m = i > 0 ? huge_star() : two_rows(), *before = copy_of(m);
+        he_mesh *m = i > 0 ? giant_star() : giant_rows();
+        assert_non_null(m);
+        he_mesh *before = copy_of(m);
         assert_int_equal(script_run(m, operations[i], NULL, NULL), HE_LIMIT);
         assert_equal(m, before);
         mark(script_op(operations[i]), HE_LIMIT);
