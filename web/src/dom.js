@@ -1,6 +1,11 @@
 // dom.js - building elements. Text is always text: nothing here reads HTML, so a mesh may be named
 // anything.
 
+// What the page has under an id.
+export function byId(id) {
+    return document.getElementById(id);
+}
+
 // make('button', {className: 'link', 'aria-label': 'x'}, 'text', child, ...). Names with a dash are
 // attributes, others are properties.
 export function make(tag, properties = {}, ...children) {

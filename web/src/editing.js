@@ -1,0 +1,212 @@
+// editing.js - edits from the page: the form of an operation, which is tried before it is sent, the
+// tools of the view, and keys.
+
+import * as api from './api.js';
+import { Direct } from './direct.js';
+import { byId } from './dom.js';
+import { begin, drag } from './gesture.js';
+import { Tools } from './tools.js';
+import { Trial } from './trial.js';
+import { Work } from './work.js';
+
+// What works on all of a mesh is not tried beforehand on one of more faces.
+const MOST_TRIED = 100000;
+
+// The tools of the view, and the form of each for what is selected, where it is not used there.
+const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
+
+// What X does to what is selected.
+const REMOVALS = {
+    vertex: 'vertex_delete',
+    halfedge: 'edge_collapse',
+    edge: 'edge_collapse',
+    face: 'face_delete',
+};
+
+export class Editing {
+    #session;
+    #stage;
+    #toasts;
+    #tools;
+    #direct;
+    #trial;
+    #work;
+
+    constructor(canvas, session, stage, toasts) {
+        [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
+        const onError = (error) => toasts.show(error);
+        const onRun = (operation) => this.run(operation).catch(onError);
+        this.#work = new Work(
+            {
+                box: byId('work'),
+                label: byId('work-label'),
+                progress: byId('work-progress'),
+                button: byId('work-cancel'),
+            },
+            onError,
+        );
+        this.#trial = new Trial(byId('verdict'), (...asked) => this.#try(...asked));
+        this.#tools = new Tools(
+            {
+                select: byId('operation'),
+                form: byId('parameters'),
+                search: byId('operation-search'),
+            },
+            {
+                onRun,
+                onTouch: (operation, error) => {
+                    if (error === null) {
+                        this.#trial.ask(operation);
+                    } else {
+                        this.#trial.refuse(error);
+                    }
+                },
+                onArm: (kind) => stage.setPickMode(kind),
+                meshes: async () => (await api.listMeshes()).items,
+                onError,
+            },
+        );
+        const buttons = Object.keys(FORMS).map((tool) => [tool, byId(`direct-${tool}`)]);
+        this.#direct = new Direct(
+            canvas,
+            {
+                note: byId('direct-note'),
+                hint: byId('direct-hint'),
+                amount: byId('direct-amount'),
+                buttons: Object.fromEntries(buttons),
+            },
+            {
+                begin: (tool) =>
+                    stage.isThere
+                        ? begin(tool, session.selection.chosen, session.shown.geometry)
+                        : null,
+                drag: (gesture, moved) => drag(gesture, stage.view, moved),
+                onShow: (lines) => stage.preview(lines),
+                onRun,
+            },
+        );
+        for (const [tool, button] of buttons) {
+            button.addEventListener('click', () => this.start(tool, false));
+        }
+    }
+
+    // The server's table of operations.
+    setOperations(operations) {
+        this.#tools.setOperations(operations);
+    }
+
+    setEnabled(isEnabled) {
+        this.#tools.setEnabled(isEnabled);
+        this.#direct.setEnabled(isEnabled);
+    }
+
+    // What is selected, or the mesh itself, has changed: see Session for `what`.
+    follow(what) {
+        this.#tools.setSelection(this.#session.selection.chosen);
+        if (what === 'mesh' || what === 'selection') {
+            this.#direct.cancel();
+        } else {
+            this.#direct.refresh();
+        }
+        if (what === 'mesh') {
+            this.#trial.clear();
+        } else if (what !== 'selection') {
+            this.#trial.askAgain();
+        }
+    }
+
+    // --- operations ---
+
+    async #try(operation, signal) {
+        const { mesh, shown: content, busy } = this.#session;
+        const isDear =
+            this.#tools.isWhole(operation.op) && content?.summary.counts.faces > MOST_TRIED;
+        return mesh === null || busy || isDear ? null : api.tryEdit(mesh, operation, signal);
+    }
+
+    async run(operation) {
+        this.#trial.clear();
+        this.#direct.cancel();
+        if (!this.#tools.isWhole(operation.op)) {
+            await this.#session.run(operation);
+            return;
+        }
+        this.#work.start(operation.op, false);
+        try {
+            await this.#session.run(operation, this.#work);
+            const { revision } = this.#session.shown;
+            this.#toasts.tell(operation.op, `Done: this is revision ${revision}.`);
+        } finally {
+            this.#work.end();
+        }
+    }
+
+    // Delete or collapse what is selected: the last one where the operation takes only one.
+    async remove() {
+        const { chosen, last } = this.#session.selection;
+        if (last !== undefined) {
+            await this.run(this.#tools.operationOn(REMOVALS[last.kind], chosen));
+        }
+    }
+
+    // --- clicks and tools of the view ---
+
+    // What a click chose, see choose(): for the field that waits for it, else it is selected.
+    async pick(chosen, also) {
+        if (this.#tools.isArmed) {
+            await this.#giveToField(chosen);
+        } else {
+            await this.#session.selection.pick(chosen, also);
+        }
+    }
+
+    async #giveToField(chosen) {
+        const { mesh, selection } = this.#session;
+        const id = chosen === null ? null : await selection.idOf(chosen);
+        if (id !== null) {
+            const isVertex = chosen.kind === 'vertex';
+            const place = isVertex
+                ? (await api.getElement(mesh, 'vertex', id)).position
+                : undefined;
+            if (this.#tools.isArmed) {
+                this.#tools.take(id, place);
+            }
+        }
+    }
+
+    // Arm a tool of the view, or show the form where nothing is selected that it fits. The form of
+    // what is selected is shown beside it, for who wants numbers.
+    start(tool, isKey) {
+        const name = FORMS[tool];
+        const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);
+        if (!this.#tools.has(name) || !isThere) {
+            this.#direct.cancel();
+            this.#open(name);
+        } else if (
+            this.#direct.isArmed &&
+            this.#session.selection.last.kind === name.split('_')[0]
+        ) {
+            this.#tools.show(name);
+        }
+    }
+
+    #open(name) {
+        if (this.#tools.has(name)) {
+            this.#tools.open(name);
+        } else {
+            const detail = `This server has no operation ${name}.`;
+            this.#toasts.show({ title: 'Not here', detail });
+        }
+    }
+
+    // What Esc gives up: the nearest to hand.
+    giveUp() {
+        if (this.#direct.isArmed) {
+            this.#direct.cancel();
+        } else if (this.#tools.isArmed) {
+            this.#tools.disarm();
+        } else {
+            this.#session.selection.clear();
+        }
+    }
+}
