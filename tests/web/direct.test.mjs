@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 
 import { checkAccessible, launch, projector, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getAll } from './daemon.mjs';
-import { goTo, isEdit, openMesh as open, press } from './page.mjs';
+import { cameraOf, goTo, isEdit, openMesh as open, press } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -69,11 +69,14 @@ for (const [kind, id, key] of [
         page.on('request', (request) => isEdit(request) && sent.push(request.postDataJSON()));
         await press(page, 'g');
         await expectArmed(page, 'Move', true);
+        const camera = await cameraOf(page);
         await dragBy(page, 40, -25);
         await waitForFrame(page, { revision: 2 });
         assert.equal(sent.length, 1);
         assert.equal(sent[0].ops[0].op, 'vertex_move');
         await expectArmed(page, 'Move', false);
+        assert.ok(camera !== undefined);
+        assert.equal(await cameraOf(page), camera);
         const after = await positions(daemon, mesh);
         after.forEach((place, i) => {
             const by = place.map((value, axis) => value - before[i][axis]);

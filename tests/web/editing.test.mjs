@@ -23,6 +23,7 @@ import {
 } from './browser.mjs';
 import { get, getAll, post, startDaemon } from './daemon.mjs';
 import {
+    cameraOf,
     checkInspector,
     click,
     expectToast,
@@ -370,6 +371,9 @@ test('what is shown is in the address, and an address shows it again', async (t)
     const [a, b] = [await readCanvas(page), await readCanvas(second)];
     const counts = [a.countOf(isChosen), b.countOf(isChosen)];
     assert.ok(counts[0] > 1000 && Math.abs(counts[0] - counts[1]) < counts[0] / 100, `${counts}`);
+    const wanted = new URLSearchParams(new URL(address).hash).get('camera').split(',');
+    const camera = (await cameraOf(second)).split(',');
+    wanted.forEach((value, i) => assert.ok(Math.abs(value - camera[i]) < 1e-4, `${camera}`));
     // An address typed into the open page.
     await second.evaluate(() => {
         window.location.hash = '#mesh=none';

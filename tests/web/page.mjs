@@ -54,6 +54,12 @@ export async function press(page, key) {
     await page.locator('#canvas').press(key);
 }
 
+// The camera in the address, once it is at rest and written there.
+export async function cameraOf(page) {
+    await page.locator('#canvas:not([data-moving])').waitFor();
+    return /camera=([^&]*)/.exec(page.url())?.[1];
+}
+
 // Select by the form for ids.
 export async function goTo(page, kind, id) {
     await page.locator('#goto-kind').selectOption(kind);

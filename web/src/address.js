@@ -2,33 +2,21 @@
 
 import { formatLink, parseLink } from './link.js';
 
-// Browsers refuse an address that changes often: this long after the camera's last move.
-const DELAY = 250;
-
 export class Address {
     #session;
-    #stageNow;
-    #timer = 0;
+    #stage;
 
-    // `stage()` gives the view, which is made later.
     constructor(session, stage) {
         this.#session = session;
-        this.#stageNow = stage;
-    }
-
-    // The camera moves, and perhaps goes on doing so.
-    writeSoon() {
-        clearTimeout(this.#timer);
-        this.#timer = setTimeout(() => this.write(), DELAY);
+        this.#stage = stage;
     }
 
     // Moving the camera makes no entry in the browser's history.
     write() {
-        clearTimeout(this.#timer);
         const { mesh, selection } = this.#session;
         if (mesh !== null) {
             const { kind, id } = selection.last ?? {};
-            const link = formatLink({ mesh, kind, id, camera: this.#stageNow().camera });
+            const link = formatLink({ mesh, kind, id, camera: this.#stage.camera });
             window.history.replaceState(null, '', link);
         }
     }
@@ -44,7 +32,7 @@ export class Address {
             await session.open(mesh);
         }
         if (session.mesh === mesh && camera !== null) {
-            this.#stageNow().camera = camera;
+            this.#stage.camera = camera;
         }
         if (session.mesh === mesh && kind !== null) {
             await session.selection.select(kind, id);

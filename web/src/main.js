@@ -76,7 +76,6 @@ new Uploads(
         onError: fail,
     },
 );
-const address = new Address(session, () => stage);
 const stage = new Stage(
     canvas,
     {
@@ -87,11 +86,12 @@ const stage = new Stage(
     {
         geometry: () => session.shown?.geometry ?? null,
         onPick: (chosen, also) => editing.pick(chosen, also).catch(fail),
-        onMove: () => address.writeSoon(),
+        onRest: () => address.write(),
         onError: fail,
     },
 );
 const editing = new Editing(canvas, session, stage, toasts);
+const address = new Address(session, stage);
 
 function importOf({ counts, import: report }) {
     const found = ['repairs', 'warnings']

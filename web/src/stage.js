@@ -6,28 +6,34 @@ import { REACH, choose } from './pick.js';
 // A pointer that moved further than this between down and up was orbiting.
 const CLICK_PIXELS = 4;
 
+// The camera is at rest so many milliseconds after its last move: browsers refuse an address that
+// changes often.
+const REST = 250;
+
 export class Stage {
     #canvas;
     #modes;
     #geometryNow;
     #renderer = null;
     #acts;
+    #timer = 0;
 
     // `noWebGL` and `contextLost` are shown when that is so, `modes` holds the radio buttons of what
     // a click picks. `geometry()` gives the arrays that are shown, or null. `onPick(chosen, also)`
-    // gets what choose() made of a click, `also` with Shift; `onMove()` after the camera was moved.
-    constructor(canvas, { noWebGL, contextLost, modes }, { geometry, onPick, onMove, onError }) {
+    // gets what choose() made of a click, `also` with Shift; `onRest()` when the camera has been moved
+    // and is at rest.
+    constructor(canvas, { noWebGL, contextLost, modes }, { geometry, onPick, onRest, onError }) {
         this.#canvas = canvas;
         this.#modes = modes;
         this.#geometryNow = geometry;
-        this.#acts = { onPick, onError };
+        this.#acts = { onPick, onRest, onError };
         try {
             this.#renderer = new Renderer(canvas, {
                 onFrame: (label) => this.#markFrame(label),
                 onLost: (lost) => {
                     contextLost.hidden = !lost;
                 },
-                onMove,
+                onMove: (isHeld) => this.#moved(isHeld),
             });
         } catch (error) {
             noWebGL.hidden = false;
@@ -110,6 +116,18 @@ export class Stage {
 
     zoom(nearer) {
         this.#renderer?.zoom(nearer);
+    }
+
+    // `data-moving` is there until whoever wants to know of it has been told.
+    #moved(isHeld) {
+        this.#canvas.dataset.moving = '';
+        clearTimeout(this.#timer);
+        if (!isHeld) {
+            this.#timer = setTimeout(() => {
+                this.#acts.onRest();
+                delete this.#canvas.dataset.moving;
+            }, REST);
+        }
     }
 
     // See Renderer.view.

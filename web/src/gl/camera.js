@@ -14,8 +14,9 @@ export class Camera {
     #canvas;
     #controls;
 
-    // `onChange()` is called when it is moved by who looks, `onEnd()` when that is over.
-    constructor(canvas, { onChange, onEnd }) {
+    // `onMove(isHeld)` is called after each move, and when it is let go; `isHeld` while a pointer or
+    // a finger goes on with it.
+    constructor(canvas, onMove) {
         this.#canvas = canvas;
         this.three.up.set(...UP);
         this.#controls = new OrbitControls(this.three, canvas);
@@ -23,8 +24,16 @@ export class Camera {
         this.#controls.minDistance = 1e-4;
         this.#controls.maxDistance = 60;
         this.#controls.listenToKeyEvents(canvas);
-        this.#controls.addEventListener('change', onChange);
-        this.#controls.addEventListener('end', onEnd);
+        let isHeld = false;
+        const listen = (type, act) => this.#controls.addEventListener(type, act);
+        listen('start', () => {
+            isHeld = true;
+        });
+        listen('change', () => onMove(isHeld));
+        listen('end', () => {
+            isHeld = false;
+            onMove(isHeld);
+        });
     }
 
     // Width / height of the canvas.

@@ -41,11 +41,9 @@ export class Renderer {
     #size = '';
     #scheduled = false;
     #onFrame;
-    #onMove;
 
     // Throws NoWebGL. `onFrame(label)` is called after each frame with what show() was given, and
-    // `onLost(lost)` when the graphics context goes and comes back, `onMove()` after the camera was
-    // moved.
+    // `onLost(lost)` when the graphics context goes and comes back, `onMove(isHeld)` as Camera says.
     constructor(canvas, { onFrame, onLost, onMove }) {
         const context = canvas.getContext('webgl2', { antialias: true, alpha: false });
         if (context === null) {
@@ -53,10 +51,12 @@ export class Renderer {
         }
         this.#canvas = canvas;
         this.#onFrame = onFrame;
-        this.#onMove = onMove;
         this.#renderer = new WebGLRenderer({ canvas, context });
         this.#renderer.setClearColor(BACKGROUND);
-        this.#camera = new Camera(canvas, { onChange: () => this.#draw(), onEnd: onMove });
+        this.#camera = new Camera(canvas, (isHeld) => {
+            this.#draw();
+            onMove(isHeld);
+        });
         this.#surface = new Surface(this.#renderer.capabilities.maxTextureSize);
         this.#marks = new Marks(this.#surface.material(true));
         const { fill, dots, pickFill, pickDots } = this.#surface;
@@ -155,8 +155,6 @@ export class Renderer {
         // Panels that came or went with the mesh have changed the canvas already.
         this.#resize();
         act();
-        this.#draw();
-        this.#onMove();
     }
 
     // See Camera.view.
@@ -170,9 +168,9 @@ export class Renderer {
     }
 
     set camera(numbers) {
-        this.#resize();
-        this.#camera.numbers = numbers;
-        this.#draw();
+        this.#move(() => {
+            this.#camera.numbers = numbers;
+        });
     }
 
     // See Camera.matrix.
