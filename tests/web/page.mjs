@@ -78,6 +78,18 @@ export function isEdit(message) {
     return request.url().endsWith('/edits') && request.postDataJSON()?.dry_run !== true;
 }
 
+// The three fields of a point or a vector in the form of an operation.
+export const vectorOf = (page, name) =>
+    ['x', 'y', 'z'].map((axis) =>
+        page.locator('#parameters').getByLabel(`${name} ${axis}`, { exact: true }),
+    );
+
+export async function fillVector(page, name, numbers) {
+    for (const [i, field] of vectorOf(page, name).entries()) {
+        await field.fill(`${numbers[i]}`);
+    }
+}
+
 export async function expectToast(page, pattern) {
     const toast = page.getByRole('alert').filter({ hasText: pattern });
     await toast.waitFor();

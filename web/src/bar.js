@@ -1,6 +1,6 @@
 // bar.js - the name of the open mesh, which buttons may be pressed now, and what hinders.
 
-import { byId } from './dom.js';
+import { byId, enable } from './dom.js';
 
 const SPLIT_TITLES = {
     edge_split: 'Split the edge and the faces beside it',
@@ -33,18 +33,15 @@ export function showState(session, isDrawn) {
     const { mesh, split } = session;
     const steps = session.shown?.history;
     const ready = isReady(session);
-    const enable = (id, isEnabled) => {
-        byId(id).disabled = !isEnabled;
-    };
-    enable('split', ready && split !== null);
+    enable(byId('split'), ready && split !== null);
     byId('split').title =
         SPLIT_TITLES[split] ?? 'Select a face, an edge or two vertices to split';
-    enable('undo', ready && steps.undo > 0);
-    enable('redo', ready && steps.redo > 0);
-    enable('fit', mesh !== null && isDrawn);
-    enable('screenshot', mesh !== null && isDrawn);
-    enable('goto-id', mesh !== null);
-    enable('goto-button', mesh !== null);
+    enable(byId('undo'), ready && steps.undo > 0);
+    enable(byId('redo'), ready && steps.redo > 0);
+    enable(byId('fit'), mesh !== null && isDrawn);
+    enable(byId('screenshot'), mesh !== null && isDrawn);
+    enable(byId('goto-id'), mesh !== null);
+    enable(byId('goto-button'), mesh !== null);
     showConnection(session);
     showLoading(session);
 }

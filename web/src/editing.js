@@ -5,15 +5,23 @@ import * as api from './api.js';
 import { Direct } from './direct.js';
 import { byId } from './dom.js';
 import { begin, drag } from './gesture.js';
+import { isIn, markOf, readAll } from './selection.js';
 import { Tools } from './tools.js';
-import { Trial } from './trial.js';
+import { Trial, wordsOf } from './trial.js';
 import { Work } from './work.js';
 
 // What works on all of a mesh is not tried beforehand on one of more faces.
 const MOST_TRIED = 100000;
 
+// More elements than this in the fields of a form are not marked in the view.
+const MOST_MARKED = 1000;
+
 // The tools of the view, and the form of each for what is selected, where it is not used there.
 const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
+
+// What is to be clicked, one or several.
+const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
+const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
 
 // What X does to what is selected.
 const REMOVALS = {
@@ -31,6 +39,7 @@ export class Editing {
     #direct;
     #trial;
     #work;
+    #marking = 0; // how often the elements in the fields were asked for
 
     constructor(canvas, session, stage, toasts) {
         [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
@@ -55,13 +64,14 @@ export class Editing {
             {
                 onRun,
                 onTouch: (operation, error) => {
+                    this.#markField();
                     if (error === null) {
                         this.#trial.ask(operation);
                     } else {
                         this.#trial.refuse(error);
                     }
                 },
-                onArm: (kind) => stage.setPickMode(kind),
+                onArm: (wanted) => this.#showPicking(wanted),
                 meshes: async () => (await api.listMeshes()).items,
                 onError,
             },
@@ -73,6 +83,7 @@ export class Editing {
                 note: byId('direct-note'),
                 hint: byId('direct-hint'),
                 amount: byId('direct-amount'),
+                giveUp: byId('direct-cancel'),
                 buttons: Object.fromEntries(buttons),
             },
             {
@@ -85,6 +96,7 @@ export class Editing {
                 onRun,
             },
         );
+        byId('pick-done').addEventListener('click', () => this.#tools.disarm());
         for (const [tool, button] of buttons) {
             button.addEventListener('click', () => this.start(tool, false));
         }
@@ -112,6 +124,7 @@ export class Editing {
             this.#trial.clear();
         } else if (what !== 'selection') {
             this.#trial.askAgain();
+            this.#markField();
         }
     }
 
@@ -121,7 +134,20 @@ export class Editing {
         const { mesh, shown: content, busy } = this.#session;
         const isDear =
             this.#tools.isWhole(operation.op) && content?.summary.counts.faces > MOST_TRIED;
-        return mesh === null || busy || isDear ? null : api.tryEdit(mesh, operation, signal);
+        if (mesh === null || busy) {
+            return null;
+        }
+        if (isDear) {
+            return 'Not tried first: it may take long on a mesh as large as this.';
+        }
+        try {
+            return wordsOf(await api.tryEdit(mesh, operation, signal));
+        } catch (error) {
+            if (!signal.aborted) {
+                this.#tools.mark(error.pointer ?? '');
+            }
+            throw error;
+        }
     }
 
     async run(operation) {
@@ -134,8 +160,10 @@ export class Editing {
         this.#work.start(operation.op, false);
         try {
             await this.#session.run(operation, this.#work);
-            const { revision } = this.#session.shown;
-            this.#toasts.tell(operation.op, `Done: this is revision ${revision}.`);
+            const { revision, history } = this.#session.shown;
+            const isFinal = history.entries[0]?.undoable === false;
+            const end = isFinal ? ' It cannot be undone.' : '';
+            this.#toasts.tell(operation.op, `Done: this is revision ${revision}.${end}`);
         } finally {
             this.#work.end();
         }
@@ -160,6 +188,20 @@ export class Editing {
         }
     }
 
+    // A field waits for what is clicked, see Tools; undefined: none does.
+    #showPicking(wanted) {
+        byId('pick-note').hidden = wanted === undefined;
+        if (wanted !== undefined) {
+            const { name, kind, isList } = wanted;
+            const what = isList ? PLURALS[kind] : NAMES[kind];
+            byId('pick-hint').textContent = `Click ${what} for ${name}.`;
+            byId('pick-done').textContent = isList ? 'Done' : 'Cancel';
+            this.#direct.cancel();
+            this.#stage.setPickMode(kind);
+            this.#stage.bringIntoSight();
+        }
+    }
+
     async #giveToField(chosen) {
         const { mesh, selection } = this.#session;
         const id = chosen === null ? null : await selection.idOf(chosen);
@@ -171,6 +213,23 @@ export class Editing {
             if (this.#tools.isArmed) {
                 this.#tools.take(id, place);
             }
+        }
+    }
+
+    // Show where the elements are that are in the fields and not selected.
+    async #markField() {
+        const { mesh, shown: content, selection } = this.#session;
+        const isSelected = ({ kind, id }) =>
+            selection.chosen.some((one) => one.kind === kind && one.id === id);
+        const wanted = this.#tools.elements.filter((element) => !isSelected(element));
+        const marking = ++this.#marking;
+        if (mesh === null) {
+            return;
+        }
+        const [found] = await readAll(mesh, wanted.slice(0, MOST_MARKED)).catch(() => [[]]);
+        if (marking === this.#marking && content === this.#session.shown && content !== null) {
+            const { geometry } = content;
+            this.#stage.markField(found.map(markOf).filter((mark) => isIn(geometry, mark)));
         }
     }
 

@@ -87,6 +87,10 @@ export class Stage {
         this.#renderer?.select(marks, arrows, label);
     }
 
+    markField(marks) {
+        this.#renderer?.markField(marks);
+    }
+
     setBoundary(ends) {
         this.#renderer?.setBoundary(ends);
     }
@@ -147,6 +151,11 @@ export class Stage {
     }
 
     // --- clicks ---
+
+    // Where the page is longer than the window.
+    bringIntoSight() {
+        this.#canvas.scrollIntoView({ block: 'nearest' });
+    }
 
     get #pickMode() {
         return this.#modes.querySelector('input:checked').value;

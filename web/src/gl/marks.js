@@ -1,5 +1,5 @@
-// marks.js - what lies on the mesh: what is selected, half-edges as arrows, boundary loops, and
-// lines of what is about to be done.
+// marks.js - what lies on the mesh: what is selected, what is in the fields of a form, half-edges as
+// arrows, boundary loops, and lines of what is about to be done.
 
 import {
     AlwaysDepth,
@@ -38,10 +38,12 @@ const ARROWS = {
     twin: 0x5fa8ff,
     near: 0xf4f6fa,
 };
+const FIELD = 0xf4f6fa;
 const MARK_SIZE = 13; // CSS pixels, as all sizes here
 const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
 const PREVIEW_WIDTH = 2;
+const FIELD_WIDTH = 3;
 const RAISED = 0.996; // of the distance, as dots in shaders.js
 
 export class Marks {
@@ -52,6 +54,8 @@ export class Marks {
     hiddenLines;
     lines;
     vertices;
+    fieldLines;
+    fieldVertices;
     preview;
     #geometry = null;
     #pixel = { value: 1 };
@@ -77,19 +81,9 @@ export class Marks {
         // What is behind the surface is marked too, faintly.
         this.lines = segments(line(LessEqualDepth, 1));
         this.hiddenLines = new LineSegments2(this.lines.geometry, line(GreaterDepth, 0.3));
-        this.vertices = new Points(
-            new BufferGeometry(),
-            new RawShaderMaterial({
-                glslVersion: GLSL3,
-                vertexShader: MARK_VERTEX,
-                fragmentShader: DOT_FRAGMENT,
-                uniforms: {
-                    size: { value: MARK_SIZE },
-                    tint: { value: new Vector3(1, 0.7, 0.28) },
-                },
-                blending: NoBlending,
-            }),
-        );
+        this.vertices = dots(new Vector3(1, 0.7, 0.28));
+        this.fieldLines = segments(plain(line(AlwaysDepth, 1), FIELD_WIDTH, FIELD));
+        this.fieldVertices = dots(new Vector3(0.96, 0.97, 0.98));
         this.preview = segments(plain(line(AlwaysDepth, 1), PREVIEW_WIDTH, PREVIEW));
         this.preview.visible = false;
     }
@@ -98,6 +92,7 @@ export class Marks {
     reset(geometry) {
         this.#geometry = geometry;
         this.setBoundary([]);
+        this.setField([]);
         this.select([], []);
     }
 
@@ -118,8 +113,21 @@ export class Marks {
         }
         this.#setChosen(triangles);
         this.#setLines(edges.flat(), directed);
-        this.#setVertices(idsOf(marks, 'vertex'));
+        this.#setDots(this.vertices, idsOf(marks, 'vertex'));
         this.#setArrows(halfedges);
+    }
+
+    // Elements that are in the fields of a form, as select() has them, by their outlines.
+    setField(marks) {
+        const edges = marks.flatMap(({ kind, id, from, to }) => {
+            if (kind === 'face') {
+                const triangles = trianglesOfFace(this.#geometry, id);
+                return edgesOfTriangles(this.#geometry.triangles, triangles);
+            }
+            return kind === 'vertex' ? [] : [[from, to]];
+        });
+        replace(this.fieldLines, this.#between(edges.flat()), edges.length > 0);
+        this.#setDots(this.fieldVertices, idsOf(marks, 'vertex'));
     }
 
     // Lines over everything: coordinates of ends in pairs, or null.
@@ -198,16 +206,18 @@ export class Marks {
         replace(this.arrows, geometry, size.length > 0);
     }
 
-    #setVertices(vertices) {
+    #setDots(dots, vertices) {
         const points = vertices.flatMap((vertex) => pointAt(this.#geometry, vertex));
         const geometry = new BufferGeometry();
         geometry.setAttribute('position', new BufferAttribute(new Float32Array(points), 3));
-        replace(this.vertices, geometry, points.length > 0);
+        replace(dots, geometry, points.length > 0);
     }
 
     // Of a screen of so many pixels to a CSS pixel, and a canvas of a height in those.
     setScreen(ratio, height) {
-        this.vertices.material.uniforms.size.value = MARK_SIZE * ratio;
+        for (const { material } of [this.vertices, this.fieldVertices]) {
+            material.uniforms.size.value = MARK_SIZE * ratio;
+        }
         this.#pixel.value = pixelAtOne(height);
     }
 
@@ -225,6 +235,19 @@ function replace(object, geometry, visible) {
     object.geometry.dispose();
     object.geometry = geometry;
     object.visible = visible;
+}
+
+function dots(tint) {
+    return new Points(
+        new BufferGeometry(),
+        new RawShaderMaterial({
+            glslVersion: GLSL3,
+            vertexShader: MARK_VERTEX,
+            fragmentShader: DOT_FRAGMENT,
+            uniforms: { size: { value: MARK_SIZE }, tint: { value: tint } },
+            blending: NoBlending,
+        }),
+    );
 }
 
 function segments(material) {

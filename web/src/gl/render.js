@@ -60,7 +60,8 @@ export class Renderer {
         this.#surface = new Surface(this.#renderer.capabilities.maxTextureSize);
         this.#marks = new Marks(this.#surface.material(true));
         const { fill, dots, pickFill, pickDots } = this.#surface;
-        const { chosen, boundary, arrows, hiddenLines, lines, vertices, preview } = this.#marks;
+        const { chosen, boundary, arrows, hiddenLines, lines, vertices } = this.#marks;
+        const { fieldLines, fieldVertices, preview } = this.#marks;
         add(this.#pickScene, [pickFill, pickDots]);
         add(this.#scene, [
             fill,
@@ -71,6 +72,8 @@ export class Renderer {
             hiddenLines,
             lines,
             vertices,
+            fieldLines,
+            fieldVertices,
             preview,
         ]);
         this.show(null, null);
@@ -112,6 +115,12 @@ export class Renderer {
     select(marks, halfedges, label) {
         this.#label = label;
         this.#marks.select(marks, halfedges);
+        this.#draw();
+    }
+
+    // Mark the elements in the fields of a form, as select() has them.
+    markField(marks) {
+        this.#marks.setField(this.#geometry === null ? [] : marks);
         this.#draw();
     }
 

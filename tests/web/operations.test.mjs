@@ -1,0 +1,39 @@
+// Every operation of the server's table from the panel: its form filled by clicks, tried, applied
+// and undone, in Chromium against the real daemon.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+
+import { launch, openPage, waitForFrame } from './browser.mjs';
+import { get, startDaemon } from './daemon.mjs';
+import { SCENARIOS, fillForm, openScenario } from './scenarios.mjs';
+
+let browser;
+before(async () => {
+    browser = await launch();
+});
+after(() => browser?.close());
+
+test('every operation is filled, tried, applied and undone', { timeout: 280_000 }, async (t) => {
+    const daemon = await startDaemon(t);
+    const { operations } = await (await fetch(`${daemon.url}/v1/operations`)).json();
+    const names = SCENARIOS.map(({ name }) => name);
+    assert.deepEqual(names.sort(), operations.map(({ name }) => name).sort());
+    const page = await openPage(t, browser, daemon);
+    const verdict = page.locator('#verdict');
+    for (const scenario of SCENARIOS) {
+        const mesh = await openScenario({ daemon, page }, scenario);
+        const { revision, counts } = await get(daemon, `/${mesh}`);
+        await fillForm({ daemon, page, mesh }, scenario);
+        await verdict.filter({ hasText: /./ }).waitFor();
+        assert.match(await verdict.textContent(), /^Would (make|change)/, scenario.name);
+        await page.getByRole('button', { name: 'Apply' }).click();
+        await waitForFrame(page, { mesh, revision: revision + 1 });
+        if (scenario.name === 'compact') {
+            continue; // what was before it has other ids
+        }
+        await page.getByRole('button', { name: 'Undo', exact: true }).click();
+        await waitForFrame(page, { mesh, revision: revision + 2 });
+        assert.deepEqual((await get(daemon, `/${mesh}`)).counts, counts, scenario.name);
+    }
+});
