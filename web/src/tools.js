@@ -56,6 +56,7 @@ export class Tools {
         search.addEventListener('input', () => this.#list());
         search.addEventListener('keydown', (event) => {
             if (event.key === 'Enter' && this.#operation !== undefined) {
+                event.preventDefault(); // the key would apply what it opens
                 this.open(this.#operation.name);
             }
         });
@@ -81,7 +82,8 @@ export class Tools {
 
     // The operations that what is searched for is in, by what they work on.
     #list() {
-        const words = this.#search.value.toLowerCase().split(/\s+/);
+        const text = this.#search.value.trim().toLowerCase();
+        const words = text.split(/\s+/);
         const chosen = this.#select.value;
         const found = this.#operations.filter(({ name, doc }) =>
             words.every((word) => `${name} ${doc}`.toLowerCase().includes(word)),
@@ -95,8 +97,16 @@ export class Tools {
             );
         });
         this.#select.replaceChildren(...groups.filter((group) => group.children.length > 0));
-        if (found.some(({ name }) => name === chosen)) {
-            this.#select.value = chosen;
+        // What is named so comes before what speaks of it.
+        const names = found.map(({ name }) => name);
+        const meant =
+            text === ''
+                ? undefined
+                : (names.find((name) => name === text) ??
+                  names.find((name) => words.every((word) => name.includes(word))));
+        const wanted = meant ?? (names.includes(chosen) ? chosen : names[0]);
+        if (wanted !== undefined) {
+            this.#select.value = wanted;
         }
         if (this.#select.value !== chosen || this.#fields.size === 0) {
             this.#build();
