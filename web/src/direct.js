@@ -21,9 +21,9 @@ export class Direct {
     #down = null; // where and with which pointer the drag began
     #isEnabled = false;
 
-    // `note` holds `hint`, `amount` and a button, `giveUp`; `buttons` has one for each tool. `begin(tool)` gives a
-    // gesture or null, `drag(gesture, moved)` what it comes to (see gesture.js), `onShow(lines)`
-    // shows lines (null: none) and `onRun(operation)` does it.
+    // `note` holds `hint`, `amount` and a button, `giveUp`; `buttons` has one for each tool.
+    // `begin(tool)` gives a gesture or null, `drag(gesture, moved)` what it comes to (see
+    // gesture.js), `onShow(lines)` shows lines (null: none) and `onRun(operation)` does it.
     constructor(canvas, { note, hint, amount, giveUp, buttons }, acts) {
         this.#canvas = canvas;
         this.#elements = { note, hint, amount, buttons };

@@ -64,12 +64,15 @@ function endsOf({ kind, id, element }) {
 }
 
 // The polygon edges on all triangles at some vertices.
-function edgesAt({ triangles, triangleCount }, vertices) {
-    const wanted = new Set(vertices);
+function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
+    const wanted = new Uint8Array(vertexCount); // of millions of triangles each is looked at
+    vertices.forEach((id) => {
+        wanted[id] = 1;
+    });
     const found = [];
-    for (let i = 0; i < triangleCount; i++) {
-        if ([0, 1, 2].some((corner) => wanted.has(triangles[4 * i + corner]))) {
-            found.push(i);
+    for (let i = 0; i < 4 * triangleCount; i += 4) {
+        if (wanted[triangles[i]] || wanted[triangles[i + 1]] || wanted[triangles[i + 2]]) {
+            found.push(i / 4);
         }
     }
     return edgesOfTriangles(triangles, found).slice(0, MOST_LINES);

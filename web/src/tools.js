@@ -1,6 +1,7 @@
 // tools.js - a form for each operation of the server's table, its elements taken from the
 // selection. Nothing here knows any operation: a new row of the table appears by itself.
 
+import { Chooser } from './chooser.js';
 import { enable, make, prose } from './dom.js';
 import {
     KINDS,
@@ -14,10 +15,6 @@ import {
     readField,
 } from './fields.js';
 
-// What operations begin with, as groups of the list; what begins otherwise is of the whole mesh.
-const GROUPS = { vertex: 'Vertex', edge: 'Edge', face: 'Face', loop: 'Loop', hole: 'Loop' };
-const GROUP_NAMES = [...new Set(Object.values(GROUPS)), 'Mesh'];
-
 // What an element that is selected says of elements of other kinds.
 const LINKS = {
     vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
@@ -27,15 +24,13 @@ const LINKS = {
 };
 
 export class Tools {
-    #select;
+    #chooser;
     #form;
     #onRun;
     #onTouch;
     #onArm;
     #meshes;
-    #search;
     #armed = null; // {param, control, button} that takes what is clicked
-    #operations = [];
     #selection = [];
     #isEnabled = true;
     #isChosen = false; // an operation was chosen, and is kept whatever is selected
@@ -46,24 +41,21 @@ export class Tools {
     // error in it. `onArm({name, kind, isList})` when a field waits for elements, and with
     // undefined when none does any more; `meshes()` lists meshes.
     constructor({ select, form, search }, { onRun, onTouch, onArm, meshes, onError }) {
-        this.#select = select;
         this.#form = form;
-        this.#search = search;
         this.#onRun = onRun;
         this.#onTouch = onTouch;
         this.#onArm = onArm;
         this.#meshes = () => meshes().catch((error) => (onError(error), []));
-        search.addEventListener('input', () => this.#list());
-        search.addEventListener('keydown', (event) => {
-            if (event.key === 'Enter' && this.#operation !== undefined) {
-                event.preventDefault(); // the key would apply what it opens
-                this.open(this.#operation.name);
-            }
-        });
-        select.addEventListener('change', () => {
-            this.#isChosen = true;
-            this.#build();
-        });
+        this.#chooser = new Chooser(
+            { select, search },
+            {
+                onChange: (isChosen) => {
+                    this.#isChosen ||= isChosen;
+                    this.#build();
+                },
+                onEnter: (name) => this.open(name),
+            },
+        );
         form.addEventListener('input', (event) => this.#typed(event.target));
         form.addEventListener('submit', (event) => {
             event.preventDefault();
@@ -76,48 +68,7 @@ export class Tools {
     }
 
     setOperations(operations) {
-        this.#operations = operations;
-        this.#list();
-    }
-
-    // The operations that what is searched for is in, by what they work on.
-    #list() {
-        const text = this.#search.value.trim().toLowerCase();
-        const words = text.split(/\s+/);
-        const chosen = this.#select.value;
-        const found = this.#operations.filter(({ name, doc }) =>
-            words.every((word) => `${name} ${doc}`.toLowerCase().includes(word)),
-        );
-        const groups = GROUP_NAMES.map((label) => {
-            const names = found.map(({ name }) => name).filter((name) => groupOf(name) === label);
-            return make(
-                'optgroup',
-                { label },
-                ...names.map((name) => make('option', { value: name }, name)),
-            );
-        });
-        this.#select.replaceChildren(...groups.filter((group) => group.children.length > 0));
-        // What is named so comes before what speaks of it.
-        const names = found.map(({ name }) => name);
-        const meant =
-            text === ''
-                ? undefined
-                : (names.find((name) => name === text) ??
-                  names.find((name) => words.every((word) => name.includes(word))));
-        const wanted = meant ?? (names.includes(chosen) ? chosen : names[0]);
-        if (wanted !== undefined) {
-            this.#select.value = wanted;
-        }
-        if (this.#select.value !== chosen || this.#fields.size === 0) {
-            this.#build();
-        }
-    }
-
-    #listAll() {
-        if (this.#search.value !== '') {
-            this.#search.value = '';
-            this.#list();
-        }
+        this.#chooser.setOperations(operations);
     }
 
     // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the
@@ -128,10 +79,9 @@ export class Tools {
         if (isSame) {
             return;
         }
-        const fitting = this.#operations.find((one) => this.#fits(one) && !isDeletion(one));
-        if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#operation)) {
-            this.#listAll();
-            this.#select.value = fitting.name;
+        const fitting = this.#chooser.all.find((one) => this.#fits(one) && !isDeletion(one));
+        if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#chooser.operation)) {
+            this.#chooser.set(fitting.name);
             this.#build();
         } else {
             this.#fill();
@@ -195,7 +145,7 @@ export class Tools {
     // Say what the form says, once an operation was chosen.
     #touch() {
         this.mark('');
-        if (!this.#isChosen || this.#operation === undefined) {
+        if (!this.#isChosen || this.#chooser.operation === undefined) {
             return;
         }
         try {
@@ -226,7 +176,7 @@ export class Tools {
     }
 
     // Does it begin with an element of the kind that is selected?
-    #fits({ params }) {
+    #fits({ params } = { params: [] }) {
         return params.length > 0 && params[0].type === this.#selection.at(-1)?.kind;
     }
 
@@ -241,7 +191,7 @@ export class Tools {
     // several, else on the last.
     operationOn(name, selection) {
         const { kind, id } = selection.at(-1);
-        const row = this.#operations.find((operation) => operation.name === name);
+        const row = this.#chooser.find(name);
         const { plural } = row?.params.find(({ type }) => type === kind) ?? {};
         const ids = selection.map((chosen) => chosen.id);
         return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: id };
@@ -249,35 +199,31 @@ export class Tools {
 
     // May it cost the whole mesh, and take long?
     isWhole(name) {
-        return this.#operations.find((operation) => operation.name === name)?.size === 'whole';
+        return this.#chooser.find(name)?.size === 'whole';
     }
 
     // Has the server an operation of this name?
     has(name) {
-        return this.#operations.some((operation) => operation.name === name);
+        return this.#chooser.find(name) !== undefined;
     }
 
     // Show the form of an operation that there is.
     show(name) {
-        this.#listAll();
+        this.#chooser.set(name);
         this.#isChosen = true;
-        this.#select.value = name;
         this.#build();
     }
 
-    // The same with the focus in its first field that is empty.
+    // The same with the focus in its first field that is empty, or on the button where it has none.
     open(name) {
         this.show(name);
         const controls = [...this.#fields.values()].map(({ control }) => control);
-        (controls.find(({ isSaid }) => !isSaid) ?? controls[0])?.main.focus();
-    }
-
-    get #operation() {
-        return this.#operations.find(({ name }) => name === this.#select.value);
+        const { main } = controls.find(({ isSaid }) => !isSaid) ?? controls[0] ?? {};
+        (main ?? this.#form.querySelector('button')).focus();
     }
 
     #build() {
-        const operation = this.#operation;
+        const { operation } = this.#chooser;
         this.disarm();
         this.#fields.clear();
         const params = operation?.params ?? [];
@@ -321,7 +267,8 @@ export class Tools {
             make('span', { className: 'small' }, marksOf(param)),
         );
         const box = kindOf(param) === null ? control.node : pickable(param, control);
-        field.row = make('div', { className: `field ${type}` }, head, box, help);
+        const className = type === 'flag' ? 'field flag' : 'field';
+        field.row = make('div', { className }, head, box, help);
         field.row.dataset.name = name;
         if (isGroup) {
             field.row.setAttribute('role', 'group');
@@ -376,7 +323,7 @@ export class Tools {
     }
 
     #read() {
-        const operation = { op: this.#operation.name };
+        const operation = { op: this.#chooser.operation.name };
         for (const field of this.#fields.values()) {
             const [name, value] = readField(field);
             if (value !== undefined) {
@@ -394,10 +341,6 @@ function keyOf(selection) {
 // Not to be offered unasked.
 function isDeletion({ name }) {
     return name.endsWith('_delete');
-}
-
-function groupOf(name) {
-    return GROUPS[name.split('_')[0]] ?? 'Mesh';
 }
 
 // May it be given in place of one of those before it?
