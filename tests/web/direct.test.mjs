@@ -189,6 +189,22 @@ test('a tool that fits nothing selected shows its form, a button arms as a key d
     assert.equal((await get(daemon, `/${mesh}`)).revision, 1);
 });
 
+test('what is selected is collapsed or deleted by a button too', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, GRID);
+    const inner = (await getAll(daemon, mesh, 'edges')).find((edge) => !edge.boundary);
+    assert.ok(await page.getByRole('button', { name: 'Delete', exact: true }).isDisabled());
+    await goTo(page, 'face', 0);
+    await page.getByRole('button', { name: 'Delete', exact: true }).click();
+    await waitForFrame(page, { revision: 2 });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.faces, 3);
+    await page.getByRole('button', { name: 'Undo', exact: true }).click();
+    await waitForFrame(page, { revision: 3 });
+    await goTo(page, 'edge', inner.id);
+    await page.getByRole('button', { name: 'Collapse', exact: true }).click();
+    await waitForFrame(page, { revision: 4 });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.vertices, 8);
+});
+
 test('a finger drags with a tool that is armed', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE, { hasTouch: true });
     await goAndFit(page, 'vertex', 6);

@@ -3,7 +3,7 @@
 
 import * as api from './api.js';
 import { Direct } from './direct.js';
-import { byId } from './dom.js';
+import { byId, enable } from './dom.js';
 import { begin, drag } from './gesture.js';
 import { isIn, markOf, readAll } from './selection.js';
 import { Tools } from './tools.js';
@@ -96,6 +96,7 @@ export class Editing {
                 onRun,
             },
         );
+        byId('remove').addEventListener('click', () => this.remove().catch(onError));
         byId('pick-done').addEventListener('click', () => this.#tools.disarm());
         for (const [tool, button] of buttons) {
             button.addEventListener('click', () => this.start(tool, false));
@@ -110,6 +111,10 @@ export class Editing {
     setEnabled(isEnabled) {
         this.#tools.setEnabled(isEnabled);
         this.#direct.setEnabled(isEnabled);
+        const { last } = this.#session.selection;
+        const isCollapse = REMOVALS[last?.kind] === 'edge_collapse';
+        byId('remove').textContent = isCollapse ? 'Collapse' : 'Delete';
+        enable(byId('remove'), isEnabled && last !== undefined);
     }
 
     // What is selected, or the mesh itself, has changed: see Session for `what`.

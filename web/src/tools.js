@@ -57,6 +57,11 @@ export class Tools {
             },
         );
         form.addEventListener('input', (event) => this.#typed(event.target));
+        form.addEventListener('keydown', (event) => {
+            if (event.key === 'Escape') {
+                this.disarm();
+            }
+        });
         form.addEventListener('submit', (event) => {
             event.preventDefault();
             try {
