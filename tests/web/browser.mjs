@@ -206,7 +206,7 @@ export function readPicture(png) {
     };
 }
 
-// The colours of render.js and shaders.js, loosely.
+// The colours of gl/marks.js and gl/shaders.js, loosely.
 export const isBackground = ([r, g, b]) => r < 20 && g < 24 && b < 30;
 export const isChosen = ([r, g, b]) => r > 90 && r > g + 25 && g > b + 25;
 export const isBoundary = ([r, g, b]) => r < 100 && g > 150 && b > 170;

@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 
 import { checkAccessible, launch, projector, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getAll } from './daemon.mjs';
-import { goTo, isEdit, openMesh as open, press } from './page.mjs';
+import { cameraOf, goTo, isEdit, openMesh as open, press } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -69,11 +69,14 @@ for (const [kind, id, key] of [
         page.on('request', (request) => isEdit(request) && sent.push(request.postDataJSON()));
         await press(page, 'g');
         await expectArmed(page, 'Move', true);
+        const camera = await cameraOf(page);
         await dragBy(page, 40, -25);
         await waitForFrame(page, { revision: 2 });
         assert.equal(sent.length, 1);
         assert.equal(sent[0].ops[0].op, 'vertex_move');
         await expectArmed(page, 'Move', false);
+        assert.ok(camera !== undefined);
+        assert.equal(await cameraOf(page), camera);
         const after = await positions(daemon, mesh);
         after.forEach((place, i) => {
             const by = place.map((value, axis) => value - before[i][axis]);
@@ -184,6 +187,22 @@ test('a tool that fits nothing selected shows its form, a button arms as a key d
     await expectArmed(page, 'Move', false);
     await waitForFrame(page, { revision: 1, selection: 'face:1' });
     assert.equal((await get(daemon, `/${mesh}`)).revision, 1);
+});
+
+test('what is selected is collapsed or deleted by a button too', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, GRID);
+    const inner = (await getAll(daemon, mesh, 'edges')).find((edge) => !edge.boundary);
+    assert.ok(await page.getByRole('button', { name: 'Delete', exact: true }).isDisabled());
+    await goTo(page, 'face', 0);
+    await page.getByRole('button', { name: 'Delete', exact: true }).click();
+    await waitForFrame(page, { revision: 2 });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.faces, 3);
+    await page.getByRole('button', { name: 'Undo', exact: true }).click();
+    await waitForFrame(page, { revision: 3 });
+    await goTo(page, 'edge', inner.id);
+    await page.getByRole('button', { name: 'Collapse', exact: true }).click();
+    await waitForFrame(page, { revision: 4 });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.vertices, 8);
 });
 
 test('a finger drags with a tool that is armed', async (t) => {

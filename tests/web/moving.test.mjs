@@ -16,7 +16,7 @@ import {
     waitForFrame,
 } from './browser.mjs';
 import { getAll, post, startDaemon } from './daemon.mjs';
-import { click, expectToast, goTo, openMesh as open, press } from './page.mjs';
+import { cameraOf, click, expectToast, goTo, openMesh as open, press } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -87,14 +87,11 @@ test('the keyboard zooms, pans and orbits', async (t) => {
     assert.ok(nearer.size > 1.3 * start.size);
     const back = await moved(page, () => press(page, '-'));
     assert.ok(Math.abs(back.size - start.size) < start.size / 500);
-    await press(page, 'ArrowRight');
-    await page.locator('#canvas').blur();
-    const panned = await look(page);
+    const panned = await moved(page, () => press(page, 'ArrowRight'));
     assert.ok(!near(panned.x, start.x) && near(panned.y, start.y));
     await page.getByRole('button', { name: 'Fit view' }).click();
-    await press(page, 'Shift+ArrowRight');
-    await page.locator('#canvas').blur();
-    const turned = await look(page);
+    await cameraOf(page);
+    const turned = await moved(page, () => press(page, 'Shift+ArrowRight'));
     assert.notEqual(turned.size, start.size);
     assert.ok(Math.abs(turned.x - start.x) < 20);
 });

@@ -54,6 +54,12 @@ export async function press(page, key) {
     await page.locator('#canvas').press(key);
 }
 
+// The camera in the address, once it is at rest and written there.
+export async function cameraOf(page) {
+    await page.locator('#canvas:not([data-moving])').waitFor();
+    return /camera=([^&]*)/.exec(page.url())?.[1];
+}
+
 // Select by the form for ids.
 export async function goTo(page, kind, id) {
     await page.locator('#goto-kind').selectOption(kind);
@@ -70,6 +76,18 @@ export async function setMode(page, mode) {
 export function isEdit(message) {
     const request = message.request?.() ?? message;
     return request.url().endsWith('/edits') && request.postDataJSON()?.dry_run !== true;
+}
+
+// The three fields of a point or a vector in the form of an operation.
+export const vectorOf = (page, name) =>
+    ['x', 'y', 'z'].map((axis) =>
+        page.locator('#parameters').getByLabel(`${name} ${axis}`, { exact: true }),
+    );
+
+export async function fillVector(page, name, numbers) {
+    for (const [i, field] of vectorOf(page, name).entries()) {
+        await field.fill(`${numbers[i]}`);
+    }
 }
 
 export async function expectToast(page, pattern) {

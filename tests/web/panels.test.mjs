@@ -5,7 +5,15 @@ import { after, before, test } from 'node:test';
 
 import { checkAccessible, launch, openPage, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { expectToast, goTo, isEdit, openMesh as open, press, setMode } from './page.mjs';
+import {
+    expectToast,
+    fillVector,
+    goTo,
+    isEdit,
+    openMesh as open,
+    press,
+    setMode,
+} from './page.mjs';
 
 let browser;
 before(async () => {
@@ -90,8 +98,8 @@ test('a field that is left empty is left out, whatever its type', async (t) => {
     const choose = (name) => page.locator('#operation').selectOption(name);
     const fill = (name, text) => page.locator(`#param-${name}`).fill(text);
     await choose('plane_split');
-    await fill('point', '0 0 0.25');
-    await fill('normal', '0 0 1');
+    await fillVector(page, 'point', [0, 0, 0.25]);
+    await fillVector(page, 'normal', [0, 0, 1]);
     const tolerance = page.locator('#param-tolerance');
     assert.equal(await tolerance.getAttribute('placeholder'), 'left out');
     assert.deepEqual(await apply(page), {
@@ -100,7 +108,7 @@ test('a field that is left empty is left out, whatever its type', async (t) => {
         normal: [0, 0, 1],
     });
     await waitForFrame(page, { revision: 2 });
-    await fill('point', '0 0 -0.25');
+    await fillVector(page, 'point', [0, 0, -0.25]);
     await fill('tolerance', ' 1e-3 ');
     assert.equal((await apply(page)).tolerance, 1e-3);
     await waitForFrame(page, { revision: 3 });
@@ -133,7 +141,7 @@ test('flags, choices, lists and no element at all are sent as such', async (t) =
     await fill('vertex', '7');
     await fill('left', 'none');
     await fill('right', '3');
-    await fill('to', '1 1 1');
+    await fillVector(page, 'to', [1, 1, 1]);
     assert.deepEqual(await apply(page), {
         op: 'vertex_split',
         vertex: 7,

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 
 import { FloatType, RGBAFormat } from '../../web/node_modules/three/build/three.module.js';
 import { ROW } from '../../web/src/geometry.js';
-import { Rows } from '../../web/src/rows.js';
+import { Rows } from '../../web/src/gl/rows.js';
 
 function rows(count) {
     const made = new Rows(new Float32Array(4 * ROW * count), RGBAFormat, FloatType);

@@ -7,7 +7,7 @@ import { after, before, test } from 'node:test';
 import { unpack } from '../../web/src/geometry.js';
 import { launch, openPage, waitForFrame } from './browser.mjs';
 import { get, getGeometry, post, startDaemon } from './daemon.mjs';
-import { isEdit } from './page.mjs';
+import { fillVector, isEdit } from './page.mjs';
 import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 
 const EDITS = Number(process.env.EDITS ?? 1000);
@@ -114,7 +114,7 @@ async function actOnPage(page, daemon, mesh, below, issued) {
     } else {
         const answer = page.waitForResponse(isEdit);
         await page.locator('#param-vertex').fill(`${below(issued.vertices)}`);
-        await page.locator('#param-by').fill('0 0 0.01');
+        await fillVector(page, 'by', [0, 0, 0.01]);
         await page.getByRole('button', { name: 'Apply' }).click();
         if (!(await answer).ok()) {
             return false;

@@ -5,7 +5,7 @@ import { after, before, test } from 'node:test';
 
 import { checkAccessible, launch, openPage, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { expectToast, isEdit, openMesh as open } from './page.mjs';
+import { expectToast, fillVector, isEdit, openMesh as open } from './page.mjs';
 
 let browser;
 before(async () => {
@@ -128,8 +128,8 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
 test('an operation that is refused as a job says why', async (t) => {
     const { page } = await openMesh(t, CUBE);
     await page.locator('#operation').selectOption('plane_split');
-    await page.locator('#param-point').fill('0 0 0');
-    await page.locator('#param-normal').fill('0 0 0');
+    await fillVector(page, 'point', [0, 0, 0]);
+    await fillVector(page, 'normal', [0, 0, 0]);
     await page.getByRole('button', { name: 'Apply' }).click();
     await expectToast(page, /normal/);
     await waitForFrame(page, { revision: 1 });

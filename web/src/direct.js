@@ -1,6 +1,8 @@
 // direct.js - tools used in the view itself: armed by a key or a button, then a drag shows what it
 // will do, and letting go does it. A click does the usual; Esc gives up.
 
+import { enable } from './dom.js';
+
 // A pointer that moved no further than this between down and up has clicked.
 const CLICK_PIXELS = 4;
 
@@ -19,13 +21,14 @@ export class Direct {
     #down = null; // where and with which pointer the drag began
     #isEnabled = false;
 
-    // `note` holds `hint` and `amount`; `buttons` has one for each tool. `begin(tool)` gives a
-    // gesture or null, `drag(gesture, moved)` what it comes to (see gesture.js), `onShow(lines)`
-    // shows lines (null: none) and `onRun(operation)` does it.
-    constructor(canvas, { note, hint, amount, buttons }, acts) {
+    // `note` holds `hint`, `amount` and a button, `giveUp`; `buttons` has one for each tool.
+    // `begin(tool)` gives a gesture or null, `drag(gesture, moved)` what it comes to (see
+    // gesture.js), `onShow(lines)` shows lines (null: none) and `onRun(operation)` does it.
+    constructor(canvas, { note, hint, amount, giveUp, buttons }, acts) {
         this.#canvas = canvas;
         this.#elements = { note, hint, amount, buttons };
         this.#acts = acts;
+        giveUp.addEventListener('click', () => this.cancel());
         // Before all others that listen: to them it is as if nothing had happened.
         const listen = (type, act) =>
             canvas.addEventListener(type, (event) => act(event), { capture: true });
@@ -85,7 +88,7 @@ export class Direct {
     setEnabled(enabled) {
         this.#isEnabled = enabled;
         for (const button of Object.values(this.#elements.buttons)) {
-            button.disabled = !enabled;
+            enable(button, enabled);
         }
         if (!enabled) {
             this.cancel();

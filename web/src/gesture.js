@@ -51,7 +51,9 @@ export function begin(tool, chosen, geometry) {
     const middle = middleOf(points);
     const pairs = op === 'vertex_move' ? edgesAt(geometry, vertices) : [];
     const reach = reachFrom(middle, points);
-    return { tool, op, kind, chosen, geometry, vertices, middle, reach, pairs };
+    const faces = op === 'face_extrude' ? chosen.map(({ id }) => id) : [];
+    const regions = regionsOf(geometry, faces);
+    return { tool, op, kind, chosen, geometry, vertices, middle, reach, pairs, regions };
 }
 
 function endsOf({ kind, id, element }) {
@@ -62,12 +64,15 @@ function endsOf({ kind, id, element }) {
 }
 
 // The polygon edges on all triangles at some vertices.
-function edgesAt({ triangles, triangleCount }, vertices) {
-    const wanted = new Set(vertices);
+function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
+    const wanted = new Uint8Array(vertexCount); // of millions of triangles each is looked at
+    vertices.forEach((id) => {
+        wanted[id] = 1;
+    });
     const found = [];
-    for (let i = 0; i < triangleCount; i++) {
-        if ([0, 1, 2].some((corner) => wanted.has(triangles[4 * i + corner]))) {
-            found.push(i);
+    for (let i = 0; i < 4 * triangleCount; i += 4) {
+        if (wanted[triangles[i]] || wanted[triangles[i + 1]] || wanted[triangles[i + 2]]) {
+            found.push(i / 4);
         }
     }
     return edgesOfTriangles(triangles, found).slice(0, MOST_LINES);
@@ -158,12 +163,15 @@ function drawOut(gesture, by) {
     };
 }
 
+// Faces that share an edge move as one, as the operation's `region` says.
 function pull(gesture, length) {
     const { geometry, chosen, op } = gesture;
     const [distance] = inMesh(gesture, [length]);
-    const lines = chosen.flatMap(({ id }) => {
-        const normal = unit(normalOfFace(geometry, id));
-        return linesOfFace(geometry, id, (point) => add(point, normal, length));
+    const lines = gesture.regions.flatMap(({ faces, rim, inner }) => {
+        const normals = faces.map((face) => normalOfFace(geometry, face));
+        const normal = unit(normals.reduce((a, b) => add(a, b)));
+        const place = (point) => add(point, normal, length);
+        return [...sidesOf(geometry, rim, place), ...tops(geometry, inner, place)];
     });
     const region = chosen.length > 1;
     const operation = length === 0 ? null : { op, faces: idsOf(gesture), distance, region };
@@ -185,9 +193,48 @@ function shrink(gesture, factor) {
 
 // The sides of a face where `place` puts them, and lines from there to where they are.
 function linesOfFace(geometry, face, place) {
-    const edges = edgesOfTriangles(geometry.triangles, trianglesOfFace(geometry, face));
+    return sidesOf(geometry, edgesOfFace(geometry, face), place);
+}
+
+function sidesOf(geometry, edges, place) {
     return edges.flatMap(([from, to]) => {
         const [a, b] = [from, to].map((id) => pointAt(geometry, id));
         return [a, place(a), place(a), place(b)].flat();
     });
+}
+
+function tops(geometry, edges, place) {
+    return edges.flatMap((ends) => ends.flatMap((id) => place(pointAt(geometry, id))));
+}
+
+function edgesOfFace(geometry, face) {
+    return edgesOfTriangles(geometry.triangles, trianglesOfFace(geometry, face));
+}
+
+// Faces as sets of those that are connected across edges: {faces, rim, inner} each, where `rim` are
+// the edges beside faces that are not among them, as the face runs along them, and `inner` the
+// others, once.
+export function regionsOf(geometry, faces) {
+    const sides = faces.flatMap((face) =>
+        edgesOfFace(geometry, face).map((edge) => ({ face, edge, key: `${edge}` })),
+    );
+    const faceAt = new Map(sides.map(({ key, face }) => [key, face]));
+    const across = ({ edge: [from, to] }) => faceAt.get(`${[to, from]}`);
+    const regionOf = new Map(faces.map((face) => [face, { faces: [face], rim: [], inner: [] }]));
+    for (const side of sides) {
+        const [own, other] = [side.face, across(side)].map((face) => regionOf.get(face));
+        if (other !== undefined && other !== own) {
+            own.faces.push(...other.faces);
+            other.faces.forEach((face) => regionOf.set(face, own));
+        }
+    }
+    for (const side of sides) {
+        const { rim, inner } = regionOf.get(side.face);
+        if (across(side) === undefined) {
+            rim.push(side.edge);
+        } else if (side.edge[0] < side.edge[1]) {
+            inner.push(side.edge);
+        }
+    }
+    return [...new Set(regionOf.values())];
 }

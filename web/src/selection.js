@@ -146,7 +146,8 @@ export class Selection {
     }
 }
 
-function isIn(geometry, { kind, id, from, to }) {
+// Have the arrays what is to be marked?
+export function isIn(geometry, { kind, id, from, to }) {
     if (kind === 'face') {
         return trianglesOfFace(geometry, id).length > 0;
     }
@@ -155,7 +156,8 @@ function isIn(geometry, { kind, id, from, to }) {
         : hasVertex(geometry, from) && hasVertex(geometry, to);
 }
 
-function markOf({ kind, id, element }) {
+// For the renderer, see Selection.marksIn().
+export function markOf({ kind, id, element }) {
     if (kind === 'face' || kind === 'vertex') {
         return { kind, id };
     }
@@ -163,8 +165,8 @@ function markOf({ kind, id, element }) {
     return { kind, from, to };
 }
 
-// What still lives of a selection, as it is now, and what does not.
-async function readAll(mesh, chosen) {
+// What still lives of some elements, {kind, id} each, as it is now, and what does not.
+export async function readAll(mesh, chosen) {
     if (chosen.length === 0) {
         return [[], []];
     }

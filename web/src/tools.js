@@ -1,21 +1,19 @@
 // tools.js - a form for each operation of the server's table, its elements taken from the
 // selection. Nothing here knows any operation: a new row of the table appears by itself.
 
-import { make } from './dom.js';
+import { Chooser } from './chooser.js';
+import { enable, make, prose } from './dom.js';
 import {
     KINDS,
-    inputFor,
+    controlFor,
+    isAbout,
     isComplete,
     isList,
     isPlace,
     kindOf,
+    marksOf,
     readField,
-    toggleWord,
 } from './fields.js';
-
-// What operations begin with, as groups of the list; what begins otherwise is of the whole mesh.
-const GROUPS = { vertex: 'Vertex', edge: 'Edge', face: 'Face', loop: 'Loop', hole: 'Loop' };
-const GROUP_NAMES = [...new Set(Object.values(GROUPS)), 'Mesh'];
 
 // What an element that is selected says of elements of other kinds.
 const LINKS = {
@@ -26,42 +24,44 @@ const LINKS = {
 };
 
 export class Tools {
-    #select;
+    #chooser;
     #form;
     #onRun;
     #onTouch;
     #onArm;
     #meshes;
-    #search;
-    #armed = null; // the field that takes what is clicked
-    #operations = [];
+    #armed = null; // {param, control, button} that takes what is clicked
     #selection = [];
     #isEnabled = true;
     #isChosen = false; // an operation was chosen, and is kept whatever is selected
-    #fields = new Map(); // parameter's name -> {param, input, button, isTaken}
+    #fields = new Map(); // parameter's name -> {param, control, row, isTaken}
 
     // `onRun(operation)` is called with what the form says, and shows what goes wrong.
     // `onTouch(operation, error)` after the form was changed: null where it is not complete, or the
-    // error in it. `onArm(kind)` when a field waits for elements of a kind, `meshes()` lists meshes.
+    // error in it. `onArm({name, kind, isList})` when a field waits for elements, and with
+    // undefined when none does any more; `meshes()` lists meshes.
     constructor({ select, form, search }, { onRun, onTouch, onArm, meshes, onError }) {
-        this.#select = select;
         this.#form = form;
-        this.#search = search;
         this.#onRun = onRun;
         this.#onTouch = onTouch;
         this.#onArm = onArm;
         this.#meshes = () => meshes().catch((error) => (onError(error), []));
-        search.addEventListener('input', () => this.#list());
-        search.addEventListener('keydown', (event) => {
-            if (event.key === 'Enter' && this.#operation !== undefined) {
-                this.open(this.#operation.name);
+        this.#chooser = new Chooser(
+            { select, search },
+            {
+                onChange: (isChosen) => {
+                    this.#isChosen ||= isChosen;
+                    this.#build();
+                },
+                onEnter: (name) => this.open(name),
+            },
+        );
+        form.addEventListener('input', (event) => this.#typed(event.target));
+        form.addEventListener('keydown', (event) => {
+            if (event.key === 'Escape') {
+                this.disarm();
             }
         });
-        select.addEventListener('change', () => {
-            this.#isChosen = true;
-            this.#build();
-        });
-        form.addEventListener('input', (event) => this.#typed(event.target));
         form.addEventListener('submit', (event) => {
             event.preventDefault();
             try {
@@ -73,39 +73,7 @@ export class Tools {
     }
 
     setOperations(operations) {
-        this.#operations = operations;
-        this.#list();
-    }
-
-    // The operations that what is searched for is in, by what they work on.
-    #list() {
-        const words = this.#search.value.toLowerCase().split(/\s+/);
-        const chosen = this.#select.value;
-        const found = this.#operations.filter(({ name, doc }) =>
-            words.every((word) => `${name} ${doc}`.toLowerCase().includes(word)),
-        );
-        const groups = GROUP_NAMES.map((label) => {
-            const names = found.map(({ name }) => name).filter((name) => groupOf(name) === label);
-            return make(
-                'optgroup',
-                { label },
-                ...names.map((name) => make('option', { value: name }, name)),
-            );
-        });
-        this.#select.replaceChildren(...groups.filter((group) => group.children.length > 0));
-        if (found.some(({ name }) => name === chosen)) {
-            this.#select.value = chosen;
-        }
-        if (this.#select.value !== chosen || this.#fields.size === 0) {
-            this.#build();
-        }
-    }
-
-    #listAll() {
-        if (this.#search.value !== '') {
-            this.#search.value = '';
-            this.#list();
-        }
+        this.#chooser.setOperations(operations);
     }
 
     // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the
@@ -116,10 +84,9 @@ export class Tools {
         if (isSame) {
             return;
         }
-        const fitting = this.#operations.find((operation) => this.#fits(operation));
-        if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#operation)) {
-            this.#listAll();
-            this.#select.value = fitting.name;
+        const fitting = this.#chooser.all.find((one) => this.#fits(one) && !isDeletion(one));
+        if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#chooser.operation)) {
+            this.#chooser.set(fitting.name);
             this.#build();
         } else {
             this.#fill();
@@ -135,41 +102,46 @@ export class Tools {
     }
 
     disarm() {
-        this.#arm(null);
+        if (this.isArmed) {
+            this.#arm(null);
+        }
     }
 
     // An element that was clicked for the field that waits; `place` is where a vertex is.
     take(id, place) {
-        const { param, input } = this.#armed;
-        this.#armed.isTaken = true;
-        if (isPlace(param)) {
-            input.value = place.join(' ');
-        } else {
-            input.value = isList(param) ? toggleWord(input.value, id) : `${id}`;
+        const { param, control } = this.#armed;
+        control.take(id, place);
+        const field = this.#fields.get(param.name);
+        if (field !== undefined) {
+            field.isTaken = true;
         }
-        this.#typed(input);
+        control.main.dispatchEvent(new Event('input', { bubbles: true }));
         if (!isList(param)) {
             this.#arm(null);
         }
     }
 
-    #arm(field) {
-        this.#armed?.button.setAttribute('aria-pressed', 'false');
-        this.#armed = field;
-        if (field !== null) {
-            field.button.setAttribute('aria-pressed', 'true');
-            this.#onArm(kindOf(field.param));
+    #arm(armed) {
+        if (this.#armed !== null) {
+            this.#armed.button.setAttribute('aria-pressed', 'false');
+            // Where the view is above the form, one had to leave it.
+            this.#armed.button.scrollIntoView({ block: 'nearest' });
         }
+        this.#armed = armed;
+        armed?.button.setAttribute('aria-pressed', 'true');
+        const { param } = armed ?? {};
+        this.#onArm(param && { name: param.name, kind: kindOf(param), isList: isList(param) });
     }
 
     // Of parameters that stand for each other only the last that was said is kept.
-    #typed(input) {
-        const fields = [...this.#fields.values()];
-        const { param } = fields.find((field) => field.input === input);
-        const others = fields.filter((field) => field.input !== input);
-        if (param.group !== undefined && input.value.trim() !== '') {
-            for (const other of others.filter((one) => one.param.group === param.group)) {
-                other.input.value = '';
+    #typed(target) {
+        const field = this.#fields.get(target.closest('.field').dataset.name);
+        const { group } = field.param;
+        if (group !== undefined && field.control.isSaid) {
+            for (const other of this.#fields.values()) {
+                if (other !== field && other.param.group === group) {
+                    other.control.clear();
+                }
             }
         }
         this.#touch();
@@ -177,26 +149,46 @@ export class Tools {
 
     // Say what the form says, once an operation was chosen.
     #touch() {
-        if (!this.#isChosen || this.#operation === undefined) {
+        this.mark('');
+        if (!this.#isChosen || this.#chooser.operation === undefined) {
             return;
         }
         try {
             const isReady = isComplete([...this.#fields.values()]);
             this.#onTouch(isReady ? this.#read() : null, null);
         } catch (error) {
+            this.mark(error.pointer ?? '');
             this.#onTouch(null, error);
         }
     }
 
+    // The elements in the fields, {kind, id} each.
+    get elements() {
+        return [...this.#fields.values()]
+            .filter(({ param }) => kindOf(param) !== null && !isPlace(param))
+            .flatMap(({ param, control }) =>
+                control.ids.map((id) => ({ kind: kindOf(param), id })),
+            );
+    }
+
+    // Mark the field that what is wrong is about, by a problem's pointer, or none ('').
+    mark(pointer) {
+        for (const field of this.#fields.values()) {
+            const isWrong = isAbout(field, pointer);
+            field.row.classList.toggle('wrong', isWrong);
+            field.control.main.setAttribute('aria-invalid', isWrong);
+        }
+    }
+
     // Does it begin with an element of the kind that is selected?
-    #fits({ params }) {
+    #fits({ params } = { params: [] }) {
         return params.length > 0 && params[0].type === this.#selection.at(-1)?.kind;
     }
 
     setEnabled(enabled) {
         this.#isEnabled = enabled;
         for (const button of this.#form.querySelectorAll('button[type="submit"]')) {
-            button.disabled = !enabled;
+            enable(button, enabled);
         }
     }
 
@@ -204,7 +196,7 @@ export class Tools {
     // several, else on the last.
     operationOn(name, selection) {
         const { kind, id } = selection.at(-1);
-        const row = this.#operations.find((operation) => operation.name === name);
+        const row = this.#chooser.find(name);
         const { plural } = row?.params.find(({ type }) => type === kind) ?? {};
         const ids = selection.map((chosen) => chosen.id);
         return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: id };
@@ -212,45 +204,43 @@ export class Tools {
 
     // May it cost the whole mesh, and take long?
     isWhole(name) {
-        return this.#operations.find((operation) => operation.name === name)?.size === 'whole';
+        return this.#chooser.find(name)?.size === 'whole';
     }
 
     // Has the server an operation of this name?
     has(name) {
-        return this.#operations.some((operation) => operation.name === name);
+        return this.#chooser.find(name) !== undefined;
     }
 
     // Show the form of an operation that there is.
     show(name) {
-        this.#listAll();
+        this.#chooser.set(name);
         this.#isChosen = true;
-        this.#select.value = name;
         this.#build();
     }
 
-    // The same with the focus in its first field that is empty.
+    // The same with the focus in its first field that is empty, or on the button where it has none.
     open(name) {
         this.show(name);
-        const inputs = [...this.#form.querySelectorAll('input, select')];
-        (inputs.find((input) => input.value === '') ?? inputs[0])?.focus();
-    }
-
-    get #operation() {
-        return this.#operations.find(({ name }) => name === this.#select.value);
+        const controls = [...this.#fields.values()].map(({ control }) => control);
+        const { main } = controls.find(({ isSaid }) => !isSaid) ?? controls[0] ?? {};
+        (main ?? this.#form.querySelector('button')).focus();
     }
 
     #build() {
-        const operation = this.#operation;
-        this.#arm(null);
+        const { operation } = this.#chooser;
+        this.disarm();
         this.#fields.clear();
         const params = operation?.params ?? [];
-        const rows = params.map((param) => this.#row(param, othersOf(params, param)));
+        const rows = params.flatMap((param, i) =>
+            this.#rows(param, isOtherOf(params.slice(0, i), param)),
+        );
         this.#form.replaceChildren(
-            make('p', { className: 'small' }, operation?.doc ?? ''),
+            make('p', { className: 'small' }, ...prose(operation?.doc ?? '')),
             ...rows,
             make(
                 'button',
-                { type: 'submit', className: 'wide', disabled: !this.#isEnabled },
+                { type: 'submit', className: 'primary wide', disabled: !this.#isEnabled },
                 'Apply',
             ),
         );
@@ -259,36 +249,53 @@ export class Tools {
         this.#touch();
     }
 
-    // `others` are the parameters that may be given in its place.
-    #row(param, others) {
-        const input = inputFor(param, this.#meshes);
-        input.id = `param-${param.name}`;
-        input.title = param.doc;
-        const field = { param, input, button: null, isTaken: false };
-        this.#fields.set(param.name, field);
-        const isOptional = !param.required && param.type !== 'flag';
-        const marks = [...others.map(({ name }) => `or ${name}`), isOptional && 'optional'];
-        return make(
+    // `isOther` where it may be given in place of the one before it.
+    #rows(param, isOther) {
+        const { name, type, doc } = param;
+        const id = `param-${name}`;
+        const pickable = (part, control) => this.#pickable(part, control);
+        const control = controlFor(param, this.#meshes, pickable);
+        const field = { param, control, row: null, isTaken: false };
+        this.#fields.set(name, field);
+        // Several inputs are a group, of which the first has the id.
+        const isGroup = control.main !== control.node;
+        const help = make('p', { id: `${id}-doc`, className: 'small' }, ...prose(doc));
+        control.main.id = id;
+        control.main.setAttribute('aria-describedby', help.id);
+        const label = isGroup
+            ? make('span', { id: `${id}-name`, className: 'name' }, name)
+            : make('label', { htmlFor: id, className: 'name' }, name);
+        const head = make(
             'div',
-            { className: 'field' },
-            make('label', { htmlFor: input.id }, param.name),
-            kindOf(param) === null ? input : this.#withButton(field),
-            make('span', { className: 'small' }, marks.filter(Boolean).join(', ')),
+            { className: 'head' },
+            label,
+            make('span', { className: 'small' }, marksOf(param)),
         );
+        const box = kindOf(param) === null ? control.node : pickable(param, control);
+        const className = type === 'flag' ? 'field flag' : 'field';
+        field.row = make('div', { className }, head, box, help);
+        field.row.dataset.name = name;
+        if (isGroup) {
+            field.row.setAttribute('role', 'group');
+            field.row.setAttribute('aria-labelledby', label.id);
+        }
+        return isOther ? [make('p', { className: 'or' }, 'or'), field.row] : [field.row];
     }
 
-    #withButton(field) {
-        field.button = make(
+    // A control beside a button that lets the next click fill it.
+    #pickable(param, control) {
+        const armed = { param, control };
+        armed.button = make(
             'button',
             {
                 type: 'button',
-                'aria-label': `Pick ${field.param.name} in the view`,
+                'aria-label': `Pick ${param.name} in the view`,
                 'aria-pressed': 'false',
-                onclick: () => this.#arm(this.#armed === field ? null : field),
+                onclick: () => this.#arm(this.#armed === armed ? null : armed),
             },
             'Pick',
         );
-        return make('div', { className: 'picked' }, field.input, field.button);
+        return make('div', { className: 'picked' }, control.node, armed.button);
     }
 
     // Elements of a parameter's kind, in the order they were selected; parameters of one kind share
@@ -299,14 +306,14 @@ export class Tools {
         const fields = [...this.#fields.values()];
         const groups = new Set(fields.filter((one) => one.isTaken).map(({ param }) => param.group));
         groups.delete(undefined);
-        for (const { param, input, isTaken } of fields) {
+        for (const { param, control, isTaken } of fields) {
             const kind = kindOf(param);
             if (kind === null || isPlace(param) || isTaken) {
                 continue;
             }
             const ids = groups.has(param.group) ? [] : left.get(kind);
             const taken = ids.splice(0, isList(param) ? ids.length : 1);
-            input.value = taken.join(' ');
+            control.set(taken);
             if (param.group !== undefined && taken.length > 0) {
                 groups.add(param.group);
             }
@@ -321,7 +328,7 @@ export class Tools {
     }
 
     #read() {
-        const operation = { op: this.#operation.name };
+        const operation = { op: this.#chooser.operation.name };
         for (const field of this.#fields.values()) {
             const [name, value] = readField(field);
             if (value !== undefined) {
@@ -336,12 +343,12 @@ function keyOf(selection) {
     return selection.map(({ kind, id }) => `${kind}:${id}`).join();
 }
 
-function groupOf(name) {
-    return GROUPS[name.split('_')[0]] ?? 'Mesh';
+// Not to be offered unasked.
+function isDeletion({ name }) {
+    return name.endsWith('_delete');
 }
 
-function othersOf(params, { name, group }) {
-    return group === undefined
-        ? []
-        : params.filter((other) => other.group === group && other.name !== name);
+// May it be given in place of one of those before it?
+function isOtherOf(before, { group }) {
+    return group !== undefined && before.some((other) => other.group === group);
 }

@@ -12,7 +12,7 @@ export class Trial {
     #running = null;
     #asked = null; // the operation that was asked about last
 
-    // `attempt(operation, signal)` gives the server's answer, or null where it is not to be asked.
+    // `attempt(operation, signal)` gives what is to be said, or null where that is nothing.
     constructor(box, attempt) {
         this.#box = box;
         this.#attempt = attempt;
@@ -55,9 +55,9 @@ export class Trial {
         const running = new AbortController();
         this.#running = running;
         try {
-            const answer = await this.#attempt(operation, running.signal);
-            if (answer !== null && !running.signal.aborted) {
-                this.#say(wordsOf(answer), false);
+            const words = await this.#attempt(operation, running.signal);
+            if (words !== null && !running.signal.aborted) {
+                this.#say(words, false);
             }
         } catch (error) {
             // That there is no connection is shown elsewhere.
@@ -73,7 +73,16 @@ export class Trial {
     }
 }
 
-function wordsOf({ created, deleted, modified }) {
+// What the answer to a dry run says, null where there is none.
+export function wordsOf(answer) {
+    if (answer === null) {
+        return null;
+    }
+    const end = answer.undoable === false ? ' It cannot be undone.' : '';
+    return `${changesOf(answer)}${end}`;
+}
+
+function changesOf({ created, deleted, modified, replaced }) {
     const signs = [
         ['+', created],
         ['\u2212', deleted],
@@ -82,6 +91,9 @@ function wordsOf({ created, deleted, modified }) {
     const changed = tally(modified);
     if (sizes.length > 0) {
         return `Would make: ${sizes.join(' ')}`;
+    }
+    if (replaced) {
+        return 'Would change the ids of all elements.';
     }
     return changed.length > 0 ? `Would change: ${changed.join(' ')}` : 'Would change nothing.';
 }

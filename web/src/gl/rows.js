@@ -3,7 +3,7 @@
 
 import { DataTexture, NearestFilter } from 'three';
 
-import { ROW } from './geometry.js';
+import { ROW } from '../geometry.js';
 
 // More changed texels than this part of all of them are sent as a whole.
 const MANY = 1 / 8;

@@ -1,0 +1,56 @@
+// What a drag means for several faces at once.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { ROW } from '../../web/src/geometry.js';
+import { begin, drag, regionsOf } from '../../web/src/gesture.js';
+
+// Squares of two triangles each, by the ids of their corners; vertex 3 y + x lies at (x, y).
+function squares(faces) {
+    const vertices = new Float32Array(4 * ROW);
+    for (let id = 0; id < 12; id++) {
+        vertices.set([id % 3, Math.floor(id / 3), 0, 1], 4 * id);
+    }
+    const triangles = new Uint32Array(4 * ROW);
+    const firstOf = [];
+    faces.forEach(([a, b, c, d], face) => {
+        const word = (sides) => (face | (sides << 29)) >>> 0;
+        triangles.set([a, b, c, word(0b011)], 8 * face);
+        triangles.set([a, c, d, word(0b110)], 8 * face + 4);
+        firstOf.push(2 * face + 1); // see findFaces()
+    });
+    const triangleCount = 2 * faces.length;
+    const frame = { origin: [0, 0, 0], scale: 1 };
+    return { vertices, triangles, triangleCount, vertexCount: 12, firstOf, frame };
+}
+
+// Two squares beside each other, and one that meets them at no edge.
+const FACES = [[0, 1, 4, 3], [1, 2, 5, 4], [6, 7, 10, 9]];
+
+test('faces that share an edge are one region, the edge is inside', () => {
+    const geometry = squares(FACES);
+    const regions = regionsOf(geometry, [0, 1, 2]);
+    assert.deepEqual(regions.map(({ faces }) => faces.sort()), [[0, 1], [2]]);
+    const [pair, single] = regions;
+    assert.deepEqual(pair.inner, [[1, 4]]);
+    assert.equal(pair.rim.length, 6);
+    assert.ok(!pair.rim.some((edge) => `${edge}` === '1,4' || `${edge}` === '4,1'));
+    assert.deepEqual([single.rim.length, single.inner.length], [4, 0]);
+    assert.deepEqual(regionsOf(geometry, [1]).map(({ rim }) => rim.length), [4]);
+});
+
+test('all faces that are selected are drawn where they will be', () => {
+    const geometry = squares(FACES);
+    const chosen = FACES.map((vertices, id) => ({ kind: 'face', id, element: { vertices } }));
+    const view = { right: [1, 0, 0], up: [0, 0, 1], back: [0, -1, 0], position: [0, -9, 0] };
+    const gesture = begin('extrude', chosen, geometry);
+    const { operation, lines } = drag(gesture, { ...view, height: 100 }, [0, -10]);
+    assert.deepEqual(operation.faces, [0, 1, 2]);
+    assert.equal(operation.region, true);
+    // A side and a top for each edge of the rim, a top for the edge inside: two ends each.
+    assert.equal(lines.length, 3 * 2 * (2 * 10 + 1));
+    const heights = new Set(lines.filter((_, i) => i % 3 === 2));
+    assert.deepEqual([...heights], [0, operation.distance]);
+    assert.ok(operation.distance > 0);
+});

@@ -1,0 +1,51 @@
+// Every operation of the server's table from the panel: its form filled by clicks, tried, applied
+// and undone, in Chromium against the real daemon.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+
+import { launch, openPage, waitForFrame } from './browser.mjs';
+import { get, startDaemon } from './daemon.mjs';
+import { SCENARIOS, fillForm, openScenario } from './scenarios.mjs';
+
+let browser;
+before(async () => {
+    browser = await launch();
+});
+after(() => browser?.close());
+
+test('there is a scenario for every operation', async (t) => {
+    const daemon = await startDaemon(t);
+    const { operations } = await (await fetch(`${daemon.url}/v1/operations`)).json();
+    const names = (rows) => rows.map(({ name }) => name).sort();
+    assert.deepEqual(names(SCENARIOS), names(operations));
+});
+
+async function goThrough({ daemon, page }, scenario) {
+    const mesh = await openScenario({ daemon, page }, scenario);
+    const { revision, counts } = await get(daemon, `/${mesh}`);
+    await fillForm({ daemon, page, mesh }, scenario);
+    const verdict = page.locator('#verdict').filter({ hasText: /./ });
+    assert.match(await verdict.textContent(), /^Would (make|change)/, scenario.name);
+    await page.getByRole('button', { name: 'Apply' }).click();
+    await waitForFrame(page, { mesh, revision: revision + 1 });
+    if (scenario.name === 'compact') {
+        return; // what was before it has other ids
+    }
+    await page.getByRole('button', { name: 'Undo', exact: true }).click();
+    await waitForFrame(page, { mesh, revision: revision + 2 });
+    assert.deepEqual((await get(daemon, `/${mesh}`)).counts, counts, scenario.name);
+}
+
+const GROUPS = ['vertex', 'edge', 'face', 'loop'];
+const groupOf = ({ name }) => GROUPS.find((group) => name.startsWith(`${group}_`)) ?? 'mesh';
+
+for (const group of [...GROUPS, 'mesh']) {
+    test(`each ${group} operation is filled, tried, applied and undone`, async (t) => {
+        const daemon = await startDaemon(t);
+        const page = await openPage(t, browser, daemon);
+        for (const scenario of SCENARIOS.filter((one) => groupOf(one) === group)) {
+            await goThrough({ daemon, page }, scenario);
+        }
+    });
+}

@@ -1,0 +1,41 @@
+// address.js - what is shown is in the page's address, and an address shows it again; see link.js.
+
+import { formatLink, parseLink } from './link.js';
+
+export class Address {
+    #session;
+    #stage;
+
+    constructor(session, stage) {
+        this.#session = session;
+        this.#stage = stage;
+    }
+
+    // Moving the camera makes no entry in the browser's history.
+    write() {
+        const { mesh, selection } = this.#session;
+        if (mesh !== null) {
+            const { kind, id } = selection.last ?? {};
+            const link = formatLink({ mesh, kind, id, camera: this.#stage.camera });
+            window.history.replaceState(null, '', link);
+        }
+    }
+
+    // Show what the address says.
+    async follow() {
+        const { mesh, kind, id, camera } = parseLink(window.location.hash);
+        const session = this.#session;
+        if (mesh === null) {
+            return;
+        }
+        if (mesh !== session.mesh) {
+            await session.open(mesh);
+        }
+        if (session.mesh === mesh && camera !== null) {
+            this.#stage.camera = camera;
+        }
+        if (session.mesh === mesh && kind !== null) {
+            await session.selection.select(kind, id);
+        }
+    }
+}

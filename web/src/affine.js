@@ -1,0 +1,53 @@
+// affine.js - the matrix of an affine map, put together of what people think in. Pure.
+//
+// 16 numbers, row-major; a point is a column at its right.
+
+const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+const translation = ([x, y, z]) => [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1];
+const scaling = ([x, y, z]) => [x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1];
+
+// First what is at the right.
+function multiply(a, b) {
+    return IDENTITY.map((_, at) => {
+        const [row, column] = [4 * Math.floor(at / 4), at % 4];
+        return [0, 1, 2, 3].reduce((sum, i) => sum + a[row + i] * b[4 * i + column], 0);
+    });
+}
+
+// [cosine, sine] of an angle in degrees, exact for quarter turns.
+function turnOf(degrees) {
+    const quarters = (((degrees / 90) % 4) + 4) % 4;
+    const exact = [[1, 0], [0, 1], [-1, 0], [0, -1]][quarters];
+    const angle = (degrees * Math.PI) / 180;
+    return exact ?? [Math.cos(angle), Math.sin(angle)];
+}
+
+// Around one axis, 0 to 2, counter-clockwise seen from its tip.
+function rotation(axis, degrees) {
+    const [cosine, sine] = turnOf(degrees);
+    const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    const matrix = [...IDENTITY];
+    matrix[5 * u] = cosine;
+    matrix[5 * v] = cosine;
+    matrix[4 * u + v] = -sine;
+    matrix[4 * v + u] = sine;
+    return matrix;
+}
+
+// Scale and then rotate about a point, around x, y and z one after another in degrees, then move.
+export function compose({ scale, rotate, translate, about }) {
+    const there = about.map((value) => -value);
+    return [
+        translation(there),
+        scaling(scale),
+        ...rotate.map((degrees, axis) => rotation(axis, degrees)),
+        translation(about),
+        translation(translate),
+    ].reduce((done, next) => multiply(next, done), IDENTITY);
+}
+
+// The same as four lines of text.
+export function textOf(matrix) {
+    return [0, 4, 8, 12].map((row) => matrix.slice(row, row + 4).join(' ')).join('\n');
+}

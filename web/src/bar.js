@@ -1,0 +1,63 @@
+// bar.js - the name of the open mesh, which buttons may be pressed now, and what hinders.
+
+import { byId, enable } from './dom.js';
+
+const SPLIT_TITLES = {
+    edge_split: 'Split the edge and the faces beside it',
+    face_poke: 'Split the face from its middle to its corners',
+    face_split: 'Split the face between the two vertices',
+};
+
+const CONNECTIONS = {
+    lost: 'Connection lost, trying again. What others do meanwhile is not shown.',
+    gone: 'This mesh was deleted. What you see is what it was last.',
+};
+
+export function showName({ mesh, summary }) {
+    const name = summary.name || mesh;
+    byId('mesh-title').textContent = name;
+    document.title = `${name} \u2013 hedge`;
+    byId('canvas').setAttribute(
+        'aria-label',
+        `3D view of ${name}. Drag to orbit, click to pick, press ? for keys.`,
+    );
+}
+
+// May the open mesh be edited now?
+export function isReady({ mesh, busy, connection }) {
+    return mesh !== null && !busy && connection !== 'gone';
+}
+
+// `isDrawn` where there is a view at all.
+export function showState(session, isDrawn) {
+    const { mesh, split } = session;
+    const steps = session.shown?.history;
+    const ready = isReady(session);
+    enable(byId('split'), ready && split !== null);
+    byId('split').title =
+        SPLIT_TITLES[split] ?? 'Select a face, an edge or two vertices to split';
+    enable(byId('undo'), ready && steps.undo > 0);
+    enable(byId('redo'), ready && steps.redo > 0);
+    enable(byId('fit'), mesh !== null && isDrawn);
+    enable(byId('screenshot'), mesh !== null && isDrawn);
+    enable(byId('goto-id'), mesh !== null);
+    enable(byId('goto-button'), mesh !== null);
+    showConnection(session);
+    showLoading(session);
+}
+
+// What the stream of events is like, said where that is a hindrance.
+function showConnection({ connection }) {
+    const box = byId('connection');
+    const text = CONNECTIONS[connection] ?? '';
+    if (box.dataset.state !== `${connection}`) {
+        box.dataset.state = connection;
+        box.textContent = text;
+        box.hidden = text === '';
+    }
+}
+
+function showLoading({ loading }) {
+    byId('loading').hidden = loading === null;
+    byId('load-progress').value = loading ?? 0;
+}

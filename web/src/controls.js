@@ -1,0 +1,334 @@
+// controls.js - what the value of a parameter is put in with. A control has
+//
+//   node      the element for the form
+//   main      the element that its label is of, and that has the focus first
+//   isSaid    is anything put in?
+//   clear()
+//   read()    the value, undefined where nothing is put in; throws a Problem for a slip
+//
+// and where elements or places go in by clicks, take(id, place). See fields.js for which parameter
+// has which.
+
+import { make } from './dom.js';
+import { numbersOf, slip, toggleWord, wordsOf } from './numbers.js';
+
+// A choice of some texts: [value, text] each.
+export class Choice {
+    node = make('select');
+
+    constructor(options, value) {
+        this.add(options);
+        this.node.value = value;
+    }
+
+    add(options) {
+        this.node.append(...options.map(([value, text]) => make('option', { value }, text)));
+    }
+
+    get main() {
+        return this.node;
+    }
+
+    get isSaid() {
+        return this.node.value !== '';
+    }
+
+    clear() {
+        this.node.value = '';
+    }
+
+    read() {
+        return this.node.value || undefined;
+    }
+}
+
+export class Flag {
+    node = make('input', { type: 'checkbox' });
+    isSaid = true;
+
+    constructor(isSet) {
+        this.node.checked = isSet;
+    }
+
+    get main() {
+        return this.node;
+    }
+
+    clear() {
+        this.node.checked = false;
+    }
+
+    read() {
+        return this.node.checked;
+    }
+}
+
+// Ids of elements; `isList` takes several, `isNullable` none.
+export class Ids {
+    node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
+    #name;
+    #isList;
+    #isNullable;
+
+    constructor(name, isList, isNullable) {
+        [this.#name, this.#isList, this.#isNullable] = [name, isList, isNullable];
+        this.node.placeholder = isList ? 'ids' : isNullable ? 'id or none' : 'id';
+        if (!isList && !isNullable) {
+            this.node.inputMode = 'numeric';
+        }
+    }
+
+    get main() {
+        return this.node;
+    }
+
+    get isSaid() {
+        return this.#isNullable || this.node.value.trim() !== '';
+    }
+
+    clear() {
+        this.node.value = '';
+    }
+
+    set(ids) {
+        this.node.value = ids.join(' ');
+    }
+
+    // Those that can be read of it.
+    get ids() {
+        return wordsOf(this.node.value).filter((word) => /^\d{1,9}$/.test(word)).map(Number);
+    }
+
+    take(id) {
+        this.node.value = this.#isList ? toggleWord(this.node.value, id) : `${id}`;
+    }
+
+    // An id, null for none, or an array where it takes several.
+    read() {
+        const text = this.node.value.trim();
+        if (this.#isNullable && (text === '' || text === 'none')) {
+            return null;
+        }
+        const ids = numbersOf(text, this.#name);
+        if (ids.length === 0) {
+            return undefined;
+        }
+        if (!this.#isList && ids.length > 1) {
+            throw slip(
+                this.#name,
+                'One number',
+                `${this.#name} is one number, not \u201c${text}\u201d.`,
+            );
+        }
+        return this.#isList ? ids : ids[0];
+    }
+}
+
+// A number, empty where it is left out.
+export class Numeral {
+    node;
+    #name;
+
+    constructor(name, placeholder) {
+        this.#name = name;
+        this.node = make('input', { type: 'number', step: 'any', placeholder });
+        // Else the wheel would change it while one scrolls on.
+        this.node.addEventListener('wheel', () => this.node.blur(), { passive: true });
+    }
+
+    get main() {
+        return this.node;
+    }
+
+    get isSaid() {
+        return this.node.value !== '' || this.node.validity.badInput;
+    }
+
+    clear() {
+        this.node.value = '';
+    }
+
+    read() {
+        if (this.node.validity.badInput) {
+            throw slip(
+                this.#name,
+                'Not a number',
+                `${this.#name}: what stands there is not a number.`,
+            );
+        }
+        return this.node.value === '' ? undefined : Number(this.node.value);
+    }
+}
+
+const AXES = ['x', 'y', 'z'];
+
+// A point or a vector: three numbers, which can be pasted into any of the fields together. `usual`
+// is what a field stands for that is left empty while another is not, undefined: it must not be.
+export class Vector {
+    node;
+    #name;
+    #usual;
+    #fields;
+
+    // `onMore(numbers)` is called when more are pasted than there is room for.
+    constructor(name, { usual, onMore = () => {} } = {}) {
+        [this.#name, this.#usual] = [name, usual];
+        this.#fields = AXES.map((axis) => new Numeral(`${name} ${axis}`, axis));
+        const inputs = this.#fields.map(({ node }, i) => {
+            node.setAttribute('aria-label', `${name} ${AXES[i]}`);
+            node.addEventListener('paste', (event) => this.#paste(event, i, onMore));
+            return node;
+        });
+        this.node = make('div', { className: 'vector' }, ...inputs);
+    }
+
+    get main() {
+        return this.#fields[0].node;
+    }
+
+    get isSaid() {
+        return this.#fields.some((field) => field.isSaid);
+    }
+
+    clear() {
+        this.#fields.forEach((field) => field.clear());
+    }
+
+    get text() {
+        return this.#fields.map(({ node }) => node.value).join(' ').trim();
+    }
+
+    take(_, place) {
+        this.#fields.forEach(({ node }, i) => {
+            node.value = place[i];
+        });
+    }
+
+    read() {
+        if (!this.isSaid) {
+            return undefined;
+        }
+        return this.#fields.map((field, i) => {
+            const value = field.read() ?? this.#usual;
+            if (value === undefined) {
+                const missing = `${this.#name} lacks its ${AXES[i]}.`;
+                throw slip(this.#name, 'Three numbers', missing);
+            }
+            return value;
+        });
+    }
+
+    // Several numbers at once: all three, or those from the field on that they are pasted into.
+    #paste(event, at, onMore) {
+        const words = wordsOf(event.clipboardData.getData('text'));
+        if (words.length < 2) {
+            return;
+        }
+        event.preventDefault();
+        const first = words.length < AXES.length ? at : 0;
+        this.#fields.slice(first).forEach(({ node }, i) => {
+            node.value = words[i] ?? node.value;
+        });
+        if (words.length > AXES.length) {
+            onMore(words);
+        }
+        event.target.dispatchEvent(new Event('input', { bubbles: true }));
+    }
+}
+
+// Fields that most want, or the same as text: a button goes from one to the other. `easy` is a
+// control, `write()` gives what it says as text and `parse(text)` what the text means.
+export class WithText {
+    node;
+    #easy;
+    #text;
+    #button;
+    #parse;
+    #write;
+    #labels;
+
+    // `labels` of the button: what it goes to, text or fields.
+    constructor(easy, { name, placeholder, write, parse, labels }) {
+        [this.#easy, this.#parse, this.#write, this.#labels] = [easy, parse, write, labels];
+        this.#text = make('textarea', {
+            rows: 4,
+            placeholder,
+            hidden: true,
+            spellcheck: false,
+            'aria-label': `${name} as text`,
+        });
+        this.#button = make('button', {
+            type: 'button',
+            className: 'quiet',
+            onclick: () => {
+                this.showText(!this.#isText);
+                this.main.focus();
+                this.node.dispatchEvent(new Event('input', { bubbles: true }));
+            },
+        });
+        this.node = make('div', { className: 'with-text' }, easy.node, this.#text, this.#button);
+        this.showText(false);
+    }
+
+    get #isText() {
+        return !this.#text.hidden;
+    }
+
+    // Show the text, at first that of what the fields say, or the fields as they were left.
+    showText(isText, text = isText ? this.#write() : '') {
+        this.#text.value = text;
+        this.#text.hidden = !isText;
+        this.#easy.node.hidden = isText;
+        this.#button.textContent = this.#labels[isText ? 1 : 0];
+    }
+
+    get main() {
+        return this.#isText ? this.#text : this.#easy.main;
+    }
+
+    get isSaid() {
+        return this.#isText ? this.#text.value.trim() !== '' : this.#easy.isSaid;
+    }
+
+    clear() {
+        this.#text.value = '';
+        this.#easy.clear();
+    }
+
+    take(id, place) {
+        this.showText(false);
+        this.#easy.take(id, place);
+    }
+
+    read() {
+        if (this.#isText) {
+            const text = this.#text.value.trim();
+            return text === '' ? undefined : this.#parse(text);
+        }
+        return this.#easy.read();
+    }
+}
+
+// One vector for all, or as text a list with one for each.
+export function vectors(name) {
+    const parse = (text) => {
+        const numbers = numbersOf(text, name);
+        const rows = Array.from({ length: Math.ceil(numbers.length / 3) }, (_, i) =>
+            numbers.slice(3 * i, 3 * i + 3),
+        );
+        return rows.length === 1 ? rows[0] : rows;
+    };
+    const onMore = (words) => {
+        const rows = words.map((word, i) => word + (i % 3 === 2 ? '\n' : ' '));
+        control.showText(true, rows.join('').trim());
+    };
+    const vector = new Vector(name, { onMore });
+    const control = new WithText(vector, {
+        name,
+        placeholder: 'x y z, a line each',
+        write: () => vector.text,
+        parse,
+        labels: ['A list, one for each', 'One for all'],
+    });
+    return control;
+}

@@ -1,0 +1,276 @@
+// editing.js - edits from the page: the form of an operation, which is tried before it is sent, the
+// tools of the view, and keys.
+
+import * as api from './api.js';
+import { Direct } from './direct.js';
+import { byId, enable } from './dom.js';
+import { begin, drag } from './gesture.js';
+import { isIn, markOf, readAll } from './selection.js';
+import { Tools } from './tools.js';
+import { Trial, wordsOf } from './trial.js';
+import { Work } from './work.js';
+
+// What works on all of a mesh is not tried beforehand on one of more faces.
+const MOST_TRIED = 100000;
+
+// More elements than this in the fields of a form are not marked in the view.
+const MOST_MARKED = 1000;
+
+// The tools of the view, and the form of each for what is selected, where it is not used there.
+const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
+
+// What is to be clicked, one or several.
+const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
+const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
+
+// What X does to what is selected.
+const REMOVALS = {
+    vertex: 'vertex_delete',
+    halfedge: 'edge_collapse',
+    edge: 'edge_collapse',
+    face: 'face_delete',
+};
+
+export class Editing {
+    #session;
+    #stage;
+    #toasts;
+    #tools;
+    #direct;
+    #trial;
+    #work;
+    #marking = 0; // how often the elements in the fields were asked for
+
+    constructor(canvas, session, stage, toasts) {
+        [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
+        const onError = (error) => toasts.show(error);
+        const onRun = (operation) => this.run(operation).catch(onError);
+        this.#work = new Work(
+            {
+                box: byId('work'),
+                label: byId('work-label'),
+                progress: byId('work-progress'),
+                button: byId('work-cancel'),
+            },
+            onError,
+        );
+        this.#trial = new Trial(byId('verdict'), (...asked) => this.#try(...asked));
+        this.#tools = new Tools(
+            {
+                select: byId('operation'),
+                form: byId('parameters'),
+                search: byId('operation-search'),
+            },
+            {
+                onRun,
+                onTouch: (operation, error) => {
+                    this.#markField();
+                    if (error === null) {
+                        this.#trial.ask(operation);
+                    } else {
+                        this.#trial.refuse(error);
+                    }
+                },
+                onArm: (wanted) => this.#showPicking(wanted),
+                meshes: async () => (await api.listMeshes()).items,
+                onError,
+            },
+        );
+        const buttons = Object.keys(FORMS).map((tool) => [tool, byId(`direct-${tool}`)]);
+        this.#direct = new Direct(
+            canvas,
+            {
+                note: byId('direct-note'),
+                hint: byId('direct-hint'),
+                amount: byId('direct-amount'),
+                giveUp: byId('direct-cancel'),
+                buttons: Object.fromEntries(buttons),
+            },
+            {
+                begin: (tool) =>
+                    stage.isThere
+                        ? begin(tool, session.selection.chosen, session.shown.geometry)
+                        : null,
+                drag: (gesture, moved) => drag(gesture, stage.view, moved),
+                onShow: (lines) => stage.preview(lines),
+                onRun,
+            },
+        );
+        byId('remove').addEventListener('click', () => this.remove().catch(onError));
+        byId('pick-done').addEventListener('click', () => this.#tools.disarm());
+        for (const [tool, button] of buttons) {
+            button.addEventListener('click', () => this.start(tool, false));
+        }
+    }
+
+    // The server's table of operations.
+    setOperations(operations) {
+        this.#tools.setOperations(operations);
+    }
+
+    setEnabled(isEnabled) {
+        this.#tools.setEnabled(isEnabled);
+        this.#direct.setEnabled(isEnabled);
+        const { last } = this.#session.selection;
+        const isCollapse = REMOVALS[last?.kind] === 'edge_collapse';
+        byId('remove').textContent = isCollapse ? 'Collapse' : 'Delete';
+        enable(byId('remove'), isEnabled && last !== undefined);
+    }
+
+    // What is selected, or the mesh itself, has changed: see Session for `what`.
+    follow(what) {
+        this.#tools.setSelection(this.#session.selection.chosen);
+        if (what === 'mesh' || what === 'selection') {
+            this.#direct.cancel();
+        } else {
+            this.#direct.refresh();
+        }
+        if (what === 'mesh') {
+            this.#trial.clear();
+        } else if (what !== 'selection') {
+            this.#trial.askAgain();
+            this.#markField();
+        }
+    }
+
+    // --- operations ---
+
+    async #try(operation, signal) {
+        const { mesh, shown: content, busy } = this.#session;
+        const isDear =
+            this.#tools.isWhole(operation.op) && content?.summary.counts.faces > MOST_TRIED;
+        if (mesh === null || busy) {
+            return null;
+        }
+        if (isDear) {
+            return 'Not tried first: it may take long on a mesh as large as this.';
+        }
+        try {
+            return wordsOf(await api.tryEdit(mesh, operation, signal));
+        } catch (error) {
+            if (!signal.aborted) {
+                this.#tools.mark(error.pointer ?? '');
+            }
+            throw error;
+        }
+    }
+
+    async run(operation) {
+        this.#trial.clear();
+        this.#direct.cancel();
+        if (!this.#tools.isWhole(operation.op)) {
+            await this.#session.run(operation);
+            return;
+        }
+        this.#work.start(operation.op, false);
+        try {
+            await this.#session.run(operation, this.#work);
+            const { revision, history } = this.#session.shown;
+            const isFinal = history.entries[0]?.undoable === false;
+            const end = isFinal ? ' It cannot be undone.' : '';
+            this.#toasts.tell(operation.op, `Done: this is revision ${revision}.${end}`);
+        } finally {
+            this.#work.end();
+        }
+    }
+
+    // Delete or collapse what is selected: the last one where the operation takes only one.
+    async remove() {
+        const { chosen, last } = this.#session.selection;
+        if (last !== undefined) {
+            await this.run(this.#tools.operationOn(REMOVALS[last.kind], chosen));
+        }
+    }
+
+    // --- clicks and tools of the view ---
+
+    // What a click chose, see choose(): for the field that waits for it, else it is selected.
+    async pick(chosen, also) {
+        if (this.#tools.isArmed) {
+            await this.#giveToField(chosen);
+        } else {
+            await this.#session.selection.pick(chosen, also);
+        }
+    }
+
+    // A field waits for what is clicked, see Tools; undefined: none does.
+    #showPicking(wanted) {
+        byId('pick-note').hidden = wanted === undefined;
+        if (wanted !== undefined) {
+            const { name, kind, isList } = wanted;
+            const what = isList ? PLURALS[kind] : NAMES[kind];
+            byId('pick-hint').textContent = `Click ${what} for ${name}.`;
+            byId('pick-done').textContent = isList ? 'Done' : 'Cancel';
+            this.#direct.cancel();
+            this.#stage.setPickMode(kind);
+            this.#stage.bringIntoSight();
+        }
+    }
+
+    async #giveToField(chosen) {
+        const { mesh, selection } = this.#session;
+        const id = chosen === null ? null : await selection.idOf(chosen);
+        if (id !== null) {
+            const isVertex = chosen.kind === 'vertex';
+            const place = isVertex
+                ? (await api.getElement(mesh, 'vertex', id)).position
+                : undefined;
+            if (this.#tools.isArmed) {
+                this.#tools.take(id, place);
+            }
+        }
+    }
+
+    // Show where the elements are that are in the fields and not selected.
+    async #markField() {
+        const { mesh, shown: content, selection } = this.#session;
+        const isSelected = ({ kind, id }) =>
+            selection.chosen.some((one) => one.kind === kind && one.id === id);
+        const wanted = this.#tools.elements.filter((element) => !isSelected(element));
+        const marking = ++this.#marking;
+        if (mesh === null) {
+            return;
+        }
+        const [found] = await readAll(mesh, wanted.slice(0, MOST_MARKED)).catch(() => [[]]);
+        if (marking === this.#marking && content === this.#session.shown && content !== null) {
+            const { geometry } = content;
+            this.#stage.markField(found.map(markOf).filter((mark) => isIn(geometry, mark)));
+        }
+    }
+
+    // Arm a tool of the view, or show the form where nothing is selected that it fits. The form of
+    // what is selected is shown beside it, for who wants numbers.
+    start(tool, isKey) {
+        const name = FORMS[tool];
+        const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);
+        if (!this.#tools.has(name) || !isThere) {
+            this.#direct.cancel();
+            this.#open(name);
+        } else if (
+            this.#direct.isArmed &&
+            this.#session.selection.last.kind === name.split('_')[0]
+        ) {
+            this.#tools.show(name);
+        }
+    }
+
+    #open(name) {
+        if (this.#tools.has(name)) {
+            this.#tools.open(name);
+        } else {
+            const detail = `This server has no operation ${name}.`;
+            this.#toasts.show({ title: 'Not here', detail });
+        }
+    }
+
+    // What Esc gives up: the nearest to hand.
+    giveUp() {
+        if (this.#direct.isArmed) {
+            this.#direct.cancel();
+        } else if (this.#tools.isArmed) {
+            this.#tools.disarm();
+        } else {
+            this.#session.selection.clear();
+        }
+    }
+}

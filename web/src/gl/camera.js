@@ -1,0 +1,109 @@
+// camera.js - where the mesh is seen from, and how the pointer, the wheel, fingers and keys move
+// that. What it means on the screen is view.js's.
+
+import { Matrix4, PerspectiveCamera } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+import { FIELD_OF_VIEW, UP, fitDistance, turnTo } from '../view.js';
+
+const ZOOM = 0.8; // of the distance, a step of the keyboard
+
+export class Camera {
+    // The camera as three wants it.
+    three = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 10);
+    #canvas;
+    #controls;
+
+    // `onMove(isHeld)` is called after each move, and when it is let go; `isHeld` while a pointer or
+    // a finger goes on with it.
+    constructor(canvas, onMove) {
+        this.#canvas = canvas;
+        this.three.up.set(...UP);
+        this.#controls = new OrbitControls(this.three, canvas);
+        this.#controls.zoomToCursor = true;
+        this.#controls.minDistance = 1e-4;
+        this.#controls.maxDistance = 60;
+        this.#controls.listenToKeyEvents(canvas);
+        let isHeld = false;
+        const listen = (type, act) => this.#controls.addEventListener(type, act);
+        listen('start', () => {
+            isHeld = true;
+        });
+        listen('change', () => onMove(isHeld));
+        listen('end', () => {
+            isHeld = false;
+            onMove(isHeld);
+        });
+    }
+
+    // Width / height of the canvas.
+    setAspect(aspect) {
+        this.three.aspect = aspect;
+        this.three.updateProjectionMatrix();
+    }
+
+    // Look at a ball from a direction, which has length 1.
+    look(center, direction, radius) {
+        const distance = fitDistance(this.three.aspect) * radius;
+        this.#controls.target.set(...center);
+        this.three.position.set(...direction).multiplyScalar(distance);
+        this.three.position.add(this.#controls.target);
+        this.#controls.update();
+    }
+
+    // Look at a ball with what is around it; `normal` is where what is in it looks to, null where
+    // that is nowhere. A camera behind it goes around the mesh, another stays on its side.
+    frame({ center, radius, normal }) {
+        const away = this.three.position.clone().sub(this.#controls.target).normalize();
+        const direction = turnTo(away.toArray(), normal);
+        this.look(center, direction, radius > 0 ? 1.8 * radius : 0.1);
+    }
+
+    // Nearer (true) or further by a step.
+    zoom(nearer) {
+        const { target, minDistance, maxDistance } = this.#controls;
+        const away = this.three.position.clone().sub(target);
+        const distance = away.length() * (nearer ? ZOOM : 1 / ZOOM);
+        away.setLength(Math.min(Math.max(distance, minDistance), maxDistance));
+        this.three.position.copy(target).add(away);
+        this.#controls.update();
+    }
+
+    // Where it stands and what it looks at: six numbers.
+    get numbers() {
+        return [...this.three.position.toArray(), ...this.#controls.target.toArray()];
+    }
+
+    set numbers(numbers) {
+        this.three.position.fromArray(numbers);
+        this.#controls.target.fromArray(numbers, 3);
+        this.#controls.update();
+    }
+
+    // Where it is and how it is turned: its own axes, and the canvas in CSS pixels.
+    get view() {
+        this.three.updateMatrixWorld();
+        const { elements } = this.three.matrixWorld;
+        const [right, up, back, position] = [0, 4, 8, 12].map((at) => elements.slice(at, at + 3));
+        return { right, up, back, position, height: this.#canvas.clientHeight };
+    }
+
+    // View and projection, column-major, as view.js wants it.
+    get matrix() {
+        this.three.updateMatrixWorld();
+        return new Matrix4().multiplyMatrices(
+            this.three.projectionMatrix,
+            this.three.matrixWorldInverse,
+        ).elements;
+    }
+
+    // The mesh is within 1 of the origin; a tight range keeps the depth buffer exact.
+    setDepthRange() {
+        const distance = this.three.position.length();
+        const near = 0.02 * this.#controls.getDistance();
+        this.three.near = Math.max(distance - 1.1, near);
+        this.three.far = distance + 1.1;
+        this.three.updateProjectionMatrix();
+        this.three.updateMatrixWorld();
+    }
+}

@@ -1,0 +1,278 @@
+// marks.js - what lies on the mesh: what is selected, what is in the fields of a form, half-edges as
+// arrows, boundary loops, and lines of what is about to be done.
+
+import {
+    AlwaysDepth,
+    BufferAttribute,
+    BufferGeometry,
+    Color,
+    DoubleSide,
+    GLSL3,
+    GreaterDepth,
+    LessEqualDepth,
+    Mesh,
+    NoBlending,
+    NoColorSpace,
+    Points,
+    RawShaderMaterial,
+    Vector3,
+} from 'three';
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
+
+import { MOST_PIXELS, arrowOf } from '../arrows.js';
+import { edgesOfTriangles, hasVertex, pointAt, trianglesOfFace } from '../geometry.js';
+import { pixelAtOne } from '../view.js';
+import { ARROW_FRAGMENT, ARROW_VERTEX, DOT_FRAGMENT, MARK_VERTEX } from './shaders.js';
+
+const CHOSEN = 0xffb347;
+const CHOSEN_START = 0x7a4a10; // where a selected half-edge begins
+const BOUNDARY = 0x35d0e6;
+const PREVIEW = 0xf4f6fa;
+// Of half-edges by their role, see around.js; also in style/details.css.
+const ARROWS = {
+    self: 0xffb347,
+    next: 0x6be675,
+    prev: 0xe27bff,
+    twin: 0x5fa8ff,
+    near: 0xf4f6fa,
+};
+const FIELD = 0xf4f6fa;
+const MARK_SIZE = 13; // CSS pixels, as all sizes here
+const LINE_WIDTH = 4;
+const BOUNDARY_WIDTH = 3;
+const PREVIEW_WIDTH = 2;
+const FIELD_WIDTH = 3;
+const RAISED = 0.996; // of the distance, as dots in shaders.js
+
+export class Marks {
+    // What is drawn.
+    chosen;
+    boundary;
+    arrows;
+    hiddenLines;
+    lines;
+    vertices;
+    fieldLines;
+    fieldVertices;
+    preview;
+    #geometry = null;
+    #pixel = { value: 1 };
+
+    // `material` is that of triangles that are chosen.
+    constructor(material) {
+        // The triangles of the mesh again, a little nearer.
+        this.chosen = new Mesh(new BufferGeometry(), material);
+        material.polygonOffsetFactor = 0.5;
+        material.polygonOffsetUnits = 0.5;
+        this.boundary = segments(plain(line(LessEqualDepth, 1), BOUNDARY_WIDTH, BOUNDARY));
+        this.arrows = new Mesh(
+            new BufferGeometry(),
+            new RawShaderMaterial({
+                glslVersion: GLSL3,
+                vertexShader: ARROW_VERTEX,
+                fragmentShader: ARROW_FRAGMENT,
+                uniforms: { pixel: this.#pixel, mostPixels: { value: MOST_PIXELS } },
+                side: DoubleSide,
+                blending: NoBlending,
+            }),
+        );
+        // What is behind the surface is marked too, faintly.
+        this.lines = segments(line(LessEqualDepth, 1));
+        this.hiddenLines = new LineSegments2(this.lines.geometry, line(GreaterDepth, 0.3));
+        this.vertices = dots(new Vector3(1, 0.7, 0.28));
+        this.fieldLines = segments(plain(line(AlwaysDepth, 1), FIELD_WIDTH, FIELD));
+        this.fieldVertices = dots(new Vector3(0.96, 0.97, 0.98));
+        this.preview = segments(plain(line(AlwaysDepth, 1), PREVIEW_WIDTH, PREVIEW));
+        this.preview.visible = false;
+    }
+
+    // Another mesh, or none (null): nothing lies on it.
+    reset(geometry) {
+        this.#geometry = geometry;
+        this.setBoundary([]);
+        this.setField([]);
+        this.select([], []);
+    }
+
+    // Mark elements and draw half-edges as arrows, see Renderer.select().
+    select(marks, halfedges) {
+        if (this.#geometry === null) {
+            [marks, halfedges] = [[], []];
+        }
+        const geometry = this.#geometry;
+        const triangles = idsOf(marks, 'face').flatMap((face) => trianglesOfFace(geometry, face));
+        const edges = edgesOfTriangles(geometry?.triangles, triangles);
+        let directed = false;
+        for (const mark of marks) {
+            if (mark.kind === 'edge' || mark.kind === 'halfedge') {
+                edges.push([mark.from, mark.to]);
+                directed ||= mark.kind === 'halfedge';
+            }
+        }
+        this.#setChosen(triangles);
+        this.#setLines(edges.flat(), directed);
+        this.#setDots(this.vertices, idsOf(marks, 'vertex'));
+        this.#setArrows(halfedges);
+    }
+
+    // Elements that are in the fields of a form, as select() has them, by their outlines.
+    setField(marks) {
+        const edges = marks.flatMap(({ kind, id, from, to }) => {
+            if (kind === 'face') {
+                const triangles = trianglesOfFace(this.#geometry, id);
+                return edgesOfTriangles(this.#geometry.triangles, triangles);
+            }
+            return kind === 'vertex' ? [] : [[from, to]];
+        });
+        replace(this.fieldLines, this.#between(edges.flat()), edges.length > 0);
+        this.#setDots(this.fieldVertices, idsOf(marks, 'vertex'));
+    }
+
+    // Lines over everything: coordinates of ends in pairs, or null.
+    setPreview(coordinates) {
+        const geometry = new LineSegmentsGeometry();
+        if (coordinates !== null && coordinates.length > 0) {
+            geometry.setPositions(coordinates);
+        }
+        replace(this.preview, geometry, (coordinates?.length ?? 0) > 0);
+    }
+
+    // The edges of boundary loops: pairs of vertices one after another. They may be of a revision
+    // before what is shown: an edge whose ends are gone is left out.
+    setBoundary(ends) {
+        const live = [];
+        for (let i = 0; this.#geometry !== null && i < ends.length; i += 2) {
+            if (hasVertex(this.#geometry, ends[i]) && hasVertex(this.#geometry, ends[i + 1])) {
+                live.push(ends[i], ends[i + 1]);
+            }
+        }
+        replace(this.boundary, this.#between(live), live.length > 0);
+    }
+
+    #setChosen(triangles) {
+        const corners = triangles.flatMap((one) => [3 * one, 3 * one + 1, 3 * one + 2]);
+        const geometry = new BufferGeometry();
+        geometry.setIndex(new BufferAttribute(new Uint32Array(corners), 1));
+        replace(this.chosen, geometry, corners.length > 0);
+    }
+
+    #setLines(ends, directed) {
+        const geometry = this.#between(ends);
+        if (ends.length > 0) {
+            const [chosen, start] = [CHOSEN, CHOSEN_START].map((hex) => new Color(hex).toArray());
+            const colors = ends.flatMap((_, i) => (directed && i % 2 === 0 ? start : chosen));
+            geometry.setColors(colors);
+        }
+        replace(this.lines, geometry, ends.length > 0);
+        this.hiddenLines.geometry = geometry;
+        this.hiddenLines.visible = ends.length > 0;
+    }
+
+    // Lines between pairs of vertices.
+    #between(ends) {
+        const geometry = new LineSegmentsGeometry();
+        if (ends.length > 0) {
+            const { vertices } = this.#geometry;
+            const points = new Float32Array(3 * ends.length);
+            for (let i = 0; i < ends.length; i++) {
+                for (let axis = 0; axis < 3; axis++) {
+                    points[3 * i + axis] = vertices[4 * ends[i] + axis];
+                }
+            }
+            geometry.setPositions(points);
+        }
+        return geometry;
+    }
+
+    #setArrows(halfedges) {
+        const [position, spread, size, color] = [[], [], [], []];
+        for (const halfedge of halfedges) {
+            const arrow = arrowOf(this.#geometry, halfedge);
+            const tint = new Color().setHex(ARROWS[halfedge.role], NoColorSpace).toArray();
+            for (let i = 0; i < (arrow?.places.length ?? 0); i++) {
+                position.push(...arrow.places[i]);
+                spread.push(...arrow.spreads[i]);
+                size.push(arrow.size);
+                color.push(...tint);
+            }
+        }
+        const geometry = new BufferGeometry();
+        for (const [name, array] of Object.entries({ position, spread, size, color })) {
+            const values = new BufferAttribute(new Float32Array(array), array === size ? 1 : 3);
+            geometry.setAttribute(name, values);
+        }
+        replace(this.arrows, geometry, size.length > 0);
+    }
+
+    #setDots(dots, vertices) {
+        const points = vertices.flatMap((vertex) => pointAt(this.#geometry, vertex));
+        const geometry = new BufferGeometry();
+        geometry.setAttribute('position', new BufferAttribute(new Float32Array(points), 3));
+        replace(dots, geometry, points.length > 0);
+    }
+
+    // Of a screen of so many pixels to a CSS pixel, and a canvas of a height in those.
+    setScreen(ratio, height) {
+        for (const { material } of [this.vertices, this.fieldVertices]) {
+            material.uniforms.size.value = MARK_SIZE * ratio;
+        }
+        this.#pixel.value = pixelAtOne(height);
+    }
+
+    // A line is flat, and a surface that slopes would cut it: shrink it towards the camera, where
+    // it is seen at the same place.
+    raise(position) {
+        for (const lines of [this.lines, this.hiddenLines, this.boundary]) {
+            lines.scale.setScalar(RAISED);
+            lines.position.copy(position).multiplyScalar(1 - RAISED);
+        }
+    }
+}
+
+function replace(object, geometry, visible) {
+    object.geometry.dispose();
+    object.geometry = geometry;
+    object.visible = visible;
+}
+
+function dots(tint) {
+    return new Points(
+        new BufferGeometry(),
+        new RawShaderMaterial({
+            glslVersion: GLSL3,
+            vertexShader: MARK_VERTEX,
+            fragmentShader: DOT_FRAGMENT,
+            uniforms: { size: { value: MARK_SIZE }, tint: { value: tint } },
+            blending: NoBlending,
+        }),
+    );
+}
+
+function segments(material) {
+    return new LineSegments2(new LineSegmentsGeometry(), material);
+}
+
+function line(depthFunc, opacity) {
+    return new LineMaterial({
+        linewidth: LINE_WIDTH,
+        vertexColors: true,
+        depthFunc,
+        depthWrite: false,
+        transparent: true,
+        opacity,
+    });
+}
+
+// Of one colour.
+function plain(material, width, color) {
+    material.linewidth = width;
+    material.vertexColors = false;
+    material.color.set(color);
+    return material;
+}
+
+function idsOf(marks, kind) {
+    return marks.filter((mark) => mark.kind === kind).map(({ id }) => id);
+}

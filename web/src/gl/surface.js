@@ -1,0 +1,151 @@
+// surface.js - the mesh itself: its faces with their edges, and vertices as dots.
+//
+// The arrays of geometry.js are two textures; one draw call gives fill, polygon edges and flat
+// shading, another one the same as ids to pick from.
+
+import {
+    BufferGeometry,
+    DoubleSide,
+    FloatType,
+    GLSL3,
+    Mesh,
+    NoBlending,
+    Points,
+    RGBAFormat,
+    RGBAIntegerFormat,
+    RawShaderMaterial,
+    UnsignedIntType,
+    Vector3,
+} from 'three';
+
+import { ROW } from '../geometry.js';
+import { Rows } from './rows.js';
+import {
+    DOT_FRAGMENT,
+    DOT_PICK,
+    DOT_VERTEX,
+    SURFACE_FRAGMENT,
+    SURFACE_PICK,
+    SURFACE_VERTEX,
+} from './shaders.js';
+
+const DOT_SIZE = 7; // CSS pixels, as all sizes here
+const EDGE_WIDTH = 0.75; // on each side of an edge
+
+export class Surface {
+    fill; // what is drawn
+    dots;
+    pickFill; // the same as ids
+    pickDots;
+    #mostRows;
+    #textures = { vertices: { value: null }, triangles: { value: null } };
+    #edgeWidth = { value: EDGE_WIDTH };
+    #geometry = null;
+    #allVertices = false;
+
+    // `mostRows` is how high a texture may be.
+    constructor(mostRows) {
+        this.#mostRows = mostRows;
+        const dots = (fragment, uniforms) =>
+            new RawShaderMaterial({
+                glslVersion: GLSL3,
+                vertexShader: DOT_VERTEX,
+                fragmentShader: fragment,
+                uniforms: { ...this.#textures, ...uniforms },
+                blending: NoBlending,
+            });
+        const dotUniforms = {
+            size: { value: DOT_SIZE },
+            isolatedOnly: { value: true },
+            tint: { value: new Vector3(0.93, 0.95, 0.98) },
+        };
+        this.fill = new Mesh(new BufferGeometry(), this.material(false));
+        this.dots = new Points(new BufferGeometry(), dots(DOT_FRAGMENT, dotUniforms));
+        this.pickFill = new Mesh(this.fill.geometry, this.#material(SURFACE_PICK, {}));
+        this.pickDots = new Points(this.dots.geometry, dots(DOT_PICK, dotUniforms));
+    }
+
+    // That of triangles of the mesh, in the colour of those that are chosen or not.
+    material(isChosen) {
+        const uniforms = { chosen: { value: isChosen }, edgeWidth: this.#edgeWidth };
+        return this.#material(SURFACE_FRAGMENT, uniforms);
+    }
+
+    #material(fragment, uniforms) {
+        return new RawShaderMaterial({
+            glslVersion: GLSL3,
+            vertexShader: SURFACE_VERTEX,
+            fragmentShader: fragment,
+            uniforms: { ...this.#textures, ...uniforms },
+            side: DoubleSide,
+            blending: NoBlending,
+            // Behind what lies on it.
+            polygonOffset: true,
+            polygonOffsetFactor: 1,
+            polygonOffsetUnits: 1,
+        });
+    }
+
+    // Show a mesh, or nothing (null). Throws a RangeError, and shows what it did before, when the
+    // mesh is larger than a texture can be.
+    show(geometry) {
+        const arrays = this.#arraysOf(geometry);
+        const { vertices, triangles } = this.#textures;
+        this.#geometry = geometry;
+        vertices.value?.dispose();
+        triangles.value?.dispose();
+        vertices.value = new Rows(arrays.vertices, RGBAFormat, FloatType);
+        triangles.value = new Rows(arrays.triangles, RGBAIntegerFormat, UnsignedIntType);
+        this.#setRanges();
+    }
+
+    // The arrays that are shown were changed at some places, see applyDelta(). Throws as show() does.
+    update(places) {
+        const arrays = this.#arraysOf(this.#geometry);
+        for (const [name, texture] of Object.entries(this.#textures)) {
+            texture.value = texture.value.update(arrays[name], places[name]);
+        }
+        this.#setRanges();
+    }
+
+    // What the graphics memory had is lost.
+    forget() {
+        Object.values(this.#textures).forEach(({ value }) => value.forget());
+    }
+
+    // The arrays of a mesh or, of none, zeros.
+    #arraysOf(geometry) {
+        const vertices = geometry?.vertices ?? new Float32Array(4 * ROW);
+        const triangles = geometry?.triangles ?? new Uint32Array(4 * ROW);
+        const rows = Math.max(vertices.length, triangles.length) / (4 * ROW);
+        if (rows > this.#mostRows) {
+            throw new RangeError('This mesh is larger than the graphics memory can hold.');
+        }
+        return { vertices, triangles };
+    }
+
+    #setRanges() {
+        this.fill.geometry.setDrawRange(0, 3 * (this.#geometry?.triangleCount ?? 0));
+        this.dots.geometry.setDrawRange(0, this.#geometry?.vertexCount ?? 0);
+        this.#setDots();
+    }
+
+    // All vertices as dots, or only the isolated ones, which nothing else shows.
+    showVertices(all) {
+        this.#allVertices = all;
+        this.#setDots();
+    }
+
+    #setDots() {
+        const visible = this.#allVertices || (this.#geometry?.hasIsolated ?? false);
+        this.dots.material.uniforms.isolatedOnly.value = !this.#allVertices;
+        this.dots.visible = visible;
+        this.pickDots.visible = visible;
+    }
+
+    // Of the screen, to a CSS pixel.
+    setPixelRatio(ratio) {
+        this.dots.material.uniforms.size.value = DOT_SIZE * ratio;
+        this.#edgeWidth.value = EDGE_WIDTH * ratio;
+    }
+}

@@ -1,0 +1,71 @@
+// matrix.js - the control of an affine map: how far to scale, turn and move, or its 16 numbers as
+// they are. See controls.js.
+
+import { compose, textOf } from './affine.js';
+import { Vector, WithText } from './controls.js';
+import { make } from './dom.js';
+import { numbersOf } from './numbers.js';
+
+// [member of compose(), its label, what an empty field stands for]
+const STEPS = [
+    ['scale', 'Scale', 1],
+    ['rotate', 'Rotate, degrees', 0],
+    ['translate', 'Move', 0],
+];
+
+class Steps {
+    node;
+    #vectors;
+    #about;
+
+    // `pickable(name, control)` gives a control's node with a button that lets a click fill it.
+    constructor(pickable) {
+        const all = [...STEPS, ['about', 'About the point', 0]];
+        this.#vectors = Object.fromEntries(
+            all.map(([member, , usual]) => [member, new Vector(member, { usual })]),
+        );
+        this.#about = this.#vectors.about;
+        const rows = all.map(([member, label]) => {
+            const control = this.#vectors[member];
+            const node = member === 'about' ? pickable(member, control) : control.node;
+            return make('div', { className: 'step' }, make('span', {}, label), node);
+        });
+        this.node = make('div', { className: 'steps' }, ...rows);
+    }
+
+    get main() {
+        return this.#vectors.scale.main;
+    }
+
+    // A point alone turns nothing.
+    get isSaid() {
+        return STEPS.some(([member]) => this.#vectors[member].isSaid);
+    }
+
+    clear() {
+        Object.values(this.#vectors).forEach((vector) => vector.clear());
+    }
+
+    read() {
+        if (!this.isSaid) {
+            return undefined;
+        }
+        const usual = { scale: [1, 1, 1] };
+        const said = Object.entries(this.#vectors).map(([member, vector]) => [
+            member,
+            vector.read() ?? usual[member] ?? [0, 0, 0],
+        ]);
+        return compose(Object.fromEntries(said));
+    }
+}
+
+export function matrix(name, pickable) {
+    const steps = new Steps(pickable);
+    return new WithText(steps, {
+        name,
+        placeholder: '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1',
+        write: () => (steps.isSaid ? textOf(steps.read()) : ''),
+        parse: (text) => numbersOf(text, name),
+        labels: ['As 16 numbers', 'As steps'],
+    });
+}
