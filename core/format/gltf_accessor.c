@@ -159,7 +159,7 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     const he_json *json = &asset->json;
     uint32_t indices = he_json_find(json, sparse, "indices");
     uint32_t values = he_json_find(json, sparse, "values");
-    span found;
+    span found = {0};
     if (he_json_type(json, indices) != '{' || he_json_type(json, values) != '{') {
         return he_json_fail(json, sparse, err, HE_BAD_VALUE, "'indices' and 'values' are needed");
     }
@@ -223,7 +223,7 @@ he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor 
     a.normalized = he_json_type(json, he_json_find(json, a.value, "normalized")) == 't' &&
                    a.type != HE_GLTF_FLOAT && a.type != HE_GLTF_UINT32;
     if (he_json_find(json, a.value, "bufferView") != HE_NONE) {
-        span found;
+        span found = {0};
         status = get_span(asset, a.value, a.count, element_bytes(&a), he_gltf_type_bytes(a.type),
                           &found, err);
         if (status != HE_OK) {

@@ -51,6 +51,10 @@ static void containers(void **state)
     glb_file f = good;
     glb_word(&f, 0);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "goes on after");
+    /* a chunk's header that is none */
+    f.bytes[8] = (unsigned char)f.length;
+    f.bytes[9] = (unsigned char)(f.length >> 8);
+    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "are no chunk");
     /* a third chunk that is BIN */
     f = good;
     glb_word(&f, 0);
