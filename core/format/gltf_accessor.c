@@ -1,6 +1,7 @@
 /* Accessors of gltf_asset.h. */
 #include "format/gltf_asset.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -183,6 +184,7 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     if (status != HE_OK) {
         return status;
     }
+    assert(found.bytes != NULL);
     a->changed_index = found.bytes;
     size_t bytes = element_bytes(a);
     status = get_span(asset, values, a->changed, bytes, he_gltf_type_bytes(a->type), &found, err);
