@@ -417,7 +417,7 @@ static void bombs(void **state)
     snprintf(part, sizeof part, zeros, 3000000);
     put(&w, part);
     put(&w, ",'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
-    expect_bomb(&w, HE_LIMIT, "meshes/0/primitives/0: the scene makes more than 64 MiB");
+    expect_bomb(&w, HE_LIMIT, "meshes/0/primitives/0: the scene makes more than 32 MiB");
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 30000);
     put(&w, part);
