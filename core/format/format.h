@@ -3,7 +3,8 @@
  * THE TABLE. One row a format: names, how to recognise it, its reader and writer. A new format is a
  * new row in format.c.
  *
- * READING. The bytes come in pieces of any size, as they arrive, and are not kept:
+ * READING. The bytes come in pieces of any size, as they arrive, and are not kept, save by a format
+ * whose parts name each other in any order, until it is finished:
  *
  *     he_reader_new -> he_reader_feed ... -> he_reader_finish -> he_import -> he_build
  * (mesh/build.h)

@@ -1,6 +1,7 @@
 /* Accessors of gltf_asset.h. */
 #include "format/gltf_asset.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -159,7 +160,7 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     const he_json *json = &asset->json;
     uint32_t indices = he_json_find(json, sparse, "indices");
     uint32_t values = he_json_find(json, sparse, "values");
-    span found;
+    span found = {0};
     if (he_json_type(json, indices) != '{' || he_json_type(json, values) != '{') {
         return he_json_fail(json, sparse, err, HE_BAD_VALUE, "'indices' and 'values' are needed");
     }
@@ -183,6 +184,7 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     if (status != HE_OK) {
         return status;
     }
+    assert(found.bytes != NULL);
     a->changed_index = found.bytes;
     size_t bytes = element_bytes(a);
     status = get_span(asset, values, a->changed, bytes, he_gltf_type_bytes(a->type), &found, err);
@@ -223,7 +225,7 @@ he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor 
     a.normalized = he_json_type(json, he_json_find(json, a.value, "normalized")) == 't' &&
                    a.type != HE_GLTF_FLOAT && a.type != HE_GLTF_UINT32;
     if (he_json_find(json, a.value, "bufferView") != HE_NONE) {
-        span found;
+        span found = {0};
         status = get_span(asset, a.value, a.count, element_bytes(&a), he_gltf_type_bytes(a.type),
                           &found, err);
         if (status != HE_OK) {

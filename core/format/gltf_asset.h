@@ -10,7 +10,7 @@
 #include "format/format.h"
 #include "format/json.h"
 
-#define HE_GLTF_ROOM    ((uint64_t)64 << 20)
+#define HE_GLTF_ROOM    ((uint64_t)32 << 20)
 #define HE_GLTF_FACTOR  ((uint64_t)8)
 #define HE_GLTF_NOWHERE UINT64_MAX
 enum { HE_GLTF_ELEMENT = 64 }; /* bytes of the largest element, sixteen floats */

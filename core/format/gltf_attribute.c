@@ -161,7 +161,7 @@ static void put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gl
     he_gltf_walk walk = {.accessor = a};
     for (uint64_t i = 0; i < a->count; i++) {
         const unsigned char *at = he_gltf_next(&walk);
-        double values[HE_COLUMN_COMPONENTS];
+        double values[HE_COLUMN_COMPONENTS] = {0};
         for (uint32_t k = 0; k < a->components; k++) {
             values[k] = he_gltf_number(a, at, k);
             values[k] = factor == 1 ? values[k] : nearbyint(values[k] * factor);

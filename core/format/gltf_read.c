@@ -52,6 +52,12 @@ static he_status keep(block *b, const void *bytes, size_t n, uint64_t most, uint
     return HE_OK;
 }
 
+static void forget(block *b)
+{
+    he_mem_free(b->bytes);
+    *b = (block){0};
+}
+
 static he_status read_asset(he_import *into, const block *json, const block *bin, bool has_bin,
                             he_error *err)
 {
@@ -194,14 +200,21 @@ static he_status glb_finish(void *state, he_error *err)
                           "the file ends before the %llu bytes it says it has",
                           (unsigned long long)g->length);
     }
-    return read_asset(g->into, &g->json, &g->bin, g->has_bin, err);
+    if (g->head_length > 0) {
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, g->offset,
+                          "%zu bytes behind the last chunk, which are no chunk", g->head_length);
+    }
+    he_status status = read_asset(g->into, &g->json, &g->bin, g->has_bin, err);
+    forget(&g->json);
+    forget(&g->bin);
+    return status;
 }
 
 static void glb_close(void *state)
 {
     glb *g = state;
-    he_mem_free(g->json.bytes);
-    he_mem_free(g->bin.bytes);
+    forget(&g->json);
+    forget(&g->bin);
     he_mem_free(g);
 }
 
@@ -244,13 +257,15 @@ static he_status gltf_feed(void *state, const void *bytes, size_t n, he_error *e
 static he_status gltf_finish(void *state, he_error *err)
 {
     text *t = state;
-    return read_asset(t->into, &t->json, &(block){0}, false, err);
+    he_status status = read_asset(t->into, &t->json, &(block){0}, false, err);
+    forget(&t->json);
+    return status;
 }
 
 static void gltf_close(void *state)
 {
     text *t = state;
-    he_mem_free(t->json.bytes);
+    forget(&t->json);
     he_mem_free(t);
 }
 

@@ -71,7 +71,7 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
                            he_error *err)
 {
     const he_json *json = &asset->json;
-    double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+    double m[16] = {0}, t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
     bool matrix, moved, turned, scaled;
     he_status status = get_numbers(json, node, "matrix", 16, m, &matrix, err);
     if (status == HE_OK) {

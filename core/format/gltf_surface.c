@@ -277,6 +277,15 @@ static double determinant(const he_gltf_frame *frame)
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
+static bool is_still(const he_gltf_frame *frame)
+{
+    bool same = true;
+    for (size_t i = 0; i < 12; i++) {
+        same &= frame->row[i / 4][i % 4] == he_gltf_no_frame.row[i / 4][i % 4];
+    }
+    return same;
+}
+
 static he_status add_primitive(he_gltf_surface *s, uint32_t value, uint32_t name,
                                const he_gltf_frame *frame, he_error *err)
 {
@@ -285,7 +294,7 @@ static he_status add_primitive(he_gltf_surface *s, uint32_t value, uint32_t name
     he_soup *soup = &asset->into->soup;
     he_gltf_primitive p = {.value = value,
                            .frame = frame,
-                           .still = memcmp(frame, &he_gltf_no_frame, sizeof *frame) == 0,
+                           .still = is_still(frame),
                            .mirror = determinant(frame) < 0,
                            .first_vertex = (uint32_t)soup->vertex_count,
                            .first_face = (uint32_t)soup->face_count,

@@ -258,6 +258,18 @@ static void buffers_in_uris(void **state)
     assert_null(he_format_sniff("{\"vertices\":[]}", 15));
 }
 
+static void numbers_that_are_not_aligned(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
+        ",{'bufferView':4,'byteOffset':1,'componentType':5123,'count':4,'type':'SCALAR'}],"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'_A':5},'indices':1}]}]}");
+    expect_u32s(&import, HE_VERTEX, "A", 1, (uint32_t[]){0, 255, 0xFF00, 0xCC66}, 4);
+    assert_int_equal(find_note(&import.notes, "misaligned", "")->count, 1);
+    he_import_clear(&import);
+}
+
 /* --- attributes --- */
 
 static void attributes_of_vertices(void **state)
@@ -391,6 +403,7 @@ int main(void)
         cmocka_unit_test(the_scene_that_is_named_is_read),
         cmocka_unit_test(sparse_accessors),
         cmocka_unit_test(quantized_positions),
+        cmocka_unit_test(numbers_that_are_not_aligned),
         cmocka_unit_test(buffers_in_uris),
         cmocka_unit_test(attributes_of_vertices),
         cmocka_unit_test(directions_turn_with_their_node),

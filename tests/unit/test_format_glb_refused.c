@@ -51,6 +51,10 @@ static void containers(void **state)
     glb_file f = good;
     glb_word(&f, 0);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "goes on after");
+    /* a chunk's header that is none */
+    f.bytes[8] = (unsigned char)f.length;
+    f.bytes[9] = (unsigned char)(f.length >> 8);
+    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "are no chunk");
     /* a third chunk that is BIN */
     f = good;
     glb_word(&f, 0);
@@ -413,7 +417,7 @@ static void bombs(void **state)
     snprintf(part, sizeof part, zeros, 3000000);
     put(&w, part);
     put(&w, ",'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
-    expect_bomb(&w, HE_LIMIT, "meshes/0/primitives/0: the scene makes more than 64 MiB");
+    expect_bomb(&w, HE_LIMIT, "meshes/0/primitives/0: the scene makes more than 32 MiB");
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 30000);
     put(&w, part);

@@ -307,6 +307,36 @@ static void polygons_of_other_triangles(void **state)
     he_mesh_free(mesh);
 }
 
+static void extras_without_memory(void **state)
+{
+    (void)state;
+    he_mesh *mesh = mesh_of_text("obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\n"
+                                        "g a\nf 1/1 2/2 3/1 4/2\n");
+    size_t length;
+    char *bytes = write_glb(mesh, NULL, &length);
+    he_status status = HE_NO_MEMORY;
+    long n = 0;
+    while (status != HE_OK) {
+        he_import import = {0};
+        he_error err = {0};
+        fixture_fail_at(++n);
+        status = read_pieces("glb", bytes, length, 0, NULL, &import, &err);
+        fixture_memory_back();
+        if (status == HE_OK) {
+            expect_counts(&import, 4, 1, 4);
+            assert_string_equal(face_label(&import, "group", 0), "a");
+            he_import_clear(&import);
+        } else {
+            assert_int_equal(status, HE_NO_MEMORY);
+            assert_int_equal(err.status, HE_NO_MEMORY);
+        }
+    }
+    print_message("%ld allocations failed, each refused\n", n - 1);
+    assert_true(n > 20);
+    free(bytes);
+    he_mesh_free(mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -316,6 +346,7 @@ int main(void)
         cmocka_unit_test(what_is_not_carried_is_said),
         cmocka_unit_test(extras_are_not_believed),
         cmocka_unit_test(polygons_of_other_triangles),
+        cmocka_unit_test(extras_without_memory),
     };
     return cmocka_run_group_tests_name("format_glb_write", tests, NULL, NULL);
 }

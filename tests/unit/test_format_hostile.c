@@ -53,7 +53,7 @@ static const char facets[] =
     "\2\0\0\0" ZERO ZERO UNIT ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0" ZERO ZERO UNIT
     "\0\0\0\x80" ZERO ZERO UNIT UNIT ZERO ZERO UNIT UNIT "\1\0.";
 
-/* all there is in glTF; as GLB the length words are kept right by whoever changes it */
+/* As JSON, for most changes to a GLB only break its lengths. */
 static const char gltf[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
     "{\"name\":\"a\",\"mesh\":0,\"children\":[1]},{\"mesh\":0,\"scale\":[-1,1,1],"

@@ -459,7 +459,7 @@ static void it_is_recognised(void **state)
     for (size_t i = 0; i < sizeof objs / sizeof *objs; i++) {
         assert_ptr_equal(he_format_sniff(objs[i], strlen(objs[i])), he_format_find("obj"));
     }
-    static const char *const others[] = {"",          "sold x", "ply?\n", "glTF",
+    static const char *const others[] = {"",          "sold x", "ply?\n", "gltf",
                                          "{\"v\":1}", "# only", "vx 1"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         assert_null(he_format_sniff(others[i], strlen(others[i])));
