@@ -132,7 +132,7 @@ static void random_soup(md_random *random, he_soup *soup)
                 }
             }
         }
-        if (md_below(random, 12) == 0 && soup->face_count > 0) {
+        if (md_below(random, 12) == 0 && soup->corner_count > 0) {
             size_t again = md_below(random, (uint32_t)soup->face_count);
             degree = he_soup_end(soup, again) - soup->starts[again];
             memcpy(corners, soup->corners + soup->starts[again], degree * sizeof *corners);
