@@ -54,9 +54,21 @@ test('the curl lines work as pasted', async (t) => {
     assert.equal(before.items.length, made.counts.vertices + 1);
 });
 
-test('the lines about jobs work as pasted', async (t) => {
+test('the lines about repairs work as pasted', async (t) => {
     const { url } = await startDaemon(t);
     const [, block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const [refused, made] = (await run('sh', ['-ec', block.replaceAll('curl ', 'echo; curl -s ')]))
+        .trim()
+        .split('\n')
+        .map((line) => JSON.parse(line));
+    assert.equal(refused.status, 422);
+    assert.deepEqual(refused.repair, ['split']);
+    assert.equal(made.import.repairs[0].count, 2);
+});
+
+test('the lines about jobs work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const [, , block] = blocks('sh', url).filter((code) => code.includes('curl'));
     const printed = await run('sh', ['-ec', block]);
     assert.match(printed, /^event: job$/m);
     assert.match(printed, /^event: bye$/m);
