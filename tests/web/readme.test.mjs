@@ -3,7 +3,9 @@
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { readFile } from 'node:fs/promises';
+import { mkdtemp, readFile, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
 import { test } from 'node:test';
 import { promisify } from 'node:util';
 
@@ -75,6 +77,20 @@ test('the lines about jobs work as pasted', async (t) => {
     const last = JSON.parse(printed.split('\n').at(-1));
     assert.equal(last.state, 'done');
     assert.equal(last.result.counts.faces, 512 * 512);
+});
+
+test('the lines about codings work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const [, , block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
+    t.after(() => rm(folder, { recursive: true }));
+    await fetch(`${url}/v1/meshes/kite`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json' },
+        body: '{"shape":"cube"}',
+    });
+    const printed = await run('sh', ['-ec', `cd ${folder}\n${block}`]);
+    assert.equal(JSON.parse(printed).counts.faces, 6);
 });
 
 test('the Python lines work as pasted', async (t) => {
