@@ -128,8 +128,8 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question)
     bool complete = false;
     he_error err = {0};
     a->first.count = 0;
-    if (he_bvh_intersections(tree, a->mesh, API_MAX_PAIRS, &budget, &a->first, &complete, &err) !=
-        HE_OK) {
+    if (he_bvh_intersections(tree, a->mesh, API_MAX_PAIRS, &budget, a->x->watch, &a->first,
+                             &complete, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }
     if (budget == 0 && a->on_worker) {

@@ -68,7 +68,7 @@ static api_tree *make(api_asker *a, const api_in *in)
         api_in_fail(in, HE_NO_MEMORY, "no memory for a tree of boxes");
         return NULL;
     }
-    if (he_bvh_new(a->mesh, &tree->bvh, &err) != HE_OK) {
+    if (he_bvh_new(a->mesh, a->x->watch, &tree->bvh, &err) != HE_OK) {
         he_mem_free(tree);
         api_asker_refuse(a, in, &err);
         return NULL;
