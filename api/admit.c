@@ -13,6 +13,8 @@ static bool refuse_parameter(api_exchange *x, const api_parameter *parameter, co
                  parameter->max);
     } else if (parameter->type == API_PARAM_TEXT) {
         snprintf(taken, sizeof taken, "at most %.0f bytes", parameter->max);
+    } else if (parameter->type == API_PARAM_NUMBER) {
+        snprintf(taken, sizeof taken, "a number from %g to %g", parameter->min, parameter->max);
     } else if (parameter->type == API_PARAM_CHOICE) {
         size_t used = 0;
         for (const char *const *c = parameter->choices; *c != NULL && used < sizeof taken; c++) {
@@ -40,6 +42,12 @@ static bool check_parameter(api_exchange *x, const api_parameter *parameter, con
         uint64_t number;
         good = he_u64_parse(value, end, &number, &used) == HE_OK && value + used == end &&
                (double)number >= parameter->min && (double)number <= parameter->max;
+        break;
+    }
+    case API_PARAM_NUMBER: {
+        double number;
+        good = he_double_parse(value, end, HE_JSON_NUMBER, &number, &used) == HE_OK &&
+               value + used == end && number >= parameter->min && number <= parameter->max;
         break;
     }
     case API_PARAM_CHOICE:

@@ -43,6 +43,18 @@ uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallbac
     return number;
 }
 
+double api_param_number(const api_exchange *x, const char *name, double fallback)
+{
+    const char *value = find_value(x, name);
+    double number = fallback;
+    size_t used;
+    if (value != NULL &&
+        he_double_parse(value, value + strlen(value), HE_JSON_NUMBER, &number, &used) != HE_OK) {
+        assert(!"checked against the route");
+    }
+    return number;
+}
+
 static const api_parameter *find_parameter(const api_exchange *x, const char *name)
 {
     for (const api_parameter *const *p = x->route->parameters; *p != NULL; p++) {

@@ -113,6 +113,7 @@ struct api_exchange {
 const char *api_param_text(const api_exchange *x, const char *name); /* NULL when absent */
 bool api_param_flag(const api_exchange *x, const char *name);        /* false when absent */
 uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback);
+double api_param_number(const api_exchange *x, const char *name, double fallback);
 int api_param_choice(const api_exchange *x, const char *name); /* index, -1 when absent */
 bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice);
 

@@ -82,6 +82,8 @@ enum {
 #define API_IMPORT_PER_SECOND 1.2e7
 #define API_EDIT_PER_SECOND   1e7
 #define API_COPY_PER_SECOND   2e7
+#define API_CHECK_PER_SECOND  1e7
+#define API_MEET_PER_SECOND   2e6
 enum {
     /* Above this an operation on the whole mesh claims it and works on a copy; below, it takes the
      * lock for a few milliseconds. */

@@ -77,6 +77,11 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
         api_out_key_number(out, "minimum", parameter->min);
         api_out_key_number(out, "maximum", parameter->max);
         break;
+    case API_PARAM_NUMBER:
+        api_out_key_string(out, "type", "number");
+        api_out_key_number(out, "minimum", parameter->min);
+        api_out_key_number(out, "maximum", parameter->max);
+        break;
     case API_PARAM_CHOICE:
         api_out_key_string(out, "type", "string");
         api_schema_choices(out, "enum", parameter->choices);

@@ -24,10 +24,11 @@ typedef enum api_body_kind {
 } api_body_kind;
 
 typedef enum api_param_type {
-    API_PARAM_TEXT,  /* of at most `max` bytes */
-    API_PARAM_FLAG,  /* true or false */
-    API_PARAM_U64,   /* a whole number within min and max */
-    API_PARAM_CHOICE /* one of `choices` */
+    API_PARAM_TEXT,   /* of at most `max` bytes */
+    API_PARAM_FLAG,   /* true or false */
+    API_PARAM_U64,    /* a whole number within min and max */
+    API_PARAM_NUMBER, /* a finite number within min and max */
+    API_PARAM_CHOICE  /* one of `choices` */
 } api_param_type;
 
 typedef struct api_parameter {

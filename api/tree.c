@@ -70,7 +70,9 @@ static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tr
     }
     api_tree *tree = tree_new(a);
     if (tree == NULL) {
-        api_in_fail(in, HE_NO_MEMORY, "no memory for a tree of boxes");
+        he_error err = {0};
+        (void)he_fail_plain(&err, HE_NO_MEMORY, "no memory for a tree of boxes");
+        api_asker_refuse(a, in, &err);
     } else if (kept == NULL || kept->revision < a->revision) {
         hold(tree);
         *dropped = kept;

@@ -10,8 +10,8 @@
 #include "api/question.h"
 #include "query/bvh.h"
 
-/* The tree of the mesh the asker asks, which holds it to its end. NULL with the problem filled, or
- * with a->spent. */
+/* The tree of the mesh the asker asks, which holds it to its end. `in` is the question, NULL for
+ * none in a body. NULL with the problem filled, or with a->spent. */
 const he_bvh *api_asker_tree(api_asker *a, const api_in *in);
 void api_tree_release(struct api_tree *tree);
 
