@@ -12,32 +12,39 @@
 
 enum { CELL = 8 };
 
+/* Of an open table: probed one after another, up to the first that is free. */
+typedef struct slot {
+    uint32_t tag;    /* of the cell: another part of its hash than the place is from */
+    uint32_t vertex; /* HE_NONE: free */
+} slot;
+
 typedef struct grid {
     const he_mesh *m;
     double merge, cell;
-    uint32_t *heads, *next; /* by hash, by vertex: HE_NONE ends */
-    uint64_t mask;
+    uint64_t seed, mask;
+    slot *slots; /* at least twice as many as vertices */
 } grid;
 
 /* The cell of a coordinate. Where doubles lie farther apart than cells are wide, each is a cell of
  * its own: no other one is near. */
 typedef struct place {
     double cell;
-    bool alone;
     int toward; /* the neighbour that is within reach, 0: none */
 } place;
 
 static place place_of(const grid *g, double x)
 {
-    place p = {x + 0.0, true, 0}; /* one zero */
-    if (g->cell > 0 && fabs(x) < g->cell * 0x1p50) {
-        double at = x / g->cell, rest = at - floor(at), near = 1.5 / CELL;
-        p = (place){floor(at) + 0.0, false, rest < near ? -1 : rest > 1 - near ? 1 : 0};
+    if (!(g->cell > 0 && fabs(x) < g->cell * 0x1p50)) {
+        return (place){x + 0.0, 0}; /* one zero */
     }
-    return p;
+    double at = x / g->cell, low = (double)(int64_t)at;
+    low -= low > at;
+    double rest = at - low;
+    double near = (fabs(at) < 0x1p40 ? 1.001 : 1.5) / CELL; /* what rounding adds to `at` */
+    return (place){low + 0.0, rest < near ? -1 : rest > 1 - near ? 1 : 0};
 }
 
-/* Of 64 bits (Steele, Lea and Flood 2014, as mixed by Stafford). */
+/* One to one, of 64 bits (Steele, Lea and Flood 2014, as mixed by Stafford). */
 static uint64_t mix(uint64_t x)
 {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
@@ -47,13 +54,13 @@ static uint64_t mix(uint64_t x)
 
 static uint64_t hash(const grid *g, const double cell[3])
 {
-    uint64_t sum = 0;
+    uint64_t sum = g->seed;
     for (int k = 0; k < 3; k++) {
         uint64_t bits;
         memcpy(&bits, &cell[k], sizeof bits);
         sum = mix(sum ^ bits);
     }
-    return sum & g->mask;
+    return sum;
 }
 
 /* HUGE_VAL when they are farther apart than what is merged. */
@@ -71,12 +78,14 @@ static double distance(const grid *g, he_vec3 p, he_vec3 q)
     return length <= g->merge ? length : HUGE_VAL;
 }
 
-/* The first vertex of a cell that is near enough. */
-static uint32_t search(const grid *g, he_vec3 p, uint32_t head, double *length)
+/* The first vertex of a cell that is near enough; the free slot behind goes to `*end`. */
+static uint32_t search(const grid *g, he_vec3 p, uint64_t cell, double *length, uint64_t *end)
 {
-    uint32_t least = HE_NONE;
-    for (uint32_t v = head; v != HE_NONE; v = g->next[v]) {
-        if (v < least) {
+    uint32_t least = HE_NONE, tag = (uint32_t)(cell >> 32);
+    uint64_t at = cell & g->mask;
+    for (; g->slots[at].vertex != HE_NONE; at = (at + 1) & g->mask) {
+        uint32_t v = g->slots[at].vertex;
+        if (g->slots[at].tag == tag && v < least) {
             double d = distance(g, p, g->m->c.position[v]);
             if (d < HUGE_VAL) {
                 least = v;
@@ -84,6 +93,7 @@ static uint32_t search(const grid *g, he_vec3 p, uint32_t head, double *length)
             }
         }
     }
+    *end = at;
     return least;
 }
 
@@ -92,10 +102,10 @@ static void add(grid *g, uint32_t v, he_defects *out)
     he_vec3 p = g->m->c.position[v];
     const place at[3] = {place_of(g, p.x), place_of(g, p.y), place_of(g, p.z)};
     const double own[3] = {at[0].cell, at[1].cell, at[2].cell};
-    uint64_t home = hash(g, own);
-    uint32_t near = HE_NONE;
+    uint64_t home = hash(g, own), end, unused;
     double length = 0;
-    for (unsigned side = 0; side < 8; side++) {
+    uint32_t near = search(g, p, home, &length, &end);
+    for (unsigned side = 1; side < 8; side++) {
         double cell[3] = {own[0], own[1], own[2]};
         bool there = true;
         for (unsigned k = 0; k < 3; k++) {
@@ -106,43 +116,42 @@ static void add(grid *g, uint32_t v, he_defects *out)
         }
         if (there) {
             double d;
-            uint32_t other = search(g, p, g->heads[side == 0 ? home : hash(g, cell)], &d);
+            uint32_t other = search(g, p, hash(g, cell), &d, &unused);
             length = other < near ? d : length;
             near = other < near ? other : near;
         }
     }
     if (near != HE_NONE) {
         he_defects_add(out, HE_DEFECT_DUPLICATE, v, near, length);
-        return;
+    } else {
+        g->slots[end] = (slot){(uint32_t)(home >> 32), v};
     }
-    g->next[v] = g->heads[home];
-    g->heads[home] = v;
 }
 
-he_status he_defects_of_positions(const he_mesh *m, double merge, he_watch *watch, he_defects *out,
-                                  he_error *err)
+he_status he_defects_of_positions(const he_mesh *m, double merge, uint64_t seed, he_watch *watch,
+                                  he_defects *out, he_error *err)
 {
-    grid g = {.m = m, .merge = merge, .cell = merge * CELL};
-    uint64_t size = 1;
-    while (size < m->c.vertices.issued) {
+    grid g = {.m = m, .merge = merge, .cell = merge * CELL, .seed = seed};
+    uint64_t size = 2;
+    while (size < 2 * (uint64_t)m->c.vertices.issued) {
         size *= 2;
     }
     g.mask = size - 1;
     he_status status = he_watch_phase(watch, "comparing positions", 0.5, err);
-    g.heads = he_mem_array(NULL, (size_t)size, sizeof *g.heads);
-    g.next = he_mem_array(NULL, m->c.vertices.issued, sizeof *g.next);
-    if (g.heads == NULL || g.next == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to compare positions");
-    } else {
-        memset(g.heads, 0xff, (size_t)size * sizeof *g.heads);
+    if (status != HE_OK) {
+        return status;
     }
+    g.slots = he_mem_array(NULL, (size_t)size, sizeof *g.slots);
+    if (g.slots == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to compare positions");
+    }
+    memset(g.slots, 0xff, (size_t)size * sizeof *g.slots);
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_watch_at(watch, v, m->c.vertices.issued, err);
         if (m->c.vertex_halfedge[v] != HE_DEAD) {
             add(&g, v, out);
         }
     }
-    he_mem_free(g.heads);
-    he_mem_free(g.next);
+    he_mem_free(g.slots);
     return status;
 }

@@ -35,7 +35,7 @@ he_thresholds he_thresholds_of(const he_mesh *m)
     double diagonal;
     he_mesh_box(m, &box);
     he_direction(box.min, box.max, &diagonal);
-    return (he_thresholds){1e-9 * diagonal, 1e-4 * diagonal, 1e-2 * diagonal};
+    return (he_thresholds){1e-9 * diagonal, 1e-4 * diagonal, 1e-2 * diagonal, 0};
 }
 
 void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint32_t other,
@@ -186,7 +186,8 @@ he_status he_defects_find(const he_mesh *m, const he_thresholds *thresholds, he_
     he_defects found = {0};
     he_status status = of_vertices(m, watch, &found, err);
     if (status == HE_OK) {
-        status = he_defects_of_positions(m, thresholds->merge, watch, &found, err);
+        status =
+            he_defects_of_positions(m, thresholds->merge, thresholds->seed, watch, &found, err);
     }
     if (status == HE_OK) {
         status = of_edges(m, thresholds->merge, watch, &found, err);

@@ -41,9 +41,12 @@ he_kind he_defect_kind(he_defect_code code);
 /* Lengths from which on something is a defect, or up to which. */
 typedef struct he_thresholds {
     double merge, flat, small;
+    /* Of the hashes of places. Whoever makes the mesh must not know it, or he could make all places
+     * collide. */
+    uint64_t seed;
 } he_thresholds;
 
-/* Parts of the diagonal of the box of all vertices: 1e-9, 1e-4 and 1e-2. */
+/* Parts of the diagonal of the box of all vertices: 1e-9, 1e-4 and 1e-2. The seed is 0. */
 he_thresholds he_thresholds_of(const he_mesh *m);
 
 /* The first of each, by rising id, and how many there are. */
@@ -75,8 +78,8 @@ HE_NODISCARD he_status he_defects_find(const he_mesh *m, const he_thresholds *th
                                        he_watch *watch, he_defects *out, he_error *err);
 
 /* --- the parts, which add to what was found --- */
-HE_NODISCARD he_status he_defects_of_positions(const he_mesh *m, double merge, he_watch *watch,
-                                               he_defects *out, he_error *err);
+HE_NODISCARD he_status he_defects_of_positions(const he_mesh *m, double merge, uint64_t seed,
+                                               he_watch *watch, he_defects *out, he_error *err);
 HE_NODISCARD he_status he_defects_of_components(const he_mesh *m, double small, he_watch *watch,
                                                 he_defects *out, he_error *err);
 

@@ -77,13 +77,13 @@ static void bowties_and_isolated_vertices_are_named(void **state)
     const he_vec3 at[] = {{0, 0, 0},   {1, 0, 0}, {1, 1, 0}, {-1, 0, 0},
                           {-1, -1, 0}, {0, 0, 1}, {0, 1, 1}};
     he_mesh *m = mesh_at("012,034,056", at);
-    find(m, (he_thresholds){0, 1, 0});
+    find(m, (he_thresholds){0, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_BOWTIE].total, 1);
     assert_int_equal(first(HE_DEFECT_BOWTIE)->id, 0);
     assert_true(first(HE_DEFECT_BOWTIE)->value == 3);
     he_mesh_free(m);
     m = query_with_dead_rows(); /* vertex 3 is isolated, from 4 on there is nothing */
-    find(m, (he_thresholds){0, 1, 0});
+    find(m, (he_thresholds){0, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_ISOLATED].total, 1);
     assert_int_equal(first(HE_DEFECT_ISOLATED)->id, 3);
     he_mesh_free(m);
@@ -94,9 +94,9 @@ static void edges_no_longer_than_merge_are_named(void **state)
     (void)state;
     const he_vec3 at[] = {{0, 0, 0}, {1, 0, 0}, {1, 0.001, 0}, {0, 1, 0}};
     he_mesh *m = mesh_at("0123", at);
-    find(m, (he_thresholds){0, 1, 0});
+    find(m, (he_thresholds){0, 1, 0, 0});
     expect_totals((uint64_t[HE_DEFECTS]){0});
-    find(m, (he_thresholds){0.001, 1, 0});
+    find(m, (he_thresholds){0.001, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_SHORT].total, 1);
     assert_int_equal(first(HE_DEFECT_SHORT)->id, 1);
     assert_true(first(HE_DEFECT_SHORT)->value == 0.001);
@@ -112,11 +112,11 @@ static void faces_without_area_or_width_are_named(void **state)
     (void)state;
     const he_vec3 at[] = {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {1, 0.001, 0}, {2, -5, 1}};
     he_mesh *m = mesh_at("012,023,104", at); /* on a line, thin, ordinary */
-    find(m, (he_thresholds){0, 1, 0});
+    find(m, (he_thresholds){0, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_DEGENERATE].total, 1);
     assert_int_equal(first(HE_DEFECT_DEGENERATE)->id, 0);
     assert_true(first(HE_DEFECT_DEGENERATE)->value == 0);
-    find(m, (he_thresholds){0.00101, 1, 0});
+    find(m, (he_thresholds){0.00101, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_DEGENERATE].total, 2);
     assert_int_equal(found.of[HE_DEFECT_DEGENERATE].listed[1].id, 1);
     assert_true(fabs(found.of[HE_DEFECT_DEGENERATE].listed[1].value - 0.001) < 1e-12);
@@ -128,9 +128,9 @@ static void faces_that_are_not_flat_are_named(void **state)
     (void)state;
     const he_vec3 at[] = {{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}};
     he_mesh *m = mesh_at("0123", at);
-    find(m, (he_thresholds){0, 0.0501, 0});
+    find(m, (he_thresholds){0, 0.0501, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_NONPLANAR].total, 0);
-    find(m, (he_thresholds){0, 0.0499, 0});
+    find(m, (he_thresholds){0, 0.0499, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_NONPLANAR].total, 1);
     assert_int_equal(first(HE_DEFECT_NONPLANAR)->id, 0);
     assert_true(fabs(first(HE_DEFECT_NONPLANAR)->value - 0.05) < 1e-12);
@@ -266,7 +266,7 @@ static void duplicates_are_those_that_trying_all_finds(void **state)
             merge = 0;
         }
         uint64_t total = search_all(m, merge, listed);
-        find(m, (he_thresholds){merge, DBL_MAX, 0});
+        find(m, (he_thresholds){merge, DBL_MAX, 0, query_random(&seed)});
         const he_defect_list *list = &found.of[HE_DEFECT_DUPLICATE];
         assert_int_equal(list->total, total);
         for (uint32_t i = 0; i < list->count; i++) {
@@ -316,7 +316,7 @@ static void hostile_coordinates_give_finite_values(void **state)
         if (round % 2 == 0) {
             t = (he_thresholds){fabs(odd[query_random(&seed) % 12]),
                                 fabs(odd[query_random(&seed) % 12]),
-                                fabs(odd[query_random(&seed) % 12])};
+                                fabs(odd[query_random(&seed) % 12]), 0};
         }
         assert_true(isfinite(t.merge) && isfinite(t.flat) && isfinite(t.small));
         find(m, t);
