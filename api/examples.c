@@ -225,12 +225,15 @@ static const api_example examples[] = {
      .response = "{\"revision\":1,\"by\":\"edge\",\"components\":[{\"faces\":2,\"vertices\":4,"
                  "\"face\":0}]}"},
     {.route = "check_get",
-     .target = "/v1/meshes/kite/check",
+     .target = "/v1/meshes/kite/check?self_intersections=true&merge=0.5&flat=0.25",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"valid\":true,\"problems\":[],\"defects\":[],"
                  "\"totals\":{\"problems\":0,\"bowtie\":0,\"isolated_vertex\":0,"
-                 "\"zero_length_edge\":0,\"degenerate_face\":0}}"},
+                 "\"duplicate_position\":0,\"zero_length_edge\":0,\"degenerate_face\":0,"
+                 "\"nonplanar_face\":0,\"small_component\":0,\"inside_out_component\":0,"
+                 "\"self_intersection\":0},\"thresholds\":{\"merge\":0.5,\"flat\":0.25,"
+                 "\"small\":0.014142135623730951},\"complete\":true}"},
     {.route = "edits_post",
      .target = "/v1/meshes/kite/edits",
      .consumes = "application/json",

@@ -100,6 +100,36 @@ static const api_parameter type = {
 static const api_parameter components = {
     "components", API_PARAM_U64, 1,
     16,           NULL,          "Numbers of one value, where the body is octets; 1 if not said."};
+static const api_parameter meets = {"self_intersections",
+                                    API_PARAM_FLAG,
+                                    0,
+                                    0,
+                                    NULL,
+                                    "Look for faces that meet where they should not, too."};
+static const api_parameter merge = {
+    "merge",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "Vertices no farther apart are in one place, edges no longer have no length, faces no wider "
+    "have no area; 1e-9 of the box's diagonal if not said."};
+static const api_parameter flat = {
+    "flat",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "A corner farther from the plane of its face makes that nonplanar; 1e-4 of the box's diagonal "
+    "if not said."};
+static const api_parameter small = {
+    "small",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "Components in boxes whose diagonal is no longer are small; 1e-2 of the whole box's diagonal "
+    "if not said."};
 static const api_parameter dry_run = {
     "dry_run", API_PARAM_FLAG, 0, 0, NULL, "Do nothing, and answer as if; members say it in JSON."};
 static const api_parameter rule = {
@@ -406,13 +436,19 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/check",
      .name = "check_get",
      .run = api_check_get,
-     .flags = API_COSTLY,
+     .flags = API_LONG,
      .produces = json,
-     .parameters = {&revision},
-     .statuses = {200, 304, 410},
+     .parameters = {&revision, &meets, &merge, &flat, &small},
+     .statuses = {200, 202, 304, 410},
      .response = "check",
      .summary = "Check a mesh",
-     .doc = "Every broken invariant by its number, and every defect a valid mesh may have."},
+     .doc =
+         "Every broken invariant by its number, and every defect a valid mesh may have: vertices "
+         "of several fans, without an edge or in one place with another, edges without length, "
+         "faces that have no area or are not flat, components that are small or inside out. A "
+         "component is inside out when it is closed and its volume negative: one that bounds a "
+         "hollow within another is listed too, though that is as it should be. Of each the first "
+         "are listed and all counted."},
 
     /* edits */
     {.method = "POST",

@@ -222,12 +222,27 @@ static const member answers[] = {
     {"defect", "kind", "#element_kind", REQUIRED, NULL},
     {"defect", "id", "id", REQUIRED, NULL},
     {"defect", "detail", "text", REQUIRED, NULL},
+    {"defect", "other", "id", OPTIONAL,
+     "The vertex in the same place, or the face it meets; of the same kind."},
+    {"defect", "value", "number", OPTIONAL,
+     "What was measured: a distance, length, width or diagonal, or a volume."},
+
+    {"thresholds", "merge", "number", REQUIRED, NULL},
+    {"thresholds", "flat", "number", REQUIRED, NULL},
+    {"thresholds", "small", "number", REQUIRED, NULL},
 
     {"check", "revision", "count", REQUIRED, NULL},
     {"check", "valid", "flag", REQUIRED, NULL},
     {"check", "problems", "*#broken", REQUIRED, "Broken invariants."},
     {"check", "defects", "*#defect", REQUIRED, "What a valid mesh may have, such as a bow-tie."},
-    {"check", "totals", "#totals", REQUIRED, "How many there are of each; 100 of each are listed."},
+    {"check", "totals", "#totals", REQUIRED,
+     "How many there are of each; the first 100 of each are listed. `self_intersection` is there "
+     "when it was asked for."},
+    {"check", "thresholds", "#thresholds", REQUIRED,
+     "The lengths that were gone by, given or taken from the box of the mesh. 0 when it is not "
+     "valid: then no defects are looked for."},
+    {"check", "complete", "flag", REQUIRED,
+     "False when there may be more self-intersections than were found within the limits."},
 
     {"sets", "vertices", "*id", REQUIRED, NULL},
     {"sets", "edges", "*id", REQUIRED, "Half-edges of edge e are 2e and 2e + 1."},
@@ -547,6 +562,7 @@ static const struct {
     {"job_state", "{\"enum\":[\"queued\",\"running\",\"done\",\"failed\",\"cancelled\"]}"},
     {"job_result", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/edited\"},"
                    "{\"$ref\":\"#/components/schemas/created\"},"
+                   "{\"$ref\":\"#/components/schemas/check\"},"
                    "{\"$ref\":\"#/components/schemas/summary\"}]}"},
     {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
