@@ -229,7 +229,7 @@ $(BUILD)/tests/bench/sides/$(1): $(call peer_objects,$(1)) $(call object,$(SIDE_
 endef
 $(foreach peer,$(PEERS),$(eval $(call PEER,$(peer))))
 
-$(BUILD)/tests/bench/sides/ours: $(call object,$(OURS_C) $(SIDE_C)) $(BUILD)/libapi.a $(BUILD)/libcore.a
+$(BUILD)/tests/bench/sides/ours: $(call object,$(OURS_C) $(SIDE_C)) $(LIBRARIES)
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)

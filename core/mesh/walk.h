@@ -59,6 +59,40 @@ static inline he_halfedge he_turn_ccw(const he_mesh *m, he_halfedge h)
     return he_twin(he_prev(m, h));
 }
 
+/* The one before it in that order. */
+static inline he_halfedge he_turn_cw(const he_mesh *m, he_halfedge h)
+{
+    return (he_halfedge){m->c.next[h.i ^ 1u]};
+}
+
+/* An edit in a random place of a large mesh waits for memory and for little else. These ask for the
+ * rows it will read all at once, so that it waits once and not for one after another. Any id may be
+ * given, and links may be dead. */
+static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
+{
+    if (h.i < 2u * m->c.edges.issued) {
+        __builtin_prefetch(&m->c.next[h.i], 1);
+        __builtin_prefetch(&m->c.prev[h.i], 1);
+        __builtin_prefetch(&m->c.origin[h.i], 1);
+        __builtin_prefetch(&m->c.face[h.i], 1);
+    }
+}
+/* The half-edges before and after the two of an edge, its ends and its faces. */
+static inline void he_prefetch_about(const he_mesh *m, he_edge e)
+{
+    for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {
+        he_prefetch_links(m, (he_halfedge){m->c.next[h]});
+        he_prefetch_links(m, (he_halfedge){m->c.prev[h]});
+        if (m->c.face[h] < m->c.faces.issued) {
+            __builtin_prefetch(&m->c.face_halfedge[m->c.face[h]], 1);
+        }
+        if (m->c.origin[h] < m->c.vertices.issued) {
+            __builtin_prefetch(&m->c.vertex_halfedge[m->c.origin[h]], 1);
+            __builtin_prefetch(&m->c.position[m->c.origin[h]], 1);
+        }
+    }
+}
+
 static inline bool he_is_none(uint32_t id)
 {
     return id == HE_NONE;
