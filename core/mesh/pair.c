@@ -206,12 +206,17 @@ he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_re
     for (size_t c = 0; c < soup->corner_count; c++) {
         mate[c] = HE_NONE;
     }
+    enum { AHEAD = 24 };
     pairing p = {soup, mate, 0, report, total};
     for (size_t v = 0; v < vertices; v++) {
         uint32_t begin = starts[v], end = starts[v + 1];
         status = he_watch_at(soup->limits.watch, v + 2 * vertices, 3 * vertices, err);
         if (status != HE_OK) {
             goto out;
+        }
+        /* Where ids are in no order the mates are far apart: ask for them in time. */
+        for (uint32_t i = begin; i < end && soup->corner_count - i > AHEAD; i++) {
+            __builtin_prefetch(&mate[entries[i + AHEAD].corner], 1);
         }
         if (end - begin <= SMALL_BUCKET) {
             pair_small(&p, (uint32_t)v, entries + begin, end - begin);
