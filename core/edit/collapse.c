@@ -133,6 +133,7 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
         return status;
     }
     he_prefetch_about(m, he_edge_of(h));
+    he_prefetch_ends(m, he_edge_of(h));
     he_halfedge t = he_twin(h);
     he_vertex u = he_origin(m, h), v = he_target(m, h);
     if (he_is_boundary_vertex(m, u) && he_is_boundary_vertex(m, v) &&

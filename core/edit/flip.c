@@ -61,7 +61,7 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    he_halfedge joined = he_find_halfedge(m, c, d);
+    he_halfedge joined = he_find_halfedge_from(m, he_next(m, he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
                        "edge %u already joins vertices %u and %u", he_edge_of(joined).i, c.i, d.i);

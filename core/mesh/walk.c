@@ -44,12 +44,6 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
     return fans == 0 ? 1 : fans;
 }
 
-he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b)
-{
-    uint64_t steps = 0;
-    return he_find_halfedge_counted(m, a, b, &steps);
-}
-
 /* A ring is turned about both ways at once, half of it each: where links come from memory one after
  * another that takes half the time. Has all of it been seen? */
 static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
@@ -65,15 +59,16 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
     return false;
 }
 
-he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps)
+/* Rounds about the first vertex before the second one's ring is looked at too, which is as far away
+ * in memory and seldom needed. */
+enum { ALONE = 8 };
+
+static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b, uint64_t *steps)
 {
-    he_halfedge none = {HE_NONE};
-    if (he_is_isolated(m, a) || he_is_isolated(m, b)) {
-        return none;
-    }
-    he_halfedge up = he_vertex_halfedge(m, a), down = he_turn_cw(m, up);
-    he_halfedge up_b = he_vertex_halfedge(m, b), down_b = he_turn_cw(m, up_b);
-    do {
+    const he_halfedge none = {HE_NONE};
+    he_vertex a = he_origin(m, leaving);
+    he_halfedge up = leaving, down = he_turn_cw(m, up), up_b = none, down_b = none;
+    for (uint32_t round = 0;; round++) {
         *steps += 2;
         if (he_target(m, up).i == b.i) {
             return up;
@@ -81,12 +76,46 @@ he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b,
         if (he_target(m, down).i == b.i) {
             return down;
         }
+        if (meet(m, &up, &down)) {
+            return none;
+        }
+        if (round < ALONE) {
+            continue;
+        }
+        if (round == ALONE) {
+            up_b = he_vertex_halfedge(m, b);
+            if (up_b.i == HE_NONE) {
+                return none;
+            }
+            down_b = he_turn_cw(m, up_b);
+        }
+        *steps += 2;
         if (he_target(m, up_b).i == a.i) {
             return he_twin(up_b);
         }
         if (he_target(m, down_b).i == a.i) {
             return he_twin(down_b);
         }
-    } while (!meet(m, &up, &down) && !meet(m, &up_b, &down_b));
-    return none;
+        if (meet(m, &up_b, &down_b)) {
+            return none;
+        }
+    }
+}
+
+he_halfedge he_find_halfedge_from(const he_mesh *m, he_halfedge leaving, he_vertex to)
+{
+    uint64_t steps = 0;
+    return find_from(m, leaving, to, &steps);
+}
+
+he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b)
+{
+    uint64_t steps = 0;
+    return he_find_halfedge_counted(m, a, b, &steps);
+}
+
+he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps)
+{
+    return he_is_isolated(m, a) ? (he_halfedge){HE_NONE}
+                                : find_from(m, he_vertex_halfedge(m, a), b, steps);
 }
