@@ -19,7 +19,6 @@ static FILE *open_file(const bench_side *side, const char *name, const char *mod
         fprintf(stderr, "%s cannot be opened\n", path);
         exit(1);
     }
-    setvbuf(file, NULL, _IONBF, 0);
     return file;
 }
 
