@@ -219,15 +219,16 @@ static he_status visit_edges(pairing *p, he_error *err)
         goto out;
     }
     enum { AHEAD = 24 };
+    const uint32_t *written = p->mate != NULL ? p->mate : p->edge;
     for (size_t v = 0; v < vertices; v++) {
         uint32_t begin = starts[v], end = starts[v + 1];
         status = he_watch_at(soup->limits.watch, v + 2 * vertices, 3 * vertices, err);
         if (status != HE_OK) {
             goto out;
         }
-        /* Where ids are in no order the mates are far apart: ask for them in time. */
+        /* Where ids are in no order what is written lies far apart: ask for it in time. */
         for (uint32_t i = begin; i < end && soup->corner_count - i > AHEAD; i++) {
-            __builtin_prefetch(&mate[entries[i + AHEAD].corner], 1);
+            __builtin_prefetch(&written[entries[i + AHEAD].corner], 1);
         }
         if (end - begin <= SMALL_BUCKET) {
             pair_small(p, (uint32_t)v, entries + begin, end - begin);
