@@ -24,6 +24,13 @@ async function run(program, words) {
     return stdout;
 }
 
+// The shell lines that have this in them.
+function shellWith(text, url) {
+    const found = blocks('sh', url).filter((code) => code.includes(text));
+    assert.equal(found.length, 1, text);
+    return found[0];
+}
+
 // The comment at the end of the line that prints.
 function promised(code, mark) {
     const [, text] = new RegExp(`^(?:print|console\\.log)\\(.*${mark} (.*)$`, 'm').exec(code);
@@ -32,7 +39,7 @@ function promised(code, mark) {
 
 test('the curl lines work as pasted', async (t) => {
     const { url } = await startDaemon(t);
-    const [block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const block = shellWith('halfedges/0', url);
     const lines = block.replaceAll('\\\n', '').split('\n');
     const commands = lines.filter((line) => line !== '' && !line.startsWith('#'));
     assert.equal(commands.length, 7);
@@ -58,7 +65,7 @@ test('the curl lines work as pasted', async (t) => {
 
 test('the lines about repairs work as pasted', async (t) => {
     const { url } = await startDaemon(t);
-    const [, block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const block = shellWith('repair=split', url);
     const [refused, made] = (await run('sh', ['-ec', block.replaceAll('curl ', 'echo; curl -s ')]))
         .trim()
         .split('\n')
@@ -70,7 +77,7 @@ test('the lines about repairs work as pasted', async (t) => {
 
 test('the lines about jobs work as pasted', async (t) => {
     const { url } = await startDaemon(t);
-    const [, , block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const block = shellWith('respond-async', url);
     const printed = await run('sh', ['-ec', block]);
     assert.match(printed, /^event: job$/m);
     assert.match(printed, /^event: bye$/m);
@@ -81,7 +88,7 @@ test('the lines about jobs work as pasted', async (t) => {
 
 test('the lines about codings work as pasted', async (t) => {
     const { url } = await startDaemon(t);
-    const [, , block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const block = shellWith('Content-Encoding: gzip', url);
     const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
     t.after(() => rm(folder, { recursive: true }));
     await fetch(`${url}/v1/meshes/kite`, {
