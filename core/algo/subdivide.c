@@ -6,8 +6,7 @@
 
 #include <string.h>
 
-/* --- sizes ---------------------------------------------------------------------------------------
- */
+/* --- sizes --- */
 
 /* What steps need to know of the mesh they begin with. */
 typedef struct start {
@@ -175,19 +174,14 @@ static uint64_t rows_of(const he_sizes *s)
 }
 
 /* Sizes after each step, unless they are too many. A step at most multiplies them by seven, so that
- * what is small enough for ids fits before and after it. */
+ * 64 bits hold what the last of them comes to; and what is within the limit has ids. */
+_Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS, "a limit within the ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
                           he_error *err)
 {
     he_sizes s = *first;
     for (unsigned i = 0; i < steps; i++) {
         s = after(s, scheme, cuts_in_three(scheme, i));
-        if (s.vertices > HE_MAX_ROWS || s.edges > HE_MAX_ROWS || s.faces > HE_MAX_ROWS) {
-            return he_fail_plain(err, HE_IDS_EXHAUSTED,
-                                 "step %u would come to %llu edges and %llu faces, over %u ids",
-                                 i + 1, (unsigned long long)s.edges, (unsigned long long)s.faces,
-                                 HE_MAX_ROWS);
-        }
         if (rows_of(&s) > HE_SUBDIVIDE_ROWS) {
             return he_fail_plain(
                 err, HE_LIMIT, "step %u would come to %llu vertices, edges and faces, over %llu",
@@ -198,8 +192,7 @@ static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned step
     return HE_OK;
 }
 
-/* --- what is locked ------------------------------------------------------------------------------
- */
+/* --- what is locked --- */
 
 static he_status require_unlocked(const he_mesh *m, const start *at, he_error *err)
 {
@@ -223,8 +216,7 @@ static he_status require_unlocked(const he_mesh *m, const start *at, he_error *e
     return status;
 }
 
-/* --- a step --------------------------------------------------------------------------------------
- */
+/* --- a step --- */
 
 static void clear_step(he_step *s)
 {

@@ -42,8 +42,7 @@ he_status he_step_reserve_parents(he_step *s, he_error *err)
                 : he_fail_plain(err, HE_NO_MEMORY, "no memory to carry the attributes along");
 }
 
-/* --- numbers of any type -----------------------------------------------------------------------
- */
+/* --- numbers of any type --- */
 
 static double get(const he_column *column, size_t row, uint32_t component)
 {
@@ -105,8 +104,7 @@ static void put(he_column *column, size_t row, uint32_t component, double value)
     }
 }
 
-/* --- vertices ----------------------------------------------------------------------------------
- */
+/* --- vertices --- */
 
 /* Three components at a time are as good as positions. */
 static he_status smooth_column(const he_step *s, const he_column *from, he_column *to,
@@ -145,8 +143,7 @@ static he_status smooth_column(const he_step *s, const he_column *from, he_colum
     return status;
 }
 
-/* --- corners -----------------------------------------------------------------------------------
- */
+/* --- corners --- */
 
 static double mean_of_face(const he_step *s, const he_column *from, uint32_t first, uint32_t k)
 {
@@ -211,8 +208,7 @@ static he_status carry_corners(const he_step *s, const he_column *from, he_colum
     return status;
 }
 
-/* --- columns -----------------------------------------------------------------------------------
- */
+/* --- columns --- */
 
 static bool is_feature(const he_column *column)
 {

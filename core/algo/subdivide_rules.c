@@ -86,8 +86,7 @@ static uint32_t middle(const he_step *s, uint32_t e)
     return s->from->vertices.issued + he_step_edge_rank(s, e);
 }
 
-/* --- edges, by scheme: the sums of both ends, and the vertices on the edge ---------------------
- */
+/* --- edges, by scheme: the sums of both ends, and the vertices on the edge --- */
 
 static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
@@ -162,8 +161,7 @@ static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
     }
 }
 
-/* --- vertices ----------------------------------------------------------------------------------
- */
+/* --- vertices --- */
 
 static he_status move_vertices(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
 {
@@ -253,8 +251,7 @@ static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_e
     return status;
 }
 
-/* --- numbers near the end of their range -------------------------------------------------------
- */
+/* --- numbers near the end of their range --- */
 
 /* Sums of so many times this still fit. */
 static const double LARGE = 1e290;
@@ -266,11 +263,12 @@ static double within_doubles(double x)
 
 static bool is_large(const he_vec3 *p, uint32_t count)
 {
-    double most = 0;
+    bool large = false;
     for (uint32_t i = 0; i < count; i++) {
-        most = fmax(most, fmax(fabs(p[i].x), fmax(fabs(p[i].y), fabs(p[i].z))));
+        large |= p[i].x > LARGE || p[i].x < -LARGE || p[i].y > LARGE || p[i].y < -LARGE ||
+                 p[i].z > LARGE || p[i].z < -LARGE;
     }
-    return most > LARGE;
+    return large;
 }
 
 he_status he_step_place(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)

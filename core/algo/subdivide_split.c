@@ -85,24 +85,26 @@ static void cut_polygon(const he_step *s, uint32_t f, uint32_t first_halfedge, f
         count++;
     } while (h != first_halfedge);
     uint32_t before = 2 * (at->edge + count - 1), centre_halfedge = 2 * at->edge + 1;
+    uint32_t hi = second(s, p), m = middle(s, p);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t part = i == 0 ? f : at->face + i - 1, in = 2 * (at->edge + i);
-        uint32_t lo = first(s, h), hi = second(s, p);
+        uint32_t lo = first(s, h), next_m = middle(s, h), next = from->next[h];
         he_step_set(to, lo, in, hi, from->origin[h], part);
-        he_step_set(to, in, before + 1, lo, middle(s, h), part);
+        he_step_set(to, in, before + 1, lo, next_m, part);
         he_step_set(to, before + 1, hi, in, at->vertex, part);
-        he_step_set(to, hi, lo, before + 1, middle(s, p), part);
+        he_step_set(to, hi, lo, before + 1, m, part);
         to->face_halfedge[part] = lo;
         if (s->corner_from != NULL) {
-            note_corner(s, h, from->next[h]);
-            s->corner_from[in] = (he_corner_source){h, from->next[h], HE_FROM_MIDDLE};
+            note_corner(s, h, next);
+            s->corner_from[in] = (he_corner_source){h, next, HE_FROM_MIDDLE};
             s->corner_from[in + 1] =
                 i == 0 ? (he_corner_source){h, HE_NONE, HE_FROM_FACE}
                        : (he_corner_source){centre_halfedge, HE_NONE, HE_FROM_NEW};
         }
         before = in;
-        p = h;
-        h = from->next[h];
+        hi = second(s, h);
+        m = next_m;
+        h = next;
     }
     to->vertex_halfedge[at->vertex] = centre_halfedge;
     note_faces(s, f, at->face, count - 1);
