@@ -66,9 +66,10 @@ typedef struct he_step_counts {
 /* `steps` of a scheme, 1 to HE_SUBDIVIDE_STEPS, as one replace that keeps ids (write.h). `counts`
  * (which may be NULL) has room for `steps` of them.
  *
- * Refused: HE_LIMIT when there would be more than HE_SUBDIVIDE_ROWS, before memory is taken; HE_NOT_TRIANGLE naming a face, by loop and sqrt3; HE_DOUBLED_EDGE naming
- * an edge of two triangles with the same three corners, by all but catmull_clark; HE_LOCKED_ELEMENT
- * naming an edge that sqrt3 would flip, or a face beside one. HE_NO_MEMORY, HE_CANCELLED. */
+ * Refused: HE_LIMIT when there would be more than HE_SUBDIVIDE_ROWS, before memory is taken;
+ * HE_NOT_TRIANGLE naming a face, by loop and sqrt3; HE_DOUBLED_EDGE naming an edge of two triangles
+ * with the same three corners, by all but catmull_clark; HE_LOCKED_ELEMENT naming an edge that
+ * sqrt3 would flip, or a face beside one. HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps,
                                     he_step_counts *counts, he_error *err);
 

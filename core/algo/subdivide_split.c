@@ -134,8 +134,7 @@ static he_status cut_face(const he_step *s, uint32_t f, fresh *at, he_error *err
         cut_polygon(s, f, h[0], at);
         return HE_OK;
     }
-    uint32_t beside = from->face[h[0] ^ 1];
-    if (beside != HE_NONE && beside == from->face[h[1] ^ 1]) {
+    if (he_step_is_doubled(from, h[0] ^ 1, h[1])) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h[0] >> 1,
                        "the middles of edges %u and %u would be joined twice", h[0] >> 1,
                        h[1] >> 1);

@@ -255,11 +255,10 @@ static he_status find_places(he_step *s, he_error *err)
             return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
                            "face %u is no triangle, and sqrt3 is for triangles", f);
         }
-        uint32_t beside = from->face[h ^ 1];
-        if (beside != HE_NONE && beside == from->face[n ^ 1]) {
+        if (he_step_is_doubled(from, h ^ 1, n)) {
             return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h >> 1,
-                           "faces %u and %u would be joined across edges %u and %u", f, beside,
-                           h >> 1, n >> 1);
+                           "faces %u and %u would be joined across edges %u and %u", f,
+                           from->face[h ^ 1], h >> 1, n >> 1);
         }
         bool cut = s->third[h >> 1] != HE_NONE || s->third[n >> 1] != HE_NONE ||
                    s->third[last >> 1] != HE_NONE;

@@ -79,6 +79,13 @@ static inline bool he_step_is_sharp(const he_step *s, uint32_t e)
            (s->feature != NULL && he_bits_get(s->feature, e));
 }
 
+/* Is the face of h another triangle on the same three vertices as the one of its twin, whose next
+ * half-edge is `after`? */
+static inline bool he_step_is_doubled(const he_content *from, uint32_t h, uint32_t after)
+{
+    uint32_t f = from->face[h];
+    return f != HE_NONE && f == from->face[after ^ 1] && from->next[from->next[from->next[h]]] == h;
+}
 static inline void he_step_set(he_content *to, uint32_t h, uint32_t next, uint32_t prev,
                                uint32_t origin, uint32_t face)
 {
