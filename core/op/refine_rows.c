@@ -27,10 +27,11 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* Each step makes four of one, or three. */
+/* Each step makes four of one, or three. What is no number of steps is refused at once. */
 static double subdivide_growth(const he_arg *args)
 {
-    return pow(args[0].choice == HE_SQRT3 ? 3 : 4, args[1].number);
+    double steps = args[1].number;
+    return steps != floor(steps) ? 1 : pow(args[0].choice == HE_SQRT3 ? 3 : 4, steps);
 }
 
 /* In the order of he_scheme. */
