@@ -559,6 +559,34 @@ static void undo_is_one_step_and_issues_no_id_again(void **state)
     he_mesh_free(m);
 }
 
+static void making_ready_for_undo_may_lack_memory(void **state)
+{
+    (void)state;
+    bool failed = true;
+    for (unsigned n = 1; failed; n++) {
+        he_mesh *m = wheel(6, false), *before = copy_of(m);
+        he_delta *delta = he_delta_new();
+        he_mesh_record(m, delta);
+        subdivide(m, HE_CATMULL_CLARK, 2);
+        he_mesh_record(m, NULL);
+        he_mesh *after = copy_of(m);
+        fail_allocation(n);
+        he_status status = he_delta_ready(delta, m, NULL);
+        failed = allocation_failed();
+        fail_allocation(0);
+        assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);
+        assert_equal(m, after);
+        assert_int_equal(he_delta_ready(delta, m, NULL), HE_OK);
+        he_delta_undo(delta, m);
+        assert_valid(m);
+        assert_true(he_mesh_equal_live(m, before));
+        he_delta_free(delta);
+        he_mesh_free(after);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
 static unsigned told;
 static double last;
 
@@ -630,6 +658,7 @@ int main(void)
         cmocka_unit_test(corners_of_flipped_triangles_are_of_their_face),
         cmocka_unit_test(old_ids_name_the_parts_at_their_origin),
         cmocka_unit_test(undo_is_one_step_and_issues_no_id_again),
+        cmocka_unit_test(making_ready_for_undo_may_lack_memory),
         cmocka_unit_test(it_can_be_given_up_wherever_it_tells),
         cmocka_unit_test(coordinates_as_large_as_doubles_get_stay_finite),
     };
