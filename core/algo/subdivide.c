@@ -270,7 +270,7 @@ static void count_edges(he_step *s)
             note_sharp(s, b);
         }
     }
-    for (uint32_t v = 0; v < s->fixed_count && s->fixed != NULL; v++) {
+    for (uint32_t v = 0; v < s->fixed_count && s->fixed != NULL && s->sharp != NULL; v++) {
         if (he_bits_get(s->fixed, v)) {
             s->sharp[v] = 3;
         }

@@ -247,7 +247,8 @@ static void a_flat_grid_stays_flat_and_regular(void **state)
     for (unsigned s = 0; s < SCHEMES; s++) {
         he_vec3 p[9];
         for (unsigned i = 0; i < 9; i++) {
-            p[i] = (he_vec3){i % 3, (double)(i / 3), 0};
+            unsigned row = i / 3;
+            p[i] = (he_vec3){i % 3, row, 0};
         }
         he_mesh *m = script_mesh(GRID, p);
         subdivide(m, schemes[s], 2);
