@@ -250,7 +250,9 @@ const api_member api_answer_members[] = {
     {"edited", "modified", "#sets", REQUIRED, "Live before and after, with another link or value."},
     {"edited", "parents", "#parents", REQUIRED, NULL},
     {"edited", "merged", "#merged", REQUIRED, NULL},
-    {"edited", "replaced", "flag", OPTIONAL, "All ids are new; `results` has the maps."},
+    {"edited", "replaced", "flag", OPTIONAL,
+     "The content as a whole: the sets are empty. By compact all ids are new, and `results` has "
+     "the maps; by all else they mean what they did."},
     {"edited", "undoable", "flag", OPTIONAL,
      "Only when false: the edit is larger than the undo budget, or a compact. It cannot be undone, "
      "and neither can what came before."},
