@@ -47,16 +47,22 @@ he_status he_pool_name(he_pool *pool, size_t corner, uint32_t value, he_error *e
     return HE_OK;
 }
 
-size_t he_pool_first_bad(const he_pool *pool)
+size_t he_pool_next_bad(const he_pool *pool, size_t corner)
 {
     if (pool->named == 0 || pool->highest < pool->count) {
         return SIZE_MAX;
     }
-    size_t corner = 0;
-    while (pool->of.ids[corner] == HE_NONE || pool->of.ids[corner] < pool->count) {
+    const he_ids *of = &pool->of;
+    while (corner < of->count && (of->ids[corner] == HE_NONE || of->ids[corner] < pool->count)) {
         corner++;
     }
-    return corner;
+    return corner < of->count ? corner : SIZE_MAX;
+}
+
+void he_pool_forget(he_pool *pool, size_t corner)
+{
+    pool->of.ids[corner] = HE_NONE;
+    pool->named--;
 }
 
 static bool has_third(const he_pool *pool)
