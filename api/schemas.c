@@ -79,9 +79,13 @@ static const member answers[] = {
     {"import", "format", "text", REQUIRED, NULL},
     {"import", "vertices", "count", REQUIRED, NULL},
     {"import", "faces", "count", REQUIRED, NULL},
+    {"import", "attributes", "*#attribute_read", OPTIONAL, "Those the body has, if any."},
     {"import", "repairs", "*#repair", REQUIRED, "What was asked for, in the order it was done."},
     {"import", "warnings", "*#warning", REQUIRED, NULL},
     {"import", "more_warnings", "count", OPTIONAL, "How many are not listed."},
+
+    {"attribute_read", "domain", "#domain", REQUIRED, NULL},
+    {"attribute_read", "name", "text", REQUIRED, NULL},
 
     {"warning", "code", "text", REQUIRED, NULL},
     {"warning", "detail", "text", REQUIRED, NULL},

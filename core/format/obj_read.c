@@ -396,6 +396,22 @@ static he_status check_indices(obj *o, he_error *err)
     return HE_OK;
 }
 
+static he_status note_unused(obj *o, he_error *err)
+{
+    size_t uvs = 0, normals = 0;
+    he_status status = he_pool_unused(&o->uv, &uvs, err);
+    if (status == HE_OK) {
+        status = he_pool_unused(&o->normal, &normals, err);
+    }
+    if (status == HE_OK) {
+        he_notes_add_count(&o->into->notes, "unused_uv",
+                           "ignored: texture coordinates that no corner has", uvs);
+        he_notes_add_count(&o->into->notes, "unused_normal", "ignored: normals that no corner has",
+                           normals);
+    }
+    return status;
+}
+
 static void note_partial(obj *o, size_t with, size_t all, const char *code, const char *text)
 {
     if (with > 0) {
@@ -426,7 +442,10 @@ static he_status obj_finish(void *state, he_error *err)
                  "set to 0: corners without a normal");
     note_partial(o, o->colors.given, soup->vertex_count, "vertices_without_color",
                  "set to 0: vertices without a colour");
-    status = he_pool_finish(&o->uv, soup, "uv", 2, err);
+    status = note_unused(o, err);
+    if (status == HE_OK) {
+        status = he_pool_finish(&o->uv, soup, "uv", 2, err);
+    }
     if (status == HE_OK) {
         status = he_pool_finish(&o->normal, soup, "normal", 3, err);
     }

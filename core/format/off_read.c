@@ -164,9 +164,10 @@ static he_status read_edge_count(off *o, const he_line *line, const char **p, bo
     if (!same_line && !is_last_token(line, *p)) {
         return HE_OK;
     }
-    double number;
     bool finite;
-    he_status status = he_token_any_number(line, p, &number, &finite, err);
+    he_import *into = o->into;
+    he_status status = he_token_any_number(line, p, &into->edges, &finite, err);
+    into->edges_line = line->number;
     if (status == HE_OK && !he_at_end(he_skip_blanks(*p, line->end), line->end)) {
         return he_token_fail(err, HE_SYNTAX, line, he_skip_blanks(*p, line->end),
                              "follows the three counts");

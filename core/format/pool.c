@@ -65,6 +65,25 @@ void he_pool_forget(he_pool *pool, size_t corner)
     pool->named--;
 }
 
+he_status he_pool_unused(const he_pool *pool, size_t *out, he_error *err)
+{
+    uint64_t *used = he_bits_new(pool->count + 1);
+    if (used == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu bits", pool->count);
+    }
+    size_t unused = pool->count;
+    for (size_t c = 0; c < pool->of.count; c++) {
+        uint32_t value = pool->of.ids[c];
+        if (value != HE_NONE && !he_bits_get(used, value)) {
+            he_bits_set(used, value);
+            unused--;
+        }
+    }
+    he_mem_free(used);
+    *out = unused;
+    return HE_OK;
+}
+
 static bool has_third(const he_pool *pool)
 {
     for (size_t c = 0; c < pool->of.count; c++) {

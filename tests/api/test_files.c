@@ -191,6 +191,51 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
     bench_free(b);
 }
 
+static const char *warning(const cJSON *report, int i)
+{
+    const cJSON *item = cJSON_GetArrayItem(cJSON_GetObjectItem(report, "warnings"), i);
+    return item == NULL ? "" : cJSON_GetObjectItem(item, "code")->valuestring;
+}
+
+/* The edges of a file are only counted when they are made, and a repair may make others. */
+static void a_report_says_what_was_read_and_what_was_not(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *target, *edges, *warning;
+    } rows[] = {
+        {"/v1/meshes?format=off", "3", ""},
+        {"/v1/meshes?format=off", "0", ""},
+        {"/v1/meshes?format=off", "", ""},
+        {"/v1/meshes?format=off", "1e300", "edge_count"},
+        {"/v1/meshes?format=off", "4", "edge_count"},
+        {"/v1/meshes?format=off&repair=weld", "4", ""},
+    };
+    static const char *const headers[] = {"Content-Type", "application/octet-stream", NULL};
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[200];
+        snprintf(
+            text, sizeof text,
+            "CNOFF\n3 1 %s\n0 0 0 0 0 1 1 2 3\n1 0 0 0 0 1 1 2 3\n0 1 0 0 0 1 1 2 3\n3 0 1 2\n",
+            rows[i].edges);
+        bench_reply r = bench_expect(201, bench_send(b, "POST", rows[i].target, headers, text));
+        const cJSON *report = cJSON_GetObjectItem(r.json, "import");
+        assert_string_equal(warning(report, 0), rows[i].warning);
+        assert_non_null(strstr(r.body,
+                               "\"attributes\":[{\"domain\":\"vertices\",\"name\":"
+                               "\"normal\"},{\"domain\":\"vertices\",\"name\":\"color\"}]"));
+        bench_reply_free(&r);
+    }
+    bench_reply r = bench_expect(201, bench_send(b, "POST", "/v1/meshes?format=obj", headers,
+                                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nf 1 2 3\n"));
+    const cJSON *report = cJSON_GetObjectItem(r.json, "import");
+    assert_string_equal(warning(report, 0), "unused_uv");
+    assert_null(cJSON_GetObjectItem(report, "attributes"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -199,6 +244,7 @@ int main(void)
         cmocka_unit_test(encodings_that_do_not_exist),
         cmocka_unit_test(a_wrong_file_names_its_place),
         cmocka_unit_test(gltf_is_read_and_what_is_outside_never),
+        cmocka_unit_test(a_report_says_what_was_read_and_what_was_not),
     };
     return cmocka_run_group_tests_name("files", tests, NULL, NULL);
 }
