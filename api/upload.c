@@ -7,6 +7,7 @@
 #include "mesh/walk.h"
 #include "query/topology.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Enough to tell any format by. */
@@ -26,7 +27,7 @@ typedef struct upload {
     api_document_in *document;
     he_reader *reader;
     const he_format *format; /* of the reader */
-    char head[SNIFF_BYTES];
+    char head[SNIFF_BYTES];  /* the first bytes of the body */
     size_t head_length;
 
     bool has_import;
@@ -103,13 +104,25 @@ bool api_upload_begin(api_exchange *x)
     return open_reader(x, u, format);
 }
 
+/* What was said to be of one format may be of another. */
+static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
+{
+    const he_format *looks = he_format_sniff(u->head, u->head_length);
+    size_t length = strlen(err->text);
+    if (looks != NULL && looks != u->format) {
+        snprintf(err->text + length, sizeof err->text - length,
+                 "; the body begins as one of the format %s does", looks->name);
+    }
+    return api_fail_core(x, err);
+}
+
 static bool feed(api_exchange *x, upload *u, const char *bytes, size_t length)
 {
     if (u->document != NULL) {
         return api_document_in_feed(u->document, bytes, length, &x->problem);
     }
     he_error err = {0};
-    return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || api_fail_core(x, &err);
+    return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || fail_reading(x, u, &err);
 }
 
 /* Choose a reader by what has arrived, and let it read that. */
@@ -125,8 +138,11 @@ static bool choose(api_exchange *x, upload *u)
         blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
     const he_format *format = json ? NULL : he_format_sniff(u->head, u->head_length);
     if (!json && (format == NULL || format->reading == NULL)) {
-        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE,
-                 "the first bytes are of no format this server reads: say ?format=");
+        bool wide = u->head_length >= 2 &&
+                    (memcmp(u->head, "\xFF\xFE", 2) == 0 || memcmp(u->head, "\xFE\xFF", 2) == 0);
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s",
+                 wide ? "the body is UTF-16: send it as UTF-8"
+                      : "the first bytes are of no format this server reads: say ?format=");
         x->problem.supported = x->route->consumes;
         return false;
     }
@@ -142,10 +158,10 @@ static bool is_open(const upload *u)
 bool api_upload_feed(api_exchange *x, const char *bytes, size_t length)
 {
     upload *u = x->state;
+    size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
+    memcpy(u->head + u->head_length, bytes, take);
+    u->head_length += take;
     if (!is_open(u)) {
-        size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
-        memcpy(u->head + u->head_length, bytes, take);
-        u->head_length += take;
         if (u->head_length < sizeof u->head) {
             return true;
         }
@@ -235,7 +251,7 @@ bool api_upload_end(api_exchange *x)
     }
     he_error err = {0};
     if (he_reader_finish(u->reader, &u->import, &err) != HE_OK) {
-        return api_fail_core(x, &err);
+        return fail_reading(x, u, &err);
     }
     u->has_import = true;
     return true;

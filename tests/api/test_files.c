@@ -236,6 +236,40 @@ static void a_report_says_what_was_read_and_what_was_not(void **state)
     bench_free(b);
 }
 
+/* The type or ?format= decides, ?format= before the type; a refusal says when the bytes look
+ * otherwise. */
+static void a_body_of_another_format_is_told(void **state)
+{
+    (void)state;
+    static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    static const char off[] = "OFF\n1 0 0\n0 0 0\n";
+    static const char wide[] = "\xFF\xFEv\x20";
+    static const struct {
+        const char *target, *type, *body;
+        int status;
+        const char *words;
+    } rows[] = {
+        {"/v1/meshes", "model/stl", obj, 400, "the body begins as one of the format obj does"},
+        {"/v1/meshes", "model/obj", off, 400, "the body begins as one of the format off does"},
+        {"/v1/meshes", "model/gltf-binary", off, 400, "begins as one of the format off does"},
+        {"/v1/meshes?format=ply", "model/obj", obj, 400, "begins as one of the format obj does"},
+        {"/v1/meshes?format=obj", "model/stl", obj, 201, "\"format\":\"obj\""},
+        {"/v1/meshes?format=obj", "application/json", obj, 201, "\"format\":\"obj\""},
+        {"/v1/meshes", "model/off", off, 415, "model/off"},
+        {"/v1/meshes", "application/octet-stream", wide, 415, "the body is UTF-16"},
+        {"/v1/meshes?format=obj", "application/octet-stream", wide, 422, "the text is UTF-16"},
+    };
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const char *const headers[] = {"Content-Type", rows[i].type, NULL};
+        bench_reply r = bench_send(b, "POST", rows[i].target, headers, rows[i].body);
+        r = bench_expect(rows[i].status, r);
+        assert_non_null(strstr(r.body, rows[i].words));
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -244,6 +278,7 @@ int main(void)
         cmocka_unit_test(encodings_that_do_not_exist),
         cmocka_unit_test(a_wrong_file_names_its_place),
         cmocka_unit_test(gltf_is_read_and_what_is_outside_never),
+        cmocka_unit_test(a_body_of_another_format_is_told),
         cmocka_unit_test(a_report_says_what_was_read_and_what_was_not),
     };
     return cmocka_run_group_tests_name("files", tests, NULL, NULL);

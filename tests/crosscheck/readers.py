@@ -268,13 +268,35 @@ def make_gltf(r):
     return g, data
 
 
-def pack_glb(g, data):
+def pack_glb(g, data, r):
+    """The container, one in four times with something unusual about it."""
+    what = r.randrange(16) if r.random() < 0.25 else -1
     text = json.dumps(g).encode()
-    text += b' ' * (-len(text) % 4)
-    data += b'\0' * (-len(data) % 4)
-    return (struct.pack('<4sII', b'glTF', 2, 28 + len(text) + len(data)) +
-            struct.pack('<I4s', len(text), b'JSON') + text +
-            struct.pack('<I4s', len(data), b'BIN\0') + data)
+    if what == 0:
+        text = b'\xef\xbb\xbf' + text
+    text += (b'\0' if what == 1 else b' ') * (-len(text) % 4 + (4 if what == 2 else 0))
+    data += b'\0' * (-len(data) % 4 + r.choice([0, 0, 0, 4]))
+    chunks = [(b'JSON', text), (b'BIN\0', data)]
+    if what in (3, 4, 5):
+        chunks.insert(what - 3, r.choice([(b'XTRA', b'abcd'), (b'BIN\0', b''), (b'JSON', b'{}  ')]))
+    elif what == 6:
+        chunks.reverse()
+    elif what in (7, 8):
+        del chunks[what - 7]
+    elif what == 9:
+        chunks[1] = (b'BIN\0', data[:-r.choice([1, 4])])
+    body = b''
+    for i, (kind, bytes_) in enumerate(chunks):
+        wrong = r.choice([-4, -1, 1, 4, 2**31]) if what == 10 + i else 0
+        body += struct.pack('<I4s', (len(bytes_) + wrong) % 2**32, kind) + bytes_
+    whole = 12 + len(body) + (r.choice([-4, -1, 1, 4, -12]) if what == 12 else 0)
+    version = r.choice([0, 1, 3]) if what == 13 else 2
+    out = struct.pack('<4sII', b'glTF', version, whole) + body
+    if what == 14:
+        out += b'\0' * r.choice([1, 4, 8])
+    elif what == 15:
+        out = out[:r.randrange(len(out))]
+    return out
 
 
 def change_json(g, r):
@@ -307,7 +329,7 @@ def make_glb(r):
     g, data = make_gltf(r)
     for _ in range(r.choice([0, 0, 1, 1, 2])):
         change_json(g, r)
-    return pack_glb(g, data)
+    return pack_glb(g, data, r)
 
 
 def make_gltf_file(r):
@@ -461,6 +483,7 @@ KNOWN = [
     ('off', 'reference', 'short-face|bad-counts', 'what is on a line means nothing'),
     ('off', 'daemon', "no vertex -0|'-0' is not a count", 'a number that nobody writes'),
     ('ply', 'reference', 'extra row', 'elements that nobody wants are passed over'),
+    ('ply', 'reference', 'no end_header', 'blanks may stand before it'),
     ('ply', 'reference', 'bad-header', 'other white space, and other letters than ASCII'),
     ('ply', 'daemon', 'is not of its type', 'a value that its type cannot hold'),
     ('stl', 'reference', 'file ends inside a facet', 'two words on a line'),
