@@ -71,6 +71,11 @@ HE_NODISCARD he_status he_components_find(const he_mesh *m, he_joined by, he_com
                                           he_error *err);
 void he_components_clear(he_components *components);
 
+/* The component by edge of each face ever issued, HE_NONE where it is dead, and how many there are:
+ * numbered from 0 by rising lowest face. The array is the caller's to free. */
+HE_NODISCARD he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *count,
+                                           he_error *err);
+
 /* Append the vertices of two fans or more, by rising id. */
 HE_NODISCARD he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err);
 
