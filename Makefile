@@ -81,8 +81,8 @@ PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs test lint format asan tsan coverage proof bench bench-http \
-        bench-events bench-large bench-space container screenshot install clean
+.PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof bench \
+        bench-http bench-events bench-large bench-space container screenshot install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -107,6 +107,9 @@ $(STAMPS)/test: .ci/deps | $(STAMPS)/web
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/bench: .ci/deps | $(STAMPS)/build
 	@sh .ci/deps bench
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/crosscheck: .ci/deps | $(STAMPS)/test
+	@sh .ci/deps crosscheck
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/lint: .ci/deps | $(STAMPS)/test
 	@sh .ci/deps lint
@@ -193,6 +196,16 @@ coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
 	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web install,$(TESTS))" TEST_SECONDS=900 test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
+
+# CHECK_FLAGS="--files 100000 --only ply" for a longer look; SEED=... repeats a run.
+crosscheck: $(HEDGED) $(BUILD)/tests/crosscheck/peers ## readers and writers beside assimp, OpenMesh, CGAL and the corpus' reader
+	@python3 -B tests/crosscheck/run.py --hedged $(abspath $(HEDGED)) \
+	    --peers $(BUILD)/tests/crosscheck/peers $(CHECK_FLAGS)
+
+$(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cpp | $(STAMPS)/crosscheck
+	@mkdir -p $(@D)
+	@echo "CXX $<"
+	$(Q)g++ -std=c++17 -O0 -w -o $@ $< -lOpenMeshCore -lgmp -lmpfr
 
 # The long versions of what .ci/run does once.
 ROUNDS ?= 10

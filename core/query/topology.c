@@ -496,11 +496,11 @@ he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err)
         he_topology_clear(&t);
         return status;
     }
-    t.closed = t.boundary_halfedges == 0;
-    t.manifold = t.bowties == 0;
+    t.closed = t.faces > 0 && t.boundary_halfedges == 0;
+    t.manifold = t.faces > 0 && t.bowties == 0;
     t.euler = (int64_t)used - (int64_t)t.edges + (int64_t)t.faces;
     int64_t twice = 2 * (int64_t)t.components - t.euler - (int64_t)t.boundary_loops;
-    t.has_genus = t.manifold && twice >= 0 && twice % 2 == 0;
+    t.has_genus = t.bowties == 0 && twice >= 0 && twice % 2 == 0;
     t.genus = t.has_genus ? twice / 2 : 0;
     *out = t;
     return HE_OK;

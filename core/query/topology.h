@@ -29,8 +29,8 @@ typedef struct he_topology {
     uint32_t components, components_by_edge;
     int64_t euler, genus;
     bool has_genus;
-    bool closed;              /* no boundary half-edge; true of a mesh without faces */
-    bool manifold;            /* no bow-tie */
+    bool closed;              /* no boundary half-edge; false of a mesh without faces */
+    bool manifold;            /* no bow-tie; false of a mesh without faces */
     he_degree_count *degrees; /* by rising degree, none with 0 faces */
     size_t degree_count;
 } he_topology;
