@@ -1,6 +1,6 @@
 # hedge - everything is done from here; `make help` lists the targets.
 #
-# A configuration is a build folder: release in build/, asan, tsan and coverage in build/NAME.
+# A configuration is a build folder: release in build/, asan, tsan, coverage and fuzz in build/NAME.
 # Sources are found by pattern, so a new file needs no line here. What must be installed is checked
 # by .ci/deps before the first compilation; pkg-config therefore runs inside recipes only.
 
@@ -21,7 +21,7 @@ endif
 
 # V=1 shows the commands whole.
 Q        := $(if $(V),,@)
-CC       := gcc
+CC       := $(if $(filter fuzz,$(CONFIG)),clang,gcc)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes \
             -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
@@ -49,8 +49,13 @@ LDFLAGS += $(SANITIZE)
 else ifeq ($(CONFIG),coverage)
 CFLAGS  += -O0 --coverage -fprofile-update=atomic
 LDFLAGS += --coverage
+else ifeq ($(CONFIG),fuzz)
+SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+# clang has other warnings than gcc, to which the sources keep.
+CFLAGS  += -O1 $(SANITIZE) -fsanitize=fuzzer-no-link -w
+LDFLAGS += $(SANITIZE) -fsanitize=fuzzer
 else
-$(error CONFIG is release, asan, tsan or coverage, not "$(CONFIG)")
+$(error CONFIG is release, asan, tsan, coverage or fuzz, not "$(CONFIG)")
 endif
 
 # --- what there is -------------------------------------------------------------------------
@@ -63,22 +68,27 @@ SUITES     := unit model api e2e
 PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
 SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
                 $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
+FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+# What all targets are linked with; libFuzzer brings its own main program.
+FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
+                $(wildcard tests/fuzz/*.c)))
 BENCH_C    := $(sort $(wildcard tests/bench/*.c))
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h))
 ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
-              $(BENCH_C) $(HTTP_C)
+              $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C)
 
 LIBRARIES  := $(BUILD)/libserver.a $(BUILD)/libapi.a $(BUILD)/libcore.a
 HEDGED     := $(BUILD)/hedged
 PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
+TARGETS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
 BENCHES    := $(patsubst %.c,$(BUILD)/%,$(BENCH_C))
 PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs test lint format asan tsan coverage proof bench bench-http \
-        bench-events bench-large container screenshot install clean
+.PHONY: all help run page programs test lint format asan tsan coverage proof fuzz targets bench \
+        bench-http bench-events bench-large container screenshot install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -103,6 +113,9 @@ $(STAMPS)/test: .ci/deps | $(STAMPS)/web
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/bench: .ci/deps | $(STAMPS)/build
 	@sh .ci/deps bench
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/fuzz: .ci/deps | $(STAMPS)/test
+	@sh .ci/deps fuzz
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/lint: .ci/deps | $(STAMPS)/test
 	@sh .ci/deps lint
@@ -141,6 +154,12 @@ $(PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/libsupport.a $(LIBRARIES) | $
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
 
+$(TARGETS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) $(BUILD)/libsupport.a \
+            $(LIBRARIES) | $(STAMPS)/test
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
+
 $(BENCHES): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
 	@mkdir -p $(@D)
 	@echo "LD $@"
@@ -163,23 +182,24 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 # --- tests ---------------------------------------------------------------------------------
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
 
-TESTS   ?= $(SUITES) web install
+TESTS   ?= $(SUITES) fuzz web install
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web,$(TESTS))
+WITH_FUZZ = $(filter fuzz,$(TESTS))
 WITH_INSTALL = $(filter install,$(TESTS))
 # What a narrower choice asks does not reach every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(WITH_WEB))
 WITH_DAEMON = $(filter e2e web install tests/e2e/%,$(TESTS))
 TEST_NEEDS = $(if $(WITH_DAEMON),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
-             $(if $(WITH_TRAFFIC),$(STAMPS)/modules)
+             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(TARGETS))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
 test: $(CHOSEN) $(TEST_NEEDS) | $(STAMPS)/test ## all tests, with their counts
-	@HEDGED=$(abspath $(HEDGED)) \
+	@HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
 	    sh .ci/run-tests $(BUILD)/logs $(if $(WITH_WEB),--web) $(if $(WITH_TRAFFIC),--traffic) \
 	    $(CHOSEN) \
-	    $(if $(WITH_INSTALL),tests/install.sh)
+	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh)
 
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
 	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install,$(TESTS))" TEST_SECONDS=900 test
@@ -195,12 +215,20 @@ coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
-# The long versions of what .ci/run does once.
+# The long versions of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another.
 ROUNDS ?= 10
 proof: ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once
 	+$(MAKE) $(HEDGED) $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)
+
+# `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
+FUZZ_SECONDS ?= 20
+fuzz: | $(STAMPS)/fuzz ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits and requests
+	+$(MAKE) CONFIG=fuzz targets
+	@sh tests/fuzz/run.sh $(FUZZ_SECONDS)
+
+targets: $(TARGETS)
 
 bench: $(BENCHES) ## the kernel's figures
 	@for program in $(BENCHES); do echo "== $$program"; $$program || exit 1; done
