@@ -1,7 +1,6 @@
 /* Coded bodies: gzip, or zstd where the bytes begin as its frames do. Whole and in pieces they
- * unfold to the same or are refused alike, never beyond the ratio that is allowed; what the library
- * takes for one whole body unfolds to what the library says. And any bytes that are packed unfold
- * to themselves. */
+ * unfold to the same or are refused alike, never beyond the ratio that is allowed, and to what the
+ * libraries make of them in one go. And any bytes that are packed unfold to themselves. */
 #include "fuzz/fuzz.h"
 
 #include "api/limits.h"
@@ -76,6 +75,21 @@ static void pack_and_unpack(api_coding coding, const uint8_t *bytes, size_t size
     free(packed);
 }
 
+/* In one go zlib takes one member, and libzstd blocks that are larger than RFC 8878 lets them be.
+ */
+static void compare(api_coding coding, const uint8_t *bytes, size_t size, int code,
+                    const unfolded *whole)
+{
+    size_t length;
+    char *plain = coding_unpack(api_coding_name(coding), bytes, size, &length);
+    FUZZ_REQUIRE(plain != NULL || coding == API_GZIP, "libzstd refuses what is taken");
+    FUZZ_REQUIRE(plain == NULL || code == HE_OK, "zlib takes what is refused with %d", code);
+    if (plain != NULL) {
+        assert_true(length == whole->length && fuzz_hash(plain, length) == whole->hash);
+    }
+    free(plain);
+}
+
 void fuzz_one(const uint8_t *bytes, size_t size)
 {
     static const uint8_t frame[] = {0x28, 0xB5, 0x2F, 0xFD}, skipped[] = {0x2A, 0x4D, 0x18};
@@ -90,14 +104,8 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     if (code == HE_OK) {
         assert_true(whole.length == cut.length && whole.hash == cut.hash);
     }
-    if (size > 0 && code != API_BODY_TOO_LARGE) {
-        size_t length;
-        char *plain = coding_unpack(api_coding_name(coding), bytes, size, &length);
-        if (plain != NULL) {
-            FUZZ_REQUIRE(code == HE_OK, "the library unfolds what is refused with %d", code);
-            assert_true(length == whole.length && fuzz_hash(plain, length) == whole.hash);
-        }
-        free(plain);
+    if (size > 0 && (zstd ? code == HE_OK : code != API_BODY_TOO_LARGE)) {
+        compare(coding, bytes, size, code, &whole);
     }
     pack_and_unpack(md_chance(&random, 50) ? API_ZSTD : API_GZIP, bytes, size, &random);
 }
