@@ -1,6 +1,6 @@
 # hedge - everything is done from here; `make help` lists the targets.
 #
-# A configuration is a build folder: release in build/, asan, tsan and coverage in build/NAME.
+# A configuration is a build folder: release in build/, asan, tsan, coverage and fuzz in build/NAME.
 # Sources are found by pattern, so a new file needs no line here. What must be installed is checked
 # by .ci/deps before the first compilation; pkg-config therefore runs inside recipes only.
 
@@ -21,7 +21,7 @@ endif
 
 # V=1 shows the commands whole.
 Q        := $(if $(V),,@)
-CC       := gcc
+CC       := $(if $(filter fuzz,$(CONFIG)),clang,gcc)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes \
             -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
@@ -49,8 +49,13 @@ LDFLAGS += $(SANITIZE)
 else ifeq ($(CONFIG),coverage)
 CFLAGS  += -O0 --coverage -fprofile-update=atomic
 LDFLAGS += --coverage
+else ifeq ($(CONFIG),fuzz)
+SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+# clang has other warnings than gcc, to which the sources keep.
+CFLAGS  += -O1 $(SANITIZE) -fsanitize=fuzzer-no-link -w
+LDFLAGS += $(SANITIZE) -fsanitize=fuzzer
 else
-$(error CONFIG is release, asan, tsan or coverage, not "$(CONFIG)")
+$(error CONFIG is release, asan, tsan, coverage or fuzz, not "$(CONFIG)")
 endif
 
 # --- what there is -------------------------------------------------------------------------
@@ -67,22 +72,28 @@ SIDE_C     := $(sort $(wildcard tests/bench/side/*.c))
 OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
 BENCH_C    := tests/bench/space.c $(SIDE_C) $(OURS_C)
 PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
+FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+# What all targets are linked with; libFuzzer brings its own main program.
+FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
+                $(wildcard tests/fuzz/*.c)))
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h \
                 tests/bench/side/*.h tests/bench/ours/*.h))
 ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
-              $(BENCH_C) $(HTTP_C)
+              $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C)
 
 LIBRARIES  := $(BUILD)/libserver.a $(BUILD)/libapi.a $(BUILD)/libcore.a
 HEDGED     := $(BUILD)/hedged
 PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
 SPACE      := $(BUILD)/tests/bench/space
+TARGETS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
 PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof bench \
-        bench-http bench-events bench-large bench-space container screenshot install clean
+.PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof fuzz \
+        targets bench bench-http bench-events bench-large bench-space container screenshot \
+        install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -110,6 +121,9 @@ $(STAMPS)/bench: .ci/deps | $(STAMPS)/build
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/crosscheck: .ci/deps | $(STAMPS)/test
 	@sh .ci/deps crosscheck
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/fuzz: .ci/deps | $(STAMPS)/test
+	@sh .ci/deps fuzz
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/lint: .ci/deps | $(STAMPS)/test
 	@sh .ci/deps lint
@@ -148,6 +162,12 @@ $(PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/libsupport.a $(LIBRARIES) | $
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
 
+$(TARGETS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) $(BUILD)/libsupport.a \
+            $(LIBRARIES) | $(STAMPS)/test
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
+
 -include $(patsubst %.o,%.d,$(call object,$(ALL_C)))
 
 # --- the page ------------------------------------------------------------------------------
@@ -165,23 +185,24 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 # --- tests ---------------------------------------------------------------------------------
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
 
-TESTS   ?= $(SUITES) web install
+TESTS   ?= $(SUITES) fuzz web install
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web,$(TESTS))
+WITH_FUZZ = $(filter fuzz,$(TESTS))
 WITH_INSTALL = $(filter install,$(TESTS))
 # What a narrower choice asks does not reach every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(WITH_WEB))
 WITH_DAEMON = $(filter e2e web install tests/e2e/%,$(TESTS))
 TEST_NEEDS = $(if $(WITH_DAEMON),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
-             $(if $(WITH_TRAFFIC),$(STAMPS)/modules)
+             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(TARGETS))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
 test: $(CHOSEN) $(TEST_NEEDS) | $(STAMPS)/test ## all tests, with their counts
-	@HEDGED=$(abspath $(HEDGED)) \
+	@HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
 	    sh .ci/run-tests $(BUILD)/logs $(if $(WITH_WEB),--web) $(if $(WITH_TRAFFIC),--traffic) \
 	    $(CHOSEN) \
-	    $(if $(WITH_INSTALL),tests/install.sh)
+	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh)
 
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
 	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install,$(TESTS))" TEST_SECONDS=900 test
@@ -202,17 +223,25 @@ crosscheck: $(HEDGED) $(BUILD)/tests/crosscheck/peers ## readers and writers bes
 	@python3 -B tests/crosscheck/run.py --hedged $(abspath $(HEDGED)) \
 	    --peers $(BUILD)/tests/crosscheck/peers $(CHECK_FLAGS)
 
-$(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cpp | $(STAMPS)/crosscheck
+$(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(STAMPS)/crosscheck
 	@mkdir -p $(@D)
 	@echo "CXX $<"
 	$(Q)g++ -std=c++17 -O0 -w -o $@ $< -lOpenMeshCore -lgmp -lmpfr
 
-# The long versions of what .ci/run does once.
+# The long versions of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another.
 ROUNDS ?= 10
 proof: ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once
 	+$(MAKE) $(HEDGED) $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)
+
+# `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
+FUZZ_SECONDS ?= 20
+fuzz: | $(STAMPS)/fuzz ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits and requests
+	+$(MAKE) CONFIG=fuzz targets
+	@sh tests/fuzz/run.sh $(FUZZ_SECONDS)
+
+targets: $(TARGETS)
 
 # --- the kernel beside its peers -------------------------------------------------------------
 # BENCH narrows: `make bench BENCH=build,onering`; RUNS=3 and SCALE=0.1 make it quicker. The peers are

@@ -174,6 +174,8 @@ static he_status glb_feed(void *state, const void *bytes, size_t n, he_error *er
                               (unsigned long long)g->length);
         }
         size_t size = g->begun ? CHUNK : HEADER, part = size - g->head_length;
+        uint64_t inside = g->begun ? g->length - g->offset - g->head_length : HEADER;
+        part = part < inside ? part : (size_t)inside;
         part = there < part ? there : part;
         memcpy(g->head + g->head_length, p, part);
         g->head_length += part;

@@ -20,6 +20,7 @@ typedef struct ply {
     uint64_t offset; /* of the next byte */
     unsigned char *held;
     size_t held_count; /* bytes of a row or value that is not whole */
+    uint64_t row_at;   /* where a row with lists begins */
     bool in_row, in_list, trailing;
     size_t property;    /* the next of the row */
     uint64_t list_left; /* values */
@@ -341,7 +342,7 @@ static he_status take_lists(ply *o, const unsigned char **p, const unsigned char
     he_status status = HE_OK;
     while (o->rows.left > 0 && status == HE_OK && (*p < end || o->property > 0)) {
         if (!o->in_row) {
-            o->rows.at = o->offset;
+            o->rows.at = o->row_at = o->offset;
             o->in_row = true;
             status = he_ply_rows_begin(&o->rows, err);
         } else if (o->property < o->rows.element->properties) {
@@ -350,6 +351,7 @@ static he_status take_lists(ply *o, const unsigned char **p, const unsigned char
             }
             status = take_property(o, p, end, err);
         } else {
+            o->rows.at = o->row_at;
             status = he_ply_rows_end(&o->rows, err);
             o->in_row = false;
             o->property = 0;

@@ -208,16 +208,16 @@ void he_ply_rows_clear(he_ply_rows *rows)
 void he_ply_rows_next(he_ply_rows *rows)
 {
     const he_ply_header *h = rows->header;
-    const he_ply_element *end = h->elements + h->count;
-    const he_ply_element *e = rows->element == NULL ? h->elements : rows->element + 1;
-    while (e != end && e->rows == 0) {
-        e++;
+    size_t i = rows->element == NULL ? 0 : (size_t)(rows->element - h->elements) + 1;
+    while (i < h->count && h->elements[i].rows == 0) {
+        i++;
     }
-    rows->element = e == end ? NULL : e;
-    rows->left = e == end ? 0 : e->rows;
-    rows->vertex = e != end && strcmp(e->name, "vertex") == 0;
+    const he_ply_element *e = i < h->count ? &h->elements[i] : NULL;
+    rows->element = e;
+    rows->left = e == NULL ? 0 : e->rows;
+    rows->vertex = e != NULL && strcmp(e->name, "vertex") == 0;
     rows->wanted = false;
-    for (size_t k = 0; e != end && k < e->properties; k++) {
+    for (size_t k = 0; e != NULL && k < e->properties; k++) {
         rows->wanted |= rows->targets[e->first + k].role != HE_PLY_IGNORED;
     }
 }

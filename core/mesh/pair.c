@@ -53,11 +53,14 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
         if (status != HE_OK) {
             break;
         }
-        const uint32_t *corners = soup->corners + soup->starts[f];
         uint32_t count = he_soup_end(soup, f) - soup->starts[f], k = 0;
         if (count < 3) {
             he_report_add(report, total, face_defect(HE_TOO_FEW_CORNERS, f, HE_NONE, HE_NONE));
         }
+        if (count == 0) {
+            continue; /* there may be no corners at all */
+        }
+        const uint32_t *corners = soup->corners + soup->starts[f];
         while (k < count && corners[k] < soup->vertex_count) {
             k++;
         }

@@ -58,10 +58,10 @@ void bench_limit_jobs(api_bench *b, size_t most)
 
 api_bench *bench_new(void)
 {
-    return bench_new_within(64 << 20);
+    return bench_new_within(64 << 20, 0);
 }
 
-api_bench *bench_new_within(uint64_t undo_budget)
+api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
 {
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
@@ -80,9 +80,10 @@ api_bench *bench_new_within(uint64_t undo_budget)
         .store = b->meshes, .submit = submit, .pool = b, .keep = SRV_JOB_SECONDS});
     assert_non_null(b->board);
     b->jobs = srv_board_interface(b->board);
-    b->service = api_service_new(
-        &b->store,
-        &(api_options){.version = "0.0.0-test", .max_upload = 8 << 20, .jobs = &b->jobs});
+    b->service =
+        api_service_new(&b->store, &(api_options){.version = "0.0.0-test",
+                                                  .max_upload = upload == 0 ? 8 << 20 : upload,
+                                                  .jobs = &b->jobs});
     assert_non_null(b->service);
     return b;
 }

@@ -10,7 +10,8 @@
 typedef struct api_bench api_bench; /* a service over an empty store */
 
 api_bench *bench_new(void);
-api_bench *bench_new_within(uint64_t undo_budget);
+/* `upload` bytes are the most a body of a mesh may have; 0 for as many as bench_new allows. */
+api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 const api_store *bench_store(api_bench *b);

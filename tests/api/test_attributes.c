@@ -655,7 +655,7 @@ static void what_cannot_be_undone_says_so(void **state)
     (void)state;
     static const char *const dry[] = {",\"dry_run\":true", ""};
     static const int then[] = {200, 410};
-    api_bench *b = bench_new_within(4000);
+    api_bench *b = bench_new_within(4000, 0);
     send(b, 201, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
     send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
     for (int i = 0; i < 2; i++) {

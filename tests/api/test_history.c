@@ -367,7 +367,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
     (void)state;
     enum { BUDGET = 6000, EDITS = 300 };
     md_random random = {seed_of_run()};
-    api_bench *b = bench_new_within(BUDGET);
+    api_bench *b = bench_new_within(BUDGET, 0);
     char *dumps[EDITS + 2] = {NULL}, body[BODY], target[TARGET];
     bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
                                             "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
@@ -429,7 +429,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
 static void an_edit_beyond_the_budget_says_that_the_history_ends(void **state)
 {
     (void)state;
-    api_bench *b = bench_new_within(4000);
+    api_bench *b = bench_new_within(4000, 0);
     bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
                                             "{\"shape\":\"icosphere\",\"subdivisions\":2}")));
     bench_reply r = bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":1}"));

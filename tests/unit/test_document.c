@@ -245,6 +245,73 @@ static void every_failed_allocation_while_reading_is_a_problem(void **state)
     assert_true(n > 10);
 }
 
+static const char attributed[] =
+    "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[0,0,0]],\"faces\":[[0,1,2],[0,1],[2,1,0]],"
+    "\"attributes\":[{\"domain\":\"vertices\",\"name\":\"a\",\"type\":\"float\",\"components\":2,"
+    "\"values\":[[1,2],[3,4],[5,6],[7,8]]},{\"domain\":\"faces\",\"name\":\"b\",\"type\":"
+    "\"uint32\","
+    "\"labels\":[\"x\",\"y\"],\"values\":[0,1,0]},{\"domain\":\"mesh\",\"name\":\"c\",\"type\":"
+    "\"bool\","
+    "\"values\":[true]}],\"name\":\"n\"}";
+
+/* Read, repaired, built and filled, up to what fails; NULL with HE_NO_MEMORY in the problem. */
+static he_mesh *make_attributed(api_problem *problem)
+{
+    const he_repair_plan plan = {.which = he_repair_bit(HE_REPAIR_WELD) |
+                                          he_repair_bit(HE_REPAIR_DROP_DEGENERATE) |
+                                          he_repair_bit(HE_REPAIR_DROP_DUPLICATES)};
+    he_repaired done = {0};
+    he_mesh *mesh = NULL;
+    api_document_in *in = api_document_in_new(NULL);
+    if (in == NULL) {
+        problem->code = HE_NO_MEMORY;
+        return NULL;
+    }
+    if (api_document_in_feed(in, attributed, sizeof attributed - 1, problem) &&
+        api_document_in_end(in, problem)) {
+        he_soup *soup = api_document_in_soup(in);
+        size_t vertices = soup->vertex_count, faces = soup->face_count;
+        he_status status = he_repair_soup(soup, &plan, &done, NULL);
+        if (status == HE_OK) {
+            status = he_build(soup, HE_BUILD_TAKE, &mesh, NULL, NULL);
+        }
+        problem->code = (int)status;
+        if (status == HE_OK &&
+            !api_document_in_attributes(in, mesh, &done, vertices, faces, problem)) {
+            he_mesh_free(mesh);
+            mesh = NULL;
+        }
+    }
+    he_repaired_clear(&done);
+    api_document_in_free(in);
+    return mesh;
+}
+
+/* Some memory is only wished for, such as to give a longer block back. */
+static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void **state)
+{
+    (void)state;
+    bool struck = true;
+    long refused = 0;
+    for (long n = 1; struck; n++) {
+        api_problem problem = {0};
+        fixture_fail_at(n);
+        he_mesh *mesh = make_attributed(&problem);
+        struck = fixture_memory.calls >= n;
+        fixture_memory_back();
+        assert_int_equal(problem.code, mesh != NULL ? HE_OK : HE_NO_MEMORY);
+        assert_true(mesh != NULL || struck);
+        refused += mesh == NULL;
+        if (mesh != NULL) {
+            fixture_check(mesh);
+            fixture_counts(mesh, 3, 3, 1);
+            assert_int_equal(he_mesh_columns(mesh), 3);
+        }
+        he_mesh_free(mesh);
+    }
+    assert_true(refused > 30);
+}
+
 /* The whole text, pulled in pieces of `step` bytes. */
 static char *write_all(const he_mesh *mesh, const char *name, size_t step, size_t *length)
 {
@@ -342,7 +409,14 @@ static void a_large_document_is_cut_anywhere(void **state)
 static void every_failed_allocation_of_the_writer_gives_null(void **state)
 {
     (void)state;
-    he_mesh *mesh = fixture_mesh("012");
+    he_soup soup;
+    he_column *column;
+    he_mesh *mesh = NULL;
+    fixture_soup(&soup, "012,021");
+    assert_int_equal(he_soup_column(&soup, "a", HE_HALFEDGE, HE_FLOAT, 1, HE_COPY, &column, NULL),
+                     HE_OK);
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
     long n = 0;
     api_document_out *out = NULL;
     while (out == NULL) {
@@ -365,6 +439,7 @@ int main(void)
         cmocka_unit_test(what_is_gathered_is_bounded),
         cmocka_unit_test(limits_of_the_soup_are_kept),
         cmocka_unit_test(every_failed_allocation_while_reading_is_a_problem),
+        cmocka_unit_test(every_failed_allocation_of_attributes_and_repairs_is_a_problem),
         cmocka_unit_test(a_document_makes_its_mesh_again),
         cmocka_unit_test(text_is_one_item_a_line),
         cmocka_unit_test(a_large_document_is_cut_anywhere),

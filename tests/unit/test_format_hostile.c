@@ -68,13 +68,33 @@ static const char gltf[] =
     "{\"bufferView\":0,\"byteOffset\":12}}},{\"bufferView\":1,\"componentType\":5123,\"count\":3,"
     "\"type\":\"SCALAR\"}]}";
 
+static const char container[] =
+    "glTF\2\0\0\0\334\001\000\000\224\001\000\000JSON"
+    "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}"
+    "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"b"
+    "uffers\":[{\"byteLength\":42}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"b"
+    "uffer\":0,\"byteOffset\":36,\"byteLength\":6}],\"accessors\":[{\"bufferView\":0,\"com"
+    "ponentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":"
+    "5123,\"count\":3,\"type\":\"SCALAR\"}]}  "
+    "\054\000\000\000BIN\0" ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0\1\0\2\0\0\0";
+
+/* Polygons, which some writers cut. */
+static const char cube[] = "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+                           "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+
 static const struct {
     const char *name, *text;
     size_t length;
-} files[] = {{"obj", obj, sizeof obj - 1},       {"off", off, sizeof off - 1},
-             {"ply", ply, sizeof ply - 1},       {"ply", little, sizeof little - 1},
-             {"ply", big, sizeof big - 1},       {"stl", solid, sizeof solid - 1},
-             {"stl", facets, sizeof facets - 1}, {"gltf", gltf, sizeof gltf - 1}};
+} files[] = {{"obj", obj, sizeof obj - 1},
+             {"off", off, sizeof off - 1},
+             {"ply", ply, sizeof ply - 1},
+             {"ply", little, sizeof little - 1},
+             {"ply", big, sizeof big - 1},
+             {"stl", solid, sizeof solid - 1},
+             {"stl", facets, sizeof facets - 1},
+             {"gltf", gltf, sizeof gltf - 1},
+             {"glb", container, sizeof container - 1},
+             {"off", cube, sizeof cube - 1}};
 
 enum { FILES = sizeof files / sizeof *files };
 

@@ -1,0 +1,36 @@
+/* Lists of edits, as bodies of POST .../edits on an open mesh, a closed one and one with a bow-tie.
+ * What is refused leaves the mesh as it was, bit for bit; what is done leaves one that passes
+ * he_check, and undo brings the earlier one back. */
+#include "fuzz/fuzz.h"
+#include "fuzz/service.h"
+#include "unit/fixture.h"
+
+static void edit(api_bench *b, const char *id, const char *body, size_t size)
+{
+    char target[64];
+    he_mesh *before = fuzz_service_mesh(b, id);
+    (void)snprintf(target, sizeof target, "/v1/meshes/%s/edits", id);
+    int status = fuzz_service_send(b, "POST", target, NULL, body, size);
+    he_mesh *after = fuzz_service_mesh(b, id);
+    FUZZ_REQUIRE(status == 200 || he_mesh_equal(before, after), "%d, and the mesh changed", status);
+    (void)snprintf(target, sizeof target, "/v1/meshes/%s/undo", id);
+    status = fuzz_service_send(b, "POST", target, NULL, NULL, 0);
+    he_mesh *undone = fuzz_service_mesh(b, id);
+    /* compact is not undone */
+    FUZZ_REQUIRE(status == 409 ? he_mesh_equal(undone, after)
+                               : status == 200 && he_mesh_equal_live(undone, before),
+                 "undo gives %d, and leads elsewhere", status);
+    he_mesh_free(before);
+    he_mesh_free(after);
+    he_mesh_free(undone);
+}
+
+void fuzz_one(const uint8_t *bytes, size_t size)
+{
+    static const char *const ids[] = {"m", "cube", "bowtie"};
+    api_bench *b = fuzz_service_new();
+    for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
+        edit(b, ids[i], (const char *)bytes, size);
+    }
+    bench_free(b);
+}

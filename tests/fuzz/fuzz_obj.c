@@ -1,0 +1,8 @@
+/* The reader of OBJ files: reader.h says what must hold. */
+#include "fuzz/fuzz.h"
+#include "fuzz/reader.h"
+
+void fuzz_one(const uint8_t *bytes, size_t size)
+{
+    fuzz_reader("obj", bytes, size);
+}

@@ -1,0 +1,111 @@
+/* Coded bodies: gzip, or zstd where the bytes begin as its frames do. Whole and in pieces they
+ * unfold to the same or are refused alike, never beyond the ratio that is allowed, and to what the
+ * libraries make of them in one go. And any bytes that are packed unfold to themselves. */
+#include "fuzz/fuzz.h"
+
+#include "api/limits.h"
+#include "api/pack.h"
+#include "api/unpack.h"
+#include "model/random.h"
+#include "tests/codings.h"
+#include "unit/fixture.h"
+
+typedef struct unfolded {
+    uint64_t length, hash;
+} unfolded;
+
+static bool take(void *context, const char *bytes, size_t length)
+{
+    unfolded *u = context;
+    assert_true(length > 0 && length <= API_UNPACK_PIECE);
+    for (size_t i = 0; i < length; i++) {
+        u->hash = (u->hash ^ (uint8_t)bytes[i]) * UINT64_C(0x100000001B3);
+    }
+    u->length += length;
+    return true;
+}
+
+/* The code of a refusal, HE_OK where it unfolds. */
+static int unfold(api_coding coding, const uint8_t *bytes, size_t size, uint32_t most,
+                  md_random *random, unfolded *out)
+{
+    api_problem problem = {0};
+    *out = (unfolded){0, UINT64_C(0xCBF29CE484222325)};
+    api_unpack *u = api_unpack_new(coding, take, out);
+    assert_non_null(u);
+    bool good = true;
+    for (size_t at = 0; good && at < size;) {
+        size_t n = most == 0 ? size : md_from(random, 0, most);
+        n = n < size - at ? n : size - at;
+        char *piece = malloc(n == 0 ? 1 : n);
+        assert_non_null(piece);
+        memcpy(piece, bytes + at, n);
+        good = api_unpack_feed(u, piece, n, &problem);
+        free(piece);
+        at += n;
+    }
+    good = good && api_unpack_end(u, &problem);
+    api_unpack_free(u);
+    assert_true(good == (problem.code == HE_OK));
+    assert_true(out->length <= API_UNPACK_FREE + API_UNPACK_RATIO * (uint64_t)size);
+    return problem.code;
+}
+
+static void pack_and_unpack(api_coding coding, const uint8_t *bytes, size_t size, md_random *random)
+{
+    api_plain plain = {.bytes = (const char *)bytes, .length = size};
+    api_pack *pack = api_pack_new(coding, &plain);
+    assert_non_null(pack);
+    assert_true(api_pack_begin(pack));
+    size_t length = 0, again;
+    char *packed = malloc(2 * size + 4096);
+    assert_non_null(packed);
+    int64_t got;
+    while ((got = api_pack_read(pack, packed + length, md_from(random, 1, 1000))) > 0) {
+        length += (size_t)got;
+        assert_true(length <= 2 * size + 1024);
+    }
+    assert_int_equal(got, 0);
+    api_pack_free(pack);
+    char *back = coding_unpack(api_coding_name(coding), packed, length, &again);
+    assert_non_null(back);
+    assert_int_equal(again, size);
+    assert_true(size == 0 || memcmp(back, bytes, size) == 0);
+    free(back);
+    free(packed);
+}
+
+/* In one go zlib takes one member, and libzstd blocks that are larger than RFC 8878 lets them be.
+ */
+static void compare(api_coding coding, const uint8_t *bytes, size_t size, int code,
+                    const unfolded *whole)
+{
+    size_t length;
+    char *plain = coding_unpack(api_coding_name(coding), bytes, size, &length);
+    FUZZ_REQUIRE(plain != NULL || coding == API_GZIP, "libzstd refuses what is taken");
+    FUZZ_REQUIRE(plain == NULL || code == HE_OK, "zlib takes what is refused with %d", code);
+    if (plain != NULL) {
+        assert_true(length == whole->length && fuzz_hash(plain, length) == whole->hash);
+    }
+    free(plain);
+}
+
+void fuzz_one(const uint8_t *bytes, size_t size)
+{
+    static const uint8_t frame[] = {0x28, 0xB5, 0x2F, 0xFD}, skipped[] = {0x2A, 0x4D, 0x18};
+    md_random random = {fuzz_hash(bytes, size)};
+    bool zstd = size >= 4 && (memcmp(bytes, frame, 4) == 0 || memcmp(bytes + 1, skipped, 3) == 0);
+    api_coding coding = zstd ? API_ZSTD : API_GZIP;
+    unfolded whole, cut;
+    int code = unfold(coding, bytes, size, 0, &random, &whole);
+    int second = unfold(coding, bytes, size, 1u << md_below(&random, 9), &random, &cut);
+    FUZZ_REQUIRE(code == second, "whole %d, in pieces %d", code, second);
+    assert_true(code != HE_NO_MEMORY);
+    if (code == HE_OK) {
+        assert_true(whole.length == cut.length && whole.hash == cut.hash);
+    }
+    if (size > 0 && (zstd ? code == HE_OK : code != API_BODY_TOO_LARGE)) {
+        compare(coding, bytes, size, code, &whole);
+    }
+    pack_and_unpack(md_chance(&random, 50) ? API_ZSTD : API_GZIP, bytes, size, &random);
+}

@@ -1,0 +1,231 @@
+#include "fuzz/reader.h"
+
+#include "fuzz/fuzz.h"
+#include "model/random.h"
+#include "query/topology.h"
+#include "repair/repair.h"
+#include "unit/format_fixture.h"
+
+/* Pieces of all sizes up to a size that is drawn too, each in a block of its own. */
+static he_status read_cut(const char *format, const char *bytes, size_t size, md_random *random,
+                          he_import *out, he_error *err)
+{
+    he_reader *reader = NULL;
+    he_status status = he_reader_new(he_format_find(format), NULL, &reader, err);
+    uint32_t most = 1u << md_below(random, 11);
+    for (size_t at = 0; at < size && status == HE_OK;) {
+        size_t n = md_from(random, 0, most);
+        n = n < size - at ? n : size - at;
+        char *piece = malloc(n == 0 ? 1 : n);
+        assert_non_null(piece);
+        memcpy(piece, bytes + at, n);
+        status = he_reader_feed(reader, piece, n, err);
+        free(piece);
+        at += n;
+    }
+    if (status == HE_OK) {
+        status = he_reader_finish(reader, out, err);
+    }
+    he_reader_free(reader);
+    return status;
+}
+
+static he_import read_again(const char *format, const void *bytes, size_t size)
+{
+    he_import import = {0};
+    he_error err = {0};
+    he_status status = read_pieces(format, bytes, size, 0, NULL, &import, &err);
+    FUZZ_REQUIRE(status == HE_OK, "%s: %s", format, err.text);
+    return import;
+}
+
+/* --- writing --- */
+
+/* What is read as JSON alone is written in the binary container. */
+static const char *writer_of(const char *format)
+{
+    return strcmp(format, "gltf") == 0 ? "glb" : format;
+}
+
+static uint32_t corners_of(const he_mesh *mesh)
+{
+    return 2 * he_mesh_edges(mesh) - he_mesh_boundary_halfedges(mesh);
+}
+
+/* How often a mesh is written and read until its documents repeat: never, at once, or, where
+ * positions are rounded and polygons cut by them, from the second on. */
+enum { NEVER, AT_ONCE, ROUNDED };
+
+/* A mesh in one encoding of a format: it can be read again and is as large, unless the format is of
+ * triangles without numbers. */
+static void write_and_read(const he_mesh *mesh, const char *format, const char *encoding,
+                           int repeats, md_random *random)
+{
+    size_t length, length_again;
+    char *first = write_encoded(format, encoding, mesh, md_from(random, 1, 5000), NULL, &length);
+    he_import import = read_again(format, first, length);
+    bool numbered = strcmp(format, "stl") != 0;
+    if (numbered || repeats != NEVER) {
+        he_mesh *again = NULL;
+        he_error err = {0};
+        he_status status = he_build(&import.soup, 0, &again, NULL, &err);
+        FUZZ_REQUIRE(status == HE_OK, "%s %s: %s", format, encoding, err.text);
+        if (numbered) {
+            assert_int_equal(he_mesh_vertices(again), he_mesh_vertices(mesh));
+            assert_int_equal(he_mesh_faces(again), he_mesh_faces(mesh));
+            assert_int_equal(corners_of(again), corners_of(mesh));
+        }
+        if (repeats == AT_ONCE) {
+            char *repeated = write_encoded(format, encoding, again, md_from(random, 1, 5000), NULL,
+                                           &length_again);
+            assert_int_equal(length_again, length);
+            assert_memory_equal(repeated, first, length);
+            free(repeated);
+        }
+        if (repeats == ROUNDED) {
+            write_and_read(again, format, encoding, AT_ONCE, random);
+        }
+        he_mesh_free(again);
+    }
+    he_import_clear(&import);
+    free(first);
+}
+
+/* Text keeps all digits in every format; of STL, only as long as it is what was read. */
+static void write_all_formats(const he_mesh *mesh, const char *own, bool repaired,
+                              md_random *random)
+{
+    own = writer_of(own);
+    const he_format *row;
+    for (size_t i = 0; (row = he_format_at(i)) != NULL; i++) {
+        bool mine = strcmp(row->name, own) == 0, stl = strcmp(row->name, "stl") == 0;
+        if (row->writing == NULL || (!mine && !md_chance(random, 25))) {
+            continue;
+        }
+        size_t encodings = 0;
+        while (row->encodings[encodings] != NULL) {
+            encodings++;
+        }
+        const char *encoding = row->encodings[md_below(random, (uint32_t)encodings)];
+        bool varies = stl && (repaired || strcmp(encoding, "ascii") != 0);
+        int repeats = !mine || varies ? NEVER : strcmp(row->name, "glb") == 0 ? ROUNDED : AT_ONCE;
+        write_and_read(mesh, row->name, encoding, repeats, random);
+    }
+}
+
+/* --- repairing --- */
+
+typedef struct subject {
+    const char *format;
+    const void *bytes;
+    size_t size;
+    md_random random;
+} subject;
+
+static void require_report(const he_report *report, size_t vertices, size_t faces)
+{
+    assert_true(report->total > 0);
+    for (size_t i = 0; i < report->total && i < HE_REPORT_DEFECTS; i++) {
+        const he_defect *defect = &report->defects[i];
+        char text[256];
+        he_defect_text(defect, text, sizeof text);
+        assert_true(defect->id < (defect->kind == HE_FACE ? faces : vertices));
+    }
+}
+
+/* Read anew and apply a set of repairs: a mesh that passes the check, or what set is advised then,
+ * 0 for none. */
+static unsigned mend(subject *s, unsigned which)
+{
+    he_repair_plan plan = {.which = which,
+                           .tolerance = md_chance(&s->random, 50) ? 0 : md_unit(&s->random),
+                           .hole_edges = 3 + md_below(&s->random, 8)};
+    he_import import = read_again(s->format, s->bytes, s->size);
+    size_t vertices = import.soup.vertex_count, faces = import.soup.face_count;
+    he_repaired done = {0};
+    he_report report = {.total = 0};
+    he_error err = {0};
+    he_mesh *mesh = NULL;
+    unsigned advised = 0;
+    he_status status = he_repair_soup(&import.soup, &plan, &done, &err);
+    if (status == HE_OK) {
+        status = he_build(&import.soup, 0, &mesh, &report, &err);
+    } else {
+        assert_int_equal(status, HE_NOT_ORIENTABLE);
+    }
+    if (status == HE_OK) {
+        status = he_repair_mesh(mesh, &plan, &done, &err);
+        FUZZ_REQUIRE(status == HE_OK, "%s", err.text);
+        fixture_check(mesh);
+        write_all_formats(mesh, s->format, true, &s->random);
+    } else {
+        if (status != HE_NOT_ORIENTABLE) {
+            he_repaired_report(&done, &report);
+            require_report(&report, vertices, faces);
+        }
+        assert_int_equal(he_repair_advise(&import.soup, which, &advised, &err), HE_OK);
+        assert_true(advised == 0 || (advised & which) == which);
+        assert_true(advised != 0 || report.total > 0);
+    }
+    he_mesh_free(mesh);
+    he_repaired_clear(&done);
+    he_import_clear(&import);
+    return advised;
+}
+
+/* What is advised with a tolerance lets the file pass with another one too only where nothing is
+ * welded: then the vertices that meet are others. */
+static void mend_as_advised(subject *s, unsigned which)
+{
+    md_random random = s->random;
+    unsigned advised = mend(s, which);
+    if (advised != 0) {
+        s->random = random; /* the same tolerance */
+        FUZZ_REQUIRE(mend(s, advised) == 0, "%#x, advised after %#x, is not enough", advised,
+                     which);
+    }
+}
+
+/* --- all of it --- */
+
+static void require_place(const he_error *err)
+{
+    FUZZ_REQUIRE(err->place != HE_PLACE_NONE, "no place: %s", err->text);
+}
+
+void fuzz_reader(const char *format, const void *bytes, size_t size)
+{
+    subject s = {format, bytes, size, {fuzz_hash(bytes, size)}};
+    he_import import = {0}, other = {0};
+    he_error err = {0}, second = {0};
+    he_status status = read_pieces(format, bytes, size, 0, NULL, &import, &err);
+    assert_int_equal(read_cut(format, bytes, size, &s.random, &other, &second), status);
+    if (status != HE_OK) {
+        bool same =
+            strcmp(err.text, second.text) == 0 && err.place == second.place && err.at == second.at;
+        FUZZ_REQUIRE(same, "whole %s %llu, in pieces %s %llu", err.text, (unsigned long long)err.at,
+                     second.text, (unsigned long long)second.at);
+        require_place(&err);
+        return;
+    }
+    expect_same_imports(&import, &other);
+    he_import_clear(&other);
+    he_mesh *mesh = NULL;
+    he_report report = {.total = 0};
+    status = he_build(&import.soup, 0, &mesh, &report, &err);
+    if (status == HE_OK) {
+        he_ids bowties = {0};
+        fixture_check(mesh);
+        assert_int_equal(he_bowties_find(mesh, &bowties, NULL), HE_OK);
+        he_ids_clear(&bowties);
+        write_all_formats(mesh, format, false, &s.random);
+    } else {
+        require_report(&report, import.soup.vertex_count, import.soup.face_count);
+        he_import_locate(&import, &err);
+        require_place(&err);
+        mend_as_advised(&s, 0);
+    }
+    he_mesh_free(mesh);
+    he_import_clear(&import);
+    mend_as_advised(&s, md_below(&s.random, 1u << HE_REPAIR_COUNT));
+}

@@ -1,0 +1,59 @@
+#include "fuzz/service.h"
+
+#include "fuzz/fuzz.h"
+#include "unit/fixture.h"
+
+/* Small bodies, so that nothing they ask for is large. */
+enum { UNDO_BUDGET = 8 << 20, UPLOAD = 64 << 10 };
+
+static void create(api_bench *b, const char *target, const char *body)
+{
+    assert_int_equal(fuzz_service_send(b, "PUT", target, NULL, body, strlen(body)), 201);
+}
+
+api_bench *fuzz_service_new(void)
+{
+    api_bench *b = bench_new_within(UNDO_BUDGET, UPLOAD);
+    create(b, "/v1/meshes/m", "{\"shape\":\"grid\",\"columns\":3,\"rows\":3}");
+    create(b, "/v1/meshes/cube", "{\"shape\":\"cube\"}");
+    create(b, "/v1/meshes/bowtie",
+           "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[-1,0,0],[-1,-1,1]],\"faces\":[[0,1,2],[0,3,4]],"
+           "\"attributes\":[{\"domain\":\"faces\",\"name\":\"material\",\"type\":\"uint32\","
+           "\"labels\":[\"a\",\"b\"],\"values\":[0,1]}]}");
+    return b;
+}
+
+he_mesh *fuzz_service_mesh(api_bench *b, const char *id)
+{
+    const api_store *store = bench_store(b);
+    api_mesh_info info;
+    api_mesh *stored;
+    he_mesh *copy = NULL;
+    if (store->find(store->self, id, &stored) != API_STORE_OK) {
+        return NULL;
+    }
+    const he_mesh *content = store->read_begin(store->self, stored, &info);
+    assert_int_equal(he_mesh_copy(content, &copy, NULL), HE_OK);
+    store->read_end(store->self, stored);
+    store->release(store->self, stored);
+    fixture_check(copy);
+    return copy;
+}
+
+int fuzz_service_send(api_bench *b, const char *method, const char *target,
+                      const char *const *headers, const char *body, size_t length)
+{
+    bench_reply r;
+    assert_true(bench_try(b, method, target, headers, body, length, &r));
+    int status = r.status;
+    FUZZ_REQUIRE(status >= 200 && status < 600 && status != 500 && status != 507,
+                 "%s %s: %d %.300s", method, target, status, r.body);
+    if (status >= 400) {
+        const char *type = bench_header(&r, "Content-Type");
+        FUZZ_REQUIRE(strcmp(type, "application/problem+json") == 0, "%s %s: %d is %s", method,
+                     target, status, type);
+    }
+    bench_reply_free(&r);
+    bench_run_jobs(b, BENCH_JOBS);
+    return status;
+}
