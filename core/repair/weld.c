@@ -82,13 +82,12 @@ static uint32_t find(const table *t, he_vec3 p, uint32_t *home)
 {
     double x[3], y[3], z[3];
     size_t nx = cells_of(t, p.x, x), ny = cells_of(t, p.y, y), nz = cells_of(t, p.z, z);
+    const double own[3] = {x[0], y[0], z[0]};
     uint32_t best = HE_NONE;
+    *home = hash_of(t, own);
     for (size_t i = 0; i < nx * ny * nz; i++) {
         const double cell[3] = {x[i % nx], y[i / nx % ny], z[i / nx / ny]};
         uint32_t h = hash_of(t, cell);
-        if (i == 0) {
-            *home = h;
-        }
         for (size_t at = h & t->mask; t->slots[at].vertex != 0; at = (at + 1) & t->mask) {
             uint32_t v = t->slots[at].vertex - 1;
             if (t->slots[at].hash == h && v < best && is_near(t, t->positions[v], p)) {
