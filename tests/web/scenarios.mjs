@@ -104,6 +104,7 @@ export const SCENARIOS = [
     ['reverse', GRID, {}],
     ['dual', CUBES, {}],
     ['append', GRID, { mesh: 'which mesh' }],
+    ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));
 
 // Make the mesh of a scenario, show it in the page and say which it is.
