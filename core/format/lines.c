@@ -146,6 +146,62 @@ static he_status feed_text(he_lines *lines, const char *p, const char *end, he_e
     return HE_OK;
 }
 
+/* Where lines end in carriage returns alone, as on old Macs, these become line feeds. */
+static he_status feed_returns(he_lines *lines, const char *p, const char *end, he_error *err)
+{
+    char part[1024];
+    he_status status = HE_OK;
+    while (p < end && status == HE_OK) {
+        size_t n = 0;
+        for (; n < sizeof part && p < end; n++, p++) {
+            part[n] = *p == '\r' ? '\n' : *p;
+        }
+        status = feed_text(lines, part, part + n, err);
+    }
+    return status;
+}
+
+/* What is held has come before it was known how lines end. */
+static he_status feed_held(he_lines *lines, he_error *err)
+{
+    char *held = lines->rest;
+    size_t n = lines->length;
+    lines->rest = NULL;
+    lines->length = lines->capacity = 0;
+    he_status status = feed_returns(lines, held, held + n, err);
+    he_mem_free(held);
+    return status;
+}
+
+/* A carriage return ends a line where no line feed follows it. */
+static void see_ends(he_lines *lines, const char *p, const char *end)
+{
+    for (; p < end && lines->ends == HE_ENDS_UNKNOWN; p++) {
+        if (*p == '\n') {
+            lines->ends = HE_ENDS_FEED;
+        } else if (*p == '\r') {
+            lines->returned = true;
+        } else if (lines->returned) {
+            lines->ends = HE_ENDS_RETURN;
+        }
+    }
+}
+
+static he_status feed_any(he_lines *lines, const char *p, const char *end, he_error *err)
+{
+    he_status status = HE_OK;
+    if (lines->ends == HE_ENDS_UNKNOWN) {
+        see_ends(lines, p, end);
+        if (lines->ends == HE_ENDS_RETURN) {
+            status = feed_held(lines, err);
+        }
+    }
+    if (status != HE_OK || lines->ends != HE_ENDS_RETURN) {
+        return status == HE_OK ? feed_text(lines, p, end, err) : status;
+    }
+    return feed_returns(lines, p, end, err);
+}
+
 /* No text has a NUL. In UTF-16 one of the first two bytes is, or it is marked. */
 static he_status refuse_nul(const he_lines *lines, he_error *err)
 {
@@ -161,7 +217,7 @@ he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *
 {
     const char *p = bytes, *end = p + n;
     const char *nul = memchr(p, '\0', n);
-    he_status status = feed_text(lines, p, nul == NULL ? end : nul, err);
+    he_status status = feed_any(lines, p, nul == NULL ? end : nul, err);
     return status == HE_OK && nul != NULL ? refuse_nul(lines, err) : status;
 }
 

@@ -1,7 +1,8 @@
 /* lines.h - lines and tokens of a text format that arrives in pieces.
  *
  * he_lines cuts the pieces into lines and gives each to a function, in place when the piece holds
- * all of it. Lines end in LF or CRLF, the last one may end in neither. With `joins`, a backslash
+ * all of it. Lines end in LF or CRLF, or all in CR alone where the first does; the last one may end
+ * in nothing. With `joins`, a backslash
  * before the line end continues the line; the backslash and the line end then stay in the text,
  * where the token functions take them for a blank, so that the line number of any token can still
  * be told. A UTF-8 byte order mark is passed over, UTF-16 refused.
@@ -33,6 +34,9 @@ typedef struct he_lines {
     uint64_t number; /* of the line that is being collected */
     uint64_t joined; /* line ends inside it */
     bool in_comment; /* the unfinished line is a comment and not kept */
+    /* what ends the first line, and so all */
+    enum { HE_ENDS_UNKNOWN, HE_ENDS_FEED, HE_ENDS_RETURN } ends;
+    bool returned; /* carriage returns are the last that came, and that is unknown yet */
 } he_lines;
 
 void he_lines_init(he_lines *lines, he_line_take *take, void *context);
@@ -42,6 +46,11 @@ void he_lines_clear(he_lines *lines);
 HE_NODISCARD he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err);
 /* The number of the last line that has come, comments included; 1 while there is none. */
 uint64_t he_lines_last(const he_lines *lines);
+/* Has an unfinished line come? */
+static inline bool he_lines_held(const he_lines *lines)
+{
+    return lines->length > 0 || lines->in_comment;
+}
 /* Give out the last line if it had no line end. */
 HE_NODISCARD he_status he_lines_finish(he_lines *lines, he_error *err);
 

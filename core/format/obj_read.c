@@ -479,8 +479,10 @@ bool he_obj_sniff(const char *bytes, size_t n)
         p += 3;
     }
     while (p < end) {
-        const char *stop = memchr(p, '\n', (size_t)(end - p));
-        stop = stop == NULL ? end : stop;
+        const char *stop = p;
+        while (stop < end && *stop != '\n' && *stop != '\r') {
+            stop++;
+        }
         while (p < stop && (*p == ' ' || *p == '\t' || *p == '\r')) {
             p++;
         }

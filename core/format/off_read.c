@@ -490,8 +490,9 @@ bool he_off_sniff(const char *bytes, size_t n)
     }
     while (p < end && (*p == ' ' || *p == '\t' || *p == '\r' || *p == '\n' || *p == '#')) {
         if (*p == '#') {
-            const char *stop = memchr(p, '\n', (size_t)(end - p));
-            p = stop == NULL ? end : stop;
+            while (p < end && *p != '\n' && *p != '\r') {
+                p++;
+            }
         } else {
             p++;
         }

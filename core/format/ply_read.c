@@ -119,12 +119,43 @@ static bool is_comment(const char *p, const char *end)
     return end - p >= 7 && memcmp(p, "comment", 7) == 0 && he_token_ends(p + 7, end);
 }
 
+/* Only line feeds tell where the bytes of binary begin. */
+static he_status refuse_returns(const he_lines *lines, he_error *err)
+{
+    return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_LINE, lines->number,
+                      "lines of a binary file's header end in carriage returns alone");
+}
+
+static he_status begin_body(ply *o, he_error *err)
+{
+    size_t longest = sizeof(double);
+    for (size_t i = 0; i < o->header.count; i++) {
+        size_t stride = o->header.elements[i].stride;
+        longest = stride > longest ? stride : longest;
+    }
+    o->held = he_mem_alloc(longest);
+    if (o->held == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a row of %zu bytes", longest);
+    }
+    o->big = o->header.encoding == HE_PLY_BIG_ENDIAN;
+    o->lines.limit = o->into->soup.limits.bytes;
+    he_status status = he_ply_rows_open(&o->rows, o->into, &o->header, err);
+    if (status == HE_OK) {
+        he_ply_rows_next(&o->rows);
+    }
+    return status;
+}
+
 static he_status read_line(void *context, const he_line *line, he_error *err)
 {
     ply *o = context;
     he_ply_rows *rows = &o->rows;
     if (!o->header.ended) {
-        return he_ply_header_read(&o->header, line, err);
+        he_status status = he_ply_header_read(&o->header, line, err);
+        return status == HE_OK && o->header.ended ? begin_body(o, err) : status;
+    }
+    if (o->header.encoding != HE_PLY_ASCII) {
+        return refuse_returns(&o->lines, err);
     }
     const char *p = he_skip_blanks(line->begin, line->end);
     if (he_at_end(p, line->end) || is_comment(p, line->end)) {
@@ -404,26 +435,6 @@ static he_status ply_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-static he_status begin_body(ply *o, he_error *err)
-{
-    size_t longest = sizeof(double);
-    for (size_t i = 0; i < o->header.count; i++) {
-        size_t stride = o->header.elements[i].stride;
-        longest = stride > longest ? stride : longest;
-    }
-    o->held = he_mem_alloc(longest);
-    if (o->held == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a row of %zu bytes", longest);
-    }
-    o->big = o->header.encoding == HE_PLY_BIG_ENDIAN;
-    o->lines.limit = o->into->soup.limits.bytes;
-    he_status status = he_ply_rows_open(&o->rows, o->into, &o->header, err);
-    if (status == HE_OK) {
-        he_ply_rows_next(&o->rows);
-    }
-    return status;
-}
-
 /* The header is given out line by line: where it ends, bytes that are not text may begin. */
 static he_status ply_feed(void *state, const void *bytes, size_t n, he_error *err)
 {
@@ -433,11 +444,11 @@ static he_status ply_feed(void *state, const void *bytes, size_t n, he_error *er
         const char *feed = memchr(p, '\n', (size_t)(end - p));
         const char *stop = feed == NULL ? end : feed + 1;
         he_status status = he_lines_feed(&o->lines, p, (size_t)(stop - p), err);
-        if (status == HE_OK && o->header.ended) {
-            status = begin_body(o, err);
-        }
         if (status != HE_OK) {
             return status;
+        }
+        if (o->header.ended && o->header.encoding != HE_PLY_ASCII && he_lines_held(&o->lines)) {
+            return refuse_returns(&o->lines, err);
         }
         o->offset += (uint64_t)(stop - p);
         p = stop;
@@ -455,11 +466,7 @@ static he_status ply_finish(void *state, he_error *err)
     ply *o = state;
     const he_ply_rows *rows = &o->rows;
     uint64_t last_line = he_lines_last(&o->lines);
-    bool had_header = o->header.ended;
     he_status status = he_lines_finish(&o->lines, err);
-    if (status == HE_OK && o->header.ended && !had_header) {
-        status = begin_body(o, err);
-    }
     if (status != HE_OK) {
         return status;
     }

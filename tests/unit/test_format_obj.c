@@ -51,6 +51,28 @@ static void white_space_and_line_ends(void **state)
     }
 }
 
+static void lines_that_end_in_returns(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "# old\rv 0 0 0\rv 1 0 0\r\rv 0 1 0\rf 1 2 \\\r 3\r",
+        "# old\rv 0 0 0\rv 1 0 0\r\rv 0 1 0\rf 1 2 \\\r 3",
+        "\r\rv 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3",
+        "\xEF\xBB\xBFv 0 0 0\r\r\rv 1 0 0\rv 0 1 0\rf 1 2 3",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        he_import import = read_text("obj", texts[i]);
+        expect_counts(&import, 3, 1, 3);
+        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(he_places_find(&import.faces, 0), 6);
+        he_import_clear(&import);
+        assert_string_equal(he_format_sniff(texts[i], strlen(texts[i]))->name, "obj");
+    }
+    expect_refused("obj", "v 0 0 0\rv 1 0 x\r", HE_SYNTAX, 2, "'x' is not a number");
+    /* the first line decides */
+    expect_refused("obj", "v 0 0 0\r\r\nv 1 0 0\rv 0 1 0\r\n", HE_SYNTAX, 2, "is not a number");
+}
+
 static void vertex_forms(void **state)
 {
     (void)state;
@@ -537,6 +559,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(vertices_and_polygons),
         cmocka_unit_test(white_space_and_line_ends),
+        cmocka_unit_test(lines_that_end_in_returns),
         cmocka_unit_test(vertex_forms),
         cmocka_unit_test(corner_forms),
         cmocka_unit_test(corner_values_reach_the_half_edges),

@@ -15,6 +15,7 @@ static void plain_files(void **state)
         "OFF\n3 1\n17\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* on its own line */
         "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* one a line */
         "OFF\n3 1 3\n0 0\n0\n1\n0 0\n0 1\n0\n3\n0 1\n2\n", /* elements over several lines */
+        "# a\rOFF\r3 1 3\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r",
         "\xEF\xBB\xBFOFF\n3 1 3\n0 0 0\n1e0 .0 0.\n0 +1 0\n3 0 1 2\n\n\n",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {

@@ -328,6 +328,34 @@ static void values_that_are_not_finite(void **state)
 
 /* --- traps --- */
 
+static void lines_that_end_in_returns(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "ply\rformat ascii 1.0\relement vertex 3\rproperty float x\rproperty float y\r"
+        "property float z\relement face 1\rproperty list int int vertex_index\rend_header\r"
+        "0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r";
+    he_import import = read_text("ply", text);
+    expect_counts(&import, 3, 1, 3);
+    assert_int_equal(he_places_find(&import.vertices, 2), 12);
+    assert_int_equal(import.notes.count, 0);
+    he_import_clear(&import);
+    static const char empty[] = "ply\rformat ascii 1.0\relement vertex 0\rend_header";
+    import = read_text("ply", empty);
+    expect_counts(&import, 0, 0, 0);
+    he_import_clear(&import);
+    /* binary that a line feed does not begin may begin with one */
+    static const char *const ends[] = {"end_header\r\n", "end_header\rAB\r", "end_header\rABC"};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        char binary[200];
+        snprintf(binary, sizeof binary,
+                 "ply\rformat binary_little_endian 1.0\relement e 3\rproperty char c\r%s", ends[i]);
+        he_error err = {0};
+        assert_int_not_equal(read_pieces("ply", binary, strlen(binary), 0, NULL, &import, &err),
+                             HE_OK);
+    }
+}
+
 static void strips_become_triangles(void **state)
 {
     (void)state;
@@ -454,6 +482,7 @@ int main(void)
         cmocka_unit_test(groups_have_several_spellings),
         cmocka_unit_test(what_is_left_out_is_noted),
         cmocka_unit_test(values_that_are_not_finite),
+        cmocka_unit_test(lines_that_end_in_returns),
         cmocka_unit_test(strips_become_triangles),
         cmocka_unit_test(line_ends_of_the_header),
         cmocka_unit_test(places_are_known),
