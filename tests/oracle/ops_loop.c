@@ -1,5 +1,7 @@
 #include "oracle/oracle.h"
 
+#include "edit/bridge.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -79,14 +81,15 @@ uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_
         return OR_BIT(HE_DOUBLED_EDGE);
     }
     /* Between loops of different lengths hedge chooses corner by corner, so whether an edge is
-     * doubled is not known. */
+     * doubled is not known; nor whether it finds a pairing before it has tried its number. */
     bool can_double = false;
     for (uint32_t i = 0; i < n && n != m; i++) {
         for (uint32_t k = 0; k < m; k++) {
             can_double = can_double || o->joined[a[i]][b[k]] != OR_NONE;
         }
     }
-    can_double = can_double || (n != m && (repeats(a, n) || repeats(b, m)));
+    bool passes_twice = repeats(a, n) || repeats(b, m);
+    can_double = can_double || (passes_twice && (n != m || n > HE_TWIST_TRIES));
     o->may |= can_double ? OR_BIT(HE_DOUBLED_EDGE) : 0;
     o->bridging = true;
     o->bridge[0] = (or_face){.alive = true, .count = n};
@@ -128,7 +131,8 @@ static bool is_in_strip(const or_mesh *o, const or_face *f)
                                 : f->count == 3 && sides[0] + sides[1] == 1;
 }
 
-/* Between loops of one length: does no other way round that is allowed make shorter rungs? */
+/* Between loops of one length, all corners of which hedge looks at: does no other way round that is
+ * allowed make shorter rungs? */
 static bool is_least_twisted(const or_mesh *o)
 {
     const or_face *a = &o->bridge[0];
@@ -157,7 +161,8 @@ bool or_strip_is_right(const or_mesh *o, uint32_t first_new)
             return false;
         }
     }
-    return o->bridge[0].count != o->bridge[1].count || is_least_twisted(o);
+    uint32_t n = o->bridge[0].count;
+    return n != o->bridge[1].count || n > HE_TWIST_PAIRS || is_least_twisted(o);
 }
 
 /* --- loop_join --- */
