@@ -68,27 +68,32 @@ SUITES     := unit model api e2e
 PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
 SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
                 $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
+SIDE_C     := $(sort $(wildcard tests/bench/side/*.c))
+OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
+BENCH_C    := tests/bench/space.c $(SIDE_C) $(OURS_C)
+PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
 FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 # What all targets are linked with; libFuzzer brings its own main program.
 FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
                 $(wildcard tests/fuzz/*.c)))
-BENCH_C    := $(sort $(wildcard tests/bench/*.c))
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
-HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h))
+HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h \
+                tests/bench/side/*.h tests/bench/ours/*.h))
 ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
               $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C)
 
 LIBRARIES  := $(BUILD)/libserver.a $(BUILD)/libapi.a $(BUILD)/libcore.a
 HEDGED     := $(BUILD)/hedged
 PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
+SPACE      := $(BUILD)/tests/bench/space
 TARGETS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
-BENCHES    := $(patsubst %.c,$(BUILD)/%,$(BENCH_C))
 PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs test lint format asan tsan coverage proof fuzz targets bench \
-        bench-http bench-events bench-large container screenshot install clean
+.PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof fuzz \
+        targets bench bench-http bench-events bench-large bench-space container screenshot \
+        install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -113,6 +118,9 @@ $(STAMPS)/test: .ci/deps | $(STAMPS)/web
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/bench: .ci/deps | $(STAMPS)/build
 	@sh .ci/deps bench
+	@mkdir -p $(@D) && touch $@
+$(STAMPS)/crosscheck: .ci/deps | $(STAMPS)/test
+	@sh .ci/deps crosscheck
 	@mkdir -p $(@D) && touch $@
 $(STAMPS)/fuzz: .ci/deps | $(STAMPS)/test
 	@sh .ci/deps fuzz
@@ -159,11 +167,6 @@ $(TARGETS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) $(BUILD)/l
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
-
-$(BENCHES): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
-	@mkdir -p $(@D)
-	@echo "LD $@"
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
 -include $(patsubst %.o,%.d,$(call object,$(ALL_C)))
 
@@ -215,6 +218,16 @@ coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
+# CHECK_FLAGS="--files 100000 --only ply" for a longer look; SEED=... repeats a run.
+crosscheck: $(HEDGED) $(BUILD)/tests/crosscheck/peers ## readers and writers beside assimp, OpenMesh, CGAL and the corpus' reader
+	@python3 -B tests/crosscheck/run.py --hedged $(abspath $(HEDGED)) \
+	    --peers $(BUILD)/tests/crosscheck/peers $(CHECK_FLAGS)
+
+$(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(STAMPS)/crosscheck
+	@mkdir -p $(@D)
+	@echo "CXX $<"
+	$(Q)g++ -std=c++17 -O0 -w -o $@ $< -lOpenMeshCore -lgmp -lmpfr
+
 # The long versions of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another.
 ROUNDS ?= 10
 proof: ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once
@@ -230,8 +243,53 @@ fuzz: | $(STAMPS)/fuzz ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON 
 
 targets: $(TARGETS)
 
-bench: $(BENCHES) ## the kernel's figures
-	@for program in $(BENCHES); do echo "== $$program"; $$program || exit 1; done
+# --- the kernel beside its peers -------------------------------------------------------------
+# BENCH narrows: `make bench BENCH=build,onering`; RUNS=3 and SCALE=0.1 make it quicker. The peers are
+# compiled for this alone, as their users would: optimized as we are, but without our hardening and
+# with NDEBUG, which CGAL's checks want. Neither side is tuned to the machine.
+
+BENCH      ?=
+RUNS       ?= 5
+SCALE      ?= 1
+PEERS      := openmesh cgal meshoptimizer
+PEER_FLAGS := -std=c++17 -O3 -fno-math-errno -DNDEBUG
+SIDES      := $(addprefix $(BUILD)/tests/bench/sides/,ours $(PEERS))
+LIBS_openmesh      := -lOpenMeshTools -lOpenMeshCore
+LIBS_meshoptimizer := -lmeshoptimizer
+
+$(BUILD)/obj/tests/bench/peers/%.o: tests/bench/peers/%.cc Makefile | $(STAMPS)/bench
+	@mkdir -p $(@D)
+	@echo "CXX $<"
+	$(Q)g++ -Itests -isystem /usr/include/eigen3 $(PEER_FLAGS) -Wall -Wextra -Wno-maybe-uninitialized -MMD -MP -c -o $@ $<
+
+peer_objects = $(patsubst %.cc,$(BUILD)/obj/%.o,$(wildcard tests/bench/peers/$(1)*.cc))
+define PEER
+$(BUILD)/tests/bench/sides/$(1): $(call peer_objects,$(1)) $(call object,$(SIDE_C))
+	@mkdir -p $$(@D)
+	@echo "LD $$@"
+	$$(Q)g++ -o $$@ $$^ $(LIBS_$(1))
+endef
+$(foreach peer,$(PEERS),$(eval $(call PEER,$(peer))))
+
+$(BUILD)/tests/bench/sides/ours: $(call object,$(OURS_C) $(SIDE_C)) $(LIBRARIES)
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
+
+$(SPACE): $(call object,tests/bench/space.c) $(BUILD)/libcore.a
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
+
+-include $(patsubst %.cc,$(BUILD)/obj/%.d,$(PEER_CC))
+
+bench: $(SIDES) | $(STAMPS)/web ## the kernel beside OpenMesh and CGAL; BENCH=build,files for parts
+	@node tests/bench/compare.mjs --programs $(BUILD)/tests/bench/sides --only "$(BENCH)" \
+	    --runs $(RUNS) --scale $(SCALE) --flags="$(filter -O% -f% -m%,$(CFLAGS))" \
+	    --peer-flags="$(PEER_FLAGS)"
+
+bench-space: $(SPACE) ## rays, nearest points, intersections and curvature: our figures alone
+	@$(SPACE)
 
 bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(STAMPS)/bench ## requests a second, beside a bare libmicrohttpd
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
@@ -253,7 +311,7 @@ lint: $(LIBRARIES) $(HEDGED) | $(STAMPS)/lint ## formatting, names, directions o
 	@sh .ci/lint "$(CPPFLAGS) $(CFLAGS)" $(BUILD) $(HEADERS) $(ALL_C)
 
 format: | $(STAMPS)/lint ## rewrite all C files as .clang-format says
-	clang-format -i $(HEADERS) $(ALL_C)
+	clang-format -i $(HEADERS) $(ALL_C) $(PEER_CC) tests/bench/peers/*.h
 
 # --- the rest ------------------------------------------------------------------------------
 

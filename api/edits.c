@@ -18,7 +18,8 @@ typedef struct edits {
     api_in expected;
     bool has_expected;
     bool dry_run;
-    size_t whole; /* operations that cost the mesh */
+    size_t whole;  /* operations that cost the mesh */
+    double growth; /* by how many times they make it larger, all in all */
     api_edit_cost cost;
     uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
     api_names names;
@@ -80,6 +81,7 @@ static bool note(edits *e, const api_in *in, const api_call *call)
 {
     he_error err = {0};
     e->whole += he_op_is_whole(call->op, call->args) || call->has_set;
+    e->growth *= he_op_growth(call->op, call->args);
     note_name(e, call->op->name);
     return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
            api_problem_set_core(in->problem, &err);
@@ -277,7 +279,7 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
     }
     /* An edit without effect makes no revision, unless it used up ids that its answer names. */
     bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
-    bool undoable = !changes.replaced && x->store->undoable(x->store->self, x->mesh);
+    bool undoable = !changes.renumbered && x->store->undoable(x->store->self, x->mesh);
     write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0), undoable || !effect);
     if (x->text.failed) {
         api_fail_memory(x);
@@ -288,7 +290,7 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
         api_tally tally = api_changes_tally(&changes);
         x->store->tally(x->store->self, x->mesh, &tally);
     }
-    *barrier = changes.replaced;
+    *barrier = changes.renumbered;
     he_changes_clear(&changes);
     return publish;
 }
@@ -379,6 +381,9 @@ static void run_claimed(api_exchange *x)
     }
 }
 
+/* Elements in number beyond which it does not matter how many more there are. */
+static const double MANY = 1e12;
+
 /* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a
  * thread that may block; what costs a really large mesh must not keep it locked. */
 static void choose(api_exchange *x, edits *e)
@@ -389,6 +394,8 @@ static void choose(api_exchange *x, edits *e)
         return;
     }
     elements += api_elements_of(mesh);
+    elements = e->growth * (double)elements < MANY ? (uint64_t)(e->growth * (double)elements)
+                                                   : (uint64_t)MANY;
     bool costly = e->count > API_COSTLY_EDITS ||
                   (elements > API_COSTLY_ELEMENTS &&
                    (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
@@ -412,6 +419,7 @@ void api_edits_post(api_exchange *x)
     }
     x->state = e;
     x->free_state = free_edits;
+    e->growth = 1;
     api_names_init(&e->names, x->store->secret);
     api_others_init(&e->others, x->store);
     api_out_init(&e->out, &e->results);

@@ -47,9 +47,9 @@ static const api_example examples[] = {
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"obj\","
                  "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
     {.route = "meshes_create",
-     .target = "/v1/meshes?id=tile-off",
+     .target = "/v1/meshes?id=tile-off&repair=drop_duplicates",
      .consumes = "model/x-off",
-     .request = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+     .request = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 1 2 0\n",
      .status = 201,
      .produces = "application/json",
      .response = "{\"id\":\"tile-off\",\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":3,"
@@ -59,7 +59,8 @@ static const api_example examples[] = {
                  "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":0.5,\"volume\":null,"
                  "\"memory_bytes\":312,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"off\","
-                 "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
+                 "\"vertices\":3,\"faces\":2,\"repairs\":[{\"repair\":\"drop_duplicates\","
+                 "\"count\":1,\"gone\":[1],\"into\":[0],\"lines\":[7]}],\"warnings\":[]}}"},
     {.route = "meshes_create",
      .target = "/v1/meshes?id=tile-gltf",
      .consumes = "model/gltf+json",
@@ -224,12 +225,15 @@ static const api_example examples[] = {
      .response = "{\"revision\":1,\"by\":\"edge\",\"components\":[{\"faces\":2,\"vertices\":4,"
                  "\"face\":0}]}"},
     {.route = "check_get",
-     .target = "/v1/meshes/kite/check",
+     .target = "/v1/meshes/kite/check?self_intersections=true&merge=0.5&flat=0.25",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"valid\":true,\"problems\":[],\"defects\":[],"
                  "\"totals\":{\"problems\":0,\"bowtie\":0,\"isolated_vertex\":0,"
-                 "\"zero_length_edge\":0,\"degenerate_face\":0}}"},
+                 "\"duplicate_position\":0,\"zero_length_edge\":0,\"degenerate_face\":0,"
+                 "\"nonplanar_face\":0,\"small_component\":0,\"inside_out_component\":0,"
+                 "\"self_intersection\":0},\"thresholds\":{\"merge\":0.5,\"flat\":0.25,"
+                 "\"small\":0.014142135623730951},\"complete\":true}"},
     {.route = "edits_post",
      .target = "/v1/meshes/kite/edits",
      .consumes = "application/json",

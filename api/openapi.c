@@ -122,8 +122,9 @@ static void write_line_schema(api_out *out, const char *line)
     api_out_object_end(out);
 }
 
-/* Media types with the schema of those that are JSON; that of a line is an extension, since OpenAPI
- * has a word for it (itemSchema) only from 3.2 on. `example` gives a body of one for `route`. */
+/* Media types with the schema of those that are the API's own JSON, which a model is not; that of a
+ * line is an extension, since OpenAPI has a word for it (itemSchema) only from 3.2 on. `example`
+ * gives a body of one for `route`. */
 static void write_content(api_out *out, const char *const *types, const char *schema,
                           const char *line,
                           const char *(*example)(const char *route, const char *media),
@@ -137,7 +138,7 @@ static void write_content(api_out *out, const char *const *types, const char *sc
         size_t length = strlen(*types);
         bool lines = strcmp(*types, "application/x-ndjson") == 0;
         bool json = length >= 4 && strcmp(*types + length - 4, "json") == 0 && !lines;
-        if (json && schema != NULL) {
+        if (json && schema != NULL && strncmp(*types, "application/", 12) == 0) {
             api_schema_ref_key(out, "schema", schema);
         } else if (lines && line != NULL) {
             write_line_schema(out, line);

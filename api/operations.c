@@ -97,6 +97,9 @@ static void write_result(api_out *out, const he_result_row *result)
     case HE_RESULT_MAP:
         type = "map";
         break;
+    case HE_RESULT_COUNTS:
+        type = "counts";
+        break;
     }
     api_out_object_begin(out);
     api_out_key_string(out, "name", result->name);
@@ -397,6 +400,7 @@ static void write_result_schema(api_out *out, const he_result_row *result)
         api_out_array_end(out);
         break;
     case HE_RESULT_ELEMENTS:
+    case HE_RESULT_COUNTS:
         write_array(out, write_id);
         break;
     case HE_RESULT_NUMBER:

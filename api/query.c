@@ -21,6 +21,12 @@ static bool write_problem(api_exchange *x, api_text *scratch)
     return true;
 }
 
+/* Is it about one question, and not about the request? */
+static bool is_of_question(const api_problem *problem)
+{
+    return problem->code != HE_NO_MEMORY && problem->code != HE_CANCELLED;
+}
+
 static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
 {
     api_text scratch = {0};
@@ -33,7 +39,7 @@ static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
     for (bool more = api_in_first(queries, &question); more && good;
          more = api_in_next(&question)) {
         if (!api_question_ask(a, &question)) {
-            good = !a->spent && x->problem.code != HE_NO_MEMORY && write_problem(x, &scratch);
+            good = !a->spent && is_of_question(&x->problem) && write_problem(x, &scratch);
         }
     }
     api_out_array_end(&x->out);

@@ -64,14 +64,19 @@ bool api_asker_exceed(api_asker *a, const api_in *in)
         a->spent = true;
         return false;
     }
-    return api_in_fail(in, HE_LIMIT, "a request may look at %llu half-edges of this mesh",
-                       (unsigned long long)allowance(a));
+    const char *limit = "a request may look at %llu half-edges of this mesh";
+    unsigned long long most = allowance(a);
+    return in == NULL ? api_fail(a->x, HE_LIMIT, limit, most)
+                      : api_in_fail(in, HE_LIMIT, limit, most);
 }
 
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err)
 {
     if (err->status == HE_LIMIT) {
         return api_asker_exceed(a, in);
+    }
+    if (in == NULL) {
+        return api_fail_core(a->x, err);
     }
     if (in->problem->code == HE_OK) {
         api_problem_set_core(in->problem, err);

@@ -80,7 +80,7 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 /* {"vertex":5}, an element that lives and is of one of the kinds in this set of bits. */
 bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);
 void api_asker_pay(api_asker *a, uint64_t halfedges);
-/* Always false: with a->spent on a worker, else limit_exceeded. */
+/* Always false: with a->spent on a worker, else limit_exceeded. `in` is NULL where no body asks. */
 bool api_asker_exceed(api_asker *a, const api_in *in);
 /* Always false: the problem from core, and where it is. */
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err);

@@ -100,6 +100,36 @@ static const api_parameter type = {
 static const api_parameter components = {
     "components", API_PARAM_U64, 1,
     16,           NULL,          "Numbers of one value, where the body is octets; 1 if not said."};
+static const api_parameter meets = {"self_intersections",
+                                    API_PARAM_FLAG,
+                                    0,
+                                    0,
+                                    NULL,
+                                    "Look for faces that meet where they should not, too."};
+static const api_parameter merge = {
+    "merge",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "Vertices no farther apart are in one place, edges no longer have no length, faces no wider "
+    "have no area; 1e-9 of the box's diagonal if not said."};
+static const api_parameter flat = {
+    "flat",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "A corner farther from the plane of its face makes that nonplanar; 1e-4 of the box's diagonal "
+    "if not said."};
+static const api_parameter small = {
+    "small",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "Components in boxes whose diagonal is no longer are small; 1e-2 of the whole box's diagonal "
+    "if not said."};
 static const api_parameter dry_run = {
     "dry_run", API_PARAM_FLAG, 0, 0, NULL, "Do nothing, and answer as if; members say it in JSON."};
 static const api_parameter rule = {
@@ -406,13 +436,19 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/check",
      .name = "check_get",
      .run = api_check_get,
-     .flags = API_COSTLY,
+     .flags = API_LONG,
      .produces = json,
-     .parameters = {&revision},
-     .statuses = {200, 304, 410},
+     .parameters = {&revision, &meets, &merge, &flat, &small},
+     .statuses = {200, 202, 304, 410},
      .response = "check",
      .summary = "Check a mesh",
-     .doc = "Every broken invariant by its number, and every defect a valid mesh may have."},
+     .doc =
+         "Every broken invariant by its number, and every defect a valid mesh may have: vertices "
+         "of several fans, without an edge or in one place with another, edges without length, "
+         "faces that have no area or are not flat, components that are small or inside out. A "
+         "component is inside out when it is closed and its volume negative: one that bounds a "
+         "hollow within another is listed too, though that is as it should be. Of each the first "
+         "are listed and all counted."},
 
     /* edits */
     {.method = "POST",
@@ -627,26 +663,6 @@ const api_route *api_route_at(size_t i)
     return &routes[i];
 }
 
-bool api_choices_parse(const char *const *choices, const char *list, unsigned *out)
-{
-    *out = 0;
-    for (const char *at = list;; at++) {
-        size_t length = strcspn(at, ","), i = 0;
-        while (choices[i] != NULL &&
-               (strlen(choices[i]) != length || memcmp(choices[i], at, length) != 0)) {
-            i++;
-        }
-        if (choices[i] == NULL || (*out >> i & 1) != 0) {
-            return false;
-        }
-        *out |= 1u << i;
-        at += length;
-        if (*at == '\0') {
-            return true;
-        }
-    }
-}
-
 const int *api_route_common(void)
 {
     static const int common[] = {400, 403, 404, 405, 406, 408, 414, 421, 431, 500, 503, 507, 0};
@@ -675,106 +691,4 @@ const char *const *api_relations(he_kind kind)
         break;
     }
     return of_mesh;
-}
-
-/* --- dispatch --- */
-
-static bool match_variable(const char *variable, const char *segment, api_variables *out)
-{
-    switch (variable[1]) {
-    case 'm':
-        out->mesh = segment;
-        return true;
-    case 'i':
-        out->id = segment;
-        return true;
-    case 'r':
-        out->relation = segment;
-        return true;
-    case 'c':
-        out->code = segment;
-        return true;
-    case 'j':
-        out->job = segment;
-        return true;
-    case 'n':
-        out->name = segment;
-        return true;
-    default: /* {kind}, {domain} */
-        for (he_kind kind = HE_VERTEX; kind <= (variable[1] == 'd' ? HE_MESH_KIND : HE_FACE);
-             kind++) {
-            if (strcmp(segment, he_kind_plural(kind)) == 0) {
-                out->kind = kind;
-                out->has_kind = true;
-                return true;
-            }
-        }
-        return false;
-    }
-}
-
-/* Every request passes here once a row, so the first byte that differs ends it. */
-static bool match(const char *template, const api_path *path, api_variables *out)
-{
-    size_t i = 0;
-    *out = (api_variables){0};
-    const char *at = template[1] == '\0' ? template + 1 : template;
-    while (*at == '/') {
-        at++;
-        if (i == path->count) {
-            return false;
-        }
-        const char *segment = path->segments[i++];
-        if (*at != '{') {
-            while (*at == *segment && *at != '\0') {
-                at++;
-                segment++;
-            }
-            if (*segment != '\0' || (*at != '/' && *at != '\0')) {
-                return false;
-            }
-        } else if (at[1] == 'a') { /* {asset} */
-            return true;
-        } else if (match_variable(at, segment, out)) {
-            at = strchr(at, '}') + 1;
-        } else {
-            return false;
-        }
-    }
-    return i == path->count;
-}
-
-static void add_method(char *allow, const char *method)
-{
-    if (allow[0] != '\0') {
-        strncat(allow, ", ", API_ALLOW - strlen(allow) - 1);
-    }
-    strncat(allow, method, API_ALLOW - strlen(allow) - 1);
-}
-
-const api_route *api_route_find(const char *method, const api_path *path, api_variables *out,
-                                char allow[API_ALLOW])
-{
-    const char *wanted = strcmp(method, "HEAD") == 0 ? "GET" : method;
-    allow[0] = '\0';
-    for (size_t i = 0; i < api_route_count(); i++) {
-        const api_route *route = &routes[i];
-        /* Other methods matter only to a request that finds no row: see below. */
-        if (route->method[0] == wanted[0] && strcmp(route->method, wanted) == 0 &&
-            match(route->path, path, out)) {
-            return route;
-        }
-    }
-    for (size_t i = 0; i < api_route_count(); i++) {
-        if (match(routes[i].path, path, out)) {
-            add_method(allow, routes[i].method);
-            if (strcmp(routes[i].method, "GET") == 0) {
-                add_method(allow, "HEAD");
-            }
-        }
-    }
-    if (allow[0] != '\0') {
-        add_method(allow, "OPTIONS");
-    }
-    return NULL;
 }

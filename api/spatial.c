@@ -1,5 +1,5 @@
 /* Questions about space: rays, nearest points, and where a mesh meets itself. */
-#include "api/tree.h"
+#include "api/spatial.h"
 
 #include <float.h>
 #include <math.h>
@@ -107,6 +107,29 @@ static bool write_pairs(api_asker *a, size_t limit, bool complete)
     return true;
 }
 
+bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
+{
+    he_watch *watch = a->x->watch;
+    he_watch_span(watch, watch == NULL ? 0 : 0.5 * (1 + watch->done)); /* it takes about as long */
+    const he_bvh *tree = api_asker_tree(a, in);
+    if (tree == NULL) {
+        return false;
+    }
+    uint64_t budget = a->left * BOXES;
+    he_error err = {0};
+    a->first.count = 0;
+    he_watch_span(watch, 1);
+    if (he_bvh_intersections(tree, a->mesh, API_MAX_PAIRS, &budget, watch, &a->first, complete,
+                             &err) != HE_OK) {
+        return api_asker_refuse(a, in, &err);
+    }
+    if (budget == 0 && a->on_worker) {
+        return api_asker_exceed(a, in);
+    }
+    a->left = budget / BOXES;
+    return true;
+}
+
 bool api_self_intersections_ask(api_asker *a, const api_in *question)
 {
     static const char *const members[] = {"self_intersections", NULL};
@@ -120,21 +143,9 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question)
     if (api_in_find(&in, "limit", &limited) && !api_in_u64(&limited, 0, API_MAX_PAIRS, &limit)) {
         return false;
     }
-    const he_bvh *tree = api_asker_tree(a, question);
-    if (tree == NULL) {
+    bool complete;
+    if (!api_asker_intersections(a, question, &complete)) {
         return false;
     }
-    uint64_t budget = a->left * BOXES;
-    bool complete = false;
-    he_error err = {0};
-    a->first.count = 0;
-    if (he_bvh_intersections(tree, a->mesh, API_MAX_PAIRS, &budget, &a->first, &complete, &err) !=
-        HE_OK) {
-        return api_asker_refuse(a, question, &err);
-    }
-    if (budget == 0 && a->on_worker) {
-        return api_asker_exceed(a, question);
-    }
-    a->left = budget / BOXES;
     return write_pairs(a, (size_t)limit, complete);
 }

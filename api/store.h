@@ -150,6 +150,9 @@ typedef struct api_store {
      * destroys what is in it when memory is short, and with the mesh. */
     api_derived *(*derived_begin)(void *self, api_mesh *mesh, api_derived_kind kind);
     void (*derived_end)(void *self, api_mesh *mesh, api_derived_kind kind);
+    /* From its holder: give the place to others until one of them ended, then have it again. Not on
+     * a worker, nor under a lock that who is waited for may want. */
+    void (*derived_wait)(void *self, api_mesh *mesh, api_derived_kind kind);
     /* What the revision changed, in either direction; NULL when that is not kept. Under the read
      * lock. */
     const he_delta *(*revision_delta)(void *self, api_mesh *mesh, uint64_t revision);

@@ -1,14 +1,10 @@
-/* The mesh as a whole: GET .../boundaries, .../components, .../check. */
+/* The mesh as a whole: GET .../boundaries, .../components. */
 #include "api/handlers.h"
 
 #include "api/view.h"
-#include "mesh/check.h"
 #include "mesh/walk.h"
-#include "query/geometry.h"
 #include "query/topology.h"
 #include "query/traverse.h"
-
-#include <stdio.h>
 
 /* Answer 200 with what `write` puts into an object that begins with the revision. */
 static void answer_view(api_exchange *x, const char *representation,
@@ -104,139 +100,4 @@ static bool write_components(api_exchange *x, const he_mesh *mesh)
 void api_components_get(api_exchange *x)
 {
     answer_view(x, "components", write_components);
-}
-
-/* --- check --- */
-
-/* Named one by one, of broken invariants and of each code of defect; the rest is counted. */
-enum { NAMED = API_PROBLEM_ELEMENTS };
-
-static void write_problems(api_out *out, const he_problem *problems, size_t total)
-{
-    api_out_key(out, "problems");
-    api_out_array_begin(out);
-    for (size_t i = 0; i < total && i < NAMED; i++) {
-        char rule[16];
-        snprintf(rule, sizeof rule, "I%d", problems[i].rule);
-        api_out_object_begin(out);
-        api_out_key_string(out, "rule", rule);
-        api_out_key_string(out, "kind", he_kind_name(problems[i].kind));
-        api_out_key_id(out, "id", problems[i].id);
-        api_out_key_string(out, "detail", problems[i].text);
-        api_out_object_end(out);
-    }
-    api_out_array_end(out);
-}
-
-/* Does element `id` have this defect? Then one sentence about it. */
-typedef bool (*defect_test)(const he_mesh *mesh, uint32_t id, char *text, size_t size);
-
-static bool is_bowtie(const he_mesh *mesh, uint32_t id, char *text, size_t size)
-{
-    uint32_t fans = he_vertex_fans(mesh, (he_vertex){id});
-    if (fans > 1) {
-        snprintf(text, size, "vertex %u has %u fans", id, fans);
-    }
-    return fans > 1;
-}
-
-static bool is_isolated(const he_mesh *mesh, uint32_t id, char *text, size_t size)
-{
-    bool isolated = he_is_isolated(mesh, (he_vertex){id});
-    if (isolated) {
-        snprintf(text, size, "vertex %u has no edge", id);
-    }
-    return isolated;
-}
-
-static bool has_no_length(const he_mesh *mesh, uint32_t id, char *text, size_t size)
-{
-    he_halfedge h = he_edge_halfedge((he_edge){id}, 0);
-    he_vertex a = he_origin(mesh, h), b = he_target(mesh, h);
-    he_vec3 p = he_position(mesh, a), q = he_position(mesh, b);
-    bool equal = p.x == q.x && p.y == q.y && p.z == q.z;
-    if (equal) {
-        snprintf(text, size, "edge %u joins vertices %u and %u at the same position", id, a.i, b.i);
-    }
-    return equal;
-}
-
-static bool has_no_area(const he_mesh *mesh, uint32_t id, char *text, size_t size)
-{
-    bool degenerate = he_face_measure(mesh, (he_face){id}).degenerate;
-    if (degenerate) {
-        snprintf(text, size, "face %u has no area to take a normal from", id);
-    }
-    return degenerate;
-}
-
-/* What a valid mesh may have and its owner may not want. */
-static const struct {
-    const char *code;
-    he_kind kind;
-    defect_test test;
-} defects[] = {
-    {"bowtie", HE_VERTEX, is_bowtie},
-    {"isolated_vertex", HE_VERTEX, is_isolated},
-    {"zero_length_edge", HE_EDGE, has_no_length},
-    {"degenerate_face", HE_FACE, has_no_area},
-};
-enum { DEFECTS = sizeof defects / sizeof defects[0] };
-
-static uint64_t write_defects_of(api_out *out, const he_mesh *mesh, size_t which)
-{
-    he_kind kind = defects[which].kind;
-    uint32_t issued = he_mesh_issued(mesh, kind);
-    uint64_t total = 0;
-    for (uint32_t id = 0; id < issued; id++) {
-        char text[HE_PROBLEM_TEXT];
-        if (!he_mesh_is_live(mesh, kind, id) || !defects[which].test(mesh, id, text, sizeof text) ||
-            total++ >= NAMED) {
-            continue;
-        }
-        api_out_object_begin(out);
-        api_out_key_string(out, "code", defects[which].code);
-        api_out_key_string(out, "kind", he_kind_name(kind));
-        api_out_key_id(out, "id", id);
-        api_out_key_string(out, "detail", text);
-        api_out_object_end(out);
-    }
-    return total;
-}
-
-static bool write_check(api_exchange *x, const he_mesh *mesh)
-{
-    he_problem *problems = api_arena_array(&x->arena, NAMED, sizeof *problems);
-    size_t total;
-    he_error err = {0};
-    if (problems == NULL) {
-        return api_fail_memory(x);
-    }
-    if (he_check(mesh, problems, NAMED, &total, &err) != HE_OK) {
-        return api_fail_core(x, &err);
-    }
-    api_out *out = &x->out;
-    uint64_t counts[DEFECTS] = {0};
-    api_out_key_bool(out, "valid", total == 0);
-    write_problems(out, problems, total);
-    api_out_key(out, "defects");
-    api_out_array_begin(out);
-    /* On broken links the tests could not be trusted. */
-    for (size_t i = 0; i < DEFECTS && total == 0; i++) {
-        counts[i] = write_defects_of(out, mesh, i);
-    }
-    api_out_array_end(out);
-    api_out_key(out, "totals");
-    api_out_object_begin(out);
-    api_out_key_u64(out, "problems", total);
-    for (size_t i = 0; i < DEFECTS; i++) {
-        api_out_key_u64(out, defects[i].code, counts[i]);
-    }
-    api_out_object_end(out);
-    return true;
-}
-
-void api_check_get(api_exchange *x)
-{
-    answer_view(x, "check", write_check);
 }

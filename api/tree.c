@@ -2,10 +2,12 @@
 
 #include <stdatomic.h>
 
+/* `bvh` and `abandoned` are written once, under the place; both unset, it is being made. */
 typedef struct api_tree {
     _Atomic uint32_t uses; /* one while it is kept, one for each asker */
     uint64_t revision;
     he_bvh *bvh;
+    bool abandoned; /* it could not be made */
 } api_tree;
 
 void api_tree_release(api_tree *tree)
@@ -21,72 +23,116 @@ static void destroy(void *value)
     api_tree_release(value);
 }
 
-/* The one that is kept, if it is of this revision; one of an earlier revision is dropped. */
-static api_tree *find(const api_asker *a)
+static void hold(api_tree *tree)
 {
-    const api_store *store = a->x->store;
-    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
-    api_tree *kept = place->value, *found = NULL, *dropped = NULL;
-    if (kept != NULL && kept->revision == a->revision) {
-        atomic_fetch_add_explicit(&kept->uses, 1, memory_order_relaxed);
-        found = kept;
-    } else if (kept != NULL && kept->revision < a->revision) {
-        dropped = kept;
-        *place = (api_derived){NULL, NULL};
-    }
-    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
-    api_tree_release(dropped);
-    return found;
+    atomic_fetch_add_explicit(&tree->uses, 1, memory_order_relaxed);
 }
 
-/* Unless somebody was faster, perhaps with a later revision. */
-static void keep(const api_asker *a, api_tree *tree)
+/* One that is still to be made. */
+static api_tree *tree_new(const api_asker *a)
+{
+    api_tree *tree = he_mem_zero(1, sizeof *tree);
+    if (tree != NULL) {
+        atomic_init(&tree->uses, 1);
+        tree->revision = a->revision;
+    }
+    return tree;
+}
+
+static uint64_t cost_of(const api_asker *a)
+{
+    return he_mesh_count(a->mesh, HE_HALFEDGE);
+}
+
+/* Under the place. NULL when memory is out, or with a->spent. */
+static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tree **dropped)
 {
     const api_store *store = a->x->store;
-    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
     api_tree *kept = place->value;
-    if (kept == NULL || kept->revision < tree->revision) {
-        atomic_fetch_add_explicit(&tree->uses, 1, memory_order_relaxed);
-        *place = (api_derived){tree, destroy};
-    } else {
-        kept = NULL;
+    while (kept != NULL && kept->revision == a->revision) {
+        if (kept->bvh == NULL && a->on_worker) {
+            api_asker_exceed(a, in);
+            return NULL;
+        }
+        hold(kept);
+        while (kept->bvh == NULL && !kept->abandoned) {
+            store->derived_wait(store->self, a->x->mesh, API_DERIVED_TREE);
+        }
+        if (kept->bvh != NULL) {
+            return kept;
+        }
+        api_tree_release(kept); /* there is no tree in it: nothing that takes long */
+        kept = place->value;
     }
-    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
-    api_tree_release(kept);
-}
-
-static api_tree *make(api_asker *a, const api_in *in)
-{
-    uint64_t cost = he_mesh_count(a->mesh, HE_HALFEDGE);
-    if (a->on_worker && cost >= a->left) {
+    if (a->on_worker && cost_of(a) >= a->left) {
         api_asker_exceed(a, in);
         return NULL;
     }
-    he_error err = {0};
-    api_tree *tree = he_mem_zero(1, sizeof *tree);
+    api_tree *tree = tree_new(a);
     if (tree == NULL) {
-        api_in_fail(in, HE_NO_MEMORY, "no memory for a tree of boxes");
-        return NULL;
-    }
-    if (he_bvh_new(a->mesh, &tree->bvh, &err) != HE_OK) {
-        he_mem_free(tree);
+        he_error err = {0};
+        (void)he_fail_plain(&err, HE_NO_MEMORY, "no memory for a tree of boxes");
         api_asker_refuse(a, in, &err);
-        return NULL;
+    } else if (kept == NULL || kept->revision < a->revision) {
+        hold(tree);
+        *dropped = kept;
+        *place = (api_derived){tree, destroy};
     }
-    api_asker_pay(a, cost);
-    atomic_init(&tree->uses, 1);
-    tree->revision = a->revision;
-    keep(a, tree);
     return tree;
+}
+
+/* The one that is kept, if it is of this revision; else one that the asker has to make, which takes
+ * the place of one of an earlier revision. */
+static api_tree *find(api_asker *a, const api_in *in)
+{
+    const api_store *store = a->x->store;
+    api_tree *dropped = NULL;
+    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+    api_tree *tree = take(a, in, place, &dropped);
+    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+    api_tree_release(dropped);
+    return tree;
+}
+
+/* Once made, or given up with NULL: whoever waits for it goes on. */
+static void finish(const api_asker *a, api_tree *tree, he_bvh *bvh)
+{
+    const api_store *store = a->x->store;
+    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+    bool forget = bvh == NULL && place->value == tree;
+    tree->bvh = bvh;
+    tree->abandoned = bvh == NULL;
+    if (forget) {
+        *place = (api_derived){NULL, NULL};
+    }
+    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+    if (forget) {
+        api_tree_release(tree);
+    }
+}
+
+static bool make(api_asker *a, const api_in *in, api_tree *tree)
+{
+    he_error err = {0};
+    he_bvh *bvh = NULL;
+    bool made = he_bvh_new(a->mesh, a->x->watch, &bvh, &err) == HE_OK;
+    finish(a, tree, bvh);
+    if (!made) {
+        api_tree_release(tree);
+        return api_asker_refuse(a, in, &err);
+    }
+    api_asker_pay(a, cost_of(a));
+    return true;
 }
 
 const he_bvh *api_asker_tree(api_asker *a, const api_in *in)
 {
     if (a->tree == NULL) {
-        a->tree = find(a);
+        api_tree *tree = find(a, in);
+        if (tree == NULL || (tree->bvh == NULL && !make(a, in, tree))) {
+            return NULL;
+        }
+        a->tree = tree;
     }
-    if (a->tree == NULL) {
-        a->tree = make(a, in);
-    }
-    return a->tree == NULL ? NULL : a->tree->bvh;
+    return a->tree->bvh;
 }

@@ -7,6 +7,7 @@
 #include "mesh/walk.h"
 #include "query/topology.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Enough to tell any format by. */
@@ -15,13 +16,18 @@ enum { SNIFF_BYTES = 512 };
 /* Of the making of a mesh; what is left is its summary's. */
 static const double SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7, FILL_SHARE = 0.75;
 
+typedef struct attribute {
+    he_kind domain;
+    char name[HE_COLUMN_NAME];
+} attribute;
+
 typedef struct upload {
     he_limits limits;
     /* exactly one of these reads; neither while the first bytes are gathered */
     api_document_in *document;
     he_reader *reader;
     const he_format *format; /* of the reader */
-    char head[SNIFF_BYTES];
+    char head[SNIFF_BYTES];  /* the first bytes of the body */
     size_t head_length;
 
     bool has_import;
@@ -34,6 +40,8 @@ typedef struct upload {
     he_repair_plan plan;
     he_repaired repaired;
     size_t vertices, faces; /* as read */
+    attribute *attributes;
+    size_t attribute_count;
     he_ids bowties;
     uint64_t isolated;   /* vertices */
     he_ids isolated_ids; /* the first */
@@ -50,6 +58,7 @@ static void free_upload(void *state)
     he_repaired_clear(&u->repaired);
     he_ids_clear(&u->bowties);
     he_ids_clear(&u->isolated_ids);
+    he_mem_free(u->attributes);
     he_mem_free(u);
 }
 
@@ -95,13 +104,25 @@ bool api_upload_begin(api_exchange *x)
     return open_reader(x, u, format);
 }
 
+/* What was said to be of one format may be of another. */
+static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
+{
+    const he_format *looks = he_format_sniff(u->head, u->head_length);
+    size_t length = strlen(err->text);
+    if (looks != NULL && looks != u->format) {
+        snprintf(err->text + length, sizeof err->text - length,
+                 "; the body begins as one of the format %s does", looks->name);
+    }
+    return api_fail_core(x, err);
+}
+
 static bool feed(api_exchange *x, upload *u, const char *bytes, size_t length)
 {
     if (u->document != NULL) {
         return api_document_in_feed(u->document, bytes, length, &x->problem);
     }
     he_error err = {0};
-    return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || api_fail_core(x, &err);
+    return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || fail_reading(x, u, &err);
 }
 
 /* Choose a reader by what has arrived, and let it read that. */
@@ -117,8 +138,11 @@ static bool choose(api_exchange *x, upload *u)
         blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
     const he_format *format = json ? NULL : he_format_sniff(u->head, u->head_length);
     if (!json && (format == NULL || format->reading == NULL)) {
-        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE,
-                 "the first bytes are of no format this server reads: say ?format=");
+        bool wide = u->head_length >= 2 &&
+                    (memcmp(u->head, "\xFF\xFE", 2) == 0 || memcmp(u->head, "\xFE\xFF", 2) == 0);
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s",
+                 wide ? "the body is UTF-16: send it as UTF-8"
+                      : "the first bytes are of no format this server reads: say ?format=");
         x->problem.supported = x->route->consumes;
         return false;
     }
@@ -134,10 +158,10 @@ static bool is_open(const upload *u)
 bool api_upload_feed(api_exchange *x, const char *bytes, size_t length)
 {
     upload *u = x->state;
+    size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
+    memcpy(u->head + u->head_length, bytes, take);
+    u->head_length += take;
     if (!is_open(u)) {
-        size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
-        memcpy(u->head + u->head_length, bytes, take);
-        u->head_length += take;
         if (u->head_length < sizeof u->head) {
             return true;
         }
@@ -227,7 +251,7 @@ bool api_upload_end(api_exchange *x)
     }
     he_error err = {0};
     if (he_reader_finish(u->reader, &u->import, &err) != HE_OK) {
-        return api_fail_core(x, &err);
+        return fail_reading(x, u, &err);
     }
     u->has_import = true;
     return true;
@@ -311,6 +335,35 @@ static he_status find_isolated(upload *u, const he_mesh *mesh, he_error *err)
     return status;
 }
 
+static he_status name_attributes(upload *u, const he_mesh *mesh, he_error *err)
+{
+    size_t count = he_mesh_columns(mesh);
+    u->attributes = he_mem_zero(count + 1, sizeof *u->attributes);
+    if (u->attributes == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to name %zu attributes", count);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const he_column *column = he_mesh_column(mesh, i);
+        if (column != NULL) {
+            attribute *a = &u->attributes[u->attribute_count++];
+            a->domain = column->domain;
+            memcpy(a->name, column->name, sizeof a->name);
+        }
+    }
+    return HE_OK;
+}
+
+/* That an OFF file gives another number of edges than it has is only known now. */
+static void note_edges(upload *u, const he_mesh *mesh)
+{
+    const he_import *import = &u->import;
+    if (u->has_import && u->plan.which == 0 && import->edges_line != 0 && import->edges != 0 &&
+        import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
+        he_notes_add(&u->import.notes, "edge_count", "ignored: the number of edges, which is wrong",
+                     NULL, 0, HE_PLACE_LINE, import->edges_line);
+    }
+}
+
 /* From the repaired soup on. */
 static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
 {
@@ -328,6 +381,10 @@ static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
     if (status == HE_OK) {
         status = find_isolated(u, mesh, &err);
     }
+    if (status == HE_OK) {
+        status = name_attributes(u, mesh, &err);
+    }
+    note_edges(u, mesh);
     he_mesh_watch(mesh, NULL);
     return status == HE_OK || api_fail_core(x, &err);
 }
@@ -427,6 +484,22 @@ static void write_vertices(api_out *out, const upload *u, const char *code, cons
     api_out_object_end(out);
 }
 
+static void write_attributes(api_out *out, const upload *u)
+{
+    if (u->attribute_count == 0) {
+        return;
+    }
+    api_out_key(out, "attributes");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < u->attribute_count; i++) {
+        api_out_object_begin(out);
+        api_out_key_string(out, "domain", he_kind_plural(u->attributes[i].domain));
+        api_out_key_string(out, "name", u->attributes[i].name);
+        api_out_object_end(out);
+    }
+    api_out_array_end(out);
+}
+
 void api_upload_write_report(api_exchange *x)
 {
     const upload *u = x->state;
@@ -439,6 +512,7 @@ void api_upload_write_report(api_exchange *x)
                                           : "json");
     api_out_key_u64(out, "vertices", u->vertices);
     api_out_key_u64(out, "faces", u->faces);
+    write_attributes(out, u);
     api_repairs_write(out, &u->plan, &u->repaired, u->has_import ? &u->import : NULL);
     api_out_key(out, "warnings");
     api_out_array_begin(out);

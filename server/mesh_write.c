@@ -205,7 +205,7 @@ api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, ui
     if (steps > (which == API_UNDO ? mesh->log.undo_count : mesh->log.redo_count)) {
         return API_STORE_NOTHING;
     }
-    if (!srv_log_reserve_steps(&mesh->log, which, steps)) {
+    if (!srv_log_reserve_steps(&mesh->log, which, steps, mesh->content)) {
         return API_STORE_NO_MEMORY;
     }
     /* A step makes a revision by itself: it may not be recorded into another. */

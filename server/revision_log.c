@@ -394,7 +394,8 @@ static srv_revision *step_entry(const srv_revision_log *log, const srv_step *ste
     return entry;
 }
 
-bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t steps)
+bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t steps,
+                           const he_mesh *content)
 {
     assert(log->steps == NULL);
     srv_revision **end = &log->steps;
@@ -402,8 +403,8 @@ bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t ste
     bool reserved = reserve_places(log, steps);
     for (uint32_t i = 0; i < steps && reserved; i++, step = step->below) {
         *end = step_entry(log, step);
-        reserved = *end != NULL;
-        end = reserved ? &(*end)->next : end;
+        reserved = *end != NULL && he_delta_ready(step->delta, content, NULL) == HE_OK;
+        end = *end != NULL ? &(*end)->next : end;
     }
     if (!reserved) {
         drop_step_entries(log);

@@ -84,8 +84,9 @@ api_store_status srv_log_steps_to(const srv_revision_log *log, api_action which,
 /* The bytes of that many steps' deltas: what taking them costs. */
 uint64_t srv_log_steps_bytes(const srv_revision_log *log, api_action which, uint32_t steps);
 /* Make sure that this many steps, which the stack has, can be added without allocating. False when
- * memory is out; nothing is reserved then. */
-bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t steps);
+ * memory is out; nothing is reserved then. `content` is what they will be taken on. */
+bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t steps,
+                           const he_mesh *content);
 /* The delta that undo or redo would apply, NULL when there is none. */
 he_delta *srv_log_next(const srv_revision_log *log, api_action which);
 /* It was applied: move its step to the other stack and add the entry. The delta stays valid until

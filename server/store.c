@@ -302,6 +302,7 @@ api_store srv_store_interface(srv_store *store)
         .cache_put = srv_cache_put,
         .derived_begin = srv_derived_begin,
         .derived_end = srv_derived_end,
+        .derived_wait = srv_derived_wait,
         .revision_delta = srv_revision_delta,
         .random = random_number,
         .write_begin = srv_write_begin,

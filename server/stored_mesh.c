@@ -47,6 +47,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     srv_keys_init(&mesh->keys, secret);
     for (int kind = 0; kind < API_DERIVED_COUNT; kind++) {
         pthread_mutex_init(&mesh->derived[kind].lock, NULL);
+        pthread_cond_init(&mesh->derived[kind].ended, NULL);
     }
     atomic_init(&mesh->uses, 1);
     mesh->journal = journal;
@@ -94,6 +95,7 @@ void srv_mesh_release(api_mesh *mesh)
     pthread_mutex_destroy(&mesh->cache_lock);
     for (int kind = 0; kind < API_DERIVED_COUNT; kind++) {
         pthread_mutex_destroy(&mesh->derived[kind].lock);
+        pthread_cond_destroy(&mesh->derived[kind].ended);
     }
     he_mem_free(mesh);
 }
@@ -196,7 +198,14 @@ api_derived *srv_derived_begin(void *self, api_mesh *mesh, api_derived_kind kind
 void srv_derived_end(void *self, api_mesh *mesh, api_derived_kind kind)
 {
     (void)self;
+    pthread_cond_broadcast(&mesh->derived[kind].ended);
     pthread_mutex_unlock(&mesh->derived[kind].lock);
+}
+
+void srv_derived_wait(void *self, api_mesh *mesh, api_derived_kind kind)
+{
+    (void)self;
+    pthread_cond_wait(&mesh->derived[kind].ended, &mesh->derived[kind].lock);
 }
 
 const he_delta *srv_revision_delta(void *self, api_mesh *mesh, uint64_t revision)

@@ -52,6 +52,7 @@ struct api_mesh {
     srv_keys keys;
     struct {
         pthread_mutex_t lock;
+        pthread_cond_t ended; /* somebody gave it back */
         api_derived place;
     } derived[API_DERIVED_COUNT];
 };
@@ -75,6 +76,7 @@ bool srv_cache_get(void *self, api_mesh *mesh, void *value, size_t size);
 void srv_cache_put(void *self, api_mesh *mesh, const void *value, size_t size);
 api_derived *srv_derived_begin(void *self, api_mesh *mesh, api_derived_kind kind);
 void srv_derived_end(void *self, api_mesh *mesh, api_derived_kind kind);
+void srv_derived_wait(void *self, api_mesh *mesh, api_derived_kind kind);
 const he_delta *srv_revision_delta(void *self, api_mesh *mesh, uint64_t revision);
 bool srv_history(void *self, api_mesh *mesh, size_t i, struct api_entry *out);
 void srv_history_facts(void *self, api_mesh *mesh, struct api_history *out);

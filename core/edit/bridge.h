@@ -26,9 +26,9 @@ typedef struct he_bridge {
  *
  * LEAST TWIST. Corner i of one loop is paired with corner s + i * m / n, rounded, of the other, and
  * s chosen so that the squared distances of the pairs sum to the least, the lowest s where several
- * do. On loops of more than HE_TWIST_PAIRS corners the sum is over so many, evenly spread. A pairing
- * by which an edge would be doubled is passed over for the one with the next least twist: on loops
- * of one length that pass no vertex twice until one does, on others HE_TWIST_TRIES times.
+ * do. On loops of more than HE_TWIST_PAIRS corners the sum is over so many, evenly spread. A
+ * pairing by which an edge would be doubled is passed over for the one with the next least twist:
+ * on loops of one length that pass no vertex twice until one does, on others HE_TWIST_TRIES times.
  *
  * Triangles start at the pair of a's origin, and the strip goes on by the shorter of the two rungs
  * that are next (H. N. Christiansen and T. W. Sederberg, "Conversion of complex contour line
@@ -38,7 +38,8 @@ typedef struct he_bridge {
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_NOT_BOUNDARY; HE_SAME_LOOP; HE_SHARED_VERTEX;
  * HE_DOUBLED_EDGE where an edge, or another rung, joins the ends of a rung already, by each pairing
- * that is tried; it names one by the pairing of least twist. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else he_bridge_clear frees it. Costs the loops. */
+ * that is tried; it names one by the pairing of least twist. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out`
+ * may be NULL, else he_bridge_clear frees it. Costs the loops. */
 HE_NODISCARD he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *out,
                                       he_error *err);
 void he_bridge_clear(he_bridge *bridge);

@@ -24,26 +24,86 @@ static he_vertex opposite(const he_mesh *m, he_halfedge h)
     return is_triangle(m, h) ? he_origin(m, he_prev(m, h)) : (he_vertex){HE_NONE};
 }
 
-/* L1, and L4 by the way: both turn about u. */
+enum { SMALL_RING = 24 };
+
+/* The half-edges that leave a vertex, with their targets. */
+typedef struct ring {
+    uint32_t count, out[SMALL_RING], target[SMALL_RING];
+} ring;
+
+/* Both ends' rings, from h and its twin on; turned about in step, since each turn waits for memory.
+ * False where one is not small. */
+static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
+{
+    ring *const rings[2] = {of_u, of_v};
+    const he_halfedge first[2] = {h, he_twin(h)};
+    he_halfedge at[2] = {h, he_twin(h)};
+    bool open[2] = {true, true};
+    of_u->count = of_v->count = 0;
+    while (open[0] || open[1]) {
+        for (unsigned i = 0; i < 2; i++) {
+            ring *r = rings[i];
+            if (open[i]) {
+                if (r->count == SMALL_RING) {
+                    return false;
+                }
+                r->out[r->count] = at[i].i;
+                r->target[r->count++] = he_target(m, at[i]).i;
+                at[i] = he_turn_ccw(m, at[i]);
+                open[i] = at[i].i != first[i].i;
+            }
+        }
+    }
+    return true;
+}
+
+static bool is_in(const ring *r, uint32_t vertex)
+{
+    uint32_t i = 0;
+    while (i < r->count && r->target[i] != vertex) {
+        i++;
+    }
+    return i < r->count;
+}
+
+/* L1, and L4 by the way: both turn about u. Without `of_v` its ring is searched for each. */
+static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k, const ring *of_v,
+                                 he_vertex c, he_vertex d, he_error *err)
+{
+    he_vertex v = he_target(m, h), w = he_target(m, k);
+    if (w.i != c.i && w.i != d.i &&
+        (of_v != NULL ? is_in(of_v, w.i) : he_find_halfedge(m, w, v).i != HE_NONE)) {
+        return refuse(err, h, "its ends have another neighbour in common", "vertex", w.i);
+    }
+    /* All corners of a triangle about u are neighbours of u. */
+    if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
+        return HE_OK;
+    }
+    he_face f = he_face_of(m, h), g = he_face_of(m, he_twin(h)), x = he_face_of(m, k);
+    if (x.i != HE_NONE && x.i != f.i && x.i != g.i && he_face_corner(m, x, v).i != HE_NONE) {
+        return refuse(err, h, "another face has both ends as corners", "face", x.i);
+    }
+    return HE_OK;
+}
+
 static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
 {
-    he_vertex v = he_target(m, h);
     he_vertex c = opposite(m, h), d = opposite(m, he_twin(h));
     if (c.i != HE_NONE && c.i == d.i) {
         return refuse(err, h, "both triangles have the same opposite corner", "vertex", c.i);
     }
-    he_face f = he_face_of(m, h), g = he_face_of(m, he_twin(h));
-    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i; k = he_turn_ccw(m, k)) {
-        he_vertex w = he_target(m, k);
-        if (w.i != c.i && w.i != d.i && he_find_halfedge(m, w, v).i != HE_NONE) {
-            return refuse(err, h, "its ends have another neighbour in common", "vertex", w.i);
+    ring of_u, of_v;
+    he_status status = HE_OK;
+    if (gather(m, h, &of_u, &of_v)) {
+        for (uint32_t i = 1; i < of_u.count && status == HE_OK; i++) {
+            status = check_neighbour(m, h, (he_halfedge){of_u.out[i]}, &of_v, c, d, err);
         }
-        he_face x = he_face_of(m, k);
-        if (x.i != HE_NONE && x.i != f.i && x.i != g.i && he_face_corner(m, x, v).i != HE_NONE) {
-            return refuse(err, h, "another face has both ends as corners", "face", x.i);
-        }
+        return status;
     }
-    return HE_OK;
+    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i && status == HE_OK; k = he_turn_ccw(m, k)) {
+        status = check_neighbour(m, h, k, NULL, c, d, err);
+    }
+    return status;
 }
 
 /* L3 for the triangle left of h. */
@@ -67,10 +127,13 @@ static bool is_apex(const he_mesh *m, he_halfedge h)
 
 static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
 {
+    he_prefetch_links(m, h);
     he_status status = he_mesh_require(m, HE_HALFEDGE, h.i, err);
     if (status != HE_OK) {
         return status;
     }
+    he_prefetch_about(m, he_edge_of(h));
+    he_prefetch_ends(m, he_edge_of(h));
     he_halfedge t = he_twin(h);
     he_vertex u = he_origin(m, h), v = he_target(m, h);
     if (he_is_boundary_vertex(m, u) && he_is_boundary_vertex(m, v) &&

@@ -3,26 +3,18 @@
 #include "edit/cut.h"
 #include "mesh/marks.h"
 
-/* Edges an interior vertex must have to lose one. */
-enum { ENOUGH = 4 };
-
-static he_status check_end(const he_mesh *m, he_edge e, he_vertex v, he_error *err)
+/* The origin of h, of edge e, loses that edge and must keep three unless it is on the boundary.
+ * Three turns tell: a thousand flips about one vertex would each turn all about it. */
+static he_status check_end(const he_mesh *m, he_halfedge h, he_error *err)
 {
-    if (he_is_boundary_vertex(m, v)) {
+    he_halfedge second = he_turn_ccw(m, he_turn_ccw(m, h));
+    he_vertex v = he_origin(m, h);
+    if ((second.i != h.i && second.i != he_turn_cw(m, h).i) || he_is_boundary_vertex(m, v)) {
         return HE_OK;
     }
-    /* Not he_vertex_degree: a thousand flips about one vertex would each turn all about it. */
-    he_halfedge first = he_vertex_halfedge(m, v), h = first;
-    uint32_t degree = 0;
-    do {
-        h = he_turn_ccw(m, h);
-        degree++;
-    } while (h.i != first.i && degree < ENOUGH);
-    if (degree < ENOUGH) {
-        return he_fail(err, HE_LOW_DEGREE, HE_VERTEX, v.i,
-                       "vertex %u has degree %u and cannot lose edge %u", v.i, degree, e.i);
-    }
-    return HE_OK;
+    return he_fail(err, HE_LOW_DEGREE, HE_VERTEX, v.i,
+                   "vertex %u has degree %u and cannot lose edge %u", v.i,
+                   second.i == h.i ? 2u : 3u, he_edge_of(h).i);
 }
 
 static he_status check_marks(const he_mesh *m, he_edge e, he_error *err)
@@ -47,10 +39,12 @@ static he_status check_marks(const he_mesh *m, he_edge e, he_error *err)
 
 static he_status check(const he_mesh *m, he_edge e, he_error *err)
 {
+    he_prefetch_links(m, he_edge_halfedge(e, 0));
     he_status status = he_mesh_require(m, HE_EDGE, e.i, err);
     if (status != HE_OK) {
         return status;
     }
+    he_prefetch_about(m, e);
     if (he_is_boundary_edge(m, e)) {
         return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e.i, "edge %u has only one face", e.i);
     }
@@ -60,14 +54,14 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
         return he_fail(err, HE_SAME_ENDS, HE_EDGE, e.i,
                        "both ends of edge %u would come to vertex %u", e.i, c.i);
     }
-    status = check_end(m, e, he_origin(m, h), err);
+    status = check_end(m, h, err);
     if (status == HE_OK) {
-        status = check_end(m, e, he_origin(m, t), err);
+        status = check_end(m, t, err);
     }
     if (status != HE_OK) {
         return status;
     }
-    he_halfedge joined = he_find_halfedge(m, c, d);
+    he_halfedge joined = he_find_halfedge_from(m, he_next(m, he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
                        "edge %u already joins vertices %u and %u", he_edge_of(joined).i, c.i, d.i);

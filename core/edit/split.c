@@ -6,10 +6,13 @@
 
 static he_status check(const he_mesh *m, he_edge e, double t, he_error *err)
 {
+    he_prefetch_links(m, he_edge_halfedge(e, 0));
     he_status status = he_mesh_require(m, HE_EDGE, e.i, err);
     if (status != HE_OK) {
         return status;
     }
+    he_prefetch_about(m, e);
+    he_prefetch_ends(m, e);
     if (!(t > 0 && t < 1)) {
         return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "t must be between 0 and 1, not %g", t);
     }

@@ -34,6 +34,8 @@ typedef struct he_import {
     he_soup soup;
     he_notes notes;
     he_places vertices, faces;
+    double edges;        /* how many the file says it has, */
+    uint64_t edges_line; /* and where; 0: it does not say */
 } he_import;
 
 void he_import_clear(he_import *import);

@@ -61,15 +61,25 @@ he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name, u
     return value == HE_NONE ? HE_OK : he_json_whole(&asset->json, value, 0, most, out, err);
 }
 
+he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name, uint32_t *out,
+                        he_error *err)
+{
+    *out = he_json_find(&asset->json, object, name);
+    if (*out != HE_NONE && he_json_type(&asset->json, *out) != '[') {
+        return he_json_fail(&asset->json, *out, err, HE_BAD_VALUE, "this is not an array");
+    }
+    return HE_OK;
+}
+
 /* --- the whole --- */
 
 static he_status list_items(he_gltf *asset, const char *name, he_ids *list, he_error *err)
 {
     const he_json *json = &asset->json;
-    uint32_t array = he_json_find(json, 0, name);
-    he_status status = HE_OK;
-    if (array != HE_NONE && he_json_type(json, array) != '[') {
-        return he_json_fail(json, array, err, HE_BAD_VALUE, "this is not an array");
+    uint32_t array = HE_NONE;
+    he_status status = he_gltf_array(asset, 0, name, &array, err);
+    if (status != HE_OK) {
+        return status;
     }
     for (uint32_t i = he_json_first(json, array); i != HE_NONE && status == HE_OK;
          i = he_json_after(json, array, i)) {

@@ -55,6 +55,9 @@ HE_NODISCARD he_status he_gltf_need(const he_gltf *asset, uint32_t object, const
 /* or 0, where it need not. */
 HE_NODISCARD he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name,
                                    uint64_t most, uint64_t *out, he_error *err);
+/* The array that a member is, HE_NONE where there is no such member. HE_BAD_VALUE. */
+HE_NODISCARD he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name,
+                                     uint32_t *out, he_error *err);
 
 typedef enum he_gltf_type {
     HE_GLTF_INT8 = 5120,

@@ -171,9 +171,9 @@ static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_f
         return status;
     }
     frame = moves ? multiply(parent, &frame) : *parent;
-    uint32_t mesh = he_json_find(json, node, "mesh");
-    uint32_t children = he_json_find(json, node, "children");
-    if (mesh != HE_NONE) {
+    uint32_t mesh = he_json_find(json, node, "mesh"), children = HE_NONE;
+    status = he_gltf_array(asset, node, "children", &children, err);
+    if (status == HE_OK && mesh != HE_NONE) {
         status = add_mesh(s, node, mesh, &frame, err);
     }
     if (status == HE_OK && children != HE_NONE) {
@@ -218,11 +218,11 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
 {
     const he_json *json = &asset->json;
     he_ids scenes = {0};
-    uint32_t list = he_json_find(json, 0, "scenes"), chosen = he_json_find(json, 0, "scene");
-    he_status status = HE_OK;
+    uint32_t list = HE_NONE, chosen = he_json_find(json, 0, "scene");
+    he_status status = he_gltf_array(asset, 0, "scenes", &list, err);
     *out = HE_NONE;
-    for (uint32_t i = he_json_first(json, list); i != HE_NONE && status == HE_OK;
-         i = he_json_after(json, list, i)) {
+    for (uint32_t i = status == HE_OK ? he_json_first(json, list) : HE_NONE;
+         i != HE_NONE && status == HE_OK; i = he_json_after(json, list, i)) {
         status = he_json_type(json, i) == '{'
                      ? he_ids_add(&scenes, i, err)
                      : he_json_fail(json, i, err, HE_BAD_VALUE, "this is not an object");
@@ -243,10 +243,10 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
 static he_status visit_scene(scene *s, uint32_t value, he_error *err)
 {
     const he_json *json = &s->asset->json;
-    uint32_t roots = he_json_find(json, value, "nodes");
-    he_status status = HE_OK;
-    for (uint32_t i = he_json_first(json, roots); i != HE_NONE && status == HE_OK;
-         i = he_json_after(json, roots, i)) {
+    uint32_t roots = HE_NONE;
+    he_status status = he_gltf_array(s->asset, value, "nodes", &roots, err);
+    for (uint32_t i = status == HE_OK ? he_json_first(json, roots) : HE_NONE;
+         i != HE_NONE && status == HE_OK; i = he_json_after(json, roots, i)) {
         status = visit_named(s, i, &he_gltf_no_frame, err);
         if (status == HE_OK) {
             status = visit_rest(s, err);
@@ -260,9 +260,10 @@ static he_status mark_children(const he_gltf *asset, uint64_t *children, he_erro
     const he_json *json = &asset->json;
     he_status status = HE_OK;
     for (size_t i = 0; i < asset->nodes.count && status == HE_OK; i++) {
-        uint32_t list = he_json_find(json, asset->nodes.ids[i], "children");
-        for (uint32_t k = he_json_first(json, list); k != HE_NONE && status == HE_OK;
-             k = he_json_after(json, list, k)) {
+        uint32_t list = HE_NONE;
+        status = he_gltf_array(asset, asset->nodes.ids[i], "children", &list, err);
+        for (uint32_t k = status == HE_OK ? he_json_first(json, list) : HE_NONE;
+             k != HE_NONE && status == HE_OK; k = he_json_after(json, list, k)) {
             uint64_t index = 0;
             status = he_json_whole(json, k, 0, asset->nodes.count - 1, &index, err);
             he_bits_set(children, index);

@@ -49,18 +49,16 @@ static bool goes_on(const char *begin, const char *feed, bool first)
     return !first || *p != '#';
 }
 
-static he_status check_encoding(const he_line *line, he_error *err)
+/* Does text begin here with the mark of UTF-16? */
+static bool is_wide(const char *p, size_t n)
 {
-    const unsigned char *b = (const unsigned char *)line->begin;
-    if (line->end - line->begin < 2) {
-        return HE_OK;
-    }
-    bool marked = (b[0] == 0xFF && b[1] == 0xFE) || (b[0] == 0xFE && b[1] == 0xFF);
-    if (marked || (b[0] == 0) != (b[1] == 0)) {
-        return he_line_fail(err, HE_UNSUPPORTED, line, line->begin,
-                            "the text is UTF-16, not UTF-8");
-    }
-    return HE_OK;
+    return n >= 2 && ((p[0] == '\xFF' && p[1] == '\xFE') || (p[0] == '\xFE' && p[1] == '\xFF'));
+}
+
+static he_status refuse_wide(const he_lines *lines, he_error *err)
+{
+    return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_LINE, lines->number,
+                      "the text is UTF-16, not UTF-8");
 }
 
 static he_status give(he_lines *lines, const char *begin, const char *end, he_error *err)
@@ -70,9 +68,8 @@ static he_status give(he_lines *lines, const char *begin, const char *end, he_er
     }
     he_line line = {begin, end, lines->number};
     if (lines->number == 1) {
-        he_status status = check_encoding(&line, err);
-        if (status != HE_OK) {
-            return status;
+        if (is_wide(begin, (size_t)(end - begin))) {
+            return refuse_wide(lines, err);
         }
         if (end - begin >= 3 && memcmp(begin, "\xEF\xBB\xBF", 3) == 0) {
             line.begin += 3;
@@ -130,9 +127,8 @@ static he_status end_line(he_lines *lines, const char *begin, const char *feed, 
     return status;
 }
 
-he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err)
+static he_status feed_text(he_lines *lines, const char *p, const char *end, he_error *err)
 {
-    const char *p = bytes, *end = p + n;
     while (p < end) {
         const char *feed = memchr(p, '\n', (size_t)(end - p));
         if (feed == NULL) {
@@ -148,6 +144,25 @@ he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *
         p = feed + 1;
     }
     return HE_OK;
+}
+
+/* No text has a NUL. In UTF-16 one of the first two bytes is, or it is marked. */
+static he_status refuse_nul(const he_lines *lines, he_error *err)
+{
+    bool first = lines->number == 1 && lines->joined == 0;
+    if (first && (lines->length < 2 || is_wide(lines->rest, lines->length))) {
+        return refuse_wide(lines, err);
+    }
+    return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, lines->number + lines->joined,
+                      "a NUL byte is in the text");
+}
+
+he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err)
+{
+    const char *p = bytes, *end = p + n;
+    const char *nul = memchr(p, '\0', n);
+    he_status status = feed_text(lines, p, nul == NULL ? end : nul, err);
+    return status == HE_OK && nul != NULL ? refuse_nul(lines, err) : status;
 }
 
 uint64_t he_lines_last(const he_lines *lines)
@@ -203,17 +218,27 @@ he_status he_token_fail(he_error *err, he_status status, const he_line *line, co
     return he_line_fail(err, status, line, p, "'%s' %s", token, what);
 }
 
-he_status he_token_number(const he_line *line, const char **p, double *value, he_error *err)
+he_status he_token_any_number(const he_line *line, const char **p, double *value, bool *finite,
+                              he_error *err)
 {
     size_t used = 0;
     he_status status = he_double_parse(*p, line->end, HE_FILE_NUMBER, value, &used);
-    if (status != HE_SYNTAX && !he_token_ends(*p + used, line->end)) {
-        status = HE_SYNTAX;
+    if (status == HE_SYNTAX || !he_token_ends(*p + used, line->end)) {
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a number");
     }
-    if (status != HE_OK) {
-        return he_token_fail(err, status, line, *p,
-                             status == HE_NOT_FINITE ? "is not finite" : "is not a number");
-    }
+    *finite = status == HE_OK;
+    *value = *finite ? *value : 0;
     *p += used;
     return HE_OK;
+}
+
+he_status he_token_number(const he_line *line, const char **p, double *value, he_error *err)
+{
+    const char *begin = *p;
+    bool finite = true;
+    he_status status = he_token_any_number(line, p, value, &finite, err);
+    if (status == HE_OK && !finite) {
+        return he_token_fail(err, HE_NOT_FINITE, line, begin, "is not finite");
+    }
+    return status;
 }

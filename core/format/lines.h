@@ -37,7 +37,8 @@ typedef struct he_lines {
 
 void he_lines_init(he_lines *lines, he_line_take *take, void *context);
 void he_lines_clear(he_lines *lines);
-/* HE_LIMIT, HE_NO_MEMORY, HE_UNSUPPORTED for UTF-16, or what `take` returns. */
+/* HE_LIMIT, HE_NO_MEMORY, HE_UNSUPPORTED for UTF-16, HE_SYNTAX for a NUL, or what `take`
+ * returns. */
 HE_NODISCARD he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err);
 /* The number of the last line that has come, comments included; 1 while there is none. */
 uint64_t he_lines_last(const he_lines *lines);
@@ -98,5 +99,8 @@ he_status he_token_fail(he_error *err, he_status status, const he_line *line, co
 /* A number that is a whole token; `*p` moves behind it. HE_SYNTAX, HE_NOT_FINITE. */
 HE_NODISCARD he_status he_token_number(const he_line *line, const char **p, double *value,
                                        he_error *err);
+/* The same where it need not be finite: then `*finite` is false and the value 0. HE_SYNTAX. */
+HE_NODISCARD he_status he_token_any_number(const he_line *line, const char **p, double *value,
+                                           bool *finite, he_error *err);
 
 #endif

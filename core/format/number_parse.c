@@ -205,7 +205,7 @@ he_status he_double_parse(const char *begin, const char *end, he_grammar grammar
         if (p == fraction && grammar == HE_JSON_NUMBER) {
             return HE_SYNTAX;
         }
-        if (p == fraction && whole == 1 && p < end && *p == '#') {
+        if (p == fraction && whole == 1 && w == 1 && p < end && *p == '#') {
             while (p < end && *p != ' ' && *p != '\t' && *p != '\r' && *p != '\n') {
                 p++;
             }

@@ -26,23 +26,35 @@ static void note(obj *o, const char *code, const char *text, const char *subject
     he_notes_add(&o->into->notes, code, text, subject, length, HE_PLACE_LINE, line->number);
 }
 
-/* Up to `most` numbers; more of them is an error. */
-static he_status read_numbers(const he_line *line, const char *p, double *values, size_t most,
-                              size_t *count, he_error *err)
+/* The numbers of a line; the first `most` are kept, the first `finite` of them must be finite. */
+static he_status read_numbers(obj *o, const he_line *line, const char *p, double *values,
+                              size_t most, size_t finite, size_t *count, he_error *err)
 {
     size_t n = 0;
     for (p = he_skip_blanks(p, line->end); !he_at_end(p, line->end);
          p = he_skip_blanks(p, line->end)) {
-        if (n == most) {
-            return he_token_fail(err, HE_SYNTAX, line, p, "is one number too many");
-        }
-        he_status status = he_token_number(line, &p, &values[n++], err);
+        double value;
+        bool is_finite = true;
+        he_status status = n < finite ? he_token_number(line, &p, &value, err)
+                                      : he_token_any_number(line, &p, &value, &is_finite, err);
         if (status != HE_OK) {
             return status;
         }
+        if (!is_finite) {
+            note(o, "not_finite", "set to 0: a value that is not finite", NULL, 0, line);
+        }
+        if (n < most) {
+            values[n] = value;
+        }
+        n++;
     }
     *count = n;
     return HE_OK;
+}
+
+static void note_extra(obj *o, const he_line *line)
+{
+    note(o, "extra_numbers", "ignored: more numbers than a line of its kind has", NULL, 0, line);
 }
 
 static he_status read_vertex(obj *o, const he_line *line, const char *p, he_error *err)
@@ -50,13 +62,17 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     double n[7];
     size_t count = 0;
     he_soup *soup = &o->into->soup;
-    he_status status = read_numbers(line, p, n, 7, &count, err);
+    he_status status = read_numbers(o, line, p, n, 7, 3, &count, err);
     if (status != HE_OK) {
         return status;
     }
-    if (count < 3 || count == 5) {
+    if (count < 3) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin,
                             "a vertex has 3, 4, 6 or 7 numbers, not %zu", count);
+    }
+    if (count == 5 || count > 7) {
+        note_extra(o, line);
+        count = 3; /* nobody knows what they are */
     }
     size_t vertex = soup->vertex_count;
     status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
@@ -72,12 +88,13 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     return he_line_locate(status, line, err);
 }
 
-static he_status read_pool_value(he_pool *pool, const he_line *line, const char *p, size_t least,
-                                 uint64_t limit, he_error *err)
+static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, const char *p,
+                                 size_t least, he_error *err)
 {
     double n[3] = {0, 0, 0};
     size_t count = 0;
-    he_status status = read_numbers(line, p, n, 3, &count, err);
+    uint64_t limit = o->into->soup.limits.bytes;
+    he_status status = read_numbers(o, line, p, n, 3, 0, &count, err);
     if (status != HE_OK) {
         return status;
     }
@@ -85,23 +102,27 @@ static he_status read_pool_value(he_pool *pool, const he_line *line, const char 
         return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers, and %zu are needed",
                             count, least);
     }
+    if (count > 3) {
+        note_extra(o, line);
+    }
     return he_line_locate(he_pool_add(pool, n, limit, err), line, err);
 }
 
 /* An index as the file has it, to one that counts from 0. `count` elements came so far; whether a
- * positive index is too large is only known at the end. */
+ * positive index is too large is only known at the end. HE_BAD_INDEX leaves `*p` behind it. */
 static he_status read_index(const he_line *line, const char **p, const char *what, size_t count,
                             uint32_t *index, he_error *err)
 {
     const char *begin = *p;
     bool negative = begin < line->end && *begin == '-';
+    bool sign = negative || (begin < line->end && *begin == '+');
     uint64_t value = 0;
     size_t used = 0;
-    he_status status = he_u64_parse(begin + negative, line->end, &value, &used);
+    he_status status = he_u64_parse(begin + sign, line->end, &value, &used);
     if (status == HE_SYNTAX) {
         return he_token_fail(err, HE_SYNTAX, line, begin, "is not a corner of a face");
     }
-    *p = begin + negative + used;
+    *p = begin + sign + used;
     if (status == HE_OK && value != 0) {
         if (!negative && value <= HE_MAX_ROWS) {
             *index = (uint32_t)value - 1;
@@ -118,6 +139,38 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
                         text, count);
 }
 
+/* Such values are no part of the shape, so that a wrong number costs the corner no more than its
+ * value. 0 is no number at all. */
+static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
+{
+    he_notes_add(&o->into->notes, pool == &o->uv ? "no_such_uv" : "no_such_normal",
+                 pool == &o->uv ? "set to 0: a corner names a texture coordinate there is not"
+                                : "set to 0: a corner names a normal there is not",
+                 NULL, 0, HE_PLACE_LINE, at);
+}
+
+static he_status read_value(obj *o, const he_line *line, const char **p, he_pool *pool,
+                            size_t corner, he_error *err)
+{
+    const char *begin = *p;
+    const char *what = pool == &o->uv ? "texture coordinate" : "normal";
+    uint32_t index = 0;
+    he_error failure = {0};
+    he_status status = read_index(line, p, what, pool->count, &index, &failure);
+    if (status == HE_OK) {
+        return he_pool_name(pool, corner, index, err);
+    }
+    double value = 0;
+    size_t used = 0;
+    bool is_zero = he_double_parse(begin, *p, HE_FILE_NUMBER, &value, &used) == HE_OK && value == 0;
+    if (status == HE_BAD_INDEX && !is_zero) {
+        note_no_value(o, pool, he_line_number(line, begin));
+        return HE_OK;
+    }
+    *err = failure;
+    return status;
+}
+
 /* v, v/vt, v//vn, v/vt/vn; a slash with nothing behind it is passed over. */
 static he_status read_corner(obj *o, const he_line *line, const char **p, he_error *err)
 {
@@ -132,16 +185,12 @@ static he_status read_corner(obj *o, const he_line *line, const char **p, he_err
     o->highest = index > o->highest ? index : o->highest;
     status = he_soup_add_corner(soup, index, err);
     he_pool *pools[2] = {&o->uv, &o->normal};
-    static const char *const names[2] = {"texture coordinate", "normal"};
     for (size_t i = 0; i < 2 && status == HE_OK && *p < end && **p == '/'; i++) {
         ++*p;
         if (he_token_ends(*p, end) || **p == '/') {
             continue;
         }
-        status = read_index(line, p, names[i], pools[i]->count, &index, err);
-        if (status == HE_OK) {
-            status = he_pool_name(pools[i], corner, index, err);
-        }
+        status = read_value(o, line, p, pools[i], corner, err);
     }
     if (status == HE_OK && !he_token_ends(*p, end)) {
         return he_token_fail(err, HE_SYNTAX, line, begin, "is not a corner of a face");
@@ -263,7 +312,6 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     if (he_at_end(p, end)) {
         return HE_OK;
     }
-    uint64_t limit = o->into->soup.limits.bytes;
     if (*p == 'v' && he_token_ends(p + 1, end)) {
         return read_vertex(o, line, p + 1, err);
     }
@@ -271,10 +319,10 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
         return read_face(o, line, p + 1, err);
     }
     if (*p == 'v' && p[1] == 't' && he_token_ends(p + 2, end)) {
-        return read_pool_value(&o->uv, line, p + 2, 1, limit, err);
+        return read_pool_value(o, &o->uv, line, p + 2, 1, err);
     }
     if (*p == 'v' && p[1] == 'n' && he_token_ends(p + 2, end)) {
-        return read_pool_value(&o->normal, line, p + 2, 3, limit, err);
+        return read_pool_value(o, &o->normal, line, p + 2, 3, err);
     }
     return read_other(o, line, p, he_token_end(p, end), err);
 }
@@ -316,17 +364,22 @@ static he_status obj_feed(void *state, const void *bytes, size_t n, he_error *er
     return he_lines_feed(&o->lines, bytes, n, err);
 }
 
-static he_status bad_index(const obj *o, size_t corner, uint32_t index, const char *what,
-                           size_t count, he_error *err)
+static uint64_t line_of(const obj *o, size_t corner)
 {
-    uint32_t face = he_soup_face_of(&o->into->soup, corner);
-    uint64_t line = he_places_find(&o->into->faces, face);
-    return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line, "there is no %s %u, only %zu", what,
-                      index + 1, count);
+    return he_places_find(&o->into->faces, he_soup_face_of(&o->into->soup, corner));
+}
+
+/* Take numbers of values from corners that did not come. */
+static void check_values(obj *o, he_pool *pool)
+{
+    for (size_t c = he_pool_next_bad(pool, 0); c != SIZE_MAX; c = he_pool_next_bad(pool, c + 1)) {
+        note_no_value(o, pool, line_of(o, c));
+        he_pool_forget(pool, c);
+    }
 }
 
 /* Indices are checked when all elements have come. */
-static he_status check_indices(const obj *o, he_error *err)
+static he_status check_indices(obj *o, he_error *err)
 {
     const he_soup *soup = &o->into->soup;
     if (soup->corner_count > 0 && o->highest >= soup->vertex_count) {
@@ -334,17 +387,29 @@ static he_status check_indices(const obj *o, he_error *err)
         while (soup->corners[c] < soup->vertex_count) {
             c++;
         }
-        return bad_index(o, c, soup->corners[c], "vertex", soup->vertex_count, err);
+        return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line_of(o, c),
+                          "there is no vertex %u, only %zu", soup->corners[c] + 1,
+                          soup->vertex_count);
     }
-    size_t c = he_pool_first_bad(&o->uv);
-    if (c != SIZE_MAX) {
-        return bad_index(o, c, o->uv.of.ids[c], "texture coordinate", o->uv.count, err);
-    }
-    c = he_pool_first_bad(&o->normal);
-    if (c != SIZE_MAX) {
-        return bad_index(o, c, o->normal.of.ids[c], "normal", o->normal.count, err);
-    }
+    check_values(o, &o->uv);
+    check_values(o, &o->normal);
     return HE_OK;
+}
+
+static he_status note_unused(obj *o, he_error *err)
+{
+    size_t uvs = 0, normals = 0;
+    he_status status = he_pool_unused(&o->uv, &uvs, err);
+    if (status == HE_OK) {
+        status = he_pool_unused(&o->normal, &normals, err);
+    }
+    if (status == HE_OK) {
+        he_notes_add_count(&o->into->notes, "unused_uv",
+                           "ignored: texture coordinates that no corner has", uvs);
+        he_notes_add_count(&o->into->notes, "unused_normal", "ignored: normals that no corner has",
+                           normals);
+    }
+    return status;
 }
 
 static void note_partial(obj *o, size_t with, size_t all, const char *code, const char *text)
@@ -377,7 +442,10 @@ static he_status obj_finish(void *state, he_error *err)
                  "set to 0: corners without a normal");
     note_partial(o, o->colors.given, soup->vertex_count, "vertices_without_color",
                  "set to 0: vertices without a colour");
-    status = he_pool_finish(&o->uv, soup, "uv", 2, err);
+    status = note_unused(o, err);
+    if (status == HE_OK) {
+        status = he_pool_finish(&o->uv, soup, "uv", 2, err);
+    }
     if (status == HE_OK) {
         status = he_pool_finish(&o->normal, soup, "normal", 3, err);
     }

@@ -30,6 +30,7 @@ typedef struct off {
     uint64_t vertices, faces;       /* announced */
     double numbers[VERTEX_NUMBERS]; /* of the vertex, or of the face's colour, being read */
     size_t number_count;            /* may exceed those kept */
+    uint64_t number_line;           /* of the first of them */
     uint32_t integers;              /* bit i: the i-th was written as an integer */
     bool open;                      /* the last face still lacks `missing` corners */
     uint64_t missing;
@@ -115,7 +116,9 @@ static he_status read_count(const he_line *line, const char **p, const char *wha
 {
     uint64_t value = 0;
     size_t used = 0;
-    he_status status = he_u64_parse(*p, line->end, &value, &used);
+    bool sign = **p == '+';
+    he_status status = he_u64_parse(*p + sign, line->end, &value, &used);
+    used += sign;
     if (status == HE_SYNTAX || !he_token_ends(*p + used, line->end)) {
         return he_token_fail(err, HE_SYNTAX, line, *p, "is not a count");
     }
@@ -161,8 +164,10 @@ static he_status read_edge_count(off *o, const he_line *line, const char **p, bo
     if (!same_line && !is_last_token(line, *p)) {
         return HE_OK;
     }
-    double ignored;
-    he_status status = he_token_number(line, p, &ignored, err);
+    bool finite;
+    he_import *into = o->into;
+    he_status status = he_token_any_number(line, p, &into->edges, &finite, err);
+    into->edges_line = line->number;
     if (status == HE_OK && !he_at_end(he_skip_blanks(*p, line->end), line->end)) {
         return he_token_fail(err, HE_SYNTAX, line, he_skip_blanks(*p, line->end),
                              "follows the three counts");
@@ -214,10 +219,13 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     size_t uvs = o->uv != NULL ? 2 : 0;
     if ((o->has & HAS_COLORS) != 0) {
         colors = count - color_at - uvs;
-        if (colors != 1 && colors != 3 && colors != 4) {
-            return he_line_fail(err, HE_SYNTAX, line, line->begin,
-                                "%zu numbers do not fit the header", count);
-        }
+    }
+    /* On several lines, what is too much is the next vertex. */
+    bool more = count > color_at + colors + uvs && o->number_line != line->number;
+    bool fits = colors == 0 || colors == 1 || colors == 3 || colors == 4;
+    if (more || !fits || ((o->has & HAS_COLORS) != 0 && colors == 0)) {
+        return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers do not fit the header",
+                            count);
     }
     he_status status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
     if (status == HE_OK && o->normal != NULL) {
@@ -242,17 +250,23 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     return he_line_locate(status, line, err);
 }
 
-/* Numbers up to the end of the line. */
-static he_status read_numbers(off *o, const he_line *line, const char **p, bool colors,
-                              he_error *err)
+/* Numbers up to the end of the line; the first `finite` of the vertex must be finite. */
+static he_status read_numbers(off *o, const he_line *line, const char **p, size_t finite,
+                              bool colors, he_error *err)
 {
     const char *q = *p;
     while (!he_at_end(q, line->end)) {
         const char *begin = q;
         double value;
-        he_status status = he_token_number(line, &q, &value, err);
+        bool is_finite = true;
+        he_status status = o->number_count < finite
+                               ? he_token_number(line, &q, &value, err)
+                               : he_token_any_number(line, &q, &value, &is_finite, err);
         if (status != HE_OK) {
             return status;
+        }
+        if (!is_finite) {
+            note(o, "not_finite", "set to 0: a value that is not finite", line);
         }
         if (o->number_count < VERTEX_NUMBERS) {
             o->numbers[o->number_count] = value;
@@ -274,13 +288,14 @@ static he_status read_vertex(off *o, const he_line *line, const char **p, he_err
     needed += (o->has & HAS_COLORS) != 0 ? 1 : 0;
     needed += (o->has & HAS_UV) != 0 ? 2 : 0;
     if (o->number_count == 0) {
+        o->number_line = line->number;
         he_status status = he_places_add(&o->into->vertices, (uint32_t)o->into->soup.vertex_count,
                                          line->number, err);
         if (status != HE_OK) {
             return status;
         }
     }
-    he_status status = read_numbers(o, line, p, (o->has & HAS_COLORS) != 0, err);
+    he_status status = read_numbers(o, line, p, 3, (o->has & HAS_COLORS) != 0, err);
     if (status != HE_OK || o->number_count < needed) {
         return status; /* the vertex goes on on the next line */
     }
@@ -290,7 +305,7 @@ static he_status read_vertex(off *o, const he_line *line, const char **p, he_err
 /* What follows the corners, up to the end of the line. */
 static he_status read_face_color(off *o, const he_line *line, const char **p, he_error *err)
 {
-    he_status status = read_numbers(o, line, p, true, err);
+    he_status status = read_numbers(o, line, p, 0, true, err);
     size_t count = o->number_count;
     if (status == HE_OK && (count == 3 || count == 4)) {
         status = add_color(o, &o->face_colors, o->into->soup.face_count - 1, 0, count, err);
@@ -307,18 +322,18 @@ static he_status read_corner(off *o, const he_line *line, const char **p, he_err
 {
     uint64_t value = 0;
     size_t used = 0;
-    bool negative = **p == '-';
-    he_status status = he_u64_parse(*p + negative, line->end, &value, &used);
-    if (status == HE_SYNTAX || !he_token_ends(*p + negative + used, line->end)) {
+    bool negative = **p == '-', sign = negative || **p == '+';
+    he_status status = he_u64_parse(*p + sign, line->end, &value, &used);
+    if (status == HE_SYNTAX || !he_token_ends(*p + sign + used, line->end)) {
         return he_token_fail(err, HE_SYNTAX, line, *p, "is not a corner of a face");
     }
     if (status != HE_OK || value >= o->vertices || negative) {
         char text[40];
-        he_quote(*p, *p + negative + used, text, sizeof text);
+        he_quote(*p, *p + sign + used, text, sizeof text);
         return he_line_fail(err, HE_BAD_INDEX, line, *p, "there is no vertex %s, only 0 to %lld",
                             text, (long long)o->vertices - 1);
     }
-    *p += negative + used;
+    *p += sign + used;
     o->missing--;
     return he_soup_add_corner(&o->into->soup, (uint32_t)value, err);
 }

@@ -221,8 +221,12 @@ static he_status read_property(he_ply_header *h, const he_line *line, const char
     return require_end(line, p, err);
 }
 
-static he_status end_header(he_ply_header *h, const he_line *line, he_error *err)
+static he_status end_header(he_ply_header *h, const he_line *line, const char *p, he_error *err)
 {
+    he_status status = require_end(line, p, err); /* it may be the first row */
+    if (status != HE_OK) {
+        return status;
+    }
     if (h->encoding == HE_PLY_UNKNOWN) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin, "the header gives no format");
     }
@@ -260,7 +264,7 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
         return read_property(h, line, p, err);
     }
     if (is(w, "end_header")) {
-        return end_header(h, line, err);
+        return end_header(h, line, p, err);
     }
     if (is(w, "comment") || is(w, "obj_info")) {
         return HE_OK;

@@ -61,17 +61,14 @@ static he_status read_whole(const he_line *line, const char **p, const char *wha
 static he_status read_value(ply *o, const he_line *line, const char **p, size_t k, he_error *err)
 {
     double value = 0;
-    size_t used = 0;
-    if (he_ply_rows_role(&o->rows, k) == HE_PLY_POSITION) {
-        he_status status = he_token_number(line, p, &value, err);
-        return status == HE_OK ? he_ply_rows_value(&o->rows, k, value, err) : status;
+    bool finite = true;
+    bool position = he_ply_rows_role(&o->rows, k) == HE_PLY_POSITION;
+    he_status status = position ? he_token_number(line, p, &value, err)
+                                : he_token_any_number(line, p, &value, &finite, err);
+    if (status != HE_OK) {
+        return status;
     }
-    he_status status = he_double_parse(*p, line->end, HE_FILE_NUMBER, &value, &used);
-    if (status == HE_SYNTAX || !he_token_ends(*p + used, line->end)) {
-        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a number");
-    }
-    *p += used;
-    return he_ply_rows_value(&o->rows, k, status == HE_OK ? value : (double)NAN, err);
+    return he_ply_rows_value(&o->rows, k, finite ? value : (double)NAN, err);
 }
 
 static he_status read_list(ply *o, const he_line *line, const char **p, size_t k, he_error *err)

@@ -47,16 +47,41 @@ he_status he_pool_name(he_pool *pool, size_t corner, uint32_t value, he_error *e
     return HE_OK;
 }
 
-size_t he_pool_first_bad(const he_pool *pool)
+size_t he_pool_next_bad(const he_pool *pool, size_t corner)
 {
     if (pool->named == 0 || pool->highest < pool->count) {
         return SIZE_MAX;
     }
-    size_t corner = 0;
-    while (pool->of.ids[corner] == HE_NONE || pool->of.ids[corner] < pool->count) {
+    const he_ids *of = &pool->of;
+    while (corner < of->count && (of->ids[corner] == HE_NONE || of->ids[corner] < pool->count)) {
         corner++;
     }
-    return corner;
+    return corner < of->count ? corner : SIZE_MAX;
+}
+
+void he_pool_forget(he_pool *pool, size_t corner)
+{
+    pool->of.ids[corner] = HE_NONE;
+    pool->named--;
+}
+
+he_status he_pool_unused(const he_pool *pool, size_t *out, he_error *err)
+{
+    uint64_t *used = he_bits_new(pool->count + 1);
+    if (used == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu bits", pool->count);
+    }
+    size_t unused = pool->count;
+    for (size_t c = 0; c < pool->of.count; c++) {
+        uint32_t value = pool->of.ids[c];
+        if (value != HE_NONE && !he_bits_get(used, value)) {
+            he_bits_set(used, value);
+            unused--;
+        }
+    }
+    he_mem_free(used);
+    *out = unused;
+    return HE_OK;
 }
 
 static bool has_third(const he_pool *pool)

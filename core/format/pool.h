@@ -22,8 +22,13 @@ HE_NODISCARD he_status he_pool_add(he_pool *pool, const double value[3], uint64_
                                    he_error *err);
 /* Corners come in order, those without a value are left out. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_pool_name(he_pool *pool, size_t corner, uint32_t value, he_error *err);
-/* The first corner that names a value beyond the last one; SIZE_MAX when there is none. */
-size_t he_pool_first_bad(const he_pool *pool);
+/* The first corner from `corner` on that names a value beyond the last one; SIZE_MAX when there is
+ * none. */
+size_t he_pool_next_bad(const he_pool *pool, size_t corner);
+/* Let a corner name no value. */
+void he_pool_forget(he_pool *pool, size_t corner);
+/* How many values no corner names; all that are named must be good. HE_NO_MEMORY. */
+HE_NODISCARD he_status he_pool_unused(const he_pool *pool, size_t *out, he_error *err);
 /* Make the half-edge attribute `name`, if any corner has a value; all must be good. It has three
  * components, or `least` when the third is 0 in all of them. */
 HE_NODISCARD he_status he_pool_finish(const he_pool *pool, he_soup *soup, const char *name,

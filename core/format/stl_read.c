@@ -261,7 +261,7 @@ static he_status take_trailing(stl *o, size_t n, he_error *err)
                      0, HE_PLACE_BYTE, o->offset);
     }
     o->trailing += n < FACET ? n : FACET;
-    if (o->trailing >= FACET) {
+    if (o->trailing >= FACET || o->count == 0) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, HEADER + FACET * o->count,
                           "more than the %llu facets that are announced",
                           (unsigned long long)o->count);

@@ -193,6 +193,7 @@ static he_status gather_part(const he_change_part *part, words *w, he_changes *f
                                                    part->undone ? r->before : r->after};
         } else if (r->column == HE_COL_REPLACED) {
             found->replaced = true;
+            found->renumbered |= r->row != 0;
         } else if (r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED) {
             found->others = true;
             status = he_ids_add(&w->slots, r->row, err);

@@ -164,7 +164,7 @@ he_status he_compact(he_mesh *mesh, he_maps *out, he_error *err)
         status = move_columns(from, &maps, to, err);
     }
     if (status == HE_OK) {
-        status = he_mesh_replace(mesh, fresh, err);
+        status = he_mesh_replace(mesh, fresh, HE_RENUMBERS, err);
     }
     if (status == HE_OK) {
         fresh = NULL;

@@ -122,6 +122,25 @@ void he_delta_redo(he_delta *delta, he_mesh *mesh)
     he_content_apply(&mesh->c, delta, 0, false, delta->objects);
 }
 
+he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err)
+{
+    he_status status = HE_OK;
+    uint32_t issued[HE_KIND_COUNT] = {0};
+    if (delta->object_count == 0) {
+        return HE_OK;
+    }
+    for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
+        issued[kind] = he_mesh_issued(mesh, kind);
+    }
+    for (size_t i = 0; i < delta->count && status == HE_OK; i++) {
+        const he_record *r = &delta->records[i];
+        if (r->column == HE_COL_REPLACED && r->row == 0) {
+            status = he_content_issue(delta->objects[r->before], issued, err);
+        }
+    }
+    return status;
+}
+
 static const he_kind tables[] = {HE_VERTEX, HE_EDGE, HE_FACE};
 
 he_savepoint he_delta_mark(const he_mesh *mesh)

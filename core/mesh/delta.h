@@ -32,7 +32,8 @@ typedef enum he_col {
     HE_COL_MERGED,       /* row = the one gone, before = the one it became part of, word = kind */
     HE_COL_COLUMN_ADDED, /* row = slot, before = object */
     HE_COL_COLUMN_DROPPED,
-    HE_COL_REPLACED, /* before = object: the content of the other side */
+    HE_COL_REPLACED, /* before = object: the content of the other side; row = 1 where ids changed
+                        their meaning */
     HE_COL_ATTRIBUTE
 } he_col;
 
@@ -75,6 +76,11 @@ he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
 void he_delta_undo(he_delta *delta, he_mesh *mesh);
 void he_delta_redo(he_delta *delta, he_mesh *mesh);
 
+/* Before undoing or redoing a delta that replaced the content: give the other side the ids that
+ * `mesh` has issued meanwhile, as dead ones, so that they are not issued again. Without, the ids
+ * are as far as they were. HE_NO_MEMORY. */
+HE_NODISCARD he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err);
+
 /* Only while recording. */
 he_savepoint he_delta_mark(const he_mesh *mesh);
 void he_delta_rollback(he_mesh *mesh, he_savepoint to);
@@ -88,9 +94,10 @@ void he_delta_rollback(he_mesh *mesh, he_savepoint to);
 typedef struct he_changes {
     he_ids created[HE_KIND_COUNT], deleted[HE_KIND_COUNT], modified[HE_KIND_COUNT];
     he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];
-    bool replaced; /* the content as a whole: the sets are empty */
-    bool others;   /* what no set shows: a column came or went, or a value of the mesh, or a link
-                      or value of a half-edge that runs along a hole, differs */
+    bool replaced;   /* the content as a whole: the sets are empty */
+    bool renumbered; /* and ids mean other elements than before */
+    bool others;     /* what no set shows: a column came or went, or a value of the mesh, or a link
+                        or value of a half-edge that runs along a hole, differs */
 } he_changes;
 
 /* Records `from`..`to` of `delta`, with `mesh` in the state after `to`, or, when `undone`, before

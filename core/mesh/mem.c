@@ -1,7 +1,9 @@
 #include "mesh/mem.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 static void *library_resize(void *context, void *memory, size_t size)
 {
@@ -20,9 +22,26 @@ void he_mem_set_hook(const he_mem_hook *replacement)
     hook = replacement != NULL ? *replacement : (he_mem_hook){library_resize, NULL};
 }
 
+/* Where ids are in no order, reading a large mesh misses the translation of addresses as often as
+ * the caches; huge pages end that. Systems give them to those who ask. The pages of the block are
+ * asked for to both ends: a mapping of which a part is different could not be moved when it grows,
+ * only copied. */
+enum { PAGE = 4096, LARGE_BLOCK = 4 << 20 };
+
+static void ask_for_huge_pages(void *memory, size_t size)
+{
+    size_t before = (uintptr_t)memory % PAGE, length = (before + size + PAGE - 1) / PAGE * PAGE;
+    /* Nothing depends on the answer. */
+    (void)madvise((char *)memory - before, length, MADV_HUGEPAGE);
+}
+
 void *he_mem_resize(void *memory, size_t size)
 {
-    return hook.resize(hook.context, memory, size);
+    void *resized = hook.resize(hook.context, memory, size);
+    if (size >= LARGE_BLOCK && resized != NULL) {
+        ask_for_huge_pages(resized, size);
+    }
+    return resized;
 }
 
 void *he_mem_alloc(size_t size)

@@ -127,8 +127,8 @@ static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entr
 
 typedef struct pairing {
     const he_soup *soup;
-    uint32_t *mate; /* NULL: only number the edges */
-    uint32_t *edge; /* of each corner; NULL: not wanted */
+    uint32_t *mate; /* NULL: number the edges instead */
+    uint32_t *edge; /* of each corner, its number */
     size_t edges;
     he_report *report;
     uint64_t *total;
@@ -137,7 +137,7 @@ typedef struct pairing {
 /* Nobody before entry `a` runs along its edge. */
 static void begin_edge(pairing *p, const filed *a)
 {
-    if (p->edge != NULL) {
+    if (p->mate == NULL) {
         p->edge[a->corner] = (uint32_t)p->edges;
     }
     p->edges++;
@@ -147,7 +147,7 @@ static void begin_edge(pairing *p, const filed *a)
 static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
 {
     uint32_t far = b->far & ~DOWNWARD;
-    if (p->edge != NULL) {
+    if (p->mate == NULL) {
         p->edge[b->corner] = p->edge[a->corner];
         return;
     }
@@ -221,11 +221,17 @@ static he_status visit_edges(pairing *p, he_error *err)
     if (status != HE_OK) {
         goto out;
     }
+    enum { AHEAD = 24 };
+    const uint32_t *written = p->mate != NULL ? p->mate : p->edge;
     for (size_t v = 0; v < vertices; v++) {
         uint32_t begin = starts[v], end = starts[v + 1];
         status = he_watch_at(soup->limits.watch, v + 2 * vertices, 3 * vertices, err);
         if (status != HE_OK) {
             goto out;
+        }
+        /* Where ids are in no order what is written lies far apart: ask for it in time. */
+        for (uint32_t i = begin; i < end && soup->corner_count - i > AHEAD; i++) {
+            __builtin_prefetch(&written[entries[i + AHEAD].corner], 1);
         }
         if (end - begin <= SMALL_BUCKET) {
             pair_small(p, (uint32_t)v, entries + begin, end - begin);

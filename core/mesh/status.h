@@ -35,6 +35,7 @@
     X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                      \
     /* what the structure cannot hold */                                                      \
     X(TOO_FEW_CORNERS, "too_few_corners", "A face needs at least three corners")              \
+    X(NOT_TRIANGLE, "not_triangle", "The face is not a triangle")                             \
     X(REPEATED_CORNER, "repeated_corner", "A face would visit a vertex twice")                \
     X(NONMANIFOLD_EDGE, "nonmanifold_edge", "An edge would have more than two faces")         \
     X(ORIENTATION, "orientation", "Two faces would run along an edge in the same direction")  \

@@ -44,6 +44,70 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
     return fans == 0 ? 1 : fans;
 }
 
+/* A ring is turned about both ways at once, half of it each: where links come from memory one after
+ * another that takes half the time. Has all of it been seen? */
+static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
+{
+    if (up->i == down->i) {
+        return true;
+    }
+    *up = he_turn_ccw(m, *up);
+    if (up->i == down->i) {
+        return true;
+    }
+    *down = he_turn_cw(m, *down);
+    return false;
+}
+
+/* Rounds about the first vertex before the second one's ring is looked at too, which is as far away
+ * in memory and seldom needed. */
+enum { ALONE = 8 };
+
+static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b, uint64_t *steps)
+{
+    const he_halfedge none = {HE_NONE};
+    he_vertex a = he_origin(m, leaving);
+    he_halfedge up = leaving, down = he_turn_cw(m, up), up_b = none, down_b = none;
+    for (uint32_t round = 0;; round++) {
+        *steps += 2;
+        if (he_target(m, up).i == b.i) {
+            return up;
+        }
+        if (he_target(m, down).i == b.i) {
+            return down;
+        }
+        if (meet(m, &up, &down)) {
+            return none;
+        }
+        if (round < ALONE) {
+            continue;
+        }
+        if (round == ALONE) {
+            up_b = he_vertex_halfedge(m, b);
+            if (up_b.i == HE_NONE) {
+                return none;
+            }
+            down_b = he_turn_cw(m, up_b);
+        }
+        *steps += 2;
+        if (he_target(m, up_b).i == a.i) {
+            return he_twin(up_b);
+        }
+        if (he_target(m, down_b).i == a.i) {
+            return he_twin(down_b);
+        }
+        if (meet(m, &up_b, &down_b)) {
+            return none;
+        }
+    }
+}
+
+he_halfedge he_find_halfedge_from(const he_mesh *m, he_halfedge leaving, he_vertex to)
+{
+    uint64_t steps = 0;
+    return find_from(m, leaving, to, &steps);
+}
+
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b)
 {
     uint64_t steps = 0;
@@ -52,22 +116,6 @@ he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b)
 
 he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps)
 {
-    he_halfedge none = {HE_NONE};
-    if (he_is_isolated(m, a) || he_is_isolated(m, b)) {
-        return none;
-    }
-    he_halfedge from_a = he_vertex_halfedge(m, a), from_b = he_vertex_halfedge(m, b);
-    he_halfedge h = from_a, k = from_b;
-    do {
-        ++*steps;
-        if (he_target(m, h).i == b.i) {
-            return h;
-        }
-        if (he_target(m, k).i == a.i) {
-            return he_twin(k);
-        }
-        h = he_turn_ccw(m, h);
-        k = he_turn_ccw(m, k);
-    } while (h.i != from_a.i && k.i != from_b.i);
-    return none;
+    return he_is_isolated(m, a) ? (he_halfedge){HE_NONE}
+                                : find_from(m, he_vertex_halfedge(m, a), b, steps);
 }

@@ -59,6 +59,49 @@ static inline he_halfedge he_turn_ccw(const he_mesh *m, he_halfedge h)
     return he_twin(he_prev(m, h));
 }
 
+/* The one before it in that order. */
+static inline he_halfedge he_turn_cw(const he_mesh *m, he_halfedge h)
+{
+    return (he_halfedge){m->c.next[h.i ^ 1u]};
+}
+
+/* An edit in a random place of a large mesh waits for memory and for little else. These ask for the
+ * rows it will read all at once, so that it waits once and not for one after another. Any id may be
+ * given, and links may be dead. */
+static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
+{
+    if (h.i < 2u * m->c.edges.issued) {
+        __builtin_prefetch(&m->c.next[h.i], 1);
+        __builtin_prefetch(&m->c.prev[h.i], 1);
+        __builtin_prefetch(&m->c.origin[h.i], 1);
+        __builtin_prefetch(&m->c.face[h.i], 1);
+    }
+}
+/* The half-edges before and after the two of an edge, its faces, and what leaves its ends. */
+static inline void he_prefetch_about(const he_mesh *m, he_edge e)
+{
+    for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {
+        he_prefetch_links(m, (he_halfedge){m->c.next[h]});
+        he_prefetch_links(m, (he_halfedge){m->c.prev[h]});
+        if (m->c.face[h] < m->c.faces.issued) {
+            __builtin_prefetch(&m->c.face_halfedge[m->c.face[h]], 1);
+        }
+        if (m->c.origin[h] < m->c.vertices.issued) {
+            __builtin_prefetch(&m->c.vertex_halfedge[m->c.origin[h]], 1);
+        }
+    }
+}
+
+/* The ends' positions. */
+static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
+{
+    for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {
+        if (m->c.origin[h] < m->c.vertices.issued) {
+            __builtin_prefetch(&m->c.position[m->c.origin[h]], 1);
+        }
+    }
+}
+
 static inline bool he_is_none(uint32_t id)
 {
     return id == HE_NONE;
@@ -102,9 +145,11 @@ uint32_t he_face_degree(const he_mesh *m, he_face f);
 uint32_t he_loop_length(const he_mesh *m, he_halfedge h);
 /* Fans at a vertex: 0 isolated, 1 manifold, more at a bow-tie. */
 uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
-/* The half-edge from a to b, HE_NONE when no edge joins them. Turns about both in step, so it
- * costs the smaller degree. */
+/* The half-edge from a to b, HE_NONE when no edge joins them. Turns about a, and where that takes
+ * long about b in step with it, so it costs the smaller degree. */
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b);
+/* The same from the origin of a half-edge. */
+he_halfedge he_find_halfedge_from(const he_mesh *m, he_halfedge leaving, he_vertex to);
 /* The same, adding what it cost: for whoever limits that. */
 he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps);
 

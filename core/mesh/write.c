@@ -312,7 +312,7 @@ he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err)
     return status;
 }
 
-he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_error *err)
+he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err)
 {
     if (m->delta == NULL) {
         he_content_clear(&m->c);
@@ -328,7 +328,7 @@ he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_error *err)
     *before = m->c;
     m->c = takes->c;
     he_mem_free(takes);
-    record_object(m, HE_COL_REPLACED, 0, before);
+    record_object(m, HE_COL_REPLACED, how == HE_RENUMBERS, before);
     return HE_OK;
 }
 

@@ -129,8 +129,12 @@ HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, h
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
 /* Swap the whole content with `takes` (emptied and freed on success), recorded as one replace that
- * keeps the old arrays; without recording they are freed. */
-HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_error *err);
+ * keeps the old arrays; without recording they are freed. HE_KEEPS_IDS promises that every id
+ * issued before is issued in `takes` and means the same element, or a dead one, and that columns
+ * stay in their slots: such a replace can be undone and done again among other edits,
+ * he_delta_ready permitting. */
+typedef enum he_replacing { HE_KEEPS_IDS, HE_RENUMBERS } he_replacing;
+HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err);
 
 /* A bracket around several edits that succeed or fail as one. While no delta is attached it brings
  * its own, so that it can roll back. he_edit_end returns `status` unchanged. */

@@ -60,6 +60,11 @@ bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS])
     return whole;
 }
 
+double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS])
+{
+    return op->growth == NULL ? 1 : op->growth(args);
+}
+
 bool he_op_declares(const he_op *op, he_status status)
 {
     if (status == HE_OK || status == HE_NO_MEMORY || status == HE_IDS_EXHAUSTED ||

@@ -73,7 +73,8 @@ typedef enum he_result_type {
     HE_RESULT_ELEMENT,  /* one id, or null */
     HE_RESULT_ELEMENTS, /* a list of ids */
     HE_RESULT_NUMBER,
-    HE_RESULT_MAP /* old id -> new id, null where dead */
+    HE_RESULT_MAP,   /* old id -> new id, null where dead */
+    HE_RESULT_COUNTS /* how many elements, one number a step */
 } he_result_type;
 
 typedef struct he_result_row {
@@ -110,6 +111,8 @@ typedef struct he_op {
      * HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
     int change[3]; /* V, E, F */
+    /* By about how many times the mesh grows; NULL where it stays of its size. */
+    double (*growth)(const he_arg *args);
     /* Call through he_op_run. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
 } he_op;
@@ -121,6 +124,8 @@ size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);
 /* Does it cost the mesh, given these? */
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
+/* By about how many times the mesh grows, 1 where it stays of its size. */
+double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* Is this a refusal the row declares (or a resource failure any row may have)? */
 bool he_op_declares(const he_op *op, he_status status);
 

@@ -1,9 +1,12 @@
 #include "query/bvh.h"
 
 #include "mesh/walk.h"
+#include "query/bvh_disc.h"
 #include "query/drawing.h"
 #include "query/geometry.h"
 #include "query/scale.h"
+
+#include <string.h>
 
 enum { BINS = 16 };
 
@@ -16,6 +19,7 @@ typedef struct builder {
     box *boxes;      /* of triangles, in the order in which they were listed */
     uint32_t *order; /* the triangles, rearranged */
     size_t capacity; /* nodes there is room for */
+    he_watch *watch;
 } builder;
 
 static const box NOTHING = {{DBL_MAX, DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX, -DBL_MAX}};
@@ -215,15 +219,31 @@ static he_status grow(builder *b, he_error *err)
     return HE_OK;
 }
 
+/* Not greater, not less. */
+static float downward(double x)
+{
+    float near = (float)x;
+    return near > x ? nextafterf(near, -HUGE_VALF) : near;
+}
+
+static float upward(double x)
+{
+    return -downward(-x);
+}
+
 static he_status build(builder *b, he_error *err)
 {
     run stack[HE_BVH_STACK];
     int depth = 0;
+    uint32_t made = 0;
     stack[depth++] = (run){0, 0, b->tree->count, 0};
     b->tree->node_count = 1;
     while (depth > 0) {
         run r = stack[--depth];
         he_status status = grow(b, err);
+        if (status == HE_OK) {
+            status = he_watch_at(b->watch, made++, b->capacity, err);
+        }
         if (status != HE_OK) {
             return status;
         }
@@ -233,8 +253,12 @@ static he_status build(builder *b, he_error *err)
             include(&bounds, &b->boxes[b->order[r.first + i]]);
         }
         for (int k = 0; k < 3; k++) {
-            node->min[k] = bounds.min[k];
-            node->max[k] = bounds.max[k];
+            node->min[k] = downward(bounds.min[k]);
+            node->max[k] = upward(bounds.max[k]);
+        }
+        if (r.node == 0) {
+            memcpy(b->tree->min, bounds.min, sizeof bounds.min);
+            memcpy(b->tree->max, bounds.max, sizeof bounds.max);
         }
         node->first = r.first;
         node->count = r.count;
@@ -263,6 +287,10 @@ static bool arrange(builder *b)
     }
     he_mem_free(tree->triangles);
     tree->triangles = sorted;
+    tree->discs = he_mem_array(NULL, tree->node_count, sizeof *tree->discs);
+    if (tree->discs == NULL) {
+        return false;
+    }
     /* Smaller, so what was there is kept if it cannot be moved. */
     he_bvh_node *nodes = he_mem_array(tree->nodes, tree->node_count, sizeof *nodes);
     tree->nodes = nodes == NULL ? tree->nodes : nodes;
@@ -273,12 +301,13 @@ void he_bvh_free(he_bvh *tree)
 {
     if (tree != NULL) {
         he_mem_free(tree->nodes);
+        he_mem_free(tree->discs);
         he_mem_free(tree->triangles);
         he_mem_free(tree);
     }
 }
 
-he_status he_bvh_new(const he_mesh *m, he_bvh **out, he_error *err)
+he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err)
 {
     uint32_t count = 0;
     he_box bounds;
@@ -286,7 +315,7 @@ he_status he_bvh_new(const he_mesh *m, he_bvh **out, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    builder b = {.tree = he_mem_zero(1, sizeof *b.tree)};
+    builder b = {.tree = he_mem_zero(1, sizeof *b.tree), .watch = watch};
     if (b.tree == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of boxes");
     }
@@ -307,13 +336,19 @@ he_status he_bvh_new(const he_mesh *m, he_bvh **out, he_error *err)
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
         goto done;
     }
-    status = list_triangles(b.tree, m, err);
+    status = he_watch_phase(watch, "sorting by place", 1, err);
+    if (status == HE_OK) {
+        status = list_triangles(b.tree, m, err);
+    }
     if (status == HE_OK) {
         find_boxes(&b, m);
         status = build(&b, err);
     }
     if (status == HE_OK && !arrange(&b)) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
+    }
+    if (status == HE_OK) {
+        he_bvh_find_discs(b.tree, m);
     }
 done:
     he_mem_free(b.boxes);

@@ -7,7 +7,8 @@
  *
  *     nodes      0: the root; children of a node stand together, first and first + 1
  *     boxes      in coordinates times `scale`, a power of two that brings the mesh near the unit
- *                cube: no finite input overflows
+ *                cube: no finite input overflows. Floats, rounded outward
+ *     discs      of the same triangles, see bvh_disc.h
  *
  * A tree belongs to the mesh as it was when the tree was made: the functions take that mesh along,
  * and a mesh that has changed gets another tree. Trees are never written to: any number of threads
@@ -28,10 +29,14 @@ enum {
 };
 
 typedef struct he_bvh_node {
-    double min[3], max[3];
+    float min[3], max[3];
     uint32_t first; /* triangle, or node */
     uint32_t count; /* triangles of a leaf, 0 inside */
 } he_bvh_node;
+
+typedef struct he_bvh_disc {
+    float center[3], normal[3], thick, radius; /* the thickness to either side */
+} he_bvh_disc;
 
 typedef struct he_bvh_triangle {
     uint32_t vertex[3], face;
@@ -40,15 +45,18 @@ typedef struct he_bvh_triangle {
 /* Open for reading; only bvh.c writes it. */
 typedef struct he_bvh {
     int exponent;
-    double scale; /* 2^-exponent */
+    double scale;          /* 2^-exponent */
+    double min[3], max[3]; /* of all, not rounded */
     he_bvh_node *nodes;
+    he_bvh_disc *discs; /* one a node */
     he_bvh_triangle *triangles;
     uint32_t node_count, count; /* both 0 without faces */
 } he_bvh;
 
 /* n log n in triangles. HE_NO_MEMORY; HE_IDS_EXHAUSTED as for drawings, or where there are more
- * than 2^31 triangles. */
-HE_NODISCARD he_status he_bvh_new(const he_mesh *m, he_bvh **out, he_error *err);
+ * than 2^31 triangles; HE_CANCELLED by the watch, which may be NULL and is not the mesh's: others
+ * may read that one meanwhile. */
+HE_NODISCARD he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err);
 void he_bvh_free(he_bvh *tree);
 
 /* A place on a face. */
@@ -87,9 +95,10 @@ HE_NODISCARD he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_v
  * of one face are not tried against each other.
  *
  * `complete` is false when the budget ran out or `most` pairs were met, faces of many triangles
- * perhaps more than once: then there may be more. HE_NO_MEMORY. */
+ * perhaps more than once: then there may be more. HE_NO_MEMORY; HE_CANCELLED by the watch, which
+ * may be NULL. */
 HE_NODISCARD he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most,
-                                            uint64_t *budget, he_ids *pairs, bool *complete,
-                                            he_error *err);
+                                            uint64_t *budget, he_watch *watch, he_ids *pairs,
+                                            bool *complete, he_error *err);
 
 #endif

@@ -1,3 +1,4 @@
+#include "query/bvh_disc.h"
 #include "query/bvh_walk.h"
 #include "query/geometry.h"
 
@@ -30,69 +31,99 @@ static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
     return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
 }
 
-static double try_point(he_vec3 p, const he_vec3 c[3], const double weight[3])
+/* What a walk has found yet, and how one gets from there to the point. */
+typedef struct approach {
+    he_vec3 p, back;
+    he_bvh_found best;
+} approach;
+
+static he_vec3 from_point(he_vec3 p, const he_vec3 c[3], const double weight[3])
 {
     he_vec3 q =
         he_vec3_add(he_vec3_add(he_vec3_scale(c[0], weight[0]), he_vec3_scale(c[1], weight[1])),
                     he_vec3_scale(c[2], weight[2]));
-    return square(he_vec3_sub(p, q));
+    return he_vec3_sub(p, q);
 }
 
-/* The squared distance to a triangle. */
-static double nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
+/* The way to the point from where on a triangle it is nearest. */
+static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     if (over(p, c, weight)) {
-        return try_point(p, c, weight);
+        return from_point(p, c, weight);
     }
+    he_vec3 back = p;
     double best = HUGE_VAL;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
         double t = along(p, c[i], c[j]), own[3] = {0, 0, 0};
         own[i] = 1 - t;
         own[j] += t;
-        double distance = try_point(p, c, own);
-        if (distance < best) {
-            best = distance;
+        he_vec3 way = from_point(p, c, own);
+        if (square(way) < best) {
+            best = square(way);
+            back = way;
             weight[0] = own[0];
             weight[1] = own[1];
             weight[2] = own[2];
         }
     }
-    return best;
+    return back;
 }
 
-static double to_box(he_vec3 p, const he_bvh_node *node)
+/* What rounding may make something seem farther than a triangle in it. */
+static const double SLACK = 1 + 16 * DBL_EPSILON;
+
+/* Does the triangle lie behind the plane across the way at its beginning? Then it is farther. */
+static bool is_behind(const approach *a, const he_vec3 c[3])
 {
-    const double at[3] = {p.x, p.y, p.z};
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        double d = fmax(fmax(node->min[k] - at[k], at[k] - node->max[k]), 0);
-        sum += d * d;
-    }
-    return sum;
+    double far = a->best.far * SLACK;
+    return he_vec3_dot(he_vec3_sub(a->p, c[0]), a->back) > far &&
+           he_vec3_dot(he_vec3_sub(a->p, c[1]), a->back) > far &&
+           he_vec3_dot(he_vec3_sub(a->p, c[2]), a->back) > far;
 }
 
-static void approach(he_vec3 p, const he_bvh *tree, const he_mesh *m, uint32_t triangle,
-                     he_bvh_found *best)
+static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint32_t triangle)
 {
     he_vec3 c[3];
     double weight[3] = {1, 0, 0};
     he_bvh_corners(tree, m, triangle, c);
-    double distance = nearest(p, c, weight);
-    bool nearer = distance < best->far;
-    bool least = distance == best->far &&
-                 (best->triangle == HE_NONE ||
-                  tree->triangles[triangle].face < tree->triangles[best->triangle].face);
+    if (is_behind(a, c)) {
+        return;
+    }
+    he_vec3 back = nearest(a->p, c, weight);
+    double distance = square(back);
+    bool nearer = distance < a->best.far;
+    bool least = distance == a->best.far &&
+                 (a->best.triangle == HE_NONE ||
+                  tree->triangles[triangle].face < tree->triangles[a->best.triangle].face);
     if (nearer || least) {
-        *best = (he_bvh_found){triangle, {weight[0], weight[1], weight[2]}, distance};
+        a->best = (he_bvh_found){triangle, {weight[0], weight[1], weight[2]}, distance};
+        a->back = back;
     }
 }
 
-static he_status walk(he_vec3 p, const he_bvh *tree, const he_mesh *m, uint64_t *budget,
-                      he_bvh_found *best, he_error *err)
+/* The squared distance to what is below a node is not less; what is told may be less than could be
+ * when it is more than `far`. */
+static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
 {
-    /* What rounding may make a box seem farther than a triangle in it. */
-    static const double SLACK = 1 + 16 * DBL_EPSILON;
+    const he_bvh_node *node = &tree->nodes[at];
+    const double x[3] = {p.x, p.y, p.z};
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        double below = node->min[k] - x[k], beyond = x[k] - node->max[k];
+        double d = below > beyond ? below : beyond;
+        sum += d > 0 ? d * d : 0;
+    }
+    if (sum > far) {
+        return sum;
+    }
+    double disc = he_bvh_to_disc(&tree->discs[at], p);
+    return disc > sum ? disc : sum;
+}
+
+static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, uint64_t *budget,
+                      he_error *err)
+{
     struct {
         uint32_t node;
         double near;
@@ -101,25 +132,26 @@ static he_status walk(he_vec3 p, const he_bvh *tree, const he_mesh *m, uint64_t 
     stack[0].near = 0;
     stack[depth++].node = 0;
     while (depth > 0) {
-        double near = stack[--depth].near;
+        double near = stack[--depth].near, far = a->best.far * SLACK;
         const he_bvh_node *node = &tree->nodes[stack[depth].node];
-        if (near > best->far * SLACK) {
+        if (near > far) {
             continue;
         }
         if (!he_bvh_spend(budget)) {
             return he_bvh_exhausted(err);
         }
         for (uint32_t i = 0; i < node->count; i++) {
-            approach(p, tree, m, node->first + i, best);
+            try_triangle(a, tree, m, node->first + i);
         }
         if (node->count == 0) {
-            uint32_t a = node->first, b = node->first + 1;
-            double to_a = to_box(p, &tree->nodes[a]), to_b = to_box(p, &tree->nodes[b]);
-            bool swap = to_a <= to_b; /* the nearer one on top */
-            stack[depth].node = swap ? b : a;
-            stack[depth++].near = swap ? to_b : to_a;
-            stack[depth].node = swap ? a : b;
-            stack[depth++].near = swap ? to_a : to_b;
+            uint32_t left = node->first, right = left + 1;
+            double to_left = to_node(a->p, tree, left, far),
+                   to_right = to_node(a->p, tree, right, far);
+            bool swap = to_left <= to_right; /* the nearer one on top */
+            stack[depth].node = swap ? right : left;
+            stack[depth++].near = swap ? to_right : to_left;
+            stack[depth].node = swap ? left : right;
+            stack[depth++].near = swap ? to_left : to_right;
         }
     }
     return HE_OK;
@@ -140,12 +172,12 @@ he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point, do
         he_vec3_normalise(point, &p);
         p = he_vec3_scale(p, HE_BVH_FAR);
     }
-    he_bvh_found best = {.triangle = HE_NONE, .far = HUGE_VAL};
-    he_status status = walk(p, tree, m, budget, &best, err);
+    approach a = {.p = p, .best = {.triangle = HE_NONE, .far = HUGE_VAL}};
+    he_status status = walk(&a, tree, m, budget, err);
     if (status != HE_OK) {
         return status;
     }
-    he_hit hit = he_bvh_tell(tree, m, &best);
+    he_hit hit = he_bvh_tell(tree, m, &a.best);
     he_direction(point, hit.point, &hit.distance);
     *out = hit.distance <= max ? hit : none;
     return HE_OK;

@@ -7,16 +7,23 @@
 /* On the way down each level leaves two pairs behind at most; a pair is split on either side. */
 enum { PAIRS = 6 * HE_BVH_STACK };
 
+/* A triangle of a leaf, and its box. */
+typedef struct prism {
+    he_vec3 corner[3];
+    double min[3], max[3];
+} prism;
+
 typedef struct search {
     const he_bvh *tree;
     const he_mesh *m;
     size_t most;
     uint64_t *budget;
     he_ids *pairs;
+    he_watch *watch;
     he_error *err;
 } search;
 
-static bool apart(const he_bvh_node *a, const he_bvh_node *b)
+static bool nodes_apart(const he_bvh_node *a, const he_bvh_node *b)
 {
     for (int k = 0; k < 3; k++) {
         if (a->min[k] > b->max[k] || b->min[k] > a->max[k]) {
@@ -26,16 +33,36 @@ static bool apart(const he_bvh_node *a, const he_bvh_node *b)
     return false;
 }
 
-static he_status try_triangles(search *s, uint32_t i, uint32_t k)
+static bool apart(const prism *a, const prism *b)
+{
+    for (int k = 0; k < 3; k++) {
+        if (a->min[k] > b->max[k] || b->min[k] > a->max[k]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static prism load(const search *s, uint32_t triangle)
+{
+    prism p;
+    he_bvh_corners(s->tree, s->m, triangle, p.corner);
+    for (int k = 0; k < 3; k++) {
+        double x[3];
+        for (int i = 0; i < 3; i++) {
+            x[i] = k == 0 ? p.corner[i].x : k == 1 ? p.corner[i].y : p.corner[i].z;
+        }
+        double least = x[0] < x[1] ? x[0] : x[1], most = x[0] > x[1] ? x[0] : x[1];
+        p.min[k] = least < x[2] ? least : x[2];
+        p.max[k] = most > x[2] ? most : x[2];
+    }
+    return p;
+}
+
+static he_status try_triangles(search *s, uint32_t i, uint32_t k, const prism *a, const prism *b)
 {
     uint32_t f = s->tree->triangles[i].face, g = s->tree->triangles[k].face;
-    he_vec3 a[3], b[3];
-    if (f == g) {
-        return HE_OK;
-    }
-    he_bvh_corners(s->tree, s->m, i, a);
-    he_bvh_corners(s->tree, s->m, k, b);
-    if (!he_triangles_meet(a, b)) {
+    if (f == g || !he_triangles_meet(a->corner, b->corner)) {
         return HE_OK;
     }
     he_status status = he_ids_reserve(s->pairs, 2, s->err);
@@ -46,12 +73,20 @@ static he_status try_triangles(search *s, uint32_t i, uint32_t k)
     return status;
 }
 
+/* a may be b. */
 static he_status try_leaves(search *s, const he_bvh_node *a, const he_bvh_node *b)
 {
+    prism others[HE_BVH_LEAF];
     he_status status = HE_OK;
+    for (uint32_t k = 0; k < b->count; k++) {
+        others[k] = load(s, b->first + k);
+    }
     for (uint32_t i = 0; i < a->count; i++) {
+        const prism own = a == b ? others[i] : load(s, a->first + i);
         for (uint32_t k = a == b ? i + 1 : 0; k < b->count && status == HE_OK; k++) {
-            status = try_triangles(s, a->first + i, b->first + k);
+            if (!apart(&own, &others[k])) {
+                status = try_triangles(s, a->first + i, b->first + k, &own, &others[k]);
+            }
         }
     }
     return status;
@@ -64,7 +99,9 @@ static he_status walk(search *s, size_t begin, bool *complete)
         uint32_t a, b;
     } stack[PAIRS];
     size_t depth = 0;
-    he_status status = HE_OK;
+    uint64_t steps = 0;
+    uint32_t done = 0; /* triangles that met all that are to come */
+    he_status status = he_watch_phase(s->watch, "intersecting", 1, s->err);
     stack[depth].a = 0;
     stack[depth++].b = 0;
     *complete = true;
@@ -75,14 +112,18 @@ static he_status walk(search *s, size_t begin, bool *complete)
             *complete = false;
             break;
         }
-        if (apart(a, b)) {
+        if (nodes_apart(a, b)) {
             continue;
+        }
+        if (s->watch != NULL && steps++ % HE_WATCH_STRIDE == 0) {
+            status = he_watch_step(s->watch, done, s->tree->count, s->err);
         }
         assert(depth + 3 <= PAIRS);
         if (a->count > 0 && b->count > 0) {
             uint64_t tests = (uint64_t)a->count * b->count;
             *s->budget -= tests < *s->budget ? tests : *s->budget;
-            status = try_leaves(s, a, b);
+            status = status == HE_OK ? try_leaves(s, a, b) : status;
+            done += a == b ? a->count : 0;
         } else if (at == other) {
             stack[depth].a = a->first;
             stack[depth++].b = a->first;
@@ -112,9 +153,9 @@ static int compare(const void *left, const void *right)
 }
 
 he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most, uint64_t *budget,
-                               he_ids *pairs, bool *complete, he_error *err)
+                               he_watch *watch, he_ids *pairs, bool *complete, he_error *err)
 {
-    search s = {tree, m, most, budget, pairs, err};
+    search s = {tree, m, most, budget, pairs, watch, err};
     size_t begin = pairs->count, kept = begin;
     bool all = true;
     he_status status = tree->count == 0 ? HE_OK : walk(&s, begin, &all);

@@ -43,8 +43,8 @@ static double enter(const ray *r, const he_bvh_node *node, double far)
 {
     double near = 0, out = far;
     for (int k = 0; k < 3; k++) {
-        double a = (node->min[k] - r->origin[k]) * r->inverse[k];
-        double b = (node->max[k] - r->origin[k]) * r->inverse[k];
+        double a = ((double)node->min[k] - r->origin[k]) * r->inverse[k];
+        double b = ((double)node->max[k] - r->origin[k]) * r->inverse[k];
         double first = a < b ? a : b, last = a < b ? b : a;
         if (isnan(a) || isnan(b)) {
             continue;

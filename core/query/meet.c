@@ -78,22 +78,22 @@ static bool segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3])
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-static bool boxes_apart(const he_vec3 a[3], const he_vec3 b[3])
+/* Do the corners of b that are not in the set `shared` lie on one side of the plane of a, with none
+ * in it? */
+static bool is_beside(const he_vec3 a[3], const he_vec3 b[3], unsigned shared)
 {
-    return fmin(a[0].x, fmin(a[1].x, a[2].x)) > fmax(b[0].x, fmax(b[1].x, b[2].x)) ||
-           fmin(b[0].x, fmin(b[1].x, b[2].x)) > fmax(a[0].x, fmax(a[1].x, a[2].x)) ||
-           fmin(a[0].y, fmin(a[1].y, a[2].y)) > fmax(b[0].y, fmax(b[1].y, b[2].y)) ||
-           fmin(b[0].y, fmin(b[1].y, b[2].y)) > fmax(a[0].y, fmax(a[1].y, a[2].y)) ||
-           fmin(a[0].z, fmin(a[1].z, a[2].z)) > fmax(b[0].z, fmax(b[1].z, b[2].z)) ||
-           fmin(b[0].z, fmin(b[1].z, b[2].z)) > fmax(a[0].z, fmax(a[1].z, a[2].z));
-}
-
-/* Does all of b lie on one side of the plane of a? */
-static bool is_beside(const he_vec3 a[3], const he_vec3 b[3])
-{
-    int first = he_orient3(a[0], a[1], a[2], b[0]);
-    return first != 0 && he_orient3(a[0], a[1], a[2], b[1]) == first &&
-           he_orient3(a[0], a[1], a[2], b[2]) == first;
+    int first = 0;
+    for (unsigned k = 0; k < 3; k++) {
+        if (shared >> k & 1) {
+            continue;
+        }
+        int side = he_orient3(a[0], a[1], a[2], b[k]);
+        if (side == 0 || side == -first) {
+            return false;
+        }
+        first = side;
+    }
+    return first != 0;
 }
 
 static bool same(he_vec3 p, he_vec3 q)
@@ -109,14 +109,11 @@ static bool meet_beyond_corner(const he_vec3 a[3], const he_vec3 b[3], int i, in
            segment_meets(b[(k + 1) % 3], b[(k + 2) % 3], a);
 }
 
-/* Triangles that share the side opposite to corners i and k lie on one another when they are in one
- * plane and on the same side of it. */
+/* Triangles in one plane that share the side opposite to corners i and k lie on one another when
+ * they are on the same side of it. */
 static bool meet_beyond_side(const he_vec3 a[3], const he_vec3 b[3], int i, int k)
 {
     he_vec3 p = a[(i + 1) % 3], q = a[(i + 2) % 3];
-    if (he_orient3(p, q, a[i], b[k]) != 0) {
-        return false;
-    }
     int axis = open_axis(a);
     int left = he_orient2(flat(p, axis), flat(q, axis), flat(a[i], axis));
     return left == he_orient2(flat(p, axis), flat(q, axis), flat(b[k], axis));
@@ -124,10 +121,8 @@ static bool meet_beyond_side(const he_vec3 a[3], const he_vec3 b[3], int i, int 
 
 bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
 {
-    if (boxes_apart(a, b)) {
-        return false;
-    }
     int shared = 0, at_a = 0, at_b = 0, sum_a = 0, sum_b = 0;
+    unsigned of_a = 0, of_b = 0;
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) {
             if (same(a[i], b[k])) {
@@ -136,10 +131,13 @@ bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
                 at_b = k;
                 sum_a += i;
                 sum_b += k;
+                of_a |= 1u << i;
+                of_b |= 1u << k;
             }
         }
     }
-    if (shared < 2 && (is_beside(a, b) || is_beside(b, a))) {
+    /* Nearly all neighbours end here. */
+    if (is_beside(a, b, of_b) || is_beside(b, a, of_a)) {
         return false;
     }
     if (open_axis(a) < 0 || open_axis(b) < 0) {

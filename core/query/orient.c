@@ -53,11 +53,15 @@ static void grow(expansion *e, double b)
     e->count = kept;
 }
 
-/* Add a product of three differences, each given as two numbers. */
+/* Add a product of three differences, each given as two numbers. Most differences are exact: then
+ * seven of the eight terms are zero. */
 static void add_product(expansion *e, pair a, pair b, pair c, double sign_of)
 {
     const double as[2] = {a.low, a.high}, bs[2] = {b.low, b.high}, cs[2] = {c.low, c.high};
     for (int i = 0; i < 8; i++) {
+        if (as[i & 1] == 0 || bs[i >> 1 & 1] == 0 || cs[i >> 2] == 0) {
+            continue;
+        }
         pair ab = exact_product(as[i & 1], bs[i >> 1 & 1]);
         pair low = exact_product(ab.low, sign_of * cs[i >> 2]);
         pair high = exact_product(ab.high, sign_of * cs[i >> 2]);
@@ -103,6 +107,9 @@ int he_orient3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
     double determinant = u.z * (vxwy - wxvy) + v.z * (wxuy - uxwy) + w.z * (uxvy - vxuy);
     double size = (fabs(vxwy) + fabs(wxvy)) * fabs(u.z) + (fabs(wxuy) + fabs(uxwy)) * fabs(v.z) +
                   (fabs(uxvy) + fabs(vxuy)) * fabs(w.z);
+    if (size == 0) {
+        return 0; /* a difference is 0 between equal numbers only */
+    }
     return fabs(determinant) > ERROR3 * size ? sign(determinant) : exact3(a, b, c, d);
 }
 

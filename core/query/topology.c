@@ -236,6 +236,26 @@ void he_components_clear(he_components *components)
     *components = (he_components){0};
 }
 
+he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *count, he_error *err)
+{
+    uint32_t *label = NULL, joins = 0, found = 0;
+    he_status status = join_all(m, HE_FACE, &label, &joins, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    /* A parent is lower than its child: it has its label by then. */
+    for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        if (!he_face_is_live(m, (he_face){f})) {
+            label[f] = HE_NONE;
+        } else {
+            label[f] = label[f] == f ? found++ : label[label[f]];
+        }
+    }
+    *labels = label;
+    *count = found;
+    return HE_OK;
+}
+
 /* --- boundary loops --- */
 
 static he_status add_loop(he_boundaries *list, he_boundary loop, he_error *err)
@@ -476,11 +496,11 @@ he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err)
         he_topology_clear(&t);
         return status;
     }
-    t.closed = t.boundary_halfedges == 0;
-    t.manifold = t.bowties == 0;
+    t.closed = t.faces > 0 && t.boundary_halfedges == 0;
+    t.manifold = t.faces > 0 && t.bowties == 0;
     t.euler = (int64_t)used - (int64_t)t.edges + (int64_t)t.faces;
     int64_t twice = 2 * (int64_t)t.components - t.euler - (int64_t)t.boundary_loops;
-    t.has_genus = t.manifold && twice >= 0 && twice % 2 == 0;
+    t.has_genus = t.bowties == 0 && twice >= 0 && twice % 2 == 0;
     t.genus = t.has_genus ? twice / 2 : 0;
     *out = t;
     return HE_OK;

@@ -29,8 +29,8 @@ typedef struct he_topology {
     uint32_t components, components_by_edge;
     int64_t euler, genus;
     bool has_genus;
-    bool closed;              /* no boundary half-edge; true of a mesh without faces */
-    bool manifold;            /* no bow-tie */
+    bool closed;              /* no boundary half-edge; false of a mesh without faces */
+    bool manifold;            /* no bow-tie; false of a mesh without faces */
     he_degree_count *degrees; /* by rising degree, none with 0 faces */
     size_t degree_count;
 } he_topology;
@@ -70,6 +70,11 @@ typedef struct he_components {
 HE_NODISCARD he_status he_components_find(const he_mesh *m, he_joined by, he_components *out,
                                           he_error *err);
 void he_components_clear(he_components *components);
+
+/* The component by edge of each face ever issued, HE_NONE where it is dead, and how many there are:
+ * numbered from 0 by rising lowest face. The array is the caller's to free. */
+HE_NODISCARD he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *count,
+                                           he_error *err);
 
 /* Append the vertices of two fans or more, by rising id. */
 HE_NODISCARD he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err);

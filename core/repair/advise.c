@@ -25,10 +25,9 @@ static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
     return HE_OK;
 }
 
-/* What proper faces need, without duplicates dropped if that is asked for. *dropped is how many
- * there were. */
-static he_status find_needs(const he_soup *soup, bool drops, unsigned *out, bool *dropped,
-                            he_error *err)
+/* What proper faces need. With `dropped` the duplicates are dropped first; where there are none
+ * that is false, and nothing else is found. */
+static he_status find_needs(const he_soup *soup, bool *dropped, unsigned *out, he_error *err)
 {
     he_soup copy;
     he_repaired *done = he_mem_zero(1, sizeof *done);
@@ -38,17 +37,18 @@ static he_status find_needs(const he_soup *soup, bool drops, unsigned *out, bool
     if (status == HE_OK && done == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to look for repairs");
     }
-    if (status == HE_OK && drops) {
+    bool goes_on = true;
+    if (status == HE_OK && dropped != NULL) {
         status = he_mend_drop_duplicates(&m, err);
-        *dropped = status == HE_OK && done->accounts[HE_REPAIR_DROP_DUPLICATES].count > 0;
+        goes_on = *dropped = done->accounts[HE_REPAIR_DROP_DUPLICATES].count > 0;
     }
-    if (status == HE_OK) {
+    if (status == HE_OK && goes_on) {
         status = he_mend_orient(&m, true, err);
     }
-    if (status == HE_OK) {
+    if (status == HE_OK && goes_on) {
         status = he_mend_needs_split(&copy, &splits, err);
     }
-    if (status == HE_OK) {
+    if (status == HE_OK && goes_on) {
         const he_repair_account *orient = &done->accounts[HE_REPAIR_ORIENT];
         *out = (splits ? he_repair_bit(HE_REPAIR_SPLIT) : 0) |
                (orient->count + orient->left > 0 ? he_repair_bit(HE_REPAIR_ORIENT) : 0);
@@ -65,11 +65,11 @@ static he_status find_needs(const he_soup *soup, bool drops, unsigned *out, bool
 /* Dropping duplicates is the answer where it spares a split, or faces the turning. */
 static he_status advise_proper(const he_soup *soup, unsigned *out, he_error *err)
 {
-    unsigned as_is, less;
+    unsigned as_is, less = 0;
     bool dropped = false;
-    he_status status = find_needs(soup, false, &as_is, &dropped, err);
+    he_status status = find_needs(soup, NULL, &as_is, err);
     if (status == HE_OK && as_is != 0) {
-        status = find_needs(soup, true, &less, &dropped, err);
+        status = find_needs(soup, &dropped, &less, err);
     }
     if (status == HE_OK) {
         bool spares = dropped && (less & he_repair_bit(HE_REPAIR_SPLIT)) == 0 && less != as_is;

@@ -1,6 +1,7 @@
-#include "repair/mend.h"
+#include "repair/repair.h"
 
 #include "mesh/pair.h"
+#include "repair/mend.h"
 
 #include <string.h>
 

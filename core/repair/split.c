@@ -221,7 +221,8 @@ static void clear(splitting *s)
     he_mem_free(s->closed);
 }
 
-static he_status plan(splitting *s, he_error *err)
+/* Memory, and mates. */
+static he_status begin(splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
     s->mate = he_mem_array(NULL, soup->corner_count, sizeof *s->mate);
@@ -234,9 +235,14 @@ static he_status plan(splitting *s, he_error *err)
         s->taken == NULL || s->closed == NULL) {
         return no_memory(soup, err);
     }
-    bool again = false;
     he_mend_faces(soup, s->face_of);
-    he_status status = pair(s, err);
+    return pair(s, err);
+}
+
+static he_status plan(splitting *s, he_error *err)
+{
+    bool again = false;
+    he_status status = begin(s, err);
     if (status == HE_OK) {
         status = find_fans(s, err);
     }
@@ -294,7 +300,10 @@ he_status he_mend_split(he_mend *m, he_error *err)
 he_status he_mend_needs_split(const he_soup *soup, bool *out, he_error *err)
 {
     splitting s = {.soup = soup};
-    he_status status = plan(&s, err);
+    he_status status = begin(&s, err);
+    if (status == HE_OK && !s.is_crowded) {
+        status = find_fans(&s, err);
+    }
     if (status == HE_OK) {
         *out = s.is_crowded || s.has_closed;
     }

@@ -191,6 +191,85 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
     bench_free(b);
 }
 
+static const char *warning(const cJSON *report, int i)
+{
+    const cJSON *item = cJSON_GetArrayItem(cJSON_GetObjectItem(report, "warnings"), i);
+    return item == NULL ? "" : cJSON_GetObjectItem(item, "code")->valuestring;
+}
+
+/* The edges of a file are only counted when they are made, and a repair may make others. */
+static void a_report_says_what_was_read_and_what_was_not(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *target, *edges, *warning;
+    } rows[] = {
+        {"/v1/meshes?format=off", "3", ""},
+        {"/v1/meshes?format=off", "0", ""},
+        {"/v1/meshes?format=off", "", ""},
+        {"/v1/meshes?format=off", "1e300", "edge_count"},
+        {"/v1/meshes?format=off", "4", "edge_count"},
+        {"/v1/meshes?format=off&repair=weld", "4", ""},
+    };
+    static const char *const headers[] = {"Content-Type", "application/octet-stream", NULL};
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[200];
+        snprintf(
+            text, sizeof text,
+            "CNOFF\n3 1 %s\n0 0 0 0 0 1 1 2 3\n1 0 0 0 0 1 1 2 3\n0 1 0 0 0 1 1 2 3\n3 0 1 2\n",
+            rows[i].edges);
+        bench_reply r = bench_expect(201, bench_send(b, "POST", rows[i].target, headers, text));
+        const cJSON *report = cJSON_GetObjectItem(r.json, "import");
+        assert_string_equal(warning(report, 0), rows[i].warning);
+        assert_non_null(strstr(r.body,
+                               "\"attributes\":[{\"domain\":\"vertices\",\"name\":"
+                               "\"normal\"},{\"domain\":\"vertices\",\"name\":\"color\"}]"));
+        bench_reply_free(&r);
+    }
+    bench_reply r = bench_expect(201, bench_send(b, "POST", "/v1/meshes?format=obj", headers,
+                                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 2\nf 1 2 3\n"));
+    const cJSON *report = cJSON_GetObjectItem(r.json, "import");
+    assert_string_equal(warning(report, 0), "unused_uv");
+    assert_null(cJSON_GetObjectItem(report, "attributes"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* The type or ?format= decides, ?format= before the type; a refusal says when the bytes look
+ * otherwise. */
+static void a_body_of_another_format_is_told(void **state)
+{
+    (void)state;
+    static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    static const char off[] = "OFF\n1 0 0\n0 0 0\n";
+    static const char wide[] = "\xFF\xFEv\x20";
+    static const struct {
+        const char *target, *type, *body;
+        int status;
+        const char *words;
+    } rows[] = {
+        {"/v1/meshes", "model/stl", obj, 400, "the body begins as one of the format obj does"},
+        {"/v1/meshes", "model/obj", off, 400, "the body begins as one of the format off does"},
+        {"/v1/meshes", "model/gltf-binary", off, 400, "begins as one of the format off does"},
+        {"/v1/meshes?format=ply", "model/obj", obj, 400, "begins as one of the format obj does"},
+        {"/v1/meshes?format=obj", "model/stl", obj, 201, "\"format\":\"obj\""},
+        {"/v1/meshes?format=obj", "application/json", obj, 201, "\"format\":\"obj\""},
+        {"/v1/meshes", "model/off", off, 415, "model/off"},
+        {"/v1/meshes", "application/octet-stream", wide, 415, "the body is UTF-16"},
+        {"/v1/meshes?format=obj", "application/octet-stream", wide, 422, "the text is UTF-16"},
+    };
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const char *const headers[] = {"Content-Type", rows[i].type, NULL};
+        bench_reply r = bench_send(b, "POST", rows[i].target, headers, rows[i].body);
+        r = bench_expect(rows[i].status, r);
+        assert_non_null(strstr(r.body, rows[i].words));
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -199,6 +278,8 @@ int main(void)
         cmocka_unit_test(encodings_that_do_not_exist),
         cmocka_unit_test(a_wrong_file_names_its_place),
         cmocka_unit_test(gltf_is_read_and_what_is_outside_never),
+        cmocka_unit_test(a_body_of_another_format_is_told),
+        cmocka_unit_test(a_report_says_what_was_read_and_what_was_not),
     };
     return cmocka_run_group_tests_name("files", tests, NULL, NULL);
 }

@@ -716,6 +716,43 @@ static void every_allocation_of_a_reader_may_fail(void **state)
     he_mem_set_hook(NULL);
 }
 
+static void a_finer_mesh_is_one_step_of_the_history(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    char *before = dump(b, 0);
+    bench_reply r = bench_expect(200, post(b, "edits", "{\"op\":\"subdivide\",\"steps\":2}"));
+    assert_true(cJSON_IsTrue(cJSON_GetObjectItem(r.json, "replaced")));
+    assert_null(cJSON_GetObjectItem(r.json, "undoable"));
+    bench_done(r);
+    bench_done(bench_expect(200, post(b, "edits", "{\"op\":\"face_delete\",\"face\":60}")));
+    char *after = dump(b, 0), *then = dump(b, 2);
+    assert_string_equal(then, before);
+    free(then);
+    bench_done(bench_expect(200, post(b, "undo", "{\"steps\":2}")));
+    char *undone = dump(b, 0), *past = dump(b, 4);
+    assert_string_equal(undone, before);
+    assert_string_equal(past, after);
+    bench_done(bench_expect(200, post(b, "redo", "{\"steps\":2}")));
+    char *again = dump(b, 0);
+    assert_string_equal(again, after);
+    /* What it issued is not issued again. */
+    bench_done(bench_expect(200, post(b, "undo", "{\"steps\":3}")));
+    r = bench_expect(200, post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}"));
+    const cJSON *results = cJSON_GetObjectItem(r.json, "results");
+    assert_true(number_of(cJSON_GetArrayItem(results, 0), "vertex") > 100);
+    bench_done(r);
+    free(before);
+    free(after);
+    free(undone);
+    free(past);
+    free(again);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -728,6 +765,7 @@ int main(void)
         cmocka_unit_test(the_history_tells_what_each_revision_did),
         cmocka_unit_test(a_page_of_the_history_goes_on_where_it_was),
         cmocka_unit_test(steps_that_cannot_be_taken_change_nothing),
+        cmocka_unit_test(a_finer_mesh_is_one_step_of_the_history),
         cmocka_unit_test(every_allocation_of_a_reader_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

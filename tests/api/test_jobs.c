@@ -366,6 +366,28 @@ static void compact_as_a_job_ends_the_undo_stack(void **state)
     bench_reply_free(&r);
 }
 
+/* By what it makes, not by what it begins with. */
+static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
+{
+    (void)state;
+    char path[64];
+    send(201, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    submit("POST", "/v1/meshes/m/edits", "{\"op\":\"subdivide\",\"steps\":7}", path);
+    bench_run_jobs(bench, 1);
+    bench_reply r = job_in(path, "done");
+    assert_true(cJSON_IsTrue(inside(&r, "result", "replaced")));
+    bench_reply_free(&r);
+    send(200, "POST", "/v1/meshes/m/undo", NULL);
+    r = expect(200, "GET", "/v1/meshes/m/faces/5", NULL, NULL);
+    bench_reply_free(&r);
+    send(410, "GET", "/v1/meshes/m/faces/6", NULL);
+    submit("POST", "/v1/meshes/m/edits", "{\"op\":\"subdivide\",\"steps\":12}", path);
+    bench_run_jobs(bench, 1);
+    r = job_in(path, "failed");
+    assert_string_equal(inside(&r, "problem", "code")->valuestring, "limit_exceeded");
+    bench_reply_free(&r);
+}
+
 static void a_dry_run_changes_nothing_as_a_job_either(void **state)
 {
     (void)state;
@@ -612,6 +634,7 @@ int main(void)
         JOB_TEST(who_has_the_answer_to_a_long_edit_may_write),
         JOB_TEST(a_mesh_may_be_deleted_under_a_long_edit),
         JOB_TEST(compact_as_a_job_ends_the_undo_stack),
+        JOB_TEST(a_mesh_that_grows_large_is_refined_by_a_job),
         JOB_TEST(a_dry_run_changes_nothing_as_a_job_either),
         JOB_TEST(what_is_estimated_above_a_second_becomes_a_job),
         JOB_TEST(a_listener_hears_of_each_state_and_then_the_end),

@@ -153,6 +153,7 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/components", 304, NULL, {ANY}},
     {"GET", "/v1/meshes/m/check", 200, NULL, {NULL}},
     {"GET", "/v1/meshes/m/check", 304, NULL, {ANY}},
+    {"GET", "/v1/meshes/m/check", 202, NULL, {ASYNC}},
 
     {"POST", "/v1/meshes/e/undo", 409, NULL, {NULL}},
     {"POST", "/v1/meshes/e/redo", 409, NULL, {NULL}},

@@ -1,6 +1,8 @@
 /* Walks and the mesh as a whole, against what searching the polygons finds. */
 #include "tests/api/specimens.h"
 
+#include "format/number.h"
+
 /* --- walks --- */
 
 static void traverse(api_bench *b, const page *wanted, const char *format, ...)
@@ -294,6 +296,49 @@ static void try_components(api_bench *b, const pg_mesh *pg)
     }
 }
 
+/* Six times the volume of the component whose lowest face this is, 0 where it is open. The
+ * coordinates are whole numbers, so this is one, too. */
+static double six_volumes(const pg_mesh *pg, const unsigned *lowest, unsigned face)
+{
+    double sum = 0;
+    for (unsigned h = 0; h < pg->halfedges; h++) {
+        unsigned f = pg->face[h];
+        if (f == PG_NONE || lowest[f] != face) {
+            continue;
+        }
+        if (pg->face[h ^ 1u] == PG_NONE) {
+            return 0;
+        }
+        const double *o = pg->position[pg->origin[pg->face_first[f]]];
+        const double *p = pg->position[pg->origin[h]];
+        const double *q = pg->position[pg->origin[h ^ 1u]];
+        sum += o[0] * (p[1] * q[2] - p[2] * q[1]) + o[1] * (p[2] * q[0] - p[0] * q[2]) +
+               o[2] * (p[0] * q[1] - p[1] * q[0]);
+    }
+    return sum;
+}
+
+static unsigned say_inside_out(page *wanted, const pg_mesh *pg, const char *comma)
+{
+    unsigned lowest[PG_FACES], count = 0;
+    pg_components(pg, false, lowest);
+    for (unsigned f = 0; f < pg->faces; f++) {
+        double volumes = lowest[f] == f ? six_volumes(pg, lowest, f) : 0;
+        if (volumes < 0) {
+            char value[HE_NUMBER_TEXT + 1];
+            value[he_double_print(volumes / 6, value)] = '\0';
+            say(wanted,
+                "%s{\"code\":\"inside_out_component\",\"kind\":\"face\",\"id\":%u,"
+                "\"detail\":\"the component of face %u is closed, and its faces look inward\","
+                "\"value\":%s}",
+                comma, f, f, value);
+            comma = ",";
+            count++;
+        }
+    }
+    return count;
+}
+
 static void try_check(api_bench *b, const pg_mesh *pg)
 {
     page wanted = {.used = 0};
@@ -325,17 +370,20 @@ static void try_check(api_bench *b, const pg_mesh *pg)
         if (pg_area(pg, f, area) == 0) {
             say(&wanted,
                 "%s{\"code\":\"degenerate_face\",\"kind\":\"face\",\"id\":%u,"
-                "\"detail\":\"face %u has no area to take a normal from\"}",
+                "\"detail\":\"face %u has no area\",\"value\":0}",
                 comma, f, f);
             flat++;
             comma = ",";
         }
     }
+    unsigned inside_out = say_inside_out(&wanted, pg, comma);
     say(&wanted,
         "],\"totals\":{\"problems\":0,\"bowtie\":%u,\"isolated_vertex\":%u,"
-        "\"zero_length_edge\":0,\"degenerate_face\":%u}}",
-        bowties, isolated, flat);
-    expect_get(b, &wanted, "/v1/meshes/m/check");
+        "\"duplicate_position\":0,\"zero_length_edge\":0,\"degenerate_face\":%u,"
+        "\"nonplanar_face\":0,\"small_component\":0,\"inside_out_component\":%u},"
+        "\"thresholds\":{\"merge\":0,\"flat\":1000,\"small\":0},\"complete\":true}",
+        bowties, isolated, flat, inside_out);
+    expect_get(b, &wanted, "/v1/meshes/m/check?merge=0&flat=1000&small=0");
 }
 
 static void try_topology(api_bench *b, const pg_mesh *pg)

@@ -6,6 +6,7 @@
 #include "mesh/walk.h"
 #include "query/bvh.h"
 #include "query/curvature.h"
+#include "query/vec3.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -80,12 +81,12 @@ int main(void)
     he_bvh *tree;
     he_hit hit;
     double start = seconds();
-    require(he_bvh_new(m, &tree, NULL));
-    printf(
-        "tree             %8.2f s   %u triangles   %u nodes   %.1f bytes a triangle\n",
-        seconds() - start, tree->count, tree->node_count,
-        (double)(tree->node_count * sizeof *tree->nodes + tree->count * sizeof *tree->triangles) /
-            tree->count);
+    require(he_bvh_new(m, NULL, &tree, NULL));
+    printf("tree             %8.2f s   %u triangles   %u nodes   %.1f bytes a triangle\n",
+           seconds() - start, tree->count, tree->node_count,
+           (double)(tree->node_count * (sizeof *tree->nodes + sizeof *tree->discs) +
+                    tree->count * sizeof *tree->triangles) /
+               tree->count);
 
     uint64_t budget = UINT64_MAX;
     uint32_t hits = 0;
@@ -112,11 +113,22 @@ int main(void)
         show(name, seconds() - start, budget, hits);
     }
 
+    budget = UINT64_MAX;
+    hits = 0;
+    start = seconds();
+    for (int i = 0; i < ASKED; i++) {
+        uint32_t v = (uint32_t)((random_number() + 1) / 2 * VERTICES);
+        he_vec3 p = he_vec3_add(m->c.position[v], random_point(0.01));
+        require(he_bvh_closest(tree, m, p, HUGE_VAL, &budget, &hit, NULL));
+        hits += hit.face != HE_NONE;
+    }
+    show("nearest, beside", seconds() - start, budget, hits);
+
     he_ids pairs = {0};
     bool complete;
     budget = UINT64_MAX;
     start = seconds();
-    require(he_bvh_intersections(tree, m, (size_t)1 << 20, &budget, &pairs, &complete, NULL));
+    require(he_bvh_intersections(tree, m, (size_t)1 << 20, &budget, NULL, &pairs, &complete, NULL));
     printf("intersections    %8.2f s   %.1f boxes a triangle   %zu pairs\n", seconds() - start,
            (double)(UINT64_MAX - budget) / FACES, pairs.count / 2);
 

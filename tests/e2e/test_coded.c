@@ -61,6 +61,25 @@ static void unfold(reply *r, const char *coding)
     r->length = length;
 }
 
+/* Sent without looking up, and the answer read although the server hangs up. */
+static void refused(daemon_process *d, const char *target, const char *coding, const char *type,
+                    const char *body, size_t length, int status)
+{
+    char *request = malloc(length + 400);
+    assert_non_null(request);
+    int head = snprintf(request, 400,
+                        "%s HTTP/1.1\r\nHost: localhost\r\nContent-Type: %s\r\n"
+                        "Content-Encoding: %s\r\nContent-Length: %zu\r\n\r\n",
+                        target, type, coding, length);
+    memcpy(request + head, body, length);
+    char *answer = client_raw(d, request, (size_t)head + length, 1, false);
+    if (client_raw_status(answer) != status) {
+        fail_msg("%s in %s: %.500s", target, coding, answer);
+    }
+    free(answer);
+    free(request);
+}
+
 /* A sanitizer's own memory is not the daemon's. */
 static void expect_rise(const daemon_process *d, size_t before, size_t most, const char *what)
 {
@@ -104,25 +123,18 @@ static void bombs_stay_small(void **state)
     for (size_t i = 0; i < 2; i++) {
         size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
-        reply r =
-            expect(413, send_coded(c, "POST", "/v1/meshes", both[i], "model/obj", zeros, length));
-        assert_string_equal(reply_string(&r, "code"), "body_too_large");
-        reply_free(&r);
-        done(expect(
-            400, send_coded(c, "POST", "/v1/meshes", both[i], "application/json", zeros, length)));
-        done(expect(413, send_coded(c, "POST", "/v1/meshes/m/edits", both[i], "application/json",
-                                    zeros, length)));
+        refused(d, "POST /v1/meshes", both[i], "model/obj", zeros, length, 413);
+        refused(d, "POST /v1/meshes", both[i], "application/json", zeros, length, 400);
+        refused(d, "POST /v1/meshes/m/edits", both[i], "application/json", zeros, length, 413);
         free(zeros);
         char *blanks = bomb_of(both[i], ' ', &length);
-        static const char *const types[] = {"application/json", "model/obj", "model/x-off"};
-        for (size_t k = 0; k < sizeof types / sizeof *types; k++) {
-            done(expect(413,
-                        send_coded(c, "PUT", "/v1/meshes/b", both[i], types[k], blanks, length)));
-        }
+        refused(d, "PUT /v1/meshes/b", both[i], "application/json", blanks, length, 413);
+        refused(d, "PUT /v1/meshes/b", both[i], "model/obj", blanks, length, 413);
+        refused(d, "PUT /v1/meshes/b", both[i], "model/x-off", blanks, length, 413);
         /* A bomb in a bomb is only bytes to whoever reads it. */
         size_t folded;
         char *nested = coding_pack(both[1 - i], blanks, length, &folded);
-        r = send_coded(c, "PUT", "/v1/meshes/b", both[1 - i], "model/obj", nested, folded);
+        reply r = send_coded(c, "PUT", "/v1/meshes/b", both[1 - i], "model/obj", nested, folded);
         assert_true(r.status == 400 || r.status == 413);
         reply_free(&r);
         free(nested);
@@ -251,6 +263,105 @@ static void clients_go_away_while_it_is_coded(void **state)
     close(left);
 }
 
+static double counted(client *c)
+{
+    reply r = expect(200, client_get(c, "/v1/meshes"));
+    double value = reply_number(&r, "memory_bytes");
+    reply_free(&r);
+    return value;
+}
+
+/* Half of a body, and then nobody: plain and coded, what was read is given back. */
+static void an_upload_that_breaks_off_leaves_nothing(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off"));
+    client *c = client_new(d);
+    put_grid(c, "/v1/meshes/m", SIDE);
+    reply file = expect(200, client_get(c, targets[0]));
+    done(expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL)));
+    double before = counted(c);
+    static const char *const codings[] = {"identity", "gzip", "zstd"};
+    for (size_t i = 0; i < 3; i++) {
+        char head[300];
+        size_t length = file.length, sent = 0;
+        char *body = i == 0 ? NULL : coding_pack(codings[i], file.body, file.length, &length);
+        const char *bytes = body == NULL ? file.body : body;
+        int fd = client_connect(d, 0);
+        int size = snprintf(head, sizeof head,
+                            "PUT /v1/meshes/u HTTP/1.1\r\nHost: localhost\r\n"
+                            "Content-Type: model/obj\r\nContent-Encoding: %s\r\n"
+                            "Content-Length: %zu\r\n\r\n",
+                            codings[i], length);
+        assert_int_equal(send(fd, head, (size_t)size, MSG_NOSIGNAL), size);
+        while (sent < length / 2) {
+            ssize_t n = send(fd, bytes + sent, length / 2 - sent, MSG_NOSIGNAL);
+            assert_true(n > 0);
+            sent += (size_t)n;
+        }
+        while (counted(c) < before + 1e6) { /* until it has read some of it */
+        }
+        close(fd);
+        while (counted(c) > before + 1e5) { /* and has seen that no more comes */
+        }
+        free(body);
+    }
+    done(expect(404, client_get(c, "/v1/meshes/u")));
+    reply_free(&file);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* Behind a job that lasts until it is cancelled. */
+static void jobs_of_coded_uploads_end_and_are_cancelled(void **state)
+{
+    (void)state;
+    static const char lasting[] =
+        "{\"shape\":\"torus\",\"major_segments\":4000,\"minor_segments\":4000}";
+    static const char *const ids[] = {"/v1/meshes/made", "/v1/meshes/never"};
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off", "--jobs", "1"));
+    client *c = client_new(d);
+    put_grid(c, "/v1/meshes/m", 60);
+    reply file = expect(200, client_get(c, targets[1]));
+    for (size_t i = 0; i < 2; i++) {
+        size_t length;
+        char *packed = coding_pack(both[i], file.body, file.length, &length), encoding[60];
+        char first[80], jobs[2][80], events[100];
+        snprintf(encoding, sizeof encoding, "Content-Encoding: %s", both[i]);
+        reply r = expect(
+            202, client_send(c, "PUT", "/v1/meshes/before", lasting, sizeof lasting - 1,
+                             ARGUMENTS("Prefer: respond-async", "Content-Type: application/json")));
+        reply_header(&r, "Location", first, sizeof first);
+        reply_free(&r);
+        for (int k = 0; k < 2; k++) {
+            r = expect(202, client_send(c, "PUT", ids[k], packed, length,
+                                        ARGUMENTS("Prefer: respond-async",
+                                                  "Content-Type: model/ply", encoding)));
+            reply_header(&r, "Location", jobs[k], sizeof jobs[k]);
+            reply_free(&r);
+        }
+        done(expect(202, client_send(c, "DELETE", jobs[1], NULL, 0, NULL)));
+        done(expect(202, client_send(c, "DELETE", first, NULL, 0, NULL)));
+        snprintf(events, sizeof events, "%s/events", jobs[0]);
+        r = expect(200, client_get(c, events));
+        assert_non_null(strstr(r.body, "\"progress\":1,"));
+        reply_free(&r);
+        r = expect(200, client_get(c, jobs[0]));
+        assert_string_equal(reply_string(&r, "state"), "done");
+        assert_int_equal((int)reply_number(&r, "result.counts.faces"), 3600);
+        reply_free(&r);
+        r = expect(200, client_get(c, jobs[1]));
+        assert_string_equal(reply_string(&r, "state"), "cancelled");
+        reply_free(&r);
+        done(expect(404, client_get(c, "/v1/meshes/never")));
+        done(expect(204, client_send(c, "DELETE", ids[0], NULL, 0, NULL)));
+        free(packed);
+    }
+    reply_free(&file);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 static void it_can_be_switched_off(void **state)
 {
     (void)state;
@@ -280,6 +391,8 @@ int main(void)
         cmocka_unit_test(pieces_may_be_of_one_byte),
         cmocka_unit_test(large_answers_are_coded_as_they_are_sent),
         cmocka_unit_test(clients_go_away_while_it_is_coded),
+        cmocka_unit_test(an_upload_that_breaks_off_leaves_nothing),
+        cmocka_unit_test(jobs_of_coded_uploads_end_and_are_cancelled),
         cmocka_unit_test(it_can_be_switched_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 #include "model/rows.h"
 
 #include "edit/erase.h"
+#include "edit/face_collapse.h"
 #include "mesh/column.h"
 #include "mesh/walk.h"
 #include "mesh/write.h"
@@ -153,10 +154,24 @@ static uint64_t play_face_inset(const md_call *c, or_mesh *o, const he_mesh *m)
     return or_face_inset(o, region_of(c, start), factor->given ? factor->number : 0, distance);
 }
 
+/* Where so much lies about a face that hedge may refuse the work, limits.h has to do. */
 static bool draw_face_collapse(md_draft *d)
 {
-    md_give_id(d, "face", md_pick(d, HE_FACE));
-    return true;
+    uint32_t f = md_pick(d, HE_FACE);
+    uint64_t steps = 0;
+    md_give_id(d, "face", f);
+    if (or_require(d->o, HE_FACE, f) != 0) {
+        return true;
+    }
+    const or_face *face = &d->o->face[f];
+    for (uint32_t i = 0; i < face->count; i++) {
+        uint32_t v = face->v[i];
+        for (uint32_t k = 0; k < or_degree(d->o, v); k++) {
+            uint32_t g = d->o->left[v][d->o->around[v][k]];
+            steps += g != OR_NONE ? d->o->face[g].count + 2 : 2;
+        }
+    }
+    return steps * face->count < HE_FACE_COLLAPSE_STEPS;
 }
 
 static uint64_t play_face_collapse(const md_call *c, or_mesh *o, const he_mesh *m)

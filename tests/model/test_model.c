@@ -167,7 +167,7 @@ static void require_net(const world *w, const he_mesh *was, const he_delta *delt
     require(w, he_changes_find(w->mesh, delta, 0, delta->count, undone, &changes, NULL) == HE_OK,
             "he_changes_find failed");
     if (changes.replaced) {
-        require(w, strcmp(w->call.op->name, "compact") == 0 || undone, "a local edit replaced");
+        require(w, w->call.op->size == HE_OP_WHOLE || undone, "a local edit replaced");
     } else if (!md_net_matches(was, w->mesh, &changes, text)) {
         stop(w, undone ? "the sets of an undo are wrong" : "the sets of an edit are wrong", text);
     }

@@ -221,6 +221,10 @@ void or_append(or_mesh *o, const or_mesh *other);
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);
 
+/* (ops_refine.c) One step; start[f] is the origin of the stored half-edge of face f. */
+typedef enum or_scheme { OR_LOOP, OR_CATMULL_CLARK, OR_LINEAR, OR_SQRT3 } or_scheme;
+uint64_t or_subdivide(or_mesh *o, or_scheme scheme, const uint32_t *start);
+
 /* A NULL tolerance stands for hedge's, NULL faces for all; start[f] is the origin of the stored
  * half-edge of face f. Which corners in the plane are joined in a face with more than two is
  * hedge's choice, as long as every part lies on one side of the plane. */

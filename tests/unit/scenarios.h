@@ -18,5 +18,6 @@ extern const scenario weld_scenarios[];
 extern const scenario corner_scenarios[];
 extern const scenario loop_scenarios[];
 extern const scenario region_scenarios[];
+extern const scenario refine_scenarios[];
 
 #endif

@@ -355,7 +355,7 @@ static bool random_triangles(md_random *r, he_mesh **out)
 {
     or_mesh *o = or_new();
     he_ids faces = {0};
-    md_shape(o, r);
+    md_shape(o, r, md_fill_mixed);
     he_mesh *m = md_build(o);
     assert_non_null(m);
     or_free(o);

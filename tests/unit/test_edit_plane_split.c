@@ -551,7 +551,7 @@ static void test_convex_shapes(void **state)
 static he_mesh *random_mesh(md_random *r)
 {
     or_mesh *o = or_new();
-    md_shape(o, r);
+    md_shape(o, r, md_fill_mixed);
     he_mesh *m = md_build(o);
     assert_non_null(m);
     or_free(o);

@@ -3,6 +3,7 @@
 #include "unit/format_fixture.h"
 
 #include "format/export.h"
+#include "query/defects.h"
 
 static const char *corpus;
 
@@ -47,7 +48,45 @@ static char *read_file(const char *path, size_t *length)
     return text;
 }
 
-enum { NAME = 0, FORMAT = 8, ACTION = 10, VERTICES = 12, FACES, EDGES };
+enum {
+    NAME = 0,
+    FORMAT = 8,
+    ACTION = 10,
+    VERTICES = 12,
+    FACES,
+    EDGES,
+    ISOLATED = 28,
+    NO_AREA = 30,
+    PLACES = 36,
+    FLAGS = 44
+};
+
+static void expect_cell(const char *line, size_t k, uint64_t found, const char *what)
+{
+    char name[200], text[20];
+    cell(line, NAME, name, sizeof name);
+    cell(line, k, text, sizeof text);
+    if (text[0] != '\0' && strtoull(text, NULL, 10) != found) {
+        fail_msg("%s: %llu %s, not %s", name, (unsigned long long)found, what, text);
+    }
+}
+
+/* What other readers count of a file's defects. */
+static void check_defects(const char *line, const he_mesh *mesh)
+{
+    static he_defects found;
+    he_thresholds t = he_thresholds_of(mesh);
+    char flags[300];
+    t.merge = 0;
+    assert_int_equal(he_defects_find(mesh, &t, NULL, &found, NULL), HE_OK);
+    expect_cell(line, ISOLATED, found.of[HE_DEFECT_ISOLATED].total, "isolated vertices");
+    expect_cell(line, NO_AREA, found.of[HE_DEFECT_DEGENERATE].total, "faces without area");
+    expect_cell(line, PLACES, he_mesh_vertices(mesh) - found.of[HE_DEFECT_DUPLICATE].total,
+                "places");
+    cell(line, FLAGS, flags, sizeof flags);
+    bool inside_out = strstr(flags, "inside-out") != NULL;
+    assert_int_equal(inside_out, found.of[HE_DEFECT_INSIDE_OUT].total > 0);
+}
 
 /* What is written is read back: the same polygons, or in STL as many triangles. */
 static void check_export(const he_format *format, const char *encoding, const he_mesh *mesh,
@@ -119,6 +158,7 @@ static void check_file(const char *line, const char *format)
             fail_msg("%s: %s", name, err.text);
         }
         fixture_check(mesh);
+        check_defects(line, mesh);
         assert_int_equal(he_mesh_edges(mesh), strtoul(e, NULL, 10));
         for (size_t i = 0; he_format_at(i) != NULL; i++) {
             bool written = he_format_at(i)->writing != NULL;

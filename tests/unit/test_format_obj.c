@@ -109,7 +109,13 @@ static void corner_forms(void **state)
             expect_doubles(&import, HE_HALFEDGE, "normal", 3, (double[]){0, 0, 1, 0, 0, 1, 1, 0, 0},
                            3);
         }
-        assert_int_equal(import.notes.count, 0);
+        if (!rows[i].uv) {
+            expect_note(&import, "unused_uv", "", 3, 0);
+        }
+        if (!rows[i].normal) {
+            expect_note(&import, "unused_normal", "", 2, 0);
+        }
+        assert_int_equal(import.notes.count, !rows[i].uv + !rows[i].normal);
         he_import_clear(&import);
     }
 
@@ -285,11 +291,9 @@ static void wrong_indices_name_their_line(void **state)
         {"f 1 2 -2147483648\n", 5, "vertex -2147483648"},
         {"f 1 2 -9223372036854775808\n", 5, "vertex -9223372036854775808"},
         {"f 1 2 99999999999999999999999999999999999999999\n", 5, "vertex 99999"},
-        {"f 1/1 2/1 3/1\n", 5, "texture coordinate 1"},
-        {"vt 0 0\nf 1/1 2/2 3/1\n", 6, "texture coordinate 2"},
         {"vt 0 0\nf 1/1 2/0 3/1\n", 6, "texture coordinate 0"},
-        {"vt 0 0\nf 1/1 2/-2 3/1\n", 6, "texture coordinate -2"},
-        {"vn 0 0 1\nf 1 2 3\nf 1//1 2//1 3//9\n", 7, "normal 9"},
+        {"vt 0 0\nf 1/1 2/-0 3/1\n", 6, "texture coordinate -0"},
+        {"vn 0 0 1\nf 1 2 3\nf 1//1 2//1 3//00\n", 7, "normal 00"},
         {"f 1 2 3\n\n\nf 2 3 4\nf 3 4 9\nf 3 9 1\n", 9, "vertex 9"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -297,6 +301,57 @@ static void wrong_indices_name_their_line(void **state)
         snprintf(text, sizeof text, "%s%s", cube, rows[i].lines);
         expect_refused("obj", text, HE_BAD_INDEX, rows[i].line, rows[i].words);
     }
+}
+
+static void wrong_values_cost_the_corner_its_value(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *lines, *code;
+        uint64_t count, at;
+        double corner[2];
+    } rows[] = {
+        {"f 1/1 2/3 3/2\n", "no_such_uv", 1, 7, {0, 0}},
+        {"f 1/1 2/-3 3/2\n", "no_such_uv", 1, 7, {0, 0}},
+        {"f 1/1 2/99999999999999999999 3/2\n", "no_such_uv", 1, 7, {0, 0}},
+        {"f 1/1 2/4294967297 3/2\nf 1/9 3/9 4/1\n", "no_such_uv", 3, 7, {0, 0}},
+        {"f 1/1/1 2/2 3/2\n", "no_such_normal", 1, 7, {3, 4}},
+        {"f 1/1 2/2/-1 \\\n 3/2//\n", NULL, 0, 0, {0, 0}},
+        {"vt nan -1.#IND 7\nf 1/1 2/3 3/2\n", "not_finite", 2, 7, {0, 0}},
+        {"vt 5 6 7 8 nan\nf 1/1 2/3 3/2\n", "extra_numbers", 1, 7, {5, 6}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[300];
+        snprintf(text, sizeof text, "%svt 1 2\nvt 3 4\n%s", cube, rows[i].lines);
+        if (rows[i].code == NULL) {
+            expect_refused("obj", text, HE_SYNTAX, 8, "is not a corner");
+            continue;
+        }
+        he_import import = read_text("obj", text);
+        const he_note *note = find_note(&import.notes, rows[i].code, "");
+        assert_non_null(note);
+        assert_int_equal(note->count, rows[i].count);
+        assert_int_equal(note->at, rows[i].at);
+        const he_column *uv = find_column(&import, HE_HALFEDGE, "uv");
+        assert_memory_equal(he_column_row(uv, 1), rows[i].corner, sizeof rows[i].corner);
+        he_import_clear(&import);
+    }
+    /* no corner has a value left */
+    he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n");
+    assert_int_equal(import.soup.column_count, 0);
+    assert_int_equal(find_note(&import.notes, "no_such_uv", "")->count, 3);
+    he_import_clear(&import);
+}
+
+static void more_numbers_than_a_vertex_has(void **state)
+{
+    (void)state;
+    he_import import = read_text("obj", "v 1 2 3 4 5\nv 1 2 3 4 5 6 7 8\nv 1 2 3 inf 5 6\n");
+    assert_int_equal(find_note(&import.notes, "extra_numbers", "")->count, 2);
+    assert_int_equal(find_note(&import.notes, "not_finite", "")->at, 3);
+    assert_int_equal(find_note(&import.notes, "vertices_without_color", "")->count, 2);
+    expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){0, 0, 0, 0, 0, 0, 0, 5, 6}, 3);
+    he_import_clear(&import);
 }
 
 static void wrong_text_names_its_line(void **state)
@@ -310,8 +365,8 @@ static void wrong_text_names_its_line(void **state)
     } rows[] = {
         {"v 1 2\n", HE_SYNTAX, 5, "not 2"},
         {"v\n", HE_SYNTAX, 5, "not 0"},
-        {"v 1 2 3 4 5\n", HE_SYNTAX, 5, "not 5"},
-        {"v 1 2 3 4 5 6 7 8\n", HE_SYNTAX, 5, "'8' is one number too many"},
+        {"v 1 2 3 4 x\n", HE_SYNTAX, 5, "'x' is not a number"},
+        {"v 1 2 3 4 5 6 7 v 4\n", HE_SYNTAX, 5, "'v' is not a number"},
         {"v 1 2 x\n", HE_SYNTAX, 5, "'x' is not a number"},
         {"v 1 2 0x10\n", HE_SYNTAX, 5, "'0x10' is not a number"},
         {"v 1,5 2,5 3,5\n", HE_SYNTAX, 5, "'1,5' is not a number"},
@@ -323,8 +378,8 @@ static void wrong_text_names_its_line(void **state)
         {"v 1 2 -1.#IND\n", HE_NOT_FINITE, 5, "not finite"},
         {"v 1 2 \x01\x02\xFF\n", HE_SYNTAX, 5, "'\?\?\?' is not a number"},
         {"vt\n", HE_SYNTAX, 5, "1 are needed"},
-        {"vt 1 2 3 4\n", HE_SYNTAX, 5, "too many"},
-        {"vt nan 2\n", HE_NOT_FINITE, 5, "nan"},
+        {"vt 1 2 3 x\n", HE_SYNTAX, 5, "'x' is not a number"},
+        {"vt nanx 2\n", HE_SYNTAX, 5, "'nanx' is not a number"},
         {"vn 1 2\n", HE_SYNTAX, 5, "3 are needed"},
         {"f\n", HE_TOO_FEW_CORNERS, 5, "without corners"},
         {"f # none\n", HE_TOO_FEW_CORNERS, 5, "without corners"},
@@ -333,7 +388,7 @@ static void wrong_text_names_its_line(void **state)
         {"f 1 2 3/1/1/1\n", HE_SYNTAX, 5, "is not a corner"},
         {"f 1 2 /1\n", HE_SYNTAX, 5, "is not a corner"},
         {"f 1 2 --3\n", HE_SYNTAX, 5, "is not a corner"},
-        {"f 1 2 +3\n", HE_SYNTAX, 5, "is not a corner"},
+        {"f 1 2 ++3\n", HE_SYNTAX, 5, "is not a corner"},
         {"f 1 2 3\nf 1 2 3x\n", HE_SYNTAX, 6, "is not a corner"},
         {"s 1.5\n", HE_SYNTAX, 5, "smoothing"},
         {"s 4294967296\n", HE_SYNTAX, 5, "smoothing"},
@@ -368,7 +423,11 @@ static void other_encodings_are_refused(void **state)
     expect_bytes_refused("obj", unmarked, sizeof unmarked - 1, HE_UNSUPPORTED, 1, "UTF-16");
     expect_bytes_refused("obj", comment, sizeof comment - 1, HE_UNSUPPORTED, 1, "UTF-16");
     static const char zero[] = "v 0 0 0\nv 0 \0 0\n";
-    expect_bytes_refused("obj", zero, sizeof zero - 1, HE_SYNTAX, 2, "is not a number");
+    expect_bytes_refused("obj", zero, sizeof zero - 1, HE_SYNTAX, 2, "a NUL byte");
+    static const char hidden[] = "v 0 0 0\n# a \\\n\0\nv 0 0 0\n";
+    expect_bytes_refused("obj", hidden, sizeof hidden - 1, HE_SYNTAX, 3, "a NUL byte");
+    static const char empty[] = "\xFF\xFE\n\0v\0 \0";
+    expect_bytes_refused("obj", empty, sizeof empty - 1, HE_UNSUPPORTED, 1, "UTF-16");
 }
 
 /* What only the structure cannot hold passes the reader, and the builder's refusal gets the line.
@@ -488,6 +547,8 @@ int main(void)
         cmocka_unit_test(lines_that_are_passed_over),
         cmocka_unit_test(notes_have_an_end),
         cmocka_unit_test(wrong_indices_name_their_line),
+        cmocka_unit_test(wrong_values_cost_the_corner_its_value),
+        cmocka_unit_test(more_numbers_than_a_vertex_has),
         cmocka_unit_test(wrong_text_names_its_line),
         cmocka_unit_test(other_encodings_are_refused),
         cmocka_unit_test(refusals_of_the_builder_get_a_line),

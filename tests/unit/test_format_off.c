@@ -27,7 +27,14 @@ static void plain_files(void **state)
         assert_int_equal(import.notes.count, 0);
         he_import_clear(&import);
     }
-    he_import import = read_text("off", "OFF\n0 0 0\n");
+    he_import import = read_text("off", "OFF +2 +1 nan\n0 0 0\n1 0 0\n3 +0 1 +0\n");
+    expect_corners(&import, (uint32_t[]){0, 1, 0}, 3);
+    he_import_clear(&import);
+    import = read_text("off", "NOFF 2 0 0\n0 0 0 0 0 1\n1 0 0 nan 0 -inf\n");
+    expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 1, 0, 0, 0}, 2);
+    expect_note(&import, "not_finite", "", 2, 3);
+    he_import_clear(&import);
+    import = read_text("off", "OFF\n0 0 0\n");
     expect_counts(&import, 0, 0, 0);
     he_import_clear(&import);
     import = read_text("off", "OFF 2 0 0\n1 2 3\n4 5 6\n");
@@ -200,6 +207,9 @@ static void wrong_text_names_its_line(void **state)
         {"OFF\n1 0 0\n0 1e400 0\n", HE_NOT_FINITE, 3, "'1e400' is not finite"},
         {"COFF\n1 0 0\n0 0 0 1 2\n", HE_SYNTAX, 3, "5 numbers do not fit"},
         {"COFF\n1 0 0\n0 0 0 1 2 3 4 5\n", HE_SYNTAX, 3, "8 numbers do not fit"},
+        /* a vertex without its normal does not eat the next one */
+        {"NOFF\n2 0 0\n0 0 0\n1 0 0 0 0 1\n", HE_SYNTAX, 4, "9 numbers do not fit"},
+        {"OFF\n2 0 0\n0 0\n1 0 0\n", HE_SYNTAX, 4, "5 numbers do not fit"},
         {"OFF\n1 1 0\n0 0 0\n3 0 0 0\n3 0 0 0\n", HE_SYNTAX, 5, "'3' comes after the last face"},
         {"OFF\n1 0 0\n0 0 0\nx\n", HE_SYNTAX, 4, "'x' comes after the last face"},
         /* a count too low must not lose faces, nor a count too high make any */

@@ -20,6 +20,8 @@ static void wrong_text_names_its_line(void **state)
         {"ply\n", HE_SYNTAX, 1, "inside its header"},
         {ASCII "element vertex 3\n" XYZ, HE_SYNTAX, 6, "inside its header"},
         {ASCII "element vertex 1\n" XYZ "0 0 0\n", HE_SYNTAX, 7, "'0' does not begin a line"},
+        {ASCII "element vertex 1\n" XYZ "end_header 0 0 0\n", HE_SYNTAX, 7,
+         "'0' is one word too many"},
         {"ply\nformat ascii 1.0 now\n", HE_SYNTAX, 2, "'now' is one word too many"},
         {"ply\nformat ascii 1.1\n", HE_UNSUPPORTED, 2, "'1.1' is not the version"},
         {"ply\nformat\n", HE_SYNTAX, 2, "'' is not an encoding"},

@@ -369,7 +369,8 @@ static const scenario scenarios[] = {
 };
 
 static const scenario *const groups[] = {scenarios,        border_scenarios, weld_scenarios,
-                                         corner_scenarios, loop_scenarios,   region_scenarios};
+                                         corner_scenarios, loop_scenarios,   region_scenarios,
+                                         refine_scenarios};
 
 enum { MAX_OPS = 128 };
 

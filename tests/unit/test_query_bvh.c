@@ -3,16 +3,19 @@
 #include "query_specimens.h"
 
 #include "query/bvh.h"
+#include "query/bvh_disc.h"
+#include "query/bvh_walk.h"
 #include "query/meet.h"
 #include "query/orient.h"
 
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 
 static he_bvh *tree_of(const he_mesh *m)
 {
     he_bvh *tree = NULL;
-    assert_int_equal(he_bvh_new(m, &tree, NULL), HE_OK);
+    assert_int_equal(he_bvh_new(m, NULL, &tree, NULL), HE_OK);
     return tree;
 }
 
@@ -266,6 +269,57 @@ static void the_nearest_point_is_that_of_all_triangles(void **state)
     }
 }
 
+/* Whether p is nearer to a corner of the triangles below a node than node or disc let it be. */
+static void check_bounds(const he_bvh *tree, const he_mesh *m, uint32_t at, he_vec3 p)
+{
+    const he_bvh_node *node = &tree->nodes[at];
+    double bound = sqrt(he_bvh_to_disc(&tree->discs[at], p));
+    uint32_t begin = at, end = at;
+    while (tree->nodes[begin].count == 0) {
+        begin = tree->nodes[begin].first;
+    }
+    while (tree->nodes[end].count == 0) {
+        end = tree->nodes[end].first + 1;
+    }
+    end = tree->nodes[end].first + tree->nodes[end].count;
+    for (uint32_t t = tree->nodes[begin].first; t < end; t++) {
+        he_vec3 c[3];
+        he_bvh_corners(tree, m, t, c);
+        for (int k = 0; k < 3; k++) {
+            const double x[3] = {c[k].x, c[k].y, c[k].z};
+            for (int axis = 0; axis < 3; axis++) {
+                assert_true(node->min[axis] <= x[axis] && x[axis] <= node->max[axis]);
+            }
+            double distance = he_vec3_length(he_vec3_sub(p, c[k]));
+            assert_true(bound <= distance * (1 + 1e-14));
+        }
+    }
+}
+
+static void boxes_and_discs_hold_what_is_below_them(void **state)
+{
+    (void)state;
+    uint64_t seed = 24;
+    for (int round = 0; round < 20; round++) {
+        he_mesh *m = round == 0 ? query_shape("torus", 60, 40, 2, 0.5) : tangle(&seed);
+        he_bvh *tree = tree_of(m);
+        for (uint32_t at = 0; at < tree->node_count; at++) {
+            for (int i = 0; i < 4; i++) {
+                static const double reaches[] = {0.5, 2, 1e3, 1e9};
+                check_bounds(tree, m, at, random_point(&seed, reaches[i]));
+            }
+            /* Along the normal and across, where nothing is to spare. */
+            const he_bvh_disc *d = &tree->discs[at];
+            he_vec3 c = {d->center[0], d->center[1], d->center[2]},
+                    n = {d->normal[0], d->normal[1], d->normal[2]}, x = random_point(&seed, 1);
+            check_bounds(tree, m, at, he_vec3_add(c, he_vec3_scale(n, 1e6)));
+            check_bounds(tree, m, at, he_vec3_add(c, he_vec3_scale(he_vec3_cross(n, x), 1e6)));
+        }
+        he_bvh_free(tree);
+        he_mesh_free(m);
+    }
+}
+
 static void nearest_points_of_a_cube(void **state)
 {
     (void)state;
@@ -357,8 +411,8 @@ static void hostile_coordinates_give_finite_hits(void **state)
         he_ids pairs = {0};
         uint64_t budget = UINT64_MAX;
         bool complete;
-        assert_int_equal(he_bvh_intersections(tree, m, 1000, &budget, &pairs, &complete, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_bvh_intersections(tree, m, 1000, &budget, NULL, &pairs, &complete, NULL), HE_OK);
         he_ids_clear(&pairs);
         he_bvh_free(tree);
         he_mesh_free(m);
@@ -445,7 +499,8 @@ static void pairs_of(const he_mesh *m, size_t most, he_ids *pairs, bool *complet
     he_bvh *tree = tree_of(m);
     uint64_t budget = UINT64_MAX;
     pairs->count = 0;
-    assert_int_equal(he_bvh_intersections(tree, m, most, &budget, pairs, complete, NULL), HE_OK);
+    assert_int_equal(he_bvh_intersections(tree, m, most, &budget, NULL, pairs, complete, NULL),
+                     HE_OK);
     he_bvh_free(tree);
 }
 
@@ -522,6 +577,50 @@ static void pairs_are_those_that_trying_all_finds(void **state)
     he_ids_clear(&pairs);
 }
 
+typedef struct patience {
+    long calls, most;
+    double done;
+} patience;
+
+static bool tell(void *context, const char *phase, double done)
+{
+    patience *p = context;
+    assert_true(phase[0] != '\0' && done >= p->done && done <= 1);
+    p->done = done;
+    return p->calls++ < p->most;
+}
+
+static void trees_and_searches_can_be_given_up(void **state)
+{
+    (void)state;
+    he_mesh *m = query_shape("torus", 150, 100, 2, 0.5);
+    long calls = 0;
+    for (long most = 0; most <= calls; most++) {
+        patience p = {.most = most == 0 ? LONG_MAX : most - 1};
+        he_watch watch;
+        he_bvh *tree = NULL;
+        he_ids pairs = {0};
+        bool complete;
+        uint64_t budget = UINT64_MAX;
+        he_watch_init(&watch, tell, &p);
+        he_watch_span(&watch, 0.5);
+        he_status status = he_bvh_new(m, &watch, &tree, NULL);
+        if (status == HE_OK) {
+            he_watch_span(&watch, 1);
+            status = he_bvh_intersections(tree, m, 1000, &budget, &watch, &pairs, &complete, NULL);
+        } else {
+            assert_null(tree);
+        }
+        assert_int_equal(status, most == 0 ? HE_OK : HE_CANCELLED);
+        assert_int_equal(pairs.count, 0);
+        calls = most == 0 ? p.calls : calls;
+        he_bvh_free(tree);
+        he_ids_clear(&pairs);
+    }
+    assert_true(calls > 10);
+    he_mesh_free(m);
+}
+
 static void starved_trees_and_searches_say_so(void **state)
 {
     (void)state;
@@ -535,10 +634,10 @@ static void starved_trees_and_searches_say_so(void **state)
             bool complete;
             uint64_t budget = UINT64_MAX;
             fixture_fail_at(n);
-            he_status status = he_bvh_new(meshes[i], &tree, NULL);
+            he_status status = he_bvh_new(meshes[i], NULL, &tree, NULL);
             if (status == HE_OK) {
-                status =
-                    he_bvh_intersections(tree, meshes[i], 1000, &budget, &pairs, &complete, NULL);
+                status = he_bvh_intersections(tree, meshes[i], 1000, &budget, NULL, &pairs,
+                                              &complete, NULL);
             }
             bool failed = status != HE_OK;
             assert_true(!failed || status == HE_NO_MEMORY);
@@ -566,6 +665,7 @@ int main(void)
         cmocka_unit_test(a_ray_needs_a_direction),
         cmocka_unit_test(rays_from_far_out_along_an_axis_are_exact),
         cmocka_unit_test(the_nearest_point_is_that_of_all_triangles),
+        cmocka_unit_test(boxes_and_discs_hold_what_is_below_them),
         cmocka_unit_test(nearest_points_of_a_cube),
         cmocka_unit_test(faces_without_area_are_the_segments_they_look_like),
         cmocka_unit_test(a_tree_of_triangles_in_one_place_has_a_budget),
@@ -574,6 +674,7 @@ int main(void)
         cmocka_unit_test(triangles_meet_where_they_should_not),
         cmocka_unit_test(shapes_do_not_meet_themselves),
         cmocka_unit_test(pairs_are_those_that_trying_all_finds),
+        cmocka_unit_test(trees_and_searches_can_be_given_up),
         cmocka_unit_test(starved_trees_and_searches_say_so),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -138,11 +138,12 @@ static void try_all(const he_mesh *m)
     he_ids_clear(&bowties);
     assert_int_equal(t.bowties, fans_over_one);
     assert_int_equal(t.isolated_vertices, isolated);
-    assert_int_equal(t.manifold, fans_over_one == 0);
-    assert_int_equal(t.closed, he_mesh_boundary_halfedges(m) == 0);
+    bool faceless = t.faces == 0;
+    assert_int_equal(t.manifold, fans_over_one == 0 && !faceless);
+    assert_int_equal(t.closed, he_mesh_boundary_halfedges(m) == 0 && !faceless);
     int64_t euler = (int64_t)t.vertices - isolated - t.edges + t.faces;
     assert_int_equal(t.euler, euler);
-    assert_int_equal(t.has_genus, t.manifold);
+    assert_int_equal(t.has_genus, fans_over_one == 0);
     if (t.has_genus) {
         assert_int_equal(2 * (int64_t)t.components - 2 * t.genus - t.boundary_loops, euler);
     }
@@ -230,6 +231,8 @@ static void test_topology_by_hand(void **state)
         assert_int_equal(t.components_by_edge, rows[i].by_edge);
         assert_int_equal(t.euler, rows[i].euler);
         assert_int_equal(t.has_genus, rows[i].genus >= 0);
+        assert_int_equal(t.closed, t.faces > 0 && t.boundary_halfedges == 0);
+        assert_int_equal(t.manifold, t.faces > 0 && t.bowties == 0);
         assert_true(rows[i].genus < 0 || t.genus == rows[i].genus);
         he_topology_clear(&t);
         he_mesh_free(m);

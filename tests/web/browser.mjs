@@ -39,7 +39,7 @@ export function launch() {
 // Open the page in a fresh profile. When the test ends the page must have had no error, no breach
 // of its content security policy and no request to another host. `allowed` are expressions for
 // console errors that the test provokes.
-export async function openPage(
+export async function openPageIn(
     t,
     browser,
     daemon,

@@ -344,8 +344,10 @@ export class Contract {
     }
 
     checkText(name, schema, text, wrong) {
-        const number = this.resolve(schema).type === 'integer';
-        const error = this.validate(schema, number && text !== '' ? Number(text) : text);
+        const { type } = this.resolve(schema);
+        const isNumber = (type === 'integer' || type === 'number') && text !== '';
+        const value = isNumber ? Number(text) : type === 'array' ? text.split(',') : text;
+        const error = this.validate(schema, value);
         if (error !== null) {
             wrong.push(`${name}=${text}: ${error}`);
         }

@@ -2,19 +2,12 @@
 // the real daemon.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { checkAccessible, launch, projector, readCanvas, waitForFrame } from './browser.mjs';
+import { checkAccessible, projector, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getAll } from './daemon.mjs';
-import { cameraOf, goTo, isEdit, openMesh as open, press } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
-
-const openMesh = (t, document, options) => open(t, browser, document, options);
+import { cameraOf, goTo, isEdit, press } from './page.mjs';
+import { openMesh } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 const GRID = { name: 'grid', shape: 'grid', columns: 2, rows: 2 };

@@ -1,21 +1,16 @@
 // docs.test.mjs - the manual at /docs in Chromium, under the daemon's own policy.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import { typeOf } from '../../web/src/schema.js';
-import { checkAccessible, launch, openPage } from './browser.mjs';
+import { checkAccessible } from './browser.mjs';
 import { startDaemon } from './daemon.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser.close());
+import { openPage } from './visit.mjs';
 
 async function openManual(t, options = {}) {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon, { path: '/docs', ...options });
+    const page = await openPage(t, daemon, { path: '/docs', ...options });
     const description = await (await fetch(`${daemon.url}/v1/openapi.json`)).json();
     return { daemon, page, description };
 }

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import {
     checkAccessible,
@@ -14,8 +14,6 @@ import {
     isSelf,
     isSurface,
     isTwin,
-    launch,
-    openPage,
     projector,
     readCanvas,
     readPicture,
@@ -30,18 +28,10 @@ import {
     fillVector,
     goTo,
     isEdit,
-    openMesh as open,
     press,
     setMode,
 } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
-
-const openMesh = (t, document, options) => open(t, browser, document, options);
+import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 const GRID = { name: 'grid', shape: 'grid', columns: 2, rows: 2 };
@@ -346,7 +336,7 @@ test('a key for an operation that the table has not is answered in words', async
             return Response.json({ operations: left });
         };
     };
-    const page = await openPage(t, browser, daemon, { init });
+    const page = await openPage(t, daemon, { init });
     await waitForFrame(page, { mesh, revision: 1 });
     await page.locator('#operation option').first().waitFor({ state: 'attached' });
     await press(page, 'e');
@@ -366,7 +356,7 @@ test('what is shown is in the address, and an address shows it again', async (t)
     assert.match(address, new RegExp(`#mesh=${mesh}&face=${face.id}&camera=`));
     // The ring of the focus has the colour of the selection.
     await page.locator('#canvas').blur();
-    const second = await openPage(t, browser, daemon, {
+    const second = await openPage(t, daemon, {
         allowed: [/status of 404/],
         path: `/${new URL(address).hash}`,
     });
@@ -392,7 +382,7 @@ test('what is shown is in the address, and an address shows it again', async (t)
 test('an address of a mesh that is gone is said, and another one is shown', async (t) => {
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', CUBE);
-    const page = await openPage(t, browser, daemon, {
+    const page = await openPage(t, daemon, {
         allowed: [/status of 404/],
         path: '/#mesh=gone&face=1',
     });
@@ -466,7 +456,7 @@ test('a tap picks, and a finger orbits', async (t) => {
 
 test('a mesh far from the origin and a huge one are drawn like any other', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon);
+    const page = await openPage(t, daemon);
     await page.getByRole('heading', { name: 'No meshes yet' }).waitFor();
     const counts = [];
     for (const [size, away] of [[1, 0], [1, 2 ** 30], [1e300, 0], [1e-300, 0]]) {

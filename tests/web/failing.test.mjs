@@ -1,27 +1,14 @@
 // Whatever fails is said in a message, and what was shown before is still shown.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import {
-    checkAccessible,
-    isSurface,
-    launch,
-    openPage,
-    readCanvas,
-    waitForFrame,
-} from './browser.mjs';
+import { checkAccessible, isSurface, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getGeometry, post, startDaemon } from './daemon.mjs';
-import { expectToast, goTo, openMesh as open, press } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
+import { expectToast, goTo, press } from './page.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
-const openMesh = (t, document, options) => open(t, browser, document, options);
 
 const closeToast = (page) => page.getByRole('button', { name: 'Close message' }).click();
 
@@ -84,7 +71,7 @@ test('geometry that breaks off or is none is said, not drawn', async (t) => {
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', CUBE);
     const { id: other } = await post(daemon, '', { name: 'other', shape: 'torus' });
-    const page = await openPage(t, browser, daemon, { path: `/#mesh=${mesh}` });
+    const page = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
     await waitForFrame(page, { mesh, revision: 1 });
     const whole = Buffer.from(await getGeometry(daemon, other));
     const wrong = Buffer.from(whole);
@@ -111,7 +98,7 @@ test('a mesh that changes each time it is read is shown, and what changed put in
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', CUBE);
     const { id: other } = await post(daemon, '', { name: 'other', shape: 'torus' });
-    const page = await openPage(t, browser, daemon, { path: `/#mesh=${mesh}` });
+    const page = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
     await waitForFrame(page, { mesh, revision: 1 });
     const poke = { op: 'vertex_move', vertex: 0, by: [0, 0, 0.01] };
     let reads = 0;

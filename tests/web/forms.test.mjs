@@ -2,26 +2,12 @@
 // sent, in Chromium against the real daemon.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import {
-    checkAccessible,
-    isNear,
-    launch,
-    projector,
-    readCanvas,
-    waitForFrame,
-} from './browser.mjs';
+import { checkAccessible, isNear, projector, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getAll, post } from './daemon.mjs';
-import { click, fillVector, goTo, isEdit, openMesh as open, press } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
-
-const openMesh = (t, document, options) => open(t, browser, document, options);
+import { click, fillVector, goTo, isEdit, press } from './page.mjs';
+import { openMesh } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 const GRID = { name: 'grid', shape: 'grid', columns: 3, rows: 3 };

@@ -2,31 +2,23 @@
 // selected survives it.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import {
     checkAccessible,
     isBoundary,
     isChosen,
     isSurface,
-    launch,
-    openPage,
     readCanvas,
     waitForFrame,
 } from './browser.mjs';
 import { cuttable } from './cuttable.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { checkInspector, expectToast, goTo, openMesh as open, press } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
+import { checkInspector, expectToast, goTo, press } from './page.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 const GRID = { name: 'grid', shape: 'grid', columns: 3, rows: 3 };
-const openMesh = (t, document, options) => open(t, browser, document, options);
 const edit = (daemon, mesh, operation) => post(daemon, `/${mesh}/edits`, operation);
 const noteOf = (page, state) => page.locator(`#connection[data-state="${state}"]`);
 
@@ -66,7 +58,7 @@ async function hold(page, pattern) {
 
 test('what one page does is seen on another, and costs no whole mesh', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE);
-    const second = await openPage(t, browser, daemon, { path: `/#mesh=${mesh}` });
+    const second = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
     await waitForFrame(second, { mesh, revision: 1 });
     const fetched = requestsOf(second, '/geometry');
     await goTo(page, 'face', 0);
@@ -87,7 +79,7 @@ test('what one page does is seen on another, and costs no whole mesh', async (t)
     assert.deepEqual(fetched.filter((url) => !url.includes('since=')), []);
     // Both show what a page shows that fetched it afresh.
     await press(page, 'Escape');
-    const third = await openPage(t, browser, daemon, { path: `/#mesh=${mesh}` });
+    const third = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
     await waitForFrame(third, { mesh, revision: 4 });
     const pictures = [];
     for (const one of [page, second, third]) {
@@ -140,7 +132,7 @@ test('a stream that is cut is said, and goes on where it was', async (t) => {
     const daemon = await startDaemon(t);
     const way = await cuttable(t, daemon);
     const { id: mesh } = await post(daemon, '', CUBE);
-    const page = await openPage(t, browser, way, { allowed: [/ERR_/] });
+    const page = await openPage(t, way, { allowed: [/ERR_/] });
     await waitForFrame(page, { mesh, revision: 1 });
     await goTo(page, 'face', 0);
     way.cut();

@@ -1,27 +1,14 @@
 // The torus of a million quads: it opens, is picked in, edited and undone.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import {
-    countBytes,
-    isChosen,
-    isSurface,
-    launch,
-    openPage,
-    readCanvas,
-    waitForFrame,
-} from './browser.mjs';
+import { countBytes, isChosen, isSurface, readCanvas, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { checkInspector, click, goTo, press, setMode } from './page.mjs';
+import { openPage } from './visit.mjs';
 
 const SIDE = 1000;
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
 
 const waitForStatistics = (page, { faces, revision }) =>
     page.waitForFunction(
@@ -37,7 +24,7 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     const shape = { shape: 'torus', major_segments: SIDE, minor_segments: SIDE };
     const { id: mesh, counts } = await post(daemon, '', { name: 'torus', ...shape });
     assert.equal(counts.faces, SIDE * SIDE);
-    const page = await openPage(t, browser, daemon, { path: `/#mesh=${mesh}` });
+    const page = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
     page.setDefaultTimeout(120000);
     await waitForFrame(page, { mesh, revision: 1 });
     assert.ok((await readCanvas(page)).countOf(isSurface) > 50000);

@@ -1,7 +1,7 @@
 // The camera by mouse, wheel, keyboard and fingers, and what it turns to.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import {
     checkAccessible,
@@ -9,23 +9,15 @@ import {
     isChosen,
     isNear,
     isSurface,
-    launch,
-    openPage,
     projector,
     readCanvas,
     waitForFrame,
 } from './browser.mjs';
 import { getAll, post, startDaemon } from './daemon.mjs';
-import { cameraOf, click, expectToast, goTo, openMesh as open, press } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
+import { cameraOf, click, expectToast, goTo, press } from './page.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
-const openMesh = (t, document, options) => open(t, browser, document, options);
 
 // How large the mesh is on the canvas and where its middle is.
 async function look(page) {
@@ -177,7 +169,7 @@ test('a mesh larger than a texture is said, and another one is drawn after it', 
     const grid = { shape: 'grid', columns: 50, rows: 50 };
     const { id: large } = await post(daemon, '', { name: 'large', ...grid });
     const { id: small } = await post(daemon, '', CUBE);
-    const page = await openPage(t, browser, daemon, {
+    const page = await openPage(t, daemon, {
         path: `/#mesh=${large}`,
         init: () => {
             const { prototype } = WebGL2RenderingContext;

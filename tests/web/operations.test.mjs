@@ -2,17 +2,12 @@
 // and undone, in Chromium against the real daemon.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { launch, openPage, waitForFrame } from './browser.mjs';
+import { waitForFrame } from './browser.mjs';
 import { get, startDaemon } from './daemon.mjs';
 import { SCENARIOS, fillForm, openScenario } from './scenarios.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
+import { openPage } from './visit.mjs';
 
 test('there is a scenario for every operation', async (t) => {
     const daemon = await startDaemon(t);
@@ -43,7 +38,7 @@ const groupOf = ({ name }) => GROUPS.find((group) => name.startsWith(`${group}_`
 for (const group of [...GROUPS, 'mesh']) {
     test(`each ${group} operation is filled, tried, applied and undone`, async (t) => {
         const daemon = await startDaemon(t);
-        const page = await openPage(t, browser, daemon);
+        const page = await openPage(t, daemon);
         for (const scenario of SCENARIOS.filter((one) => groupOf(one) === group)) {
             await goThrough({ daemon, page }, scenario);
         }

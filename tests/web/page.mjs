@@ -2,17 +2,8 @@
 
 import assert from 'node:assert/strict';
 
-import { openPage, waitForFrame } from './browser.mjs';
-import { get, post, startDaemon } from './daemon.mjs';
-
-// A daemon with one mesh, and the page that shows it.
-export async function openMesh(t, browser, document, options) {
-    const daemon = await startDaemon(t);
-    const { id: mesh } = await post(daemon, '', document);
-    const page = await openPage(t, browser, daemon, options);
-    await waitForFrame(page, { mesh, revision: 1 });
-    return { daemon, mesh, page };
-}
+import { waitForFrame } from './browser.mjs';
+import { get } from './daemon.mjs';
 
 // The inspector's members as text, keyed by name.
 export function readMembers(page) {

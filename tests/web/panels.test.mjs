@@ -1,27 +1,12 @@
 // The panels around the view: what the server says of a mesh, and what a form sends to it.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { checkAccessible, launch, openPage, waitForFrame } from './browser.mjs';
+import { checkAccessible, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import {
-    expectToast,
-    fillVector,
-    goTo,
-    isEdit,
-    openMesh as open,
-    press,
-    setMode,
-} from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
-
-const openMesh = (t, document, options) => open(t, browser, document, options);
+import { expectToast, fillVector, goTo, isEdit, press, setMode } from './page.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 // Two triangles that meet in a vertex, and a vertex alone.
@@ -179,7 +164,7 @@ test('a list longer than a page is read on by a button', async (t) => {
         const vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];
         await post(daemon, '', { name: `mesh ${i}`, vertices, faces: [[0, 1, 2]] });
     }
-    const page = await openPage(t, browser, daemon);
+    const page = await openPage(t, daemon);
     const rows = page.locator('#meshes li');
     await rows.nth(199).waitFor();
     assert.equal(await rows.count(), 200);

@@ -3,7 +3,9 @@
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { readFile } from 'node:fs/promises';
+import { mkdtemp, readFile, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
 import { test } from 'node:test';
 import { promisify } from 'node:util';
 
@@ -22,6 +24,13 @@ async function run(program, words) {
     return stdout;
 }
 
+// The shell lines that have this in them.
+function shellWith(text, url) {
+    const found = blocks('sh', url).filter((code) => code.includes(text));
+    assert.equal(found.length, 1, text);
+    return found[0];
+}
+
 // The comment at the end of the line that prints.
 function promised(code, mark) {
     const [, text] = new RegExp(`^(?:print|console\\.log)\\(.*${mark} (.*)$`, 'm').exec(code);
@@ -30,7 +39,7 @@ function promised(code, mark) {
 
 test('the curl lines work as pasted', async (t) => {
     const { url } = await startDaemon(t);
-    const [block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const block = shellWith('halfedges/0', url);
     const lines = block.replaceAll('\\\n', '').split('\n');
     const commands = lines.filter((line) => line !== '' && !line.startsWith('#'));
     assert.equal(commands.length, 7);
@@ -54,15 +63,41 @@ test('the curl lines work as pasted', async (t) => {
     assert.equal(before.items.length, made.counts.vertices + 1);
 });
 
+test('the lines about repairs work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const block = shellWith('repair=split', url);
+    const [refused, made] = (await run('sh', ['-ec', block.replaceAll('curl ', 'echo; curl -s ')]))
+        .trim()
+        .split('\n')
+        .map((line) => JSON.parse(line));
+    assert.equal(refused.status, 422);
+    assert.deepEqual(refused.repair, ['split']);
+    assert.equal(made.import.repairs[0].count, 2);
+});
+
 test('the lines about jobs work as pasted', async (t) => {
     const { url } = await startDaemon(t);
-    const [, block] = blocks('sh', url).filter((code) => code.includes('curl'));
+    const block = shellWith('respond-async', url);
     const printed = await run('sh', ['-ec', block]);
     assert.match(printed, /^event: job$/m);
     assert.match(printed, /^event: bye$/m);
     const last = JSON.parse(printed.split('\n').at(-1));
     assert.equal(last.state, 'done');
     assert.equal(last.result.counts.faces, 512 * 512);
+});
+
+test('the lines about codings work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const block = shellWith('Content-Encoding: gzip', url);
+    const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
+    t.after(() => rm(folder, { recursive: true }));
+    await fetch(`${url}/v1/meshes/kite`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json' },
+        body: '{"shape":"cube"}',
+    });
+    const printed = await run('sh', ['-ec', `cd ${folder}\n${block}`]);
+    assert.equal(JSON.parse(printed).counts.faces, 6);
 });
 
 test('the Python lines work as pasted', async (t) => {

@@ -1,17 +1,12 @@
 // A refused file is offered again, with the repairs that let it pass.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { checkAccessible, launch, openPage } from './browser.mjs';
+import { checkAccessible } from './browser.mjs';
 import { get, startDaemon } from './daemon.mjs';
 import { expectToast } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
+import { openPage } from './visit.mjs';
 
 const BROKEN_OBJ = `
 v 0 0 0
@@ -27,7 +22,7 @@ f 1 1 2
 
 test('a refused file is sent again with the repairs the refusal names', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon, { allowed: [/status of 422/] });
+    const page = await openPage(t, daemon, { allowed: [/status of 422/] });
     await page.locator('#file').setInputFiles({
         name: 'broken.obj',
         mimeType: '',
@@ -47,7 +42,7 @@ test('a refused file is sent again with the repairs the refusal names', async (t
 
 test('what no repair mends is not offered', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon, { allowed: [/status of 422/] });
+    const page = await openPage(t, daemon, { allowed: [/status of 422/] });
     await page.locator('#file').setInputFiles({
         name: 'broken.obj',
         mimeType: '',

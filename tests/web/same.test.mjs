@@ -2,22 +2,17 @@
 // byte what a fresh page would.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import { unpack } from '../../web/src/geometry.js';
-import { launch, openPage, waitForFrame } from './browser.mjs';
+import { waitForFrame } from './browser.mjs';
 import { get, getGeometry, post, startDaemon } from './daemon.mjs';
 import { fillVector, isEdit } from './page.mjs';
 import { countIssued, numbersFrom, randomEdit } from './random.mjs';
+import { openPage } from './visit.mjs';
 
 const EDITS = Number(process.env.EDITS ?? 1000);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
 
 // Keeps what is sent to textures of 32 bits a component, as the graphics memory has it.
 function keepTextures() {
@@ -145,7 +140,7 @@ test('after random edits the arrays equal fresh ones', { timeout: 280_000 }, asy
     const shape = { shape: 'torus', major_segments: 60, minor_segments: 50 };
     const { id: mesh, counts } = await post(daemon, '', shape);
     const issued = { vertices: counts.vertices, edges: counts.edges, faces: counts.faces };
-    const page = await openPage(t, browser, daemon, {
+    const page = await openPage(t, daemon, {
         allowed: [/status of 4(09|10|22)/],
         init: keepTextures,
     });

@@ -4,7 +4,7 @@
 import { statSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
-import { launch, openPage, projector, waitForFrame } from './browser.mjs';
+import { launch, openPageIn, projector, waitForFrame } from './browser.mjs';
 import { getAll, post, startDaemon } from './daemon.mjs';
 import { setMode } from './page.mjs';
 
@@ -21,7 +21,7 @@ try {
     await post(daemon, '?id=cube', { name: 'cube', shape: 'cube' });
     const torus = { name: 'torus', shape: 'torus', major_segments: 20, minor_segments: 9 };
     const { id: mesh } = await post(daemon, '?id=torus', torus);
-    const page = await openPage(run, browser, daemon, { viewport: { width: 960, height: 540 } });
+    const page = await openPageIn(run, browser, daemon, { viewport: { width: 960, height: 540 } });
     await page.locator('#meshes button').filter({ hasText: 'torus' }).click();
     await waitForFrame(page, { mesh, revision: 1 });
     await setMode(page, 'Half-edge');

@@ -1,27 +1,20 @@
 // The page in Chromium against the real daemon: what it shows is what the API says.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import {
     checkAccessible,
     isBackground,
     isChosen,
     isSurface,
-    launch,
-    openPage,
     projector,
     readCanvas,
     waitForFrame,
 } from './browser.mjs';
 import { get, getAll, post, startDaemon } from './daemon.mjs';
-import { checkInspector, click, expectToast, isEdit, openMesh as open, setMode } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
+import { checkInspector, click, expectToast, isEdit, setMode } from './page.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 const SQUARE = {
@@ -42,8 +35,6 @@ f 1 2 5 4
 f 2 3 6 5
 f 3 1 4 6
 `;
-
-const openMesh = (t, document, options) => open(t, browser, document, options);
 
 async function checkStatistics({ daemon, mesh, page }) {
     const summary = await get(daemon, `/${mesh}`);
@@ -79,7 +70,7 @@ test('the page comes with its policy, its licences, and nothing inline', async (
 
 test('without meshes the page says what to do', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon);
+    const page = await openPage(t, daemon);
     await page.getByRole('heading', { name: 'No meshes yet' }).waitFor();
     assert.equal(await page.locator('#meshes li').count(), 0);
     for (const name of ['Split', 'Undo', 'Redo', 'Fit view']) {
@@ -94,7 +85,7 @@ test('the list shows all meshes and opens the one that is clicked', async (t) =>
     for (const name of names) {
         await post(daemon, '', { name, shape: name === 'two' ? 'torus' : 'cube' });
     }
-    const page = await openPage(t, browser, daemon);
+    const page = await openPage(t, daemon);
     const { items } = await get(daemon, '');
     await waitForFrame(page, { mesh: items[0].id, revision: 1 });
     assert.deepEqual(
@@ -114,7 +105,7 @@ test('the list shows all meshes and opens the one that is clicked', async (t) =>
 
 test('a file is uploaded by the button, with its progress', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon);
+    const page = await openPage(t, daemon);
     let release;
     const held = new Promise((resolve) => {
         release = resolve;
@@ -146,7 +137,7 @@ test('a file is uploaded by the button, with its progress', async (t) => {
 
 test('files are uploaded by dropping them, one after another', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon);
+    const page = await openPage(t, daemon);
     await page.getByRole('heading', { name: 'No meshes yet' }).waitFor();
     const transfer = await page.evaluateHandle((text) => {
         const files = new DataTransfer();
@@ -436,7 +427,7 @@ test('an edit meant for an older revision is refused, and the page catches up', 
 
 test('a file that cannot be read is refused with its line', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon, { allowed: [/status of 4\d\d/] });
+    const page = await openPage(t, daemon, { allowed: [/status of 4\d\d/] });
     const upload = (name, text) =>
         page.locator('#file').setInputFiles({ name, mimeType: '', buffer: Buffer.from(text) });
     await upload('broken.obj', 'v 0 0 0\nv 1 zero 0\n');
@@ -471,7 +462,7 @@ test('a mesh that is gone and a server that is gone are said', async (t) => {
 test('without WebGL the page says so and still works', async (t) => {
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', CUBE);
-    const page = await openPage(t, browser, daemon, {
+    const page = await openPage(t, daemon, {
         init: () => {
             HTMLCanvasElement.prototype.getContext = () => null;
         },

@@ -1,20 +1,14 @@
 // The list of revisions, and what takes long: how far it is, how it is given up, how it ends.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { checkAccessible, launch, openPage, waitForFrame } from './browser.mjs';
+import { checkAccessible, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { expectToast, fillVector, isEdit, openMesh as open } from './page.mjs';
-
-let browser;
-before(async () => {
-    browser = await launch();
-});
-after(() => browser?.close());
+import { expectToast, fillVector, isEdit } from './page.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
-const openMesh = (t, document, options) => open(t, browser, document, options);
 
 const rowsOf = (page) =>
     page.locator('#history li').evaluateAll((rows) =>
@@ -169,7 +163,7 @@ test('a job is given up by its button, and nothing is changed', async (t) => {
 
 test('an upload is given up while it is sent and while it is read', async (t) => {
     const daemon = await startDaemon(t);
-    const page = await openPage(t, browser, daemon, { allowed: [/ERR_FAILED|ERR_ABORTED/] });
+    const page = await openPage(t, daemon, { allowed: [/ERR_FAILED|ERR_ABORTED/] });
     const upload = (name) =>
         page.locator('#file').setInputFiles({
             name,

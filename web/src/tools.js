@@ -162,9 +162,10 @@ export class Tools {
         }
     }
 
-    // The elements in the fields, {kind, id} each.
+    // The elements in the fields, {kind, id} each; none until an operation was chosen.
     get elements() {
-        return [...this.#fields.values()]
+        const fields = this.#isChosen ? [...this.#fields.values()] : [];
+        return fields
             .filter(({ param }) => kindOf(param) !== null && !isPlace(param))
             .flatMap(({ param, control }) =>
                 control.ids.map((id) => ({ kind: kindOf(param), id })),

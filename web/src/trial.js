@@ -82,7 +82,8 @@ export function wordsOf(answer) {
     return `${changesOf(answer)}${end}`;
 }
 
-function changesOf({ created, deleted, modified, replaced }) {
+function changesOf(answer) {
+    const { created, deleted, modified, replaced } = answer;
     const signs = [
         ['+', created],
         ['\u2212', deleted],
@@ -93,7 +94,9 @@ function changesOf({ created, deleted, modified, replaced }) {
         return `Would make: ${sizes.join(' ')}`;
     }
     if (replaced) {
-        return 'Would change the ids of all elements.';
+        return answer.results.some(({ op }) => op === 'compact')
+            ? 'Would change the ids of all elements.'
+            : 'Would make the mesh anew.';
     }
     return changed.length > 0 ? `Would change: ${changed.join(' ')}` : 'Would change nothing.';
 }

@@ -1,0 +1,76 @@
+/* subdivide.h - finer meshes by refinement rules.
+ *
+ * A step makes a finer mesh of the whole mesh, in the time the finer mesh takes to write:
+ *
+ *     loop            every triangle becomes 4                       Loop, Smooth Subdivision
+ * Surfaces Based on Triangles, 1987 catmull_clark   every face of n corners becomes n quads
+ * Catmull, Clark, Recursively Generated B-Spline Surfaces on Arbitrary Topological Meshes, 1978
+ *     linear          triangles become 4 triangles, other faces      no vertex moves: the mesh
+ * keeps quads about their mean                         its shape sqrt3           every triangle
+ * becomes 3: a vertex in each,    Kobbelt, Sqrt(3)-Subdivision, and the old edges are flipped 2000
+ *
+ *        v1                    v1                       v1                     v1
+ *        o                     o                        o                      o
+ *       / \                   / \                    g1/ \                    /|\      c of the
+ * next /   \                 /g1 \                 m0 /   \ m1               / | \     face /  f \
+ * --->   m0 o-----o m1     or        o--o--o       or      .---o---. /       \             / \ g3/
+ * \                /   c   \               \ / \ /
+ *   /         \           /f  \ / g2\              / f  |  g2\              /\/f \/\
+ *  o-----------o         o-----o-----o            o-----o-----o            o-------o
+ *  v0          v2        v0   m2     v2           v0    m2    v2           v0      v2
+ *                             loop                catmull_clark              sqrt3
+ *
+ * WHO SURVIVES. All old vertices. An edge that is cut in halves keeps its id in the half with the
+ * origin of half-edge 2e, which still leaves it; an edge that is flipped keeps its id, and
+ * half-edge 2e its face (edge_flip). A face keeps its id in the part at the origin of its stored
+ * half-edge. New ids follow the order of the old ones: vertices by edge, then by face; edges:
+ * second halves by edge, then those inside, by face and from its stored half-edge on; faces by
+ * face, then by corner from the one after the stored half-edge's on, the middle triangle last. Dead
+ * ids stay dead.
+ *
+ * CURVES. A boundary edge, and an edge whose bool attribute `feature` is true, is sharp; so are its
+ * parts. By the number of sharp edges a vertex is smooth (0), a dart (1: smooth rule), on a curve
+ * (2) or a corner (3 or more), as in Hoppe et al., Piecewise Smooth Surface Reconstruction, 1994.
+ * Where two meet, the curve becomes their cubic B-spline: the middle of an edge, and (1 6 1) / 8 at
+ * vertices, as in DeRose, Kass, Truong, Subdivision Surfaces in Character Animation, 1998. Corners
+ * stay in place, and so do a boundary vertex with one face, a bow-tie, an isolated vertex and a
+ * vertex whose `locked` is true. By sqrt3 sharp edges are not flipped; in every second step of one
+ * call they are cut in three, by the B-spline's rules for that, (1 16 10) / 27 and (4 19 4) / 27,
+ * and the triangles beside them become three at the two new vertices instead of having one inside.
+ *
+ * ATTRIBUTES. Of vertices: interpolated columns take the rules positions take, so that a column
+ * that is linear in the position remains so; a copy is of the origin of half-edge 2e, of the nearer
+ * end, or of the corner of the face's stored half-edge. Of corners: linear within the old face;
+ * what is interpolated has the middle of two corners at an edge and the mean inside. Of edges: both
+ * parts have the edge's, unless the rule is default; edges inside have the default. Of faces: the
+ * parts have the face's, unless the rule is default. Parts of `feature` edges are features under
+ * any rule.
+ *
+ * LOCKED edges and faces are cut, like by other edits: the part that keeps the id is locked. */
+#ifndef HE_ALGO_SUBDIVIDE_H
+#define HE_ALGO_SUBDIVIDE_H
+
+#include "mesh/mesh.h"
+
+typedef enum he_scheme { HE_LOOP, HE_CATMULL_CLARK, HE_LINEAR, HE_SQRT3 } he_scheme;
+
+enum { HE_SUBDIVIDE_STEPS = 12 };
+/* Rows of vertices, edges and faces together that a mesh may come to have: some 3 GB of links. */
+#define HE_SUBDIVIDE_ROWS (UINT64_C(1) << 27)
+
+/* Live elements after each step. */
+typedef struct he_step_counts {
+    uint32_t vertices, edges, faces;
+} he_step_counts;
+
+/* `steps` of a scheme, 1 to HE_SUBDIVIDE_STEPS, as one replace that keeps ids (write.h). `counts`
+ * (which may be NULL) has room for `steps` of them.
+ *
+ * Refused: HE_LIMIT when there would be more than HE_SUBDIVIDE_ROWS, before memory is taken;
+ * HE_NOT_TRIANGLE naming a face, by loop and sqrt3; HE_DOUBLED_EDGE naming an edge of two triangles
+ * with the same three corners, by all but catmull_clark; HE_LOCKED_ELEMENT naming an edge that
+ * sqrt3 would flip, or a face beside one. HE_NO_MEMORY, HE_CANCELLED. */
+HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps,
+                                    he_step_counts *counts, he_error *err);
+
+#endif

@@ -1,0 +1,320 @@
+/* Attributes of a finer mesh: subdivide.h says what they become. */
+#include "algo/subdivide_step.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool has_columns(const he_content *c, he_kind domain)
+{
+    for (size_t i = 0; i < c->column_count; i++) {
+        if (c->columns[i] != NULL && c->columns[i]->domain == domain) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* `count` ids that are all HE_NONE, where there are columns. */
+static bool reserve(const he_content *c, he_kind domain, uint32_t count, uint32_t **out)
+{
+    if (!has_columns(c, domain)) {
+        return true;
+    }
+    *out = he_mem_array(NULL, count, sizeof **out);
+    if (*out != NULL) {
+        memset(*out, 0xFF, count * sizeof **out);
+    }
+    return *out != NULL;
+}
+
+he_status he_step_reserve_parents(he_step *s, he_error *err)
+{
+    const he_content *from = s->from, *to = s->to;
+    bool done =
+        reserve(from, HE_VERTEX, to->vertices.issued - from->vertices.issued, &s->vertex_from) &&
+        reserve(from, HE_EDGE, to->edges.issued - from->edges.issued, &s->edge_from) &&
+        reserve(from, HE_FACE, to->faces.issued - from->faces.issued, &s->face_from);
+    if (done && has_columns(from, HE_HALFEDGE)) {
+        s->corner_from = he_mem_zero(2 * (size_t)to->edges.issued, sizeof *s->corner_from);
+        done = s->corner_from != NULL;
+    }
+    return done ? HE_OK
+                : he_fail_plain(err, HE_NO_MEMORY, "no memory to carry the attributes along");
+}
+
+/* --- numbers of any type --- */
+
+static double get(const he_column *column, size_t row, uint32_t component)
+{
+    const unsigned char *at =
+        he_column_value(column, row) + component * he_type_bytes(column->type);
+    int32_t integer;
+    uint32_t whole;
+    float single;
+    double number;
+    switch (column->type) {
+    case HE_BOOL:
+        return *at;
+    case HE_INT32:
+        memcpy(&integer, at, sizeof integer);
+        return integer;
+    case HE_UINT32:
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    case HE_FLOAT:
+        memcpy(&single, at, sizeof single);
+        return (double)single;
+    case HE_DOUBLE:
+        memcpy(&number, at, sizeof number);
+        return number;
+    case HE_TYPE_COUNT:
+        break;
+    }
+    return 0;
+}
+
+/* Integers and booleans round to nearest. */
+static void put(he_column *column, size_t row, uint32_t component, double value)
+{
+    unsigned char *at = he_column_row(column, row) + component * he_type_bytes(column->type);
+    int32_t integer;
+    uint32_t whole;
+    float single;
+    switch (column->type) {
+    case HE_BOOL:
+        *at = value >= 0.5;
+        break;
+    case HE_INT32:
+        integer = (int32_t)round(fmax(INT32_MIN, fmin(value, INT32_MAX)));
+        memcpy(at, &integer, sizeof integer);
+        break;
+    case HE_UINT32:
+        whole = (uint32_t)round(fmax(0, fmin(value, UINT32_MAX)));
+        memcpy(at, &whole, sizeof whole);
+        break;
+    case HE_FLOAT:
+        single = (float)value;
+        memcpy(at, &single, sizeof single);
+        break;
+    case HE_DOUBLE:
+        memcpy(at, &value, sizeof value);
+        break;
+    case HE_TYPE_COUNT:
+        break;
+    }
+}
+
+/* --- vertices --- */
+
+/* Three components at a time are as good as positions. */
+static he_status smooth_column(const he_step *s, const he_column *from, he_column *to,
+                               he_error *err)
+{
+    uint32_t rows = s->from->vertices.issued, fine = s->to->vertices.issued;
+    he_vec3 *before = he_mem_array(NULL, rows, sizeof *before);
+    he_vec3 *after = he_mem_array(NULL, fine, sizeof *after);
+    he_status status = HE_OK;
+    if (before == NULL || after == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for attribute %s", from->name);
+    }
+    for (uint32_t k = 0; k < from->components && status == HE_OK; k += 3) {
+        uint32_t left = from->components - k;
+        for (uint32_t v = 0; v < rows; v++) {
+            before[v] = (he_vec3){get(from, v, k), left > 1 ? get(from, v, k + 1) : 0,
+                                  left > 2 ? get(from, v, k + 2) : 0};
+        }
+        status = he_step_place(s, before, after, err);
+        for (uint32_t v = 0; v < fine && status == HE_OK; v++) {
+            /* Dead rows have the default. */
+            if (s->to->vertex_halfedge[v] == HE_DEAD) {
+                continue;
+            }
+            put(to, v, k, after[v].x);
+            if (left > 1) {
+                put(to, v, k + 1, after[v].y);
+            }
+            if (left > 2) {
+                put(to, v, k + 2, after[v].z);
+            }
+        }
+    }
+    he_mem_free(before);
+    he_mem_free(after);
+    return status;
+}
+
+/* --- corners --- */
+
+static double mean_of_face(const he_step *s, const he_column *from, uint32_t first, uint32_t k)
+{
+    double total = 0, n = 0;
+    uint32_t h = first;
+    do {
+        h = s->from->next[h];
+        n++;
+    } while (h != first);
+    do {
+        total += get(from, h, k) / n;
+        h = s->from->next[h];
+    } while (h != first);
+    return total;
+}
+
+static double blended(const he_step *s, const he_column *from, const he_corner_source *source,
+                      uint32_t k)
+{
+    switch (source->how) {
+    case HE_FROM_MIDDLE:
+        return 0.5 * get(from, source->a, k) + 0.5 * get(from, source->b, k);
+    case HE_FROM_THIRD:
+        return 2.0 / 3 * get(from, source->a, k) + 1.0 / 3 * get(from, source->b, k);
+    case HE_FROM_FACE:
+        return mean_of_face(s, from, source->a, k);
+    case HE_FROM_NOWHERE:
+    case HE_FROM_ROW:
+    case HE_FROM_NEW:
+        break;
+    }
+    return get(from, source->a, k);
+}
+
+static void fill_corner(const he_step *s, const he_column *from, he_column *to, uint32_t h)
+{
+    const he_corner_source *source = &s->corner_from[h];
+    const unsigned char *value = from->fallback;
+    if (source->how == HE_FROM_NEW) {
+        value = he_column_row(to, source->a);
+    } else if (source->how == HE_FROM_ROW ||
+               (source->how != HE_FROM_NOWHERE && from->rule == HE_COPY)) {
+        value = he_column_value(from, source->a);
+    } else if (source->how != HE_FROM_NOWHERE && from->rule == HE_INTERPOLATE) {
+        for (uint32_t k = 0; k < from->components; k++) {
+            put(to, h, k, blended(s, from, source, k));
+        }
+        return;
+    }
+    memcpy(he_column_row(to, h), value, from->row_bytes);
+}
+
+static he_status carry_corners(const he_step *s, const he_column *from, he_column *to,
+                               he_error *err)
+{
+    he_status status = HE_OK;
+    /* What is as another one comes after it: the first edge inside a face is the lowest. */
+    for (uint32_t h = 0; h < 2 * s->to->edges.issued && status == HE_OK; h++) {
+        status = he_watch_at(s->watch, h, 2 * (uint64_t)s->to->edges.issued, err);
+        fill_corner(s, from, to, h);
+    }
+    return status;
+}
+
+/* --- columns --- */
+
+static bool is_feature(const he_column *column)
+{
+    return column->domain == HE_EDGE && column->type == HE_BOOL && column->components == 1 &&
+           strcmp(column->name, "feature") == 0;
+}
+
+/* Rows that stay keep their value; those of a parent have it unless the rule is default. */
+static void carry_rows(const he_column *from, he_column *to, size_t issued, const uint32_t *parents)
+{
+    for (size_t row = 0; row < to->rows; row++) {
+        const unsigned char *value = from->fallback;
+        if (row < issued) {
+            value = he_column_value(from, row);
+        } else if (parents[row - issued] != HE_NONE &&
+                   (from->rule != HE_DEFAULT || is_feature(from))) {
+            value = he_column_value(from, parents[row - issued]);
+        }
+        memcpy(he_column_row(to, row), value, from->row_bytes);
+    }
+}
+
+static he_status fill(const he_step *s, const he_column *from, he_column *to, he_error *err)
+{
+    switch (from->domain) {
+    case HE_VERTEX:
+        if (from->rule == HE_INTERPOLATE) {
+            return smooth_column(s, from, to, err);
+        }
+        carry_rows(from, to, s->from->vertices.issued, s->vertex_from);
+        return HE_OK;
+    case HE_EDGE:
+        carry_rows(from, to, s->from->edges.issued, s->edge_from);
+        return HE_OK;
+    case HE_FACE:
+        carry_rows(from, to, s->from->faces.issued, s->face_from);
+        return HE_OK;
+    case HE_HALFEDGE:
+        return carry_corners(s, from, to, err);
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    memcpy(he_column_row(to, 0), he_column_value(from, 0), from->row_bytes);
+    return HE_OK;
+}
+
+static size_t rows_of(const he_content *c, he_kind domain)
+{
+    switch (domain) {
+    case HE_VERTEX:
+        return c->vertices.issued;
+    case HE_HALFEDGE:
+        return 2 * (size_t)c->edges.issued;
+    case HE_EDGE:
+        return c->edges.issued;
+    case HE_FACE:
+        return c->faces.issued;
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return 1;
+}
+
+static he_status carry_column(const he_step *s, const he_column *from, he_column **out,
+                              he_error *err)
+{
+    he_column *to;
+    he_status status =
+        he_column_new(from->name, from->domain, from->type, from->components, from->rule, &to, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    memcpy(to->fallback, from->fallback, from->row_bytes);
+    to->labels = he_labels_retain(from->labels);
+    status = he_column_extend(to, rows_of(s->to, from->domain), err);
+    if (status == HE_OK) {
+        status = fill(s, from, to, err);
+    }
+    if (status != HE_OK) {
+        he_column_free(to);
+        return status;
+    }
+    *out = to;
+    return HE_OK;
+}
+
+he_status he_step_carry(const he_step *s, he_error *err)
+{
+    const he_content *from = s->from;
+    he_content *to = s->to;
+    if (from->column_count == 0) {
+        return HE_OK;
+    }
+    to->columns = he_mem_zero(from->column_count, sizeof *to->columns);
+    if (to->columns == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the attributes");
+    }
+    /* Slots stay: records of other revisions name them. */
+    to->column_count = to->column_capacity = from->column_count;
+    he_status status = HE_OK;
+    for (size_t i = 0; i < from->column_count && status == HE_OK; i++) {
+        if (from->columns[i] != NULL) {
+            status = carry_column(s, from->columns[i], &to->columns[i], err);
+        }
+    }
+    return status;
+}

@@ -1,0 +1,295 @@
+/* Where vertices come to lie. The weights are those of the papers in subdivide.h; none is negative,
+ * so that a refined mesh stays in the box of the old one.
+ *
+ * An old vertex gathers in `to` what its rule sums up, its neighbours (at catmull_clark its faces'
+ * means too) or, on a curve, its two neighbours there, and is then moved. */
+#include "algo/subdivide_step.h"
+
+#include <float.h>
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+enum { SMOOTH_AT_MOST = 1, CURVE = 2, CORNER = 3 };
+
+static inline he_vec3 sum(he_vec3 a, he_vec3 b)
+{
+    return (he_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+/* s a + t b */
+static inline he_vec3 mix(double s, he_vec3 a, double t, he_vec3 b)
+{
+    return (he_vec3){s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
+}
+static inline void gather(he_vec3 *to, he_vec3 what)
+{
+    *to = sum(*to, what);
+}
+
+/* One ring of rules: what a smooth vertex keeps of itself and takes of its sum. */
+typedef struct weights {
+    double own, sum;
+} weights;
+
+static weights weights_of(he_scheme scheme, uint32_t degree)
+{
+    double n = degree, cosine, share;
+    switch (scheme) {
+    case HE_LOOP:
+        cosine = 0.375 + 0.25 * cos(2 * PI / n);
+        share = 0.625 - cosine * cosine;
+        return (weights){1 - share, share / n};
+    case HE_CATMULL_CLARK:
+        return (weights){(n - 2) / n, 1 / (n * n)};
+    case HE_SQRT3:
+        share = (4 - 2 * cos(2 * PI / n)) / 9;
+        return (weights){1 - share, share / n};
+    case HE_LINEAR:
+        break;
+    }
+    return (weights){1, 0};
+}
+
+static uint8_t sharpness(const he_step *s, uint32_t v)
+{
+    return s->sharp == NULL ? 0 : s->sharp[v];
+}
+
+/* What edge e, from a to b, adds to the sums of its ends. */
+static inline void gather_ends(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+{
+    uint32_t a = s->from->origin[2 * e], b = s->from->origin[2 * e + 1];
+    bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
+    if (sharp || sharpness(s, a) <= SMOOTH_AT_MOST) {
+        gather(&to[a], from[b]);
+    }
+    if (sharp || sharpness(s, b) <= SMOOTH_AT_MOST) {
+        gather(&to[b], from[a]);
+    }
+}
+
+static he_vec3 mean_of_face(const he_content *c, uint32_t first, const he_vec3 *from)
+{
+    he_vec3 total = {0, 0, 0};
+    uint32_t h = first, n = 0;
+    do {
+        gather(&total, from[c->origin[h]]);
+        h = c->next[h];
+        n++;
+    } while (h != first);
+    double share = 1 / (double)n;
+    return (he_vec3){total.x * share, total.y * share, total.z * share};
+}
+
+static uint32_t middle(const he_step *s, uint32_t e)
+{
+    return s->from->vertices.issued + he_step_edge_rank(s, e);
+}
+
+/* --- edges, by scheme: the sums of both ends, and the vertices on the edge --- */
+
+static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+{
+    const he_content *c = s->from;
+    uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
+    gather_ends(s, e, from, to);
+    he_vec3 ends = sum(from[a], from[b]);
+    if (s->sharp != NULL && he_step_is_sharp(s, e)) {
+        to[middle(s, e)] = mix(0.5, ends, 0, ends);
+        return;
+    }
+    uint32_t left = c->origin[c->prev[2 * e]], right = c->origin[c->prev[2 * e + 1]];
+    to[middle(s, e)] = mix(0.375, ends, 0.125, sum(from[left], from[right]));
+}
+
+/* The mean of face f in `to`. */
+static he_vec3 face_point(const he_step *s, uint32_t f, const he_vec3 *to)
+{
+    return to[s->from->vertices.issued + s->from->edges.live + he_step_face_rank(s, f)];
+}
+
+static void catmull_clark_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+{
+    const he_content *c = s->from;
+    uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
+    gather_ends(s, e, from, to);
+    he_vec3 left = {0, 0, 0}, right = {0, 0, 0}, ends = sum(from[a], from[b]);
+    if (c->face[2 * e] != HE_NONE) {
+        left = face_point(s, c->face[2 * e], to);
+    }
+    if (c->face[2 * e + 1] != HE_NONE) {
+        right = face_point(s, c->face[2 * e + 1], to);
+    }
+    if (sharpness(s, a) <= SMOOTH_AT_MOST) {
+        gather(&to[a], left);
+    }
+    if (sharpness(s, b) <= SMOOTH_AT_MOST) {
+        gather(&to[b], right);
+    }
+    bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
+    to[middle(s, e)] = sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, sum(left, right));
+}
+
+static void linear_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+{
+    he_vec3 a = from[s->from->origin[2 * e]], b = from[s->from->origin[2 * e + 1]];
+    to[middle(s, e)] = mix(0.5, a, 0.5, b);
+}
+
+/* Once all sums are there: the point on a sharp edge at a third from a to b. At the end of a curve
+ * the edge is taken to go on straight beyond a. */
+static he_vec3 third_from(const he_step *s, uint32_t a, uint32_t b, const he_vec3 *from,
+                          const he_vec3 *to)
+{
+    if (sharpness(s, a) != CURVE) {
+        return mix(2.0 / 3, from[a], 1.0 / 3, from[b]);
+    }
+    /* The sum holds b once already. */
+    return sum(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), mix(1.0 / 27, to[a], 0, to[a]));
+}
+
+static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
+{
+    const he_content *c = s->from;
+    for (uint32_t e = 0; e < c->edges.issued && s->thirds; e++) {
+        if (s->third[e] != HE_NONE) {
+            uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
+            uint32_t p = c->vertices.issued + 2 * s->third[e];
+            to[p] = third_from(s, a, b, from, to);
+            to[p + 1] = third_from(s, b, a, from, to);
+        }
+    }
+}
+
+/* --- vertices --- */
+
+static he_status move_vertices(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+{
+    enum { TABLE = 32 };
+    const he_content *c = s->from;
+    weights table[TABLE];
+    for (uint32_t n = 1; n < TABLE; n++) {
+        table[n] = weights_of(s->scheme, n);
+    }
+    /* A curve that is not cut does not move. */
+    weights curve = s->scheme != HE_SQRT3 ? (weights){0.75, 0.125}
+                    : s->thirds           ? (weights){19.0 / 27, 4.0 / 27}
+                                          : (weights){1, 0};
+    he_status status = HE_OK;
+    for (uint32_t v = 0; v < c->vertices.issued && status == HE_OK; v++) {
+        status = he_watch_at(s->watch, v, c->vertices.issued, err);
+        uint32_t n = s->degree[v];
+        if (n == 0 || sharpness(s, v) == CORNER) {
+            to[v] = from[v];
+            continue;
+        }
+        weights w = sharpness(s, v) == CURVE ? curve
+                    : n < TABLE              ? table[n]
+                                             : weights_of(s->scheme, n);
+        to[v] = mix(w.own, from[v], w.sum, to[v]);
+    }
+    return status;
+}
+
+static he_status place_centres(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+{
+    const he_content *c = s->from;
+    uint32_t at = c->vertices.issued + c->edges.live;
+    bool all = s->scheme == HE_CATMULL_CLARK, chosen = s->scheme == HE_SQRT3;
+    he_status status = HE_OK;
+    if (s->scheme == HE_LOOP || (s->scheme == HE_LINEAR && !s->polygonal)) {
+        return HE_OK;
+    }
+    for (uint32_t f = 0; f < c->faces.issued && status == HE_OK; f++) {
+        status = he_watch_at(s->watch, f, c->faces.issued, err);
+        uint32_t h = c->face_halfedge[f];
+        if (h == HE_DEAD) {
+            continue;
+        }
+        if (chosen) {
+            if (s->centre[f] != HE_NONE) {
+                to[s->centre[f]] = mean_of_face(c, h, from);
+            }
+        } else if (all || c->next[c->next[c->next[h]]] != h) {
+            to[at++] = mean_of_face(c, h, from);
+        }
+    }
+    return status;
+}
+
+static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+{
+    const he_content *c = s->from;
+    for (uint32_t v = 0; v < c->vertices.issued; v++) {
+        to[v] = s->scheme == HE_LINEAR ? from[v] : (he_vec3){0, 0, 0};
+    }
+    he_status status = place_centres(s, from, to, err);
+    for (uint32_t e = 0; e < c->edges.issued && status == HE_OK; e++) {
+        status = he_watch_at(s->watch, e, c->edges.issued, err);
+        if (c->next[2 * e] == HE_DEAD) {
+            continue;
+        }
+        switch (s->scheme) {
+        case HE_LOOP:
+            loop_edge(s, e, from, to);
+            break;
+        case HE_CATMULL_CLARK:
+            catmull_clark_edge(s, e, from, to);
+            break;
+        case HE_LINEAR:
+            linear_edge(s, e, from, to);
+            break;
+        case HE_SQRT3:
+            gather_ends(s, e, from, to);
+            break;
+        }
+    }
+    if (status == HE_OK && s->scheme != HE_LINEAR) {
+        cut_in_thirds(s, from, to);
+        status = move_vertices(s, from, to, err);
+    }
+    return status;
+}
+
+/* --- numbers near the end of their range --- */
+
+/* Sums of so many times this still fit. */
+static const double LARGE = 1e290;
+
+static double within_doubles(double x)
+{
+    return fmax(-DBL_MAX, fmin(x, DBL_MAX));
+}
+
+static bool is_large(const he_vec3 *p, uint32_t count)
+{
+    bool large = false;
+    for (uint32_t i = 0; i < count; i++) {
+        large |= p[i].x > LARGE || p[i].x < -LARGE || p[i].y > LARGE || p[i].y < -LARGE ||
+                 p[i].z > LARGE || p[i].z < -LARGE;
+    }
+    return large;
+}
+
+he_status he_step_place(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+{
+    const double scale = 0x1p-64;
+    uint32_t rows = s->from->vertices.issued;
+    if (!is_large(from, rows)) {
+        return smooth(s, from, to, err);
+    }
+    he_vec3 *small = he_mem_array(NULL, rows, sizeof *small);
+    if (small == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to scale %u vertices", rows);
+    }
+    for (uint32_t v = 0; v < rows; v++) {
+        small[v] = (he_vec3){from[v].x * scale, from[v].y * scale, from[v].z * scale};
+    }
+    he_status status = smooth(s, small, to, err);
+    for (uint32_t v = 0; v < s->to->vertices.issued && status == HE_OK; v++) {
+        to[v] = (he_vec3){within_doubles(to[v].x / scale), within_doubles(to[v].y / scale),
+                          within_doubles(to[v].z / scale)};
+    }
+    he_mem_free(small);
+    return status;
+}

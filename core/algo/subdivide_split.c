@@ -1,0 +1,218 @@
+/* Links where every edge is cut in halves: loop, catmull_clark, linear. */
+#include "algo/subdivide_step.h"
+
+/* Everything about an edge and its halves is where these say:
+ *
+ *     half-edge h    o ----first(h)----> o ----second(h)----> o
+ *                  origin              middle               target
+ */
+static uint32_t middle(const he_step *s, uint32_t h)
+{
+    return s->from->vertices.issued + he_step_edge_rank(s, h >> 1);
+}
+static uint32_t other_half(const he_step *s, uint32_t h)
+{
+    return 2 * (s->from->edges.issued + he_step_edge_rank(s, h >> 1)) | (h & 1);
+}
+static uint32_t first(const he_step *s, uint32_t h)
+{
+    return (h & 1) == 0 ? h : other_half(s, h);
+}
+static uint32_t second(const he_step *s, uint32_t h)
+{
+    return (h & 1) == 0 ? other_half(s, h) : h;
+}
+
+/* Ids of what the face at hand gets. */
+typedef struct fresh {
+    uint32_t vertex, edge, face;
+} fresh;
+
+static void note_faces(const he_step *s, uint32_t f, uint32_t first_face, uint32_t count)
+{
+    for (uint32_t i = 0; s->face_from != NULL && i < count; i++) {
+        s->face_from[first_face + i - s->from->faces.issued] = f;
+    }
+}
+
+/* The corner at the origin of h, the two at its middle and the ones inside. */
+static void note_corner(const he_step *s, uint32_t h, uint32_t next)
+{
+    s->corner_from[first(s, h)] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
+    s->corner_from[second(s, h)] = (he_corner_source){h, next, HE_FROM_MIDDLE};
+}
+
+static void cut_triangle(const he_step *s, uint32_t f, const uint32_t h[3], fresh *at)
+{
+    const he_content *from = s->from;
+    he_content *to = s->to;
+    uint32_t part[3] = {f, at->face, at->face + 1}, centre = at->face + 2;
+    uint32_t m[3], lo[3], hi[3], in[3];
+    for (unsigned i = 0; i < 3; i++) {
+        m[i] = middle(s, h[i]);
+        lo[i] = first(s, h[i]);
+        hi[i] = second(s, h[i]);
+        in[i] = 2 * (at->edge + i); /* from the middle of h[i] to that of the one before */
+    }
+    for (unsigned i = 0; i < 3; i++) {
+        unsigned p = i == 0 ? 2 : i - 1, n = i == 2 ? 0 : i + 1;
+        he_step_set(to, lo[i], in[i], hi[p], from->origin[h[i]], part[i]);
+        he_step_set(to, in[i], hi[p], lo[i], m[i], part[i]);
+        he_step_set(to, hi[p], lo[i], in[i], m[p], part[i]);
+        he_step_set(to, in[i] + 1, in[n] + 1, in[p] + 1, m[p], centre);
+        to->face_halfedge[part[i]] = lo[i];
+        if (s->corner_from != NULL) {
+            note_corner(s, h[i], h[n]);
+            s->corner_from[in[i]] = (he_corner_source){h[i], h[n], HE_FROM_MIDDLE};
+            s->corner_from[in[i] + 1] = (he_corner_source){h[p], h[i], HE_FROM_MIDDLE};
+        }
+    }
+    to->face_halfedge[centre] = in[0] + 1;
+    note_faces(s, f, at->face, 3);
+    at->edge += 3;
+    at->face += 3;
+}
+
+/* Quads between the corners and a vertex inside, to which edge i runs from the middle of the i-th
+ * half-edge. */
+static void cut_polygon(const he_step *s, uint32_t f, uint32_t first_halfedge, fresh *at)
+{
+    const he_content *from = s->from;
+    he_content *to = s->to;
+    uint32_t h = first_halfedge, p = from->prev[h], count = 0;
+    do {
+        h = from->next[h];
+        count++;
+    } while (h != first_halfedge);
+    uint32_t before = 2 * (at->edge + count - 1), centre_halfedge = 2 * at->edge + 1;
+    uint32_t hi = second(s, p), m = middle(s, p);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t part = i == 0 ? f : at->face + i - 1, in = 2 * (at->edge + i);
+        uint32_t lo = first(s, h), next_m = middle(s, h), next = from->next[h];
+        he_step_set(to, lo, in, hi, from->origin[h], part);
+        he_step_set(to, in, before + 1, lo, next_m, part);
+        he_step_set(to, before + 1, hi, in, at->vertex, part);
+        he_step_set(to, hi, lo, before + 1, m, part);
+        to->face_halfedge[part] = lo;
+        if (s->corner_from != NULL) {
+            note_corner(s, h, next);
+            s->corner_from[in] = (he_corner_source){h, next, HE_FROM_MIDDLE};
+            s->corner_from[in + 1] =
+                i == 0 ? (he_corner_source){h, HE_NONE, HE_FROM_FACE}
+                       : (he_corner_source){centre_halfedge, HE_NONE, HE_FROM_NEW};
+        }
+        before = in;
+        hi = second(s, h);
+        m = next_m;
+        h = next;
+    }
+    to->vertex_halfedge[at->vertex] = centre_halfedge;
+    note_faces(s, f, at->face, count - 1);
+    if (s->vertex_from != NULL) {
+        s->vertex_from[at->vertex - from->vertices.issued] = from->origin[first_halfedge];
+    }
+    at->vertex++;
+    at->edge += count;
+    at->face += count - 1;
+}
+
+static he_status cut_face(const he_step *s, uint32_t f, fresh *at, he_error *err)
+{
+    const he_content *from = s->from;
+    uint32_t h[3] = {from->face_halfedge[f]};
+    if (s->scheme == HE_CATMULL_CLARK) {
+        cut_polygon(s, f, h[0], at);
+        return HE_OK;
+    }
+    h[1] = from->next[h[0]];
+    h[2] = from->next[h[1]];
+    if (from->next[h[2]] != h[0]) {
+        if (s->scheme == HE_LOOP) {
+            return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
+                           "face %u is no triangle, and loop is for triangles", f);
+        }
+        cut_polygon(s, f, h[0], at);
+        return HE_OK;
+    }
+    if (he_step_is_doubled(from, h[0] ^ 1, h[1])) {
+        return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h[0] >> 1,
+                       "the middles of edges %u and %u would be joined twice", h[0] >> 1,
+                       h[1] >> 1);
+    }
+    cut_triangle(s, f, h, at);
+    return HE_OK;
+}
+
+static he_status cut_faces(he_step *s, he_error *err)
+{
+    const he_content *from = s->from;
+    fresh at = {.vertex = from->vertices.issued + from->edges.live,
+                .edge = from->edges.issued + from->edges.live,
+                .face = from->faces.issued};
+    he_status status = HE_OK;
+    for (uint32_t f = 0; f < from->faces.issued && status == HE_OK; f++) {
+        status = he_watch_at(s->watch, f, from->faces.issued, err);
+        if (!he_step_is_live(from->face_halfedge, f)) {
+            s->to->face_halfedge[f] = HE_DEAD;
+        } else if (status == HE_OK) {
+            status = cut_face(s, f, &at, err);
+        }
+    }
+    return status;
+}
+
+static void cut_boundary(const he_step *s, uint32_t h)
+{
+    const he_content *from = s->from;
+    uint32_t lo = first(s, h), hi = second(s, h);
+    he_step_set(s->to, lo, hi, second(s, from->prev[h]), from->origin[h], HE_NONE);
+    he_step_set(s->to, hi, first(s, from->next[h]), lo, middle(s, h), HE_NONE);
+    if (s->corner_from != NULL) {
+        s->corner_from[lo] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
+    }
+}
+
+static void cut_edge(const he_step *s, uint32_t e)
+{
+    const he_content *from = s->from;
+    uint32_t rank = he_step_edge_rank(s, e), boundary = HE_NONE;
+    for (uint32_t h = 2 * e; h <= 2 * e + 1; h++) {
+        if (from->face[h] == HE_NONE) {
+            boundary = h;
+            cut_boundary(s, h);
+        }
+    }
+    s->to->vertex_halfedge[from->vertices.issued + rank] =
+        second(s, boundary == HE_NONE ? 2 * e : boundary);
+    if (s->vertex_from != NULL) {
+        s->vertex_from[rank] = from->origin[2 * e];
+    }
+    if (s->edge_from != NULL) {
+        s->edge_from[rank] = e;
+    }
+    if (s->feature != NULL && he_bits_get(s->feature, e)) {
+        he_bits_set(s->feature_next, e);
+        he_bits_set(s->feature_next, from->edges.issued + rank);
+    }
+}
+
+he_status he_step_split(he_step *s, he_error *err)
+{
+    const he_content *from = s->from;
+    he_content *to = s->to;
+    he_status status = cut_faces(s, err);
+    for (uint32_t e = 0; e < from->edges.issued && status == HE_OK; e++) {
+        status = he_watch_at(s->watch, e, from->edges.issued, err);
+        if (from->next[2 * e] == HE_DEAD) {
+            he_step_set(to, 2 * e, HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+            he_step_set(to, 2 * e + 1, HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+        } else {
+            cut_edge(s, e);
+        }
+    }
+    for (uint32_t v = 0; v < from->vertices.issued && status == HE_OK; v++) {
+        uint32_t h = from->vertex_halfedge[v];
+        to->vertex_halfedge[v] = h == HE_DEAD || h == HE_NONE ? h : first(s, h);
+    }
+    return status;
+}

@@ -1,0 +1,72 @@
+#include "op/rows.h"
+
+#include "algo/subdivide.h"
+
+#include <math.h>
+
+static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_step_counts counts[HE_SUBDIVIDE_STEPS];
+    double asked = args[1].number;
+    if (asked != floor(asked)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "\"steps\" is a whole number, not %g", asked);
+    }
+    unsigned steps = (unsigned)asked;
+    for (size_t i = 0; i < 3; i++) {
+        he_status status = he_give_room(out, i, steps, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    he_status status = he_subdivide(m, (he_scheme)args[0].choice, steps, counts, err);
+    for (unsigned i = 0; i < steps && status == HE_OK; i++) {
+        he_give_add(out, 0, counts[i].vertices);
+        he_give_add(out, 1, counts[i].edges);
+        he_give_add(out, 2, counts[i].faces);
+    }
+    return status;
+}
+
+/* Each step makes four of one, or three. What is no number of steps is refused at once. */
+static double subdivide_growth(const he_arg *args)
+{
+    double steps = args[1].number;
+    return steps != floor(steps) ? 1 : pow(args[0].choice == HE_SQRT3 ? 3 : 4, steps);
+}
+
+/* In the order of he_scheme. */
+static const char *const schemes[] = {"loop", "catmull_clark", "linear", "sqrt3", NULL};
+
+const he_op he_refine_rows[] = {
+    {
+        .name = "subdivide",
+        .doc = "Refine the whole mesh by a subdivision scheme: finer faces, and, but for linear, "
+               "a smoother surface.",
+        .size = HE_OP_WHOLE,
+        .params = {{.name = "scheme",
+                    .type = HE_PARAM_CHOICE,
+                    .fallback = HE_CATMULL_CLARK,
+                    .choices = schemes,
+                    .doc = "loop: each triangle becomes 4. catmull_clark: each face becomes quads. "
+                           "linear: triangles become 4, other faces quads, and no vertex moves. "
+                           "sqrt3: each triangle becomes 3. Boundaries, and edges whose bool "
+                           "attribute `feature` is true, become curves of their own; vertices "
+                           "whose `locked` is true stay."},
+                   {.name = "steps",
+                    .type = HE_PARAM_NUMBER,
+                    .flags = HE_RANGE,
+                    .min = 1,
+                    .max = HE_SUBDIVIDE_STEPS,
+                    .fallback = 1,
+                    .doc = "How often, a whole number."}},
+        .results = {{"vertices", HE_RESULT_COUNTS, HE_VERTEX,
+                     "How many there are after each step."},
+                    {"edges", HE_RESULT_COUNTS, HE_EDGE, "The same of edges."},
+                    {"faces", HE_RESULT_COUNTS, HE_FACE, "The same of faces."}},
+        .refusals = {HE_BAD_VALUE, HE_LIMIT, HE_NOT_TRIANGLE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .growth = subdivide_growth,
+        .run = run_subdivide,
+    },
+    {.name = NULL},
+};

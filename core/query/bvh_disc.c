@@ -1,0 +1,172 @@
+#include "query/bvh_disc.h"
+
+#include "query/bvh_walk.h"
+
+/* Up to so many triangles are looked at one by one. Discs about discs grow with each level. */
+enum { PATCH = 256 };
+
+/* Twice what the rounding of a normal to floats may come to. */
+static const double ROUNDING = 4e-7;
+
+static he_vec3 of_floats(const float v[3])
+{
+    return (he_vec3){v[0], v[1], v[2]};
+}
+
+static void to_floats(he_vec3 v, float out[3])
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+/* Not less, and with room for what rounding made of the terms. */
+static float upward(double x)
+{
+    return nextafterf((float)(x * (1 + 1e-6)), HUGE_VALF);
+}
+
+/* What is to lie in a disc: as seen from its centre, along its normal and across. */
+static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
+{
+    double along = he_vec3_dot(from, normal);
+    *high = fabs(along);
+    *wide = he_vec3_length(he_vec3_sub(from, he_vec3_scale(normal, along)));
+}
+
+static void set(he_bvh_disc *disc, const he_bvh_node *node, he_vec3 normal, double thick,
+                double radius)
+{
+    /* Never more than the box reaches. */
+    double half[3], diagonal = 0, support = 0;
+    const double along[3] = {fabs(normal.x), fabs(normal.y), fabs(normal.z)};
+    for (int k = 0; k < 3; k++) {
+        double c = disc->center[k];
+        half[k] = fmax(node->max[k] - c, c - node->min[k]);
+        diagonal += half[k] * half[k];
+        support += half[k] * along[k];
+    }
+    to_floats(normal, disc->normal);
+    disc->thick = upward(fmin(thick, support));
+    disc->radius = upward(fmin(radius, sqrt(diagonal)));
+}
+
+static void center(he_bvh_disc *disc, const he_bvh_node *node)
+{
+    for (int k = 0; k < 3; k++) {
+        disc->center[k] = 0.5f * node->min[k] + 0.5f * node->max[k];
+    }
+}
+
+/* A run of triangles. */
+static void about(const he_bvh *tree, const he_mesh *m, const he_bvh_node *node, uint32_t begin,
+                  uint32_t end, he_vec3 normal, he_bvh_disc *disc)
+{
+    double thick = 0, radius = 0;
+    center(disc, node);
+    for (uint32_t i = begin; i < end; i++) {
+        he_vec3 c[3];
+        he_bvh_corners(tree, m, i, c);
+        for (int k = 0; k < 3; k++) {
+            double high, wide;
+            reach(he_vec3_sub(c[k], of_floats(disc->center)), normal, &high, &wide);
+            thick = high > thick ? high : thick;
+            radius = wide > radius ? wide : radius;
+        }
+    }
+    set(disc, node, normal, thick, radius);
+}
+
+static void about_leaf(const he_bvh *tree, const he_mesh *m, const he_bvh_node *node,
+                       he_bvh_disc *disc)
+{
+    he_vec3 sum = {0, 0, 0}, normal;
+    for (uint32_t i = 0; i < node->count; i++) {
+        he_vec3 c[3];
+        he_bvh_corners(tree, m, node->first + i, c);
+        sum = he_vec3_add(sum, he_vec3_cross(he_vec3_sub(c[1], c[0]), he_vec3_sub(c[2], c[0])));
+    }
+    if (!he_vec3_normalise(sum, &normal)) {
+        normal = (he_vec3){0, 0, 1}; /* any does */
+    }
+    about(tree, m, node, node->first, node->first + node->count, normal, disc);
+}
+
+/* The mean of the children's. */
+static he_vec3 mean_normal(const he_bvh_disc children[2])
+{
+    he_vec3 sum = {0, 0, 0}, normal;
+    for (int i = 0; i < 2; i++) {
+        double area = (double)children[i].radius * children[i].radius;
+        sum = he_vec3_add(sum, he_vec3_scale(of_floats(children[i].normal), area));
+    }
+    if (!he_vec3_normalise(sum, &normal)) {
+        he_vec3_normalise(of_floats(children[0].normal), &normal);
+    }
+    return normal;
+}
+
+/* About the discs of both children. */
+static void about_children(const he_bvh_node *node, const he_bvh_disc children[2], he_vec3 normal,
+                           he_bvh_disc *disc)
+{
+    double thick = 0, radius = 0;
+    center(disc, node);
+    for (int i = 0; i < 2; i++) {
+        double high, wide;
+        he_vec3 from = he_vec3_sub(of_floats(children[i].center), of_floats(disc->center));
+        double same = fmin(fabs(he_vec3_dot(of_floats(children[i].normal), normal)), 1);
+        double askew = sqrt(1 - same * same) + 1e-3; /* what rounding may hide of a small angle */
+        reach(from, normal, &high, &wide);
+        thick = fmax(thick, high + children[i].thick + children[i].radius * askew);
+        radius = fmax(radius, wide + children[i].radius + children[i].thick * askew);
+    }
+    set(disc, node, normal, thick, radius);
+}
+
+static uint32_t begin_of(const he_bvh *tree, const he_bvh_node *node)
+{
+    while (node->count == 0) {
+        node = &tree->nodes[node->first];
+    }
+    return node->first;
+}
+
+static uint32_t end_of(const he_bvh *tree, const he_bvh_node *node)
+{
+    while (node->count == 0) {
+        node = &tree->nodes[node->first + 1];
+    }
+    return node->first + node->count;
+}
+
+void he_bvh_find_discs(he_bvh *tree, const he_mesh *m)
+{
+    /* Children have greater numbers. */
+    for (uint32_t i = tree->node_count; i-- > 0;) {
+        const he_bvh_node *node = &tree->nodes[i];
+        he_bvh_disc *disc = &tree->discs[i];
+        if (node->count > 0) {
+            about_leaf(tree, m, node, disc);
+            continue;
+        }
+        const he_bvh_disc *children = &tree->discs[node->first];
+        uint32_t begin = begin_of(tree, node), end = end_of(tree, node);
+        if (end - begin <= PATCH) {
+            about(tree, m, node, begin, end, mean_normal(children), disc);
+        } else {
+            about_children(node, children, mean_normal(children), disc);
+        }
+    }
+}
+
+double he_bvh_to_disc(const he_bvh_disc *disc, he_vec3 p)
+{
+    double high, wide;
+    he_vec3 from = he_vec3_sub(p, of_floats(disc->center));
+    reach(from, of_floats(disc->normal), &high, &wide);
+    double rounding = ROUNDING * (fabs(from.x) + fabs(from.y) + fabs(from.z));
+    high = fmax(high - disc->thick - rounding, 0);
+    wide = fmax(wide - disc->radius - rounding, 0);
+    return high * high + wide * wide;
+}

@@ -1,0 +1,269 @@
+/* Many who ask about space at once: the tree is made once a revision, whoever comes meanwhile waits
+ * for it, and answers are of the revision they name while others write. */
+#include "tests/api/request.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include <cmocka.h>
+
+enum { READERS = 3, QUESTIONS = 25, EDITS = 12 };
+
+/* So large that trees are not made by workers. */
+#define GRID    "{\"shape\":\"grid\",\"columns\":80,\"rows\":80,\"width\":8,\"height\":8}"
+#define UP      "{\"op\":\"transform\",\"matrix\":[1,0,0,0, 0,1,0,0, 0,0,1,1, 0,0,0,1]}"
+#define NEAREST "{\"queries\":[{\"closest\":[0,0,-3]}]}"
+
+/* --- readers and a writer --- */
+
+typedef struct reader {
+    api_bench *b;
+    const char *question; /* the member that answers is the first of its result */
+    bool by_distance;
+    const char *strange; /* what was wrong first */
+} reader;
+
+/* The grid lies at the height that is its revision, less one. */
+static const char *judge(const reader *r, const cJSON *answer, double *revision)
+{
+    const cJSON *asked = cJSON_GetObjectItem(answer, "revision");
+    const cJSON *result = cJSON_GetArrayItem(cJSON_GetObjectItem(answer, "results"), 0);
+    if (asked == NULL || result == NULL) {
+        return "no results";
+    }
+    if (asked->valuedouble < *revision) {
+        return "the revision fell";
+    }
+    *revision = asked->valuedouble;
+    if (r->by_distance) {
+        const cJSON *distance = cJSON_GetObjectItem(result->child, "distance");
+        return distance != NULL && fabs(distance->valuedouble - *revision - 2) < 1e-9
+                   ? NULL
+                   : "another distance";
+    }
+    return cJSON_GetObjectItem(result, "total")->valuedouble == 0 ? NULL : "pairs that meet";
+}
+
+static void *ask(void *context)
+{
+    reader *r = context;
+    double revision = 0;
+    for (int i = 0; i < QUESTIONS && r->strange == NULL; i++) {
+        bench_reply reply;
+        if (!bench_try(r->b, "POST", "/v1/meshes/m/query", NULL, r->question, strlen(r->question),
+                       &reply) ||
+            reply.status != 200) {
+            r->strange = "no answer";
+            return NULL;
+        }
+        reply.json = cJSON_ParseWithLength(reply.body, reply.length);
+        r->strange = judge(r, reply.json, &revision);
+        bench_reply_free(&reply);
+    }
+    return NULL;
+}
+
+static void answers_are_of_the_revision_they_name_while_others_write(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL, GRID);
+    assert_int_equal(r.status, 201);
+    bench_reply_free(&r);
+    reader readers[READERS] = {
+        {b, NEAREST, true, NULL},
+        {b, "{\"queries\":[{\"ray\":{\"origin\":[0.1,0.2,-3],\"direction\":[0,0,1]}}]}", true,
+         NULL},
+        {b, "{\"queries\":[{\"self_intersections\":{}}]}", false, NULL}};
+    pthread_t threads[READERS];
+    for (int i = 0; i < READERS; i++) {
+        assert_int_equal(pthread_create(&threads[i], NULL, ask, &readers[i]), 0);
+    }
+    for (int i = 0; i < EDITS; i++) {
+        r = bench_send(b, "POST", "/v1/meshes/m/edits", NULL, UP);
+        assert_int_equal(r.status, 200);
+        bench_reply_free(&r);
+    }
+    for (int i = 0; i < READERS; i++) {
+        pthread_join(threads[i], NULL);
+        if (readers[i].strange != NULL) {
+            fail_msg("%s: %s", readers[i].question, readers[i].strange);
+        }
+    }
+    bench_free(b);
+}
+
+/* --- the first two --- */
+
+/* A store that holds its first asker up, with the tree still to be made, until another one waits
+ * for that or has his answer. */
+static struct {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    const api_store *store;
+    bool begun, met;
+    /* Under the place. */
+    api_derived *place;
+    bool held;
+    int waited;
+} gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+
+static void open_gate(bool *which)
+{
+    pthread_mutex_lock(&gate.lock);
+    *which = true;
+    pthread_cond_broadcast(&gate.changed);
+    pthread_mutex_unlock(&gate.lock);
+}
+
+static void pass(const bool *which)
+{
+    pthread_mutex_lock(&gate.lock);
+    while (!*which) {
+        pthread_cond_wait(&gate.changed, &gate.lock);
+    }
+    pthread_mutex_unlock(&gate.lock);
+}
+
+static api_derived *begin(void *self, api_mesh *mesh, api_derived_kind kind)
+{
+    gate.place = gate.store->derived_begin(self, mesh, kind);
+    return gate.place;
+}
+
+static void end_and_hold_up(void *self, api_mesh *mesh, api_derived_kind kind)
+{
+    bool first = gate.place->value != NULL && !gate.held;
+    gate.held |= first;
+    gate.store->derived_end(self, mesh, kind);
+    if (first) {
+        open_gate(&gate.begun);
+        pass(&gate.met);
+    }
+}
+
+static void wait_and_tell(void *self, api_mesh *mesh, api_derived_kind kind)
+{
+    gate.waited++;
+    open_gate(&gate.met);
+    gate.store->derived_wait(self, mesh, kind);
+}
+
+static bool give_up(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    return *(const bool *)context;
+}
+
+static const char *header(void *context, const char *name)
+{
+    (void)context;
+    return strcasecmp(name, "Content-Type") == 0 ? "application/json" : NULL;
+}
+
+typedef struct asker {
+    api_service *service;
+    bool patient, second;
+    int status;
+    char body[512];
+} asker;
+
+static void *ask_first(void *context)
+{
+    asker *a = context;
+    api_request request = {.method = "POST",
+                           .path = "/v1/meshes/m/query",
+                           .query = "",
+                           .request_id = "test",
+                           .header = header,
+                           .has_length = true,
+                           .length = strlen(NEAREST),
+                           .has_body = true};
+    api_step step;
+    if (a->second) {
+        pass(&gate.begun);
+    }
+    api_exchange *x = api_begin(a->service, &request, &step);
+    step = api_body(x, NEAREST, strlen(NEAREST));
+    step = api_end(x);
+    if (step == API_WORK) {
+        api_watch(x, give_up, &a->patient);
+        api_work(x);
+    }
+    const api_answer *answer = api_answer_of(x);
+    a->status = answer->status;
+    if (answer->bytes != NULL && answer->length < (int64_t)sizeof a->body) {
+        memcpy(a->body, answer->bytes, (size_t)answer->length);
+    }
+    api_free(x);
+    if (a->second) {
+        open_gate(&gate.met);
+    }
+    return NULL;
+}
+
+static void ask_twice(bool patient, asker askers[2])
+{
+    api_bench *b = bench_new();
+    bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL, GRID);
+    assert_int_equal(r.status, 201);
+    bench_reply_free(&r);
+    api_store store = *bench_store(b);
+    gate.store = bench_store(b);
+    gate.begun = gate.met = gate.held = false;
+    gate.waited = 0;
+    store.derived_begin = begin;
+    store.derived_end = end_and_hold_up;
+    store.derived_wait = wait_and_tell;
+    api_service *service = api_service_new(&store, &(api_options){.version = "test"});
+    assert_non_null(service);
+    pthread_t threads[2];
+    for (int i = 0; i < 2; i++) {
+        askers[i] = (asker){.service = service, .patient = patient || i == 1, .second = i == 1};
+        assert_int_equal(pthread_create(&threads[i], NULL, ask_first, &askers[i]), 0);
+    }
+    for (int i = 0; i < 2; i++) {
+        pthread_join(threads[i], NULL);
+    }
+    api_service_free(service);
+    bench_free(b);
+}
+
+static void the_second_asker_waits_for_the_tree_of_the_first(void **state)
+{
+    (void)state;
+    asker askers[2];
+    ask_twice(true, askers);
+    assert_int_equal(askers[0].status, 200);
+    assert_int_equal(askers[1].status, 200);
+    assert_string_equal(askers[0].body, askers[1].body);
+    assert_true(gate.waited > 0);
+}
+
+static void the_second_asker_makes_the_tree_that_the_first_gave_up(void **state)
+{
+    (void)state;
+    asker askers[2];
+    ask_twice(false, askers);
+    assert_int_not_equal(askers[0].status, 200);
+    assert_int_equal(askers[1].status, 200);
+    assert_true(gate.waited > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(answers_are_of_the_revision_they_name_while_others_write),
+        cmocka_unit_test(the_second_asker_waits_for_the_tree_of_the_first),
+        cmocka_unit_test(the_second_asker_makes_the_tree_that_the_first_gave_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

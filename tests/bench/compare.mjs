@@ -1,0 +1,265 @@
+// compare.mjs - the kernel beside its peers: every row of rows.mjs by each side in turn, so often as
+// `--runs` says, and a table of medians, spread, ratios and what falls short of its target.
+//
+//     node compare.mjs --programs FOLDER [--only build,files] [--runs 5] [--scale 1]
+//
+// The sides are programs that wait for the name of a row (side/side.h). Only one of them works at a
+// time. What they compute must agree: where it does not, or a side breaks, the exit is 1. Falling
+// short is told and is no failure. `--scale 0.1` makes inputs of a hundredth of the faces, to try
+// things out.
+
+import { execFileSync, spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import os from 'node:os';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+
+import { parts } from './rows.mjs';
+
+const { values: options } = parseArgs({
+    options: {
+        programs: { type: 'string' },
+        only: { type: 'string', default: '' },
+        runs: { type: 'string', default: '5' },
+        scale: { type: 'string', default: '1' },
+        flags: { type: 'string', default: '' },
+        'peer-flags': { type: 'string', default: '' },
+    },
+});
+
+const names = { openmesh: 'OpenMesh', cgal: 'CGAL', meshoptimizer: 'meshoptimizer', node: 'node' };
+const packages = {
+    openmesh: 'libopenmesh-dev',
+    cgal: 'libcgal-dev',
+    meshoptimizer: 'libmeshoptimizer-dev',
+};
+const problems = [];
+
+// A side: a program in its folder, or node's part.
+class Side {
+    constructor(name, { input, order }, side, folder) {
+        this.name = name;
+        const args = [input, order, String(side), folder];
+        const json = fileURLToPath(new URL('peers/json.mjs', import.meta.url));
+        this.child =
+            name === 'node'
+                ? spawn(process.execPath, [json, ...args], { stdio: ['pipe', 'pipe', 'inherit'] })
+                : spawn(join(options.programs, name), args, { stdio: ['pipe', 'pipe', 'inherit'] });
+        this.lines = createInterface({ input: this.child.stdout })[Symbol.asyncIterator]();
+        this.ended = new Promise((resolve) => this.child.on('close', resolve));
+        this.child.stdin.on('error', () => {});
+    }
+
+    // What it measured, or null where it does not know the row.
+    async run(row) {
+        this.child.stdin.write(`${row}\n`);
+        const { value: line, done } = await this.lines.next();
+        if (done) {
+            throw new Error(`${this.name} broke at ${row}`);
+        }
+        if (line === 'unknown') {
+            return null;
+        }
+        const [value, amount, exact, near] = line.split(' ');
+        return { value: Number(value), amount: Number(amount), exact, near: Number(near) };
+    }
+
+    async end() {
+        this.child.stdin.end();
+        await this.ended;
+    }
+}
+
+const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
+
+function figureOf(row, { value, amount }) {
+    if (row.whole) {
+        return value;
+    }
+    return (row.less ? value / amount : amount / value) / row.per;
+}
+
+function agree(row, part, name, ours, theirs) {
+    const what = `${row.title}, ${part.order}: ${names[name]}`;
+    if (ours.exact !== '-' && theirs.exact !== '-' && ours.exact !== theirs.exact) {
+        problems.push(`${what} made another result (${theirs.exact}, ours ${ours.exact})`);
+    }
+    const apart = Math.abs(ours.near - theirs.near);
+    if (row.near > 0 && apart > row.near * Math.abs(ours.near)) {
+        problems.push(`${what} got ${theirs.near}, we ${ours.near}: more than ${row.near} apart`);
+    }
+}
+
+// One run of a row by each side. Results are described by a row of ours where it has `after`.
+async function round(row, part, start, sides, figures) {
+    const results = {};
+    for (const name of ['ours', ...part.sides]) {
+        const side = row.fresh ? start(name) : sides[name];
+        const result = await side.run(name === 'ours' ? row.ours : (row.theirs ?? row.ours));
+        if (row.fresh) {
+            await side.end();
+        }
+        if (result === null) {
+            continue;
+        }
+        figures[name] = [...(figures[name] ?? []), figureOf(row, result)];
+        results[name] = row.after ? await sides.ours.run(row.after) : result;
+    }
+    const { ours } = results;
+    for (const name of part.sides) {
+        if (ours !== undefined && results[name] !== undefined) {
+            agree(row, part, name, ours, results[name]);
+        }
+    }
+}
+
+function spreadOf(list) {
+    const middle = median(list);
+    const widest = Math.max(...list.map((figure) => Math.abs(figure / middle - 1)));
+    return `±${Math.round(100 * widest)} %`;
+}
+
+const digits = (figure) => (figure === undefined ? '' : figure.toPrecision(3).replace(/e\+?.*/, ''));
+const shown = (figure) => {
+    if (figure === undefined) {
+        return '-';
+    }
+    return figure >= 100 ? figure.toFixed(0) : digits(figure);
+};
+
+// How often ours is the other: more is better, for a figure where less is, too.
+const ratio = (row, ours, theirs) => (row.less ? theirs / ours : ours / theirs);
+
+function verdict(row, part, medians) {
+    const { ours } = medians;
+    if (ours === undefined) {
+        return { ratio: '-', target: '', says: 'not there yet' };
+    }
+    if (row.limit !== undefined) {
+        const good = ours <= row.limit;
+        return { ratio: '', target: `<= ${row.limit}`, says: good ? 'ok' : 'falls short' };
+    }
+    const [[peer, times]] = row.target;
+    const ratios = part.sides
+        .filter((name) => name in medians)
+        .map((name) => [name, ratio(row, ours, medians[name])]);
+    const best = ratios.reduce((a, b) => (b[1] < a[1] ? b : a));
+    const [name, reached] = peer === 'best' ? best : ratios.find(([one]) => one === peer);
+    return {
+        ratio: `${reached.toFixed(2)} x ${names[name]}`,
+        target: `>= ${times}`,
+        says: reached >= times ? 'ok' : 'falls short',
+    };
+}
+
+const columns = [
+    ['', 40],
+    ['order', 9],
+    ['unit', 17],
+    ['ours', 7],
+    ['spread', 8],
+    ['OpenMesh', 9],
+    ['CGAL', 7],
+    ['other', 21],
+    ['ratio', 20],
+    ['target', 8],
+    ['', 0],
+];
+const print = (cells) =>
+    console.log(cells.map((cell, i) => String(cell).padEnd(columns[i][1])).join(' ').trimEnd());
+
+function report(row, part, figures) {
+    const medians = Object.fromEntries(
+        Object.entries(figures).map(([name, list]) => [name, median(list)]),
+    );
+    const { ratio: reached, target, says } = verdict(row, part, medians);
+    const other = ['meshoptimizer', 'node']
+        .filter((name) => name in medians)
+        .map((name) => `${names[name]} ${shown(medians[name])}`)
+        .join();
+    print([
+        row.title,
+        part.order,
+        row.unit,
+        shown(medians.ours),
+        figures.ours ? spreadOf(figures.ours) : '',
+        shown(medians.openmesh),
+        shown(medians.cgal),
+        other,
+        reached,
+        target,
+        says,
+    ]);
+}
+
+async function runPart(part, folder) {
+    part.sides ??= ['openmesh', 'cgal'];
+    const usual = part.input === 'grid' || part.input === 'holes' ? 1000 : 724;
+    const side = Math.max(8, Math.round((part.side ?? usual) * Number(options.scale)));
+    const start = (name) => new Side(name, part, side, folder);
+    const sides = {};
+    for (const name of ['ours', ...part.sides]) {
+        sides[name] = start(name);
+    }
+    for (const row of part.before ?? []) {
+        await sides.ours.run(row);
+    }
+    for (const row of part.rows) {
+        const figures = {};
+        const runs = Math.min(row.runs ?? Infinity, Number(options.runs));
+        for (let i = 0; i < runs; i++) {
+            await round(row, part, start, sides, figures);
+        }
+        report(row, part, figures);
+    }
+    for (const one of Object.values(sides)) {
+        await one.end();
+    }
+}
+
+function version(name) {
+    return execFileSync('dpkg-query', ['-W', '-f', '${Version}', packages[name]], {
+        encoding: 'utf8',
+    });
+}
+
+function header() {
+    const [cpu] = os.cpus();
+    const system = readFileSync('/etc/os-release', 'utf8').match(/^PRETTY_NAME="(.*)"/m);
+    const compiler = execFileSync('gcc', ['-dumpfullversion'], { encoding: 'utf8' }).trim();
+    const versions = Object.keys(packages).map((name) => `${names[name]} ${version(name)}`);
+    console.log(
+        `${new Date().toISOString().slice(0, 10)}, ${os.cpus().length} x ${cpu.model}, ` +
+            `${system?.[1] ?? os.type()}, gcc ${compiler}, node ${process.versions.node}\n` +
+            `${versions.join(', ')}\n` +
+            `ours:  ${options.flags}\npeers: ${options['peer-flags']}\n` +
+            `Medians of ${options.runs} runs or fewer, in turn; processor time of one thread.` +
+            `${options.scale === '1' ? '' : ` Inputs scaled by ${options.scale}.`}\n` +
+            'Files are read from and written to memory; text is exported so that doubles read back.\n',
+    );
+}
+
+const only = options.only.split(',').filter(Boolean);
+const unknown = only.filter((name) => !parts.some(({ part }) => part === name));
+if (unknown.length > 0 || !options.programs) {
+    const known = [...new Set(parts.map(({ part }) => part))];
+    console.error(`compare.mjs: no part ${unknown.join(', ')}; there are ${known.join(', ')}`);
+    process.exit(2);
+}
+
+const memory = '/dev/shm';
+const folder = mkdtempSync(join(existsSync(memory) ? memory : os.tmpdir(), 'bench-'));
+process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+header();
+print(columns.map(([title]) => title));
+for (const part of parts) {
+    if (only.length === 0 || only.includes(part.part)) {
+        await runPart(part, folder);
+    }
+}
+for (const problem of new Set(problems)) {
+    console.log(`DISAGREE ${problem}`);
+}
+process.exitCode = problems.length > 0 ? 1 : 0;

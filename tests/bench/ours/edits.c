@@ -1,0 +1,139 @@
+/* Many small edits in random places of a copy of the mesh, and compacting it afterwards. */
+#include "bench/ours/ours.h"
+#include "edit/collapse.h"
+#include "edit/cut.h"
+#include "edit/flip.h"
+#include "edit/split.h"
+#include "mesh/compact.h"
+#include "mesh/delta.h"
+
+#include <stdlib.h>
+
+/* One edit at a half-edge; false when it was refused. */
+typedef bool (*edit)(he_mesh *m, he_halfedge h);
+
+static bool split(he_mesh *m, he_halfedge h)
+{
+    return he_edge_split(m, he_edge_of(h), 0.5, NULL, NULL) == HE_OK;
+}
+
+static bool flip(he_mesh *m, he_halfedge h)
+{
+    return he_edge_flip(m, he_edge_of(h), NULL) == HE_OK;
+}
+
+/* Picks of edges that went with an earlier collapse are refused by the kernel itself. */
+static bool collapse(he_mesh *m, he_halfedge h)
+{
+    return he_edge_collapse(m, h, 1, NULL, NULL, NULL) == HE_OK;
+}
+
+/* The picked half-edges of the mesh as it was built. */
+static he_halfedge *find_picks(const bench_side *side, const he_mesh *m, uint32_t *count)
+{
+    bench_pick *picks = bench_picks(&side->input, count);
+    he_halfedge *found = calloc(*count, sizeof *found);
+    for (uint32_t i = 0; i < *count; i++) {
+        uint32_t corner = picks[i].face * side->input.degree + picks[i].corner;
+        found[i] =
+            he_face_corner(m, (he_face){picks[i].face}, (he_vertex){side->input.corners[corner]});
+    }
+    free(picks);
+    return found;
+}
+
+/* Tries the edit at `count` half-edges of a copy. With `record`, each delta is emptied after its
+ * edit, as by a store that hands it on. */
+static he_mesh *run(bench_side *side, edit try, uint32_t count, bool record, bench_result *out)
+{
+    he_mesh *m;
+    he_halfedge *picks = find_picks(side, bench_mesh(side), &count);
+    bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
+    he_delta *delta = he_delta_new();
+    if (record) {
+        he_mesh_record(m, delta);
+    }
+    uint64_t done = 0;
+    double start = bench_seconds();
+    for (uint32_t i = 0; i < count; i++) {
+        done += try(m, picks[i]);
+        if (record) {
+            he_delta_empty(delta);
+        }
+    }
+    out->value = bench_seconds() - start;
+    out->amount = count;
+    he_mesh_record(m, NULL);
+    he_delta_free(delta);
+    free(picks);
+    bench_exact(out, bench_mesh_hash(m));
+    bench_near(out, (double)done);
+    return m;
+}
+
+enum { SPLITS = 300000, FLIPS = 1000000, COLLAPSES = 300000 };
+
+static void time_split(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, split, SPLITS, false, out));
+}
+
+static void time_split_recorded(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, split, SPLITS, true, out));
+}
+
+static void time_flip(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, flip, FLIPS, false, out));
+}
+
+static void time_flip_recorded(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, flip, FLIPS, true, out));
+}
+
+static void time_collapse(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, collapse, COLLAPSES, false, out));
+}
+
+static void time_collapse_recorded(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, collapse, COLLAPSES, true, out));
+}
+
+/* Ids change differently in every library: places name the vertices. */
+static uint64_t place_hash(const he_mesh *m)
+{
+    uint64_t hash = 0;
+    for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+        uint32_t corners[3];
+        he_halfedge h = he_face_halfedge(m, (he_face){f});
+        for (int i = 0; i < 3; i++) {
+            he_vec3 p = he_position(m, he_origin(m, h));
+            corners[i] = bench_place_hash(p.x, p.y, p.z);
+            h = he_next(m, h);
+        }
+        hash += bench_face_hash(corners, 3);
+    }
+    return bench_counts(hash, he_mesh_vertices(m), he_mesh_edges(m), he_mesh_faces(m));
+}
+
+static void compact(bench_side *side, bench_result *out)
+{
+    he_mesh *m = run(side, collapse, COLLAPSES, false, out);
+    double start = bench_seconds();
+    bench_require(he_compact(m, NULL, NULL));
+    out->value = bench_seconds() - start;
+    out->amount = side->input.faces;
+    bench_exact(out, place_hash(m));
+    bench_near(out, he_mesh_faces(m));
+    he_mesh_free(m);
+}
+
+const bench_row bench_edit_rows[] = {
+    {"split", time_split},       {"split_recorded", time_split_recorded},
+    {"flip", time_flip},         {"flip_recorded", time_flip_recorded},
+    {"collapse", time_collapse}, {"collapse_recorded", time_collapse_recorded},
+    {"compact", compact},        {NULL, NULL}};

@@ -1,0 +1,38 @@
+/* cgal.h - CGAL's side of the bench: Surface_mesh with doubles. */
+#ifndef TESTS_BENCH_PEERS_CGAL_H
+#define TESTS_BENCH_PEERS_CGAL_H
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <cstdlib>
+#include <vector>
+
+extern "C" {
+#include "bench/side/side.h"
+}
+
+typedef CGAL::Simple_cartesian<double> Kernel;
+typedef Kernel::Point_3 Point;
+typedef Kernel::Vector_3 Vector;
+typedef CGAL::Surface_mesh<Point> Mesh;
+
+typedef Mesh::Vertex_index Vertex;
+typedef Mesh::Halfedge_index Halfedge;
+typedef Mesh::Edge_index Edge;
+typedef Mesh::Face_index Face;
+
+/* Room is reserved: the caller knows the counts. */
+void cgal_fill(const bench_input &in, Mesh &mesh);
+/* The mesh of the input, made at the first call. */
+Mesh &cgal_mesh(bench_side *side);
+uint64_t cgal_hash(const Mesh &mesh);
+/* Counts, and the sum of the coordinates. */
+void cgal_describe(const Mesh &mesh, bench_result *out);
+
+extern const bench_row cgal_kernel_rows[];
+extern const bench_row cgal_edit_rows[];
+extern const bench_row cgal_file_rows[];
+extern const bench_row cgal_whole_rows[];
+
+#endif

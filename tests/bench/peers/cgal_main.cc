@@ -1,0 +1,9 @@
+/* CGAL's side of the bench: side.h says how it is spoken to. */
+#include "bench/peers/cgal.h"
+
+int main(int argc, char **argv)
+{
+    static const bench_row *const tables[] = {cgal_kernel_rows, cgal_edit_rows, cgal_file_rows,
+                                              cgal_whole_rows, nullptr};
+    return bench_serve(argc, argv, tables);
+}

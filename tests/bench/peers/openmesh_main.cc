@@ -1,0 +1,11 @@
+/* OpenMesh's side of the bench: side.h says how it is spoken to. */
+#include "bench/peers/openmesh.h"
+
+int main(int argc, char **argv)
+{
+    static const bench_row *const tables[] = {openmesh_kernel_rows, openmesh_edit_rows,
+                                              openmesh_file_rows, openmesh_whole_rows, nullptr};
+    omlog().disable();
+    omerr().disable();
+    return bench_serve(argc, argv, tables);
+}

@@ -1,0 +1,242 @@
+// rows.mjs - what `make bench` measures: the rows of the table, in parts.
+//
+// A part has an input (tests/bench/side/input.h) and the rows that are run on it. A row:
+//
+//     title    what stands in the table
+//     ours     the row of our program; of the others' unless `theirs` names another
+//     unit     of the figure, with `per`: by how much AMOUNT / VALUE is divided
+//     whole    the figure is VALUE itself
+//     less     less is better: the figure is VALUE / AMOUNT
+//     near     tolerance, relative, of what the sides compute; 0 where only `exact` is compared
+//     target   [peer, ratio]: so many times the peer's figure; or a limit of our own where `less`
+//     runs     of each side, where not as many as the rest
+//     fresh    each run in a process of its own
+//     after    a row of ours that describes what a side has left in the folder, compared instead
+
+const M = 1e6;
+const rate = (unit, per = M) => ({ unit, per });
+
+const kernel = (name, order) => ({
+    part: 'build',
+    input: name,
+    order,
+    rows: [
+        {
+            title: `build from arrays, ${name === 'torus' ? 'triangles' : 'quads'}`,
+            ours: 'build',
+            ...rate('Mface/s'),
+            target: [['cgal', order === 'natural' ? 3 : 4]],
+        },
+    ],
+});
+
+// CGAL's collapses go elsewhere from some point on: cgal_edits.cc tells.
+const edit = (title, ours, target, theirs = ours) => ({
+    title,
+    near: 0.01,
+    ours,
+    theirs,
+    ...rate('M/s'),
+    target: [['cgal', target]],
+});
+
+const file = (title, ours, target, more = {}) => ({
+    title,
+    ours,
+    ...rate('Mface/s'),
+    target,
+    near: 1e-6,
+    ...more,
+});
+
+export const parts = [
+    kernel('torus', 'natural'),
+    kernel('torus', 'shuffled'),
+    kernel('grid', 'natural'),
+    kernel('grid', 'shuffled'),
+    {
+        part: 'memory',
+        input: 'torus',
+        order: 'natural',
+        rows: [
+            { title: 'bytes a face at rest', ours: 'at_rest', less: true, limit: 68 },
+            { title: 'bytes a face at most, building', ours: 'peak', less: true, limit: 85 },
+        ].map((row) => ({ ...row, unit: 'bytes', per: 1, fresh: true, runs: 2 })),
+    },
+    ...['natural', 'shuffled'].map((order) => ({
+        part: 'onering',
+        input: 'torus',
+        order,
+        rows: [
+            {
+                title: 'sum over one-rings',
+                ours: 'one_ring',
+                ...rate('M half-edges/s'),
+                near: 1e-9,
+                target: [['openmesh', order === 'natural' ? 2.5 : 2]],
+            },
+        ],
+    })),
+    ...['natural', 'shuffled'].map((order) => ({
+        part: 'normals',
+        input: 'torus',
+        order,
+        rows: [
+            {
+                title: 'face normals',
+                ours: 'face_normals',
+                ...rate('Mface/s'),
+                near: 1e-9,
+                target: [['cgal', 2]],
+            },
+            {
+                // CGAL weighs faces in a way of its own.
+                title: 'vertex normals',
+                ours: 'vertex_normals',
+                ...rate('Mvertex/s'),
+                near: 1e-2,
+                target: [['best', 1.5]],
+            },
+        ],
+    })),
+    ...['natural', 'shuffled'].map((order) => ({
+        part: 'edits',
+        input: 'torus',
+        order,
+        rows: [
+            edit('random edge splits', 'split', 2.5),
+            edit('random edge splits, recorded', 'split_recorded', 1.5, 'split'),
+            edit('random flips', 'flip', 2),
+            edit('random flips, recorded', 'flip_recorded', 1.5, 'flip'),
+            edit('random collapses', 'collapse', 2.5),
+            edit('random collapses, recorded', 'collapse_recorded', 1.5, 'collapse'),
+        ],
+    })),
+    {
+        part: 'loops',
+        input: 'holes',
+        order: 'natural',
+        rows: [
+            {
+                title: 'boundary loops',
+                ours: 'loops',
+                ...rate('M half-edges/s'),
+                target: [['best', 1.5]],
+            },
+        ],
+    },
+    ...['natural', 'shuffled'].map((order) => ({
+        part: 'components',
+        input: 'pieces',
+        order,
+        rows: [
+            {
+                title: '64 components',
+                ours: 'components',
+                ...rate('Mface/s'),
+                target: [['best', 1.5]],
+            },
+        ],
+    })),
+    ...['natural', 'shuffled'].map((order) => ({
+        part: 'compact',
+        input: 'torus',
+        order,
+        rows: [
+            {
+                title: 'compact after collapses',
+                near: 0.01,
+                ours: 'compact',
+                ...rate('Mface/s'),
+                target: [['best', 1]],
+            },
+        ],
+    })),
+    {
+        part: 'files',
+        input: 'torus',
+        order: 'natural',
+        before: ['make_files'],
+        rows: [
+            file('import OBJ', 'import_obj', [['cgal', 5]]),
+            file('import OFF', 'import_off', [['openmesh', 3]]),
+            file('import PLY, binary', 'import_ply', [['openmesh', 3]]),
+            file('import STL, binary', 'import_stl', [['openmesh', 3]], { runs: 3 }),
+            file('export OBJ', 'export_obj', [['openmesh', 2]], { after: 'check_obj' }),
+            file('export PLY, binary', 'export_ply', [['openmesh', 1.5]], { after: 'check_ply' }),
+        ],
+    },
+    {
+        part: 'subdivide',
+        input: 'torus',
+        order: 'natural',
+        side: 400,
+        rows: [
+            {
+                title: 'Loop, one step',
+                ours: 'loop',
+                ...rate('M output faces/s'),
+                near: 1e-9,
+                target: [['cgal', 2.5]],
+                runs: 3,
+            },
+        ],
+    },
+    {
+        part: 'subdivide',
+        input: 'grid',
+        order: 'natural',
+        side: 400,
+        rows: [
+            {
+                title: 'Catmull-Clark, one step',
+                ours: 'catmull_clark',
+                ...rate('M output faces/s'),
+                near: 1e-2,
+                target: [['cgal', 2.5]],
+                runs: 3,
+            },
+        ],
+    },
+    {
+        part: 'decimate',
+        input: 'torus',
+        order: 'natural',
+        sides: ['openmesh', 'cgal', 'meshoptimizer'],
+        rows: [
+            {
+                title: 'decimate to a tenth',
+                ours: 'decimate',
+                unit: 's',
+                per: 1,
+                whole: true,
+                less: true,
+                near: 1e-2,
+                target: [['cgal', 10]],
+                runs: 1,
+            },
+        ],
+    },
+    {
+        part: 'json',
+        input: 'torus',
+        order: 'natural',
+        side: 360,
+        before: ['make_document'],
+        sides: ['node'],
+        rows: [
+            {
+                title: 'mesh from a JSON document; JSON.parse',
+                ours: 'json_read',
+                ...rate('MB/s'),
+                target: [['node', 4]],
+            },
+            {
+                title: 'JSON document of a mesh; JSON.stringify',
+                ours: 'json_print',
+                ...rate('MB/s'),
+                target: [['node', 1.5]],
+            },
+        ],
+    },
+];

@@ -1,0 +1,131 @@
+#include "bench/side/side.h"
+
+#include <malloc.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+double bench_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+size_t bench_heap_bytes(void)
+{
+    struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+/* A line of /proc/self/status in bytes. */
+static size_t status_bytes(const char *name)
+{
+    char line[256];
+    size_t bytes = 0, length = strlen(name);
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file != NULL && bytes == 0 && fgets(line, sizeof line, file) != NULL) {
+        if (strncmp(line, name, length) == 0) {
+            bytes = 1024 * (size_t)strtoul(line + length, NULL, 10);
+        }
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+    return bytes;
+}
+
+size_t bench_resident_bytes(void)
+{
+    return status_bytes("VmRSS:");
+}
+
+size_t bench_peak_bytes(void)
+{
+    return status_bytes("VmHWM:");
+}
+
+void bench_reset_peak(void)
+{
+    FILE *file = fopen("/proc/self/clear_refs", "w");
+    if (file == NULL || fputs("5", file) == EOF || fclose(file) != 0) {
+        fprintf(stderr, "the peak of memory cannot be reset here\n");
+        exit(1);
+    }
+}
+
+void bench_path(const bench_side *side, const char *name, char *path, size_t size)
+{
+    snprintf(path, size, "%s/%s", side->folder, name);
+}
+
+void bench_exact(bench_result *out, uint64_t exact)
+{
+    out->exact = exact;
+    out->has_exact = true;
+}
+
+void bench_near(bench_result *out, double near)
+{
+    out->near = near;
+    out->has_near = true;
+}
+
+uint64_t bench_counts(uint64_t faces_hash, uint64_t vertices, uint64_t edges, uint64_t faces)
+{
+    const uint64_t odd = 0x9E3779B97F4A7C15u;
+    return ((faces_hash * odd + vertices) * odd + edges) * odd + faces;
+}
+
+static const bench_row *find(const bench_row *const *tables, const char *name)
+{
+    for (; *tables != NULL; tables++) {
+        for (const bench_row *row = *tables; row->name != NULL; row++) {
+            if (strcmp(row->name, name) == 0) {
+                return row;
+            }
+        }
+    }
+    return NULL;
+}
+
+static void answer(const bench_row *row, bench_side *side)
+{
+    bench_result result = {0};
+    if (row == NULL) {
+        printf("unknown\n");
+        return;
+    }
+    row->run(side, &result);
+    printf("%.9g %.17g ", result.value, result.amount);
+    if (result.has_exact) {
+        printf("%016llx ", (unsigned long long)result.exact);
+    } else {
+        printf("- ");
+    }
+    if (result.has_near) {
+        printf("%.17g\n", result.near);
+    } else {
+        printf("-\n");
+    }
+}
+
+int bench_serve(int argc, char **argv, const bench_row *const *tables)
+{
+    char line[64];
+    bench_side side = {0};
+    if (argc != 5) {
+        fprintf(stderr, "usage: %s INPUT natural|shuffled SIDE FOLDER\n", argv[0]);
+        return 2;
+    }
+    bench_input_make(argv[1], strcmp(argv[2], "shuffled") == 0,
+                     (uint32_t)strtoul(argv[3], NULL, 10), &side.input);
+    side.folder = argv[4];
+    while (fgets(line, sizeof line, stdin) != NULL) {
+        line[strcspn(line, "\n")] = '\0';
+        answer(find(tables, line), &side);
+        fflush(stdout);
+    }
+    return 0;
+}

@@ -1,0 +1,58 @@
+/* side.h - one side of the bench: a program that answers the driver, compare.mjs.
+ *
+ *     PROGRAM INPUT natural|shuffled SIDE FOLDER
+ *
+ * makes its input and then, for each line `ROW` on its standard input, runs that row once and
+ * prints
+ *
+ *     VALUE AMOUNT EXACT NEAR
+ *
+ * VALUE is what was measured (seconds of processor time, or bytes), AMOUNT the elements it is for,
+ * EXACT a hash that all sides must share, NEAR a number that they must share up to the row's
+ * tolerance; "-" stands for one that the row does not have. A row that this side does not know is
+ * answered by `unknown`. Files are found and left in FOLDER. */
+#ifndef TESTS_BENCH_SIDE_SIDE_H
+#define TESTS_BENCH_SIDE_SIDE_H
+
+#include "bench/side/input.h"
+
+typedef struct bench_result {
+    double value, amount, near;
+    uint64_t exact;
+    bool has_exact, has_near;
+} bench_result;
+
+/* What a row is run with. `mesh` is the program's own, kept between rows. */
+typedef struct bench_side {
+    bench_input input;
+    const char *folder;
+    void *mesh;
+} bench_side;
+
+typedef struct bench_row {
+    const char *name;
+    void (*run)(bench_side *side, bench_result *out);
+} bench_row;
+
+/* The main program. `tables` and each table end with a row, and a table, of NULL. */
+int bench_serve(int argc, char **argv, const bench_row *const *tables);
+
+/* Seconds of this program's processor time: what other programs take does not count. */
+double bench_seconds(void);
+
+/* Bytes the heap has given out, and those resident; bench_reset_peak makes the peak begin anew. */
+size_t bench_heap_bytes(void);
+size_t bench_resident_bytes(void);
+size_t bench_peak_bytes(void);
+void bench_reset_peak(void);
+
+/* The path of a file in the folder, of at most `size` bytes. */
+void bench_path(const bench_side *side, const char *name, char *path, size_t size);
+
+/* Set what the sides compare. */
+void bench_exact(bench_result *out, uint64_t exact);
+void bench_near(bench_result *out, double near);
+/* Counts of vertices, edges and faces, folded into a hash. */
+uint64_t bench_counts(uint64_t faces_hash, uint64_t vertices, uint64_t edges, uint64_t faces);
+
+#endif

@@ -1,0 +1,61 @@
+"""daemon.py - a daemon of one's own, and its answers."""
+import http.client
+import json
+import re
+import subprocess
+import urllib.parse
+
+
+class Daemon:
+    """Started on a free port; stopped at the end of the `with` block."""
+
+    def __init__(self, program):
+        self.process = subprocess.Popen([program, '--listen', '127.0.0.1:0'],
+                                        stderr=subprocess.PIPE, text=True)
+        line = ''
+        while 'listening on ' not in line:
+            line = self.process.stderr.readline()
+            if line == '':
+                raise RuntimeError('the daemon does not start')
+        u = urllib.parse.urlsplit(re.search(r'http://\S+', line)[0])
+        self.connection = http.client.HTTPConnection(u.hostname, u.port, timeout=60)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.connection.close()
+        self.process.terminate()
+        _, said = self.process.communicate()
+        self.status = self.process.returncode
+        if self.status != 0:
+            print(said)
+
+    def send(self, method, path, body=None):
+        """The status and the bytes. A connection that the daemon has closed is opened again."""
+        for again in (True, False):
+            try:
+                self.connection.request(method, path, body,
+                                        {'Content-Type': 'application/octet-stream'})
+                r = self.connection.getresponse()
+                return r.status, r.read()
+            except (BrokenPipeError, ConnectionResetError, http.client.RemoteDisconnected):
+                self.connection.close()
+                if not again:
+                    raise
+        return None
+
+    def create(self, kind, body, repair=None):
+        path = '/v1/meshes?format=' + kind + ('&repair=' + ','.join(repair) if repair else '')
+        status, text = self.send('POST', path, body)
+        return status, json.loads(text)
+
+    def delete(self, mesh):
+        self.send('DELETE', '/v1/meshes/' + mesh)
+
+    def read(self, kind, body, repair=None):
+        """What it says about a file, which it then forgets."""
+        status, answer = self.create(kind, body, repair)
+        if status == 201:
+            self.delete(answer['id'])
+        return status, answer

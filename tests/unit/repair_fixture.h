@@ -1,0 +1,121 @@
+/* repair_fixture.h - soups repaired, and what holds of every one that was. Included once per
+ * program. */
+#ifndef TESTS_UNIT_REPAIR_FIXTURE_H
+#define TESTS_UNIT_REPAIR_FIXTURE_H
+
+#include "unit/fixture.h"
+
+#include "mesh/pair.h"
+#include "repair/repair.h"
+
+enum { ALL = (1 << HE_REPAIR_COUNT) - 1 };
+
+#define WELD       (1u << HE_REPAIR_WELD)
+#define DEGENERATE (1u << HE_REPAIR_DROP_DEGENERATE)
+#define DUPLICATES (1u << HE_REPAIR_DROP_DUPLICATES)
+#define ORIENT     (1u << HE_REPAIR_ORIENT)
+#define SPLIT      (1u << HE_REPAIR_SPLIT)
+#define FILL       (1u << HE_REPAIR_FILL)
+
+static inline he_repair_plan plan_of(unsigned which)
+{
+    return (he_repair_plan){.which = which, .hole_edges = 8};
+}
+
+/* A soup from another one's faces, whose attributes say their own row. */
+static inline void copy_soup(const he_soup *from, he_soup *to)
+{
+    static const he_kind domains[] = {HE_VERTEX, HE_FACE, HE_HALFEDGE};
+    const size_t rows[] = {from->vertex_count, from->face_count, from->corner_count};
+    he_soup_init(to, NULL);
+    for (size_t v = 0; v < from->vertex_count; v++) {
+        assert_int_equal(he_soup_add_vertex(to, from->positions[v], NULL), HE_OK);
+    }
+    for (size_t f = 0; f < from->face_count; f++) {
+        uint32_t begin = from->starts[f], end = he_soup_end(from, f);
+        assert_int_equal(he_soup_add_face(to, from->corners + begin, end - begin, NULL), HE_OK);
+    }
+    for (size_t i = 0; i < 3; i++) {
+        he_column *column;
+        assert_int_equal(
+            he_soup_column(to, "row", domains[i], HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+        assert_int_equal(he_column_extend(column, rows[i], NULL), HE_OK);
+        for (uint32_t row = 0; row < rows[i]; row++) {
+            memcpy(he_column_row(column, row), &row, sizeof row);
+        }
+    }
+}
+
+static inline uint32_t value(const he_soup *soup, size_t column, size_t row)
+{
+    uint32_t out;
+    memcpy(&out, he_column_value(soup->columns[column], row), sizeof out);
+    return out;
+}
+
+static inline const he_repair_account *account(const he_repaired *done, he_repair repair)
+{
+    return &done->accounts[repair];
+}
+
+/* Attributes went with what they belong to, and every corner is at the vertex it was at, or at the
+ * one that this was welded to. */
+static inline void expect_carried(const he_soup *before, const he_soup *after,
+                                  const he_repaired *done, bool welded)
+{
+    for (uint32_t v = 0; v < after->vertex_count; v++) {
+        uint32_t from = done->vertex_from == NULL ? v : done->vertex_from[v];
+        assert_int_equal(value(after, 0, v), from);
+        assert_memory_equal(&after->positions[v], &before->positions[from], sizeof(he_vec3));
+    }
+    for (uint32_t f = 0; f < after->face_count; f++) {
+        uint32_t from = done->face_from == NULL ? f : done->face_from[f];
+        assert_int_equal(value(after, 1, f), from);
+        assert_int_equal(he_soup_end(after, f) - after->starts[f],
+                         he_soup_end(before, from) - before->starts[from]);
+        assert_int_equal(value(after, 2, after->starts[f]), before->starts[from]);
+        for (uint32_t c = after->starts[f]; c < he_soup_end(after, f); c++) {
+            uint32_t corner = value(after, 2, c);
+            uint32_t v = after->corners[c];
+            assert_int_equal(he_soup_face_of(before, corner), from);
+            if (!welded) {
+                assert_int_equal(before->corners[corner],
+                                 done->vertex_from == NULL ? v : done->vertex_from[v]);
+            }
+        }
+    }
+}
+
+/* Repaired, built and checked; freed by the caller. */
+static inline he_mesh *mend(const he_soup *soup, const he_repair_plan *plan, he_repaired *done)
+{
+    he_soup copy;
+    he_mesh *mesh = NULL;
+    he_error err = {0};
+    copy_soup(soup, &copy);
+    if (he_repair_soup(&copy, plan, done, &err) != HE_OK) {
+        fail_msg("%s", err.text);
+    }
+    expect_carried(soup, &copy, done, (plan->which & WELD) != 0);
+    if (he_build(&copy, HE_BUILD_TAKE, &mesh, NULL, &err) != HE_OK) {
+        fail_msg("%s", err.text);
+    }
+    if (he_repair_mesh(mesh, plan, done, &err) != HE_OK) {
+        fail_msg("%s", err.text);
+    }
+    fixture_check(mesh);
+    he_soup_clear(&copy);
+    return mesh;
+}
+
+static inline he_mesh *mend_faces(const char *faces, unsigned which, he_repaired *done)
+{
+    he_soup soup;
+    he_repair_plan plan = plan_of(which);
+    fixture_soup(&soup, faces);
+    he_mesh *mesh = mend(&soup, &plan, done);
+    he_soup_clear(&soup);
+    return mesh;
+}
+
+#endif

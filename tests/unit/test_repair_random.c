@@ -1,0 +1,372 @@
+/* Repairs beside obvious checks, on soups of every kind. SEED=n in the environment repeats a run.
+ */
+#include "repair_fixture.h"
+
+#include "model/random.h"
+#include "query/topology.h"
+
+#include <math.h>
+
+static uint64_t seed(void)
+{
+    const char *text = getenv("SEED");
+    uint64_t out = text == NULL ? 1 : strtoull(text, NULL, 10);
+    print_message("SEED=%llu\n", (unsigned long long)out);
+    return out;
+}
+
+/* --- welding --- */
+
+static bool is_near(he_vec3 a, he_vec3 b, double tolerance)
+{
+    double x = fabs(a.x - b.x), y = fabs(a.y - b.y), z = fabs(a.z - b.z);
+    if (x > tolerance || y > tolerance || z > tolerance) {
+        return false;
+    }
+    return tolerance == 0 || x / tolerance * (x / tolerance) + y / tolerance * (y / tolerance) +
+                                     z / tolerance * (z / tolerance) <=
+                                 1;
+}
+
+/* As the header says it, comparing each with each. */
+static void expect_welded(const he_soup *soup, double tolerance)
+{
+    he_soup copy;
+    he_repaired done = {0};
+    he_repair_plan plan = {.which = WELD, .tolerance = tolerance};
+    copy_soup(soup, &copy);
+    assert_int_equal(he_repair_soup(&copy, &plan, &done, NULL), HE_OK);
+    expect_carried(soup, &copy, &done, true);
+    uint32_t *kept = calloc(soup->vertex_count + 1, sizeof *kept), count = 0;
+    uint32_t *into = calloc(soup->vertex_count + 1, sizeof *into);
+    assert_true(kept != NULL && into != NULL);
+    for (uint32_t v = 0; v < soup->vertex_count; v++) {
+        uint32_t k = 0;
+        while (k < count && !is_near(soup->positions[kept[k]], soup->positions[v], tolerance)) {
+            k++;
+        }
+        into[v] = k;
+        if (k == count) {
+            kept[count++] = v;
+        }
+    }
+    assert_int_equal(copy.vertex_count, count);
+    assert_int_equal(account(&done, HE_REPAIR_WELD)->count, soup->vertex_count - count);
+    for (uint32_t v = 0; v < count && done.vertex_from != NULL; v++) {
+        assert_int_equal(done.vertex_from[v], kept[v]);
+    }
+    for (size_t c = 0; c < soup->corner_count; c++) {
+        assert_int_equal(copy.corners[c], into[soup->corners[c]]);
+    }
+    for (size_t i = 0; i < account(&done, HE_REPAIR_WELD)->named; i++) {
+        he_repair_pair pair = account(&done, HE_REPAIR_WELD)->pairs[i];
+        assert_int_equal(into[pair.a], pair.b);
+    }
+    free(kept);
+    free(into);
+    he_repaired_clear(&done);
+    he_soup_clear(&copy);
+}
+
+static void welding_is_what_comparing_all_would_do(void **state)
+{
+    (void)state;
+    static const double scales[] = {1, 1e-300, 1e300, 1e-3, 0x1p50, 0x1p47, 0x1p53};
+    static const double tolerances[] = {0, 1, 0.3, 1e-300, 1e290, 0x1p-60, 1.7e308, 5e-324};
+    md_random random = {seed()};
+    for (size_t round = 0; round < 400; round++) {
+        he_soup soup;
+        he_soup_init(&soup, NULL);
+        double scale = scales[md_below(&random, 7)];
+        double step = round % 2 == 0 ? 0.25 : 0.1;
+        size_t count = md_below(&random, 60);
+        for (size_t v = 0; v < count; v++) {
+            double p[3];
+            for (size_t i = 0; i < 3; i++) {
+                p[i] = ((double)md_below(&random, 9) - 4) * step * scale;
+                p[i] = md_below(&random, 4) == 0 ? nextafter(p[i], 1e308) : p[i];
+                p[i] = md_below(&random, 8) == 0 ? -0.0 : p[i];
+            }
+            assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){p[0], p[1], p[2]}, NULL), HE_OK);
+        }
+        for (uint32_t v = 0; v + 2 < count; v++) {
+            const uint32_t corners[] = {v, v + 1, v + 2};
+            assert_int_equal(he_soup_add_face(&soup, corners, 3, NULL), HE_OK);
+        }
+        for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
+            expect_welded(&soup, tolerances[t]);
+            expect_welded(&soup, tolerances[t] * scale < 1.7e308 ? tolerances[t] * scale : 1);
+        }
+        he_soup_clear(&soup);
+    }
+}
+
+/* --- soups of every kind --- */
+
+/* Faces over few vertices: mostly triangles that walk on from the one before. */
+static void random_soup(md_random *random, he_soup *soup)
+{
+    uint32_t vertices = 3 + md_below(random, 8), corners[8] = {0, 1, 2};
+    size_t faces = md_below(random, 24);
+    bool is_tame = md_below(random, 2) == 0;
+    he_soup_init(soup, NULL);
+    for (uint32_t v = 0; v < vertices; v++) {
+        he_vec3 p = {(double)md_below(random, 3), (double)md_below(random, 3), 0};
+        assert_int_equal(he_soup_add_vertex(soup, p, NULL), HE_OK);
+    }
+    for (size_t f = 0; f < faces; f++) {
+        size_t degree = 3;
+        if (!is_tame && md_below(random, 3) == 0) {
+            degree = md_below(random, 8);
+        }
+        uint32_t turn = md_below(random, 3);
+        uint32_t a = corners[turn], b = corners[(turn + 1) % 3];
+        corners[0] = md_below(random, 2) == 0 ? a : b;
+        corners[1] = corners[0] == a ? b : a;
+        for (size_t i = 2; i < degree; i++) {
+            corners[i] = md_below(random, vertices);
+            for (size_t k = 0; is_tame && k < 2; k++) {
+                if (corners[i] == corners[k]) {
+                    corners[i] = (corners[i] + 1) % vertices;
+                    k = (size_t)-1;
+                }
+            }
+        }
+        if (md_below(random, 12) == 0 && soup->corner_count > 0) {
+            size_t again = md_below(random, (uint32_t)soup->face_count);
+            degree = he_soup_end(soup, again) - soup->starts[again];
+            memcpy(corners, soup->corners + soup->starts[again], degree * sizeof *corners);
+        }
+        assert_int_equal(he_soup_add_face(soup, corners, degree, NULL), HE_OK);
+    }
+}
+
+static bool is_degenerate(const he_soup *soup, size_t f)
+{
+    uint32_t begin = soup->starts[f], end = he_soup_end(soup, f);
+    for (uint32_t a = begin; a < end; a++) {
+        for (uint32_t b = a + 1; b < end; b++) {
+            if (soup->corners[a] == soup->corners[b]) {
+                return true;
+            }
+        }
+    }
+    return end - begin < 3;
+}
+
+/* Turned to any corner, either way round. */
+static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
+{
+    uint32_t n = he_soup_end(soup, f) - soup->starts[f];
+    const uint32_t *a = soup->corners + soup->starts[f], *b = soup->corners + soup->starts[g];
+    bool found = false;
+    if (he_soup_end(soup, g) - soup->starts[g] != n) {
+        return false;
+    }
+    for (uint32_t from = 0; from < n && !found; from++) {
+        bool same = true, back = true;
+        for (uint32_t i = 0; i < n; i++) {
+            same = same && a[i] == b[(from + i) % n];
+            back = back && a[i] == b[(from + n - i) % n];
+        }
+        found = same || back;
+    }
+    return found;
+}
+
+static void expect_dropped(const he_soup *soup)
+{
+    he_soup copy;
+    he_repaired done = {0};
+    he_repair_plan plan = plan_of(DEGENERATE | DUPLICATES);
+    copy_soup(soup, &copy);
+    assert_int_equal(he_repair_soup(&copy, &plan, &done, NULL), HE_OK);
+    expect_carried(soup, &copy, &done, false);
+    size_t kept = 0, degenerate = 0;
+    for (size_t f = 0; f < soup->face_count; f++) {
+        bool gone = is_degenerate(soup, f);
+        degenerate += gone;
+        for (size_t g = 0; g < f && !gone; g++) {
+            gone = !is_degenerate(soup, g) && are_duplicates(soup, f, g);
+        }
+        if (!gone) {
+            assert_true(kept < copy.face_count);
+            assert_int_equal(done.face_from == NULL ? kept : done.face_from[kept], f);
+            kept++;
+        }
+    }
+    assert_int_equal(kept, copy.face_count);
+    assert_int_equal(account(&done, HE_REPAIR_DROP_DEGENERATE)->count, degenerate);
+    assert_int_equal(account(&done, HE_REPAIR_DROP_DUPLICATES)->count,
+                     soup->face_count - degenerate - kept);
+    he_repaired_clear(&done);
+    he_soup_clear(&copy);
+}
+
+/* How often faces run along a-b in each direction. */
+static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up, unsigned *down)
+{
+    *up = *down = 0;
+    for (size_t f = 0; f < soup->face_count; f++) {
+        uint32_t end = he_soup_end(soup, f);
+        for (uint32_t c = soup->starts[f]; c < end; c++) {
+            uint32_t next = soup->corners[c + 1 < end ? c + 1 : soup->starts[f]];
+            *up += soup->corners[c] == a && next == b;
+            *down += soup->corners[c] == b && next == a;
+        }
+    }
+}
+
+/* Is there a way of turning the faces so that those of edges with two agree? Twice the faces, kept
+ * and turned, in classes: a face must not be in the class of its own turned self. */
+static bool is_orientable(const he_soup *soup)
+{
+    size_t n = soup->face_count;
+    uint32_t *class = calloc(2 * n + 1, sizeof *class);
+    assert_non_null(class);
+    for (uint32_t i = 0; i < 2 * n; i++) {
+        class[i] = i;
+    }
+    for (size_t c = 0; c < soup->corner_count; c++) {
+        for (size_t d = 0; d < c; d++) {
+            uint32_t f = he_soup_face_of(soup, c), g = he_soup_face_of(soup, d);
+            uint32_t a = soup->corners[c], x = soup->corners[d];
+            uint32_t b = soup->corners[c + 1 < he_soup_end(soup, f) ? c + 1 : soup->starts[f]];
+            uint32_t y = soup->corners[d + 1 < he_soup_end(soup, g) ? d + 1 : soup->starts[g]];
+            unsigned up, down;
+            bool same = a == x && b == y;
+            if (!same && !(a == y && b == x)) {
+                continue;
+            }
+            count_runs(soup, a, b, &up, &down);
+            for (uint32_t side = 0; side < 2 && up + down == 2; side++) {
+                uint32_t p = class[f + n * side], q = class[g + n * (side ^ same)];
+                for (size_t i = 0; i < 2 * n; i++) {
+                    class[i] = class[i] == q ? p : class[i];
+                }
+            }
+        }
+    }
+    bool good = true;
+    for (size_t f = 0; f < n; f++) {
+        good = good && class[f] != class[f + n];
+    }
+    free(class);
+    return good;
+}
+
+static void expect_oriented(const he_soup *soup)
+{
+    he_soup copy;
+    he_repaired done = {0};
+    he_repair_plan plan = plan_of(DEGENERATE | ORIENT);
+    copy_soup(soup, &copy);
+    he_status status = he_repair_soup(&copy, &plan, &done, NULL);
+    if (status == HE_OK) {
+        expect_carried(soup, &copy, &done, false);
+        assert_true(is_orientable(&copy));
+        for (uint32_t a = 0; a < copy.vertex_count; a++) {
+            for (uint32_t b = 0; b < a; b++) {
+                unsigned up, down;
+                count_runs(&copy, a, b, &up, &down);
+                assert_true(up + down != 2 || up == 1);
+            }
+        }
+    } else {
+        assert_int_equal(status, HE_NOT_ORIENTABLE);
+        assert_false(is_orientable(&copy));
+    }
+    he_repaired_clear(&done);
+    he_soup_clear(&copy);
+}
+
+/* Splitting leaves no bow-tie, and joined what was joined by an edge of two opposite faces. */
+static void expect_split(const he_soup *soup)
+{
+    he_soup copy, again;
+    he_repaired done = {0};
+    he_ids bowties = {0};
+    he_repair_plan drop = plan_of(DEGENERATE), split = plan_of(SPLIT);
+    copy_soup(soup, &copy);
+    assert_int_equal(he_repair_soup(&copy, &drop, &done, NULL), HE_OK);
+    he_repaired_clear(&done);
+    he_mesh *mesh = mend(&copy, &split, &done);
+    assert_int_equal(he_bowties_find(mesh, &bowties, NULL), HE_OK);
+    assert_int_equal(bowties.count, 0);
+    he_repaired_clear(&done);
+    copy_soup(&copy, &again);
+    assert_int_equal(he_repair_soup(&again, &split, &done, NULL), HE_OK);
+    for (size_t f = 0; f < copy.face_count; f++) {
+        uint32_t end = he_soup_end(&copy, f);
+        for (uint32_t c = copy.starts[f]; c < end; c++) {
+            uint32_t next = c + 1 < end ? c + 1 : copy.starts[f];
+            unsigned up, down;
+            count_runs(&copy, copy.corners[c], copy.corners[next], &up, &down);
+            if (up == 1 && down == 1) {
+                count_runs(&again, again.corners[c], again.corners[next], &up, &down);
+                assert_true(up == 1 && down == 1);
+            }
+        }
+    }
+    he_mesh_free(mesh);
+    he_repaired_clear(&done);
+    he_soup_clear(&copy);
+    he_soup_clear(&again);
+}
+
+/* Whatever is asked for first: where it is refused, the set that is named then lets it pass. */
+static void expect_advice(const he_soup *soup, unsigned asked)
+{
+    he_soup copy;
+    he_repaired done = {0};
+    he_mesh *mesh = NULL;
+    he_repair_plan plan = plan_of(asked);
+    unsigned which = 0;
+    copy_soup(soup, &copy);
+    he_status status = he_repair_soup(&copy, &plan, &done, NULL);
+    if (status == HE_OK) {
+        status = he_build(&copy, HE_BUILD_TAKE, &mesh, NULL, NULL);
+    }
+    he_repaired_clear(&done);
+    he_mesh_free(mesh);
+    if (status != HE_OK) {
+        assert_int_equal(he_repair_advise(&copy, asked, &which, NULL), HE_OK);
+        assert_int_equal(which & asked, asked);
+        assert_int_not_equal(which, asked);
+        plan = plan_of(which);
+        mesh = mend(soup, &plan, &done);
+        he_repaired_clear(&done);
+        he_mesh_free(mesh);
+    }
+    he_soup_clear(&copy);
+}
+
+static void soups_of_every_kind_are_mended(void **state)
+{
+    (void)state;
+    md_random random = {seed()};
+    for (size_t round = 0; round < 6000; round++) {
+        he_soup soup;
+        he_repaired done = {0};
+        random_soup(&random, &soup);
+        expect_dropped(&soup);
+        expect_oriented(&soup);
+        expect_split(&soup);
+        expect_advice(&soup, 0);
+        expect_advice(&soup, md_below(&random, ALL + 1));
+        he_repair_plan plan = plan_of(md_below(&random, ALL + 1) | DEGENERATE | SPLIT);
+        he_mesh *mesh = mend(&soup, &plan, &done);
+        he_mesh_free(mesh);
+        he_repaired_clear(&done);
+        he_soup_clear(&soup);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(welding_is_what_comparing_all_would_do),
+        cmocka_unit_test(soups_of_every_kind_are_mended),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

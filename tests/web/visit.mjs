@@ -1,0 +1,24 @@
+// visit.mjs - the page opened by a test of a file, with a daemon behind it.
+
+import { after } from 'node:test';
+
+import { launch, openPageIn, waitForFrame } from './browser.mjs';
+import { post, startDaemon } from './daemon.mjs';
+
+// One browser for all tests of a file, launched by the first that opens a page.
+let browser;
+after(async () => (await browser)?.close());
+
+export async function openPage(t, daemon, options) {
+    browser ??= launch();
+    return openPageIn(t, await browser, daemon, options);
+}
+
+// A daemon with one mesh, and the page that shows it.
+export async function openMesh(t, document, options) {
+    const daemon = await startDaemon(t);
+    const { id: mesh } = await post(daemon, '', document);
+    const page = await openPage(t, daemon, options);
+    await waitForFrame(page, { mesh, revision: 1 });
+    return { daemon, mesh, page };
+}
