@@ -15,6 +15,9 @@ int daemon_stop(daemon_process *d);
 const char *daemon_url(const daemon_process *d); /* "http://127.0.0.1:43121" */
 int daemon_port(const daemon_process *d);
 int daemon_pid(const daemon_process *d);
+/* The most memory it ever held, in bytes; seconds of processor time it has used. */
+size_t daemon_peak(const daemon_process *d);
+double daemon_cpu(const daemon_process *d);
 /* Wait until it has written `text` to stderr this many times, and give all it has written so far,
  * ended by NUL; the caller's to free. Fails the test when it ends first. */
 char *daemon_wait_log(daemon_process *d, const char *text, int times);

@@ -80,27 +80,10 @@ static void refused(daemon_process *d, const char *target, const char *coding, c
     free(request);
 }
 
-/* The most memory the daemon ever held, in bytes. */
-static size_t peak(const daemon_process *d)
-{
-    char path[64], line[128];
-    unsigned long kib = 0;
-    snprintf(path, sizeof path, "/proc/%d/status", daemon_pid(d));
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    while (fgets(line, sizeof line, file) != NULL) {
-        if (sscanf(line, "VmHWM: %lu", &kib) == 1) {
-            break;
-        }
-    }
-    fclose(file);
-    return kib * 1024;
-}
-
 /* A sanitizer's own memory is not the daemon's. */
 static void expect_rise(const daemon_process *d, size_t before, size_t most, const char *what)
 {
-    size_t rise = peak(d) - before;
+    size_t rise = daemon_peak(d) - before;
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
     print_message("note: %s: %.1f MB more at most\n", what, (double)rise / 1e6);
     assert_true(rise <= most);
@@ -138,7 +121,7 @@ static void bombs_stay_small(void **state)
     client *c = client_new(d);
     put_grid(c, "/v1/meshes/m", 10);
     for (size_t i = 0; i < 2; i++) {
-        size_t length, before = peak(d);
+        size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
         refused(d, "POST /v1/meshes", both[i], "model/obj", zeros, length, 413);
         refused(d, "POST /v1/meshes", both[i], "application/json", zeros, length, 400);
@@ -211,7 +194,7 @@ static void large_answers_are_coded_as_they_are_sent(void **state)
     put_grid(c, "/v1/meshes/m", SIDE);
     for (size_t i = 0; i < TARGETS; i++) {
         reply plain = expect(200, client_get(c, targets[i]));
-        size_t before = peak(d);
+        size_t before = daemon_peak(d);
         for (size_t k = 0; k < 2; k++) {
             char accept[60];
             snprintf(accept, sizeof accept, "Accept-Encoding: %s", both[k]);

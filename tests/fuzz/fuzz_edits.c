@@ -28,6 +28,9 @@ static void edit(api_bench *b, const char *id, const char *body, size_t size)
 void fuzz_one(const uint8_t *bytes, size_t size)
 {
     static const char *const ids[] = {"m", "cube", "bowtie"};
+    if (fuzz_service_refines(bytes, size)) {
+        return;
+    }
     api_bench *b = fuzz_service_new();
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         edit(b, ids[i], (const char *)bytes, size);

@@ -225,6 +225,9 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     for (; count < STEPS && !fuzz_at_end(&tape) && he_mesh_faces(mesh) < MOST_FACES; count++) {
         call c;
         draw(&tape, &c, mesh, other);
+        if (he_op_growth(c.op, c.args) * he_mesh_faces(mesh) > MOST_FACES) {
+            break;
+        }
         run(&c, mesh, &steps[count]);
     }
     assert_int_equal(he_mesh_copy(mesh, &end, NULL), HE_OK);

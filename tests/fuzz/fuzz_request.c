@@ -61,6 +61,9 @@ static char *send(api_bench *b, char *text, const char *end)
 void fuzz_one(const uint8_t *bytes, size_t size)
 {
     static const char *const ids[] = {"m", "cube", "bowtie", "n"};
+    if (fuzz_service_refines(bytes, size)) {
+        return;
+    }
     api_bench *b = fuzz_service_new();
     char *text = malloc(size + 1), *at = text;
     assert_non_null(text);

@@ -75,14 +75,14 @@ static void pack_and_unpack(api_coding coding, const uint8_t *bytes, size_t size
     free(packed);
 }
 
-/* In one go zlib takes one member, and libzstd blocks that are larger than RFC 8878 lets them be.
- */
+/* In one go zlib takes one member. libzstd then takes blocks that are larger than RFC 8878 lets
+ * them be, and refuses a frame of another length than it says, which in pieces it does not see
+ * where the last block is empty. */
 static void compare(api_coding coding, const uint8_t *bytes, size_t size, int code,
                     const unfolded *whole)
 {
     size_t length;
     char *plain = coding_unpack(api_coding_name(coding), bytes, size, &length);
-    FUZZ_REQUIRE(plain != NULL || coding == API_GZIP, "libzstd refuses what is taken");
     FUZZ_REQUIRE(plain == NULL || code == HE_OK, "zlib takes what is refused with %d", code);
     if (plain != NULL) {
         assert_true(length == whole->length && fuzz_hash(plain, length) == whole->hash);

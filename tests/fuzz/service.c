@@ -40,6 +40,20 @@ he_mesh *fuzz_service_mesh(api_bench *b, const char *id)
     return copy;
 }
 
+static size_t count(const char *bytes, size_t size, const char *word)
+{
+    size_t found = 0, length = strlen(word);
+    for (size_t i = 0; i + length <= size; i++) {
+        found += memcmp(bytes + i, word, length) == 0;
+    }
+    return found;
+}
+
+bool fuzz_service_refines(const void *bytes, size_t size)
+{
+    return count(bytes, size, "subdivide") > 2 || count(bytes, size, "\"steps\"") > 0;
+}
+
 int fuzz_service_send(api_bench *b, const char *method, const char *target,
                       const char *const *headers, const char *body, size_t length)
 {
