@@ -206,8 +206,12 @@ static he_status feed_any(he_lines *lines, const char *p, const char *end, he_er
 static he_status refuse_nul(const he_lines *lines, he_error *err)
 {
     bool first = lines->number == 1 && lines->joined == 0;
-    if (first && (lines->length < 2 || is_wide(lines->rest, lines->length))) {
+    if (first && is_wide(lines->rest, lines->length)) {
         return refuse_wide(lines, err);
+    }
+    if (first && lines->length < 2) {
+        return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_LINE, lines->number,
+                          "a NUL is among the first two bytes, as in UTF-16: text is UTF-8");
     }
     return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, lines->number + lines->joined,
                       "a NUL byte is in the text");

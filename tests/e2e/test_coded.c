@@ -123,7 +123,7 @@ static void bombs_stay_small(void **state)
     for (size_t i = 0; i < 2; i++) {
         size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
-        refused(d, "POST /v1/meshes", both[i], "model/obj", zeros, length, 413);
+        refused(d, "POST /v1/meshes", both[i], "model/obj", zeros, length, 422); /* by its NUL */
         refused(d, "POST /v1/meshes", both[i], "application/json", zeros, length, 400);
         refused(d, "POST /v1/meshes/m/edits", both[i], "application/json", zeros, length, 413);
         free(zeros);
