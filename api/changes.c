@@ -32,6 +32,9 @@ void api_write_results(api_out *out, const he_op *op, const he_results *results)
         case HE_RESULT_COUNTS:
             api_out_ids(out, results->list[i].ids, results->list[i].count);
             break;
+        case HE_RESULT_CHOICE:
+            api_out_string(out, op->results[i].choices[results->id[i]]);
+            break;
         case HE_RESULT_MAP:
             write_map(out, &results->list[i]);
             break;

@@ -34,6 +34,7 @@ void api_mesh_put(api_exchange *x);
 void api_mesh_delete(api_exchange *x);
 void api_content_get(api_exchange *x);
 void api_geometry_get(api_exchange *x);
+void api_progressive_get(api_exchange *x);
 void api_mesh_copy(api_exchange *x);
 
 /* Its elements: x->kind, x->id, x->relation. */

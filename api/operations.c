@@ -94,6 +94,9 @@ static void write_result(api_out *out, const he_result_row *result)
     case HE_RESULT_NUMBER:
         type = "number";
         break;
+    case HE_RESULT_CHOICE:
+        type = "choice";
+        break;
     case HE_RESULT_MAP:
         type = "map";
         break;
@@ -104,6 +107,9 @@ static void write_result(api_out *out, const he_result_row *result)
     api_out_object_begin(out);
     api_out_key_string(out, "name", result->name);
     api_out_key_string(out, "type", type);
+    if (result->choices != NULL) {
+        api_schema_choices(out, "choices", result->choices);
+    }
     api_out_key_string(out, "doc", result->doc == NULL ? "" : result->doc);
     api_out_object_end(out);
 }
@@ -405,6 +411,10 @@ static void write_result_schema(api_out *out, const he_result_row *result)
         break;
     case HE_RESULT_NUMBER:
         api_out_key_string(out, "type", "number");
+        break;
+    case HE_RESULT_CHOICE:
+        api_out_key_string(out, "type", "string");
+        api_schema_choices(out, "enum", result->choices);
         break;
     case HE_RESULT_MAP:
         write_array(out, write_nullable_id);

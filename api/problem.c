@@ -77,6 +77,7 @@ static const struct {
                              "lie between, or take the parts one after another."},
     [HE_NO_NORMAL] = {422, "The direction of a face comes from its area, and that of a region "
                            "from the sum of its faces'. Give a vector, or a factor."},
+    [HE_NOT_TRIANGLE] = {422, "Every face has to be a triangle for this: `triangulate` first."},
     [HE_ATTRIBUTE_CLASH] = {422,
                             "Attributes of one name on one kind of element must agree in type, "
                             "in the number of components and in whether they have labels. Rename "

@@ -53,6 +53,12 @@ static const api_parameter drawn = {
     "since", API_PARAM_U64,
     1,       API_MAX_EXACT,
     NULL,    "The revision of the arrays there are: send what changed. With `layout`."};
+static const api_parameter base_faces = {
+    "faces", API_PARAM_U64,
+    0,       HE_MAX_ROWS,
+    NULL,    "Faces of the base, or more where that few cannot be had; 0 when not given."};
+static const api_parameter most_splits = {
+    "splits", API_PARAM_U64, 0, HE_MAX_ROWS, NULL, "Send no more vertex splits than these."};
 static const api_parameter layout = {
     "layout", API_PARAM_U64, 1, API_MAX_EXACT, NULL, "The layout of the arrays there are."};
 static const api_parameter turning = {
@@ -258,6 +264,25 @@ static const api_route routes[] = {
          "the rows for them. The arrays are first grown with zeros to the vertices and triangles "
          "of the header. A base of 0 says that all rows are there and the arrays begin afresh: "
          "the server may answer so at any time, and does where the layout is another."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/progressive",
+     .name = "progressive_get",
+     .run = api_progressive_get,
+     .flags = API_COSTLY,
+     .produces = octets,
+     .parameters = {&base_faces, &most_splits},
+     .statuses = {200, 304, 422},
+     .summary = "A mesh from coarse to fine",
+     .doc =
+         "The mesh decimated, and the vertex splits that lead back to it with all ids: any number "
+         "of them leaves a mesh. Little-endian: \"HEDP\", u32 version 1, u64 revision, u32 "
+         "vertices, edges and faces of the base, splits here, splits there are, 0, ids issued of "
+         "vertices, edges and faces, 0, f64 x 3 least and largest coordinates; vertices (u32 id, "
+         "0, f64 x 3), edges (u32 id, origin, target, 0), faces (u32 id, three corners); then "
+         "splits: u32 bytes, new vertex u, the vertex v it leaves, left and right corner, "
+         "half-edges from u to those three, left face (u, v, left), right face (v, u, right), "
+         "number of faces in which u takes the place of v, 0, f64 x 3 places of u and of v, u32 "
+         "those faces, up to a multiple of 8 bytes. 2^32 - 1 is none."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/copy",
      .name = "mesh_copy",

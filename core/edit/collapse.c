@@ -282,6 +282,7 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     he_halfedge back_after = he_next(m, back), back_before = he_prev(m, back);
     he_vertex u = he_origin(m, h), v = he_target(m, h);
     bool left = is_triangle(m, h), right = is_triangle(m, back);
+    bool interior = !he_is_boundary_vertex(m, u) && !he_is_boundary_vertex(m, v);
     for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i;) {
         he_halfedge next = he_turn_ccw(m, k);
         he_set_origin(m, k, v);
@@ -300,11 +301,16 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     he_note_merged(m, HE_VERTEX, u.i, v.i);
     he_delete_edge(m, he_edge_of(h));
     he_delete_vertex(m, u);
-    he_ring_settle(m, v, after);
+    if (!interior) {
+        he_ring_settle(m, v, after);
+    } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
+        /* There is no boundary to turn about v for, which may have very many edges. */
+        he_set_vertex_halfedge(m, v, after);
+    }
 }
 
-he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
-                           he_vertex *vertex, he_error *err)
+static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to, double mix,
+                          he_error *err)
 {
     he_status status = check(m, h, err);
     if (status != HE_OK) {
@@ -332,9 +338,23 @@ he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *t
         return status;
     }
     /* Nothing below can fail. */
-    commit(m, h, place, to != NULL ? 0.5 : t);
-    if (vertex != NULL) {
+    commit(m, h, place, mix);
+    return HE_OK;
+}
+
+he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
+                           he_vertex *vertex, he_error *err)
+{
+    bool live = h.i < 2 * m->c.edges.issued;
+    he_vertex v = live ? he_target(m, h) : (he_vertex){HE_NONE};
+    he_status status = collapse(m, h, t, to, to != NULL ? 0.5 : t, err);
+    if (status == HE_OK && vertex != NULL) {
         *vertex = v;
     }
-    return HE_OK;
+    return status;
+}
+
+he_status he_edge_collapse_at(he_mesh *m, he_halfedge h, double t, he_vec3 to, he_error *err)
+{
+    return collapse(m, h, t, &to, t, err);
 }

@@ -49,4 +49,8 @@
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                                         he_vertex *vertex, he_error *err);
 
+/* The same, with v going to `to` and attributes taken at t. */
+HE_NODISCARD he_status he_edge_collapse_at(he_mesh *m, he_halfedge h, double t, he_vec3 to,
+                                           he_error *err);
+
 #endif

@@ -73,8 +73,9 @@ typedef enum he_result_type {
     HE_RESULT_ELEMENT,  /* one id, or null */
     HE_RESULT_ELEMENTS, /* a list of ids */
     HE_RESULT_NUMBER,
-    HE_RESULT_MAP,   /* old id -> new id, null where dead */
-    HE_RESULT_COUNTS /* how many elements, one number a step */
+    HE_RESULT_MAP,    /* old id -> new id, null where dead */
+    HE_RESULT_COUNTS, /* how many elements, one number a step */
+    HE_RESULT_CHOICE  /* one of the strings in `choices` */
 } he_result_type;
 
 typedef struct he_result_row {
@@ -82,6 +83,7 @@ typedef struct he_result_row {
     he_result_type type;
     he_kind kind;
     const char *doc;
+    const char *const *choices; /* ends in NULL */
 } he_result_row;
 
 enum { HE_OP_PARAMS = 8, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
@@ -90,7 +92,7 @@ enum { HE_OP_PARAMS = 8, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
  * clears them at last. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
-    uint32_t id[HE_OP_RESULTS];
+    uint32_t id[HE_OP_RESULTS]; /* of a choice its index */
     he_ids list[HE_OP_RESULTS];
     double number[HE_OP_RESULTS];
 } he_results;

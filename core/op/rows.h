@@ -15,11 +15,12 @@ extern const he_op he_weld_rows[];
 extern const he_op he_region_rows[];
 extern const he_op he_whole_rows[];
 extern const he_op he_refine_rows[];
+extern const he_op he_decimate_rows[];
 
 /* All rows in the order of the table. NULL past the last. */
 const he_op *he_table_row(size_t i);
 
-/* Result i of a row is one element, which may be HE_NONE. */
+/* Result i of a row is one element, which may be HE_NONE, or one choice. */
 void he_give(he_results *out, size_t i, uint32_t id);
 void he_give_number(he_results *out, size_t i, double number);
 /* Room for result i, a list of at most `count` ids: asked for before the edit, which may not fail

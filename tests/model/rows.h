@@ -21,5 +21,6 @@ extern const md_row md_corner_rows[];
 extern const md_row md_loop_rows[];
 extern const md_row md_region_rows[];
 extern const md_row md_refine_rows[];
+extern const md_row md_decimate_rows[];
 
 #endif

@@ -103,6 +103,7 @@ export const SCENARIOS = [
     ['triangulate', GRID, {}],
     ['reverse', GRID, {}],
     ['dual', CUBES, {}],
+    ['decimate', GRID, { faces: '4' }, [{ op: 'triangulate' }]],
     ['append', GRID, { mesh: 'which mesh' }],
     ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));

@@ -1,0 +1,364 @@
+#include "algo/decimate.h"
+
+#include "algo/decimation.h"
+#include "mesh/marks.h"
+#include "mesh/write.h"
+#include "query/scale.h"
+
+const char *const he_decimate_stop_names[HE_STOP_COUNT + 1] = {"faces", "max_error", "exhausted",
+                                                               NULL};
+
+static he_status check(const he_mesh *m, const he_decimate_options *options, he_error *err)
+{
+    if (!(options->max_error >= 0)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "max_error must be at least 0, not %g",
+                             options->max_error);
+    }
+    if (!(options->boundary_weight >= 0 && isfinite(options->boundary_weight))) {
+        return he_fail_plain(err, HE_BAD_VALUE, "boundary_weight must be at least 0, not %g",
+                             options->boundary_weight);
+    }
+    for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        if (!he_face_is_live(m, (he_face){f})) {
+            continue;
+        }
+        he_halfedge h = he_face_halfedge(m, (he_face){f});
+        if (he_next(m, he_next(m, h)).i != he_prev(m, h).i) {
+            return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
+                           "face %u has more than three corners: triangulate first", f);
+        }
+    }
+    return HE_OK;
+}
+
+he_vec3 he_decimation_inside(const he_decimation *d, he_vec3 outside)
+{
+    he_vec3 p = he_vec3_sub(outside, d->middle);
+    return he_vec3_scale(p, d->inward);
+}
+
+static void find_frame(he_decimation *d)
+{
+    const he_mesh *m = d->mesh;
+    he_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        if (he_vertex_is_live(m, (he_vertex){v})) {
+            he_vec3 p = m->c.position[v];
+            low = (he_vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
+            high = (he_vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
+        }
+    }
+    if (!(low.x <= high.x)) {
+        low = high = (he_vec3){0, 0, 0};
+    }
+    d->middle = he_vec3_add(he_vec3_scale(low, 0.5), he_vec3_scale(high, 0.5));
+    he_vec3 half = he_vec3_sub(he_vec3_scale(high, 0.5), he_vec3_scale(low, 0.5));
+    d->exponent = he_exponent_of(he_vec3_extent(half));
+    d->inward = ldexp(1, -d->exponent);
+}
+
+static void count_feature(const he_decimation *d, he_edge e, uint32_t vertex)
+{
+    he_node *node = &d->nodes[vertex];
+    if (d->feature != NULL && *he_column_value(d->feature, e.i) != 0 && node->features < 3) {
+        node->features++;
+    }
+}
+
+/* The plane through the edge of h that stands upright on the face to its left, whose normal is
+ * given. */
+static void add_wall(const he_decimation *d, he_halfedge h, he_vec3 normal)
+{
+    he_node *a = &d->nodes[he_origin(d->mesh, h).i], *b = &d->nodes[he_target(d->mesh, h).i];
+    he_vec3 along = he_vec3_sub(b->place, a->place), out;
+    if (he_vec3_normalise(he_vec3_cross(along, normal), &out)) {
+        double weight = d->boundary_weight * he_vec3_dot(along, along);
+        he_quadric_add_plane(&a->quadric, out, weight);
+        he_quadric_add_plane(&b->quadric, out, weight);
+    }
+}
+
+static void weigh_face(const he_decimation *d, he_face f)
+{
+    const he_mesh *m = d->mesh;
+    he_halfedge h = he_face_halfedge(m, f);
+    he_node *corner[3];
+    for (unsigned i = 0; i < 3; i++) {
+        corner[i] = &d->nodes[he_origin(m, h).i];
+        h = he_next(m, h);
+    }
+    he_vec3 normal = he_vec3_cross(he_vec3_sub(corner[1]->place, corner[0]->place),
+                                   he_vec3_sub(corner[2]->place, corner[0]->place));
+    double area = 0.5 * he_vec3_length(normal);
+    if (!he_vec3_normalise(normal, &normal)) {
+        return;
+    }
+    for (unsigned i = 0; i < 3; i++) {
+        he_edge e = he_edge_of(h);
+        he_quadric_add_plane(&corner[i]->quadric, normal, area);
+        if (he_is_boundary_edge(m, e) ||
+            (d->feature != NULL && *he_column_value(d->feature, e.i) != 0)) {
+            add_wall(d, h, normal);
+        }
+        h = he_next(m, h);
+    }
+}
+
+static void heed_locks(const he_decimation *d, const he_marks *marks)
+{
+    const he_mesh *m = d->mesh;
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        if (he_is_locked(marks, HE_VERTEX, v)) {
+            d->flags[v] |= HE_NODE_LOCKED;
+        }
+    }
+    for (uint32_t i = 0; i < 2 * m->c.edges.issued; i++) {
+        he_halfedge h = {i};
+        if (!he_edge_is_live(m, he_edge_of(h))) {
+            continue;
+        }
+        uint32_t face = he_face_of(m, h).i;
+        if (he_is_locked(marks, HE_EDGE, i >> 1) ||
+            (face != HE_NONE && he_is_locked(marks, HE_FACE, face))) {
+            d->flags[he_origin(m, h).i] |= HE_NODE_HELD;
+            d->flags[he_target(m, h).i] |= HE_NODE_HELD;
+        }
+    }
+}
+
+static he_status weigh(he_decimation *d, he_error *err)
+{
+    const he_mesh *m = d->mesh;
+    he_marks marks;
+    he_status status = he_watch_phase(m->watch, "weighing faces", 0.15, err);
+    find_frame(d);
+    if (he_marks_find(m, &marks)) {
+        d->feature = marks.feature;
+        heed_locks(d, &marks);
+    }
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        d->nodes[v].place = he_decimation_inside(d, m->c.position[v]);
+    }
+    for (uint32_t h = 0; h < 2 * m->c.edges.issued; h++) {
+        if (he_edge_is_live(m, (he_edge){h >> 1})) {
+            d->nodes[m->c.origin[h]].degree++;
+            count_feature(d, (he_edge){h >> 1}, m->c.origin[h]);
+        }
+    }
+    for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
+        status = he_watch_at(m->watch, f, m->c.faces.issued, err);
+        if (he_face_is_live(m, (he_face){f})) {
+            weigh_face(d, (he_face){f});
+        }
+    }
+    return status;
+}
+
+static he_status fill_queue(he_decimation *d, he_error *err)
+{
+    const he_mesh *m = d->mesh;
+    uint32_t issued = m->c.edges.issued;
+    he_status status = he_watch_phase(m->watch, "costing edges", 0.3, err);
+    for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
+        status = he_watch_at(m->watch, e, issued, err);
+        if (he_edge_is_live(m, (he_edge){e})) {
+            he_decimation_put(d, (he_edge){e});
+        }
+    }
+    return status;
+}
+
+static uint32_t stamp_of(const he_decimation *d, he_edge e)
+{
+    return d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 0)).i].stamp +
+           d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 1)).i].stamp;
+}
+
+/* Edge e was first. */
+static he_status collapse_one(he_decimation *d, he_edge e, he_error *err)
+{
+    uint32_t *stamp = &d->stamps[e.i];
+    he_candidate what;
+    if (*stamp != stamp_of(d, e)) {
+        he_decimation_put(d, e);
+        return HE_OK;
+    }
+    if (!he_decimation_cost(d, e, &what)) {
+        he_decimation_put_aside(d, e);
+        return HE_OK;
+    }
+    if (what.error > d->most) {
+        *stamp = HE_STAMP_DEAR;
+        return HE_OK;
+    }
+    he_status status = he_decimation_collapse(d, &what);
+    if (status == HE_NO_MEMORY) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to collapse edge %u", e.i);
+    }
+    if (status != HE_OK) {
+        he_decimation_put_aside(d, e);
+    }
+    return HE_OK;
+}
+
+/* Ask for what tells where the ends of edges are, and what they are. */
+static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        __builtin_prefetch(&d->mesh->c.origin[2 * (size_t)edges[i]]);
+        __builtin_prefetch(&d->stamps[edges[i]]);
+    }
+}
+
+static void ask_for_ends(const he_decimation *d, uint32_t edge)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        uint32_t end = d->mesh->c.origin[2 * (size_t)edge + i];
+        if (end != HE_DEAD) {
+            __builtin_prefetch((const char *)&d->nodes[end]);
+            __builtin_prefetch((const char *)&d->nodes[end] + 64);
+        }
+    }
+}
+
+enum { AHEAD = 4 };
+
+/* Edges that were first. Stops at so many faces. */
+static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t count,
+                               uint32_t faces, he_error *err)
+{
+    const he_mesh *m = d->mesh;
+    he_status status = HE_OK;
+    ask_for_edges(d, edges, count);
+    for (uint32_t i = 0; i < AHEAD && i < count; i++) {
+        ask_for_ends(d, edges[i]);
+    }
+    for (uint32_t i = 0; i < count && he_mesh_faces(m) > faces && status == HE_OK; i++) {
+        if (i + AHEAD < count) {
+            ask_for_ends(d, edges[i + AHEAD]);
+        }
+        if (he_edge_is_live(m, (he_edge){edges[i]})) {
+            status = collapse_one(d, (he_edge){edges[i]}, err);
+        }
+    }
+    return status;
+}
+
+enum { TAKES_PER_LOOK = 256 };
+
+static he_status collapse_all(he_decimation *d, uint32_t faces, he_error *err)
+{
+    const he_mesh *m = d->mesh;
+    uint32_t before = he_mesh_faces(m);
+    he_status status = he_watch_phase(m->watch, "collapsing edges", 1, err);
+    for (uint64_t step = 0; status == HE_OK && he_mesh_faces(m) > faces; step++) {
+        uint32_t edges[HE_QUEUE_CHUNK], count = he_queue_take(&d->queue, edges);
+        if (count == 0) {
+            break;
+        }
+        if (step % TAKES_PER_LOOK == 0) {
+            status = he_watch_step(m->watch, before - he_mesh_faces(m), before - faces, err);
+        }
+        if (status == HE_OK) {
+            status = collapse_some(d, edges, count, faces, err);
+        }
+    }
+    return status;
+}
+
+static he_decimate_stop find_stop(const he_decimation *d, uint32_t faces)
+{
+    const he_mesh *m = d->mesh;
+    if (he_mesh_faces(m) <= faces) {
+        return HE_STOP_FACES;
+    }
+    for (uint32_t e = 0; e < m->c.edges.issued; e++) {
+        if (he_edge_is_live(m, (he_edge){e}) && d->stamps[e] == HE_STAMP_DEAR) {
+            return HE_STOP_ERROR;
+        }
+    }
+    return HE_STOP_EXHAUSTED;
+}
+
+static he_status run(he_mesh *m, const he_decimate_options *options, he_progressive *log,
+                     he_merges *merges, he_decimated *out, he_error *err)
+{
+    he_decimation d = {.mesh = m, .log = log, .merges = merges};
+    d.boundary_weight = options->boundary_weight;
+    d.nodes = he_mem_zero(m->c.vertices.issued, sizeof *d.nodes);
+    d.flags = he_mem_zero(m->c.vertices.issued, sizeof *d.flags);
+    d.stamps = he_mem_zero(m->c.edges.issued, sizeof *d.stamps);
+    he_status status = he_queue_init(&d.queue, m->c.edges.live, err);
+    if (status != HE_OK) {
+        goto out;
+    }
+    if (d.nodes == NULL || d.flags == NULL || d.stamps == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to weigh the faces");
+        goto out;
+    }
+    status = weigh(&d, err);
+    d.most = ldexp(options->max_error, -d.exponent);
+    if (status == HE_OK) {
+        status = fill_queue(&d, err);
+    }
+    if (status == HE_OK) {
+        status = collapse_all(&d, options->faces, err);
+    }
+    if (status == HE_OK) {
+        *out = (he_decimated){find_stop(&d, options->faces), ldexp(d.error, d.exponent)};
+    }
+out:
+    he_mem_free(d.nodes);
+    he_mem_free(d.flags);
+    he_mem_free(d.stamps);
+    he_queue_clear(&d.queue);
+    return status;
+}
+
+he_status he_decimation_run(he_mesh *m, const he_decimate_options *options, he_progressive *log,
+                            he_decimated *out, he_error *err)
+{
+    he_status status = check(m, options, err);
+    return status == HE_OK ? run(m, options, log, NULL, out, err) : status;
+}
+
+static he_status finish(he_mesh *m, he_mesh **copy, const he_merges *merges, bool replace,
+                        he_error *err)
+{
+    if (!replace) {
+        return he_decimation_write(m, *copy, merges, err);
+    }
+    he_status status = he_mesh_replace(m, *copy, HE_KEEPS_IDS, err);
+    if (status == HE_OK) {
+        *copy = NULL;
+    }
+    return status;
+}
+
+he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimated *out,
+                      he_error *err)
+{
+    uint32_t faces = he_mesh_faces(m);
+    he_decimated done = {.stop = HE_STOP_FACES};
+    he_merges merges = {.vertices = {0}};
+    he_mesh *copy = NULL;
+    he_status status = check(m, options, err);
+    if (status == HE_OK && faces > options->faces) {
+        bool replace = faces - options->faces > HE_DECIMATE_RECORDED;
+        status = he_mesh_copy(m, &copy, err);
+        if (status == HE_OK) {
+            he_mesh_watch(copy, m->watch);
+            status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
+        }
+        if (status == HE_OK) {
+            status = finish(m, &copy, &merges, replace, err);
+        }
+    }
+    he_mesh_free(copy);
+    he_ids_clear(&merges.vertices);
+    he_ids_clear(&merges.edges);
+    if (status == HE_OK && out != NULL) {
+        *out = done;
+    }
+    return status;
+}

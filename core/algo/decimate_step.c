@@ -1,0 +1,279 @@
+/* One collapse of a decimation. */
+#include "algo/decimation.h"
+
+#include "edit/collapse.h"
+#include "edit/point.h"
+
+/* A face may turn by so much: the square of the cosine of 60 degrees. */
+static const double TURN = 0.25;
+/* The square of twice the area by the square of the longest side, of a face that is one. */
+static const double SLIVER = 1e-12;
+
+static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
+{
+    return he_decimation_inside(d, d->mesh->c.position[vertex]);
+}
+
+/* Half-edges that leave the origin of h, from h on. False where there are more than fit. */
+static bool gather(const he_mesh *m, he_halfedge h, he_spokes *out)
+{
+    he_halfedge k = h;
+    out->count = 0;
+    do {
+        if (out->count == HE_DECIMATE_DEGREE) {
+            return false;
+        }
+        out->out[out->count] = k.i;
+        out->target[out->count++] = he_target(m, k).i;
+        k = he_turn_ccw(m, k);
+    } while (k.i != h.i);
+    return true;
+}
+
+/* Would the triangle p, q, r stay upright and a triangle with its first corner at `to`? */
+static bool stays_upright(he_vec3 p, he_vec3 q, he_vec3 r, he_vec3 to)
+{
+    he_vec3 side = he_vec3_sub(r, q), left = he_vec3_sub(q, to), right = he_vec3_sub(r, to);
+    he_vec3 old = he_vec3_cross(he_vec3_sub(q, p), side);
+    he_vec3 new = he_vec3_cross(left, side);
+    double old_square = he_vec3_dot(old, old), new_square = he_vec3_dot(new, new);
+    double longest =
+        fmax(he_vec3_dot(side, side), fmax(he_vec3_dot(left, left), he_vec3_dot(right, right)));
+    if (new_square <= SLIVER * longest * longest) {
+        return old_square <= new_square;
+    }
+    double along = he_vec3_dot(old, new);
+    return old_square == 0 || (along > 0 && along * along >= TURN * old_square * new_square);
+}
+
+/* Of the faces about `spokes`' vertex, but those of its first edge. */
+static bool stay_upright(const he_decimation *d, const he_spokes *spokes, he_vec3 from, he_vec3 to)
+{
+    const he_mesh *m = d->mesh;
+    he_halfedge h = {spokes->out[0]};
+    uint32_t left = he_face_of(m, h).i, right = he_face_of(m, he_twin(h)).i;
+    he_vec3 next = place_of(d, spokes->target[0]);
+    for (uint32_t i = 0; i < spokes->count; i++) {
+        he_vec3 here = next;
+        uint32_t after = i + 1 < spokes->count ? i + 1 : 0;
+        uint32_t face = he_face_of(m, (he_halfedge){spokes->out[i]}).i;
+        next = place_of(d, spokes->target[after]);
+        if (face == HE_NONE || face == left || face == right) {
+            continue;
+        }
+        if (!stays_upright(from, here, next, to)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void he_decimation_put(he_decimation *d, he_edge e)
+{
+    const he_node *a = &d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 0)).i];
+    const he_node *b = &d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 1)).i];
+    he_candidate what;
+    if (he_decimation_cost(d, e, &what)) {
+        d->stamps[e.i] = a->stamp + b->stamp;
+        he_queue_put(&d->queue, e.i, what.priority);
+    } else {
+        he_decimation_put_aside(d, e);
+    }
+}
+
+void he_decimation_put_aside(he_decimation *d, he_edge e)
+{
+    d->stamps[e.i] = HE_STAMP_ASIDE;
+    d->flags[he_origin(d->mesh, he_edge_halfedge(e, 0)).i] |= HE_NODE_ASIDE;
+    d->flags[he_origin(d->mesh, he_edge_halfedge(e, 1)).i] |= HE_NODE_ASIDE;
+}
+
+/* Edges about a vertex that are aside go back. */
+static void bring_back(he_decimation *d, uint32_t vertex)
+{
+    const he_mesh *m = d->mesh;
+    if ((d->flags[vertex] & HE_NODE_ASIDE) == 0 || he_node_is_hub(&d->nodes[vertex])) {
+        return;
+    }
+    he_halfedge first = he_vertex_halfedge(m, (he_vertex){vertex}), h = first;
+    d->flags[vertex] &= (uint8_t)~HE_NODE_ASIDE;
+    do {
+        he_edge e = he_edge_of(h);
+        if (d->stamps[e.i] == HE_STAMP_ASIDE) {
+            he_decimation_put(d, e);
+        }
+        h = he_turn_ccw(m, h);
+    } while (h.i != first.i);
+}
+
+/* Where between the ends the place is, of 1. */
+static double between(he_vec3 from, he_vec3 to, he_vec3 place)
+{
+    he_vec3 across = he_vec3_sub(to, from);
+    double length = he_vec3_dot(across, across);
+    double t = length > 0 ? he_vec3_dot(across, he_vec3_sub(place, from)) / length : 0.5;
+    return t < 0 ? 0 : t > 1 ? 1 : t;
+}
+
+/* The place outside; never beyond the range of a double. */
+static he_vec3 outside(const he_decimation *d, he_vec3 place)
+{
+    return (he_vec3){d->middle.x + ldexp(place.x, d->exponent),
+                     d->middle.y + ldexp(place.y, d->exponent),
+                     d->middle.z + ldexp(place.z, d->exponent)};
+}
+
+/* Room for one more split and the faces about one vertex. */
+static he_status make_room(he_progressive *log)
+{
+    if (log->count == log->capacity) {
+        size_t capacity = 2 * log->capacity + 64;
+        he_vertex_split *splits = he_mem_array(log->splits, capacity, sizeof *splits);
+        if (splits == NULL) {
+            return HE_NO_MEMORY;
+        }
+        log->splits = splits;
+        log->capacity = capacity;
+    }
+    return he_ids_reserve(&log->moved, HE_DECIMATE_DEGREE, NULL);
+}
+
+/* What undoes the collapse of the first edge of `about`, which is not done yet. */
+static void remember(const he_decimation *d, const he_spokes *about)
+{
+    const he_mesh *m = d->mesh;
+    he_progressive *log = d->log;
+    he_halfedge h = {about->out[0]}, back = he_twin(h);
+    he_vertex_split *split = &log->splits[log->count];
+    *split = (he_vertex_split){.vertex = he_origin(m, h).i,
+                               .from = he_target(m, h).i,
+                               .left = HE_NONE,
+                               .right = HE_NONE,
+                               .halfedge = h.i,
+                               .left_halfedge = HE_NONE,
+                               .right_halfedge = HE_NONE,
+                               .left_face = he_face_of(m, h).i,
+                               .right_face = he_face_of(m, back).i,
+                               .first_moved = log->moved.count,
+                               .at = he_position(m, he_origin(m, h)),
+                               .from_at = he_position(m, he_target(m, h))};
+    if (split->left_face != HE_NONE) {
+        split->left_halfedge = he_twin(he_prev(m, h)).i;
+        split->left = he_origin(m, he_prev(m, h)).i;
+    }
+    if (split->right_face != HE_NONE) {
+        split->right_halfedge = he_next(m, back).i;
+        split->right = he_origin(m, he_prev(m, back)).i;
+    }
+    for (uint32_t i = 0; i < about->count; i++) {
+        uint32_t face = he_face_of(m, (he_halfedge){about->out[i]}).i;
+        if (face != HE_NONE && face != split->left_face && face != split->right_face) {
+            log->moved.ids[log->moved.count++] = face;
+            split->moved++;
+        }
+    }
+}
+
+/* As the collapse of h merges them, which is not done yet. */
+static he_status note_merges(const he_decimation *d, he_halfedge h)
+{
+    const he_mesh *m = d->mesh;
+    he_ids *vertices = &d->merges->vertices, *edges = &d->merges->edges;
+    if (he_ids_reserve(vertices, 2, NULL) != HE_OK || he_ids_reserve(edges, 4, NULL) != HE_OK) {
+        return HE_NO_MEMORY;
+    }
+    vertices->ids[vertices->count++] = he_origin(m, h).i;
+    vertices->ids[vertices->count++] = he_target(m, h).i;
+    he_halfedge back = he_twin(h);
+    if (!he_is_boundary_halfedge(m, h)) {
+        edges->ids[edges->count++] = he_edge_of(he_prev(m, h)).i;
+        edges->ids[edges->count++] = he_edge_of(he_next(m, h)).i;
+    }
+    if (!he_is_boundary_halfedge(m, back)) {
+        edges->ids[edges->count++] = he_edge_of(he_next(m, back)).i;
+        edges->ids[edges->count++] = he_edge_of(he_prev(m, back)).i;
+    }
+    return HE_OK;
+}
+
+static void lose_edge(he_decimation *d, uint32_t vertex)
+{
+    he_node *node = &d->nodes[vertex];
+    node->degree--;
+    if (node->degree == HE_DECIMATE_DEGREE) {
+        bring_back(d, vertex);
+    }
+}
+
+/* The first edge of `about`, with what is to be kept of it. */
+static he_status collapse(const he_decimation *d, const he_spokes *about, double t, he_vec3 to)
+{
+    he_halfedge h = {about->out[0]};
+    he_progressive *log = d->log;
+    he_merges *merges = d->merges;
+    size_t moved = log != NULL ? log->moved.count : 0;
+    size_t vertices = merges != NULL ? merges->vertices.count : 0;
+    size_t edges = merges != NULL ? merges->edges.count : 0;
+    if ((log != NULL && make_room(log) != HE_OK) ||
+        (merges != NULL && note_merges(d, h) != HE_OK)) {
+        return HE_NO_MEMORY;
+    }
+    if (log != NULL) {
+        remember(d, about);
+    }
+    he_status status = he_edge_collapse_at(d->mesh, h, t, to, NULL);
+    if (status != HE_OK && merges != NULL) {
+        merges->vertices.count = vertices;
+        merges->edges.count = edges;
+    }
+    if (log != NULL) {
+        log->count += status == HE_OK;
+        log->moved.count = status == HE_OK ? log->moved.count : moved;
+    }
+    return status;
+}
+
+he_status he_decimation_collapse(he_decimation *d, const he_candidate *what)
+{
+    he_mesh *m = d->mesh;
+    he_halfedge h = what->h, back = he_twin(h);
+    uint32_t u = he_origin(m, h).i, v = he_target(m, h).i;
+    he_node *gone = &d->nodes[u], *kept = &d->nodes[v];
+    he_spokes about_u, about_v;
+    if (!gather(m, h, &about_u) || (what->moves && !gather(m, back, &about_v)) ||
+        !stay_upright(d, &about_u, gone->place, what->place) ||
+        (what->moves && !stay_upright(d, &about_v, kept->place, what->place))) {
+        return HE_LIMIT;
+    }
+    uint32_t left = he_face_of(m, h).i, right = he_face_of(m, back).i;
+    uint32_t c = left != HE_NONE ? he_origin(m, he_prev(m, h)).i : HE_NONE;
+    uint32_t e = right != HE_NONE ? he_origin(m, he_prev(m, back)).i : HE_NONE;
+    double t = what->moves ? between(gone->place, kept->place, what->place) : 1;
+    he_vec3 to = what->moves ? outside(d, what->place) : he_position(m, (he_vertex){v});
+    he_status status = collapse(d, &about_u, t, to);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_quadric_shift(&gone->quadric, he_vec3_sub(what->place, gone->place));
+    he_quadric_shift(&kept->quadric, he_vec3_sub(what->place, kept->place));
+    he_quadric_add(&kept->quadric, &gone->quadric);
+    kept->place = what->place;
+    kept->stamp += gone->stamp + 1;
+    d->flags[v] |= d->flags[u] & HE_NODE_ASIDE;
+    kept->degree += gone->degree - 2 - (c != HE_NONE) - (e != HE_NONE);
+    d->error = fmax(d->error, what->error);
+    for (uint32_t i = 1; i < about_u.count; i++) {
+        bring_back(d, about_u.target[i]);
+    }
+    for (uint32_t i = 1; what->moves && i < about_v.count; i++) {
+        bring_back(d, about_v.target[i]);
+    }
+    bring_back(d, v);
+    if (c != HE_NONE) {
+        lose_edge(d, c);
+    }
+    if (e != HE_NONE) {
+        lose_edge(d, e);
+    }
+    return HE_OK;
+}

@@ -1,0 +1,101 @@
+/* decimation.h - the state of a decimation, shared by its parts: decimate.c sets it up and picks
+ * edges, decimate_cost.c says what an edge costs, decimate_step.c collapses one.
+ *
+ * COORDINATES inside are relative to the middle of the mesh, in units of a power of two about half
+ * its size, so that no product of them leaves the range of a double.
+ *
+ * AN EDGE'S COST is out of date as soon as one of its ends has taken another vertex in. Costs
+ * hardly ever fall, so one that is out of date is found again only when the edge comes first: most
+ * edges go before that. Each end counts what went into it, in `stamp`; the stamp of an edge is the
+ * sum of its ends' when it was costed, and any vertex that is merged makes the sum larger.
+ *
+ * ASIDE is an edge that was refused. It is in no queue, and goes back when the faces about one of
+ * its ends have changed. */
+#ifndef HE_ALGO_DECIMATION_H
+#define HE_ALGO_DECIMATION_H
+
+#include "algo/decimate.h"
+#include "algo/edge_queue.h"
+#include "algo/progressive.h"
+#include "algo/quadric.h"
+#include "mesh/column.h"
+#include "mesh/walk.h"
+
+/* Flags of a vertex. They hold throughout: edges and vertices that edge_collapse would have to
+ * refuse for them stay. */
+enum {
+    HE_NODE_LOCKED = 1, /* stays where it is */
+    HE_NODE_HELD = 2,   /* an edge or face about it is locked: it stays, but may move */
+    HE_NODE_ASIDE = 4   /* some edge of it may be aside */
+};
+
+typedef struct he_node {
+    he_quadric quadric; /* about `place` */
+    he_vec3 place;
+    uint32_t stamp, degree;
+    uint32_t features; /* feature edges at it; 3 stands for more */
+} he_node;
+
+/* What became part of what, in pairs of the one gone and the one that stays. */
+typedef struct he_merges {
+    he_ids vertices, edges;
+} he_merges;
+
+typedef struct he_decimation {
+    he_mesh *mesh;
+    he_node *nodes;      /* by vertex */
+    uint8_t *flags;      /* by vertex: HE_NODE_... */
+    uint32_t *stamps;    /* by edge: of its cost, or one of the two below */
+    he_edge_queue queue; /* no edge twice */
+    he_merges *merges;   /* noted there, or NULL */
+    he_progressive *log; /* where collapses are remembered, or NULL */
+    const he_column *feature;
+    double boundary_weight, most; /* the largest error, inside */
+    he_vec3 middle;
+    int exponent;  /* inside = (outside - middle) / 2^exponent */
+    double inward; /* 2^-exponent */
+    double error;  /* the largest so far, inside */
+} he_decimation;
+
+#define HE_STAMP_ASIDE UINT32_MAX
+#define HE_STAMP_DEAR  (UINT32_MAX - 1u)
+
+/* What to do with an edge. */
+typedef struct he_candidate {
+    he_halfedge h;  /* its origin goes */
+    bool moves;     /* the target goes to `place`, else it stays there */
+    he_vec3 place;  /* inside */
+    double cost;    /* of the quadrics */
+    double error;   /* as in decimate.h, inside */
+    float priority; /* in the queue */
+} he_candidate;
+
+/* Faces about vertices: `count` of `vertices`, the targets of the half-edges `out`. */
+typedef struct he_spokes {
+    uint32_t count;
+    uint32_t out[HE_DECIMATE_DEGREE], target[HE_DECIMATE_DEGREE];
+} he_spokes;
+
+static inline bool he_node_is_hub(const he_node *node)
+{
+    return node->degree > HE_DECIMATE_DEGREE;
+}
+
+/* he_decimate in place, without rolling back, remembering collapses in `log` unless it is NULL. */
+HE_NODISCARD he_status he_decimation_run(he_mesh *m, const he_decimate_options *options,
+                                         he_progressive *log, he_decimated *out, he_error *err);
+
+he_vec3 he_decimation_inside(const he_decimation *d, he_vec3 outside);
+/* False where no end may go. */
+bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
+/* Make `m` equal to a copy that was decimated. HE_NO_MEMORY. */
+HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
+                                           he_error *err);
+/* Put an edge that is not in it in the queue, or aside. */
+void he_decimation_put(he_decimation *d, he_edge e);
+void he_decimation_put_aside(he_decimation *d, he_edge e);
+/* Collapse it, keep nodes and queue right. Any refusal of he_edge_collapse, HE_LIMIT where a face
+ * would turn over; HE_NO_MEMORY. */
+HE_NODISCARD he_status he_decimation_collapse(he_decimation *d, const he_candidate *what);
+
+#endif

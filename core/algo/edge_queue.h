@@ -1,0 +1,100 @@
+/* edge_queue.h - edges by cost, cheapest first, inline.
+ *
+ * A bucket holds the edges whose costs agree in exponent and eight binary digits: costs that differ
+ * by less than 1/256 may come in either order. Within a bucket edges lie in chunks of one cache
+ * line, and a chunk is taken whole, so that what its edges need can be asked for ahead of time. A
+ * heap, which tells all costs apart, leaves a mesh no better, and waits for memory at each of its
+ * ten levels. */
+#ifndef HE_ALGO_EDGE_QUEUE_H
+#define HE_ALGO_EDGE_QUEUE_H
+
+#include "mesh/mesh.h"
+
+#include <string.h>
+
+enum { HE_QUEUE_BUCKETS = 1 << 16, HE_QUEUE_WORDS = HE_QUEUE_BUCKETS / 64, HE_QUEUE_CHUNK = 14 };
+
+typedef struct he_queue_chunk {
+    uint32_t next; /* of the bucket, or of those in no bucket; HE_NONE */
+    uint32_t count;
+    uint32_t edges[HE_QUEUE_CHUNK];
+} he_queue_chunk;
+
+typedef struct he_edge_queue {
+    he_queue_chunk *chunks;
+    uint32_t *first;     /* chunk of each bucket; all others behind it are full */
+    uint32_t free, used; /* the first chunk in no bucket; chunks from `used` on never were */
+    uint64_t filled[HE_QUEUE_WORDS];
+    size_t word; /* none before it has a bucket with edges */
+} he_edge_queue;
+
+/* For at most `edges` edges at once. HE_NO_MEMORY; cleared all the same. */
+HE_NODISCARD static inline he_status he_queue_init(he_edge_queue *queue, uint32_t edges,
+                                                   he_error *err)
+{
+    size_t partly = edges < HE_QUEUE_BUCKETS ? edges : HE_QUEUE_BUCKETS;
+    memset(queue, 0, sizeof *queue);
+    queue->free = HE_NONE;
+    queue->chunks = he_mem_array(NULL, edges / HE_QUEUE_CHUNK + partly + 1, sizeof *queue->chunks);
+    queue->first = he_mem_array(NULL, HE_QUEUE_BUCKETS, sizeof *queue->first);
+    if (queue->chunks == NULL || queue->first == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to order %u edges", edges);
+    }
+    memset(queue->first, 0xFF, HE_QUEUE_BUCKETS * sizeof *queue->first);
+    return HE_OK;
+}
+
+static inline void he_queue_clear(he_edge_queue *queue)
+{
+    he_mem_free(queue->chunks);
+    he_mem_free(queue->first);
+}
+
+/* Costs are not negative. */
+static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float cost)
+{
+    uint32_t bits;
+    memcpy(&bits, &cost, sizeof bits);
+    size_t bucket = bits >> 15, word = bucket / 64; /* the sign is 0 */
+    uint32_t *first = &queue->first[bucket];
+    if (*first == HE_NONE || queue->chunks[*first].count == HE_QUEUE_CHUNK) {
+        uint32_t fresh = queue->free;
+        if (fresh == HE_NONE) {
+            fresh = queue->used++;
+        } else {
+            queue->free = queue->chunks[fresh].next;
+        }
+        queue->chunks[fresh].next = *first;
+        queue->chunks[fresh].count = 0;
+        *first = fresh;
+    }
+    queue->chunks[*first].edges[queue->chunks[*first].count++] = edge;
+    queue->filled[word] |= (uint64_t)1 << bucket % 64;
+    queue->word = word < queue->word ? word : queue->word;
+}
+
+/* Takes some of the first edges out, and gives their number: 0 where there are none. */
+static inline uint32_t he_queue_take(he_edge_queue *queue, uint32_t edges[HE_QUEUE_CHUNK])
+{
+    while (queue->word < HE_QUEUE_WORDS && queue->filled[queue->word] == 0) {
+        queue->word++;
+    }
+    if (queue->word == HE_QUEUE_WORDS) {
+        return 0;
+    }
+    size_t bit = (size_t)__builtin_ctzll(queue->filled[queue->word]);
+    uint32_t *first = &queue->first[queue->word * 64 + bit], taken = *first;
+    he_queue_chunk *chunk = &queue->chunks[taken];
+    memcpy(edges, chunk->edges, sizeof chunk->edges);
+    *first = chunk->next;
+    chunk->next = queue->free;
+    queue->free = taken;
+    if (*first == HE_NONE) {
+        queue->filled[queue->word] &= queue->filled[queue->word] - 1;
+    } else {
+        __builtin_prefetch(&queue->chunks[*first]);
+    }
+    return chunk->count;
+}
+
+#endif

@@ -1,0 +1,31 @@
+#include "algo/progressive.h"
+
+#include "algo/decimation.h"
+
+void he_progressive_clear(he_progressive *progressive)
+{
+    he_mesh_free(progressive->base);
+    he_mem_free(progressive->splits);
+    he_ids_clear(&progressive->moved);
+    *progressive = (he_progressive){0};
+}
+
+he_status he_progressive_new(const he_mesh *m, uint32_t faces, he_progressive *out, he_error *err)
+{
+    he_progressive made = {0};
+    const he_decimate_options options = {
+        .faces = faces, .max_error = INFINITY, .boundary_weight = HE_BOUNDARY_WEIGHT};
+    he_decimated done;
+    he_status status = he_mesh_copy(m, &made.base, err);
+    if (status == HE_OK) {
+        he_mesh_watch(made.base, m->watch);
+        status = he_decimation_run(made.base, &options, &made, &done, err);
+    }
+    if (status != HE_OK) {
+        he_progressive_clear(&made);
+        return status;
+    }
+    he_mesh_watch(made.base, NULL);
+    *out = made;
+    return HE_OK;
+}

@@ -1,0 +1,345 @@
+/* Meshes from coarse to fine, read by a decoder of its own that knows the bytes' description only:
+ * faces as corners and edges as ends, without links. */
+#include "tests/api/request.h"
+
+#include "unit/fixture.h"
+
+#include "edit/cut.h"
+
+enum { HEADER = 104, VERTEX = 32, ROW = 16, SPLIT = 96 };
+
+static uint32_t u32_at(const char *p)
+{
+    const unsigned char *b = (const unsigned char *)p;
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static he_vec3 point_at(const char *p)
+{
+    double values[3];
+    for (int i = 0; i < 3; i++) {
+        uint64_t bits = u32_at(p + 8 * i) | (uint64_t)u32_at(p + 8 * i + 4) << 32;
+        memcpy(&values[i], &bits, sizeof bits);
+    }
+    return (he_vec3){values[0], values[1], values[2]};
+}
+
+typedef struct level {
+    uint32_t vertices, edges, faces; /* ids issued */
+    he_vec3 *place;
+    bool *vertex, *edge, *face;
+    uint32_t (*end)[2], (*corner)[3];
+    const char *next; /* split */
+    uint32_t left;    /* splits */
+} level;
+
+static level first_level(const bench_reply *r)
+{
+    const char *p = r->body;
+    assert_true(r->length >= HEADER);
+    assert_memory_equal(p, "HEDP", 4);
+    assert_int_equal(u32_at(p + 4), 1);
+    level l = {.left = u32_at(p + 28),
+               .vertices = u32_at(p + 40),
+               .edges = u32_at(p + 44),
+               .faces = u32_at(p + 48)};
+    l.place = calloc(l.vertices + 1, sizeof *l.place);
+    l.vertex = calloc(l.vertices + 1, sizeof *l.vertex);
+    l.edge = calloc(l.edges + 1, sizeof *l.edge);
+    l.face = calloc(l.faces + 1, sizeof *l.face);
+    l.end = calloc(l.edges + 1, sizeof *l.end);
+    l.corner = calloc(l.faces + 1, sizeof *l.corner);
+    p += HEADER;
+    for (uint32_t i = u32_at(r->body + 16); i > 0; i--, p += VERTEX) {
+        l.vertex[u32_at(p)] = true;
+        l.place[u32_at(p)] = point_at(p + 8);
+    }
+    for (uint32_t i = u32_at(r->body + 20); i > 0; i--, p += ROW) {
+        l.edge[u32_at(p)] = true;
+        l.end[u32_at(p)][0] = u32_at(p + 4);
+        l.end[u32_at(p)][1] = u32_at(p + 8);
+    }
+    for (uint32_t i = u32_at(r->body + 24); i > 0; i--, p += ROW) {
+        l.face[u32_at(p)] = true;
+        for (unsigned k = 0; k < 3; k++) {
+            l.corner[u32_at(p)][k] = u32_at(p + 4 + 4 * k);
+        }
+    }
+    l.next = p;
+    return l;
+}
+
+static void level_clear(level *l)
+{
+    free(l->place);
+    free(l->vertex);
+    free(l->edge);
+    free(l->face);
+    free(l->end);
+    free(l->corner);
+}
+
+static void add_edge(level *l, uint32_t halfedge, uint32_t from, uint32_t to)
+{
+    if (halfedge != HE_NONE) {
+        assert_false(l->edge[halfedge / 2]);
+        l->edge[halfedge / 2] = true;
+        l->end[halfedge / 2][halfedge % 2] = from;
+        l->end[halfedge / 2][1 - halfedge % 2] = to;
+    }
+}
+
+static void add_face(level *l, uint32_t face, uint32_t a, uint32_t b, uint32_t c)
+{
+    if (face != HE_NONE) {
+        assert_false(l->face[face]);
+        l->face[face] = true;
+        l->corner[face][0] = a;
+        l->corner[face][1] = b;
+        l->corner[face][2] = c;
+    }
+}
+
+/* The edge from v to x goes over to u. */
+static void move_edge(level *l, uint32_t v, uint32_t x, uint32_t u)
+{
+    for (uint32_t e = 0; e < l->edges; e++) {
+        for (unsigned k = 0; l->edge[e] && k < 2; k++) {
+            if (l->end[e][k] == v && l->end[e][1 - k] == x) {
+                l->end[e][k] = u;
+            }
+        }
+    }
+}
+
+static void split(level *l)
+{
+    const char *p = l->next;
+    uint32_t u = u32_at(p + 4), v = u32_at(p + 8), c = u32_at(p + 12), d = u32_at(p + 16);
+    uint32_t moved = u32_at(p + 40);
+    assert_int_equal(u32_at(p), SPLIT + (moved + 1) / 2 * 8);
+    assert_false(l->vertex[u]);
+    l->vertex[u] = true;
+    l->place[u] = point_at(p + 48);
+    l->place[v] = point_at(p + 72);
+    for (uint32_t i = 0; i < moved; i++) {
+        uint32_t f = u32_at(p + SPLIT + 4 * i);
+        assert_true(l->face[f]);
+        for (unsigned k = 0; k < 3; k++) {
+            uint32_t x = l->corner[f][k];
+            if (x == v) {
+                l->corner[f][k] = u;
+            } else if (x != c && x != d) {
+                move_edge(l, v, x, u);
+            }
+        }
+    }
+    add_edge(l, u32_at(p + 20), u, v);
+    add_edge(l, u32_at(p + 24), u, c);
+    add_edge(l, u32_at(p + 28), u, d);
+    add_face(l, u32_at(p + 32), u, v, c);
+    add_face(l, u32_at(p + 36), v, u, d);
+    l->next += u32_at(p);
+    l->left--;
+}
+
+/* Can the faces be built, and are the edges theirs? */
+static void assert_level(const level *l)
+{
+    uint32_t *name = calloc(l->vertices + 1, sizeof *name), edges = 0;
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_error err = {0};
+    he_soup_init(&soup, NULL);
+    for (uint32_t v = 0; v < l->vertices; v++) {
+        if (l->vertex[v]) {
+            name[v] = (uint32_t)soup.vertex_count;
+            assert_int_equal(he_soup_add_vertex(&soup, l->place[v], NULL), HE_OK);
+        }
+    }
+    for (uint32_t f = 0; f < l->faces; f++) {
+        if (l->face[f]) {
+            const uint32_t *c = l->corner[f];
+            assert_true(l->vertex[c[0]] && l->vertex[c[1]] && l->vertex[c[2]]);
+            const uint32_t corners[3] = {name[c[0]], name[c[1]], name[c[2]]};
+            assert_int_equal(he_soup_add_face(&soup, corners, 3, NULL), HE_OK);
+        }
+    }
+    if (he_build(&soup, 0, &m, NULL, &err) != HE_OK) {
+        fail_msg("with %u splits left: %s", l->left, err.text);
+    }
+    fixture_check(m);
+    for (uint32_t e = 0; e < l->edges; e++) {
+        if (l->edge[e]) {
+            const uint32_t *end = l->end[e];
+            assert_true(l->vertex[end[0]] && l->vertex[end[1]]);
+            he_halfedge h =
+                he_find_halfedge(m, (he_vertex){name[end[0]]}, (he_vertex){name[end[1]]});
+            assert_true(h.i != HE_NONE);
+            edges++;
+        }
+    }
+    assert_int_equal(he_mesh_edges(m), edges);
+    he_mesh_free(m);
+    he_soup_clear(&soup);
+    free(name);
+}
+
+static void assert_same(const level *l, const he_mesh *m)
+{
+    assert_int_equal(l->vertices, he_mesh_issued(m, HE_VERTEX));
+    assert_int_equal(l->edges, he_mesh_issued(m, HE_EDGE));
+    assert_int_equal(l->faces, he_mesh_issued(m, HE_FACE));
+    for (uint32_t v = 0; v < l->vertices; v++) {
+        assert_int_equal(l->vertex[v], he_mesh_is_live(m, HE_VERTEX, v));
+        he_vec3 p = he_position(m, (he_vertex){v});
+        he_vec3 q = l->place[v];
+        assert_true(!l->vertex[v] || (p.x == q.x && p.y == q.y && p.z == q.z));
+    }
+    for (uint32_t e = 0; e < l->edges; e++) {
+        assert_int_equal(l->edge[e], he_mesh_is_live(m, HE_EDGE, e));
+        for (unsigned k = 0; l->edge[e] && k < 2; k++) {
+            assert_int_equal(l->end[e][k], he_origin(m, he_edge_halfedge((he_edge){e}, k)).i);
+        }
+    }
+    for (uint32_t f = 0; f < l->faces; f++) {
+        assert_int_equal(l->face[f], he_mesh_is_live(m, HE_FACE, f));
+        if (l->face[f]) {
+            he_halfedge h = he_face_corner(m, (he_face){f}, (he_vertex){l->corner[f][0]});
+            assert_true(h.i != HE_NONE);
+            assert_int_equal(he_target(m, h).i, l->corner[f][1]);
+            assert_int_equal(he_target(m, he_next(m, h)).i, l->corner[f][2]);
+        }
+    }
+}
+
+/* Every level where there are few splits, else some. */
+static void replay(api_bench *b, const char *id)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/v1/meshes/%s/progressive", id);
+    bench_reply r = bench_expect(200, bench_send(b, "GET", path, NULL, NULL));
+    assert_string_equal(bench_header(&r, "Content-Type"), "application/octet-stream");
+    level l = first_level(&r);
+    assert_int_equal(l.left, u32_at(r.body + 32));
+    uint32_t step = l.left / 200 + 1;
+    while (l.left > 0) {
+        if (l.left % step == 0) {
+            assert_level(&l);
+        }
+        split(&l);
+    }
+    assert_level(&l);
+    assert_true(l.next == r.body + r.length);
+    const api_store *store = bench_store(b);
+    api_mesh *mesh = NULL;
+    api_mesh_info info;
+    assert_int_equal(store->find(store->self, id, &mesh), API_STORE_OK);
+    assert_same(&l, store->read_begin(store->self, mesh, &info));
+    assert_int_equal(info.revision, u32_at(r.body + 8));
+    store->read_end(store->self, mesh);
+    store->release(store->self, mesh);
+    level_clear(&l);
+    bench_reply_free(&r);
+}
+
+static void make(api_bench *b, const char *id, const char *body)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/v1/meshes/%s", id);
+    bench_done(bench_expect(201, bench_send(b, "PUT", path, NULL, body)));
+    snprintf(path, sizeof path, "/v1/meshes/%s/edits", id);
+    bench_done(bench_expect(200, bench_post(b, path, "{\"op\":\"triangulate\"}")));
+}
+
+/* A bow-tie, an isolated vertex, a triangle by itself. */
+static const char BOWTIE[] =
+    "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[-1,0,0],[-1,-1,0],[2,1,0],[9,9,9],[5,0,0],"
+    "[6,0,0],[5,1,0]],\"faces\":[[0,1,2],[0,3,4],[1,5,2],[7,8,9]]}";
+
+static void splits_lead_back_to_the_mesh(void **state)
+{
+    (void)state;
+    static const char *const bodies[] = {
+        "{\"shape\":\"icosphere\",\"subdivisions\":2}",
+        "{\"shape\":\"grid\",\"columns\":9,\"rows\":7}",
+        "{\"shape\":\"torus\"}",
+        "{\"shape\":\"cylinder\"}",
+        "{\"shape\":\"disk\"}",
+        "{\"shape\":\"tetrahedron\"}",
+        "{\"vertices\":[],\"faces\":[]}",
+        BOWTIE,
+        "{\"shape\":\"grid\",\"columns\":50,\"rows\":50}",
+    };
+    api_bench *b = bench_new();
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
+        char id[8];
+        snprintf(id, sizeof id, "m%zu", i);
+        make(b, id, bodies[i]);
+        replay(b, id);
+    }
+    bench_free(b);
+}
+
+/* Dead rows and bent surfaces: what edits leave. */
+static void ids_that_are_not_in_order_come_back(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    make(b, "m", "{\"shape\":\"grid\",\"columns\":12,\"rows\":12}");
+    bench_done(bench_expect(
+        200,
+        bench_post(b, "/v1/meshes/m/edits",
+                   "{\"ops\":[{\"op\":\"vertex_delete\",\"vertex\":40},{\"op\":\"vertex_move\","
+                   "\"vertex\":100,\"by\":[0,0,0.3]},{\"op\":\"face_delete\",\"face\":3},"
+                   "{\"op\":\"edge_flip\",\"edge\":200},{\"op\":\"edge_split\",\"edge\":90},"
+                   "{\"op\":\"decimate\",\"ratio\":0.8}]}")));
+    replay(b, "m");
+    bench_free(b);
+}
+
+static void a_base_and_a_number_of_splits_can_be_chosen(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    make(b, "m", "{\"shape\":\"torus\"}");
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/progressive?faces=400&splits=5"));
+    uint32_t faces = u32_at(r.body + 24);
+    assert_in_range(faces, 399, 400);
+    assert_int_equal(u32_at(r.body + 28), 5);
+    assert_true(u32_at(r.body + 32) > 5);
+    level l = first_level(&r);
+    for (int i = 0; i < 5; i++) {
+        split(&l);
+        assert_level(&l);
+    }
+    assert_true(l.next == r.body + r.length);
+    level_clear(&l);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static void the_mesh_is_not_changed(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    make(b, "m", "{\"shape\":\"torus\"}");
+    bench_reply before = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive")));
+    bench_reply after = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+    assert_string_equal(before.body, after.body);
+    bench_reply_free(&before);
+    bench_reply_free(&after);
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(splits_lead_back_to_the_mesh),
+        cmocka_unit_test(ids_that_are_not_in_order_come_back),
+        cmocka_unit_test(a_base_and_a_number_of_splits_can_be_chosen),
+        cmocka_unit_test(the_mesh_is_not_changed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
