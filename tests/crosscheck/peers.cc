@@ -16,7 +16,8 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace
+{
 
 using point = CGAL::Simple_cartesian<double>::Point_3;
 using open_mesh = OpenMesh::PolyMesh_ArrayKernelT<>;
