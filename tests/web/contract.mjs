@@ -366,7 +366,7 @@ export class Contract {
         const content = requestBody?.content[media];
         if (content === undefined) {
             wrong.push(`a body of ${media} is not declared, and was taken`);
-        } else if (isJson(media) && whole) {
+        } else if (content.schema !== undefined && isJson(media) && whole) {
             const { schema } = content;
             const taken = schema.$ref.endsWith('/query') ? takenOf(bytes, answer) : bytes;
             this.checkJson(schema, taken, wrong);
