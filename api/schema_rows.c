@@ -356,6 +356,7 @@ const api_member api_answer_members[] = {
 
     {"result", "name", "text", REQUIRED, NULL},
     {"result", "type", "text", REQUIRED, NULL},
+    {"result", "choices", "*text", OPTIONAL, "Of a choice."},
     {"result", "doc", "text", REQUIRED, NULL},
 
     {"operation_row", "name", "text", REQUIRED, NULL},

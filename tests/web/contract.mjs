@@ -187,7 +187,7 @@ export class Contract {
         if (status < 300 || status === 304) {
             found.hits += 1;
             this.checkParameters(route, found.operation, path, query, request, wrong);
-            this.checkRequest(found.operation, request, answer, wrong);
+            this.checkRequest(found.operation, { ...request, query }, answer, wrong);
         }
         return wrong;
     }
@@ -353,7 +353,7 @@ export class Contract {
         }
     }
 
-    checkRequest({ requestBody }, { known, whole, bytes, media }, answer, wrong) {
+    checkRequest({ requestBody }, { known, whole, bytes, media, query }, answer, wrong) {
         if (!known) {
             return;
         }
@@ -366,13 +366,17 @@ export class Contract {
         const content = requestBody?.content[media];
         if (content === undefined) {
             wrong.push(`a body of ${media} is not declared, and was taken`);
-        } else if (content.schema !== undefined && isJson(media) && whole) {
+        } else if (content.schema !== undefined && isJson(media) && whole && !namesFormat(query)) {
             const { schema } = content;
             const taken = schema.$ref.endsWith('/query') ? takenOf(bytes, answer) : bytes;
             this.checkJson(schema, taken, wrong);
         }
     }
 }
+
+// Does ?format= say that a body is of another format than its Content-Type?
+const namesFormat = (query) =>
+    !['json', null].includes(new URLSearchParams(query ?? '').get('format'));
 
 // What a schema cannot say: a header that goes with a member.
 function besides(value, status, response, headers) {
