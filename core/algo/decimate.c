@@ -350,7 +350,8 @@ he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimat
             he_mesh_watch(copy, m->watch);
             status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
         }
-        if (status == HE_OK) {
+        /* Each collapse takes a vertex: without one nothing has changed. */
+        if (status == HE_OK && he_mesh_vertices(copy) < he_mesh_vertices(m)) {
             status = finish(m, &copy, &merges, replace, err);
         }
     }

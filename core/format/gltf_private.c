@@ -31,21 +31,17 @@ static he_status get_words(he_gltf *asset, uint32_t object, const char *name, he
                            bool *fits, he_error *err)
 {
     uint32_t value = he_json_find(&asset->json, object, name);
-    he_error reason = {0};
     *fits = false;
     if (value == HE_NONE) {
         return HE_OK;
     }
-    he_status status = he_gltf_accessor_get(asset, value, out, &reason);
+    /* Most reasons are not told: to name the place in words costs more than to read it. */
+    he_status status = he_gltf_accessor_get(asset, value, out, NULL);
     if (status == HE_OK) {
         *fits = out->components == 1 && out->type == HE_GLTF_UINT32 && out->bytes != NULL;
-    } else if (is_serious(status)) {
-        if (err != NULL) {
-            *err = reason;
-        }
-        return status;
+        return HE_OK;
     }
-    return HE_OK;
+    return is_serious(status) ? he_gltf_accessor_get(asset, value, out, err) : HE_OK;
 }
 
 static uint32_t next_word(he_gltf_walk *walk)
@@ -174,7 +170,6 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
 {
     const he_json *json = &s->asset->json;
     uint32_t type = he_json_find(json, object, "type"), rule = he_json_find(json, object, "rule");
-    he_error reason;
     *fits = false;
     d->type = HE_BOOL;
     d->rule = HE_COPY;
@@ -186,7 +181,7 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
     }
     if (d->type == HE_TYPE_COUNT || d->rule == HE_RULE_COUNT ||
         he_gltf_need(s->asset, object, "components", 1, HE_COLUMN_COMPONENTS, &d->components,
-                     &reason) != HE_OK ||
+                     NULL) != HE_OK ||
         he_json_string(json, he_json_find(json, object, "name"), d->name, sizeof d->name) == 0) {
         return HE_OK;
     }
@@ -281,18 +276,25 @@ static bool are_values(const description *d, size_t labels)
     return true;
 }
 
+/* Is there a column that the values may go on, or room for a new one? Asked before they are read,
+ * so that each value of a file is read for one column. */
+static bool has_place(const he_gltf_surface *s, const description *d)
+{
+    he_soup *soup = &s->asset->into->soup;
+    const he_column *column = he_gltf_find_column(soup, d->domain, d->name);
+    if (column == NULL) {
+        return soup->column_count < HE_GLTF_ATTRIBUTES;
+    }
+    return column->type == d->type && column->components == d->components &&
+           column->rows <= d->first && column->labels == NULL && d->labels == HE_NONE;
+}
+
 static he_status take_column(he_gltf_surface *s, uint32_t object, const description *d,
                              he_labels **labels, he_error *err)
 {
     he_soup *soup = &s->asset->into->soup;
     he_column *column = he_gltf_find_column(soup, d->domain, d->name);
     bool fresh = column == NULL;
-    if (fresh ? soup->column_count == HE_GLTF_ATTRIBUTES
-              : column->type != d->type || column->components != d->components ||
-                    column->rows > d->first || column->labels != NULL || *labels != NULL) {
-        note_stale(s, object);
-        return HE_OK;
-    }
     he_status status = he_soup_column(soup, d->name, d->domain, d->type, (uint32_t)d->components,
                                       d->rule, &column, err);
     if (status == HE_OK) {
@@ -332,6 +334,7 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     bool fits = false;
     he_labels *labels = NULL;
     he_status status = d.domain == HE_KIND_COUNT ? HE_OK : describe(s, object, &d, &fits, err);
+    fits = fits && has_place(s, &d);
     if (status == HE_OK && fits && d.labels != HE_NONE) {
         status = read_labels(json, d.labels, &labels, err);
     }

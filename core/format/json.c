@@ -269,6 +269,9 @@ he_status he_json_fail(const he_json *json, uint32_t value, he_error *err, he_st
 {
     char path[HE_JSON_PATH] = "", text[HE_ERROR_TEXT];
     va_list arguments;
+    if (err == NULL) {
+        return status;
+    }
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
