@@ -285,6 +285,25 @@ static void nothing_happens_where_there_are_few_enough(void **state)
 
 /* --- how far apart --- */
 
+/* Asked for so much that it would replace the mesh, and allowed nothing. */
+static void nothing_is_recorded_where_no_edge_may_go(void **state)
+{
+    (void)state;
+    he_mesh *m = torus(104), *before = copy_of(m);
+    he_delta *delta = he_delta_new();
+    assert_non_null(delta);
+    assert_true(he_mesh_faces(m) > HE_DECIMATE_RECORDED);
+    he_mesh_record(m, delta);
+    he_decimated done = decimate(m, 0, 0);
+    assert_int_equal(done.stop, HE_STOP_ERROR);
+    assert_int_equal(delta->count, 0);
+    assert_true(he_mesh_equal(m, before));
+    he_mesh_record(m, NULL);
+    he_delta_free(delta);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
 static void more_faces_less_error(void **state)
 {
     (void)state;
@@ -737,6 +756,7 @@ int main(void)
         cmocka_unit_test(a_flat_grid_becomes_two_triangles),
         cmocka_unit_test(a_cube_keeps_its_corners_and_its_volume),
         cmocka_unit_test(nothing_happens_where_there_are_few_enough),
+        cmocka_unit_test(nothing_is_recorded_where_no_edge_may_go),
         cmocka_unit_test(more_faces_less_error),
         cmocka_unit_test(no_face_is_turned_over),
         cmocka_unit_test(the_error_stays_below_its_limit),
