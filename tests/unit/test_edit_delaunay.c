@@ -351,14 +351,15 @@ static void test_only_the_list(void **state)
 
 /* --- triangles in space --- */
 
+static or_mesh *shapes; /* made once, for its tables are large */
+
 static bool random_triangles(md_random *r, he_mesh **out)
 {
-    or_mesh *o = or_new();
+    shapes = shapes == NULL ? or_new() : shapes;
     he_ids faces = {0};
-    md_shape(o, r, md_fill_mixed);
-    he_mesh *m = md_build(o);
+    md_shape(shapes, r, md_fill_mixed);
+    he_mesh *m = md_build(shapes);
     assert_non_null(m);
-    or_free(o);
     for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
         assert_int_equal(he_ids_add(&faces, f, NULL), HE_OK);
     }
@@ -535,5 +536,7 @@ int main(void)
         cmocka_unit_test(test_hub),
         cmocka_unit_test(test_memory_runs_out),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    or_free(shapes);
+    return failed;
 }
