@@ -166,6 +166,9 @@ static he_status feed_held(he_lines *lines, he_error *err)
 {
     char *held = lines->rest;
     size_t n = lines->length;
+    if (n == 0) {
+        return HE_OK;
+    }
     lines->rest = NULL;
     lines->length = lines->capacity = 0;
     he_status status = feed_returns(lines, held, held + n, err);

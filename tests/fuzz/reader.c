@@ -75,7 +75,8 @@ static void write_and_read(const he_mesh *mesh, const char *format, const char *
             assert_int_equal(he_mesh_faces(again), he_mesh_faces(mesh));
             assert_int_equal(corners_of(again), corners_of(mesh));
         }
-        if (repeats == AT_ONCE) {
+        /* What has no rows is written, but read only with its first. */
+        if (repeats == AT_ONCE && he_mesh_faces(mesh) > 0) {
             char *repeated = write_encoded(format, encoding, again, md_from(random, 1, 5000), NULL,
                                            &length_again);
             assert_int_equal(length_again, length);
