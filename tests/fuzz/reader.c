@@ -109,7 +109,9 @@ static void write_all_formats(const he_mesh *mesh, const char *own, bool repaire
         }
         const char *encoding = row->encodings[md_below(random, (uint32_t)encodings)];
         bool varies = stl && (repaired || strcmp(encoding, "ascii") != 0);
-        int repeats = !mine || varies ? NEVER : strcmp(row->name, "glb") == 0 ? ROUNDED : AT_ONCE;
+        /* A repair may leave labels that no face has: they are gone after one round. */
+        bool rounds = repaired || strcmp(row->name, "glb") == 0;
+        int repeats = !mine || varies ? NEVER : rounds ? ROUNDED : AT_ONCE;
         write_and_read(mesh, row->name, encoding, repeats, random);
     }
 }

@@ -4,6 +4,7 @@
 # The targets were built by `make fuzz`; without names all of them run. Each begins from
 # tests/fuzz/seeds/TARGET, from what it found worth keeping before (build/fuzz/corpus/TARGET, which
 # grows), and from the files of its kind in FUZZ_FILES (../shared/corpus/files), where that exists.
+# FUZZ_SEED repeats a run; without it each is another.
 # build/fuzz/logs/TARGET.log is libFuzzer's own account. An input that goes wrong is left in
 # build/fuzz/found; it is a regression test once it lies, made small by -minimize_crash=1, in
 # tests/fuzz/found/TARGET. The last line is `N passed, N failed`, a target each.
@@ -27,7 +28,7 @@ if [ "${1-}" = --one ]; then
     [ ! -f "$dictionary" ] || set -- -dict="$dictionary" "$@"
     # guard.c counts the memory and the seconds that an input itself takes; these catch the rest.
     ASAN_OPTIONS="${ASAN_OPTIONS:-quarantine_size_mb=16:detect_leaks=1}" \
-        "$programs/fuzz_$target" -max_total_time="$seconds" -max_len=4096 -timeout=20 \
+        "$programs/fuzz_$target" -max_total_time="$seconds" -seed="${FUZZ_SEED:-0}" -max_len=4096 -timeout=20 \
         -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="build/fuzz/found/$target-" \
         "$@" >"$log" 2>&1
     status=$?
