@@ -256,39 +256,15 @@ static he_status fill(const he_step *s, const he_column *from, he_column *to, he
     return HE_OK;
 }
 
-static size_t rows_of(const he_content *c, he_kind domain)
-{
-    switch (domain) {
-    case HE_VERTEX:
-        return c->vertices.issued;
-    case HE_HALFEDGE:
-        return 2 * (size_t)c->edges.issued;
-    case HE_EDGE:
-        return c->edges.issued;
-    case HE_FACE:
-        return c->faces.issued;
-    case HE_MESH_KIND:
-    case HE_KIND_COUNT:
-        break;
-    }
-    return 1;
-}
-
 static he_status carry_column(const he_step *s, const he_column *from, he_column **out,
                               he_error *err)
 {
     he_column *to;
-    he_status status =
-        he_column_new(from->name, from->domain, from->type, from->components, from->rule, &to, err);
+    he_status status = he_column_like(from, he_content_issued(s->to, from->domain), &to, err);
     if (status != HE_OK) {
         return status;
     }
-    memcpy(to->fallback, from->fallback, from->row_bytes);
-    to->labels = he_labels_retain(from->labels);
-    status = he_column_extend(to, rows_of(s->to, from->domain), err);
-    if (status == HE_OK) {
-        status = fill(s, from, to, err);
-    }
+    status = fill(s, from, to, err);
     if (status != HE_OK) {
         he_column_free(to);
         return status;

@@ -5,17 +5,12 @@
  * means too) or, on a curve, its two neighbours there, and is then moved. */
 #include "algo/subdivide_step.h"
 
-#include <float.h>
-#include <math.h>
+#include "query/scale.h"
 
-static const double PI = 3.14159265358979323846;
+#include <math.h>
 
 enum { SMOOTH_AT_MOST = 1, CURVE = 2, CORNER = 3 };
 
-static inline he_vec3 sum(he_vec3 a, he_vec3 b)
-{
-    return (he_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
-}
 /* s a + t b */
 static inline he_vec3 mix(double s, he_vec3 a, double t, he_vec3 b)
 {
@@ -23,7 +18,7 @@ static inline he_vec3 mix(double s, he_vec3 a, double t, he_vec3 b)
 }
 static inline void gather(he_vec3 *to, he_vec3 what)
 {
-    *to = sum(*to, what);
+    *to = he_vec3_add(*to, what);
 }
 
 /* One ring of rules: what a smooth vertex keeps of itself and takes of its sum. */
@@ -36,13 +31,13 @@ static weights weights_of(he_scheme scheme, uint32_t degree)
     double n = degree, cosine, share;
     switch (scheme) {
     case HE_LOOP:
-        cosine = 0.375 + 0.25 * cos(2 * PI / n);
+        cosine = 0.375 + 0.25 * cos(2 * HE_PI / n);
         share = 0.625 - cosine * cosine;
         return (weights){1 - share, share / n};
     case HE_CATMULL_CLARK:
         return (weights){(n - 2) / n, 1 / (n * n)};
     case HE_SQRT3:
-        share = (4 - 2 * cos(2 * PI / n)) / 9;
+        share = (4 - 2 * cos(2 * HE_PI / n)) / 9;
         return (weights){1 - share, share / n};
     case HE_LINEAR:
         break;
@@ -93,13 +88,13 @@ static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3
     const he_content *c = s->from;
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
     gather_ends(s, e, from, to);
-    he_vec3 ends = sum(from[a], from[b]);
+    he_vec3 ends = he_vec3_add(from[a], from[b]);
     if (s->sharp != NULL && he_step_is_sharp(s, e)) {
         to[middle(s, e)] = mix(0.5, ends, 0, ends);
         return;
     }
     uint32_t left = c->origin[c->prev[2 * e]], right = c->origin[c->prev[2 * e + 1]];
-    to[middle(s, e)] = mix(0.375, ends, 0.125, sum(from[left], from[right]));
+    to[middle(s, e)] = mix(0.375, ends, 0.125, he_vec3_add(from[left], from[right]));
 }
 
 /* The mean of face f in `to`. */
@@ -113,7 +108,7 @@ static void catmull_clark_edge(const he_step *s, uint32_t e, const he_vec3 *from
     const he_content *c = s->from;
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
     gather_ends(s, e, from, to);
-    he_vec3 left = {0, 0, 0}, right = {0, 0, 0}, ends = sum(from[a], from[b]);
+    he_vec3 left = {0, 0, 0}, right = {0, 0, 0}, ends = he_vec3_add(from[a], from[b]);
     if (c->face[2 * e] != HE_NONE) {
         left = face_point(s, c->face[2 * e], to);
     }
@@ -127,7 +122,8 @@ static void catmull_clark_edge(const he_step *s, uint32_t e, const he_vec3 *from
         gather(&to[b], right);
     }
     bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
-    to[middle(s, e)] = sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, sum(left, right));
+    to[middle(s, e)] =
+        sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, he_vec3_add(left, right));
 }
 
 static void linear_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
@@ -145,7 +141,7 @@ static he_vec3 third_from(const he_step *s, uint32_t a, uint32_t b, const he_vec
         return mix(2.0 / 3, from[a], 1.0 / 3, from[b]);
     }
     /* The sum holds b once already. */
-    return sum(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), mix(1.0 / 27, to[a], 0, to[a]));
+    return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), mix(1.0 / 27, to[a], 0, to[a]));
 }
 
 static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
@@ -256,11 +252,6 @@ static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_e
 /* Sums of so many times this still fit. */
 static const double LARGE = 1e290;
 
-static double within_doubles(double x)
-{
-    return fmax(-DBL_MAX, fmin(x, DBL_MAX));
-}
-
 static bool is_large(const he_vec3 *p, uint32_t count)
 {
     bool large = false;
@@ -287,8 +278,8 @@ he_status he_step_place(const he_step *s, const he_vec3 *from, he_vec3 *to, he_e
     }
     he_status status = smooth(s, small, to, err);
     for (uint32_t v = 0; v < s->to->vertices.issued && status == HE_OK; v++) {
-        to[v] = (he_vec3){within_doubles(to[v].x / scale), within_doubles(to[v].y / scale),
-                          within_doubles(to[v].z / scale)};
+        to[v] = (he_vec3){he_clamped(to[v].x / scale), he_clamped(to[v].y / scale),
+                          he_clamped(to[v].z / scale)};
     }
     he_mem_free(small);
     return status;

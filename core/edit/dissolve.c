@@ -26,17 +26,7 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
         return HE_OK;
     }
     he_status status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
-    he_halfedge first = he_vertex_halfedge(m, v), k = first;
-    do {
-        if (status == HE_OK) {
-            status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(k).i, err);
-        }
-        if (status == HE_OK) {
-            status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, k).i, err);
-        }
-        k = he_turn_ccw(m, k);
-    } while (status == HE_OK && k.i != first.i);
-    return status;
+    return status != HE_OK ? status : he_require_unlocked_about(m, &marks, v, err);
 }
 
 static he_status check(const he_mesh *m, he_vertex v, size_t *corners, he_error *err)

@@ -82,17 +82,7 @@ static he_status check_locks(const he_mesh *m, const pair *end, he_keep keep, he
     if (status == HE_OK && (from.x != to.x || from.y != to.y || from.z != to.z)) {
         status = he_require_unlocked(&marks, HE_VERTEX, end->stays.i, err);
     }
-    he_halfedge first = he_vertex_halfedge(m, end->goes), h = first;
-    do {
-        if (status == HE_OK) {
-            status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(h).i, err);
-        }
-        if (status == HE_OK) {
-            status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, h).i, err);
-        }
-        h = he_turn_ccw(m, h);
-    } while (status == HE_OK && h.i != first.i);
-    return status;
+    return status == HE_OK ? he_require_unlocked_about(m, &marks, end->goes, err) : status;
 }
 
 static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pair ends[2],

@@ -12,17 +12,7 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
         return HE_OK;
     }
     he_status status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
-    he_halfedge first = he_vertex_halfedge(m, v), h = first;
-    do {
-        if (status == HE_OK) {
-            status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(h).i, err);
-        }
-        if (status == HE_OK) {
-            status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, h).i, err);
-        }
-        h = he_turn_ccw(m, h);
-    } while (status == HE_OK && h.i != first.i);
-    return status;
+    return status == HE_OK ? he_require_unlocked_about(m, &marks, v, err) : status;
 }
 
 static he_status check(const he_mesh *m, he_vertex v, double width, he_error *err)

@@ -11,12 +11,6 @@ const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS] = {
     {"JOINTS_", "joints", 4, 4, true}, {"WEIGHTS_", "weights", 4, 4, true},
 };
 
-size_t he_gltf_number_name(const char *before, uint64_t number, char *to)
-{
-    int length = snprintf(to, HE_GLTF_NAME, "%s%llu", before, (unsigned long long)number);
-    return length < 0 ? 0 : (size_t)length;
-}
-
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name)
 {
     for (size_t i = 0; i < soup->column_count; i++) {

@@ -39,8 +39,6 @@ he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *
  * defaults before. HE_LIMIT, HE_NO_MEMORY. */
 HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,
                                       size_t end, he_error *err);
-/* `to` has HE_GLTF_NAME bytes. */
-size_t he_gltf_number_name(const char *before, uint64_t number, char *to);
 
 /* What the writer calls an attribute, and the reader takes for it. */
 typedef struct he_gltf_semantic {

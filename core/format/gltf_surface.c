@@ -3,6 +3,7 @@
 #include "format/gltf_attribute.h"
 #include "format/gltf_private.h"
 
+#include <stdio.h>
 #include <string.h>
 
 const he_gltf_frame he_gltf_no_frame = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
@@ -234,6 +235,13 @@ static he_status add_faces(he_gltf_surface *s, const he_gltf_primitive *p, he_er
 
 /* --- labels --- */
 
+/* "material_7": the name of what has none. Its length. */
+static size_t number_name(const char *before, uint64_t number, char *to)
+{
+    int length = snprintf(to, HE_GLTF_NAME, "%s%llu", before, (unsigned long long)number);
+    return length < 0 ? 0 : (size_t)length;
+}
+
 static he_status set_material(he_gltf_surface *s, const he_gltf_primitive *p, he_error *err)
 {
     const he_json *json = &s->asset->json;
@@ -253,7 +261,7 @@ static he_status set_material(he_gltf_surface *s, const he_gltf_primitive *p, he
             if (status != HE_OK) {
                 return status;
             }
-            length = he_gltf_number_name("material_", number, name);
+            length = number_name("material_", number, name);
         }
     }
     return he_spans_set_label(&s->material, p->first_face, name, length, err);

@@ -173,16 +173,8 @@ static he_status build_corners(const he_column *from, const builder *b, he_colum
                                he_error *err)
 {
     he_column *column;
-    he_status status = he_column_new(from->name, from->domain, from->type, from->components,
-                                     from->rule, &column, err);
+    he_status status = he_column_like(from, 2 * (size_t)b->c->edges.issued, &column, err);
     if (status != HE_OK) {
-        return status;
-    }
-    memcpy(column->fallback, from->fallback, from->row_bytes);
-    column->labels = he_labels_retain(from->labels);
-    status = he_column_extend(column, 2 * (size_t)b->c->edges.issued, err);
-    if (status != HE_OK) {
-        he_column_free(column);
         return status;
     }
     for (size_t c = 0; c < from->rows && c < b->soup->corner_count; c++) {

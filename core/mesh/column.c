@@ -61,6 +61,25 @@ void he_column_free(he_column *column)
     }
 }
 
+he_status he_column_like(const he_column *column, size_t rows, he_column **out, he_error *err)
+{
+    he_column *like;
+    he_status status = he_column_new(column->name, column->domain, column->type, column->components,
+                                     column->rule, &like, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    memcpy(like->fallback, column->fallback, column->row_bytes);
+    like->labels = he_labels_retain(column->labels);
+    status = he_column_extend(like, rows, err);
+    if (status != HE_OK) {
+        he_column_free(like);
+        return status;
+    }
+    *out = like;
+    return HE_OK;
+}
+
 he_status he_column_copy(const he_column *column, he_column **out, he_error *err)
 {
     he_column *copy = he_mem_alloc(sizeof *copy);

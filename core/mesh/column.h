@@ -46,6 +46,9 @@ HE_NODISCARD he_status he_column_new(const char *name, he_kind domain, he_type t
                                      uint32_t components, he_rule rule, he_column **out,
                                      he_error *err);
 void he_column_free(he_column *column);
+/* One of the same kind and labels with `rows` rows that hold the default. */
+HE_NODISCARD he_status he_column_like(const he_column *column, size_t rows, he_column **out,
+                                      he_error *err);
 HE_NODISCARD he_status he_column_copy(const he_column *column, he_column **out, he_error *err);
 /* The capacity to grow to so that `rows` fit: half as much again while there are few, an eighth
  * where there are many, since a mesh keeps its slack and large blocks are moved by their page

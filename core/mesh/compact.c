@@ -81,16 +81,8 @@ static he_status move_column(const he_column *from, const he_maps *maps, size_t 
                              he_column **out, he_error *err)
 {
     he_column *to;
-    he_status status =
-        he_column_new(from->name, from->domain, from->type, from->components, from->rule, &to, err);
+    he_status status = he_column_like(from, rows, &to, err);
     if (status != HE_OK) {
-        return status;
-    }
-    memcpy(to->fallback, from->fallback, from->row_bytes);
-    to->labels = he_labels_retain(from->labels);
-    status = he_column_extend(to, rows, err);
-    if (status != HE_OK) {
-        he_column_free(to);
         return status;
     }
     for (size_t row = 0; row < from->rows; row++) {

@@ -17,8 +17,6 @@ HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_e
 
 /* The table of a domain's rows, NULL for the mesh. Half-edge rows are twice the edges'. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
-/* Rows issued in an attribute's domain. */
-size_t he_content_issued(const he_content *content, he_kind domain);
 
 /* Write the dead value in a row of a link table: what a row holds when it is issued. */
 void he_content_clear_vertex(he_content *c, uint32_t v);

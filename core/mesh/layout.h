@@ -24,6 +24,9 @@ typedef struct he_content {
     size_t column_count, column_capacity;
 } he_content;
 
+/* Rows issued in an attribute's domain. */
+size_t he_content_issued(const he_content *content, he_kind domain);
+
 struct he_mesh {
     he_content c;
     he_delta *delta; /* where writes are recorded, or NULL */

@@ -1,5 +1,7 @@
 #include "mesh/marks.h"
 
+#include "mesh/walk.h"
+
 #include <string.h>
 
 static bool is_mark(const he_column *column, const char *name)
@@ -47,4 +49,19 @@ he_status he_require_unlocked(const he_marks *marks, he_kind kind, uint32_t id, 
         return he_fail(err, HE_LOCKED_ELEMENT, kind, id, "%s %u is locked", he_kind_name(kind), id);
     }
     return HE_OK;
+}
+
+he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks, he_vertex v,
+                                    he_error *err)
+{
+    he_status status = HE_OK;
+    he_halfedge first = he_vertex_halfedge(m, v), h = first;
+    do {
+        status = he_require_unlocked(marks, HE_EDGE, he_edge_of(h).i, err);
+        if (status == HE_OK) {
+            status = he_require_unlocked(marks, HE_FACE, he_face_of(m, h).i, err);
+        }
+        h = he_turn_ccw(m, h);
+    } while (status == HE_OK && h.i != first.i);
+    return status;
 }

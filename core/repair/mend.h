@@ -33,7 +33,6 @@ void he_mend_faces(const he_soup *soup, uint32_t *face_of);
 /* The repairs. Faces are proper for those below, as he_soup_check_faces has it. */
 HE_NODISCARD he_status he_mend_weld(he_mend *m, double tolerance, he_error *err);
 HE_NODISCARD he_status he_mend_drop_degenerate(he_mend *m, he_error *err);
-/* --- */
 HE_NODISCARD he_status he_mend_drop_duplicates(he_mend *m, he_error *err);
 /* With `force` what cannot be oriented is turned as well as may be, else it fails. */
 HE_NODISCARD he_status he_mend_orient(he_mend *m, bool force, he_error *err);
