@@ -150,8 +150,8 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
     }
 }
 
-static void put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gltf_accessor *a,
-                     const he_gltf_semantic *known, const he_column *column)
+static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gltf_accessor *a,
+                          const he_gltf_semantic *known, const he_column *column, he_error *err)
 {
     bool normal = known != NULL && strcmp(known->attribute, "normal") == 0;
     bool tangent = known != NULL && strcmp(known->attribute, "tangent") == 0;
@@ -159,7 +159,8 @@ static void put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gl
     uint64_t place =
         a->place == HE_GLTF_NOWHERE ? he_json_place(&s->asset->json, a->value) : a->place;
     he_gltf_walk walk = {.accessor = a};
-    for (uint64_t i = 0; i < a->count; i++) {
+    he_status status = HE_OK;
+    for (uint64_t i = 0; i < a->count && status == HE_OK; i++) {
         const unsigned char *at = he_gltf_next(&walk);
         double values[HE_COLUMN_COMPONENTS] = {0};
         for (uint32_t k = 0; k < a->components; k++) {
@@ -173,7 +174,9 @@ static void put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gl
             }
         }
         put_row(s, column, values, p->first_vertex + i, place);
+        status = he_gltf_poll(s->asset, err);
     }
+    return status;
 }
 
 static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
@@ -254,7 +257,7 @@ static he_status add_attribute(he_gltf_surface *s, const he_gltf_primitive *p, u
     status = he_gltf_extend(s, value, column, end, err);
     if (status == HE_OK) {
         s->given[number_of(&s->asset->into->soup, column)] += a.count;
-        put_rows(s, p, &a, known, column);
+        status = put_rows(s, p, &a, known, column, err);
     }
     return status;
 }

@@ -21,10 +21,11 @@ static void note_stale(he_gltf_surface *s, uint32_t value)
                  HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
 }
 
-/* Memory and limits are the server's matter; all else only says that the extras are no use. */
+/* Memory, limits and an end before time are no matter of the file; all else only says that the
+ * extras are no use. */
 static bool is_serious(he_status status)
 {
-    return status == HE_NO_MEMORY || status == HE_LIMIT;
+    return status == HE_NO_MEMORY || status == HE_LIMIT || status == HE_CANCELLED;
 }
 
 static he_status get_words(he_gltf *asset, uint32_t object, const char *name, he_gltf_accessor *out,
@@ -56,34 +57,43 @@ typedef struct polygons {
 } polygons;
 
 /* Are the triangles of each polygon at corners of it, degree - 2 of them, and its corners apart?
- * `marks` has a word a vertex. */
-static bool are_triangulated(const he_gltf_primitive *p, const polygons *g, uint32_t *marks)
+ * `marks` has a word a vertex. Fails as the watch does. */
+static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
+                                uint32_t *marks, bool *fits, he_error *err)
 {
+    *fits = false;
     he_gltf_walk degrees = {.accessor = &g->degrees}, corners = {.accessor = &g->corners};
     he_gltf_walk triangles = {.accessor = &p->indices};
     uint64_t corners_left = g->corners.count, triangles_left = p->faces;
+    he_status status = HE_OK;
     for (uint64_t i = 0; i < g->degrees.count; i++) {
         uint64_t degree = next_word(&degrees);
         if (degree < 3 || degree > corners_left || degree - 2 > triangles_left) {
-            return false;
+            return HE_OK;
         }
         corners_left -= degree;
         triangles_left -= degree - 2;
-        for (uint64_t k = 0; k < degree; k++) {
+        for (uint64_t k = 0; k < degree && status == HE_OK; k++) {
             uint32_t corner = next_word(&corners);
+            status = he_gltf_poll(asset, err);
             if (corner >= p->positions.count || marks[corner] == i + 1) {
-                return false;
+                return HE_OK;
             }
             marks[corner] = (uint32_t)i + 1;
         }
-        for (uint64_t k = 0; k < 3 * (degree - 2); k++) {
+        for (uint64_t k = 0; k < 3 * (degree - 2) && status == HE_OK; k++) {
             uint32_t corner = he_gltf_whole(p->indices.type, he_gltf_next(&triangles));
+            status = he_gltf_poll(asset, err);
             if (corner >= p->positions.count || marks[corner] != i + 1) {
-                return false;
+                return HE_OK;
             }
         }
+        if (status != HE_OK) {
+            return status;
+        }
     }
-    return corners_left == 0 && triangles_left == 0;
+    *fits = corners_left == 0 && triangles_left == 0;
+    return HE_OK;
 }
 
 static he_status add_polygons(he_gltf_surface *s, const he_gltf_primitive *p, const polygons *g,
@@ -97,7 +107,10 @@ static he_status add_polygons(he_gltf_surface *s, const he_gltf_primitive *p, co
         uint64_t degree = next_word(&degrees);
         uint64_t place = he_gltf_element_place(s->asset, &p->indices, p->value, 3 * triangle);
         triangle += degree - 2;
-        status = he_places_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
+        status = he_gltf_poll(s->asset, err);
+        if (status == HE_OK) {
+            status = he_places_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
+        }
         if (status == HE_OK) {
             status = he_soup_begin_face(&into->soup, err);
         }
@@ -133,8 +146,11 @@ static he_status read_polygons(he_gltf_surface *s, he_gltf_primitive *p, uint32_
         if (marks == NULL) {
             return he_fail_plain(err, HE_NO_MEMORY, "no memory to check polygons");
         }
-        fits = are_triangulated(p, &g, marks);
+        status = check_polygons(s->asset, p, &g, marks, &fits, err);
         he_mem_free(marks);
+    }
+    if (status != HE_OK) {
+        return status;
     }
     if (!fits) {
         note_stale(s, object);
@@ -258,22 +274,31 @@ static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
     return true;
 }
 
-/* Is every word a value of the type, and the number of a label where there are any? */
-static bool are_values(const description *d, size_t labels)
+/* Is every word a value of the type, and the number of a label where there are any? Fails as the
+ * watch does. */
+static he_status check_values(he_gltf *asset, const description *d, size_t labels, bool *fits,
+                              he_error *err)
 {
     he_gltf_walk walk = {.accessor = &d->words};
+    he_status status = HE_OK;
+    *fits = false;
     for (uint64_t i = 0; i < d->rows * d->components; i++) {
         unsigned char value[8] = {0};
         uint32_t number;
         if (!put_value(&walk, d->type, value)) {
-            return false;
+            return HE_OK;
         }
         memcpy(&number, value, sizeof number);
         if (d->labels != HE_NONE && number >= labels) {
-            return false;
+            return HE_OK;
+        }
+        status = he_gltf_poll(asset, err);
+        if (status != HE_OK) {
+            return status;
         }
     }
-    return true;
+    *fits = true;
+    return HE_OK;
 }
 
 /* Is there a column that the values may go on, or room for a new one? Asked before they are read,
@@ -308,13 +333,14 @@ static he_status take_column(he_gltf_surface *s, uint32_t object, const descript
         *labels = NULL;
     }
     he_gltf_walk walk = {.accessor = &d->words};
-    for (uint64_t i = 0; i < d->rows; i++) {
+    for (uint64_t i = 0; i < d->rows && status == HE_OK; i++) {
         unsigned char *at = he_column_row(column, d->first + i);
         for (uint64_t k = 0; k < d->components; k++, at += he_type_bytes(d->type)) {
             put_value(&walk, d->type, at);
         }
+        status = he_gltf_poll(s->asset, err);
     }
-    return HE_OK;
+    return status;
 }
 
 static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uint32_t object,
@@ -339,7 +365,8 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
         status = read_labels(json, d.labels, &labels, err);
     }
     if (status == HE_OK && fits) {
-        fits = are_values(&d, labels == NULL ? 0 : he_labels_count(labels));
+        status =
+            check_values(s->asset, &d, labels == NULL ? 0 : he_labels_count(labels), &fits, err);
     }
     if (status == HE_OK && fits) {
         status = take_column(s, object, &d, &labels, err);

@@ -166,7 +166,10 @@ static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_f
                             (unsigned long long)index);
     }
     he_bits_set(s->visited, index);
-    he_status status = get_frame(asset, node, &frame, &moves, err);
+    he_status status = he_gltf_poll(asset, err);
+    if (status == HE_OK) {
+        status = get_frame(asset, node, &frame, &moves, err);
+    }
     if (status != HE_OK) {
         return status;
     }

@@ -155,7 +155,10 @@ static he_status add_vertices(he_gltf_surface *s, const he_gltf_primitive *p, he
         if (!p->still) {
             position = place_point(p->frame, position);
         }
-        status = he_places_add(&into->vertices, (uint32_t)into->soup.vertex_count, place, err);
+        status = he_gltf_poll(s->asset, err);
+        if (status == HE_OK) {
+            status = he_places_add(&into->vertices, (uint32_t)into->soup.vertex_count, place, err);
+        }
         if (status == HE_OK) {
             status = located(he_soup_add_vertex(&into->soup, position, err), place, err);
         }
@@ -207,6 +210,10 @@ static he_status add_faces(he_gltf_surface *s, const he_gltf_primitive *p, he_er
     he_status status = HE_OK;
     for (uint64_t i = 0; i < count && status == HE_OK; i++) {
         uint32_t index = (uint32_t)i;
+        status = he_gltf_poll(s->asset, err);
+        if (status != HE_OK) {
+            return status;
+        }
         if (p->indexed) {
             index = he_gltf_whole(p->indices.type, he_gltf_next(&walk));
         }

@@ -479,7 +479,7 @@ static he_status off_finish(void *state, he_error *err)
     return status;
 }
 
-const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close};
+const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close, false};
 
 /* The first token is a header; without one nothing tells the format. */
 bool he_off_sniff(const char *bytes, size_t n)

@@ -485,7 +485,7 @@ static he_status ply_finish(void *state, he_error *err)
     return HE_OK;
 }
 
-const he_reading he_ply_reading = {ply_open, ply_feed, ply_finish, ply_close};
+const he_reading he_ply_reading = {ply_open, ply_feed, ply_finish, ply_close, false};
 
 bool he_ply_sniff(const char *bytes, size_t n)
 {
