@@ -258,6 +258,38 @@ static void buffers_in_uris(void **state)
     assert_null(he_format_sniff("{\"vertices\":[]}", 15));
 }
 
+/* Any character of a string may be written as an escape, of which there are two kinds. */
+static void buffers_in_uris_with_escapes(void **state)
+{
+    (void)state;
+    static const char *const uris[] = {
+        "data:application\\/octet-stream;base64,AACAPwAAgD8AAIA/AACAPwAAgD8AAIA/"
+        "AACAPwAAgD8AAIA/",
+        "data:application\\/octet-stream;base64,AACAPwAAgD8AAIA\\/AACAPwAAgD8AAIA\\/"
+        "AACAPwAAgD8AAIA\\/",
+        "\\u0064ata:;base64\\u002cAACAPw\\u0041AgD8AAIA\\u002fAACAPwAAgD8AAIA\\u002F"
+        "AACAPwAAgD8AAIA/",
+    };
+    for (size_t i = 0; i < sizeof uris / sizeof *uris; i++) {
+        char json[1000];
+        int length =
+            snprintf(json, sizeof json,
+                     "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"%s"
+                     "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{"
+                     "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+                     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+                     uris[i]);
+        he_import import = {0};
+        he_error err = {0};
+        if (read_bytes("gltf", json, (size_t)length, &import, &err) != HE_OK) {
+            fail_msg("%s: %s", uris[i], err.text);
+        }
+        expect_counts(&import, 3, 1, 3);
+        expect_position(&import, 2, 1, 1, 1);
+        he_import_clear(&import);
+    }
+}
+
 static void numbers_that_are_not_aligned(void **state)
 {
     (void)state;
@@ -405,6 +437,7 @@ int main(void)
         cmocka_unit_test(quantized_positions),
         cmocka_unit_test(numbers_that_are_not_aligned),
         cmocka_unit_test(buffers_in_uris),
+        cmocka_unit_test(buffers_in_uris_with_escapes),
         cmocka_unit_test(attributes_of_vertices),
         cmocka_unit_test(directions_turn_with_their_node),
         cmocka_unit_test(attributes_of_some_primitives),

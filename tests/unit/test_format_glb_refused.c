@@ -152,6 +152,29 @@ static void json_to_the_letter(void **state)
 #define WITH_SPARSE(s) \
     WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','sparse':" s "}")
 
+/* The end of base64 stands only at its end, also where the decoder pauses; with escapes or not. */
+static void base64_that_ends_too_early(void **state)
+{
+    (void)state;
+    enum { PIECE = 1 << 16 };
+    static const char head[] = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":9,"
+                               "\"uri\":\"data:;base64,";
+    static const char *const ends[] = {"==AAAA\"}]}", "A=AAAA\"}]}", "==\\u0041AAA\"}]}"};
+    for (size_t i = 0; i < 3; i++) {
+        size_t length = sizeof head - 1 + PIECE - 2;
+        char *text = malloc(length + 40);
+        assert_non_null(text);
+        memset(text, 'A', length);
+        memcpy(text, head, sizeof head - 1);
+        length += (size_t)snprintf(text + length, 40, "%s", ends[i]);
+        he_import import = {0};
+        he_error err = {0};
+        assert_int_equal(read_pieces("gltf", text, length, 0, NULL, &import, &err), HE_SYNTAX);
+        assert_non_null(strstr(err.text, "buffers/0/uri: the data: URI is not base64"));
+        free(text);
+    }
+}
+
 static void references_and_numbers(void **state)
 {
     (void)state;
@@ -523,6 +546,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(containers),
         cmocka_unit_test(json_to_the_letter),
+        cmocka_unit_test(base64_that_ends_too_early),
         cmocka_unit_test(references_and_numbers),
         cmocka_unit_test(numbers_in_the_buffer),
         cmocka_unit_test(bombs),
