@@ -150,7 +150,9 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
         char name[HE_NOTE_SUBJECT], quoted[HE_NOTE_SUBJECT];
         size_t length = he_json_string(json, i, name, sizeof name);
-        if (!he_json_is(json, i, "KHR_mesh_quantization") && !begins_with_any(json, i, looks)) {
+        bool quantized = he_json_is(json, i, "KHR_mesh_quantization");
+        asset->quantized |= quantized;
+        if (!quantized && !begins_with_any(json, i, looks)) {
             he_quote(name, name + length, quoted, sizeof quoted);
             return he_json_fail(json, i, err, HE_UNSUPPORTED,
                                 "the file needs the extension %s, which is not read", quoted);
@@ -158,7 +160,9 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     }
     list = he_json_find(json, 0, "extensionsUsed");
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
-        if (!he_json_is(json, i, "KHR_mesh_quantization")) {
+        if (he_json_is(json, i, "KHR_mesh_quantization")) {
+            asset->quantized = true;
+        } else {
             note(asset, "ignored_extension", "ignored: extension", i, i);
         }
     }

@@ -28,6 +28,7 @@ typedef struct he_gltf {
     he_ids accessors, views, nodes, meshes, materials; /* their values in the JSON */
     he_gltf_buffer *buffers;
     size_t buffer_count;
+    bool quantized;       /* KHR_mesh_quantization is used */
     uint64_t room;        /* bytes that may still be made */
     uint64_t size;        /* bytes of the input */
     uint64_t steps, told; /* of work; when the watch was last told */

@@ -186,6 +186,26 @@ static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
                  he_json_place(&s->asset->json, value));
 }
 
+static bool is_direction(const he_gltf_semantic *known)
+{
+    return known != NULL &&
+           (strcmp(known->attribute, "normal") == 0 || strcmp(known->attribute, "tangent") == 0);
+}
+
+/* Directions are floats, or what the extension has for them. */
+static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
+                            const he_gltf_semantic *known, he_error *err)
+{
+    bool small = a->normalized && (a->type == HE_GLTF_INT8 || a->type == HE_GLTF_INT16);
+    if (!is_direction(known) || a->type == HE_GLTF_FLOAT || (asset->quantized && small)) {
+        return HE_OK;
+    }
+    return he_json_fail(&asset->json, a->value, err, HE_BAD_VALUE,
+                        "%s has componentType 5126%s, not %d", known->semantic,
+                        asset->quantized ? ", or 5120 or 5122 and is normalized" : "",
+                        (int)a->type);
+}
+
 /* The column for the rows, NULL where there can be none. */
 static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, const char *semantic,
                              const he_gltf_accessor *a, const he_gltf_semantic **known,
@@ -200,6 +220,10 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
          (a->components < (*known)->least || a->components > (*known)->most || a->matrix))) {
         note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
         return HE_OK;
+    }
+    he_status status = check_type(s->asset, a, *known, err);
+    if (status != HE_OK) {
+        return status;
     }
     he_type type = column_type(a, *known);
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);

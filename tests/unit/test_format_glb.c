@@ -211,13 +211,17 @@ static void quantized_positions(void **state)
         "{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'},"
         "{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3'},"
         "{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3','normalized':true}],"
-        "'meshes':[{'primitives':[" PRIMITIVE ",{'attributes':{'POSITION':2},'indices':1},"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':3},'indices':1},{'"
+        "attributes':{'POSITION':2},'indices':1},"
         "{'attributes':{'POSITION':3},'indices':1}]}]}");
     expect_position(&import, 3, 0.2, 0.4, 0.8);
     expect_position(&import, 4, -1, 0, 0);
     expect_position(&import, 7, 51, 102, -52);
     expect_position(&import, 11, 51 / 127.0, 102 / 127.0, -52 / 127.0);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.notes.count, 1);
+    float normal[3];
+    memcpy(normal, find_column(&import, HE_VERTEX, "normal")->data + 36, sizeof normal);
+    assert_true(fabs((double)normal[2] + 52 / 127.0) < 1e-6);
     he_import_clear(&import);
 }
 

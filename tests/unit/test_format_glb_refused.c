@@ -264,6 +264,20 @@ static void references_and_numbers(void **state)
         {"{" ASSET ",'buffers':[{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}},"
          "{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}}]}",
          HE_UNSUPPORTED, "buffers/1: the buffer is there in EXT_meshopt_compression only"},
+        /* directions */
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0,'NORMAL':4},'indices':1}"), HE_BAD_VALUE,
+         "accessors/4: NORMAL has componentType 5126, not 5121"},
+        {"{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
+         ",{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3','normalized':true}],"
+         "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':5},'indices':1}]}]}",
+         HE_BAD_VALUE, "accessors/5: NORMAL has componentType 5126, not 5120"},
+        {"{" ASSET "," BUFFERS "," VIEWS ",'extensionsUsed':['KHR_mesh_quantization'],"
+         "'accessors':[" ACCESSOR_LIST
+         ",{'bufferView':4,'componentType':5121,'count':4,'type':'VEC4','normalized':true}],"
+         "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'TANGENT':5},'indices':1}]}]}",
+         HE_BAD_VALUE,
+         "accessors/5: TANGENT has componentType 5126, or 5120 or 5122 and is normalized, not "
+         "5121"},
         /* primitives */
         {WITH_PRIMITIVE("{'indices':1}"), HE_BAD_VALUE, "'attributes' is missing"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':9}}"), HE_BAD_INDEX,
@@ -289,6 +303,12 @@ static void references_and_numbers(void **state)
          "nodes/0/children/0: node 0 is reached twice"},
         {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
         {WITH_NODES("{'children':[1,1]},{'mesh':0}"), HE_BAD_VALUE, "node 1 is reached twice"},
+        /* without scenes, nodes that no root leads to */
+        {"{" DATA "," MESHES ",'nodes':[{'mesh':0,'children':[0]}]}", HE_BAD_VALUE,
+         "nodes/0/children/0: node 0 is inside itself"},
+        {"{" DATA "," MESHES
+         ",'nodes':[{'mesh':0},{'mesh':0},{'children':[1,3]},{'children':[2]}]}",
+         HE_BAD_VALUE, "nodes/2/children/1: node 3 is inside itself"},
         /* what is no list is not an empty one: the mesh would be lost */
         {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
