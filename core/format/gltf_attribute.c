@@ -6,9 +6,9 @@
 #include <string.h>
 
 const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS] = {
-    {"NORMAL", "normal", 3, 3, false}, {"TANGENT", "tangent", 4, 4, false},
-    {"TEXCOORD_", "uv", 2, 2, true},   {"COLOR_", "color", 3, 4, true},
-    {"JOINTS_", "joints", 4, 4, true}, {"WEIGHTS_", "weights", 4, 4, true},
+    {"NORMAL", "normal", 3, 3, false, 0}, {"TANGENT", "tangent", 4, 4, false, 1},
+    {"TEXCOORD_", "uv", 2, 2, true, 2},   {"COLOR_", "color", 3, 4, true, 3},
+    {"JOINTS_", "joints", 4, 4, true, 5}, {"WEIGHTS_", "weights", 4, 4, true, 4},
 };
 
 size_t he_gltf_number_name(const char *before, uint64_t number, char *to)

@@ -47,6 +47,7 @@ typedef struct he_gltf_semantic {
     const char *semantic, *attribute;
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
+    unsigned partner;     /* the one without which it may not be, itself where there is none */
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[];
 enum { HE_GLTF_SEMANTICS = 6 };

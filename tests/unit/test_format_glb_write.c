@@ -176,6 +176,74 @@ static void what_is_not_carried_is_said(void **state)
     he_mesh_free(mesh);
 }
 
+/* TEXCOORD_1 needs TEXCOORD_0, and JOINTS_0 WEIGHTS_0: what has no such place has another, and
+ * keeps its name. */
+static void numbered_attributes_have_no_gaps(void **state)
+{
+    (void)state;
+    static const struct {
+        struct {
+            const char *name;
+            he_type type;
+            uint32_t components;
+            const char *semantic; /* NULL: in extras alone */
+        } columns[3];
+    } rows[] = {
+        {{{"uv1", HE_FLOAT, 2, "_uv1"}}},
+        {{{"uv1", HE_FLOAT, 2, "TEXCOORD_1"}, {"uv", HE_FLOAT, 2, "TEXCOORD_0"}}},
+        {{{"uv", HE_INT32, 2, NULL}, {"uv1", HE_FLOAT, 2, "_uv1"}}},
+        {{{"uv", HE_FLOAT, 3, "_uv"}, {"uv1", HE_FLOAT, 2, "_uv1"}}},
+        {{{"uv", HE_FLOAT, 2, "TEXCOORD_0"}, {"uv2", HE_FLOAT, 2, "_uv2"}}},
+        {{{"color1", HE_UINT32, 4, NULL}}},
+        {{{"joints", HE_UINT32, 4, NULL}}},
+        {{{"weights", HE_FLOAT, 4, "_weights"}}},
+        {{{"joints", HE_UINT32, 4, "JOINTS_0"}, {"weights", HE_FLOAT, 4, "WEIGHTS_0"}}},
+        {{{"joints", HE_FLOAT, 4, "_joints"}, {"weights", HE_FLOAT, 4, "_weights"}}},
+        {{{"weights", HE_FLOAT, 4, "WEIGHTS_0"},
+          {"joints", HE_UINT32, 4, "JOINTS_0"},
+          {"joints1", HE_UINT32, 4, NULL}}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        he_mesh *mesh = fixture_mesh("012,023");
+        for (size_t k = 0; k < 3 && rows[i].columns[k].name != NULL; k++) {
+            he_column *column;
+            he_rule rule = rows[i].columns[k].type == HE_FLOAT ? HE_INTERPOLATE : HE_COPY;
+            assert_int_equal(he_column_new(rows[i].columns[k].name, HE_VERTEX,
+                                           rows[i].columns[k].type, rows[i].columns[k].components,
+                                           rule, &column, NULL),
+                             HE_OK);
+            assert_int_equal(he_column_extend(column, 4, NULL), HE_OK);
+            assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
+        }
+        size_t length, json = 0;
+        char *bytes = write_glb(mesh, NULL, &length), semantic[40], text[4096];
+        memcpy(&json, bytes + 12, 4);
+        assert_true(json < sizeof text);
+        memcpy(text, bytes + 20, json);
+        text[json] = '\0';
+        he_import import = read_back(bytes, length);
+        hide_extras(bytes, length);
+        he_import other = read_back(bytes, length);
+        for (size_t k = 0; k < 3 && rows[i].columns[k].name != NULL; k++) {
+            const char *name = rows[i].columns[k].name;
+            const he_column *column = find_column(&import, HE_VERTEX, name);
+            assert_non_null(column);
+            assert_int_equal(column->type, rows[i].columns[k].type);
+            assert_int_equal(column->components, rows[i].columns[k].components);
+            assert_int_equal(find_column(&other, HE_VERTEX, name) != NULL,
+                             rows[i].columns[k].semantic != NULL);
+            if (rows[i].columns[k].semantic != NULL) {
+                snprintf(semantic, sizeof semantic, "\"%s\":", rows[i].columns[k].semantic);
+                assert_non_null(strstr(text, semantic));
+            }
+        }
+        he_import_clear(&import);
+        he_import_clear(&other);
+        free(bytes);
+        he_mesh_free(mesh);
+    }
+}
+
 /* --- extras that do not fit --- */
 
 #define PRIVATE(list, hedge, node)                                                           \
@@ -344,6 +412,7 @@ int main(void)
         cmocka_unit_test(meshes_without_faces),
         cmocka_unit_test(many_vertices_have_long_indices),
         cmocka_unit_test(what_is_not_carried_is_said),
+        cmocka_unit_test(numbered_attributes_have_no_gaps),
         cmocka_unit_test(extras_are_not_believed),
         cmocka_unit_test(polygons_of_other_triangles),
         cmocka_unit_test(extras_without_memory),
