@@ -213,20 +213,24 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
     return status;
 }
 
-static he_status read_labels(const he_json *json, uint32_t list, he_labels **out, he_error *err)
+/* Each must be there once: two of a name would move the numbers of all behind them. */
+static he_status read_labels(const he_json *json, uint32_t list, he_labels **out, bool *fits,
+                             he_error *err)
 {
     he_labels *labels = he_labels_new();
     he_status status = HE_OK;
+    size_t count = 0;
     if (labels == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
     }
     for (uint32_t i = he_json_first(json, list); i != HE_NONE && status == HE_OK;
          i = he_json_after(json, list, i)) {
         size_t room = 0;
-        uint32_t number;
+        uint32_t number = 0;
         if (he_json_type(json, i) == '"') {
             he_json_raw(json, i, &room);
         }
+        *fits &= he_json_type(json, i) == '"';
         char *text = he_mem_alloc(room + 1);
         if (text == NULL) {
             status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a name of %zu bytes", room);
@@ -235,6 +239,7 @@ static he_status read_labels(const he_json *json, uint32_t list, he_labels **out
         size_t length = he_json_string(json, i, text, room + 1);
         status = he_labels_add(labels, text, length, &number, err);
         he_mem_free(text);
+        *fits &= number == count++;
     }
     if (status != HE_OK) {
         he_labels_release(labels);
@@ -311,7 +316,46 @@ static bool has_place(const he_gltf_surface *s, const description *d)
         return soup->column_count < HE_GLTF_ATTRIBUTES;
     }
     return column->type == d->type && column->components == d->components &&
-           column->rows <= d->first && column->labels == NULL && d->labels == HE_NONE;
+           column->rows <= d->first && (column->labels == NULL) == (d->labels == HE_NONE);
+}
+
+/* Numbers of labels become those that a column has for them. */
+static he_status renumber(he_column *column, size_t first, const he_labels *labels, he_error *err)
+{
+    size_t count = he_labels_count(labels);
+    uint32_t *numbers = he_mem_array(NULL, count, sizeof *numbers);
+    he_status status = HE_OK;
+    if (numbers == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu names", count);
+    }
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        const char *text = he_labels_get(labels, i);
+        status = he_labels_add(column->labels, text, strlen(text), &numbers[i], err);
+    }
+    for (size_t row = first; row < column->rows && status == HE_OK; row++) {
+        uint32_t number;
+        memcpy(&number, he_column_row(column, row), sizeof number);
+        memcpy(he_column_row(column, row), &numbers[number], sizeof number);
+    }
+    he_mem_free(numbers);
+    return status;
+}
+
+/* Which faces have names of their own that are also told by nodes and materials. */
+static he_status keep_names(he_gltf_surface *s, const description *d, he_error *err)
+{
+    he_ids *named = strcmp(d->name, "object") == 0     ? &s->own_objects
+                    : strcmp(d->name, "material") == 0 ? &s->own_materials
+                                                       : NULL;
+    if (named == NULL || d->domain != HE_FACE) {
+        return HE_OK;
+    }
+    he_status status = he_ids_reserve(named, 2, err);
+    if (status == HE_OK) {
+        named->ids[named->count++] = (uint32_t)d->first;
+        named->ids[named->count++] = (uint32_t)(d->first + d->rows);
+    }
+    return status;
 }
 
 static he_status take_column(he_gltf_surface *s, uint32_t object, const description *d,
@@ -340,7 +384,10 @@ static he_status take_column(he_gltf_surface *s, uint32_t object, const descript
         }
         status = he_gltf_poll(s->asset, err);
     }
-    return status;
+    if (status == HE_OK && *labels != NULL) {
+        status = renumber(column, d->first, *labels, err);
+    }
+    return status == HE_OK ? keep_names(s, d, err) : status;
 }
 
 static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uint32_t object,
@@ -362,7 +409,7 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     he_status status = d.domain == HE_KIND_COUNT ? HE_OK : describe(s, object, &d, &fits, err);
     fits = fits && has_place(s, &d);
     if (status == HE_OK && fits && d.labels != HE_NONE) {
-        status = read_labels(json, d.labels, &labels, err);
+        status = read_labels(json, d.labels, &labels, &fits, err);
     }
     if (status == HE_OK && fits) {
         status =

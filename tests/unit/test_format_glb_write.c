@@ -322,6 +322,12 @@ static void extras_are_not_believed(void **state)
         {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
          "'accessor':7,'labels':['a','b']}]",
          "", 0, 2, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7,'labels':['a','a','b']}]",
+         "", 0, 2, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7,'labels':['a',3]}]",
+         "", 0, 1, 3, 2, NULL, false},
         {"'columns':[{'domain':'face','name':'n','type':'int32','components':1,'rule':'copy',"
          "'accessor':7,'labels':['a','b']}]",
          "", 0, 1, 3, 2, NULL, false},
@@ -347,6 +353,70 @@ static void extras_are_not_believed(void **state)
         assert_true(rows[i].column == NULL || find_column(&import, HE_FACE, "n") != NULL);
         assert_true(rows[i].column != NULL || find_column(&import, HE_FACE, "n") == NULL);
         he_mesh_free(build_import(&import));
+        he_import_clear(&import);
+    }
+}
+
+/* Names in extras are those of their own primitive's faces; the others keep those they have. */
+static void names_beside_names_in_extras(void **state)
+{
+    (void)state;
+    static const char extras[] = "'extras':{'hedge':{'columns':[{'domain':'face','name':'%s',"
+                                 "'type':'uint32','components':1,'rule':'copy','accessor':5%s}]}}";
+    static const struct {
+        const char *name, *first, *second; /* the column; its labels in two primitives */
+        const char *names[8];
+    } rows[] = {
+        {"object",
+         ",'labels':['x','y']",
+         NULL,
+         {"plate", "plate", "y", "x", "plate", "plate", "", ""}},
+        {"material", ",'labels':['x','y']", NULL, {"steel", "steel", "y", "x", "", "", "", ""}},
+        {"object",
+         ",'labels':['x','y']",
+         ",'labels':['y','z']",
+         {"plate", "plate", "y", "x", "z", "y", "", ""}},
+        {"object", "", NULL, {NULL}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char json[4000], one[400], two[400];
+        unsigned char bin[SQUARE_BYTES];
+        glb_file f;
+        snprintf(one, sizeof one, extras, rows[i].name, rows[i].first);
+        snprintf(two, sizeof two, extras, rows[i].name,
+                 rows[i].second == NULL ? "" : rows[i].second);
+        snprintf(json, sizeof json,
+                 "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
+                 ",{'bufferView':4,'componentType':5125,'count':2,'type':'SCALAR'}],"
+                 "'materials':[{'name':'steel'}],'meshes':[{'name':'plate','primitives':["
+                 "{'attributes':{'POSITION':0},'indices':1,'material':0},"
+                 "{'attributes':{'POSITION':0},'indices':1,%s},"
+                 "{'attributes':{'POSITION':0},'indices':1%s%s}]},{'primitives':[" PRIMITIVE
+                 "]}],'nodes':[{'mesh':0},{'mesh':1}]}",
+                 one, rows[i].second == NULL ? "" : ",", rows[i].second == NULL ? "" : two);
+        square_bin(bin);
+        memcpy(bin + 80, (unsigned char[]){1, 0, 0, 0, 0, 0, 0, 0}, 8);
+        glb_make(&f, json, bin, sizeof bin);
+        he_import import = read_back((const char *)f.bytes, f.length);
+        assert_int_equal(import.soup.face_count, 8);
+        assert_null(find_note(&import.notes, "stale_extras", ""));
+        for (size_t k = 0; k < 8 && rows[i].names[0] != NULL; k++) {
+            assert_string_equal(face_label(&import, rows[i].name, k), rows[i].names[k]);
+        }
+        assert_int_equal(find_note(&import.notes, "attribute_types", rows[i].name) != NULL,
+                         rows[i].names[0] == NULL);
+        for (long n = 1; n > 0; n++) {
+            he_import other = {0};
+            he_error err = {0};
+            fixture_fail_at(n);
+            he_status status = read_pieces("glb", f.bytes, f.length, 0, NULL, &other, &err);
+            fixture_memory_back();
+            if (status == HE_OK) {
+                he_import_clear(&other);
+                break;
+            }
+            assert_int_equal(status, HE_NO_MEMORY);
+        }
         he_import_clear(&import);
     }
 }
@@ -414,6 +484,7 @@ int main(void)
         cmocka_unit_test(what_is_not_carried_is_said),
         cmocka_unit_test(numbered_attributes_have_no_gaps),
         cmocka_unit_test(extras_are_not_believed),
+        cmocka_unit_test(names_beside_names_in_extras),
         cmocka_unit_test(polygons_of_other_triangles),
         cmocka_unit_test(extras_without_memory),
     };
