@@ -98,11 +98,14 @@ def make_off(r):
     else:
         lines = [head + ' ' + counts] if r.random() < 0.2 else [head, counts]
     color = r.choice(['255 0 10', '0.5 0.25 1', '1 2 3 4', '0.5 0.5 0.5 1.0'])
+    bare = r.random() < 0.1
     for p in v:
         line = ' '.join(some_number(r, x) for x in p)
         line += ' 0 0 1' if n else ''
         line += ' ' + color if c else ''
         line += ' 0.5 0.25' if st else ''
+        if bare and r.random() < 0.5:
+            line = ' '.join(line.split(' ')[:3])
         lines.append(line)
     face_color = r.choice(['', '', ' 255 0 0', ' 0.1 0.2 0.3', ' 1 2 3 4', ' 3'])
     for face in f:
