@@ -1,9 +1,9 @@
 /* he_json_parse of json.h. */
 #include "format/json.h"
 
+#include "format/json_string.h"
 #include "format/notes.h"
 #include "format/number.h"
-#include "mesh/utf8.h"
 
 #include <string.h>
 
@@ -99,71 +99,18 @@ static he_status scan_number(scan *s)
     return HE_OK;
 }
 
-/* Four hexadecimal digits at `p`, or -1. */
-static int scan_hex(const char *p, const char *end)
-{
-    int value = 0;
-    for (int i = 0; i < 4; i++, p++) {
-        int digit = p >= end                 ? -1
-                    : *p >= '0' && *p <= '9' ? *p - '0'
-                    : *p >= 'a' && *p <= 'f' ? *p - 'a' + 10
-                    : *p >= 'A' && *p <= 'F' ? *p - 'A' + 10
-                                             : -1;
-        if (digit < 0) {
-            return -1;
-        }
-        value = value * 16 + digit;
-    }
-    return value;
-}
-
-static he_status scan_escape(scan *s)
-{
-    const char *p = s->at + 1;
-    if (p == s->end || *p == '\0' || strchr("\"\\/bfnrtu", *p) == NULL) {
-        return refuse(s, "this is not an escape");
-    }
-    if (*p != 'u') {
-        s->at += 2;
-        return HE_OK;
-    }
-    int unit = scan_hex(p + 1, s->end);
-    size_t length = 6;
-    if (unit >= 0xD800 && unit <= 0xDFFF) {
-        bool pair = unit < 0xDC00 && s->end - p >= 7 && p[5] == '\\' && p[6] == 'u';
-        int low = pair ? scan_hex(p + 7, s->end) : -1;
-        unit = low >= 0xDC00 && low <= 0xDFFF ? unit : -1;
-        length = 12;
-    }
-    if (unit <= 0) {
-        return refuse(s, unit == 0 ? "a null character is not taken in strings"
-                                   : "\\u needs four hexadecimal digits, and surrogates a pair");
-    }
-    s->at += length;
-    return HE_OK;
-}
-
 static he_status scan_string(scan *s)
 {
-    he_status status = HE_OK;
+    bool closed = false;
     s->at++;
-    while (s->at < s->end && status == HE_OK) {
-        unsigned char c = (unsigned char)*s->at;
-        if (c == '"') {
-            s->at++;
-            return HE_OK;
-        }
-        if (c == '\\') {
-            status = scan_escape(s);
-        } else if (c < 0x20) {
-            status = refuse(s, "a control character stands raw in a string");
-        } else {
-            size_t size = he_utf8_character(s->at, (size_t)(s->end - s->at));
-            status = size == 0 ? refuse(s, "the string is not UTF-8") : poll(s);
-            s->at += size;
+    while (!closed) {
+        const char *wrong = he_json_string_part(&s->at, s->end, &closed);
+        he_status status = wrong != NULL ? refuse(s, wrong) : poll(s);
+        if (status != HE_OK) {
+            return status;
         }
     }
-    return status == HE_OK ? refuse(s, "the string does not end") : status;
+    return HE_OK;
 }
 
 /* --- members that are given twice --- */
