@@ -1,8 +1,8 @@
 #include "api/json_scan.h"
 
 #include "api/limits.h"
+#include "format/json_string.h"
 #include "format/number.h"
-#include "mesh/utf8.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -113,85 +113,17 @@ static bool scan_number(scan *s)
     return true;
 }
 
-/* Four hexadecimal digits, or -1. */
-static int scan_hex(const char *at, const char *end)
-{
-    if (end - at < 4) {
-        return -1;
-    }
-    int value = 0;
-    for (int i = 0; i < 4; i++) {
-        char c = at[i];
-        int digit = c >= '0' && c <= '9'   ? c - '0'
-                    : c >= 'a' && c <= 'f' ? c - 'a' + 10
-                    : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                           : -1;
-        if (digit < 0) {
-            return -1;
-        }
-        value = value * 16 + digit;
-    }
-    return value;
-}
-
-static bool scan_escape(scan *s)
-{
-    const char *at = s->at + 1; /* past the backslash */
-    if (at == s->end) {
-        return refuse(s, API_MALFORMED_JSON, "the string does not end");
-    }
-    if (*at != 'u') {
-        if (*at == '\0' || strchr("\"\\/bfnrt", *at) == NULL) {
-            return refuse(s, API_MALFORMED_JSON, "the escape is not one of JSON's");
-        }
-        s->at = at + 1;
-        return true;
-    }
-    int unit = scan_hex(at + 1, s->end);
-    if (unit < 0) {
-        return refuse(s, API_MALFORMED_JSON, "\\u needs four hexadecimal digits");
-    }
-    if (unit == 0) {
-        return refuse(s, API_MALFORMED_JSON, "a null character is not taken in strings");
-    }
-    at += 5;
-    if (unit >= 0xD800 && unit <= 0xDFFF) {
-        int low = unit < 0xDC00 && s->end - at >= 6 && at[0] == '\\' && at[1] == 'u'
-                      ? scan_hex(at + 2, s->end)
-                      : -1;
-        if (low < 0xDC00 || low > 0xDFFF) {
-            return refuse(s, API_MALFORMED_JSON, "a surrogate stands alone");
-        }
-        at += 6;
-    }
-    s->at = at;
-    return true;
-}
-
 static bool scan_string(scan *s)
 {
+    bool closed = false;
     s->at++; /* the quote */
-    while (s->at < s->end) {
-        unsigned char c = (unsigned char)*s->at;
-        if (c == '"') {
-            s->at++;
-            return true;
-        }
-        if (c == '\\') {
-            if (!scan_escape(s)) {
-                return false;
-            }
-        } else if (c < 0x20) {
-            return refuse(s, API_MALFORMED_JSON, "a control character stands raw in a string");
-        } else {
-            size_t size = he_utf8_character(s->at, (size_t)(s->end - s->at));
-            if (size == 0) {
-                return refuse(s, API_MALFORMED_JSON, "the string is not UTF-8");
-            }
-            s->at += size;
+    while (!closed) {
+        const char *wrong = he_json_string_part(&s->at, s->end, &closed);
+        if (wrong != NULL) {
+            return refuse(s, API_MALFORMED_JSON, "%s", wrong);
         }
     }
-    return refuse(s, API_MALFORMED_JSON, "the string does not end");
+    return true;
 }
 
 /* Is this a key, as it stands in the text, for a name of ASCII letters? */
@@ -204,7 +136,7 @@ static bool is_key(const frame *f, const char *name)
             if (*at != 'u') {
                 return false;
             }
-            c = scan_hex(at + 1, end);
+            c = he_json_hex(at + 1, end);
             at += 5;
         }
         if (c != *name) {

@@ -1,15 +1,14 @@
 /* question.h - one question about a mesh, asked as a JSON object.
  *
- *     {"relation":"faces","of":{"vertex":5},"cw":false}    what lies beside an element
- *     {"relation":"faces","of":{"vertices":[1,2]}}         beside many, or "all": dense
- *     {"find":"halfedge","vertices":[1,2]}                 the half-edge between two vertices
- *     {"get":{"edge":3}}                                   an element
- *     {"walk":"rings","from":{"vertex":5},"depth":2}       a walk, see traverse.c
- *     {"measure":"dihedral","of":{"edge":3}}               a length, normal, curvature: measure.c
- *     {"ray":{"origin":[0,0,9],"direction":[0,0,-1]}}      what is hit, is near, or meets:
- * spatial.c
- *     {"closest":[0,0,9]}
- *     {"self_intersections":{"limit":100}}
+ *     {"relation":"faces","of":{"vertex":5},"cw":false}   what lies beside an element
+ *     {"relation":"faces","of":{"vertices":[1,2]}}        beside many, or "all": dense
+ *     {"find":"halfedge","vertices":[1,2]}                the half-edge between two vertices
+ *     {"get":{"edge":3}}                                  an element
+ *     {"walk":"rings","from":{"vertex":5},"depth":2}      a walk: traverse.c
+ *     {"measure":"dihedral","of":{"edge":3}}              a length, normal, curvature: measure.c
+ *     {"ray":{"origin":[0,0,9],"direction":[0,0,-1]}}     what is hit: spatial.c
+ *     {"closest":[0,0,9]}                                 what is near
+ *     {"self_intersections":{"limit":100}}                what meets
  *
  * POST .../traverse takes one walk, POST .../query a list of any of them; both come here.
  *

@@ -9,8 +9,9 @@
  *   bad_encoding    400  bytes that are not of the coding, its checksum or length does not hold,
  *                        something follows that is none, the body ends in the middle
  *   body_too_large  413  it unfolds to more than API_UNPACK_RATIO times what has arrived, beyond
- * the first API_UNPACK_FREE bytes; a frame wants a larger window than API_UNPACK_WINDOW no_memory
- * 507
+ *                        the first API_UNPACK_FREE bytes; a frame wants a larger window than
+ *                        API_UNPACK_WINDOW
+ *   no_memory       507
  *
  * What the body may come to is the business of who takes the pieces. */
 #ifndef HE_API_UNPACK_H

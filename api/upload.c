@@ -13,8 +13,12 @@
 /* Enough to tell any format by. */
 enum { SNIFF_BYTES = 512 };
 
+/* Bytes of a file that is read at its end, for each vertex or corner: seldom fewer. */
+enum { ELEMENT_BYTES = 5 };
+
 /* Of the making of a mesh; what is left is its summary's. */
-static const double SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7, FILL_SHARE = 0.75;
+static const double READ_SHARE = 0.2, SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7,
+                    FILL_SHARE = 0.75;
 
 typedef struct attribute {
     he_kind domain;
@@ -239,6 +243,22 @@ static bool end_document(upload *u)
     return read_shape(u, rest, &member);
 }
 
+static bool finish_reading(api_exchange *x, upload *u)
+{
+    he_error err = {0};
+    if (he_reader_finish(u->reader, &u->import, &err) != HE_OK) {
+        return fail_reading(x, u, &err);
+    }
+    u->has_import = true;
+    return true;
+}
+
+/* Is the whole file still to be read? */
+static bool is_unread(const upload *u)
+{
+    return u->reader != NULL && !u->has_import;
+}
+
 bool api_upload_end(api_exchange *x)
 {
     upload *u = x->state;
@@ -249,12 +269,7 @@ bool api_upload_end(api_exchange *x)
     if (u->document != NULL) {
         return api_document_in_end(u->document, &x->problem) && end_document(u);
     }
-    he_error err = {0};
-    if (he_reader_finish(u->reader, &u->import, &err) != HE_OK) {
-        return fail_reading(x, u, &err);
-    }
-    u->has_import = true;
-    return true;
+    return he_reader_reads_at_end(u->reader) || finish_reading(x, u);
 }
 
 static he_soup *soup_of(upload *u)
@@ -270,7 +285,8 @@ uint64_t api_upload_elements(const api_exchange *x)
         return size.vertices + size.corners;
     }
     const he_soup *soup = soup_of(u);
-    uint64_t elements = soup->vertex_count + soup->corner_count;
+    uint64_t elements =
+        is_unread(u) ? x->received / ELEMENT_BYTES : soup->vertex_count + soup->corner_count;
     return u->plan.which == 0 ? elements : 2 * elements; /* repairs read it as often as building */
 }
 
@@ -396,6 +412,13 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     he_error err = {0};
     he_mesh *mesh = NULL;
     u->limits.watch = x->watch;
+    if (is_unread(u)) {
+        he_watch_span(x->watch, READ_SHARE);
+        he_reader_watch(u->reader, x->watch);
+        if (!finish_reading(x, u)) {
+            return false;
+        }
+    }
     if (u->shape != NULL) {
         he_watch_span(x->watch, SHAPE_SHARE);
         if (he_shape_make(u->shape, u->args, &u->limits, &made, &err) != HE_OK) {

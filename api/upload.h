@@ -5,7 +5,7 @@
  *
  *     api_upload_begin    before the body
  *     api_upload_feed     per piece
- *     api_upload_end      the body is whole and well formed
+ *     api_upload_end      the body is whole and, unless its format is read at the end, well formed
  *     api_upload_build    the mesh; costs the mesh, so it may have to move to the job pool first
  *
  * State is the exchange's. On false the problem is filled. */

@@ -2,23 +2,28 @@
  *
  * A step makes a finer mesh of the whole mesh, in the time the finer mesh takes to write:
  *
- *     loop            every triangle becomes 4                       Loop, Smooth Subdivision
- * Surfaces Based on Triangles, 1987 catmull_clark   every face of n corners becomes n quads
- * Catmull, Clark, Recursively Generated B-Spline Surfaces on Arbitrary Topological Meshes, 1978
- *     linear          triangles become 4 triangles, other faces      no vertex moves: the mesh
- * keeps quads about their mean                         its shape sqrt3           every triangle
- * becomes 3: a vertex in each,    Kobbelt, Sqrt(3)-Subdivision, and the old edges are flipped 2000
+ *     loop            a triangle becomes 4: three at its corners and the middle one
+ *                     Loop, Smooth Subdivision Surfaces Based on Triangles, 1987
+ *     catmull_clark   a face of n corners becomes n quads about its mean
+ *                     Catmull, Clark, Recursively Generated B-Spline Surfaces on Arbitrary
+ *                     Topological Meshes, 1978
+ *     linear          triangles become 4, other faces quads, and no vertex moves: the mesh keeps
+ *                     its shape
+ *     sqrt3           a triangle becomes 3 about a vertex in it, and the old edges are flipped:
+ *                     they join it with those of the faces beside, d, e and k
+ *                     Kobbelt, Sqrt(3)-Subdivision, 2000
  *
- *        v1                    v1                       v1                     v1
- *        o                     o                        o                      o
- *       / \                   / \                    g1/ \                    /|\      c of the
- * next /   \                 /g1 \                 m0 /   \ m1               / | \     face /  f \
- * --->   m0 o-----o m1     or        o--o--o       or      .---o---. /       \             / \ g3/
- * \                /   c   \               \ / \ /
- *   /         \           /f  \ / g2\              / f  |  g2\              /\/f \/\
- *  o-----------o         o-----o-----o            o-----o-----o            o-------o
- *  v0          v2        v0   m2     v2           v0    m2    v2           v0      v2
- *                             loop                catmull_clark              sqrt3
+ *         v1                    v1                      v1
+ *         o                     o                       o                   d     v1
+ *        / \                   / \                     / \                  o-----o
+ *       /   \                 /g1 \                   /   \                / \   / \
+ *      /     \     --->   m0 o-----o m1   or      m0 o  g1 o m1   or      / f \ /g1 \
+ *     /       \             / \g3 / \               / `.o.' \         v0 o-----c-----o e
+ *    /         \           / f \ /g2 \             / f  |  g2\            \   / \   /
+ *   o-----------o         o-----o-----o           o-----o-----o            \ /g2 \ /
+ *   v0          v2        v0    m2    v2          v0    m2    v2            o-----o
+ *                                                                           k     v2
+ *                             loop                catmull_clark             sqrt3
  *
  * WHO SURVIVES. All old vertices. An edge that is cut in halves keeps its id in the half with the
  * origin of half-edge 2e, which still leaves it; an edge that is flipped keeps its id, and

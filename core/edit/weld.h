@@ -10,7 +10,7 @@
  *     |   a       b   |               |   a   |          |  / \ f        |   |
  *     |   |       |   |   a,b c,d     |   |   |          | a---b   a,b   | a |    f goes, and its
  *     |   c       d   |     --->      |   c   |          |  \ / g  --->  |   |    sides are one
- * edge o---o       o---o               o---o---o          o---o           o---o    (g likewise)
+ *     o---o       o---o               o---o---o          o---o           o---o    edge (g too)
  *
  * What else becomes one or goes: merge.h. It lies at the mean of all of them, or with
  * HE_MERGE_INTO stays where it is. `into`, which may be NULL, is the one that stays.

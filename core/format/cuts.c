@@ -1,6 +1,7 @@
 #include "format/cuts.h"
 
-#include "mesh/triangulation.h"
+/* From here on edges are no longer looked for round their ends. */
+enum { STEPS_ALONE = 1 << 20 };
 
 void he_cuts_clear(he_cuts *cuts)
 {
@@ -30,6 +31,7 @@ static void add_fan(he_cuts *cuts, he_halfedge first)
 static he_status cut_face(he_cuts *cuts, he_halfedge first, he_error *err)
 {
     he_triangulation cut;
+    he_triangulation_work *work = &cuts->work;
     const he_mesh *m = cuts->mesh;
     he_ids *ids = &cuts->corners;
     size_t corners = 3 * ((size_t)he_loop_length(m, first) - 2);
@@ -38,21 +40,21 @@ static he_status cut_face(he_cuts *cuts, he_halfedge first, he_error *err)
         return status;
     }
     status = HE_LIMIT;
-    if (cuts->steps < HE_TRIANGULATION_STEPS) {
-        status = he_triangulation_make(m, first, HE_ANY_DIAGONALS | HE_AVOID_EDGES, &cut, err);
+    if (work->steps < HE_TRIANGULATION_STEPS) {
+        unsigned flags = HE_ANY_DIAGONALS | HE_AVOID_EDGES;
+        status = he_triangulation_make(m, first, flags, work, &cut, err);
     }
     if (status == HE_DOUBLED_EDGE) {
-        status = he_triangulation_make(m, first, HE_ANY_DIAGONALS, &cut, err);
+        status = he_triangulation_make(m, first, HE_ANY_DIAGONALS, work, &cut, err);
     }
     if (status == HE_LIMIT) {
         add_fan(cuts, first);
-        cuts->steps = HE_TRIANGULATION_STEPS;
+        work->steps = HE_TRIANGULATION_STEPS;
         return HE_OK;
     }
     if (status != HE_OK) {
         return status;
     }
-    cuts->steps += cut.steps;
     for (size_t i = 0; i < corners; i++) {
         he_halfedge h = {cut.flat.halfedge[cut.corners[i]]};
         ids->ids[ids->count++] = he_origin(m, h).i;
@@ -65,20 +67,30 @@ static he_status cut_face(he_cuts *cuts, he_halfedge first, he_error *err)
 he_status he_cuts_make(const he_mesh *mesh, he_cuts *out, he_error *err)
 {
     he_cuts made = {.mesh = mesh};
-    for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
+    he_joins joins = {0};
+    he_error reason = {0};
+    he_status status = HE_OK;
+    for (uint32_t f = 0; f < mesh->c.faces.issued && status == HE_OK; f++) {
         if (!he_face_is_live(mesh, (he_face){f}) || he_face_degree(mesh, (he_face){f}) == 3) {
             continue;
         }
-        made.polygons++;
-        he_error reason = {0};
-        he_status status = cut_face(&made, he_face_halfedge(mesh, (he_face){f}), &reason);
-        if (status != HE_OK) {
-            he_cuts_clear(&made);
-            if (err != NULL) {
-                *err = reason;
-            }
-            return status;
+        if (made.work.joins == NULL && made.work.steps > STEPS_ALONE) {
+            status = he_joins_make(mesh, &joins, &reason);
+            made.work.joins = &joins;
         }
+        made.polygons++;
+        if (status == HE_OK) {
+            status = cut_face(&made, he_face_halfedge(mesh, (he_face){f}), &reason);
+        }
+    }
+    he_joins_clear(&joins);
+    made.work.joins = NULL;
+    if (status != HE_OK) {
+        he_cuts_clear(&made);
+        if (err != NULL) {
+            *err = reason;
+        }
+        return status;
     }
     *out = made;
     return HE_OK;

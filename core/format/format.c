@@ -250,6 +250,16 @@ he_status he_reader_feed(he_reader *reader, const void *bytes, size_t n, he_erro
     return settle(reader, status, &failure, err);
 }
 
+bool he_reader_reads_at_end(const he_reader *reader)
+{
+    return reader->reading->at_end;
+}
+
+void he_reader_watch(he_reader *reader, he_watch *watch)
+{
+    reader->import.soup.limits.watch = watch;
+}
+
 he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
 {
     he_error failure = reader->failure;

@@ -49,6 +49,7 @@ typedef struct he_reading {
     he_status (*feed)(void *state, const void *bytes, size_t n, he_error *err);
     he_status (*finish)(void *state, he_error *err);
     void (*close)(void *state);
+    bool at_end; /* feed only keeps the bytes: finish reads, and tells the soup's watch */
 } he_reading;
 
 /* What a format's writer does. `step` writes some of what comes next at `*p`, from where at least
@@ -96,8 +97,11 @@ void he_reader_free(he_reader *reader);
  * HE_LIMIT; HE_NO_MEMORY. After a failure every further call fails with the same error. */
 HE_NODISCARD he_status he_reader_feed(he_reader *reader, const void *bytes, size_t n,
                                       he_error *err);
+/* Will finishing take about as long as reading the bytes does? Then it may be watched. */
+bool he_reader_reads_at_end(const he_reader *reader);
+void he_reader_watch(he_reader *reader, he_watch *watch);
 /* The end of the input: the import is the caller's to clear. The reader is then only to be freed.
- * Fails as he_reader_feed does. */
+ * Fails as he_reader_feed does, and with HE_CANCELLED. */
 HE_NODISCARD he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err);
 
 typedef struct he_writer he_writer;

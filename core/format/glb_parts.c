@@ -8,6 +8,8 @@
 
 /* The largest index of 16 bits begins a strip anew. */
 enum { SHORT_VERTICES = UINT16_MAX };
+/* Of attributes under one semantic. */
+enum { MOST_NUMBERS = 8 };
 
 uint64_t he_glb_part_bytes(const he_glb_part *part)
 {
@@ -57,17 +59,6 @@ static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsi
            column->components <= s->most;
 }
 
-static bool has_number(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
-{
-    for (size_t i = 0; i < he_mesh_columns(m); i++) {
-        const he_column *column = he_mesh_column(m, i);
-        if (column != NULL && column->domain == HE_VERTEX && is_numbered(column, s, number)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* The type of a column under a semantic, or 0. */
 static unsigned type_of(const he_column *column, const he_gltf_semantic *s)
 {
@@ -80,6 +71,35 @@ static unsigned type_of(const he_column *column, const he_gltf_semantic *s)
     return column->type == HE_FLOAT || column->type == HE_DOUBLE ? HE_GLTF_FLOAT : 0;
 }
 
+/* The type as the attribute of this number, or 0. */
+static unsigned type_as(const he_column *column, const he_gltf_semantic *s, unsigned number)
+{
+    return column->labels == NULL && is_numbered(column, s, number) ? type_of(column, s) : 0;
+}
+
+static bool has_number(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
+{
+    for (size_t i = 0; i < he_mesh_columns(m); i++) {
+        const he_column *column = he_mesh_column(m, i);
+        if (column != NULL && column->domain == HE_VERTEX && type_as(column, s, number) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* How many numbers of a semantic can be written: without a gap, and with their partners. */
+static unsigned count_numbers(const he_mesh *m, const he_gltf_semantic *s)
+{
+    const he_gltf_semantic *partner = &he_gltf_semantics[s->partner];
+    unsigned most = s->numbered ? MOST_NUMBERS : 1, count = 0;
+    while (count < most && has_number(m, s, count) &&
+           (partner == s || has_number(m, partner, count))) {
+        count++;
+    }
+    return count;
+}
+
 static bool is_printable(const char *name)
 {
     for (const char *p = name; *p != '\0'; p++) {
@@ -90,23 +110,24 @@ static bool is_printable(const char *name)
     return strcmp(name, "position") != 0;
 }
 
-/* Numbers under one semantic begin at 0 and have no gaps; what is beyond has a name of its own. */
+/* What is beyond the numbers of its semantic has a name of its own, as _uv1, and so the same name
+ * when it is read back; joints, which are whole, are in extras. */
 static bool find_semantic(const he_mesh *m, const he_column *column, he_glb_part *part)
 {
     for (size_t i = 0; i < HE_GLTF_SEMANTICS; i++) {
         const he_gltf_semantic *s = &he_gltf_semantics[i];
-        for (unsigned n = 0; n < (s->numbered ? 8 : 1) && (n == 0 || has_number(m, s, n - 1));
-             n++) {
-            unsigned type = is_numbered(column, s, n) ? type_of(column, s) : 0;
-            if (type == 0) {
-                continue;
-            }
-            part->type = type;
-            part->normalized = type == HE_GLTF_UINT8;
-            snprintf(part->semantic, sizeof part->semantic, s->numbered ? "%s%u" : "%s",
-                     s->semantic, n);
-            return true;
+        unsigned n = 0;
+        while (n < MOST_NUMBERS && type_as(column, s, n) == 0) {
+            n++;
         }
+        if (n == MOST_NUMBERS || n >= count_numbers(m, s)) {
+            continue;
+        }
+        part->type = type_of(column, s);
+        part->normalized = part->type == HE_GLTF_UINT8;
+        snprintf(part->semantic, sizeof part->semantic, s->numbered ? "%s%u" : "%s", s->semantic,
+                 n);
+        return true;
     }
     bool fraction = column->type == HE_FLOAT || column->type == HE_DOUBLE;
     if (!fraction || column->components > 4 || !is_printable(column->name)) {

@@ -20,15 +20,18 @@
  * (gltf_private.h).
  *
  * Refused: other versions; extensions that are required and change geometry (KHR_mesh_quantization
- * is read); what refers beyond its list, view or buffer; numbers outside their range; nodes that
- * are reached twice; and scenes that make more than gltf_asset.h allows. The errors have the byte,
- * and the path in the JSON.
+ * is read); what refers beyond its list, view or buffer; numbers outside their range; directions
+ * that are no floats, without that extension; nodes that are reached twice or are inside
+ * themselves; and scenes that make more than gltf_asset.h allows. The errors have the byte, and the
+ * path in the JSON.
  *
  * WRITING. One mesh of one primitive: all vertices, in the order of ids, as floats, and triangles.
  * normal, tangent, uv, color, joints and weights of vertices and other attributes of floats are
  * glTF attributes as they are read; they and all others, those of faces and corners too, are also
- * in extras unless that is the same. So are polygons. Other programs ignore what is there, so this
- * program reads back all but the positions' last digits, attributes of edges and of the mesh. */
+ * in extras unless that is the same. So are polygons. Numbers have no gaps and joints come with
+ * weights; what cannot has a name of its own, as _uv1 where there is no uv. Other programs ignore
+ * extras, so this program reads back all but the positions' last digits, attributes of edges and of
+ * the mesh. */
 #ifndef HE_FORMAT_GLTF_H
 #define HE_FORMAT_GLTF_H
 

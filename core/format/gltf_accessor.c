@@ -137,12 +137,13 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
 }
 
 /* They must rise, so that a walk meets each where it belongs. */
-static he_status check_changed(const he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
+static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
                                he_error *err)
 {
     uint64_t least = 0;
     size_t bytes = he_gltf_type_bytes(a->changed_type);
-    for (uint64_t i = 0; i < a->changed; i++) {
+    he_status status = HE_OK;
+    for (uint64_t i = 0; i < a->changed && status == HE_OK; i++) {
         uint32_t index = he_gltf_whole(a->changed_type, a->changed_index + i * bytes);
         if (index < least || index >= a->count) {
             return he_json_fail(&asset->json, sparse, err, HE_BAD_INDEX,
@@ -151,8 +152,9 @@ static he_status check_changed(const he_gltf *asset, const he_gltf_accessor *a, 
                                 index, (unsigned long long)i, (unsigned long long)a->count);
         }
         least = (uint64_t)index + 1;
+        status = he_gltf_poll(asset, err);
     }
-    return HE_OK;
+    return status;
 }
 
 static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse, he_error *err)

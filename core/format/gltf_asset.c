@@ -14,6 +14,14 @@ static void note(he_gltf *asset, const char *code, const char *text, uint32_t su
                  he_json_place(&asset->json, place));
 }
 
+/* How much there is to do is not known before; few files have less than a step for 16 bytes. */
+he_status he_gltf_tell(he_gltf *asset, he_error *err)
+{
+    asset->told = asset->steps;
+    return he_watch_step(asset->into->soup.limits.watch, asset->steps,
+                         asset->steps + asset->size / 16, err);
+}
+
 he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err)
 {
     if (bytes > asset->room) {
@@ -142,7 +150,9 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
         char name[HE_NOTE_SUBJECT], quoted[HE_NOTE_SUBJECT];
         size_t length = he_json_string(json, i, name, sizeof name);
-        if (!he_json_is(json, i, "KHR_mesh_quantization") && !begins_with_any(json, i, looks)) {
+        bool quantized = he_json_is(json, i, "KHR_mesh_quantization");
+        asset->quantized |= quantized;
+        if (!quantized && !begins_with_any(json, i, looks)) {
             he_quote(name, name + length, quoted, sizeof quoted);
             return he_json_fail(json, i, err, HE_UNSUPPORTED,
                                 "the file needs the extension %s, which is not read", quoted);
@@ -150,42 +160,88 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     }
     list = he_json_find(json, 0, "extensionsUsed");
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
-        if (!he_json_is(json, i, "KHR_mesh_quantization")) {
+        if (he_json_is(json, i, "KHR_mesh_quantization")) {
+            asset->quantized = true;
+        } else {
             note(asset, "ignored_extension", "ignored: extension", i, i);
         }
     }
     return HE_OK;
 }
 
-static he_status decode_uri(const he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri,
-                            he_error *err)
+/* Characters of base64 between two looks at the watch; a multiple of four. */
+enum { PIECE = 1 << 16 };
+
+/* `to` has room for the bytes of `length` characters. */
+static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
+                        he_gltf_buffer *to, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t at = 0, n; at < length && status == HE_OK; at += n) {
+        size_t decoded;
+        n = length - at < PIECE ? length - at : PIECE;
+        if (!he_base64_decode(text + at, n, to->own + to->length, &decoded) ||
+            (at + n < length && decoded != PIECE / 4 * 3)) {
+            return he_json_fail(&asset->json, uri, err, HE_SYNTAX, "the data: URI is not base64");
+        }
+        to->length += decoded;
+        asset->steps += n;
+        status = he_gltf_tell(asset, err);
+    }
+    return status;
+}
+
+/* The characters of a string whose escapes are undone, if it has any: then `own` is to be freed. */
+static he_status plain_text(const he_json *json, uint32_t value, const char **text, size_t *length,
+                            char **own, he_error *err)
+{
+    *text = he_json_raw(json, value, length);
+    if (memchr(*text, '\\', *length) == NULL) {
+        return HE_OK;
+    }
+    *own = he_mem_alloc(*length + 1);
+    if (*own == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a string of %zu bytes", *length);
+    }
+    *length = he_json_string(json, value, *own, *length + 1);
+    *text = *own;
+    return HE_OK;
+}
+
+static he_status decode_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, he_error *err)
 {
     const he_json *json = &asset->json;
     if (!he_json_begins(json, uri, "data:")) {
         return he_json_fail(json, uri, err, HE_UNSUPPORTED,
                             "a buffer outside the file: no uri but data: is read");
     }
-    size_t length, decoded = 0;
-    const char *text = he_json_raw(json, uri, &length);
+    size_t length;
+    const char *text;
+    char *own = NULL;
+    he_status status = plain_text(json, uri, &text, &length, &own, err);
+    if (status != HE_OK) {
+        return status;
+    }
     const char *comma = memchr(text, ',', length);
     static const char coding[] = ";base64";
     size_t head = comma == NULL ? 0 : (size_t)(comma - text), size = sizeof coding - 1;
     if (head < size || memcmp(comma - size, coding, size) != 0) {
-        return he_json_fail(json, uri, err, HE_UNSUPPORTED, "a data: URI that is not in base64");
+        status = he_json_fail(json, uri, err, HE_UNSUPPORTED, "a data: URI that is not in base64");
+        goto out;
     }
-    text = comma + 1;
     length -= head + 1;
-    buffer->own = he_mem_alloc(he_base64_room(length));
+    *buffer =
+        (he_gltf_buffer){.own = he_mem_alloc(he_base64_room(length)), .place = HE_GLTF_NOWHERE};
     if (buffer->own == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a buffer of %zu characters", length);
-    }
-    if (!he_base64_decode(text, length, buffer->own, &decoded)) {
-        return he_json_fail(json, uri, err, HE_SYNTAX, "the data: URI is not base64");
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory for a buffer of %zu characters", length);
+        goto out;
     }
     buffer->bytes = buffer->own;
-    buffer->length = decoded;
-    buffer->place = HE_GLTF_NOWHERE;
-    return HE_OK;
+    status = decode(asset, uri, comma + 1, length, buffer, err);
+out:
+    he_mem_free(own);
+    return status;
 }
 
 static he_status open_buffer(he_gltf *asset, size_t i, uint32_t value, const he_gltf_bin *bin,
@@ -259,9 +315,16 @@ static void note_rest(he_gltf *asset)
 he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text, size_t length,
                        uint64_t offset, const he_gltf_bin *bin, he_error *err)
 {
-    *asset = (he_gltf){.into = into,
-                       .room = HE_GLTF_ROOM + HE_GLTF_FACTOR * ((uint64_t)length + bin->length)};
-    he_status status = he_json_parse(&asset->json, text, length, offset, err);
+    *asset = (he_gltf){.into = into, .size = (uint64_t)length + bin->length};
+    asset->room = HE_GLTF_ROOM + HE_GLTF_FACTOR * asset->size;
+    he_watch *watch = into->soup.limits.watch;
+    he_status status = he_watch_phase(watch, "parsing", 0.4, err);
+    if (status == HE_OK) {
+        status = he_json_parse(&asset->json, text, length, offset, watch, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(watch, "reading", 1, err);
+    }
     if (status == HE_OK) {
         status = check_version(asset, err);
     }

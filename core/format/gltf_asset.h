@@ -28,7 +28,10 @@ typedef struct he_gltf {
     he_ids accessors, views, nodes, meshes, materials; /* their values in the JSON */
     he_gltf_buffer *buffers;
     size_t buffer_count;
-    uint64_t room; /* bytes that may still be made */
+    bool quantized;       /* KHR_mesh_quantization is used */
+    uint64_t room;        /* bytes that may still be made */
+    uint64_t size;        /* bytes of the input */
+    uint64_t steps, told; /* of work; when the watch was last told */
 } he_gltf;
 
 /* Where the BIN chunk of a GLB lies; bytes NULL: there is none. */
@@ -38,12 +41,20 @@ typedef struct he_gltf_bin {
 } he_gltf_bin;
 
 /* Parse and check what concerns the whole: version, extensions, buffers. `text` and `bin` must
- * outlive the asset. HE_SYNTAX, HE_BAD_VALUE, HE_UNSUPPORTED, HE_LIMIT, HE_NO_MEMORY. */
+ * outlive the asset. HE_SYNTAX, HE_BAD_VALUE, HE_UNSUPPORTED, HE_LIMIT, HE_NO_MEMORY,
+ * HE_CANCELLED. */
 HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text,
                                     size_t length, uint64_t offset, const he_gltf_bin *bin,
                                     he_error *err);
 void he_gltf_close(he_gltf *asset);
 
+/* HE_CANCELLED. */
+HE_NODISCARD he_status he_gltf_tell(he_gltf *asset, he_error *err);
+/* For each element that is looked at: the soup's watch hears of some of them. */
+HE_NODISCARD static inline he_status he_gltf_poll(he_gltf *asset, he_error *err)
+{
+    return ++asset->steps - asset->told < HE_WATCH_STRIDE ? HE_OK : he_gltf_tell(asset, err);
+}
 /* HE_LIMIT, naming `value`, where `bytes` more are more than the asset may make. */
 HE_NODISCARD he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err);
 /* The item of `list` that the number at `value` names: HE_BAD_INDEX. `what` is one of them. */

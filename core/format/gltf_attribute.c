@@ -6,9 +6,9 @@
 #include <string.h>
 
 const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS] = {
-    {"NORMAL", "normal", 3, 3, false}, {"TANGENT", "tangent", 4, 4, false},
-    {"TEXCOORD_", "uv", 2, 2, true},   {"COLOR_", "color", 3, 4, true},
-    {"JOINTS_", "joints", 4, 4, true}, {"WEIGHTS_", "weights", 4, 4, true},
+    {"NORMAL", "normal", 3, 3, false, 0}, {"TANGENT", "tangent", 4, 4, false, 1},
+    {"TEXCOORD_", "uv", 2, 2, true, 2},   {"COLOR_", "color", 3, 4, true, 3},
+    {"JOINTS_", "joints", 4, 4, true, 5}, {"WEIGHTS_", "weights", 4, 4, true, 4},
 };
 
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name)
@@ -144,8 +144,8 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
     }
 }
 
-static void put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gltf_accessor *a,
-                     const he_gltf_semantic *known, const he_column *column)
+static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gltf_accessor *a,
+                          const he_gltf_semantic *known, const he_column *column, he_error *err)
 {
     bool normal = known != NULL && strcmp(known->attribute, "normal") == 0;
     bool tangent = known != NULL && strcmp(known->attribute, "tangent") == 0;
@@ -153,7 +153,8 @@ static void put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gl
     uint64_t place =
         a->place == HE_GLTF_NOWHERE ? he_json_place(&s->asset->json, a->value) : a->place;
     he_gltf_walk walk = {.accessor = a};
-    for (uint64_t i = 0; i < a->count; i++) {
+    he_status status = HE_OK;
+    for (uint64_t i = 0; i < a->count && status == HE_OK; i++) {
         const unsigned char *at = he_gltf_next(&walk);
         double values[HE_COLUMN_COMPONENTS] = {0};
         for (uint32_t k = 0; k < a->components; k++) {
@@ -167,7 +168,9 @@ static void put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gl
             }
         }
         put_row(s, column, values, p->first_vertex + i, place);
+        status = he_gltf_poll(s->asset, err);
     }
+    return status;
 }
 
 static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
@@ -175,6 +178,26 @@ static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
 {
     he_notes_add(&s->asset->into->notes, code, text, semantic, strlen(semantic), HE_PLACE_BYTE,
                  he_json_place(&s->asset->json, value));
+}
+
+static bool is_direction(const he_gltf_semantic *known)
+{
+    return known != NULL &&
+           (strcmp(known->attribute, "normal") == 0 || strcmp(known->attribute, "tangent") == 0);
+}
+
+/* Directions are floats, or what the extension has for them. */
+static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
+                            const he_gltf_semantic *known, he_error *err)
+{
+    bool small = a->normalized && (a->type == HE_GLTF_INT8 || a->type == HE_GLTF_INT16);
+    if (!is_direction(known) || a->type == HE_GLTF_FLOAT || (asset->quantized && small)) {
+        return HE_OK;
+    }
+    return he_json_fail(&asset->json, a->value, err, HE_BAD_VALUE,
+                        "%s has componentType 5126%s, not %d", known->semantic,
+                        asset->quantized ? ", or 5120 or 5122 and is normalized" : "",
+                        (int)a->type);
 }
 
 /* The column for the rows, NULL where there can be none. */
@@ -191,6 +214,10 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
          (a->components < (*known)->least || a->components > (*known)->most || a->matrix))) {
         note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
         return HE_OK;
+    }
+    he_status status = check_type(s->asset, a, *known, err);
+    if (status != HE_OK) {
+        return status;
     }
     he_type type = column_type(a, *known);
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
@@ -248,7 +275,7 @@ static he_status add_attribute(he_gltf_surface *s, const he_gltf_primitive *p, u
     status = he_gltf_extend(s, value, column, end, err);
     if (status == HE_OK) {
         s->given[number_of(&s->asset->into->soup, column)] += a.count;
-        put_rows(s, p, &a, known, column);
+        status = put_rows(s, p, &a, known, column, err);
     }
     return status;
 }

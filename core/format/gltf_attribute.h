@@ -1,9 +1,11 @@
 /* gltf_attribute.h - the attributes of a primitive as those of vertices.
  *
- *     NORMAL, TANGENT          normal, tangent, turned as their node turns them
- *     TEXCOORD_0, _1 ...       uv, uv1 ...
- *     COLOR_0, _1 ...          color, color1 ...: bytes as uint32 from 0 to 255, others as
- * fractions JOINTS_0, WEIGHTS_0 ...  joints, weights, joints1 ... _ANY                     ANY
+ *     NORMAL, TANGENT      normal, tangent, turned as their node turns them
+ *     TEXCOORD_0, _1 ...   uv, uv1 ...
+ *     COLOR_0, _1 ...      color, color1 ...: bytes as uint32 from 0 to 255, others as fractions
+ *     JOINTS_0, _1 ...     joints, joints1 ...
+ *     WEIGHTS_0, _1 ...    weights, weights1 ...
+ *     _ANY                 ANY
  *
  * Floats stay float, normalized integers become it, others are int32 or uint32. */
 #ifndef HE_FORMAT_GLTF_ATTRIBUTE_H
@@ -45,6 +47,7 @@ typedef struct he_gltf_semantic {
     const char *semantic, *attribute;
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
+    unsigned partner;     /* the one without which it may not be, itself where there is none */
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[];
 enum { HE_GLTF_SEMANTICS = 6 };

@@ -21,10 +21,11 @@ static void note_stale(he_gltf_surface *s, uint32_t value)
                  HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
 }
 
-/* Memory and limits are the server's matter; all else only says that the extras are no use. */
+/* Memory, limits and an end before time are no matter of the file; all else only says that the
+ * extras are no use. */
 static bool is_serious(he_status status)
 {
-    return status == HE_NO_MEMORY || status == HE_LIMIT;
+    return status == HE_NO_MEMORY || status == HE_LIMIT || status == HE_CANCELLED;
 }
 
 static he_status get_words(he_gltf *asset, uint32_t object, const char *name, he_gltf_accessor *out,
@@ -56,34 +57,43 @@ typedef struct polygons {
 } polygons;
 
 /* Are the triangles of each polygon at corners of it, degree - 2 of them, and its corners apart?
- * `marks` has a word a vertex. */
-static bool are_triangulated(const he_gltf_primitive *p, const polygons *g, uint32_t *marks)
+ * `marks` has a word a vertex. Fails as the watch does. */
+static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
+                                uint32_t *marks, bool *fits, he_error *err)
 {
+    *fits = false;
     he_gltf_walk degrees = {.accessor = &g->degrees}, corners = {.accessor = &g->corners};
     he_gltf_walk triangles = {.accessor = &p->indices};
     uint64_t corners_left = g->corners.count, triangles_left = p->faces;
+    he_status status = HE_OK;
     for (uint64_t i = 0; i < g->degrees.count; i++) {
         uint64_t degree = next_word(&degrees);
         if (degree < 3 || degree > corners_left || degree - 2 > triangles_left) {
-            return false;
+            return HE_OK;
         }
         corners_left -= degree;
         triangles_left -= degree - 2;
-        for (uint64_t k = 0; k < degree; k++) {
+        for (uint64_t k = 0; k < degree && status == HE_OK; k++) {
             uint32_t corner = next_word(&corners);
+            status = he_gltf_poll(asset, err);
             if (corner >= p->positions.count || marks[corner] == i + 1) {
-                return false;
+                return HE_OK;
             }
             marks[corner] = (uint32_t)i + 1;
         }
-        for (uint64_t k = 0; k < 3 * (degree - 2); k++) {
+        for (uint64_t k = 0; k < 3 * (degree - 2) && status == HE_OK; k++) {
             uint32_t corner = he_gltf_whole(p->indices.type, he_gltf_next(&triangles));
+            status = he_gltf_poll(asset, err);
             if (corner >= p->positions.count || marks[corner] != i + 1) {
-                return false;
+                return HE_OK;
             }
         }
+        if (status != HE_OK) {
+            return status;
+        }
     }
-    return corners_left == 0 && triangles_left == 0;
+    *fits = corners_left == 0 && triangles_left == 0;
+    return HE_OK;
 }
 
 static he_status add_polygons(he_gltf_surface *s, const he_gltf_primitive *p, const polygons *g,
@@ -97,7 +107,10 @@ static he_status add_polygons(he_gltf_surface *s, const he_gltf_primitive *p, co
         uint64_t degree = next_word(&degrees);
         uint64_t place = he_gltf_element_place(s->asset, &p->indices, p->value, 3 * triangle);
         triangle += degree - 2;
-        status = he_places_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
+        status = he_gltf_poll(s->asset, err);
+        if (status == HE_OK) {
+            status = he_places_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
+        }
         if (status == HE_OK) {
             status = he_soup_begin_face(&into->soup, err);
         }
@@ -133,8 +146,11 @@ static he_status read_polygons(he_gltf_surface *s, he_gltf_primitive *p, uint32_
         if (marks == NULL) {
             return he_fail_plain(err, HE_NO_MEMORY, "no memory to check polygons");
         }
-        fits = are_triangulated(p, &g, marks);
+        status = check_polygons(s->asset, p, &g, marks, &fits, err);
         he_mem_free(marks);
+    }
+    if (status != HE_OK) {
+        return status;
     }
     if (!fits) {
         note_stale(s, object);
@@ -197,20 +213,24 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
     return status;
 }
 
-static he_status read_labels(const he_json *json, uint32_t list, he_labels **out, he_error *err)
+/* Each must be there once: two of a name would move the numbers of all behind them. */
+static he_status read_labels(const he_json *json, uint32_t list, he_labels **out, bool *fits,
+                             he_error *err)
 {
     he_labels *labels = he_labels_new();
     he_status status = HE_OK;
+    size_t count = 0;
     if (labels == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
     }
     for (uint32_t i = he_json_first(json, list); i != HE_NONE && status == HE_OK;
          i = he_json_after(json, list, i)) {
         size_t room = 0;
-        uint32_t number;
+        uint32_t number = 0;
         if (he_json_type(json, i) == '"') {
             he_json_raw(json, i, &room);
         }
+        *fits &= he_json_type(json, i) == '"';
         char *text = he_mem_alloc(room + 1);
         if (text == NULL) {
             status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a name of %zu bytes", room);
@@ -219,6 +239,7 @@ static he_status read_labels(const he_json *json, uint32_t list, he_labels **out
         size_t length = he_json_string(json, i, text, room + 1);
         status = he_labels_add(labels, text, length, &number, err);
         he_mem_free(text);
+        *fits &= number == count++;
     }
     if (status != HE_OK) {
         he_labels_release(labels);
@@ -258,22 +279,31 @@ static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
     return true;
 }
 
-/* Is every word a value of the type, and the number of a label where there are any? */
-static bool are_values(const description *d, size_t labels)
+/* Is every word a value of the type, and the number of a label where there are any? Fails as the
+ * watch does. */
+static he_status check_values(he_gltf *asset, const description *d, size_t labels, bool *fits,
+                              he_error *err)
 {
     he_gltf_walk walk = {.accessor = &d->words};
+    he_status status = HE_OK;
+    *fits = false;
     for (uint64_t i = 0; i < d->rows * d->components; i++) {
         unsigned char value[8] = {0};
         uint32_t number;
         if (!put_value(&walk, d->type, value)) {
-            return false;
+            return HE_OK;
         }
         memcpy(&number, value, sizeof number);
         if (d->labels != HE_NONE && number >= labels) {
-            return false;
+            return HE_OK;
+        }
+        status = he_gltf_poll(asset, err);
+        if (status != HE_OK) {
+            return status;
         }
     }
-    return true;
+    *fits = true;
+    return HE_OK;
 }
 
 /* Is there a column that the values may go on, or room for a new one? Asked before they are read,
@@ -286,7 +316,46 @@ static bool has_place(const he_gltf_surface *s, const description *d)
         return soup->column_count < HE_GLTF_ATTRIBUTES;
     }
     return column->type == d->type && column->components == d->components &&
-           column->rows <= d->first && column->labels == NULL && d->labels == HE_NONE;
+           column->rows <= d->first && (column->labels == NULL) == (d->labels == HE_NONE);
+}
+
+/* Numbers of labels become those that a column has for them. */
+static he_status renumber(he_column *column, size_t first, const he_labels *labels, he_error *err)
+{
+    size_t count = he_labels_count(labels);
+    uint32_t *numbers = he_mem_array(NULL, count, sizeof *numbers);
+    he_status status = HE_OK;
+    if (numbers == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu names", count);
+    }
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        const char *text = he_labels_get(labels, i);
+        status = he_labels_add(column->labels, text, strlen(text), &numbers[i], err);
+    }
+    for (size_t row = first; row < column->rows && status == HE_OK; row++) {
+        uint32_t number;
+        memcpy(&number, he_column_row(column, row), sizeof number);
+        memcpy(he_column_row(column, row), &numbers[number], sizeof number);
+    }
+    he_mem_free(numbers);
+    return status;
+}
+
+/* Which faces have names of their own that are also told by nodes and materials. */
+static he_status keep_names(he_gltf_surface *s, const description *d, he_error *err)
+{
+    he_ids *named = strcmp(d->name, "object") == 0     ? &s->own_objects
+                    : strcmp(d->name, "material") == 0 ? &s->own_materials
+                                                       : NULL;
+    if (named == NULL || d->domain != HE_FACE) {
+        return HE_OK;
+    }
+    he_status status = he_ids_reserve(named, 2, err);
+    if (status == HE_OK) {
+        named->ids[named->count++] = (uint32_t)d->first;
+        named->ids[named->count++] = (uint32_t)(d->first + d->rows);
+    }
+    return status;
 }
 
 static he_status take_column(he_gltf_surface *s, uint32_t object, const description *d,
@@ -308,13 +377,17 @@ static he_status take_column(he_gltf_surface *s, uint32_t object, const descript
         *labels = NULL;
     }
     he_gltf_walk walk = {.accessor = &d->words};
-    for (uint64_t i = 0; i < d->rows; i++) {
+    for (uint64_t i = 0; i < d->rows && status == HE_OK; i++) {
         unsigned char *at = he_column_row(column, d->first + i);
         for (uint64_t k = 0; k < d->components; k++, at += he_type_bytes(d->type)) {
             put_value(&walk, d->type, at);
         }
+        status = he_gltf_poll(s->asset, err);
     }
-    return HE_OK;
+    if (status == HE_OK && *labels != NULL) {
+        status = renumber(column, d->first, *labels, err);
+    }
+    return status == HE_OK ? keep_names(s, d, err) : status;
 }
 
 static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uint32_t object,
@@ -336,10 +409,11 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     he_status status = d.domain == HE_KIND_COUNT ? HE_OK : describe(s, object, &d, &fits, err);
     fits = fits && has_place(s, &d);
     if (status == HE_OK && fits && d.labels != HE_NONE) {
-        status = read_labels(json, d.labels, &labels, err);
+        status = read_labels(json, d.labels, &labels, &fits, err);
     }
     if (status == HE_OK && fits) {
-        fits = are_values(&d, labels == NULL ? 0 : he_labels_count(labels));
+        status =
+            check_values(s->asset, &d, labels == NULL ? 0 : he_labels_count(labels), &fits, err);
     }
     if (status == HE_OK && fits) {
         status = take_column(s, object, &d, &labels, err);

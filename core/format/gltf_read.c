@@ -231,7 +231,7 @@ static he_status glb_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-const he_reading he_glb_reading = {glb_open, glb_feed, glb_finish, glb_close};
+const he_reading he_glb_reading = {glb_open, glb_feed, glb_finish, glb_close, true};
 
 bool he_glb_sniff(const char *bytes, size_t n)
 {
@@ -282,7 +282,7 @@ static he_status gltf_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-const he_reading he_gltf_reading = {gltf_open, gltf_feed, gltf_finish, gltf_close};
+const he_reading he_gltf_reading = {gltf_open, gltf_feed, gltf_finish, gltf_close, true};
 
 /* An object with a member "asset", which stands at the beginning of nearly all files. */
 bool he_gltf_sniff(const char *bytes, size_t n)

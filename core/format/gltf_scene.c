@@ -166,7 +166,10 @@ static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_f
                             (unsigned long long)index);
     }
     he_bits_set(s->visited, index);
-    he_status status = get_frame(asset, node, &frame, &moves, err);
+    he_status status = he_gltf_poll(asset, err);
+    if (status == HE_OK) {
+        status = get_frame(asset, node, &frame, &moves, err);
+    }
     if (status != HE_OK) {
         return status;
     }
@@ -255,7 +258,12 @@ static he_status visit_scene(scene *s, uint32_t value, he_error *err)
     return status;
 }
 
-static he_status mark_children(const he_gltf *asset, uint64_t *children, he_error *err)
+/* What names each node as a child, in the JSON, and the node that it is in; HE_NONE: nothing. */
+typedef struct parent {
+    uint32_t value, node;
+} parent;
+
+static he_status find_parents(he_gltf *asset, parent *parents, he_error *err)
 {
     const he_json *json = &asset->json;
     he_status status = HE_OK;
@@ -266,30 +274,51 @@ static he_status mark_children(const he_gltf *asset, uint64_t *children, he_erro
              k != HE_NONE && status == HE_OK; k = he_json_after(json, list, k)) {
             uint64_t index = 0;
             status = he_json_whole(json, k, 0, asset->nodes.count - 1, &index, err);
-            he_bits_set(children, index);
+            if (status == HE_OK) {
+                parents[index] = (parent){k, (uint32_t)i};
+                status = he_gltf_poll(asset, err);
+            }
         }
     }
     return status;
+}
+
+/* A node that is below no root has a parent, as that has: there is no end but round and round. */
+static he_status refuse_cycle(const scene *s, const parent *parents, uint32_t node, he_error *err)
+{
+    for (size_t i = 0; i < s->asset->nodes.count; i++) {
+        node = parents[node].node;
+    }
+    return he_json_fail(&s->asset->json, parents[node].value, err, HE_BAD_VALUE,
+                        "node %u is inside itself", node);
 }
 
 /* Without scenes: the nodes that are no children. */
 static he_status visit_roots(scene *s, he_error *err)
 {
     const he_ids *nodes = &s->asset->nodes;
-    uint64_t *children = he_bits_new(nodes->count);
-    if (children == NULL) {
+    parent *parents = he_mem_array(NULL, nodes->count, sizeof *parents);
+    if (parents == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu nodes", nodes->count);
     }
-    he_status status = mark_children(s->asset, children, err);
+    for (size_t i = 0; i < nodes->count; i++) {
+        parents[i] = (parent){HE_NONE, HE_NONE};
+    }
+    he_status status = find_parents(s->asset, parents, err);
     for (size_t i = 0; i < nodes->count && status == HE_OK; i++) {
-        if (!he_bits_get(children, i)) {
+        if (parents[i].node == HE_NONE) {
             status = visit(s, i, nodes->ids[i], &he_gltf_no_frame, err);
         }
         if (status == HE_OK) {
             status = visit_rest(s, err);
         }
     }
-    he_mem_free(children);
+    for (size_t i = 0; i < nodes->count && status == HE_OK; i++) {
+        if (!he_bits_get(s->visited, i)) {
+            status = refuse_cycle(s, parents, (uint32_t)i, err);
+        }
+    }
+    he_mem_free(parents);
     return status;
 }
 

@@ -8,8 +8,8 @@ enum { HE_GLTF_DEPTH = 1 << 16 }; /* of nodes inside nodes */
 
 /* Fill the import with the meshes of the scene `scene` names, else the first one, else of the nodes
  * that are no children, else all meshes. A node's mesh comes before its children's, in the order of
- * the file. HE_BAD_VALUE for a node that is reached twice, HE_BAD_INDEX, HE_LIMIT, HE_NO_MEMORY and
- * what he_gltf_add_mesh gives. */
+ * the file. HE_BAD_VALUE for a node that is reached twice or inside itself, HE_BAD_INDEX, HE_LIMIT,
+ * HE_NO_MEMORY and what he_gltf_add_mesh gives. */
 HE_NODISCARD he_status he_gltf_read_scene(he_gltf *asset, he_error *err);
 
 #endif

@@ -14,6 +14,8 @@ void he_gltf_surface_clear(he_gltf_surface *surface)
 {
     he_spans_clear(&surface->object);
     he_spans_clear(&surface->material);
+    he_ids_clear(&surface->own_objects);
+    he_ids_clear(&surface->own_materials);
 }
 
 static void note(he_gltf *asset, uint32_t value, const char *code, const char *text)
@@ -156,7 +158,10 @@ static he_status add_vertices(he_gltf_surface *s, const he_gltf_primitive *p, he
         if (!p->still) {
             position = place_point(p->frame, position);
         }
-        status = he_places_add(&into->vertices, (uint32_t)into->soup.vertex_count, place, err);
+        status = he_gltf_poll(s->asset, err);
+        if (status == HE_OK) {
+            status = he_places_add(&into->vertices, (uint32_t)into->soup.vertex_count, place, err);
+        }
         if (status == HE_OK) {
             status = located(he_soup_add_vertex(&into->soup, position, err), place, err);
         }
@@ -208,6 +213,10 @@ static he_status add_faces(he_gltf_surface *s, const he_gltf_primitive *p, he_er
     he_status status = HE_OK;
     for (uint64_t i = 0; i < count && status == HE_OK; i++) {
         uint32_t index = (uint32_t)i;
+        status = he_gltf_poll(s->asset, err);
+        if (status != HE_OK) {
+            return status;
+        }
         if (p->indexed) {
             index = he_gltf_whole(p->indices.type, he_gltf_next(&walk));
         }
@@ -382,18 +391,38 @@ he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t nam
     return status;
 }
 
+/* What extras say of some faces comes before what nodes and materials say of all. */
+static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const he_ids *own,
+                              const char *name, he_error *err)
+{
+    he_import *into = surface->asset->into;
+    he_soup *soup = &into->soup;
+    he_column *column = he_gltf_find_column(soup, HE_FACE, name);
+    if (column == NULL) {
+        return he_spans_finish(spans, soup, name, err);
+    }
+    if (column->labels != NULL) {
+        return he_spans_merge(spans, soup->face_count, column, own, err);
+    }
+    if (spans->changes.count > 0) {
+        he_notes_add(&into->notes, "attribute_types",
+                     "ignored, being of another type than before: attribute", name, strlen(name),
+                     HE_PLACE_NONE, 0);
+    }
+    return HE_OK;
+}
+
 he_status he_gltf_surface_finish(he_gltf_surface *surface, he_error *err)
 {
     he_import *into = surface->asset->into;
     he_notes_add_count(&into->notes, "mirrored", "turned over, since its node mirrors it: a face",
                        surface->mirrored);
     he_gltf_note_attributes(surface);
-    he_status status = HE_OK;
-    if (he_gltf_find_column(&into->soup, HE_FACE, "object") == NULL) {
-        status = he_spans_finish(&surface->object, &into->soup, "object", err);
-    }
-    if (status == HE_OK && he_gltf_find_column(&into->soup, HE_FACE, "material") == NULL) {
-        status = he_spans_finish(&surface->material, &into->soup, "material", err);
+    he_status status =
+        finish_names(surface, &surface->object, &surface->own_objects, "object", err);
+    if (status == HE_OK) {
+        status =
+            finish_names(surface, &surface->material, &surface->own_materials, "material", err);
     }
     return status;
 }

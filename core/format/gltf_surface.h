@@ -18,6 +18,7 @@ extern const he_gltf_frame he_gltf_no_frame; /* leaves all as it is, bit by bit 
 typedef struct he_gltf_surface {
     he_gltf *asset;
     he_spans object, material;
+    he_ids own_objects, own_materials;  /* pairs: faces from, to; read from extras */
     uint64_t given[HE_GLTF_ATTRIBUTES]; /* rows of each column of the soup */
     uint64_t mirrored;                  /* faces that were turned over */
     bool begun;                         /* places have their steps */

@@ -14,6 +14,7 @@
 
 #include "mesh/mem.h"
 #include "mesh/mesh.h"
+#include "mesh/watch.h"
 
 enum { HE_JSON_DEPTH = 128, HE_JSON_PATH = 100 };
 #define HE_JSON_VALUES ((size_t)1 << 23)         /* of one text, names of members included */
@@ -34,9 +35,9 @@ typedef struct he_json {
     size_t count, capacity;
 } he_json;
 
-/* HE_SYNTAX, HE_NOT_FINITE for a number beyond doubles, HE_LIMIT, HE_NO_MEMORY. */
+/* HE_SYNTAX, HE_NOT_FINITE for a number beyond doubles, HE_LIMIT, HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_json_parse(he_json *json, const char *text, size_t length,
-                                     uint64_t offset, he_error *err);
+                                     uint64_t offset, he_watch *watch, he_error *err);
 void he_json_clear(he_json *json);
 
 /* '{', '[', '"', 't', 'f', 'n', or '0' for any number; '\0' for HE_NONE. */

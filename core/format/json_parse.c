@@ -1,14 +1,19 @@
 /* he_json_parse of json.h. */
 #include "format/json.h"
 
+#include "format/json_string.h"
 #include "format/notes.h"
 #include "format/number.h"
-#include "mesh/utf8.h"
 
 #include <string.h>
 
+/* Bytes between two looks at the watch. */
+enum { STRIDE = 1 << 16 };
+
 typedef struct scan {
     he_json *json;
+    he_watch *watch;
+    const char *told; /* up to here */
     const char *at, *end;
     uint32_t open[HE_JSON_DEPTH]; /* arrays and objects */
     size_t depth;
@@ -19,6 +24,17 @@ static he_status refuse(const scan *s, const char *text)
 {
     uint64_t at = s->json->offset + (uint64_t)(s->at - s->json->text);
     return he_fail_at(s->err, HE_SYNTAX, HE_PLACE_BYTE, at, "JSON: %s", text);
+}
+
+static he_status tell(scan *s)
+{
+    s->told = s->at;
+    return he_watch_step(s->watch, (uint64_t)(s->at - s->json->text), s->json->length, s->err);
+}
+
+static he_status poll(scan *s)
+{
+    return s->at - s->told < STRIDE ? HE_OK : tell(s);
 }
 
 static void skip_blanks(scan *s)
@@ -33,6 +49,10 @@ static void skip_blanks(scan *s)
 static he_status add_value(scan *s)
 {
     he_json *json = s->json;
+    he_status status = poll(s);
+    if (status != HE_OK) {
+        return status;
+    }
     if (json->count == HE_JSON_VALUES) {
         return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE,
                           json->offset + (uint64_t)(s->at - json->text),
@@ -79,71 +99,18 @@ static he_status scan_number(scan *s)
     return HE_OK;
 }
 
-/* Four hexadecimal digits at `p`, or -1. */
-static int scan_hex(const char *p, const char *end)
-{
-    int value = 0;
-    for (int i = 0; i < 4; i++, p++) {
-        int digit = p >= end                 ? -1
-                    : *p >= '0' && *p <= '9' ? *p - '0'
-                    : *p >= 'a' && *p <= 'f' ? *p - 'a' + 10
-                    : *p >= 'A' && *p <= 'F' ? *p - 'A' + 10
-                                             : -1;
-        if (digit < 0) {
-            return -1;
-        }
-        value = value * 16 + digit;
-    }
-    return value;
-}
-
-static he_status scan_escape(scan *s)
-{
-    const char *p = s->at + 1;
-    if (p == s->end || *p == '\0' || strchr("\"\\/bfnrtu", *p) == NULL) {
-        return refuse(s, "this is not an escape");
-    }
-    if (*p != 'u') {
-        s->at += 2;
-        return HE_OK;
-    }
-    int unit = scan_hex(p + 1, s->end);
-    size_t length = 6;
-    if (unit >= 0xD800 && unit <= 0xDFFF) {
-        bool pair = unit < 0xDC00 && s->end - p >= 7 && p[5] == '\\' && p[6] == 'u';
-        int low = pair ? scan_hex(p + 7, s->end) : -1;
-        unit = low >= 0xDC00 && low <= 0xDFFF ? unit : -1;
-        length = 12;
-    }
-    if (unit <= 0) {
-        return refuse(s, unit == 0 ? "a null character is not taken in strings"
-                                   : "\\u needs four hexadecimal digits, and surrogates a pair");
-    }
-    s->at += length;
-    return HE_OK;
-}
-
 static he_status scan_string(scan *s)
 {
-    he_status status = HE_OK;
+    bool closed = false;
     s->at++;
-    while (s->at < s->end && status == HE_OK) {
-        unsigned char c = (unsigned char)*s->at;
-        if (c == '"') {
-            s->at++;
-            return HE_OK;
-        }
-        if (c == '\\') {
-            status = scan_escape(s);
-        } else if (c < 0x20) {
-            status = refuse(s, "a control character stands raw in a string");
-        } else {
-            size_t size = he_utf8_character(s->at, (size_t)(s->end - s->at));
-            status = size == 0 ? refuse(s, "the string is not UTF-8") : HE_OK;
-            s->at += size;
+    while (!closed) {
+        const char *wrong = he_json_string_part(&s->at, s->end, &closed);
+        he_status status = wrong != NULL ? refuse(s, wrong) : poll(s);
+        if (status != HE_OK) {
+            return status;
         }
     }
-    return status == HE_OK ? refuse(s, "the string does not end") : status;
+    return HE_OK;
 }
 
 /* --- members that are given twice --- */
@@ -190,7 +157,7 @@ static he_status check_few(const scan *s, uint32_t object)
     return HE_OK;
 }
 
-static he_status check_many(const scan *s, uint32_t object, size_t count)
+static he_status check_many(scan *s, uint32_t object, size_t count)
 {
     const he_json *json = s->json;
     size_t size = 32;
@@ -205,18 +172,21 @@ static he_status check_many(const scan *s, uint32_t object, size_t count)
     for (uint32_t i = he_json_first(json, object); i != HE_NONE && status == HE_OK;
          i = he_json_after(json, object, i)) {
         char text[NAME_ROOM];
+        if (i % HE_WATCH_STRIDE == 0) {
+            status = tell(s);
+        }
         size_t slot = (size_t)(hash_name(json, i, text, sizeof text) >> 20) & (size - 1);
         while (slots[slot] != 0 && !he_json_is(json, slots[slot], text)) {
             slot = (slot + 1) & (size - 1);
         }
-        status = slots[slot] != 0 ? repeated(s, i) : HE_OK;
+        status = status == HE_OK && slots[slot] != 0 ? repeated(s, i) : status;
         slots[slot] = i;
     }
     he_mem_free(slots);
     return status;
 }
 
-static he_status check_members(const scan *s, uint32_t object)
+static he_status check_members(scan *s, uint32_t object)
 {
     const he_json *json = s->json;
     size_t count = 0;
@@ -356,14 +326,15 @@ static he_status scan_text(scan *s)
 }
 
 he_status he_json_parse(he_json *json, const char *text, size_t length, uint64_t offset,
-                        he_error *err)
+                        he_watch *watch, he_error *err)
 {
     *json = (he_json){.text = text, .length = length, .offset = offset};
     if (length > HE_JSON_TEXT) {
         return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, offset, "JSON of more than %zu bytes",
                           HE_JSON_TEXT);
     }
-    scan s = {.json = json, .at = text, .end = text + length, .err = err};
+    scan s = {
+        .json = json, .watch = watch, .told = text, .at = text, .end = text + length, .err = err};
     he_status status = scan_text(&s);
     if (status != HE_OK) {
         he_json_clear(json);

@@ -5,12 +5,16 @@
  *   v x y z w                 the same; a weight w other than 1 is noted and left out
  *   v x y z r g b [a]         with the vertex attribute "color", numbers as written
  *   vt u [v [w]]              half-edge attribute "uv": two doubles, or three if a corner has a w
- * other than 0 vn x y z                  half-edge attribute "normal" f, fo                     a
- * face; corners v, v/vt, v//vn, v/vt/vn, also mixed and with a slash at the end; negative indices
- * count back from the last element so far, positive ones may name later elements o, g, usemtl face
- * attributes "object", "group", "material": the rest of the line s n | on | off            face
- * attribute "smoothing" mtllib                    noted, never opened l, p, curves, others noted
- * and left out; a line that does not begin with a word is HE_SYNTAX
+ *                             other than 0
+ *   vn x y z                  half-edge attribute "normal"
+ *   f, fo                     a face; corners v, v/vt, v//vn, v/vt/vn, also mixed and with a slash
+ *                             at the end; negative indices count back from the last element so
+ *                             far, positive ones may name later elements
+ *   o, g, usemtl              face attributes "object", "group", "material": the rest of the line
+ *   s n | on | off            face attribute "smoothing"
+ *   mtllib                    noted, never opened
+ *   l, p, curves, others      noted and left out; a line that does not begin with a word is
+ *                             HE_SYNTAX
  *
  * HE_BAD_INDEX: an index that is 0, or names nothing when the file has ended. Corners without a
  * texture coordinate or normal, where others have one, get zeros and a note. A file in which no

@@ -467,7 +467,7 @@ static he_status obj_finish(void *state, he_error *err)
     return status;
 }
 
-const he_reading he_obj_reading = {obj_open, obj_feed, obj_finish, obj_close};
+const he_reading he_obj_reading = {obj_open, obj_feed, obj_finish, obj_close, false};
 
 /* The first line that is neither blank nor a comment begins with a keyword. */
 bool he_obj_sniff(const char *bytes, size_t n)

@@ -31,6 +31,7 @@ typedef struct off {
     double numbers[VERTEX_NUMBERS]; /* of the vertex, or of the face's colour, being read */
     size_t number_count;            /* may exceed those kept */
     uint64_t number_line;           /* of the first of them */
+    bool spread, lacking;           /* some vertex goes on on the next line; ends before its last */
     uint32_t integers;              /* bit i: the i-th was written as an integer */
     bool open;                      /* the last face still lacks `missing` corners */
     uint64_t missing;
@@ -98,17 +99,8 @@ static he_status read_header(off *o, const he_line *line, const char **p, he_err
         return he_line_fail(err, HE_UNSUPPORTED, line, rest, "binary OFF is not supported");
     }
     o->has = (unsigned)flags;
-    he_status status = HE_OK;
-    he_soup *soup = &o->into->soup;
-    if ((o->has & HAS_NORMALS) != 0) {
-        status = he_soup_column(soup, "normal", HE_VERTEX, HE_DOUBLE, 3, HE_INTERPOLATE, &o->normal,
-                                err);
-    }
-    if (status == HE_OK && (o->has & HAS_UV) != 0) {
-        status = he_soup_column(soup, "uv", HE_VERTEX, HE_DOUBLE, 2, HE_INTERPOLATE, &o->uv, err);
-    }
     *p = rest;
-    return status;
+    return HE_OK;
 }
 
 static he_status read_count(const he_line *line, const char **p, const char *what, uint64_t limit,
@@ -201,13 +193,49 @@ static void forget_numbers(off *o)
     o->integers = 0;
 }
 
-static he_status add_row(he_column *column, const double *values, he_error *err)
+/* The row of the last vertex of an attribute that is made when the first one has it. */
+static he_status add_row(off *o, he_column **column, const char *name, uint32_t components,
+                         const double *values, he_error *err)
 {
-    he_status status = he_column_extend(column, 1, err);
+    he_soup *soup = &o->into->soup;
+    he_status status = HE_OK;
+    if (*column == NULL) {
+        status = he_soup_column(soup, name, HE_VERTEX, HE_DOUBLE, components, HE_INTERPOLATE,
+                                column, err);
+    }
     if (status == HE_OK) {
-        memcpy(he_column_row(column, column->rows - 1), values, column->row_bytes);
+        status = he_column_extend(*column, soup->vertex_count - (*column)->rows, err);
+    }
+    if (status == HE_OK) {
+        memcpy(he_column_row(*column, (*column)->rows - 1), values, (*column)->row_bytes);
     }
     return status;
+}
+
+/* What the numbers of a vertex are, besides its position: how many of each, behind each other. */
+typedef struct parts {
+    size_t normal, color, uv;
+} parts;
+
+/* As the header says, or without the last of what it says. */
+static bool divide(const off *o, size_t count, parts *out)
+{
+    parts p = {(o->has & HAS_NORMALS) != 0 ? 3 : 0, 0, (o->has & HAS_UV) != 0 ? 2 : 0};
+    size_t known = 3 + p.normal + p.uv;
+    if ((o->has & HAS_COLORS) != 0) {
+        p.color = count > known ? count - known : 0;
+    }
+    bool color = p.color == 1 || p.color == 3 || p.color == 4;
+    if (count >= known + p.color && ((o->has & HAS_COLORS) == 0 || color)) {
+        *out = p;
+        return true;
+    }
+    *out = (parts){.normal = p.normal};
+    if (count == 3 + p.normal) {
+        return true;
+    }
+    *out = (parts){0};
+    return count == 3;
 }
 
 static he_status end_vertex(off *o, const he_line *line, he_error *err)
@@ -215,32 +243,37 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     he_soup *soup = &o->into->soup;
     const double *n = o->numbers;
     size_t vertex = soup->vertex_count, count = o->number_count;
-    size_t color_at = o->normal != NULL ? 6 : 3, colors = 0;
-    size_t uvs = o->uv != NULL ? 2 : 0;
-    if ((o->has & HAS_COLORS) != 0) {
-        colors = count - color_at - uvs;
-    }
-    /* On several lines, what is too much is the next vertex. */
-    bool more = count > color_at + colors + uvs && o->number_line != line->number;
-    bool fits = colors == 0 || colors == 1 || colors == 3 || colors == 4;
-    if (more || !fits || ((o->has & HAS_COLORS) != 0 && colors == 0)) {
+    parts p;
+    bool spread = o->number_line != line->number, fits = divide(o, count, &p);
+    size_t color_at = 3 + p.normal, end = color_at + p.color + p.uv;
+    bool lacking = fits && (((o->has & HAS_NORMALS) != 0 && p.normal == 0) ||
+                            ((o->has & HAS_COLORS) != 0 && p.color == 0) ||
+                            ((o->has & HAS_UV) != 0 && p.uv == 0));
+    o->spread |= spread;
+    o->lacking |= lacking;
+    /* On several lines, what is too much is the next vertex; and where some go on on the next line
+     * none may end before its last number, or nothing would tell the two apart. */
+    if (!fits || (spread && count > end) || (o->spread && o->lacking)) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers do not fit the header",
                             count);
     }
     he_status status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
-    if (status == HE_OK && o->normal != NULL) {
-        status = add_row(o->normal, n + 3, err);
+    if (status == HE_OK && p.normal > 0) {
+        status = add_row(o, &o->normal, "normal", 3, n + 3, err);
     }
-    if (status == HE_OK && colors >= 3) {
-        status = add_color(o, &o->vertex_colors, vertex, color_at, colors, err);
+    if (status == HE_OK && p.color >= 3) {
+        status = add_color(o, &o->vertex_colors, vertex, color_at, p.color, err);
     }
-    if (status == HE_OK && o->uv != NULL) {
-        status = add_row(o->uv, n + color_at + colors, err);
+    if (status == HE_OK && p.uv > 0) {
+        status = add_row(o, &o->uv, "uv", 2, n + color_at + p.color, err);
     }
-    if (colors == 1) {
+    if (p.color == 1) {
         note(o, "color_index", "ignored: an index into a colour map", line);
     }
-    if (count > color_at + colors + uvs) {
+    if (lacking) {
+        note(o, "missing_numbers", "read without what the header announces: a vertex", line);
+    }
+    if (count > end) {
         note(o, "extra_numbers", "ignored: numbers the header does not announce", line);
     }
     forget_numbers(o);
@@ -296,7 +329,8 @@ static he_status read_vertex(off *o, const he_line *line, const char **p, he_err
         }
     }
     he_status status = read_numbers(o, line, p, 3, (o->has & HAS_COLORS) != 0, err);
-    if (status != HE_OK || o->number_count < needed) {
+    size_t enough = o->number_line == line->number ? 3 : needed;
+    if (status != HE_OK || o->number_count < enough) {
         return status; /* the vertex goes on on the next line */
     }
     return end_vertex(o, line, err);
@@ -479,7 +513,7 @@ static he_status off_finish(void *state, he_error *err)
     return status;
 }
 
-const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close};
+const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close, false};
 
 /* The first token is a header; without one nothing tells the format. */
 bool he_off_sniff(const char *bytes, size_t n)

@@ -10,7 +10,8 @@
  * READING. Elements in any order, properties in any order and of any type. Of "vertex", x, y and z
  * are the position; of "face", the list vertex_indices or vertex_index has the corners; of
  * "tristrips", the same list has strips of triangles, each begun by -1, with every second triangle
- * turned round. Other numbers of vertices and faces become attributes of that name, these together:
+ * turned round. Such a list may be of floats or doubles that are whole, with a note. Other numbers
+ * of vertices and faces become attributes of that name, these together:
  *
  *     nx ny nz                                          normal
  *     red green blue [alpha], r g b [a]                 color

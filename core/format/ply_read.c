@@ -73,6 +73,7 @@ static he_status read_value(ply *o, const he_line *line, const char **p, size_t 
 
 static he_status read_list(ply *o, const he_line *line, const char **p, size_t k, he_error *err)
 {
+    const he_ply_property *property = &o->header.properties[o->rows.element->first + k];
     bool ignored = he_ply_rows_role(&o->rows, k) == HE_PLY_IGNORED;
     int64_t count = 0, value = 0;
     he_status status = read_whole(line, p, "is not the count of a list", &count, err);
@@ -86,6 +87,15 @@ static he_status read_list(ply *o, const he_line *line, const char **p, size_t k
         }
         if (ignored) {
             *p = he_token_end(*p, line->end);
+            continue;
+        }
+        if (property->type >= HE_PLY_FLOAT) {
+            double number = 0;
+            bool finite;
+            status = he_token_any_number(line, p, &number, &finite, err);
+            if (status == HE_OK) {
+                status = he_ply_rows_fraction(&o->rows, k, finite ? number : (double)NAN, err);
+            }
             continue;
         }
         status = read_whole(line, p, "is not a corner of a face", &value, err);
@@ -322,13 +332,17 @@ static he_status take_items(ply *o, const unsigned char **p, const unsigned char
         o->list_left -= n;
     }
     const unsigned char *bytes;
+    bool fraction = property->type >= HE_PLY_FLOAT;
     while (o->list_left > 0 && take(o, p, end, size, &bytes)) {
         o->list_left--;
         if (he_ply_rows_role(&o->rows, o->property) == HE_PLY_IGNORED) {
             continue;
         }
-        he_status status =
-            he_ply_rows_item(&o->rows, o->property, whole_of(bytes, property->type, o->big), err);
+        he_status status = fraction
+                               ? he_ply_rows_fraction(&o->rows, o->property,
+                                                      value_of(bytes, property->type, o->big), err)
+                               : he_ply_rows_item(&o->rows, o->property,
+                                                  whole_of(bytes, property->type, o->big), err);
         if (status != HE_OK) {
             return status;
         }
@@ -485,7 +499,7 @@ static he_status ply_finish(void *state, he_error *err)
     return HE_OK;
 }
 
-const he_reading he_ply_reading = {ply_open, ply_feed, ply_finish, ply_close};
+const he_reading he_ply_reading = {ply_open, ply_feed, ply_finish, ply_close, false};
 
 bool he_ply_sniff(const char *bytes, size_t n)
 {

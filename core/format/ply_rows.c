@@ -138,9 +138,14 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
                           "element '%s' has no list 'vertex_indices' or 'vertex_index'", e->name);
     }
     const he_ply_property *property = &rows->header->properties[e->first + k];
-    if (!property->list || property->type >= HE_PLY_FLOAT) {
+    if (!property->list) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, property->line,
-                          "property '%s' is not a list of whole numbers", property->name);
+                          "property '%s' is not a list", property->name);
+    }
+    if (property->type >= HE_PLY_FLOAT) {
+        he_notes_add(&rows->into->notes, "fraction_indices",
+                     "read as whole numbers: corners of the type", he_ply_type_name(property->type),
+                     strlen(he_ply_type_name(property->type)), HE_PLACE_LINE, property->line);
     }
     rows->targets[e->first + k].role = role;
     return HE_OK;
@@ -265,6 +270,9 @@ he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err)
     }
     return at_place(rows, status, err);
 }
+
+/* Up to here the type has every whole number. */
+static const double FLOAT_WHOLE = 1 << 24, DOUBLE_WHOLE = 9007199254740992;
 
 static bool is_whole(double value, double low, double high)
 {
@@ -396,6 +404,17 @@ he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value, he
                     role == HE_PLY_STRIP ? add_to_strip(rows, vertex, err)
                                          : he_soup_add_corner(&rows->into->soup, vertex, err),
                     err);
+}
+
+he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value, he_error *err)
+{
+    const he_ply_property *p = &rows->header->properties[rows->element->first + property];
+    double most = p->type == HE_PLY_FLOAT ? FLOAT_WHOLE : DOUBLE_WHOLE;
+    if (!is_whole(value, -most, most)) {
+        return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
+                          "the %s %.17g does not name a vertex", he_ply_type_name(p->type), value);
+    }
+    return he_ply_rows_item(rows, property, (int64_t)value, err);
 }
 
 he_status he_ply_rows_end(he_ply_rows *rows, he_error *err)

@@ -72,6 +72,10 @@ HE_NODISCARD he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int6
 /* Of a list of corners or strips. HE_BAD_INDEX, HE_LIMIT, HE_NO_MEMORY. */
 HE_NODISCARD he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value,
                                         he_error *err);
+/* The same of a list of floats or doubles: one that is not whole, or so large that its neighbours
+ * are not in its type, names no vertex. */
+HE_NODISCARD he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value,
+                                            he_error *err);
 /* HE_NOT_FINITE, HE_LIMIT, HE_NO_MEMORY. */
 HE_NODISCARD he_status he_ply_rows_end(he_ply_rows *rows, he_error *err);
 

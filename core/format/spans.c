@@ -114,6 +114,36 @@ out:
     return status;
 }
 
+he_status he_spans_merge(he_spans *spans, size_t faces, he_column *column, const he_ids *own,
+                         he_error *err)
+{
+    const he_ids *changes = &spans->changes;
+    size_t k = 0, change = 0;
+    he_status status = HE_OK;
+    if (column->rows < faces) {
+        status = he_column_extend(column, faces - column->rows, err);
+    }
+    for (size_t f = 0; f < faces && status == HE_OK;) {
+        if (k < own->count && f >= own->ids[k]) { /* pass over the faces that have theirs */
+            f = own->ids[k + 1] > f ? own->ids[k + 1] : f;
+            k += 2;
+            continue;
+        }
+        while (change < changes->count && changes->ids[change] <= f) {
+            change += 2;
+        }
+        size_t end = change < changes->count ? changes->ids[change] : faces;
+        end = k < own->count && own->ids[k] < end ? own->ids[k] : end;
+        const char *text = change > 0 ? he_labels_get(spans->labels, changes->ids[change - 1]) : "";
+        uint32_t number = 0;
+        status = he_labels_add(column->labels, text, strlen(text), &number, err);
+        for (; f < end && f < faces && status == HE_OK; f++) {
+            memcpy(he_column_row(column, f), &number, sizeof number);
+        }
+    }
+    return status;
+}
+
 he_status he_spans_finish(he_spans *spans, he_soup *soup, const char *name, he_error *err)
 {
     const he_ids *changes = &spans->changes;

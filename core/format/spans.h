@@ -25,6 +25,10 @@ HE_NODISCARD he_status he_spans_set_label(he_spans *spans, size_t face, const ch
  * a note. HE_SYNTAX for a control character. */
 HE_NODISCARD he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line,
                                          const char *p, he_notes *notes, he_error *err);
+/* Give the names to the faces up to `faces` of an attribute with labels, save those of `own`:
+ * rising pairs, from a face to before another. */
+HE_NODISCARD he_status he_spans_merge(he_spans *spans, size_t faces, he_column *column,
+                                      const he_ids *own, he_error *err);
 /* Make the uint32 attribute `name`, unless every face has the default. */
 HE_NODISCARD he_status he_spans_finish(he_spans *spans, he_soup *soup, const char *name,
                                        he_error *err);

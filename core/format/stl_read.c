@@ -410,7 +410,7 @@ static he_status stl_finish(void *state, he_error *err)
     return status;
 }
 
-const he_reading he_stl_reading = {stl_open, stl_feed, stl_finish, stl_close};
+const he_reading he_stl_reading = {stl_open, stl_feed, stl_finish, stl_close, false};
 
 /* Binary has no mark: a byte that no text has, and a first facet of numbers. */
 bool he_stl_sniff(const char *bytes, size_t n)

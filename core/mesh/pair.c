@@ -18,13 +18,10 @@ static he_defect face_defect(he_status reason, size_t face, uint32_t corner, uin
     return (he_defect){reason, HE_FACE, (uint32_t)face, corner, vertex, HE_NONE};
 }
 
-enum { SMALL_FACE = 16 };
-
-/* The first corner of a face that repeats an earlier one, or `count`. A large face marks its
- * vertices with its own number in `stamp`, so that no face costs more than its corners. */
-static uint32_t find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp, uint32_t mark)
+uint32_t he_soup_find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp,
+                             uint32_t mark)
 {
-    if (count <= SMALL_FACE) {
+    if (count <= HE_SMALL_FACE) {
         for (uint32_t i = 1; i < count; i++) {
             for (uint32_t k = 0; k < i; k++) {
                 if (corners[i] == corners[k]) {
@@ -68,13 +65,13 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
             he_report_add(report, total, face_defect(HE_BAD_INDEX, f, k, corners[k]));
             continue;
         }
-        if (count > SMALL_FACE && stamp == NULL) {
+        if (count > HE_SMALL_FACE && stamp == NULL) {
             stamp = he_mem_zero(soup->vertex_count, sizeof *stamp);
             if (stamp == NULL) {
                 return he_fail_plain(err, HE_NO_MEMORY, "no memory to check the faces");
             }
         }
-        k = find_repeat(corners, count, stamp, (uint32_t)f + 1);
+        k = he_soup_find_repeat(corners, count, stamp, (uint32_t)f + 1);
         if (k < count) {
             he_report_add(report, total, face_defect(HE_REPEATED_CORNER, f, k, corners[k]));
         }

@@ -13,6 +13,13 @@ void he_report_add(he_report *report, uint64_t *total, he_defect defect);
 HE_NODISCARD he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *total,
                                            he_error *err);
 
+/* The first corner of a face that repeats an earlier one, or `count`. A face of more than
+ * HE_SMALL_FACE corners marks its vertices with `mark`, its own, in `stamp`, which has a word a
+ * vertex: so no face costs more than its corners. Smaller ones take NULL. */
+enum { HE_SMALL_FACE = 16 };
+uint32_t he_soup_find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp,
+                             uint32_t mark);
+
 /* mate[c] = the corner whose edge is the same as the one from corner c to the next of its face, run
  * the other way, or HE_NONE at a boundary. `mate` has room for every corner. All faces must have
  * passed he_soup_check_faces. Edges with three faces, or two in one direction, are counted in

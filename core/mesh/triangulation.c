@@ -4,11 +4,11 @@
 
 /* Adds the steps of the search: where very many edges meet it may be long. */
 static bool is_joined(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
-                      uint64_t *steps)
+                      he_triangulation_work *work)
 {
     he_vertex a = he_origin(m, (he_halfedge){flat->halfedge[i]});
     he_vertex b = he_origin(m, (he_halfedge){flat->halfedge[k]});
-    return he_find_halfedge_counted(m, a, b, steps).i != HE_NONE;
+    return he_joined(m, work->joins, a, b, &work->steps);
 }
 
 static he_status refuse_work(const he_flat *flat, he_error *err)
@@ -34,7 +34,7 @@ typedef struct table {
     double *cost;    /* of the best triangulation of sub-loop i..k, under i, k and under k, i;
                         DBL_MAX when there is none */
     uint8_t *middle; /* its triangle on the side i, k */
-    uint64_t steps;
+    he_triangulation_work *work;
 } table;
 
 static double diagonal_cost(const he_flat *f, uint32_t i, uint32_t k)
@@ -72,12 +72,12 @@ static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, tabl
     for (uint32_t span = 2; span < n; span++) {
         for (uint32_t i = 0; i + span < n; i++) {
             uint32_t k = i + span;
-            bool free = span == n - 1 || !avoid || !is_joined(m, f, i, k, &t->steps);
+            bool free = span == n - 1 || !avoid || !is_joined(m, f, i, k, t->work);
             double side = span < n - 1 ? diagonal_cost(f, i, k) : 0;
             double cost = free ? fill_cell(f, i, k, side, t) : DBL_MAX;
             t->cost[i * n + k] = t->cost[k * n + i] = cost;
-            t->steps += span;
-            if (t->steps > HE_TRIANGULATION_STEPS) {
+            t->work->steps += span;
+            if (t->work->steps > HE_TRIANGULATION_STEPS) {
                 return refuse_work(f, err);
             }
         }
@@ -106,12 +106,14 @@ static void read_table(const he_flat *f, const table *t, uint32_t *corners)
     }
 }
 
-static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation *plan, he_error *err)
+static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation_work *work,
+                            he_triangulation *plan, he_error *err)
 {
     const he_flat *f = &plan->flat;
     size_t cells = (size_t)f->n * f->n, whole = f->n - 1;
     he_status status = HE_OK;
-    table t = {he_mem_array(NULL, cells, sizeof *t.cost), he_mem_zero(cells, sizeof *t.middle), 0};
+    table t = {he_mem_array(NULL, cells, sizeof *t.cost), he_mem_zero(cells, sizeof *t.middle),
+               work};
     if (t.cost == NULL || t.middle == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
         goto out;
@@ -128,7 +130,6 @@ static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation *plan
             status = fill_table(m, f, true, &t, err);
         }
     }
-    plan->steps += t.steps;
     if (status != HE_OK) {
         goto out;
     }
@@ -153,7 +154,7 @@ typedef struct ears {
     uint8_t *convex;                /* does the corner turn left? Never becomes false again */
     uint32_t *reflex, reflex_count; /* corners that were not convex when last looked at */
     uint32_t left;
-    uint64_t tests;
+    he_triangulation_work *work;
     bool blocked; /* an ear was passed over because its diagonal exists */
 } ears;
 
@@ -185,7 +186,7 @@ static bool is_pierced(ears *e, uint32_t a, uint32_t b, uint32_t c)
             e->reflex[r] = e->reflex[--e->reflex_count];
             continue;
         }
-        e->tests++;
+        e->work->steps++;
         if (p != a && p != b && p != c && not_right(f, a, b, p) && not_right(f, b, c, p) &&
             not_right(f, c, a, p) && !same_place(f, p, a) && !same_place(f, p, b) &&
             !same_place(f, p, c)) {
@@ -198,13 +199,13 @@ static bool is_pierced(ears *e, uint32_t a, uint32_t b, uint32_t c)
 
 static bool is_taken(ears *e, uint32_t a, uint32_t c)
 {
-    return e->avoid && is_joined(e->m, e->f, a, c, &e->tests);
+    return e->avoid && is_joined(e->m, e->f, a, c, e->work);
 }
 
 static bool is_ear(ears *e, uint32_t i)
 {
     if (e->state[i] == UNKNOWN) {
-        e->tests++;
+        e->work->steps++;
         uint32_t a = e->prev[i], c = e->next[i];
         bool ear = e->convex[i] && !is_pierced(e, a, i, c);
         if (ear && is_taken(e, a, c)) {
@@ -234,7 +235,7 @@ static uint32_t cut_ear(ears *e, uint32_t i, uint32_t *corners)
 /* The first ear from i on; i itself when there is none. */
 static bool find_ear(ears *e, uint32_t i, uint32_t *out)
 {
-    for (uint32_t seen = 0; seen < e->left && e->tests <= HE_TRIANGULATION_STEPS; seen++) {
+    for (uint32_t seen = 0; seen < e->left && e->work->steps <= HE_TRIANGULATION_STEPS; seen++) {
         if (is_ear(e, i)) {
             *out = i;
             return true;
@@ -258,7 +259,7 @@ static bool find_corner(ears *e, uint32_t i, uint32_t *out)
 {
     for (unsigned convex = 2; convex-- > 0;) {
         for (uint32_t seen = 0; seen < e->left; seen++, i = e->next[i]) {
-            e->tests++;
+            e->work->steps++;
             if (e->convex[i] >= convex && !is_taken(e, e->prev[i], e->next[i])) {
                 *out = i;
                 return true;
@@ -276,7 +277,7 @@ static he_status cut_ears(ears *e, he_triangulation *plan, he_error *err)
             e->blocked = false;
             forget_states(e, at);
             if (!find_ear(e, at, &i)) {
-                if (e->tests > HE_TRIANGULATION_STEPS) {
+                if (e->work->steps > HE_TRIANGULATION_STEPS) {
                     return refuse_work(e->f, err);
                 }
                 if (e->blocked || !find_corner(e, at, &i)) {
@@ -292,10 +293,11 @@ static he_status cut_ears(ears *e, he_triangulation *plan, he_error *err)
     return HE_OK;
 }
 
-static he_status plan_ears(const he_mesh *m, bool avoid, he_triangulation *plan, he_error *err)
+static he_status plan_ears(const he_mesh *m, bool avoid, he_triangulation_work *work,
+                           he_triangulation *plan, he_error *err)
 {
     uint32_t n = plan->flat.n;
-    ears e = {.m = m, .f = &plan->flat, .avoid = avoid, .left = n};
+    ears e = {.m = m, .f = &plan->flat, .avoid = avoid, .left = n, .work = work};
     uint32_t *block = he_mem_zero(n, 3 * sizeof(uint32_t) + 2 * sizeof(uint8_t));
     if (block == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop of %u corners", n);
@@ -316,7 +318,6 @@ static he_status plan_ears(const he_mesh *m, bool avoid, he_triangulation *plan,
         }
     }
     he_status status = cut_ears(&e, plan, err);
-    plan->steps += e.tests;
     he_mem_free(block);
     return status;
 }
@@ -330,26 +331,30 @@ void he_triangulation_clear(he_triangulation *triangulation)
     *triangulation = (he_triangulation){.corners = NULL};
 }
 
-static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation *plan, he_error *err)
+static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_work *work,
+                           he_triangulation *plan, he_error *err)
 {
     bool avoid = (flags & HE_AVOID_EDGES) != 0;
     if (plan->flat.n > HE_EXACT_CORNERS) {
-        return plan_ears(m, avoid, plan, err);
+        return plan_ears(m, avoid, work, plan, err);
     }
     if (flags & HE_ANY_DIAGONALS) {
-        he_status status = plan_ears(m, avoid, plan, err);
+        he_status status = plan_ears(m, avoid, work, plan, err);
         bool done = status == HE_OK && (!plan->degenerate || plan->flat.degenerate);
         if (done || (status != HE_OK && status != HE_DOUBLED_EDGE)) {
             return status;
         }
     }
-    return plan_exact(m, avoid, plan, err);
+    return plan_exact(m, avoid, work, plan, err);
 }
 
 he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
-                                he_triangulation *out, he_error *err)
+                                he_triangulation_work *work, he_triangulation *out, he_error *err)
 {
     he_triangulation plan = {.degenerate = false};
+    he_triangulation_work own = {0};
+    work = work == NULL ? &own : work;
+    uint64_t before = work->steps;
     he_status status = he_flat_init(&plan.flat, m, first, err);
     if (status != HE_OK) {
         return status;
@@ -359,12 +364,13 @@ he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned fl
     if (plan.corners == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
     } else {
-        status = plan_loop(m, flags, &plan, err);
+        status = plan_loop(m, flags, work, &plan, err);
     }
     if (status != HE_OK) {
         he_triangulation_clear(&plan);
         return status;
     }
+    plan.steps = work->steps - before;
     *out = plan;
     return HE_OK;
 }

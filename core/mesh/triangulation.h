@@ -26,6 +26,7 @@
 #define HE_MESH_TRIANGULATION_H
 
 #include "mesh/flat.h"
+#include "mesh/joins.h"
 
 enum { HE_EXACT_CORNERS = 64 };
 #define HE_TRIANGULATION_STEPS ((uint64_t)1 << 28)
@@ -37,12 +38,20 @@ typedef struct he_triangulation {
     uint64_t steps;    /* that were taken */
 } he_triangulation;
 
+/* What many loops share; {0} begins it. */
+typedef struct he_triangulation_work {
+    uint64_t steps;        /* that were taken, for loops that were refused too */
+    const he_joins *joins; /* NULL: edges are looked for round their ends */
+} he_triangulation_work;
+
 enum { HE_AVOID_EDGES = 1, HE_ANY_DIAGONALS = 2 };
 
-/* HE_DOUBLED_EDGE when none was found that avoids the edges there are, HE_LIMIT when a loop would
- * take more than HE_TRIANGULATION_STEPS, HE_NO_MEMORY. he_triangulation_clear frees. */
+/* `work` NULL: of this loop alone. HE_DOUBLED_EDGE when none was found that avoids the edges there
+ * are, HE_LIMIT when the work would come to more than HE_TRIANGULATION_STEPS, HE_NO_MEMORY.
+ * he_triangulation_clear frees. */
 HE_NODISCARD he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
-                                             he_triangulation *out, he_error *err);
+                                             he_triangulation_work *work, he_triangulation *out,
+                                             he_error *err);
 void he_triangulation_clear(he_triangulation *triangulation);
 
 #endif

@@ -1,19 +1,23 @@
 /* defects.h - what a valid mesh may have and its owner may not want.
  *
- *     bowtie                 a vertex of two fans or more; `value` is how many
- *     isolated_vertex        a vertex without an edge
- *     duplicate_position     a vertex no farther than `merge` from an earlier one that is not
- * itself listed, which is `other`; `value` is the distance zero_length_edge       an edge no longer
- * than `merge`; `value` is the length degenerate_face        a face without area: what is left of
- * its area vector is rounding noise, or it is no wider than `merge` across its longest edge, which
- *                            is what `value` tells
- *     nonplanar_face         of four corners or more, one of them farther than `flat` from the
- * plane through their mean across the area vector; `value` is how far small_component        faces
- * joined by edges in a box whose diagonal is no longer than `small`, which is `value`; told by the
- * lowest face inside_out_component   a component by edges without a boundary whose volume, `value`,
- * is negative; likewise. One that bounds a hollow within another is as it should be, and listed all
- * the same: which of two is the hollow one, only the mesh's owner knows self_intersection      a
- * face that meets `other` where it should not: bvh.h. This is not looked for here
+ *     bowtie                a vertex of two fans or more; `value` is how many
+ *     isolated_vertex       a vertex without an edge
+ *     duplicate_position    a vertex no farther than `merge` from an earlier one that is not itself
+ *                           listed, which is `other`; `value` is the distance
+ *     zero_length_edge      an edge no longer than `merge`; `value` is the length
+ *     degenerate_face       a face without area: what is left of its area vector is rounding noise,
+ *                           or it is no wider than `merge` across its longest edge, which is what
+ *                           `value` tells
+ *     nonplanar_face        of four corners or more, one of them farther than `flat` from the plane
+ *                           through their mean across the area vector; `value` is how far
+ *     small_component       faces joined by edges in a box whose diagonal is no longer than
+ *                           `small`, which is `value`; told by the lowest face
+ *     inside_out_component  a component by edges without a boundary whose volume, `value`, is
+ *                           negative; told likewise. One that bounds a hollow within another is as
+ *                           it should be, and listed all the same: which of two is the hollow one,
+ *                           only the mesh's owner knows
+ *     self_intersection     a face that meets `other` where it should not: bvh.h. This is not
+ *                           looked for here
  *
  * Values are in the mesh's own lengths, never more than DBL_MAX. All in time linear in the mesh. */
 #ifndef HE_QUERY_DEFECTS_H

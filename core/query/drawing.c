@@ -138,7 +138,7 @@ static he_status cut(he_drawing *d, uint32_t face, he_error *err)
 {
     he_triangulation t;
     he_halfedge first = {d->mesh->c.face_halfedge[face]};
-    he_status status = he_triangulation_make(d->mesh, first, HE_ANY_DIAGONALS, &t, err);
+    he_status status = he_triangulation_make(d->mesh, first, HE_ANY_DIAGONALS, NULL, &t, err);
     if (status != HE_OK) {
         return status == HE_LIMIT ? HE_OK : status;
     }

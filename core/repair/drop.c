@@ -46,17 +46,6 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
 
 /* --- degenerate ones --- */
 
-static bool repeats(const uint32_t *corners, uint32_t count, uint32_t *stamp, uint32_t mark)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        if (stamp[corners[i]] == mark) {
-            return true;
-        }
-        stamp[corners[i]] = mark;
-    }
-    return false;
-}
-
 he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
 {
     he_soup *soup = m->soup;
@@ -71,7 +60,7 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
     for (uint32_t f = 0; f < soup->face_count && status == HE_OK; f++) {
         uint32_t begin = soup->starts[f], count = he_soup_end(soup, f) - begin;
         status = he_watch_at(soup->limits.watch, f, soup->face_count, err);
-        if (count < 3 || repeats(soup->corners + begin, count, stamp, f + 1)) {
+        if (count < 3 || he_soup_find_repeat(soup->corners + begin, count, stamp, f + 1) < count) {
             he_bits_set(gone, f);
             account->count++;
             he_mend_name(account, he_mend_input(m->out->face_from, f), HE_NONE);

@@ -191,6 +191,55 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
     bench_free(b);
 }
 
+static const char *gltf_header(void *context, const char *name)
+{
+    (void)context;
+    return strcmp(name, "Content-Type") == 0 ? "model/gltf+json" : NULL;
+}
+
+static bool give_up_reading(void *context, const char *phase, double done)
+{
+    unsigned *told = context;
+    *told += strcmp(phase, "parsing") == 0;
+    return *told < 3 || done < 0;
+}
+
+/* It is read with what is made of it, away from the worker, and can be given up meanwhile. */
+static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
+{
+    (void)state;
+    enum { LENGTH = 600000 };
+    char *text = malloc(LENGTH);
+    assert_non_null(text);
+    memset(text, '0', LENGTH);
+    for (size_t i = 0; i < LENGTH; i += 2) {
+        text[i] = i == 0 ? '[' : ',';
+    }
+    text[LENGTH - 1] = ']';
+    text[LENGTH - 2] = ' ';
+    static const api_request request = {.method = "POST",
+                                        .path = "/v1/meshes",
+                                        .query = "",
+                                        .request_id = "test",
+                                        .header = gltf_header,
+                                        .has_length = true,
+                                        .length = LENGTH,
+                                        .has_body = true};
+    api_bench *b = bench_new();
+    api_step step;
+    unsigned told = 0;
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    assert_int_equal(api_body(x, text, LENGTH), API_MORE);
+    assert_int_equal(api_end(x), API_WORK);
+    api_watch(x, give_up_reading, &told);
+    assert_int_equal(api_work(x), API_READY);
+    assert_int_equal(api_answer_of(x)->status, 503);
+    assert_int_equal(told, 3);
+    api_free(x);
+    bench_free(b);
+    free(text);
+}
+
 static const char *warning(const cJSON *report, int i)
 {
     const cJSON *item = cJSON_GetArrayItem(cJSON_GetObjectItem(report, "warnings"), i);
@@ -278,6 +327,7 @@ int main(void)
         cmocka_unit_test(encodings_that_do_not_exist),
         cmocka_unit_test(a_wrong_file_names_its_place),
         cmocka_unit_test(gltf_is_read_and_what_is_outside_never),
+        cmocka_unit_test(a_file_that_is_read_at_its_end_can_be_given_up),
         cmocka_unit_test(a_body_of_another_format_is_told),
         cmocka_unit_test(a_report_says_what_was_read_and_what_was_not),
     };

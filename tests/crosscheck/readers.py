@@ -98,11 +98,14 @@ def make_off(r):
     else:
         lines = [head + ' ' + counts] if r.random() < 0.2 else [head, counts]
     color = r.choice(['255 0 10', '0.5 0.25 1', '1 2 3 4', '0.5 0.5 0.5 1.0'])
+    bare = r.random() < 0.1
     for p in v:
         line = ' '.join(some_number(r, x) for x in p)
         line += ' 0 0 1' if n else ''
         line += ' ' + color if c else ''
         line += ' 0.5 0.25' if st else ''
+        if bare and r.random() < 0.5:
+            line = ' '.join(line.split(' ')[:3])
         lines.append(line)
     face_color = r.choice(['', '', ' 255 0 0', ' 0.1 0.2 0.3', ' 1 2 3 4', ' 3'])
     for face in f:
@@ -127,7 +130,7 @@ def make_ply(r):
         props.append((name, r.choice(list(TYPES))))
     if r.random() < 0.3:
         r.shuffle(props)
-    count, index = r.choice(WHOLE), r.choice(WHOLE)
+    count, index = r.choice(WHOLE), r.choice(list(TYPES))
     strips = r.random() < 0.1
     face_props = [('vertex_indices' if r.random() < 0.5 else 'vertex_index', (count, index))]
     if r.random() < 0.3:
@@ -488,6 +491,8 @@ KNOWN = [
     ('ply', 'reference', 'no end_header', 'blanks may stand before it'),
     ('ply', 'reference', 'bad-header', 'other white space, and other letters than ASCII'),
     ('ply', 'daemon', 'is not of its type', 'a value that its type cannot hold'),
+    ('ply', 'daemon', 'does not name a vertex', 'the reference cuts fractions off'),
+    ('ply', 'reference', 'bad-integer', 'a corner with a point, in a list of floats'),
     ('stl', 'reference', 'file ends inside a facet', 'two words on a line'),
     ('glb gltf', 'daemon', r'(accessors|bufferViews|buffers|scene|scenes|meshes|nodes)/?',
      'it is no valid glTF, also where the reference looks away'),

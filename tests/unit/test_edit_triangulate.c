@@ -305,7 +305,7 @@ static he_triangulation triangulation_of(const he_mesh *m, uint32_t face, unsign
 {
     he_triangulation t;
     he_halfedge first = he_face_halfedge(m, (he_face){face});
-    assert_int_equal(he_triangulation_make(m, first, flags, &t, NULL), HE_OK);
+    assert_int_equal(he_triangulation_make(m, first, flags, NULL, &t, NULL), HE_OK);
     return t;
 }
 

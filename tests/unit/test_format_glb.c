@@ -211,13 +211,17 @@ static void quantized_positions(void **state)
         "{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'},"
         "{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3'},"
         "{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3','normalized':true}],"
-        "'meshes':[{'primitives':[" PRIMITIVE ",{'attributes':{'POSITION':2},'indices':1},"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':3},'indices':1},{'"
+        "attributes':{'POSITION':2},'indices':1},"
         "{'attributes':{'POSITION':3},'indices':1}]}]}");
     expect_position(&import, 3, 0.2, 0.4, 0.8);
     expect_position(&import, 4, -1, 0, 0);
     expect_position(&import, 7, 51, 102, -52);
     expect_position(&import, 11, 51 / 127.0, 102 / 127.0, -52 / 127.0);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.notes.count, 1);
+    float normal[3];
+    memcpy(normal, find_column(&import, HE_VERTEX, "normal")->data + 36, sizeof normal);
+    assert_true(fabs((double)normal[2] + 52 / 127.0) < 1e-6);
     he_import_clear(&import);
 }
 
@@ -256,6 +260,38 @@ static void buffers_in_uris(void **state)
     assert_ptr_equal(he_format_sniff(json, strlen(json)), he_format_find("gltf"));
     assert_ptr_equal(he_format_sniff(f.bytes, 20), he_format_find("glb"));
     assert_null(he_format_sniff("{\"vertices\":[]}", 15));
+}
+
+/* Any character of a string may be written as an escape, of which there are two kinds. */
+static void buffers_in_uris_with_escapes(void **state)
+{
+    (void)state;
+    static const char *const uris[] = {
+        "data:application\\/octet-stream;base64,AACAPwAAgD8AAIA/AACAPwAAgD8AAIA/"
+        "AACAPwAAgD8AAIA/",
+        "data:application\\/octet-stream;base64,AACAPwAAgD8AAIA\\/AACAPwAAgD8AAIA\\/"
+        "AACAPwAAgD8AAIA\\/",
+        "\\u0064ata:;base64\\u002cAACAPw\\u0041AgD8AAIA\\u002fAACAPwAAgD8AAIA\\u002F"
+        "AACAPwAAgD8AAIA/",
+    };
+    for (size_t i = 0; i < sizeof uris / sizeof *uris; i++) {
+        char json[1000];
+        int length =
+            snprintf(json, sizeof json,
+                     "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"%s"
+                     "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{"
+                     "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+                     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+                     uris[i]);
+        he_import import = {0};
+        he_error err = {0};
+        if (read_bytes("gltf", json, (size_t)length, &import, &err) != HE_OK) {
+            fail_msg("%s: %s", uris[i], err.text);
+        }
+        expect_counts(&import, 3, 1, 3);
+        expect_position(&import, 2, 1, 1, 1);
+        he_import_clear(&import);
+    }
 }
 
 static void numbers_that_are_not_aligned(void **state)
@@ -405,6 +441,7 @@ int main(void)
         cmocka_unit_test(quantized_positions),
         cmocka_unit_test(numbers_that_are_not_aligned),
         cmocka_unit_test(buffers_in_uris),
+        cmocka_unit_test(buffers_in_uris_with_escapes),
         cmocka_unit_test(attributes_of_vertices),
         cmocka_unit_test(directions_turn_with_their_node),
         cmocka_unit_test(attributes_of_some_primitives),

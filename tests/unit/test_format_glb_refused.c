@@ -99,16 +99,16 @@ static void json_to_the_letter(void **state)
         {"[1e999]", HE_NOT_FINITE, 1, "does not fit a double"},
         {"[nan]", HE_SYNTAX, 1, "a value is expected"},
         {"[tru]", HE_SYNTAX, 1, "a value is expected"},
-        {"[\"\\x\"]", HE_SYNTAX, 2, "not an escape"},
+        {"[\"\\x\"]", HE_SYNTAX, 2, "not one of JSON's"},
         {"[\"\\u12\"]", HE_SYNTAX, 2, "four hexadecimal"},
         {"[\"\\u0000\"]", HE_SYNTAX, 2, "a null character"},
-        {"[\"\\ud800\"]", HE_SYNTAX, 2, "surrogates a pair"},
-        {"[\"\\ud800\\u0041\"]", HE_SYNTAX, 2, "surrogates a pair"},
-        {"[\"\\udc00\"]", HE_SYNTAX, 2, "surrogates a pair"},
+        {"[\"\\ud800\"]", HE_SYNTAX, 2, "a surrogate stands alone"},
+        {"[\"\\ud800\\u0041\"]", HE_SYNTAX, 2, "a surrogate stands alone"},
+        {"[\"\\udc00\"]", HE_SYNTAX, 2, "a surrogate stands alone"},
         {"[\"a\nb\"]", HE_SYNTAX, 3, "a control character"},
         {"[\"\xC0\x80\"]", HE_SYNTAX, 2, "not UTF-8"},
         {"[\"abc", HE_SYNTAX, 5, "does not end"},
-        {"[\"abc\\", HE_SYNTAX, 5, "not an escape"},
+        {"[\"abc\\", HE_SYNTAX, 5, "does not end"},
         {"{\"a\":1,\"b\":2,\"a\":3}", HE_SYNTAX, 13, "the member 'a' is given twice"},
         {"[{\"a\":1,\"\\u0061\":3}]", HE_SYNTAX, 8, "the member 'a' is given twice"},
         {"{\"a\":1,\"b\":2,\"c\":3,\"d\":4,\"e\":5,\"f\":6,\"g\":7,\"h\":8,\"i\":9,\"j\":10,"
@@ -151,6 +151,29 @@ static void json_to_the_letter(void **state)
 #define WITH_NODES(n)     "{" DATA "," MESHES ",'scenes':[{'nodes':[0]}],'nodes':[" n "]}"
 #define WITH_SPARSE(s) \
     WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','sparse':" s "}")
+
+/* The end of base64 stands only at its end, also where the decoder pauses; with escapes or not. */
+static void base64_that_ends_too_early(void **state)
+{
+    (void)state;
+    enum { PIECE = 1 << 16 };
+    static const char head[] = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":9,"
+                               "\"uri\":\"data:;base64,";
+    static const char *const ends[] = {"==AAAA\"}]}", "A=AAAA\"}]}", "==\\u0041AAA\"}]}"};
+    for (size_t i = 0; i < 3; i++) {
+        size_t length = sizeof head - 1 + PIECE - 2;
+        char *text = malloc(length + 40);
+        assert_non_null(text);
+        memset(text, 'A', length);
+        memcpy(text, head, sizeof head - 1);
+        length += (size_t)snprintf(text + length, 40, "%s", ends[i]);
+        he_import import = {0};
+        he_error err = {0};
+        assert_int_equal(read_pieces("gltf", text, length, 0, NULL, &import, &err), HE_SYNTAX);
+        assert_non_null(strstr(err.text, "buffers/0/uri: the data: URI is not base64"));
+        free(text);
+    }
+}
 
 static void references_and_numbers(void **state)
 {
@@ -241,6 +264,20 @@ static void references_and_numbers(void **state)
         {"{" ASSET ",'buffers':[{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}},"
          "{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}}]}",
          HE_UNSUPPORTED, "buffers/1: the buffer is there in EXT_meshopt_compression only"},
+        /* directions */
+        {WITH_PRIMITIVE("{'attributes':{'POSITION':0,'NORMAL':4},'indices':1}"), HE_BAD_VALUE,
+         "accessors/4: NORMAL has componentType 5126, not 5121"},
+        {"{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
+         ",{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3','normalized':true}],"
+         "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':5},'indices':1}]}]}",
+         HE_BAD_VALUE, "accessors/5: NORMAL has componentType 5126, not 5120"},
+        {"{" ASSET "," BUFFERS "," VIEWS ",'extensionsUsed':['KHR_mesh_quantization'],"
+         "'accessors':[" ACCESSOR_LIST
+         ",{'bufferView':4,'componentType':5121,'count':4,'type':'VEC4','normalized':true}],"
+         "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'TANGENT':5},'indices':1}]}]}",
+         HE_BAD_VALUE,
+         "accessors/5: TANGENT has componentType 5126, or 5120 or 5122 and is normalized, not "
+         "5121"},
         /* primitives */
         {WITH_PRIMITIVE("{'indices':1}"), HE_BAD_VALUE, "'attributes' is missing"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':9}}"), HE_BAD_INDEX,
@@ -266,6 +303,12 @@ static void references_and_numbers(void **state)
          "nodes/0/children/0: node 0 is reached twice"},
         {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
         {WITH_NODES("{'children':[1,1]},{'mesh':0}"), HE_BAD_VALUE, "node 1 is reached twice"},
+        /* without scenes, nodes that no root leads to */
+        {"{" DATA "," MESHES ",'nodes':[{'mesh':0,'children':[0]}]}", HE_BAD_VALUE,
+         "nodes/0/children/0: node 0 is inside itself"},
+        {"{" DATA "," MESHES
+         ",'nodes':[{'mesh':0},{'mesh':0},{'children':[1,3]},{'children':[2]}]}",
+         HE_BAD_VALUE, "nodes/2/children/1: node 3 is inside itself"},
         /* what is no list is not an empty one: the mesh would be lost */
         {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
@@ -523,6 +566,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(containers),
         cmocka_unit_test(json_to_the_letter),
+        cmocka_unit_test(base64_that_ends_too_early),
         cmocka_unit_test(references_and_numbers),
         cmocka_unit_test(numbers_in_the_buffer),
         cmocka_unit_test(bombs),

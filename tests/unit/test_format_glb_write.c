@@ -176,6 +176,74 @@ static void what_is_not_carried_is_said(void **state)
     he_mesh_free(mesh);
 }
 
+/* TEXCOORD_1 needs TEXCOORD_0, and JOINTS_0 WEIGHTS_0: what has no such place has another, and
+ * keeps its name. */
+static void numbered_attributes_have_no_gaps(void **state)
+{
+    (void)state;
+    static const struct {
+        struct {
+            const char *name;
+            he_type type;
+            uint32_t components;
+            const char *semantic; /* NULL: in extras alone */
+        } columns[3];
+    } rows[] = {
+        {{{"uv1", HE_FLOAT, 2, "_uv1"}}},
+        {{{"uv1", HE_FLOAT, 2, "TEXCOORD_1"}, {"uv", HE_FLOAT, 2, "TEXCOORD_0"}}},
+        {{{"uv", HE_INT32, 2, NULL}, {"uv1", HE_FLOAT, 2, "_uv1"}}},
+        {{{"uv", HE_FLOAT, 3, "_uv"}, {"uv1", HE_FLOAT, 2, "_uv1"}}},
+        {{{"uv", HE_FLOAT, 2, "TEXCOORD_0"}, {"uv2", HE_FLOAT, 2, "_uv2"}}},
+        {{{"color1", HE_UINT32, 4, NULL}}},
+        {{{"joints", HE_UINT32, 4, NULL}}},
+        {{{"weights", HE_FLOAT, 4, "_weights"}}},
+        {{{"joints", HE_UINT32, 4, "JOINTS_0"}, {"weights", HE_FLOAT, 4, "WEIGHTS_0"}}},
+        {{{"joints", HE_FLOAT, 4, "_joints"}, {"weights", HE_FLOAT, 4, "_weights"}}},
+        {{{"weights", HE_FLOAT, 4, "WEIGHTS_0"},
+          {"joints", HE_UINT32, 4, "JOINTS_0"},
+          {"joints1", HE_UINT32, 4, NULL}}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        he_mesh *mesh = fixture_mesh("012,023");
+        for (size_t k = 0; k < 3 && rows[i].columns[k].name != NULL; k++) {
+            he_column *column;
+            he_rule rule = rows[i].columns[k].type == HE_FLOAT ? HE_INTERPOLATE : HE_COPY;
+            assert_int_equal(he_column_new(rows[i].columns[k].name, HE_VERTEX,
+                                           rows[i].columns[k].type, rows[i].columns[k].components,
+                                           rule, &column, NULL),
+                             HE_OK);
+            assert_int_equal(he_column_extend(column, 4, NULL), HE_OK);
+            assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
+        }
+        size_t length, json = 0;
+        char *bytes = write_glb(mesh, NULL, &length), semantic[40], text[4096];
+        memcpy(&json, bytes + 12, 4);
+        assert_true(json < sizeof text);
+        memcpy(text, bytes + 20, json);
+        text[json] = '\0';
+        he_import import = read_back(bytes, length);
+        hide_extras(bytes, length);
+        he_import other = read_back(bytes, length);
+        for (size_t k = 0; k < 3 && rows[i].columns[k].name != NULL; k++) {
+            const char *name = rows[i].columns[k].name;
+            const he_column *column = find_column(&import, HE_VERTEX, name);
+            assert_non_null(column);
+            assert_int_equal(column->type, rows[i].columns[k].type);
+            assert_int_equal(column->components, rows[i].columns[k].components);
+            assert_int_equal(find_column(&other, HE_VERTEX, name) != NULL,
+                             rows[i].columns[k].semantic != NULL);
+            if (rows[i].columns[k].semantic != NULL) {
+                snprintf(semantic, sizeof semantic, "\"%s\":", rows[i].columns[k].semantic);
+                assert_non_null(strstr(text, semantic));
+            }
+        }
+        he_import_clear(&import);
+        he_import_clear(&other);
+        free(bytes);
+        he_mesh_free(mesh);
+    }
+}
+
 /* --- extras that do not fit --- */
 
 #define PRIVATE(list, hedge, node)                                                           \
@@ -254,6 +322,12 @@ static void extras_are_not_believed(void **state)
         {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
          "'accessor':7,'labels':['a','b']}]",
          "", 0, 2, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7,'labels':['a','a','b']}]",
+         "", 0, 2, 3, 2, NULL, false},
+        {"'columns':[{'domain':'face','name':'n','type':'uint32','components':1,'rule':'copy',"
+         "'accessor':7,'labels':['a',3]}]",
+         "", 0, 1, 3, 2, NULL, false},
         {"'columns':[{'domain':'face','name':'n','type':'int32','components':1,'rule':'copy',"
          "'accessor':7,'labels':['a','b']}]",
          "", 0, 1, 3, 2, NULL, false},
@@ -279,6 +353,70 @@ static void extras_are_not_believed(void **state)
         assert_true(rows[i].column == NULL || find_column(&import, HE_FACE, "n") != NULL);
         assert_true(rows[i].column != NULL || find_column(&import, HE_FACE, "n") == NULL);
         he_mesh_free(build_import(&import));
+        he_import_clear(&import);
+    }
+}
+
+/* Names in extras are those of their own primitive's faces; the others keep those they have. */
+static void names_beside_names_in_extras(void **state)
+{
+    (void)state;
+    static const char extras[] = "'extras':{'hedge':{'columns':[{'domain':'face','name':'%s',"
+                                 "'type':'uint32','components':1,'rule':'copy','accessor':5%s}]}}";
+    static const struct {
+        const char *name, *first, *second; /* the column; its labels in two primitives */
+        const char *names[8];
+    } rows[] = {
+        {"object",
+         ",'labels':['x','y']",
+         NULL,
+         {"plate", "plate", "y", "x", "plate", "plate", "", ""}},
+        {"material", ",'labels':['x','y']", NULL, {"steel", "steel", "y", "x", "", "", "", ""}},
+        {"object",
+         ",'labels':['x','y']",
+         ",'labels':['y','z']",
+         {"plate", "plate", "y", "x", "z", "y", "", ""}},
+        {"object", "", NULL, {NULL}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char json[4000], one[400], two[400];
+        unsigned char bin[SQUARE_BYTES];
+        glb_file f;
+        snprintf(one, sizeof one, extras, rows[i].name, rows[i].first);
+        snprintf(two, sizeof two, extras, rows[i].name,
+                 rows[i].second == NULL ? "" : rows[i].second);
+        snprintf(json, sizeof json,
+                 "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
+                 ",{'bufferView':4,'componentType':5125,'count':2,'type':'SCALAR'}],"
+                 "'materials':[{'name':'steel'}],'meshes':[{'name':'plate','primitives':["
+                 "{'attributes':{'POSITION':0},'indices':1,'material':0},"
+                 "{'attributes':{'POSITION':0},'indices':1,%s},"
+                 "{'attributes':{'POSITION':0},'indices':1%s%s}]},{'primitives':[" PRIMITIVE
+                 "]}],'nodes':[{'mesh':0},{'mesh':1}]}",
+                 one, rows[i].second == NULL ? "" : ",", rows[i].second == NULL ? "" : two);
+        square_bin(bin);
+        memcpy(bin + 80, (unsigned char[]){1, 0, 0, 0, 0, 0, 0, 0}, 8);
+        glb_make(&f, json, bin, sizeof bin);
+        he_import import = read_back((const char *)f.bytes, f.length);
+        assert_int_equal(import.soup.face_count, 8);
+        assert_null(find_note(&import.notes, "stale_extras", ""));
+        for (size_t k = 0; k < 8 && rows[i].names[0] != NULL; k++) {
+            assert_string_equal(face_label(&import, rows[i].name, k), rows[i].names[k]);
+        }
+        assert_int_equal(find_note(&import.notes, "attribute_types", rows[i].name) != NULL,
+                         rows[i].names[0] == NULL);
+        for (long n = 1; n > 0; n++) {
+            he_import other = {0};
+            he_error err = {0};
+            fixture_fail_at(n);
+            he_status status = read_pieces("glb", f.bytes, f.length, 0, NULL, &other, &err);
+            fixture_memory_back();
+            if (status == HE_OK) {
+                he_import_clear(&other);
+                break;
+            }
+            assert_int_equal(status, HE_NO_MEMORY);
+        }
         he_import_clear(&import);
     }
 }
@@ -344,7 +482,9 @@ int main(void)
         cmocka_unit_test(meshes_without_faces),
         cmocka_unit_test(many_vertices_have_long_indices),
         cmocka_unit_test(what_is_not_carried_is_said),
+        cmocka_unit_test(numbered_attributes_have_no_gaps),
         cmocka_unit_test(extras_are_not_believed),
+        cmocka_unit_test(names_beside_names_in_extras),
         cmocka_unit_test(polygons_of_other_triangles),
         cmocka_unit_test(extras_without_memory),
     };

@@ -125,6 +125,45 @@ static void integer_colors_stay_integers(void **state)
     }
 }
 
+/* A vertex without its normal does not eat the next one: what it lacks is 0, and noted. */
+static void vertices_without_what_is_announced(void **state)
+{
+    (void)state;
+    he_import import = read_text("off", "NOFF\n3 1 0\n0 0 0\n1 0 0 0 0 1\n1 1 0\n3 0 1 2\n");
+    expect_counts(&import, 3, 1, 3);
+    expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 0, 0, 0, 1}, 2);
+    expect_note(&import, "missing_numbers", "", 2, 3);
+    he_mesh *mesh = build_import(&import);
+    const he_column *column = he_mesh_find_column(mesh, HE_VERTEX, "normal");
+    assert_memory_equal(he_column_value(column, 2), ((double[]){0, 0, 0}), 24);
+    he_mesh_free(mesh);
+    he_import_clear(&import);
+
+    static const char *const headers[] = {"COFF", "NOFF", "STOFF", "STCNOFF"};
+    for (size_t i = 0; i < 4; i++) {
+        char text[200];
+        snprintf(text, sizeof text, "%s\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", headers[i]);
+        import = read_text("off", text);
+        expect_counts(&import, 3, 1, 3);
+        assert_int_equal(import.soup.column_count, 0);
+        expect_note(&import, "missing_numbers", "", 3, 3);
+        he_import_clear(&import);
+    }
+    import = read_text("off", "CNOFF\n4 0 0\n0 0 0 0 0 1\n1 0 0 0 0 1 7 8 9\n1 1 0\n"
+                              "1 1 1 0 1 0 3\n");
+    expect_u32s(&import, HE_VERTEX, "color", 3, (uint32_t[]){0, 0, 0, 7, 8, 9, 0, 0, 0, 0, 0, 0},
+                4);
+    expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0},
+                   4);
+    expect_note(&import, "missing_numbers", "", 2, 3);
+    expect_note(&import, "color_index", "", 1, 6);
+    he_import_clear(&import);
+    import = read_text("off", "STNOFF\n2 0 0\n0 0 0 0 0 1\n1 0 0 0 0 1 .5 .5\n");
+    expect_doubles(&import, HE_VERTEX, "uv", 2, (double[]){0, 0, .5, .5}, 2);
+    expect_note(&import, "missing_numbers", "", 1, 3);
+    he_import_clear(&import);
+}
+
 static void face_colors(void **state)
 {
     (void)state;
@@ -208,8 +247,14 @@ static void wrong_text_names_its_line(void **state)
         {"OFF\n1 0 0\n0 1e400 0\n", HE_NOT_FINITE, 3, "'1e400' is not finite"},
         {"COFF\n1 0 0\n0 0 0 1 2\n", HE_SYNTAX, 3, "5 numbers do not fit"},
         {"COFF\n1 0 0\n0 0 0 1 2 3 4 5\n", HE_SYNTAX, 3, "8 numbers do not fit"},
-        /* a vertex without its normal does not eat the next one */
-        {"NOFF\n2 0 0\n0 0 0\n1 0 0 0 0 1\n", HE_SYNTAX, 4, "9 numbers do not fit"},
+        {"NOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "5 numbers do not fit"},
+        {"STCOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "5 numbers do not fit"},
+        /* normals on lines of their own are no vertices, nor the other way round */
+        {"NOFF\n2 1 0\n0 0 .5\n0 0 1\n1 0 .5\n0 0 1\n3 0 1 0\n", HE_SYNTAX, 6,
+         "comes after the last face"},
+        {"STOFF\n3 0 0\n0 0 0\n.5 .5\n1 0 0\n.5 .5\n0 1 0\n.5 .5\n", HE_SYNTAX, 5,
+         "5 numbers do not fit"},
+        {"NOFF\n2 0 0\n0 0\n0 0 0 1\n1 0 0\n", HE_SYNTAX, 5, "3 numbers do not fit"},
         {"OFF\n2 0 0\n0 0\n1 0 0\n", HE_SYNTAX, 4, "5 numbers do not fit"},
         {"OFF\n1 1 0\n0 0 0\n3 0 0 0\n3 0 0 0\n", HE_SYNTAX, 5, "'3' comes after the last face"},
         {"OFF\n1 0 0\n0 0 0\nx\n", HE_SYNTAX, 4, "'x' comes after the last face"},
@@ -295,6 +340,7 @@ int main(void)
         cmocka_unit_test(polygons_and_lines),
         cmocka_unit_test(vertex_data_in_every_mix),
         cmocka_unit_test(integer_colors_stay_integers),
+        cmocka_unit_test(vertices_without_what_is_announced),
         cmocka_unit_test(face_colors),
         cmocka_unit_test(wrong_text_names_its_line),
         cmocka_unit_test(limits_are_kept),

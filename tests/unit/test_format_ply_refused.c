@@ -62,9 +62,7 @@ static void wrong_text_names_its_line(void **state)
         {ASCII "element face 1\nproperty int n\nend_header\n1\n", HE_SYNTAX, 3,
          "no list 'vertex_indices'"},
         {ASCII "element face 1\nproperty int vertex_indices\nend_header\n", HE_SYNTAX, 4,
-         "not a list of whole numbers"},
-        {ASCII "element face 1\nproperty list uchar float vertex_index\nend_header\n", HE_SYNTAX, 4,
-         "not a list of whole numbers"},
+         "'vertex_indices' is not a list"},
         {ASCII "element tristrips 1\nproperty list uchar float x\nend_header\n", HE_SYNTAX, 3,
          "'tristrips' has no list"},
     };
@@ -78,6 +76,9 @@ static void wrong_text_names_its_line(void **state)
 #define ROWS \
     ASCII "element vertex 3\n" XYZ "property short q\nelement face 2\n" CORNER "end_header\n"
 #define POINTS "0 0 0 1\n1 0 0 1\n0 1 0 1\n"
+#define FRACTIONS                                     \
+    ASCII "element vertex 1\n" XYZ "element face 1\n" \
+          "property list uchar float vertex_index\nend_header\n0 0 0\n"
 
 static void wrong_rows_name_their_line(void **state)
 {
@@ -114,6 +115,13 @@ static void wrong_rows_name_their_line(void **state)
         {ROWS POINTS "3 0 1 18446744073709551617\n", HE_BAD_INDEX, 14, "no vertex"},
         {ROWS POINTS "3 0 1 1.0\n", HE_SYNTAX, 14, "'1.0' is not a corner"},
         {ROWS POINTS "3 0 1 2\n3 0 1\n", HE_SYNTAX, 15, "ends before its last value"},
+        {FRACTIONS "3 0 0 0.5\n", HE_BAD_INDEX, 11, "the float 0.5 does not name a vertex"},
+        {FRACTIONS "3 0 0 1.0\n", HE_BAD_INDEX, 11, "there is no vertex 1, only 0 to 0"},
+        {FRACTIONS "3 0 0 -1e0\n", HE_BAD_INDEX, 11, "there is no vertex -1"},
+        {FRACTIONS "3 0 0 nan\n", HE_BAD_INDEX, 11, "does not name a vertex"},
+        {FRACTIONS "3 0 0 1e999\n", HE_BAD_INDEX, 11, "does not name a vertex"},
+        {FRACTIONS "3 0 0 16777218\n", HE_BAD_INDEX, 11, "the float 16777218 does not name"},
+        {FRACTIONS "3 0 0 x\n", HE_SYNTAX, 11, "'x' is not a number"},
         {ASCII "element face 1\n" CORNER "end_header\n3 0 1 2\n", HE_BAD_INDEX, 6,
          "no vertex 0, nor any other"},
     };
@@ -164,6 +172,40 @@ static void wrong_bytes_name_their_place(void **state)
         expect_refused_at_byte("ply", f.bytes, f.length, HE_NOT_FINITE, body + 12, "vertex 1");
         expect_refused_at_byte("ply", f.bytes, body + 23, HE_SYNTAX, body + 23,
                                "after 1 of the 2 rows");
+    }
+}
+
+static void fractions_of_bytes_name_their_place(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t type;
+        double corner;
+        const char *words;
+    } rows[] = {{FLOAT, 1.5, "the float 1.5 does not name a vertex"},
+                {DOUBLE, 1e300, "does not name a vertex"},
+                {FLOAT, INFINITY, "does not name a vertex"},
+                {DOUBLE, NAN, "does not name a vertex"},
+                {DOUBLE, 3, "there is no vertex 3, only 0 to 2"}};
+    for (encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            file f;
+            char header[200];
+            snprintf(header, sizeof header,
+                     "element vertex 3\n" XYZ "element face 1\n"
+                     "property list char %s vertex_indices\nend_header\n",
+                     types[rows[i].type].names[0]);
+            begin(&f, e, header);
+            for (size_t k = 0; k < 9; k++) {
+                put_value(&f, FLOAT, square[k / 3][k % 3]);
+            }
+            put_value(&f, 0, 3);
+            put_value(&f, rows[i].type, 0);
+            put_value(&f, rows[i].type, 1);
+            size_t at = f.length;
+            put_value(&f, rows[i].type, rows[i].corner);
+            expect_refused_at_byte("ply", f.bytes, f.length, HE_BAD_INDEX, at, rows[i].words);
+        }
     }
 }
 
@@ -312,6 +354,7 @@ int main(void)
         cmocka_unit_test(wrong_text_names_its_line),
         cmocka_unit_test(wrong_rows_name_their_line),
         cmocka_unit_test(wrong_bytes_name_their_place),
+        cmocka_unit_test(fractions_of_bytes_name_their_place),
         cmocka_unit_test(counts_are_not_believed),
         cmocka_unit_test(limits_are_kept),
     };

@@ -12,7 +12,9 @@
 #include "edit/triangulate.h"
 #include "edit/vertex.h"
 #include "edit/weld.h"
+#include "format/format.h"
 #include "mesh/compact.h"
+#include "mesh/write.h"
 #include "query/geometry.h"
 #include "query/topology.h"
 
@@ -132,6 +134,98 @@ static void making_is_given_up_anywhere_and_leaves_nothing(void **state)
     }
     assert_int_equal(blocks, 0);
     he_mem_set_hook(NULL);
+}
+
+/* --- files that are read at their end --- */
+
+typedef struct file {
+    const char *format;
+    char *bytes;
+    size_t length;
+} file;
+
+/* A grid of quads with an attribute of faces, which are in extras. */
+static file grid_glb(void)
+{
+    he_mesh *mesh = NULL;
+    he_column *column;
+    he_writer *writer;
+    file f = {.format = "glb", .bytes = malloc((size_t)1 << 24)};
+    assert_non_null(f.bytes);
+    assert_int_equal(make(NULL, &mesh), HE_OK);
+    assert_int_equal(he_column_new("part", HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(he_column_extend(column, SIDE * SIDE, NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
+    assert_int_equal(he_writer_new(he_format_find("glb"), mesh, 0, &writer, NULL), HE_OK);
+    f.length = he_writer_read(writer, f.bytes, (size_t)1 << 24);
+    assert_true(f.length < (size_t)1 << 24);
+    he_writer_free(writer);
+    he_mesh_free(mesh);
+    return f;
+}
+
+/* Triangles at the origin, in base64. */
+static file zeros_gltf(void)
+{
+    enum { VERTICES = 30000, TEXT = VERTICES * 16 };
+    file f = {.format = "gltf", .bytes = malloc(TEXT + 1000)};
+    assert_non_null(f.bytes);
+    f.length = (size_t)snprintf(
+        f.bytes, 1000,
+        "{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":0,\"byteLength\":%d}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%d,"
+        "\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+        "\"NORMAL\":0}}]}],\"buffers\":[{\"byteLength\":%d,\"uri\":\"data:;base64,",
+        VERTICES * 12, VERTICES, VERTICES * 12);
+    memset(f.bytes + f.length, 'A', TEXT);
+    f.length += TEXT;
+    memcpy(f.bytes + f.length, "\"}]}", 4);
+    f.length += 4;
+    return f;
+}
+
+static he_status read_file(const file *f, he_watch *watch)
+{
+    he_reader *reader;
+    he_import import;
+    assert_int_equal(he_reader_new(he_format_find(f->format), NULL, &reader, NULL), HE_OK);
+    assert_true(he_reader_reads_at_end(reader));
+    assert_int_equal(he_reader_feed(reader, f->bytes, f->length, NULL), HE_OK);
+    he_reader_watch(reader, watch);
+    he_status status = he_reader_finish(reader, &import, NULL);
+    if (status == HE_OK) {
+        assert_true(import.soup.face_count >= 10000);
+        he_import_clear(&import);
+    }
+    he_reader_free(reader);
+    return status;
+}
+
+static void a_file_that_is_read_at_its_end_is_given_up_anywhere(void **state)
+{
+    (void)state;
+    file files[] = {grid_glb(), zeros_gltf()};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        he_status status = HE_CANCELLED;
+        he_mem_set_hook(&counting);
+        blocks = 0;
+        listener l = {0};
+        for (long n = 1; status != HE_OK; n += n < 10 ? 1 : 13) {
+            he_watch watch;
+            l = (listener){.give_up_at = n};
+            he_watch_init(&watch, hear, &l);
+            status = read_file(&files[i], &watch);
+            assert_true(status == HE_OK || status == HE_CANCELLED);
+            assert_true(status == HE_OK || l.told == n);
+            assert_int_equal(blocks, 0);
+            assert_false(l.fell);
+        }
+        print_message("note: %s of %zu bytes: told %ld times\n", files[i].format, files[i].length,
+                      l.told);
+        assert_true(l.told > 20 && l.distinct > 20);
+        he_mem_set_hook(NULL);
+        free(files[i].bytes);
+    }
 }
 
 /* --- operations on a mesh --- */
@@ -305,6 +399,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_second_of_work_has_twenty_steps_and_none_falls),
         cmocka_unit_test(making_is_given_up_anywhere_and_leaves_nothing),
+        cmocka_unit_test(a_file_that_is_read_at_its_end_is_given_up_anywhere),
         cmocka_unit_test(an_operation_is_given_up_and_the_mesh_is_as_it_was),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

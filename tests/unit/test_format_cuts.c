@@ -1,0 +1,119 @@
+/* Polygons cut for formats of triangles, where very many faces meet at two vertices. */
+#include "unit/fixture.h"
+
+#include "format/cuts.h"
+
+/* Quads 0 a 1 b whose diagonals are both there: 0-1 of a triangle in the middle of them, a-b of one
+ * each; and a vertex that joins every tenth a, so that three are of large degree. */
+static he_mesh *two_hubs(uint32_t quads)
+{
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_soup_init(&soup, NULL);
+    for (uint32_t v = 0; v < 3 + 3 * quads; v++) {
+        he_vec3 p = {v < 3 ? v : 0.5, v % 3, 1 + v / 3};
+        assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
+    }
+    for (uint32_t i = 0; i < quads; i++) {
+        uint32_t a = 3 + 3 * i, b = a + 1;
+        assert_int_equal(he_soup_add_face(&soup, (uint32_t[]){0, a, 1, b}, 4, NULL), HE_OK);
+        assert_int_equal(he_soup_add_face(&soup, (uint32_t[]){b, a, a + 2}, 3, NULL), HE_OK);
+        if (i == quads / 2) {
+            assert_int_equal(he_soup_add_face(&soup, (uint32_t[]){0, 1, 2}, 3, NULL), HE_OK);
+        } else if (i % 2 == 0) {
+            assert_int_equal(he_soup_add_face(&soup, (uint32_t[]){2, a + 2, a}, 3, NULL), HE_OK);
+        }
+    }
+    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    return m;
+}
+
+static void steps_of_a_loop_that_is_refused_count(void **state)
+{
+    (void)state;
+    enum { QUADS = 1000 };
+    he_mesh *m = two_hubs(QUADS);
+    he_triangulation cut;
+    he_joins joins;
+    he_halfedge first = he_face_halfedge(m, (he_face){0});
+    he_triangulation_work walk = {0}, search = {.joins = &joins};
+    const unsigned flags = HE_ANY_DIAGONALS | HE_AVOID_EDGES;
+    assert_int_equal(he_triangulation_make(m, first, flags, &walk, &cut, NULL), HE_DOUBLED_EDGE);
+    assert_true(walk.steps > QUADS);
+    assert_int_equal(he_joins_make(m, &joins, NULL), HE_OK);
+    assert_int_equal(he_triangulation_make(m, first, flags, &search, &cut, NULL), HE_DOUBLED_EDGE);
+    assert_true(search.steps > 0 && search.steps < QUADS);
+    /* what was spent before leaves so much less */
+    walk.steps = HE_TRIANGULATION_STEPS;
+    assert_int_equal(he_triangulation_make(m, first, flags, &walk, &cut, NULL), HE_LIMIT);
+    he_joins_clear(&joins);
+    he_mesh_free(m);
+}
+
+static void all_pairs_are_joined_as_turning_finds_them(void **state)
+{
+    (void)state;
+    he_mesh *m = two_hubs(100);
+    he_joins joins;
+    uint64_t steps = 0;
+    uint32_t many = 0;
+    assert_int_equal(he_joins_make(m, &joins, NULL), HE_OK);
+    for (uint32_t a = 0; a < m->c.vertices.issued; a++) {
+        many += joins.rank[a] != HE_NONE;
+        for (uint32_t b = 0; b < m->c.vertices.issued; b++) {
+            bool is = he_find_halfedge(m, (he_vertex){a}, (he_vertex){b}).i != HE_NONE;
+            assert_int_equal(he_joined(m, &joins, (he_vertex){a}, (he_vertex){b}, &steps), is);
+        }
+    }
+    assert_int_equal(many, 3);
+    assert_true(joins.starts[3] > 0);
+    he_joins_clear(&joins);
+    he_mesh_free(m);
+}
+
+/* Each face would turn about both hubs, twice. */
+static void faces_about_two_vertices_are_cut_in_linear_time(void **state)
+{
+    (void)state;
+    enum { QUADS = 4000 };
+    he_mesh *m = two_hubs(QUADS);
+    he_cuts cuts;
+    assert_int_equal(he_cuts_make(m, &cuts, NULL), HE_OK);
+    assert_int_equal(cuts.polygons, QUADS);
+    assert_int_equal(cuts.fans, 0);
+    assert_int_equal(cuts.corners.count, 6 * QUADS);
+    assert_true(cuts.work.steps < 500 * QUADS);
+    he_cuts_clear(&cuts);
+    he_mesh_free(m);
+}
+
+static void no_memory_for_neighbours(void **state)
+{
+    (void)state;
+    he_mesh *m = two_hubs(100);
+    long n = 0;
+    for (he_status status = HE_NO_MEMORY; status != HE_OK;) {
+        he_joins joins = {0};
+        he_error err = {0};
+        fixture_fail_at(++n);
+        status = he_joins_make(m, &joins, &err);
+        fixture_memory_back();
+        assert_int_equal(err.status, status);
+        assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        he_joins_clear(&joins);
+    }
+    assert_int_equal(n, 4);
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_of_a_loop_that_is_refused_count),
+        cmocka_unit_test(all_pairs_are_joined_as_turning_finds_them),
+        cmocka_unit_test(faces_about_two_vertices_are_cut_in_linear_time),
+        cmocka_unit_test(no_memory_for_neighbours),
+    };
+    return cmocka_run_group_tests_name("format_cuts", tests, NULL, NULL);
+}
