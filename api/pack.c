@@ -83,7 +83,7 @@ static bool begin_gzip(api_pack *pack)
         window--;
     }
     int memory = window < MAX_WBITS ? window - 7 : GZIP_MEMORY;
-    api_packing_zlib(&pack->zlib);
+    api_packing_zlib(&pack->zlib, NULL);
     return deflateInit2(&pack->zlib, LEVEL, Z_DEFLATED, window + 16, memory, Z_DEFAULT_STRATEGY) ==
            Z_OK;
 }
@@ -93,7 +93,7 @@ static bool begin_zstd(api_pack *pack)
 {
     ZSTD_inBuffer none = {"", 0, 0};
     ZSTD_outBuffer nowhere = {NULL, 0, 0};
-    pack->zstd = ZSTD_createCCtx_advanced(api_packing_zstd());
+    pack->zstd = ZSTD_createCCtx_advanced(api_packing_zstd(NULL));
     return pack->zstd != NULL &&
            !ZSTD_isError(ZSTD_CCtx_setParameter(pack->zstd, ZSTD_c_compressionLevel, LEVEL)) &&
            !ZSTD_isError(ZSTD_CCtx_setParameter(pack->zstd, ZSTD_c_checksumFlag, 1)) &&

@@ -399,6 +399,16 @@ static bool begin_wait(request *r, state why)
     return allowed;
 }
 
+/* The worker serves its other connections before it comes back to this one. */
+static enum MHD_Result give_way(request *r)
+{
+    if (!begin_wait(r, r->state)) {
+        return MHD_NO;
+    }
+    MHD_resume_connection(r->connection);
+    return MHD_YES;
+}
+
 /* D1. Suspended before the hold is known to others: from then on it may be resumed. */
 static enum MHD_Result answer_when_durable(request *r)
 {
@@ -578,14 +588,20 @@ static enum MHD_Result read_head(request *r, const char *method, const char *ver
     return r->step == API_MORE ? MHD_YES : answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
-static enum MHD_Result read_body(request *r, const char *bytes, size_t size)
+/* `size` goes down to what of the bytes is to come again. */
+static enum MHD_Result read_body(request *r, const char *bytes, size_t *size)
 {
-    r->bytes_in += size;
-    srv_connection_moved(r->socket, size);
+    size_t used = *size;
     if (r->step == API_MORE) {
-        r->step = api_body(r->exchange, bytes, size);
+        r->step = api_body(r->exchange, bytes, *size, &used);
     } else {
-        r->swallowed += size;
+        r->swallowed += used;
+    }
+    *size -= used;
+    r->bytes_in += used;
+    srv_connection_moved(r->socket, used);
+    if (*size > 0) {
+        return give_way(r);
     }
     if (r->step != API_READY) {
         return MHD_YES;
@@ -624,12 +640,7 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
     case FRESH:
         return read_head(r, method, version);
     case BODY:
-        if (*upload_size > 0) {
-            size_t size = *upload_size;
-            *upload_size = 0;
-            return read_body(r, upload, size);
-        }
-        return end_body(r);
+        return *upload_size > 0 ? read_body(r, upload, upload_size) : end_body(r);
     case WORK:
         return answer_when_durable(r);
     case HELD:

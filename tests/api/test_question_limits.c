@@ -454,8 +454,8 @@ static driven drive(api_bench *b, const char *method, const char *path, const ch
         d.none = true;
         return d;
     }
-    if (step == API_MORE && length > 0) {
-        step = api_body(x, body, length);
+    for (size_t at = 0, used; step == API_MORE && at < length; at += used) {
+        step = api_body(x, body + at, length - at, &used);
     }
     step = step == API_MORE ? api_end(x) : step;
     if (step == API_WORK) {

@@ -192,7 +192,8 @@ static void *ask_first(void *context)
         pass(&gate.begun);
     }
     api_exchange *x = api_begin(a->service, &request, &step);
-    step = api_body(x, NEAREST, strlen(NEAREST));
+    size_t used;
+    step = api_body(x, NEAREST, strlen(NEAREST), &used);
     step = api_end(x);
     if (step == API_WORK) {
         api_watch(x, give_up, &a->patient);
