@@ -29,9 +29,9 @@
 enum { API_UNPACK_RATIO = 100, API_UNPACK_WINDOW = 23 /* power of two */ };
 
 /* Answers are coded when they have more than API_PACK_FROM bytes. Those up to API_PACK_AT_ONCE are
- * coded as a whole, which takes half a millisecond; of longer ones that much is in hand at a time.
- */
-enum { API_PACK_FROM = 1024, API_PACK_AT_ONCE = 64 * 1024 };
+ * coded as a whole, which takes half a millisecond; of longer ones that much is in hand at a time,
+ * and others have their turn after API_PACK_TURN. */
+enum { API_PACK_FROM = 1024, API_PACK_AT_ONCE = 64 * 1024, API_PACK_TURN = 1 << 20 };
 
 /* JSON */
 enum {

@@ -152,13 +152,14 @@ static size_t step_plain(api_pack *pack, char *buffer, size_t size)
 int64_t api_pack_read(void *context, char *buffer, size_t size)
 {
     api_pack *pack = context;
-    size_t given = 0;
-    while (given < size && !pack->ended) {
+    size_t given = 0, plain = 0;
+    while (given < size && !pack->ended && (given == 0 || plain < API_PACK_TURN)) {
         if (pack->from == pack->to) {
             pack->from = pack->to = 0;
         }
         if (pack->to == 0) {
             fill(pack);
+            plain += pack->to;
         }
         if (pack->failed) {
             return -1;

@@ -215,6 +215,48 @@ static int64_t break_off(void *context, char *buffer, size_t size)
     return (*left)-- > 0 ? (int64_t)size : -1;
 }
 
+typedef struct nothing {
+    size_t left, read; /* bytes; in this turn */
+} nothing;
+
+static int64_t read_zeros(void *context, char *buffer, size_t size)
+{
+    nothing *z = context;
+    size_t n = z->left < size ? z->left : size;
+    memset(buffer, 0, n);
+    z->left -= n;
+    z->read += n;
+    return (int64_t)n;
+}
+
+/* However far a body packs, its reader is not kept for all of it. */
+static void no_read_codes_more_than_its_turn(void **state)
+{
+    (void)state;
+    static char room[128 * 1024];
+    for (size_t c = 0; c < 2; c++) {
+        nothing from = {.left = 100 << 20};
+        size_t most = 0, turns = 0, total = 0;
+        int64_t got;
+        api_pack *pack = api_pack_new(both[c], &(api_plain){.read = read_zeros, .context = &from});
+        assert_non_null(pack);
+        assert_true(api_pack_begin(pack));
+        while ((got = api_pack_read(pack, room, sizeof room)) > 0) {
+            most = from.read > most ? from.read : most;
+            from.read = 0;
+            total += (size_t)got;
+            turns++;
+        }
+        assert_int_equal(got, 0);
+        assert_int_equal(from.left, 0);
+        printf("note: %s: %zu reads of at most %zu KiB of zeros gave %zu bytes\n",
+               api_coding_name(both[c]), turns, most / 1024, total);
+        size_t held = both[c] == API_GZIP ? 4u << 20 : 0;
+        assert_true(most <= API_PACK_TURN + held + 2 * (API_PACK_AT_ONCE + 1));
+        api_pack_free(pack);
+    }
+}
+
 static void a_body_that_breaks_off_is_not_ended(void **state)
 {
     (void)state;
@@ -667,6 +709,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bodies_of_all_sizes_come_back),
         cmocka_unit_test(the_same_body_packs_to_the_same_bytes),
+        cmocka_unit_test(no_read_codes_more_than_its_turn),
         cmocka_unit_test(a_body_that_breaks_off_is_not_ended),
         cmocka_unit_test(what_cannot_be_coded_is_passed_on),
         cmocka_unit_test(members_and_frames_follow_one_another),
