@@ -5,7 +5,7 @@
  *
  *       api_begin --- reads line and headers; may answer at once (404, 413, 415, 412 ...)
  *           |
- *       api_body *    once per piece of the body, none after API_READY
+ *       api_body *    for each piece of the body, none after API_READY
  *           |
  *       api_end  ---- API_READY: the answer is there
  *           |         API_WORK:  long; call api_work on a thread that may block, not on a worker
@@ -107,7 +107,9 @@ void api_service_free(api_service *service);
 
 /* NULL when memory is out. `request` is copied, but for its header callback. */
 api_exchange *api_begin(api_service *service, const api_request *request, api_step *step);
-api_step api_body(api_exchange *exchange, const char *bytes, size_t length);
+/* `used` may be less than `length`, with API_MORE: enough was done for once. The rest is to be
+ * given again, when others that wait for the thread have had their turn. */
+api_step api_body(api_exchange *exchange, const char *bytes, size_t length, size_t *used);
 api_step api_end(api_exchange *exchange);
 api_step api_work(api_exchange *exchange);
 /* The exchange to answer the client with, 202 or 503; `exchange` is not the caller's any more.

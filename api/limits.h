@@ -18,17 +18,20 @@
                          */
 
 /* Coded bodies. What is unfolded counts against the limits above like a body sent plain; what is
- * sent does too. Beyond the first API_UNPACK_FREE bytes a body may unfold to API_UNPACK_RATIO times
- * what of it has arrived: mesh files unfold to ten times their size, zeros to a thousand. A frame
- * of zstd may look back over a window of 8 MiB, which is as much as RFC 9659 lets a sender ask for.
- */
-#define API_UNPACK_FREE ((uint64_t)1 << 20)
+ * sent does too. A member or frame may unfold to API_UNPACK_RATIO times what of its compressed data
+ * was read, and all together to API_UNPACK_FREE bytes beyond that: mesh files unfold to ten times
+ * their size, zeros to a thousand. After API_UNPACK_TURN plain bytes others have their turn. A
+ * frame of zstd may look back over a window of 8 MiB, which is as much as RFC 9659 lets a sender
+ * ask for; the decoders of all bodies that are arriving have API_MAX_UNPACKING bytes together. */
+#define API_UNPACK_FREE   ((uint64_t)1 << 20)
+#define API_UNPACK_TURN   ((size_t)1 << 20)
+#define API_MAX_UNPACKING ((size_t)256 << 20)
 enum { API_UNPACK_RATIO = 100, API_UNPACK_WINDOW = 23 /* power of two */ };
 
 /* Answers are coded when they have more than API_PACK_FROM bytes. Those up to API_PACK_AT_ONCE are
- * coded as a whole, which takes half a millisecond; of longer ones that much is in hand at a time.
- */
-enum { API_PACK_FROM = 1024, API_PACK_AT_ONCE = 64 * 1024 };
+ * coded as a whole, which takes half a millisecond; of longer ones that much is in hand at a time,
+ * and others have their turn after API_PACK_TURN. */
+enum { API_PACK_FROM = 1024, API_PACK_AT_ONCE = 64 * 1024, API_PACK_TURN = 1 << 20 };
 
 /* JSON */
 enum {

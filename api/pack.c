@@ -83,7 +83,7 @@ static bool begin_gzip(api_pack *pack)
         window--;
     }
     int memory = window < MAX_WBITS ? window - 7 : GZIP_MEMORY;
-    api_packing_zlib(&pack->zlib);
+    api_packing_zlib(&pack->zlib, NULL);
     return deflateInit2(&pack->zlib, LEVEL, Z_DEFLATED, window + 16, memory, Z_DEFAULT_STRATEGY) ==
            Z_OK;
 }
@@ -93,7 +93,7 @@ static bool begin_zstd(api_pack *pack)
 {
     ZSTD_inBuffer none = {"", 0, 0};
     ZSTD_outBuffer nowhere = {NULL, 0, 0};
-    pack->zstd = ZSTD_createCCtx_advanced(api_packing_zstd());
+    pack->zstd = ZSTD_createCCtx_advanced(api_packing_zstd(NULL));
     return pack->zstd != NULL &&
            !ZSTD_isError(ZSTD_CCtx_setParameter(pack->zstd, ZSTD_c_compressionLevel, LEVEL)) &&
            !ZSTD_isError(ZSTD_CCtx_setParameter(pack->zstd, ZSTD_c_checksumFlag, 1)) &&
@@ -152,13 +152,14 @@ static size_t step_plain(api_pack *pack, char *buffer, size_t size)
 int64_t api_pack_read(void *context, char *buffer, size_t size)
 {
     api_pack *pack = context;
-    size_t given = 0;
-    while (given < size && !pack->ended) {
+    size_t given = 0, plain = 0;
+    while (given < size && !pack->ended && (given == 0 || plain < API_PACK_TURN)) {
         if (pack->from == pack->to) {
             pack->from = pack->to = 0;
         }
         if (pack->to == 0) {
             fill(pack);
+            plain += pack->to;
         }
         if (pack->failed) {
             return -1;

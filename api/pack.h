@@ -37,7 +37,9 @@ bool api_pack_begin(api_pack *pack);
 /* Instead: give the body as it is. */
 void api_pack_give_up(api_pack *pack);
 
-/* As api_answer's read. */
+/* As api_answer's read. What came out of API_PACK_TURN plain bytes is given, so that no call takes
+ * long however far the body packs; only where nothing came out of so many (zlib holds back up to
+ * 4 MiB of zeros) it reads on. */
 int64_t api_pack_read(void *pack, char *buffer, size_t size);
 
 #endif

@@ -2,30 +2,70 @@
 
 #include "mesh/mem.h"
 
-static void *zlib_alloc(void *context, unsigned count, unsigned size)
+#include <stdint.h>
+
+/* Before each block, so that giving it back knows its size. */
+typedef union head {
+    size_t size;
+    max_align_t align;
+} head;
+
+static void give_back(void *context, void *block)
 {
-    (void)context;
-    return he_mem_array(NULL, count, size);
+    api_packing_memory *memory = context;
+    if (block != NULL) {
+        head *h = (head *)block - 1;
+        if (memory != NULL) {
+            atomic_fetch_sub_explicit(memory->lent, h->size, memory_order_relaxed);
+        }
+        he_mem_free(h);
+    }
 }
 
-static void *zstd_alloc(void *context, size_t size)
+/* Counting first and taking back on failure keeps two threads from passing the ceiling together. */
+static bool lend(api_packing_memory *memory, size_t size)
 {
-    (void)context;
-    return he_mem_alloc(size);
+    size_t before = atomic_fetch_add_explicit(memory->lent, size, memory_order_relaxed);
+    bool fits = size <= memory->most && before <= memory->most - size;
+    if (!fits) {
+        atomic_fetch_sub_explicit(memory->lent, size, memory_order_relaxed);
+        memory->refused = true;
+    }
+    return fits;
 }
 
-static void give_back(void *context, void *memory)
+static void *take(void *context, size_t size)
 {
-    (void)context;
-    he_mem_free(memory);
+    api_packing_memory *memory = context;
+    if (size > SIZE_MAX - sizeof(head)) {
+        return NULL;
+    }
+    size += sizeof(head);
+    if (memory != NULL && !lend(memory, size)) {
+        return NULL;
+    }
+    head *h = he_mem_alloc(size);
+    if (h == NULL) {
+        if (memory != NULL) {
+            atomic_fetch_sub_explicit(memory->lent, size, memory_order_relaxed);
+        }
+        return NULL;
+    }
+    h->size = size;
+    return h + 1;
 }
 
-void api_packing_zlib(z_stream *stream)
+static void *zlib_take(void *context, unsigned count, unsigned size)
 {
-    *stream = (z_stream){.zalloc = zlib_alloc, .zfree = give_back};
+    return take(context, (size_t)count * size); /* of 32 bits each */
 }
 
-ZSTD_customMem api_packing_zstd(void)
+void api_packing_zlib(z_stream *stream, api_packing_memory *memory)
 {
-    return (ZSTD_customMem){zstd_alloc, give_back, NULL};
+    *stream = (z_stream){.zalloc = zlib_take, .zfree = give_back, .opaque = memory};
+}
+
+ZSTD_customMem api_packing_zstd(api_packing_memory *memory)
+{
+    return (ZSTD_customMem){take, give_back, memory};
 }

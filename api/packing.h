@@ -7,12 +7,22 @@
 #define HE_API_PACKING_H
 
 #define ZSTD_STATIC_LINKING_ONLY
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <zlib.h>
 #include <zstd.h>
 #include <zstd_errors.h>
 
-/* Both fill what the libraries ask for. */
-void api_packing_zlib(z_stream *stream);
-ZSTD_customMem api_packing_zstd(void);
+/* What a stream takes from memory, and from a ceiling that it has in common with others. */
+typedef struct api_packing_memory {
+    _Atomic size_t *lent; /* by all of them, counted with what each block costs; NULL: no ceiling */
+    size_t most;
+    bool refused; /* the ceiling, not memory, was in the way */
+} api_packing_memory;
+
+/* Both fill what the libraries ask for. `memory` lives as long as the stream; NULL: no ceiling. */
+void api_packing_zlib(z_stream *stream, api_packing_memory *memory);
+ZSTD_customMem api_packing_zstd(api_packing_memory *memory);
 
 #endif

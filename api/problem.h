@@ -143,6 +143,9 @@
       "It is starting or stopping. Try again later.")                                              \
     X(OVERLOADED, "overloaded", 503, "Too many connections",                                       \
       "The server is at its limit of connections. Try again after Retry-After seconds.")           \
+    X(TOO_MANY_CODED, "too_many_coded_bodies", 503, "Too many coded bodies are arriving",          \
+      "What it takes to unfold the gzip and zstd bodies that are arriving has a common limit. "    \
+      "Try again after Retry-After seconds, or send the body plain.")                              \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \

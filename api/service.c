@@ -299,9 +299,9 @@ static bool begin(api_exchange *x)
     x->prefer = api_prefer_read(api_header_of(x, "Prefer"));
     x->body.maximum = (size_t)api_body_cap(x);
     if (x->coding_in != API_IDENTITY) {
-        x->unpack = api_unpack_new(x->coding_in, take_body, x);
+        x->unpack = api_unpack_new(x->coding_in, &x->service->unpacking, take_body, x, &x->problem);
         if (x->unpack == NULL) {
-            return api_fail_memory(x);
+            return false;
         }
     }
     if (x->route->begin != NULL) {
@@ -322,23 +322,24 @@ api_exchange *api_begin(api_service *service, const api_request *request, api_st
 
 /* --- the body --- */
 
-api_step api_body(api_exchange *x, const char *bytes, size_t length)
+api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *used)
 {
+    *used = length;
     if (x->phase != API_PHASE_BODY) {
         return API_READY;
     }
-    x->arrived += length;
     if (length == 0) {
         return API_MORE;
     }
     bool good;
-    if (x->arrived > api_body_cap(x)) {
+    if (x->arrived + length > api_body_cap(x)) {
         good = api_refuse_size(x);
     } else if (x->unpack != NULL) {
-        good = api_unpack_feed(x->unpack, bytes, length, &x->problem);
+        good = api_unpack_feed(x->unpack, bytes, length, used, &x->problem);
     } else {
         good = take_body(x, bytes, length);
     }
+    x->arrived += *used;
     return good ? API_MORE : finish_early(x);
 }
 
@@ -489,8 +490,8 @@ api_exchange *api_handle(api_service *service, const api_request *request, const
     if (x == NULL) {
         return NULL;
     }
-    if (step == API_MORE && length > 0) {
-        step = api_body(x, body, length);
+    for (size_t at = 0, used; step == API_MORE && at < length; at += used) {
+        step = api_body(x, body + at, length - at, &used);
     }
     if (step == API_MORE) {
         step = api_end(x);

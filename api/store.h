@@ -41,6 +41,9 @@ typedef enum api_derived_kind {
     API_DERIVED_COUNT
 } api_derived_kind;
 
+/* How long who waits for one goes without hearing whether he is to go on. */
+enum { API_DERIVED_MILLIS = 100 };
+
 typedef struct api_derived {
     void *value; /* NULL: nothing is kept */
     void (*destroy)(void *value);
@@ -150,8 +153,8 @@ typedef struct api_store {
      * destroys what is in it when memory is short, and with the mesh. */
     api_derived *(*derived_begin)(void *self, api_mesh *mesh, api_derived_kind kind);
     void (*derived_end)(void *self, api_mesh *mesh, api_derived_kind kind);
-    /* From its holder: give the place to others until one of them ended, then have it again. Not on
-     * a worker, nor under a lock that who is waited for may want. */
+    /* From its holder: give the place to others until one of them ended, or for API_DERIVED_MILLIS,
+     * then have it again. Not on a worker, nor under a lock that who is waited for may want. */
     void (*derived_wait)(void *self, api_mesh *mesh, api_derived_kind kind);
     /* What the revision changed, in either direction; NULL when that is not kept. Under the read
      * lock. */

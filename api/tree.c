@@ -44,25 +44,23 @@ static uint64_t cost_of(const api_asker *a)
     return he_mesh_count(a->mesh, HE_HALFEDGE);
 }
 
-/* Under the place. NULL when memory is out, or with a->spent. */
-static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tree **dropped)
+static bool must_be_made(const api_tree *tree)
 {
-    const api_store *store = a->x->store;
+    return tree->bvh == NULL && !tree->abandoned;
+}
+
+/* Under the place. NULL when memory is out, or with a->spent. */
+static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tree **dropped,
+                      bool *made_here)
+{
     api_tree *kept = place->value;
-    while (kept != NULL && kept->revision == a->revision) {
+    if (kept != NULL && kept->revision == a->revision) {
         if (kept->bvh == NULL && a->on_worker) {
             api_asker_exceed(a, in);
             return NULL;
         }
         hold(kept);
-        while (kept->bvh == NULL && !kept->abandoned) {
-            store->derived_wait(store->self, a->x->mesh, API_DERIVED_TREE);
-        }
-        if (kept->bvh != NULL) {
-            return kept;
-        }
-        api_tree_release(kept); /* there is no tree in it: nothing that takes long */
-        kept = place->value;
+        return kept;
     }
     if (a->on_worker && cost_of(a) >= a->left) {
         api_asker_exceed(a, in);
@@ -78,20 +76,40 @@ static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tr
         *dropped = kept;
         *place = (api_derived){tree, destroy};
     }
+    *made_here = tree != NULL;
     return tree;
 }
 
 /* The one that is kept, if it is of this revision; else one that the asker has to make, which takes
  * the place of one of an earlier revision. */
-static api_tree *find(api_asker *a, const api_in *in)
+static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
 {
     const api_store *store = a->x->store;
     api_tree *dropped = NULL;
     api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
-    api_tree *tree = take(a, in, place, &dropped);
+    api_tree *tree = take(a, in, place, &dropped, made_here);
     store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
     api_tree_release(dropped);
     return tree;
+}
+
+/* Somebody else makes it. HE_CANCELLED when the asker gives up first. */
+static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
+{
+    const api_store *store = a->x->store;
+    for (;;) {
+        store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+        bool waits = must_be_made(tree);
+        if (waits) {
+            store->derived_wait(store->self, a->x->mesh, API_DERIVED_TREE);
+            waits = must_be_made(tree);
+        }
+        store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+        he_status status = waits ? he_watch_step(a->x->watch, 0, 1, err) : HE_OK;
+        if (!waits || status != HE_OK) {
+            return status;
+        }
+    }
 }
 
 /* Once made, or given up with NULL: whoever waits for it goes on. */
@@ -111,26 +129,36 @@ static void finish(const api_asker *a, api_tree *tree, he_bvh *bvh)
     }
 }
 
-static bool make(api_asker *a, const api_in *in, api_tree *tree)
+static he_status make(const api_asker *a, api_tree *tree, he_error *err)
 {
-    he_error err = {0};
     he_bvh *bvh = NULL;
-    bool made = he_bvh_new(a->mesh, a->x->watch, &bvh, &err) == HE_OK;
+    he_status status = he_bvh_new(a->mesh, a->x->watch, &bvh, err);
     finish(a, tree, bvh);
-    if (!made) {
-        api_tree_release(tree);
-        return api_asker_refuse(a, in, &err);
-    }
-    api_asker_pay(a, cost_of(a));
-    return true;
+    return status;
 }
 
 const he_bvh *api_asker_tree(api_asker *a, const api_in *in)
 {
-    if (a->tree == NULL) {
-        api_tree *tree = find(a, in);
-        if (tree == NULL || (tree->bvh == NULL && !make(a, in, tree))) {
+    while (a->tree == NULL) {
+        he_error err = {0};
+        bool made_here = false;
+        api_tree *tree = find(a, in, &made_here);
+        if (tree == NULL) {
             return NULL;
+        }
+        if ((made_here ? make(a, tree, &err) : await(a, tree, &err)) != HE_OK) {
+            api_tree_release(tree);
+            api_asker_refuse(a, in, &err);
+            return NULL;
+        }
+        if (tree->bvh == NULL) {
+            api_tree_release(tree); /* who made it gave up: nothing that takes long is in it */
+            continue;
+        }
+        /* So that what is left for the questions depends on the mesh alone. A worker's answer is
+         * the same whatever is left, or given on the job pool. */
+        if (made_here || !a->on_worker) {
+            api_asker_pay(a, cost_of(a));
         }
         a->tree = tree;
     }

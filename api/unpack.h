@@ -6,12 +6,14 @@
  * among them; all together are one body. What is unfolded goes on in pieces of at most
  * API_UNPACK_PIECE bytes and is not kept. Refused, with the byte of the coded body it was seen at:
  *
- *   bad_encoding    400  bytes that are not of the coding, its checksum or length does not hold,
- *                        something follows that is none, the body ends in the middle
- *   body_too_large  413  it unfolds to more than API_UNPACK_RATIO times what has arrived, beyond
- *                        the first API_UNPACK_FREE bytes; a frame wants a larger window than
- *                        API_UNPACK_WINDOW
- *   no_memory       507
+ *   bad_encoding           400  bytes that are not of the coding, its checksum or length does not
+ *                               hold, something follows that is none, the body ends in the middle
+ *   body_too_large         413  members or frames unfold to more than API_UNPACK_RATIO times what
+ *                               of their compressed data was read, together by API_UNPACK_FREE
+ *                               bytes: names and comments of gzip and skippable frames count for
+ *                               nothing; a frame wants a larger window than API_UNPACK_WINDOW
+ *   too_many_coded_bodies  503  the decoders of all bodies would take more than is left
+ *   no_memory              507
  *
  * What the body may come to is the business of who takes the pieces. */
 #ifndef HE_API_UNPACK_H
@@ -20,19 +22,24 @@
 #include "api/coding.h"
 #include "api/problem.h"
 
+#include <stdatomic.h>
+
 typedef struct api_unpack api_unpack;
 
 enum { API_UNPACK_PIECE = 32 * 1024 };
 
-/* `coding` is not identity. `take` gets the pieces, and is false when it wants no more. NULL when
- * memory is out. */
-api_unpack *api_unpack_new(api_coding coding,
+/* `coding` is not identity. `take` gets the pieces, and is false when it wants no more. `lent` is
+ * what all decoders hold at the time, at most API_MAX_UNPACKING bytes, and outlives this one. NULL
+ * with the problem filled. */
+api_unpack *api_unpack_new(api_coding coding, _Atomic size_t *lent,
                            bool (*take)(void *context, const char *bytes, size_t length),
-                           void *context);
+                           void *context, api_problem *problem);
 void api_unpack_free(api_unpack *u);
 /* False when it is refused, with the problem filled, or when `take` wants no more. Neither it nor
- * end is called again then. */
-bool api_unpack_feed(api_unpack *u, const char *bytes, size_t length, api_problem *problem);
+ * end is called again then. `used` may be less than `length` when API_UNPACK_TURN bytes were
+ * unfolded: the rest is to be fed again, once others have had their turn. */
+bool api_unpack_feed(api_unpack *u, const char *bytes, size_t length, size_t *used,
+                     api_problem *problem);
 /* The body ends here; one of no bytes at all is good. */
 bool api_unpack_end(api_unpack *u, api_problem *problem);
 

@@ -297,21 +297,42 @@ const char *api_upload_name(const api_exchange *x)
 }
 
 /* Which repairs would let the body pass. That none is found for want of memory leaves the refusal
- * what it is. */
-static unsigned advise(upload *u, const he_error *err)
+ * what it is; HE_CANCELLED. */
+static he_status advise(upload *u, unsigned *which, he_error *err)
 {
-    unsigned which = 0;
-    bool is_structural = u->report.total > 0 || err->status == HE_NOT_ORIENTABLE;
-    if (!is_structural || (u->document != NULL && api_document_in_has_edges(u->document))) {
-        return 0;
+    *which = 0;
+    if (u->document != NULL && api_document_in_has_edges(u->document)) {
+        return HE_OK;
     }
-    return he_repair_advise(soup_of(u), u->plan.which, &which, NULL) == HE_OK ? which : 0;
+    he_status status = he_repair_advise(soup_of(u), u->plan.which, which, err);
+    *which = status == HE_OK ? *which : 0;
+    return status == HE_CANCELLED ? status : HE_OK;
 }
 
 /* Everything is named as in the body, whatever was repaired before it was refused. */
+static void name_defects(api_exchange *x, upload *u)
+{
+    x->problem.report = &u->report;
+    x->problem.report_pointers = u->document != NULL;
+    if (u->document != NULL) {
+        char pointer[API_DEFECT_POINTER];
+        api_defect_pointer(&u->report.defects[0], pointer);
+        api_problem_set_pointer(&x->problem, "%s", pointer);
+    }
+}
+
+/* The report is the reason only where the work came to its end: what gave it up, or was short of
+ * memory, may have found some defects before. */
 static bool refuse(api_exchange *x, upload *u, he_error *err)
 {
-    if (u->report.total > 0) {
+    bool reported = u->report.total > 0 && err->status == u->report.defects[0].reason;
+    unsigned which = 0;
+    he_error given_up = {0};
+    if ((reported || err->status == HE_NOT_ORIENTABLE) &&
+        advise(u, &which, &given_up) == HE_CANCELLED) {
+        return api_fail_core(x, &given_up);
+    }
+    if (reported) {
         he_repaired_report(&u->repaired, &u->report);
         he_report_fail(&u->report, err);
     }
@@ -319,16 +340,9 @@ static bool refuse(api_exchange *x, upload *u, he_error *err)
         he_import_locate(&u->import, err);
     }
     api_fail_core(x, err);
-    if (u->report.total > 0) {
-        x->problem.report = &u->report;
-        x->problem.report_pointers = u->document != NULL;
-        if (u->document != NULL) {
-            char pointer[API_DEFECT_POINTER];
-            api_defect_pointer(&u->report.defects[0], pointer);
-            api_problem_set_pointer(&x->problem, "%s", pointer);
-        }
+    if (reported) {
+        name_defects(x, u);
     }
-    unsigned which = advise(u, err);
     if (which != 0) {
         api_problem_set_repairs(&x->problem, which);
     }

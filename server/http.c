@@ -69,7 +69,7 @@ typedef struct request {
     srv_connection *socket; /* NULL when it is not watched */
     state state;
     bool counted; /* by the gate */
-    bool aside;   /* suspended by `pull`, or resumed since */
+    bool aside;   /* counted by the gate as suspended: until it runs again or has completed */
     bool whole;   /* all of the body has arrived */
     uint64_t started;
     uint64_t bytes_in, bytes_out;
@@ -144,6 +144,22 @@ static void write_log(const request *r, uint64_t now)
     srv_access_log_add(r->http->options.log, &access);
 }
 
+/* About to suspend the connection, as long as that is allowed. */
+static bool go_aside(request *r)
+{
+    r->aside = srv_gate_wait(&r->http->gate);
+    return r->aside;
+}
+
+/* The connection is not suspended any more. */
+static void come_back(request *r)
+{
+    if (r->aside) {
+        r->aside = false;
+        srv_gate_resume(&r->http->gate);
+    }
+}
+
 static void request_completed(void *context, struct MHD_Connection *connection, void **slot,
                               enum MHD_RequestTerminationCode how)
 {
@@ -162,9 +178,7 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
         write_log(r, now);
     }
     bool counted = r->counted;
-    if (r->aside) {
-        srv_gate_resume(&http->gate);
-    }
+    come_back(r); /* a client who was lost while it was suspended comes here at once */
     srv_ahead_clear(&r->ahead);
     api_free(r->exchange);
     srv_lists_clear(&r->lists);
@@ -197,15 +211,6 @@ static void resume_ahead(srv_ahead *ahead)
     MHD_resume_connection(r->connection);
 }
 
-/* The connection is not suspended any more. */
-static void come_back(request *r)
-{
-    if (r->aside) {
-        r->aside = false;
-        srv_gate_resume(&r->http->gate);
-    }
-}
-
 /* The same for an answer that is slow to make. */
 static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
 {
@@ -221,8 +226,7 @@ static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t
         r->bytes_out += (uint64_t)got;
         return (ssize_t)got;
     }
-    if (got == SRV_AHEAD_WAIT && srv_gate_wait(&r->http->gate)) {
-        r->aside = true;
+    if (got == SRV_AHEAD_WAIT && go_aside(r)) {
         MHD_suspend_connection(r->connection);
         srv_ahead_make(&r->ahead, r->http->options.makers);
         return 0;
@@ -251,8 +255,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
         r->bytes_out += (uint64_t)got;
         return (ssize_t)got;
     }
-    if (got == API_READ_WAIT && srv_gate_wait(&r->http->gate)) {
-        r->aside = true;
+    if (got == API_READ_WAIT && go_aside(r)) {
         MHD_suspend_connection(r->connection);
         srv_live_aside(&r->stream);
         return 0;
@@ -388,12 +391,22 @@ static void resume_held(srv_hold *hold)
 
 static bool begin_wait(request *r, state why)
 {
-    bool allowed = srv_gate_wait(&r->http->gate);
+    bool allowed = go_aside(r);
     if (allowed) {
         r->state = why;
         MHD_suspend_connection(r->connection);
     }
     return allowed;
+}
+
+/* The worker serves its other connections before it comes back to this one. */
+static enum MHD_Result give_way(request *r)
+{
+    if (!begin_wait(r, r->state)) {
+        return MHD_NO;
+    }
+    MHD_resume_connection(r->connection);
+    return MHD_YES;
 }
 
 /* D1. Suspended before the hold is known to others: from then on it may be resumed. */
@@ -575,14 +588,20 @@ static enum MHD_Result read_head(request *r, const char *method, const char *ver
     return r->step == API_MORE ? MHD_YES : answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
-static enum MHD_Result read_body(request *r, const char *bytes, size_t size)
+/* `size` goes down to what of the bytes is to come again. */
+static enum MHD_Result read_body(request *r, const char *bytes, size_t *size)
 {
-    r->bytes_in += size;
-    srv_connection_moved(r->socket, size);
+    size_t used = *size;
     if (r->step == API_MORE) {
-        r->step = api_body(r->exchange, bytes, size);
+        r->step = api_body(r->exchange, bytes, *size, &used);
     } else {
-        r->swallowed += size;
+        r->swallowed += used;
+    }
+    *size -= used;
+    r->bytes_in += used;
+    srv_connection_moved(r->socket, used);
+    if (*size > 0) {
+        return give_way(r);
     }
     if (r->step != API_READY) {
         return MHD_YES;
@@ -616,21 +635,15 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
     if (r == NULL) {
         return MHD_NO;
     }
+    come_back(r);
     switch (r->state) {
     case FRESH:
         return read_head(r, method, version);
     case BODY:
-        if (*upload_size > 0) {
-            size_t size = *upload_size;
-            *upload_size = 0;
-            return read_body(r, upload, size);
-        }
-        return end_body(r);
+        return *upload_size > 0 ? read_body(r, upload, upload_size) : end_body(r);
     case WORK:
-        srv_gate_resume(&r->http->gate);
         return answer_when_durable(r);
     case HELD:
-        srv_gate_resume(&r->http->gate);
         return answer_held(r);
     case DONE:
     case CUT:

@@ -106,8 +106,12 @@ void he_repaired_report(const he_repaired *repaired, he_report *report);
 /* Apply what is planned for a soup. Where faces that would have to be dropped remain, and where a
  * corner names no vertex, the repairs that could not deal with them are not begun: he_build refuses
  * the soup. HE_NOT_ORIENTABLE with the face, numbered as in the input; HE_LIMIT when copies exceed
- * the soup's limits; HE_NO_MEMORY; HE_CANCELLED. After a failure the soup is only to be cleared.
- * `out` is {0} before, and the caller's to clear in any case. */
+ * the soup's limits; HE_NO_MEMORY; HE_CANCELLED.
+ *
+ * The soup stays the caller's, `out` is {0} before and the caller's to clear, in any case. After
+ * HE_NOT_ORIENTABLE the vertices and faces are as the repairs before orient left them and no face
+ * is turned, so that he_repair_advise can be asked; columns have the rows of the input still, which
+ * need not be those of the elements. After another failure the soup is only to be cleared. */
 HE_NODISCARD he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan, he_repaired *out,
                                       he_error *err);
 /* The same for the mesh it became: fill. Nothing may record. HE_IDS_EXHAUSTED, HE_NO_MEMORY,
@@ -115,8 +119,9 @@ HE_NODISCARD he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan,
 HE_NODISCARD he_status he_repair_mesh(he_mesh *mesh, const he_repair_plan *plan, he_repaired *out,
                                       he_error *err);
 
-/* he_build refused the soup to which the set `asked` was applied: which set, that one included,
- * would let it pass? 0 where none would: a corner names no vertex. The soup may lose faces.
+/* he_build refused the soup to which the set `asked` was applied, or he_repair_soup found it not to
+ * be orientable: which set, `asked` included, would let it pass? 0 where none would: a corner names
+ * no vertex. Columns are not looked at. The soup may lose faces, and is only to be cleared after.
  * HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_repair_advise(he_soup *soup, unsigned asked, unsigned *out,
                                         he_error *err);

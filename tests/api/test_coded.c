@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include <cmocka.h>
 
@@ -377,7 +378,7 @@ static void what_unfolds_counts_against_the_limits(void **state)
                 send_json(b, "POST", "/v1/meshes", both[c], text));
         memset(text, ' ', 8 << 20);
         text[8 << 20] = '\0';
-        refused(413, "body_too_large", "unfold to more than 100 times as many",
+        refused(413, "body_too_large", "unfolds to more than 100 times as many",
                 send_json(b, "POST", "/v1/meshes", both[c], text));
         refused(400, "unexpected_body", "no body",
                 bench_send(b, "GET", "/livez", HEADERS("Content-Encoding", both[c]), "x"));
@@ -432,6 +433,71 @@ static void what_is_not_the_coding_is_refused(void **state)
 }
 
 /* How a body was packed for the way says nothing about what is asked. */
+static const char *zstd_header(void *context, const char *name)
+{
+    (void)context;
+    return strcasecmp(name, "Content-Encoding") == 0 ? "zstd"
+           : strcasecmp(name, "Content-Type") == 0   ? "model/obj"
+                                                     : NULL;
+}
+
+/* Of a body that is to come: the frame has begun, and may look back over 8 MiB. */
+static api_exchange *begin_wide(api_bench *b, api_step *step)
+{
+    static const char frame[] = {0x28,   (char)0xB5, 0x2F, (char)0xFD, 0,   13 << 3,
+                                 2 << 3, 0,          0,    '#',        '\n'};
+    const api_request request = {.method = "POST",
+                                 .path = "/v1/meshes",
+                                 .query = "",
+                                 .request_id = "test",
+                                 .header = zstd_header,
+                                 .has_body = true};
+    size_t used;
+    api_exchange *x = api_begin(bench_service(b), &request, step);
+    assert_non_null(x);
+    if (*step == API_MORE) {
+        *step = api_body(x, frame, sizeof frame, &used);
+    }
+    return x;
+}
+
+static void decoders_of_all_bodies_have_a_ceiling(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    api_exchange *open[API_MAX_UNPACKING >> API_UNPACK_WINDOW];
+    size_t count = 0;
+    api_step step;
+    for (;;) {
+        api_exchange *x = begin_wide(b, &step);
+        if (step != API_MORE) {
+            const api_answer *a = api_answer_of(x);
+            bool later = false;
+            for (size_t i = 0; i < a->header_count; i++) {
+                later |= strcmp(a->headers[i].name, "Retry-After") == 0;
+            }
+            assert_int_equal(a->status, 503);
+            assert_non_null(strstr(a->bytes, "\"code\":\"too_many_coded_bodies\""));
+            assert_true(later);
+            api_free(x);
+            break;
+        }
+        assert_true(count < sizeof open / sizeof *open);
+        open[count++] = x;
+    }
+    assert_true(count > sizeof open / sizeof *open / 2);
+    /* Others are served, and so is the next one when one has ended. */
+    done(expect(201, send_json(b, "POST", "/v1/meshes", "gzip", "{\"shape\":\"cube\"}")));
+    api_free(open[--count]);
+    api_exchange *x = begin_wide(b, &step);
+    assert_int_equal(step, API_MORE);
+    api_free(x);
+    while (count > 0) {
+        api_free(open[--count]);
+    }
+    bench_free(b);
+}
+
 static void a_key_is_of_the_unfolded_body(void **state)
 {
     (void)state;
@@ -586,6 +652,7 @@ int main(void)
         cmocka_unit_test(every_format_comes_back),
         cmocka_unit_test(what_unfolds_counts_against_the_limits),
         cmocka_unit_test(what_is_not_the_coding_is_refused),
+        cmocka_unit_test(decoders_of_all_bodies_have_a_ceiling),
         cmocka_unit_test(a_key_is_of_the_unfolded_body),
         cmocka_unit_test(a_job_of_a_coded_upload),
         cmocka_unit_test(every_allocation_may_fail),

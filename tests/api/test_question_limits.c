@@ -454,8 +454,8 @@ static driven drive(api_bench *b, const char *method, const char *path, const ch
         d.none = true;
         return d;
     }
-    if (step == API_MORE && length > 0) {
-        step = api_body(x, body, length);
+    for (size_t at = 0, used; step == API_MORE && at < length; at += used) {
+        step = api_body(x, body + at, length - at, &used);
     }
     step = step == API_MORE ? api_end(x) : step;
     if (step == API_WORK) {
@@ -614,6 +614,31 @@ static void the_work_of_a_query_is_bounded(void **state)
     bench_free(b);
 }
 
+/* Nor does the answer depend on who has asked before: whoever finds the tree made pays for it as
+ * who makes it does. */
+static void a_tree_costs_everybody_the_same(void **state)
+{
+    (void)state;
+    enum { CORNERS = 20000, TIMES = 700 };
+    api_bench *b = bench_new();
+    char *document = pillow(CORNERS);
+    put(b, document);
+    free(document);
+    char *many = repeated("{\"relation\":\"faces\",\"of\":{\"face\":0}}", TIMES);
+    char *body = malloc(strlen(many) + 64);
+    assert_non_null(body);
+    sprintf(body, "{\"queries\":[{\"closest\":[9,9,9]},%s", strchr(many, '[') + 1);
+    bench_reply first = bench_expect(200, bench_post(b, "/v1/meshes/m/query", body));
+    bench_reply second = bench_expect(200, bench_post(b, "/v1/meshes/m/query", body));
+    assert_non_null(strstr(first.body, "limit_exceeded"));
+    assert_string_equal(first.body, second.body);
+    bench_reply_free(&first);
+    bench_reply_free(&second);
+    free(many);
+    free(body);
+    bench_free(b);
+}
+
 static void too_many_queries_are_refused(void **state)
 {
     (void)state;
@@ -717,6 +742,7 @@ int main(void)
         cmocka_unit_test(a_cursor_is_of_its_revision),
         cmocka_unit_test(long_questions_leave_the_worker),
         cmocka_unit_test(the_work_of_a_query_is_bounded),
+        cmocka_unit_test(a_tree_costs_everybody_the_same),
         cmocka_unit_test(too_many_queries_are_refused),
         cmocka_unit_test(every_allocation_may_fail),
     };

@@ -2,14 +2,10 @@
  * passes; the import report accounts for what each did. */
 #include "tests/api/request.h"
 
-#include <dirent.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "unit/fixture.h"
 
-#include <cmocka.h>
+#include <dirent.h>
+#include <strings.h>
 
 static const char OCTETS[] = "application/octet-stream";
 
@@ -392,6 +388,128 @@ static void a_refusal_after_repairs_names_the_file(void **state)
     bench_free(b);
 }
 
+/* Two faces that repeat a corner, around many that do not and one so large that looking at it takes
+ * memory. */
+static char *broken_file(size_t *length)
+{
+    enum { FACES = 20000, LARGE = 40 };
+    char *text;
+    FILE *out = open_memstream(&text, length);
+    assert_non_null(out);
+    for (int i = 0; i < LARGE; i++) {
+        fprintf(out, "v %d %d 0\n", i, i * i);
+    }
+    fputs("f 1 2 2\nf", out);
+    for (int i = 1; i <= LARGE; i++) {
+        fprintf(out, " %d", i);
+    }
+    for (int i = 0; i < FACES; i++) {
+        fprintf(out, "\nf %d %d %d", 1 + i % 30, 2 + i % 30, 3 + i % 30);
+    }
+    fputs("\nf 3 4 4\n", out);
+    fclose(out);
+    return text;
+}
+
+static const char *find_header(void *context, const char *name)
+{
+    (void)context;
+    return strcasecmp(name, "Content-Type") == 0 ? "model/obj"
+           : strcasecmp(name, "Prefer") == 0     ? "wait=600"
+                                                 : NULL;
+}
+
+/* Upload it with the given watch; the status, and of a 422 the number of defects it tells. */
+static int upload_broken(api_bench *b, const char *text, size_t length,
+                         bool (*tell)(void *context, const char *phase, double done), void *context,
+                         int *total)
+{
+    const api_request request = {.method = "POST",
+                                 .path = "/v1/meshes",
+                                 .query = "",
+                                 .request_id = "test",
+                                 .header = find_header,
+                                 .has_length = true,
+                                 .length = length,
+                                 .has_body = true};
+    api_step step;
+    *total = 0;
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    if (x == NULL) {
+        return 507;
+    }
+    for (size_t at = 0, used; step == API_MORE && at < length; at += used) {
+        step = api_body(x, text + at, length - at, &used);
+    }
+    step = step == API_MORE ? api_end(x) : step;
+    if (step == API_WORK) {
+        api_watch(x, tell, context);
+        step = api_work(x);
+    }
+    assert_int_equal(step, API_READY);
+    int status = api_answer_of(x)->status;
+    if (status == 422) {
+        const char *said = strstr(api_answer_of(x)->bytes, "\"total\":"); /* without memory */
+        assert_non_null(said);
+        *total = atoi(said + strlen("\"total\":"));
+    }
+    api_free(x);
+    return status;
+}
+
+/* False from the n-th time on; never for 0. */
+static bool count_down(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    return *(int *)context == 0 || --*(int *)context > 0;
+}
+
+static void what_is_given_up_does_not_tell_the_defects_so_far(void **state)
+{
+    (void)state;
+    size_t length;
+    char *text = broken_file(&length);
+    api_bench *b = bench_new();
+    int status, total, given_up = 0;
+    for (int n = 1;; n++) {
+        int left = n;
+        status = upload_broken(b, text, length, count_down, &left, &total);
+        if (left > 0) {
+            break; /* it was not asked so often */
+        }
+        assert_int_equal(status, 503);
+        given_up++;
+    }
+    assert_true(given_up > 4);
+    assert_int_equal(status, 422);
+    assert_true(total >= 2);
+    bench_free(b);
+    free(text);
+}
+
+static void what_lacks_memory_does_not_tell_the_defects_so_far(void **state)
+{
+    (void)state;
+    size_t length;
+    char *text = broken_file(&length);
+    api_bench *b = bench_new();
+    int never = 0, all, total;
+    assert_int_equal(upload_broken(b, text, length, count_down, &never, &all), 422);
+    for (long n = 1;; n++) {
+        fixture_fail_at(n);
+        int status = upload_broken(b, text, length, count_down, &never, &total);
+        fixture_memory_back();
+        assert_true(status == 507 || (status == 422 && total == all));
+        if (n > fixture_memory.calls) {
+            assert_int_equal(status, 422);
+            break;
+        }
+    }
+    bench_free(b);
+    free(text);
+}
+
 static void the_order_in_the_query_does_not_matter(void **state)
 {
     (void)state;
@@ -561,6 +679,8 @@ int main(void)
         cmocka_unit_test(copies_and_turned_faces_are_named),
         cmocka_unit_test(a_band_that_cannot_be_oriented_is_told),
         cmocka_unit_test(a_refusal_after_repairs_names_the_file),
+        cmocka_unit_test(what_is_given_up_does_not_tell_the_defects_so_far),
+        cmocka_unit_test(what_lacks_memory_does_not_tell_the_defects_so_far),
         cmocka_unit_test(the_order_in_the_query_does_not_matter),
         cmocka_unit_test(warnings_name_every_place),
         cmocka_unit_test(attributes_of_a_document_go_with_their_elements),

@@ -113,6 +113,7 @@ static struct {
     api_derived *place;
     bool held;
     int waited;
+    bool *gives_up; /* who waits, as soon as he does; NULL: he does not */
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
 static void open_gate(bool *which)
@@ -152,7 +153,11 @@ static void end_and_hold_up(void *self, api_mesh *mesh, api_derived_kind kind)
 static void wait_and_tell(void *self, api_mesh *mesh, api_derived_kind kind)
 {
     gate.waited++;
-    open_gate(&gate.met);
+    if (gate.gives_up == NULL) {
+        open_gate(&gate.met);
+    } else {
+        *gate.gives_up = false;
+    }
     gate.store->derived_wait(self, mesh, kind);
 }
 
@@ -192,7 +197,8 @@ static void *ask_first(void *context)
         pass(&gate.begun);
     }
     api_exchange *x = api_begin(a->service, &request, &step);
-    step = api_body(x, NEAREST, strlen(NEAREST));
+    size_t used;
+    step = api_body(x, NEAREST, strlen(NEAREST), &used);
     step = api_end(x);
     if (step == API_WORK) {
         api_watch(x, give_up, &a->patient);
@@ -210,7 +216,7 @@ static void *ask_first(void *context)
     return NULL;
 }
 
-static void ask_twice(bool patient, asker askers[2])
+static void ask_twice(bool patient, bool second_gives_up, asker askers[2])
 {
     api_bench *b = bench_new();
     bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL, GRID);
@@ -220,6 +226,7 @@ static void ask_twice(bool patient, asker askers[2])
     gate.store = bench_store(b);
     gate.begun = gate.met = gate.held = false;
     gate.waited = 0;
+    gate.gives_up = second_gives_up ? &askers[1].patient : NULL;
     store.derived_begin = begin;
     store.derived_end = end_and_hold_up;
     store.derived_wait = wait_and_tell;
@@ -241,7 +248,7 @@ static void the_second_asker_waits_for_the_tree_of_the_first(void **state)
 {
     (void)state;
     asker askers[2];
-    ask_twice(true, askers);
+    ask_twice(true, false, askers);
     assert_int_equal(askers[0].status, 200);
     assert_int_equal(askers[1].status, 200);
     assert_string_equal(askers[0].body, askers[1].body);
@@ -252,9 +259,20 @@ static void the_second_asker_makes_the_tree_that_the_first_gave_up(void **state)
 {
     (void)state;
     asker askers[2];
-    ask_twice(false, askers);
+    ask_twice(false, false, askers);
     assert_int_not_equal(askers[0].status, 200);
     assert_int_equal(askers[1].status, 200);
+    assert_true(gate.waited > 0);
+}
+
+/* The first one goes on only when the second has his answer. */
+static void who_waits_for_a_tree_may_give_up(void **state)
+{
+    (void)state;
+    asker askers[2];
+    ask_twice(true, true, askers);
+    assert_int_equal(askers[0].status, 200);
+    assert_int_equal(askers[1].status, 503);
     assert_true(gate.waited > 0);
 }
 
@@ -264,6 +282,7 @@ int main(void)
         cmocka_unit_test(answers_are_of_the_revision_they_name_while_others_write),
         cmocka_unit_test(the_second_asker_waits_for_the_tree_of_the_first),
         cmocka_unit_test(the_second_asker_makes_the_tree_that_the_first_gave_up),
+        cmocka_unit_test(who_waits_for_a_tree_may_give_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -342,7 +342,8 @@ static void take_keyed(api_bench *b, const char *method, const char *path, const
                            .has_body = true};
     api_exchange *x = api_begin(bench_service(b), &request, &next);
     assert_non_null(x);
-    assert_int_equal(api_body(x, body, LONG), API_MORE);
+    size_t used;
+    assert_int_equal(api_body(x, body, LONG, &used), API_MORE);
     assert_int_equal(api_end(x), API_WORK);
     take(b, method, path, 409, keyed, body, LONG);
     api_work(x);

@@ -443,7 +443,8 @@ static api_step step_of(api_bench *b, const char *path, const char *body)
     api_exchange *x = api_begin(bench_service(b), &request, &step);
     assert_non_null(x);
     assert_int_equal(step, API_MORE);
-    assert_int_equal(api_body(x, body, strlen(body)), API_MORE);
+    size_t used;
+    assert_int_equal(api_body(x, body, strlen(body), &used), API_MORE);
     step = api_end(x);
     if (step == API_WORK) {
         api_work(x);

@@ -185,6 +185,64 @@ static const char *const targets[] = {
 
 enum { TARGETS = sizeof targets / sizeof *targets, SIDE = 400 };
 
+/* So dense that what arrives at once unfolds to several turns of the worker: nothing of it is lost,
+ * and others that ask the one worker meanwhile are answered. */
+static void dense_bodies_take_turns_with_others(void **state)
+{
+    (void)state;
+    enum { LINES = 16000, LINE = 1200 };
+    daemon_process *d = daemon_start(ARGUMENTS("--log", "off", "--workers", "1"));
+    client *c = client_new(d);
+    char *text = malloc((size_t)LINES * LINE), *at = text;
+    assert_non_null(text);
+    uint64_t random = 1;
+    for (int i = 0; i < LINES; i++) {
+        random = random * UINT64_C(6364136223846793005) + 1442695040888963407u;
+        char *end = at + LINE;
+        at += snprintf(at, LINE, "v %d %.15g 0\n#%d", i, (double)(random >> 11) * 0x1p-53,
+                       (int)(random >> 40));
+        memset(at, '-', (size_t)(end - at - 1));
+        end[-1] = '\n';
+        at = end;
+    }
+    for (size_t k = 0; k < 2; k++) {
+        size_t packed;
+        char *body = coding_pack(both[k], text, (size_t)LINES * LINE, &packed);
+        printf("note: %s: one to %.0f\n", both[k], (double)LINES * LINE / (double)packed);
+        char head[256];
+        int length = snprintf(head, sizeof head,
+                              "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\nContent-Length: %zu"
+                              "\r\nContent-Type: model/obj\r\nContent-Encoding: %s\r\n"
+                              "Connection: close\r\n\r\n",
+                              packed, both[k]);
+        char *request = malloc((size_t)length + packed);
+        assert_non_null(request);
+        memcpy(request, head, (size_t)length);
+        memcpy(request + length, body, packed);
+        int uploads = client_connect(d, 0);
+        size_t sent = 0, all = (size_t)length + packed;
+        while (sent < all) {
+            ssize_t n = send(uploads, request + sent, all - sent, MSG_NOSIGNAL);
+            assert_true(n > 0);
+            sent += (size_t)n;
+            done(expect(200, client_get(c, "/livez")));
+        }
+        char answer[4096] = "";
+        size_t got = 0;
+        for (ssize_t n; (n = recv(uploads, answer + got, sizeof answer - 1 - got, 0)) > 0;) {
+            got += (size_t)n;
+        }
+        close(uploads);
+        assert_int_equal(client_raw_status(answer), 201);
+        assert_non_null(strstr(answer, "\"import\":{\"format\":\"obj\",\"vertices\":16000,"));
+        free(request);
+        free(body);
+    }
+    free(text);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 static void large_answers_are_coded_as_they_are_sent(void **state)
 {
     (void)state;
@@ -389,6 +447,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bombs_stay_small),
         cmocka_unit_test(pieces_may_be_of_one_byte),
+        cmocka_unit_test(dense_bodies_take_turns_with_others),
         cmocka_unit_test(large_answers_are_coded_as_they_are_sent),
         cmocka_unit_test(clients_go_away_while_it_is_coded),
         cmocka_unit_test(an_upload_that_breaks_off_leaves_nothing),

@@ -99,27 +99,37 @@ static bytes pack_bytes(api_coding coding, const bytes *plain)
     return out;
 }
 
+/* What a feed may unfold beyond its turn: a block of zstd, or what zlib has in hand. */
+enum { LEFT = 1 << 17 };
+
 /* Unfold in pieces of `step` bytes; false with `problem` where it is refused. */
 static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *out,
                    api_problem *problem)
 {
     *problem = (api_problem){0};
     *out = (bytes){0};
-    api_unpack *u = api_unpack_new(coding, take, out);
+    _Atomic size_t lent = 0;
+    api_unpack *u = api_unpack_new(coding, &lent, take, out, problem);
     assert_non_null(u);
     bool good = true;
-    for (size_t at = 0; at < coded->length && good; at += step) {
+    for (size_t at = 0, used; at < coded->length && good; at += used) {
         size_t n = coded->length - at < step ? coded->length - at : step;
         /* of its own, so that a sanitizer sees what is read beyond it */
         char *piece = malloc(n);
         assert_non_null(piece);
         memcpy(piece, coded->data + at, n);
-        good = api_unpack_feed(u, piece, n, problem);
+        size_t before = out->length;
+        used = 0;
+        good = api_unpack_feed(u, piece, n, &used, problem);
+        assert_true(!good || used == n || out->length >= before + API_UNPACK_TURN);
+        assert_true(out->length <= before + API_UNPACK_TURN + LEFT);
         free(piece);
     }
     good = good && api_unpack_end(u, problem);
     assert_int_equal(good, problem->code == HE_OK);
+    assert_true(lent > 0);
     api_unpack_free(u);
+    assert_int_equal(lent, 0);
     return good;
 }
 
@@ -203,6 +213,48 @@ static int64_t break_off(void *context, char *buffer, size_t size)
     int *left = context;
     memset(buffer, 'x', size);
     return (*left)-- > 0 ? (int64_t)size : -1;
+}
+
+typedef struct nothing {
+    size_t left, read; /* bytes; in this turn */
+} nothing;
+
+static int64_t read_zeros(void *context, char *buffer, size_t size)
+{
+    nothing *z = context;
+    size_t n = z->left < size ? z->left : size;
+    memset(buffer, 0, n);
+    z->left -= n;
+    z->read += n;
+    return (int64_t)n;
+}
+
+/* However far a body packs, its reader is not kept for all of it. */
+static void no_read_codes_more_than_its_turn(void **state)
+{
+    (void)state;
+    static char room[128 * 1024];
+    for (size_t c = 0; c < 2; c++) {
+        nothing from = {.left = 100 << 20};
+        size_t most = 0, turns = 0, total = 0;
+        int64_t got;
+        api_pack *pack = api_pack_new(both[c], &(api_plain){.read = read_zeros, .context = &from});
+        assert_non_null(pack);
+        assert_true(api_pack_begin(pack));
+        while ((got = api_pack_read(pack, room, sizeof room)) > 0) {
+            most = from.read > most ? from.read : most;
+            from.read = 0;
+            total += (size_t)got;
+            turns++;
+        }
+        assert_int_equal(got, 0);
+        assert_int_equal(from.left, 0);
+        printf("note: %s: %zu reads of at most %zu KiB of zeros gave %zu bytes\n",
+               api_coding_name(both[c]), turns, most / 1024, total);
+        size_t held = both[c] == API_GZIP ? 4u << 20 : 0;
+        assert_true(most <= API_PACK_TURN + held + 2 * (API_PACK_AT_ONCE + 1));
+        api_pack_free(pack);
+    }
 }
 
 static void a_body_that_breaks_off_is_not_ended(void **state)
@@ -416,6 +468,102 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
     }
 }
 
+/* Bytes that do not pack, and zeros behind them. */
+static bytes noise_and_zeros(size_t noise, size_t zeros)
+{
+    bytes out = {malloc(noise + zeros), noise + zeros, noise + zeros};
+    uint64_t random = 1;
+    assert_non_null(out.data);
+    memset(out.data, 0, out.length);
+    for (size_t i = 0; i < noise; i++) {
+        random = random * UINT64_C(6364136223846793005) + 1442695040888963407u;
+        out.data[i] = (char)(random >> 56);
+    }
+    return out;
+}
+
+/* What is passed over, or was of another member or frame, does not let this one unfold further. */
+static void only_compressed_data_lets_a_body_unfold(void **state)
+{
+    (void)state;
+    enum { COMMENT = 400000, ZEROS = 20 << 20 };
+    for (size_t c = 0; c < 2; c++) {
+        bytes noise = noise_and_zeros(COMMENT, 0), bomb = zeros_in(both[c], ZEROS);
+        bytes named = {0}, after = pack_bytes(both[c], &noise);
+        if (both[c] == API_GZIP) {
+            static const unsigned char head[10] = {0x1F, 0x8B, 8, 0x10, 0, 0, 0, 0, 0, 3};
+            add(&named, head, sizeof head);
+            for (size_t i = 0; i < COMMENT; i++) {
+                add(&named, "c", 1);
+            }
+            add(&named, "", 1);
+            add(&named, bomb.data + 10, bomb.length - 10);
+        } else {
+            for (size_t i = 0; i < COMMENT / 50000; i++) {
+                add_skippable(&named, 50000);
+            }
+            add(&named, bomb.data, bomb.length);
+        }
+        add(&after, bomb.data, bomb.length);
+        expect_refused(both[c], &named, 30000, API_BODY_TOO_LARGE, "more than 100 times");
+        expect_refused(both[c], &named, named.length, API_BODY_TOO_LARGE, "more than 100 times");
+        expect_refused(both[c], &after, 30000, API_BODY_TOO_LARGE, "more than 100 times");
+        free(noise.data);
+        free(bomb.data);
+        free(named.data);
+        free(after.data);
+    }
+    /* Small members and frames are not each let off. */
+    for (size_t c = 0; c < 2; c++) {
+        bytes part = zeros_in(both[c], 200000), coded = {0};
+        for (size_t i = 0; i < 20; i++) {
+            add(&coded, part.data, part.length);
+        }
+        expect_refused(both[c], &coded, 1000, API_BODY_TOO_LARGE, "more than 100 times");
+        free(part.data);
+        free(coded.data);
+    }
+}
+
+/* However much may be unfolded, no feed does it all: see unfold. */
+static void a_dense_body_takes_its_turns(void **state)
+{
+    (void)state;
+    bytes plain = noise_and_zeros(200000, 12 << 20);
+    for (size_t c = 0; c < 2; c++) {
+        bytes coded = pack_bytes(both[c], &plain);
+        expect_unfolded(both[c], &coded, coded.length, &plain);
+        expect_unfolded(both[c], &coded, 25000, &plain);
+        expect_unfolded(both[c], &coded, 1, &plain);
+        free(coded.data);
+    }
+    free(plain.data);
+}
+
+/* libzstd by itself takes it, in pieces. */
+static void a_frame_has_the_length_it_says(void **state)
+{
+    (void)state;
+    static const unsigned char frame[] = {
+        0x28, 0xB5, 0x2F, 0xFD,           /* magic number */
+        0x20, 5,                          /* one segment, of five bytes */
+        0x18, 0,    0,    'a',  'b', 'c', /* a raw block of three */
+        0x01, 0,    0,                    /* the last, of none */
+    };
+    bytes coded = {0}, plain = {0};
+    add(&coded, frame, sizeof frame);
+    add(&plain, "abc", 3);
+    for (size_t step = 1; step <= sizeof frame; step++) {
+        coded.data[5] = 5;
+        expect_refused(API_ZSTD, &coded, step, API_BAD_ENCODING,
+                       "byte 15 of the zstd body: the frame has another length than its header");
+        coded.data[5] = 3;
+        expect_unfolded(API_ZSTD, &coded, step, &plain);
+    }
+    free(coded.data);
+    free(plain.data);
+}
+
 /* A frame that says it may look back so far, as a power of two. */
 static bytes with_window(int log)
 {
@@ -449,6 +597,35 @@ static void a_window_may_be_so_large(void **state)
     free(bad.data);
 }
 
+static void decoders_have_a_common_ceiling(void **state)
+{
+    (void)state;
+    bytes plain = text_of(100000), wide = with_window(API_UNPACK_WINDOW);
+    bytes small[2] = {
+        [API_ZSTD] = pack_bytes(API_ZSTD, &plain), [API_GZIP] = pack_bytes(API_GZIP, &plain)};
+    for (size_t c = 0; c < 2; c++) {
+        for (size_t room = 0; room <= 12u << 20; room = room == 0 ? 1000 : room * 5) {
+            const bytes *coded = both[c] == API_ZSTD ? &wide : &small[both[c]];
+            size_t used, others = API_MAX_UNPACKING - room;
+            _Atomic size_t lent = others;
+            bytes out = {0};
+            api_problem problem = {0};
+            api_unpack *u = api_unpack_new(both[c], &lent, take, &out, &problem);
+            bool good =
+                u != NULL && api_unpack_feed(u, coded->data, coded->length, &used, &problem);
+            assert_true(lent <= API_MAX_UNPACKING);
+            api_unpack_free(u);
+            assert_int_equal(lent, others);
+            assert_int_equal(problem.code, good ? HE_OK : API_TOO_MANY_CODED);
+            assert_int_equal(good, room > (both[c] == API_ZSTD ? 8u << 20 : 40000u));
+            free(out.data);
+        }
+        free(small[c].data);
+    }
+    free(plain.data);
+    free(wide.data);
+}
+
 static bool take_none(void *context, const char *data, size_t length)
 {
     (void)data;
@@ -465,9 +642,11 @@ static void who_takes_may_have_enough(void **state)
         bytes coded = pack_bytes(both[c], &plain);
         int calls = 0;
         api_problem problem = {0};
-        api_unpack *u = api_unpack_new(both[c], take_none, &calls);
+        size_t used;
+        _Atomic size_t lent = 0;
+        api_unpack *u = api_unpack_new(both[c], &lent, take_none, &calls, &problem);
         assert_non_null(u);
-        assert_false(api_unpack_feed(u, coded.data, coded.length, &problem));
+        assert_false(api_unpack_feed(u, coded.data, coded.length, &used, &problem));
         assert_int_equal(calls, 1);
         assert_int_equal(problem.code, HE_OK);
         api_unpack_free(u);
@@ -487,12 +666,15 @@ static void every_allocation_may_fail(void **state)
             bytes out = {0};
             api_problem problem = {0};
             fixture_fail_at(n);
-            api_unpack *u = api_unpack_new(both[c], take, &out);
-            done = u != NULL && api_unpack_feed(u, coded.data, coded.length, &problem) &&
+            size_t used;
+            _Atomic size_t lent = 0;
+            api_unpack *u = api_unpack_new(both[c], &lent, take, &out, &problem);
+            done = u != NULL && api_unpack_feed(u, coded.data, coded.length, &used, &problem) &&
                    api_unpack_end(u, &problem);
             api_unpack_free(u);
             fixture_memory_back();
-            assert_true(done || u == NULL || problem.code == HE_NO_MEMORY);
+            assert_int_equal(lent, 0);
+            assert_true(done || problem.code == HE_NO_MEMORY);
             assert_true(done == (n > fixture_memory.calls));
             free(out.data);
         }
@@ -527,6 +709,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bodies_of_all_sizes_come_back),
         cmocka_unit_test(the_same_body_packs_to_the_same_bytes),
+        cmocka_unit_test(no_read_codes_more_than_its_turn),
         cmocka_unit_test(a_body_that_breaks_off_is_not_ended),
         cmocka_unit_test(what_cannot_be_coded_is_passed_on),
         cmocka_unit_test(members_and_frames_follow_one_another),
@@ -536,7 +719,11 @@ int main(void)
         cmocka_unit_test(a_checksum_that_does_not_hold_is_named),
         cmocka_unit_test(other_codings_are_not_taken_for_these),
         cmocka_unit_test(a_bomb_is_refused_before_it_unfolds),
+        cmocka_unit_test(only_compressed_data_lets_a_body_unfold),
+        cmocka_unit_test(a_dense_body_takes_its_turns),
+        cmocka_unit_test(a_frame_has_the_length_it_says),
         cmocka_unit_test(a_window_may_be_so_large),
+        cmocka_unit_test(decoders_have_a_common_ceiling),
         cmocka_unit_test(who_takes_may_have_enough),
         cmocka_unit_test(every_allocation_may_fail),
     };

@@ -109,6 +109,10 @@ static void a_moebius_band_is_not_orientable(void **state)
     unsigned which;
     fixture_soup(&soup, "01,012,123,234,340,401");
     assert_int_equal(he_repair_soup(&soup, &plan, &done, &err), HE_NOT_ORIENTABLE);
+    static const uint32_t left[] = {0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4, 0, 4, 0, 1};
+    assert_int_equal(soup.face_count, 5); /* as drop_degenerate left them, and not turned */
+    assert_int_equal(soup.corner_count, sizeof left / sizeof *left);
+    assert_memory_equal(soup.corners, left, sizeof left);
     assert_int_equal(err.kind, HE_FACE);
     assert_in_range(err.id, 1, 5); /* as the input numbers it */
     assert_int_equal(he_repair_advise(&soup, plan.which, &which, NULL), HE_OK);

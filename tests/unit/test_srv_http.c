@@ -357,6 +357,14 @@ static void wait_at_gate(void *context)
     pthread_mutex_unlock(&gate);
 }
 
+static void open_gate(void)
+{
+    pthread_mutex_lock(&gate);
+    gate_open = true;
+    pthread_cond_broadcast(&gate_changed);
+    pthread_mutex_unlock(&gate);
+}
+
 static void test_full_queue_is_503(void **state)
 {
     (void)state;
@@ -379,10 +387,7 @@ static void test_full_queue_is_503(void **state)
     assert_non_null(strstr(text, "Retry-After: "));
     assert_non_null(strstr(text, "\"code\":\"overloaded\""));
 
-    pthread_mutex_lock(&gate);
-    gate_open = true;
-    pthread_cond_broadcast(&gate_changed);
-    pthread_mutex_unlock(&gate);
+    open_gate();
     /* Refused, not broken: the connection serves on. The queue may still be emptying. */
     int status;
     do {
@@ -391,6 +396,42 @@ static void test_full_queue_is_503(void **state)
     } while (status == 503);
     assert_int_equal(status, 201);
     close(fd);
+}
+
+/* The client is gone at once, without a goodbye. */
+static void hang_up(int fd)
+{
+    const struct linger at_once = {.l_onoff = 1};
+    assert_int_equal(setsockopt(fd, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once), 0);
+    close(fd);
+}
+
+/* Whose client hangs up while it is suspended is not waited for by a stop that comes later. */
+static void test_a_stop_after_a_held_client_hung_up(void **state)
+{
+    int writer = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    slow_wait(1);
+    assert_held(writer);
+    hang_up(writer);
+    slow_advance(1);
+    assert_int_equal(round_trip("GET", "/v1/meshes/m", ""), 200);
+    assert_int_equal(stop(state), 0);
+    start(state);
+}
+
+static void test_a_stop_after_a_working_client_hung_up(void **state)
+{
+    slow_advance(UINT64_MAX);
+    gate_open = false;
+    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    int writer = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
+    assert_held(writer);
+    hang_up(writer);
+    open_gate();
+    assert_int_equal(stop(state), 0);
+    start(state);
 }
 
 static void test_too_many_connections(void **state)
@@ -470,6 +511,8 @@ int main(void)
         TEST(test_early_refusals_wait_too),
         TEST(test_events_wait_until_durable),
         TEST(test_a_stop_ends_what_waits),
+        TEST(test_a_stop_after_a_held_client_hung_up),
+        TEST(test_a_stop_after_a_working_client_hung_up),
         TEST(test_full_queue_is_503),
         TEST(test_too_many_connections),
         TEST(test_refused_bodies),
