@@ -27,9 +27,7 @@ HE_NODISCARD he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size
  * tolerance of 0 those at equal positions become one.
  *
  * The ids of those that took in others are appended to `into`, in rising order. Refused as by
- * vertex_weld, and HE_BAD_VALUE for a negative tolerance. Linear in the vertices: cells of the
- * tolerance's size are looked up in a hash table, and none holds more of those that stay than a
- * small number. */
+ * vertex_weld, and HE_BAD_VALUE for a negative tolerance. Linear in the vertices: near.h. */
 HE_NODISCARD he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place,
                                     he_ids *into, he_error *err);
 

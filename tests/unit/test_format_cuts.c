@@ -11,7 +11,8 @@ static he_mesh *two_hubs(uint32_t quads)
     he_mesh *m = NULL;
     he_soup_init(&soup, NULL);
     for (uint32_t v = 0; v < 3 + 3 * quads; v++) {
-        he_vec3 p = {v < 3 ? v : 0.5, v % 3, 1 + v / 3};
+        const uint32_t layer = v / 3;
+        he_vec3 p = {v < 3 ? v : 0.5, v % 3, 1 + layer};
         assert_int_equal(he_soup_add_vertex(&soup, p, NULL), HE_OK);
     }
     for (uint32_t i = 0; i < quads; i++) {
