@@ -1,8 +1,8 @@
 /* Vertices in the same place, by a hash table of cells.
  *
- * Cells are CELL times as wide as what is merged, so that most vertices need to look into one cell
- * only. Of vertices that are near to each other one stays in the table, the others are listed: so a
- * cell never holds more than what fits into it that far apart. */
+ * Cells are CELL times as wide as what is merged: few vertices need to look into all of the cells
+ * around, and few fit into one. Of vertices that are near to each other one stays in the table, the
+ * others are listed: so a cell never holds more than what fits into it that far apart. */
 #include "query/defects.h"
 
 #include "mesh/walk.h"
@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-enum { CELL = 8 };
+enum { CELL = 4 };
 
 /* Of an open table: probed one after another, up to the first that is free. */
 typedef struct slot {
