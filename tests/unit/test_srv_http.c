@@ -357,6 +357,18 @@ static void wait_at_gate(void *context)
     pthread_mutex_unlock(&gate);
 }
 
+/* The one thread for long work stands at the gate. */
+static void shut_gate(void)
+{
+    gate_entered = gate_open = false;
+    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    pthread_mutex_lock(&gate);
+    while (!gate_entered) {
+        pthread_cond_wait(&gate_changed, &gate);
+    }
+    pthread_mutex_unlock(&gate);
+}
+
 static void open_gate(void)
 {
     pthread_mutex_lock(&gate);
@@ -369,13 +381,7 @@ static void test_full_queue_is_503(void **state)
 {
     (void)state;
     slow_advance(UINT64_MAX);
-    gate_entered = gate_open = false;
-    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
-    pthread_mutex_lock(&gate);
-    while (!gate_entered) {
-        pthread_cond_wait(&gate_changed, &gate);
-    }
-    pthread_mutex_unlock(&gate);
+    shut_gate();
     assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
     assert_false(srv_jobs_submit(jobs, wait_at_gate, NULL));
 
@@ -423,8 +429,7 @@ static void test_a_stop_after_a_held_client_hung_up(void **state)
 static void test_a_stop_after_a_working_client_hung_up(void **state)
 {
     slow_advance(UINT64_MAX);
-    gate_open = false;
-    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    shut_gate();
     int writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
     assert_held(writer);
