@@ -439,6 +439,34 @@ static void test_a_stop_after_a_working_client_hung_up(void **state)
     start(state);
 }
 
+/* Nor is his work done when there is nobody to tell. */
+static void test_work_of_who_hung_up_is_given_up(void **state)
+{
+    (void)state;
+    static const char large[] = "{\"shape\":\"icosphere\",\"subdivisions\":6}";
+    slow_advance(UINT64_MAX);
+    shut_gate();
+    int writer = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", large);
+    assert_held(writer);
+    hang_up(writer);
+    open_gate();
+    int status;
+    do { /* until the queue has room, and after it */
+        status = round_trip("PUT", "/v1/meshes/n", large);
+    } while (status == 503);
+    assert_int_equal(status, 201);
+    assert_int_equal(round_trip("GET", "/v1/meshes/m", ""), 404);
+
+    /* Who has only closed his side still reads. */
+    char text[8192];
+    writer = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", large);
+    assert_int_equal(shutdown(writer, SHUT_WR), 0);
+    assert_int_equal(answer(writer, text, sizeof text), 201);
+    close(writer);
+}
+
 static void test_too_many_connections(void **state)
 {
     (void)state;
@@ -518,6 +546,7 @@ int main(void)
         TEST(test_a_stop_ends_what_waits),
         TEST(test_a_stop_after_a_held_client_hung_up),
         TEST(test_a_stop_after_a_working_client_hung_up),
+        TEST(test_work_of_who_hung_up_is_given_up),
         TEST(test_full_queue_is_503),
         TEST(test_too_many_connections),
         TEST(test_refused_bodies),
