@@ -115,7 +115,7 @@ api_step api_work(api_exchange *exchange);
 /* The exchange to answer the client with, 202 or 503; `exchange` is not the caller's any more.
  * NULL when memory is out: then it still is. */
 api_exchange *api_detach(api_exchange *exchange);
-/* Before api_work, of a job: `tell` is called as watch.h says. */
+/* Before api_work: `tell` is called as watch.h says, by its thread. */
 void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
                void *context);
 const api_answer *api_answer_of(const api_exchange *exchange);

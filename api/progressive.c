@@ -1,5 +1,7 @@
 /* GET .../progressive: a coarse mesh and the way back, made from a snapshot; see progressive_rows.h
- * for its bytes. It is made anew for each answer, and the same each time: nothing is kept. */
+ * for its bytes. It is made anew for each answer, and the same each time: nothing is kept. While it
+ * is made, by as many threads as there are for long work, it takes about three times the mesh;
+ * while it is sent, what is still to be sent. */
 #include "api/handlers.h"
 
 #include "api/progressive_rows.h"
@@ -10,9 +12,8 @@
 
 static void free_progressive(void *stream)
 {
-    api_progressive *p = stream;
-    he_progressive_clear(&p->mesh);
-    he_mem_free(p);
+    api_progressive_clear(stream);
+    he_mem_free(stream);
 }
 
 static int64_t read_progressive(void *stream, char *buffer, size_t size)
@@ -33,9 +34,9 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
 {
     he_error err = {0};
     he_box box = {0};
-    if (he_progressive_new(mesh, (uint32_t)api_param_u64(x, "faces", 0), &p->mesh, &err) != HE_OK) {
-        api_fail_core(x, &err);
-        return false;
+    uint32_t faces = (uint32_t)api_param_u64(x, "faces", 0);
+    if (he_progressive_new(mesh, faces, x->watch, &p->mesh, &err) != HE_OK) {
+        return api_fail_core(x, &err);
     }
     if (he_mesh_box(mesh, &box)) {
         p->low = box.min;
@@ -47,7 +48,7 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     uint64_t most = api_param_u64(x, "splits", HE_MAX_ROWS);
     p->revision = x->info.revision;
     p->wanted = p->mesh.count < most ? p->mesh.count : (size_t)most;
-    return true;
+    return api_progressive_write(p, &err) == HE_OK || api_fail_core(x, &err);
 }
 
 void api_progressive_get(api_exchange *x)

@@ -1,37 +1,149 @@
 #include "api/progressive_rows.h"
 
+#include "mesh/mem.h"
 #include "mesh/walk.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum { VERSION = 1, HEADER = 104, VERTEX = 32, ROW = 16 };
 
-static void put_u32(api_progressive *p, uint32_t value)
+static unsigned char *put_u32(unsigned char *at, uint32_t value)
 {
     for (unsigned shift = 0; shift < 32; shift += 8) {
-        p->buffer[p->end++] = (unsigned char)(value >> shift);
+        *at++ = (unsigned char)(value >> shift);
     }
+    return at;
 }
 
-static void put_u64(api_progressive *p, uint64_t value)
+static unsigned char *put_u64(unsigned char *at, uint64_t value)
 {
-    put_u32(p, (uint32_t)value);
-    put_u32(p, (uint32_t)(value >> 32));
+    at = put_u32(at, (uint32_t)value);
+    return put_u32(at, (uint32_t)(value >> 32));
 }
 
-static void put_point(api_progressive *p, he_vec3 point)
+static unsigned char *put_point(unsigned char *at, he_vec3 point)
 {
     const double values[3] = {point.x, point.y, point.z};
     for (unsigned i = 0; i < 3; i++) {
         uint64_t bits;
         memcpy(&bits, &values[i], sizeof bits);
-        put_u64(p, bits);
+        at = put_u64(at, bits);
+    }
+    return at;
+}
+
+/* --- the base --- */
+
+static unsigned char *put_header(unsigned char *at, const api_progressive *p)
+{
+    const he_mesh *base = p->mesh.base;
+    memcpy(at, "HEDP", 4);
+    at = put_u32(at + 4, VERSION);
+    at = put_u64(at, p->revision);
+    at = put_u32(at, he_mesh_vertices(base));
+    at = put_u32(at, he_mesh_edges(base));
+    at = put_u32(at, he_mesh_faces(base));
+    at = put_u32(at, (uint32_t)p->wanted);
+    at = put_u32(at, (uint32_t)p->mesh.count);
+    at = put_u32(at, 0);
+    at = put_u32(at, p->issued[HE_VERTEX]);
+    at = put_u32(at, p->issued[HE_EDGE]);
+    at = put_u32(at, p->issued[HE_FACE]);
+    at = put_u32(at, 0);
+    at = put_point(at, p->low);
+    return put_point(at, p->high);
+}
+
+static unsigned char *put_element(unsigned char *at, const he_mesh *base, he_kind kind, uint32_t id)
+{
+    at = put_u32(at, id);
+    if (kind == HE_VERTEX) {
+        at = put_u32(at, 0);
+        return put_point(at, he_position(base, (he_vertex){id}));
+    }
+    if (kind == HE_EDGE) {
+        at = put_u32(at, he_origin(base, he_edge_halfedge((he_edge){id}, 0)).i);
+        at = put_u32(at, he_origin(base, he_edge_halfedge((he_edge){id}, 1)).i);
+        return put_u32(at, 0);
+    }
+    he_halfedge h = he_face_halfedge(base, (he_face){id});
+    for (unsigned i = 0; i < 3; i++) {
+        at = put_u32(at, he_origin(base, h).i);
+        h = he_next(base, h);
+    }
+    return at;
+}
+
+/* Splits are sent from the last to the first: those before `first` are not. */
+static void drop_splits(he_progressive *mesh, size_t first)
+{
+    if (first == 0) {
+        return;
+    }
+    mesh->count -= first;
+    size_t moved = mesh->count == 0 ? mesh->moved.count : mesh->splits[first].first_moved;
+    memmove(mesh->splits, mesh->splits + first, mesh->count * sizeof *mesh->splits);
+    for (size_t i = 0; i < mesh->count; i++) {
+        mesh->splits[i].first_moved -= moved;
+    }
+    mesh->moved.count -= moved;
+    memmove(mesh->moved.ids, mesh->moved.ids + moved, mesh->moved.count * sizeof *mesh->moved.ids);
+}
+
+/* Give back what room the lists have beyond their rows, which may fail. */
+static void fit(he_progressive *mesh)
+{
+    he_vertex_split *splits = he_mem_array(mesh->splits, mesh->count + 1, sizeof *splits);
+    if (splits != NULL) {
+        mesh->splits = splits;
+        mesh->capacity = mesh->count + 1;
+    }
+    uint32_t *ids = he_mem_array(mesh->moved.ids, mesh->moved.count + 1, sizeof *ids);
+    if (ids != NULL) {
+        mesh->moved.ids = ids;
+        mesh->moved.capacity = mesh->moved.count + 1;
     }
 }
 
-static const he_vertex_split *split_at(const api_progressive *p, uint64_t i)
+he_status api_progressive_write(api_progressive *p, he_error *err)
 {
-    return &p->mesh.splits[p->mesh.count - 1 - (size_t)i];
+    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    const he_mesh *base = p->mesh.base;
+    p->base_bytes = HEADER + (size_t)he_mesh_vertices(base) * VERTEX +
+                    ((size_t)he_mesh_edges(base) + he_mesh_faces(base)) * ROW;
+    p->base = he_mem_alloc(p->base_bytes);
+    if (p->base == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu bytes of the base",
+                             p->base_bytes);
+    }
+    unsigned char *at = put_header(p->base, p);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        for (uint32_t id = he_mesh_next_live(base, kinds[k], 0); id != HE_NONE;
+             id = he_mesh_next_live(base, kinds[k], (uint64_t)id + 1)) {
+            at = put_element(at, base, kinds[k], id);
+        }
+    }
+    assert(at == p->base + p->base_bytes);
+    he_mesh_free(p->mesh.base);
+    p->mesh.base = NULL;
+    drop_splits(&p->mesh, p->mesh.count - p->wanted);
+    fit(&p->mesh);
+    return HE_OK;
+}
+
+void api_progressive_clear(api_progressive *p)
+{
+    he_progressive_clear(&p->mesh);
+    he_mem_free(p->base);
+    p->base = NULL;
+}
+
+/* --- the splits --- */
+
+static const he_vertex_split *split_at(const api_progressive *p, size_t i)
+{
+    return &p->mesh.splits[p->mesh.count - 1 - i];
 }
 
 static size_t split_bytes(const he_vertex_split *split)
@@ -41,57 +153,15 @@ static size_t split_bytes(const he_vertex_split *split)
 
 int64_t api_progressive_bytes(const api_progressive *p)
 {
-    const he_mesh *base = p->mesh.base;
-    uint64_t bytes = HEADER + (uint64_t)he_mesh_vertices(base) * VERTEX +
-                     ((uint64_t)he_mesh_edges(base) + he_mesh_faces(base)) * ROW;
+    uint64_t bytes = p->base_bytes;
     for (size_t i = 0; i < p->wanted; i++) {
         bytes += split_bytes(split_at(p, i));
     }
     return (int64_t)bytes;
 }
 
-static void put_header(api_progressive *p)
-{
-    const he_mesh *base = p->mesh.base;
-    memcpy(p->buffer, "HEDP", 4);
-    p->end = 4;
-    put_u32(p, VERSION);
-    put_u64(p, p->revision);
-    put_u32(p, he_mesh_vertices(base));
-    put_u32(p, he_mesh_edges(base));
-    put_u32(p, he_mesh_faces(base));
-    put_u32(p, (uint32_t)p->wanted);
-    put_u32(p, (uint32_t)p->mesh.count);
-    put_u32(p, 0);
-    put_u32(p, p->issued[HE_VERTEX]);
-    put_u32(p, p->issued[HE_EDGE]);
-    put_u32(p, p->issued[HE_FACE]);
-    put_u32(p, 0);
-    put_point(p, p->low);
-    put_point(p, p->high);
-}
-
-static void put_element(api_progressive *p, he_kind kind, uint32_t id)
-{
-    const he_mesh *base = p->mesh.base;
-    put_u32(p, id);
-    if (kind == HE_VERTEX) {
-        put_u32(p, 0);
-        put_point(p, he_position(base, (he_vertex){id}));
-    } else if (kind == HE_EDGE) {
-        put_u32(p, he_origin(base, he_edge_halfedge((he_edge){id}, 0)).i);
-        put_u32(p, he_origin(base, he_edge_halfedge((he_edge){id}, 1)).i);
-        put_u32(p, 0);
-    } else {
-        he_halfedge h = he_face_halfedge(base, (he_face){id});
-        for (unsigned i = 0; i < 3; i++) {
-            put_u32(p, he_origin(base, h).i);
-            h = he_next(base, h);
-        }
-    }
-}
-
-static void put_split(api_progressive *p, const he_vertex_split *split)
+static unsigned char *put_split(unsigned char *at, const api_progressive *p,
+                                const he_vertex_split *split)
 {
     const uint32_t words[] = {(uint32_t)split_bytes(split),
                               split->vertex,
@@ -106,58 +176,38 @@ static void put_split(api_progressive *p, const he_vertex_split *split)
                               split->moved,
                               0};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        put_u32(p, words[i]);
+        at = put_u32(at, words[i]);
     }
-    put_point(p, split->at);
-    put_point(p, split->from_at);
+    at = put_point(at, split->at);
+    at = put_point(at, split->from_at);
     for (uint32_t i = 0; i < split->moved; i++) {
-        put_u32(p, p->mesh.moved.ids[split->first_moved + i]);
+        at = put_u32(at, p->mesh.moved.ids[split->first_moved + i]);
     }
-    if (split->moved % 2 != 0) {
-        put_u32(p, 0);
-    }
+    return split->moved % 2 != 0 ? put_u32(at, 0) : at;
 }
 
-static const he_kind parts[] = {HE_VERTEX, HE_EDGE, HE_FACE};
-enum { PARTS = sizeof parts / sizeof *parts };
-
-/* One more row into the buffer; false at the end. */
-static bool fill(api_progressive *p)
+static size_t take(char *buffer, size_t size, const unsigned char *bytes, size_t left)
 {
-    p->begin = p->end = 0;
-    if (p->part == 0) {
-        put_header(p);
-        p->part = 1;
-        p->next = 0;
-        return true;
-    }
-    for (; p->part <= PARTS; p->part++, p->next = 0) {
-        he_kind kind = parts[p->part - 1];
-        uint32_t id = he_mesh_next_live(p->mesh.base, kind, p->next);
-        if (id != HE_NONE) {
-            put_element(p, kind, id);
-            p->next = (uint64_t)id + 1;
-            return true;
-        }
-    }
-    if (p->next < p->wanted) {
-        put_split(p, split_at(p, p->next++));
-        return true;
-    }
-    return false;
+    size_t count = left < size ? left : size;
+    memcpy(buffer, bytes, count);
+    return count;
 }
 
 size_t api_progressive_read(api_progressive *p, char *buffer, size_t size)
 {
-    size_t done = 0;
+    size_t done = take(buffer, size, p->base + p->base_sent, p->base_bytes - p->base_sent);
+    p->base_sent += done;
     while (done < size) {
-        if (p->begin == p->end && !fill(p)) {
-            break;
+        if (p->begin == p->end) {
+            if (p->next == p->wanted) {
+                break;
+            }
+            p->begin = 0;
+            p->end = (size_t)(put_split(p->split, p, split_at(p, p->next++)) - p->split);
         }
-        size_t take = p->end - p->begin < size - done ? p->end - p->begin : size - done;
-        memcpy(buffer + done, p->buffer + p->begin, take);
-        p->begin += take;
-        done += take;
+        size_t taken = take(buffer + done, size - done, p->split + p->begin, p->end - p->begin);
+        p->begin += taken;
+        done += taken;
     }
     return done;
 }

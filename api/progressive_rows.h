@@ -37,20 +37,26 @@
 
 enum { API_SPLIT_BYTES = 96 + 4 * HE_DECIMATE_DEGREE + 8 };
 
-/* How far a progressive mesh has been sent. */
+/* A progressive mesh on its way: what is held is what is to be sent. */
 typedef struct api_progressive {
-    he_progressive mesh;
+    he_progressive mesh; /* its base goes when it has been written */
     uint64_t revision;
     size_t wanted; /* splits */
     uint32_t issued[HE_KIND_COUNT];
     he_vec3 low, high;
-    int part;
-    uint64_t next; /* row of the part */
+    unsigned char *base; /* the header, and the elements of the base */
+    size_t base_bytes, base_sent;
+    size_t next; /* split */
     size_t begin, end;
-    unsigned char buffer[API_SPLIT_BYTES];
+    unsigned char split[API_SPLIT_BYTES];
 } api_progressive;
 
-/* Of the answer. */
+void api_progressive_clear(api_progressive *p);
+
+/* Write the base, and let go of its mesh and of the splits that are not wanted. All members down to
+ * `high` are set. HE_NO_MEMORY. */
+HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_error *err);
+/* Of the answer; after write. */
 int64_t api_progressive_bytes(const api_progressive *p);
 /* The next bytes of it, 0 at its end. */
 size_t api_progressive_read(api_progressive *p, char *buffer, size_t size);

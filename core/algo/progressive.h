@@ -41,9 +41,10 @@ typedef struct he_progressive {
 } he_progressive;
 
 /* Decimate a copy to so many faces, or to the fewest there can be, and remember how. What decimate
- * refuses, HE_NO_MEMORY. Under the mesh's watch: HE_CANCELLED. */
-HE_NODISCARD he_status he_progressive_new(const he_mesh *m, uint32_t faces, he_progressive *out,
-                                          he_error *err);
+ * refuses, HE_NO_MEMORY; HE_CANCELLED by the watch, which may be NULL and is not the mesh's: others
+ * may read that one meanwhile. */
+HE_NODISCARD he_status he_progressive_new(const he_mesh *m, uint32_t faces, he_watch *watch,
+                                          he_progressive *out, he_error *err);
 void he_progressive_clear(he_progressive *progressive);
 
 #endif

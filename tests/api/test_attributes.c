@@ -1,8 +1,7 @@
 /* Attributes: what is written is read back bit for bit, by JSON, by octets, through documents,
  * copies, compact, undo and redo; what is wrong is refused with its pointer. */
-#include "tests/api/request.h"
+#include "tests/api/strip.h"
 
-#include "api/limits.h"
 #include "tests/model/random.h"
 #include "tests/seed.h"
 
@@ -16,14 +15,6 @@
 
 #include <cmocka.h>
 
-static const char OCTETS[] = "application/octet-stream";
-
-static void send(api_bench *b, int status, const char *method, const char *target, const char *body)
-{
-    bench_reply r = bench_expect(status, bench_send(b, method, target, NULL, body));
-    bench_reply_free(&r);
-}
-
 /* The answer's body, for the caller to free. */
 static char *read_all(api_bench *b, const char *target, const char *accept, size_t *length)
 {
@@ -35,22 +26,6 @@ static char *read_all(api_bench *b, const char *target, const char *accept, size
     *length = r.length;
     bench_reply_free(&r);
     return copy;
-}
-
-/* A strip of polygons with a dead face and a dead vertex when `edited`. */
-static void make(api_bench *b, const char *id, bool edited)
-{
-    char target[64];
-    snprintf(target, sizeof target, "/v1/meshes?id=%s", id);
-    send(b, 201, "POST", target,
-         "{\"vertices\":[[0,0,0],[1,0,0],[2,0,0],[0,1,0],[1,1,0],[2,1,0],[5,5,5]],"
-         "\"faces\":[[0,1,4,3],[1,2,5,4]]}");
-    if (edited) {
-        snprintf(target, sizeof target, "/v1/meshes/%s/edits", id);
-        send(b, 200, "POST", target,
-             "{\"ops\":[{\"op\":\"face_poke\",\"face\":1},{\"op\":\"face_delete\",\"face\":2},"
-             "{\"op\":\"edge_bisect\",\"edge\":0},{\"op\":\"vertex_delete\",\"vertex\":6}]}");
-    }
 }
 
 /* --- every domain, type, rule and number of components --- */
@@ -87,9 +62,9 @@ static size_t issued_rows(api_bench *b, const char *mesh, const char *domain)
     char target[96];
     size_t length;
     snprintf(target, sizeof target, "/v1/meshes/%s/attributes/%s/probe", mesh, domain);
-    send(b, 201, "PUT", target, "{\"type\":\"bool\"}");
+    strip_send(b, 201, "PUT", target, "{\"type\":\"bool\"}");
     free(read_all(b, target, OCTETS, &length));
-    send(b, 200, "DELETE", target, NULL);
+    strip_send(b, 200, "DELETE", target, NULL);
     return length;
 }
 
@@ -176,18 +151,19 @@ static void documents_carry_every_value(void **state)
         api_bench *b = bench_new();
         size_t length, again, third, part;
         char target[200];
-        make(b, meshes[i], i == 1);
+        strip_make(b, meshes[i], i == 1);
         add_columns(b, meshes[i], &r);
-        send(b, 201, "PUT",
-             i == 0 ? "/v1/meshes/plain/attributes/faces/group"
-                    : "/v1/meshes/edited/attributes/faces/group",
-             "{\"type\":\"uint32\",\"labels\":[\"a \\\"b\\\"\",\"\",\"\\u00e4\"],\"value\":2}");
+        strip_send(
+            b, 201, "PUT",
+            i == 0 ? "/v1/meshes/plain/attributes/faces/group"
+                   : "/v1/meshes/edited/attributes/faces/group",
+            "{\"type\":\"uint32\",\"labels\":[\"a \\\"b\\\"\",\"\",\"\\u00e4\"],\"value\":2}");
         snprintf(target, sizeof target, "/v1/meshes/%s/content", meshes[i]);
         char *document = read_all(b, target, "application/json", &length);
-        send(b, 201, "POST", "/v1/meshes?id=two", document);
+        strip_send(b, 201, "POST", "/v1/meshes?id=two", document);
         char *two = read_all(b, "/v1/meshes/two/content", "application/json", &again);
         assert_string_equal(document, two);
-        send(b, 201, "PUT", "/v1/meshes/three", two);
+        strip_send(b, 201, "PUT", "/v1/meshes/three", two);
         char *three = read_all(b, "/v1/meshes/three/content", "application/json", &third);
         assert_string_equal(document, three);
         /* The same bits, where ids are the same. */
@@ -217,17 +193,17 @@ static void copies_and_compact_keep_values(void **state)
     md_random r = {seed_of_run()};
     api_bench *b = bench_new();
     size_t length, other;
-    make(b, "edited", true);
+    strip_make(b, "edited", true);
     add_columns(b, "edited", &r);
     char *before = dump(b, "edited", &length);
-    send(b, 201, "POST", "/v1/meshes/edited/copy", "{\"id\":\"twin\"}");
+    strip_send(b, 201, "POST", "/v1/meshes/edited/copy", "{\"id\":\"twin\"}");
     char *copy = dump(b, "twin", &other);
     assert_int_equal(length, other);
     assert_memory_equal(before, copy, length);
     /* The document numbers without holes, as compact does, but for edges: these it numbers by
      * faces. So vertices, faces and the mesh must read the same. */
     char *document = read_all(b, "/v1/meshes/edited/content", "application/json", &other);
-    send(b, 200, "POST", "/v1/meshes/edited/edits", "{\"op\":\"compact\"}");
+    strip_send(b, 200, "POST", "/v1/meshes/edited/edits", "{\"op\":\"compact\"}");
     char *compact = read_all(b, "/v1/meshes/edited/content", "application/json", &other);
     assert_string_equal(document, compact);
     free(document);
@@ -305,7 +281,7 @@ static void undo_and_redo_lead_back_bit_for_bit(void **state)
         api_bench *b = bench_new();
         size_t first, last, length;
         /* Steps end where the mesh was made. */
-        send(
+        strip_send(
             b, 201, "POST", "/v1/meshes?id=m",
             "{\"vertices\":[[0,0,0],[1,0,0],[2,0,0],[0,1,0],[1,1,0],[2,1,0]],"
             "\"faces\":[[0,1,4,3],[1,2,5,4]],\"attributes\":["
@@ -409,9 +385,10 @@ static void what_is_wrong_is_refused_with_its_pointer(void **state)
     (void)state;
     api_bench *b = bench_new();
     size_t length, after;
-    make(b, "m", true);
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/f", "{\"type\":\"float\",\"value\":3}");
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/mesh/f", "{\"type\":\"float\",\"value\":3}");
+    strip_make(b, "m", true);
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/f",
+               "{\"type\":\"float\",\"value\":3}");
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/mesh/f", "{\"type\":\"float\",\"value\":3}");
     char *before = dump(b, "m", &length);
     for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
         char target[200];
@@ -457,8 +434,8 @@ static void octets_are_checked(void **state)
         {"?type=uint32", 200, "\1\0\0\0\2\0\0\0\3\0\0\0", 12},
     };
     api_bench *b = bench_new();
-    send(b, 201, "POST", "/v1/meshes?id=m",
-         "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2]]}");
+    strip_send(b, 201, "POST", "/v1/meshes?id=m",
+               "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2]]}");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char target[200];
         const char *const headers[] = {"Content-Type", OCTETS, NULL};
@@ -559,178 +536,6 @@ static void documents_are_read_whole_or_not_at_all(void **state)
     bench_free(b);
 }
 
-/* --- sets, dry runs, limits --- */
-
-static uint64_t revision_of(api_bench *b)
-{
-    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m", NULL, NULL));
-    uint64_t revision = (uint64_t)cJSON_GetObjectItem(r.json, "revision")->valuedouble;
-    bench_reply_free(&r);
-    return revision;
-}
-
-static void sets_stand_for_lists(void **state)
-{
-    (void)state;
-    api_bench *b = bench_new();
-    send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/selected", "{\"type\":\"bool\"}");
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/kind", "{\"type\":\"int32\"}");
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/selected",
-         "{\"type\":\"bool\",\"default\":true}");
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/none", "{\"type\":\"bool\"}");
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/edges/none", "{\"type\":\"bool\"}");
-    uint64_t before = revision_of(b);
-    static const char *const nothing[] = {
-        "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1],"
-        "\"vertices\":{\"none\":true}}",
-        "{\"op\":\"vertex_move\",\"by\":[1,1,1],\"vertices\":{\"none\":true}}",
-        "{\"op\":\"delaunay\",\"edges\":{\"none\":true}}",
-        "{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}",
-        "{\"op\":\"face_triangulate\",\"faces\":{\"selected\":true}}",
-        "{\"op\":\"plane_split\",\"point\":[0,0,0],\"normal\":[1,0,0],\"faces\":{\"selected\":true}"
-        "}",
-        "{\"ops\":[{\"op\":\"face_triangulate\",\"faces\":{\"selected\":true},\"as\":\"a\"}]}",
-    };
-    for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++) {
-        send(b, 200, "POST", "/v1/meshes/m/edits", nothing[i]);
-        assert_int_equal(revision_of(b), before);
-    }
-    send(b, 422, "POST", "/v1/meshes/m/edits",
-         "{\"op\":\"face_delete\",\"faces\":{\"none\":true}}");
-    send(b, 400, "POST", "/v1/meshes/m/edits",
-         "{\"op\":\"face_delete\",\"faces\":{\"kind\":true}}");
-    send(b, 200, "POST", "/v1/meshes/m/edits",
-         "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1],"
-         "\"vertices\":{\"selected\":true}}");
-    send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/selected",
-         "{\"ids\":[0,2,5],\"value\":true}");
-    send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/kind",
-         "{\"ids\":{\"selected\":true},\"values\":[4,5,6]}");
-    bench_reply r = bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
-                                                 "{\"op\":\"face_triangulate\","
-                                                 "\"faces\":{\"selected\":true}}"));
-    assert_non_null(strstr(r.body, "\"faces\":[6,7,8]"));
-    bench_reply_free(&r);
-    r = bench_send(b, "GET", "/v1/meshes/m/attributes/faces/kind", NULL, NULL);
-    assert_non_null(strstr(r.body, "\"values\":[4,0,5,0,0,6,4,5,6]"));
-    bench_reply_free(&r);
-    r = bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
-                                     "{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}"));
-    assert_non_null(strstr(r.body, "\"faces\":[0,2,5,6,7,8]"));
-    bench_reply_free(&r);
-    bench_free(b);
-}
-
-static void what_changes_nothing_makes_no_revision(void **state)
-{
-    (void)state;
-    api_bench *b = bench_new();
-    send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/a",
-         "{\"type\":\"float\",\"value\":2,\"dry_run\":false}");
-    uint64_t before = revision_of(b);
-    send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/a", "{\"ids\":[1],\"value\":2}");
-    send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/a",
-         "{\"ids\":[1],\"value\":3,\"dry_run\":true}");
-    send(b, 200, "PUT", "/v1/meshes/m/attributes/faces/b", "{\"type\":\"bool\",\"dry_run\":true}");
-    send(b, 200, "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL);
-    const char *const headers[] = {"Content-Type", OCTETS, NULL};
-    bench_reply octets = bench_expect(
-        200, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/faces/b?type=bool&dry_run=true",
-                              headers, "\0\1\0\1\0\1", 6));
-    bench_reply_free(&octets);
-    assert_int_equal(revision_of(b), before);
-    send(b, 404, "GET", "/v1/meshes/m/attributes/faces/b", NULL);
-    bench_reply r = bench_send(b, "GET", "/v1/meshes/m/attributes/faces/a?ids=1", NULL, NULL);
-    assert_non_null(strstr(r.body, "\"values\":[2]"));
-    bench_reply_free(&r);
-    bench_free(b);
-}
-
-static const char FLAG[] = "/v1/meshes/m/attributes/faces/a";
-
-static void what_cannot_be_undone_says_so(void **state)
-{
-    (void)state;
-    static const char *const dry[] = {",\"dry_run\":true", ""};
-    static const int then[] = {200, 410};
-    api_bench *b = bench_new_within(4000, 0);
-    send(b, 201, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
-    send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
-    for (int i = 0; i < 2; i++) {
-        char body[80];
-        snprintf(body, sizeof body, "{\"ids\":\"all\",\"value\":true%s}", dry[i]);
-        bench_reply r = bench_expect(200, bench_send(b, "PATCH", FLAG, NULL, body));
-        assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
-        bench_reply_free(&r);
-        send(b, then[i], "GET", "/v1/meshes/m?revision=2", NULL);
-    }
-    send(b, 409, "POST", "/v1/meshes/m/undo", NULL);
-    bench_free(b);
-}
-
-static void the_history_counts_what_was_written(void **state)
-{
-    (void)state;
-    api_bench *b = bench_new();
-    send(b, 201, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
-    send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
-    send(b, 200, "PATCH", FLAG, "{\"ids\":[1,2],\"value\":true}");
-    send(b, 200, "DELETE", FLAG, NULL);
-    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/edits", NULL, NULL));
-    static const int modified[] = {0, 2, 0};
-    const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
-    for (size_t i = 0; i < 3; i++, entry = entry->next) {
-        const cJSON *sets = cJSON_GetObjectItem(entry, "modified");
-        assert_non_null(sets);
-        assert_int_equal(cJSON_GetObjectItem(sets, "faces")->valueint, modified[i]);
-    }
-    assert_null(entry);
-    bench_reply_free(&r);
-    bench_free(b);
-}
-
-static void there_is_a_largest_number_of_attributes(void **state)
-{
-    (void)state;
-    api_bench *b = bench_new();
-    send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
-    char target[80];
-    for (int i = 0; i < API_MAX_ATTRIBUTES; i++) {
-        snprintf(target, sizeof target, "/v1/meshes/m/attributes/faces/a%d", i);
-        send(b, 201, "PUT", target, "{\"type\":\"bool\"}");
-    }
-    send(b, 413, "PUT", "/v1/meshes/m/attributes/faces/more", "{\"type\":\"bool\"}");
-    send(b, 200, "PUT", "/v1/meshes/m/attributes/faces/a7", "{\"type\":\"float\"}");
-    send(b, 200, "DELETE", "/v1/meshes/m/attributes/faces/a9", NULL);
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/more", "{\"type\":\"bool\"}");
-    bench_free(b);
-}
-
-static void a_page_leads_to_the_next(void **state)
-{
-    (void)state;
-    api_bench *b = bench_new();
-    make(b, "m", true);
-    send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/a%20%22%C3%A4", "{\"type\":\"float\"}");
-    char target[400] = "/v1/meshes/m/attributes/vertices/a%20%22%C3%A4?limit=3";
-    unsigned ids = 0;
-    for (;;) {
-        bench_reply r = bench_expect(200, bench_send(b, "GET", target, NULL, NULL));
-        ids += (unsigned)cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "ids"));
-        const char *link = bench_header(&r, "Link");
-        if (link[0] == '\0') {
-            bench_reply_free(&r);
-            break;
-        }
-        snprintf(target, sizeof target, "%.*s", (int)strcspn(link + 1, ">"), link + 1);
-        bench_reply_free(&r);
-    }
-    assert_int_equal(ids, 8);
-    bench_free(b);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -740,12 +545,6 @@ int main(void)
         cmocka_unit_test(what_is_wrong_is_refused_with_its_pointer),
         cmocka_unit_test(octets_are_checked),
         cmocka_unit_test(documents_are_read_whole_or_not_at_all),
-        cmocka_unit_test(sets_stand_for_lists),
-        cmocka_unit_test(what_changes_nothing_makes_no_revision),
-        cmocka_unit_test(what_cannot_be_undone_says_so),
-        cmocka_unit_test(the_history_counts_what_was_written),
-        cmocka_unit_test(there_is_a_largest_number_of_attributes),
-        cmocka_unit_test(a_page_leads_to_the_next),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,8 @@
 
 #include "edit/cut.h"
 
+#include <malloc.h>
+
 enum { HEADER = 104, VERTEX = 32, ROW = 16, SPLIT = 96 };
 
 static uint32_t u32_at(const char *p)
@@ -333,6 +335,128 @@ static void the_mesh_is_not_changed(void **state)
     bench_free(b);
 }
 
+/* --- given up, short of memory, and what it holds --- */
+
+#define LARGE "{\"shape\":\"icosphere\",\"subdivisions\":4}"
+
+static api_exchange *ask(api_bench *b, const char *query,
+                         bool (*tell)(void *context, const char *phase, double done), void *context)
+{
+    const api_request request = {
+        .method = "GET", .path = "/v1/meshes/m/progressive", .query = query, .request_id = "test"};
+    api_step step;
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    if (x == NULL) {
+        return NULL;
+    }
+    step = step == API_MORE ? api_end(x) : step;
+    if (step == API_WORK) {
+        api_watch(x, tell, context);
+        step = api_work(x);
+    }
+    assert_int_equal(step, API_READY);
+    return x;
+}
+
+/* False from the n-th time on; never for 0. */
+static bool count_down(void *context, const char *phase, double done)
+{
+    (void)phase;
+    assert_true(done >= 0 && done <= 1);
+    return *(int *)context == 0 || --*(int *)context > 0;
+}
+
+static void it_can_be_given_up_at_any_time(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    make(b, "m", LARGE);
+    int given_up = 0;
+    for (int n = 1;; n++) {
+        int left = n;
+        api_exchange *x = ask(b, "", count_down, &left);
+        int status = api_answer_of(x)->status;
+        api_free(x);
+        if (left > 0) {
+            assert_int_equal(status, 200); /* it was not asked so often */
+            break;
+        }
+        assert_int_equal(status, 503);
+        given_up++;
+    }
+    assert_true(given_up > 5);
+    replay(b, "m");
+    bench_free(b);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    make(b, "m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
+    int never = 0;
+    for (long n = 1;; n++) {
+        fixture_fail_at(n);
+        api_exchange *x = ask(b, "splits=50", count_down, &never);
+        int status = x == NULL ? 507 : api_answer_of(x)->status;
+        api_free(x);
+        fixture_memory_back();
+        if (n > fixture_memory.calls) {
+            assert_int_equal(status, 200);
+            break;
+        }
+        assert_true(status == 507 || status == 200); /* it can do without room to give back */
+    }
+    replay(b, "m");
+    bench_free(b);
+}
+
+/* What is held, as malloc sees it. */
+static size_t held;
+
+static void *count_resize(void *context, void *memory, size_t size)
+{
+    (void)context;
+    held -= memory == NULL ? 0 : malloc_usable_size(memory);
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    void *resized = realloc(memory, size);
+    assert_non_null(resized);
+    held += malloc_usable_size(resized);
+    return resized;
+}
+
+/* While it is sent, however slowly, it holds what is to be sent and not the mesh. */
+static void an_answer_holds_little_more_than_its_bytes(void **state)
+{
+    (void)state;
+    static const char *const queries[] = {"", "splits=10", "faces=2000", "faces=1000&splits=0",
+                                          "faces=5120"};
+    static const he_mem_hook hook = {count_resize, NULL};
+    he_mem_set_hook(&hook);
+    held = 0;
+    api_bench *b = bench_new();
+    make(b, "m", LARGE);
+    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive"))); /* with a snapshot */
+    int never = 0;
+    for (size_t i = 0; i < sizeof queries / sizeof *queries; i++) {
+        size_t before = held;
+        api_exchange *x = ask(b, queries[i], count_down, &never);
+        const api_answer *answer = api_answer_of(x);
+        assert_int_equal(answer->status, 200);
+        size_t most = (size_t)answer->length * 5 / 4 + 16384;
+        if (held - before > most) {
+            fail_msg("?%s: %zu bytes for %zu", queries[i], held - before, (size_t)answer->length);
+        }
+        api_free(x);
+    }
+    bench_free(b);
+    assert_int_equal(held, 0);
+    he_mem_set_hook(NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -340,6 +464,9 @@ int main(void)
         cmocka_unit_test(ids_that_are_not_in_order_come_back),
         cmocka_unit_test(a_base_and_a_number_of_splits_can_be_chosen),
         cmocka_unit_test(the_mesh_is_not_changed),
+        cmocka_unit_test(it_can_be_given_up_at_any_time),
+        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(an_answer_holds_little_more_than_its_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

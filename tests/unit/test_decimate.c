@@ -698,7 +698,7 @@ static void a_progressive_mesh_may_run_out_of_memory(void **state)
     for (long n = 1; failed; n++) {
         he_progressive made = {0};
         fixture_fail_at(n);
-        he_status status = he_progressive_new(first, 0, &made, NULL);
+        he_status status = he_progressive_new(first, 0, NULL, &made, NULL);
         failed = status != HE_OK;
         fixture_fail_at(0);
         assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);

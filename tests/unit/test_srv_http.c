@@ -357,6 +357,18 @@ static void wait_at_gate(void *context)
     pthread_mutex_unlock(&gate);
 }
 
+/* The one thread for long work stands at the gate. */
+static void shut_gate(void)
+{
+    gate_entered = gate_open = false;
+    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    pthread_mutex_lock(&gate);
+    while (!gate_entered) {
+        pthread_cond_wait(&gate_changed, &gate);
+    }
+    pthread_mutex_unlock(&gate);
+}
+
 static void open_gate(void)
 {
     pthread_mutex_lock(&gate);
@@ -369,13 +381,7 @@ static void test_full_queue_is_503(void **state)
 {
     (void)state;
     slow_advance(UINT64_MAX);
-    gate_entered = gate_open = false;
-    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
-    pthread_mutex_lock(&gate);
-    while (!gate_entered) {
-        pthread_cond_wait(&gate_changed, &gate);
-    }
-    pthread_mutex_unlock(&gate);
+    shut_gate();
     assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
     assert_false(srv_jobs_submit(jobs, wait_at_gate, NULL));
 
@@ -423,8 +429,7 @@ static void test_a_stop_after_a_held_client_hung_up(void **state)
 static void test_a_stop_after_a_working_client_hung_up(void **state)
 {
     slow_advance(UINT64_MAX);
-    gate_open = false;
-    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    shut_gate();
     int writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
     assert_held(writer);
@@ -432,6 +437,34 @@ static void test_a_stop_after_a_working_client_hung_up(void **state)
     open_gate();
     assert_int_equal(stop(state), 0);
     start(state);
+}
+
+/* Nor is his work done when there is nobody to tell. */
+static void test_work_of_who_hung_up_is_given_up(void **state)
+{
+    (void)state;
+    static const char large[] = "{\"shape\":\"icosphere\",\"subdivisions\":6}";
+    slow_advance(UINT64_MAX);
+    shut_gate();
+    int writer = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", large);
+    assert_held(writer);
+    hang_up(writer);
+    open_gate();
+    int status;
+    do { /* until the queue has room, and after it */
+        status = round_trip("PUT", "/v1/meshes/n", large);
+    } while (status == 503);
+    assert_int_equal(status, 201);
+    assert_int_equal(round_trip("GET", "/v1/meshes/m", ""), 404);
+
+    /* Who has only closed his side still reads. */
+    char text[8192];
+    writer = connect_client();
+    ask(writer, "PUT", "/v1/meshes/m", large);
+    assert_int_equal(shutdown(writer, SHUT_WR), 0);
+    assert_int_equal(answer(writer, text, sizeof text), 201);
+    close(writer);
 }
 
 static void test_too_many_connections(void **state)
@@ -513,6 +546,7 @@ int main(void)
         TEST(test_a_stop_ends_what_waits),
         TEST(test_a_stop_after_a_held_client_hung_up),
         TEST(test_a_stop_after_a_working_client_hung_up),
+        TEST(test_work_of_who_hung_up_is_given_up),
         TEST(test_full_queue_is_503),
         TEST(test_too_many_connections),
         TEST(test_refused_bodies),

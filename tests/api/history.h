@@ -1,0 +1,47 @@
+/* history.h - a short history to ask about: what test_history.c and test_past.c share. */
+#ifndef TESTS_API_HISTORY_H
+#define TESTS_API_HISTORY_H
+
+#include "tests/api/request.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+enum { TARGET = 200 };
+
+static inline bench_reply history_post(api_bench *b, const char *what, const char *body)
+{
+    char target[TARGET];
+    snprintf(target, sizeof target, "/v1/meshes/m/%s", what);
+    return bench_send(b, "POST", target, NULL, body);
+}
+
+static inline double history_number(const cJSON *object, const char *name)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+    assert_true(cJSON_IsNumber(item));
+    return item->valuedouble;
+}
+
+static inline const char *history_code(const bench_reply *r)
+{
+    return cJSON_GetObjectItemCaseSensitive(r->json, "code")->valuestring;
+}
+
+/* Revision 2 pokes a face of a cube, 3 deletes another, 4 undoes that. */
+static inline api_bench *history_begin(void)
+{
+    api_bench *b = bench_new();
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":0}")));
+    bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_delete\",\"face\":1}")));
+    bench_done(bench_expect(200, history_post(b, "undo", NULL)));
+    return b;
+}
+
+#endif

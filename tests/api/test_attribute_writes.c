@@ -1,0 +1,198 @@
+/* Writing attributes: sets that stand for lists, what makes a revision and what does not, undo of
+ * what is large, and how many there may be. */
+#include "tests/api/strip.h"
+
+#include "api/limits.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static uint64_t revision_of(api_bench *b)
+{
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m", NULL, NULL));
+    uint64_t revision = (uint64_t)cJSON_GetObjectItem(r.json, "revision")->valuedouble;
+    bench_reply_free(&r);
+    return revision;
+}
+
+static void sets_stand_for_lists(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    strip_send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/selected", "{\"type\":\"bool\"}");
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/kind", "{\"type\":\"int32\"}");
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/selected",
+               "{\"type\":\"bool\",\"default\":true}");
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/none", "{\"type\":\"bool\"}");
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/edges/none", "{\"type\":\"bool\"}");
+    uint64_t before = revision_of(b);
+    static const char *const nothing[] = {
+        "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1],"
+        "\"vertices\":{\"none\":true}}",
+        "{\"op\":\"vertex_move\",\"by\":[1,1,1],\"vertices\":{\"none\":true}}",
+        "{\"op\":\"delaunay\",\"edges\":{\"none\":true}}",
+        "{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}",
+        "{\"op\":\"face_triangulate\",\"faces\":{\"selected\":true}}",
+        "{\"op\":\"plane_split\",\"point\":[0,0,0],\"normal\":[1,0,0],\"faces\":{\"selected\":true}"
+        "}",
+        "{\"ops\":[{\"op\":\"face_triangulate\",\"faces\":{\"selected\":true},\"as\":\"a\"}]}",
+    };
+    for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++) {
+        strip_send(b, 200, "POST", "/v1/meshes/m/edits", nothing[i]);
+        assert_int_equal(revision_of(b), before);
+    }
+    strip_send(b, 422, "POST", "/v1/meshes/m/edits",
+               "{\"op\":\"face_delete\",\"faces\":{\"none\":true}}");
+    strip_send(b, 400, "POST", "/v1/meshes/m/edits",
+               "{\"op\":\"face_delete\",\"faces\":{\"kind\":true}}");
+    strip_send(b, 200, "POST", "/v1/meshes/m/edits",
+               "{\"op\":\"transform\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1],"
+               "\"vertices\":{\"selected\":true}}");
+    strip_send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/selected",
+               "{\"ids\":[0,2,5],\"value\":true}");
+    strip_send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/kind",
+               "{\"ids\":{\"selected\":true},\"values\":[4,5,6]}");
+    bench_reply r = bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
+                                                 "{\"op\":\"face_triangulate\","
+                                                 "\"faces\":{\"selected\":true}}"));
+    assert_non_null(strstr(r.body, "\"faces\":[6,7,8]"));
+    bench_reply_free(&r);
+    r = bench_send(b, "GET", "/v1/meshes/m/attributes/faces/kind", NULL, NULL);
+    assert_non_null(strstr(r.body, "\"values\":[4,0,5,0,0,6,4,5,6]"));
+    bench_reply_free(&r);
+    r = bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
+                                     "{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}"));
+    assert_non_null(strstr(r.body, "\"faces\":[0,2,5,6,7,8]"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static void what_changes_nothing_makes_no_revision(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    strip_send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/a",
+               "{\"type\":\"float\",\"value\":2,\"dry_run\":false}");
+    uint64_t before = revision_of(b);
+    strip_send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/a", "{\"ids\":[1],\"value\":2}");
+    strip_send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/a",
+               "{\"ids\":[1],\"value\":3,\"dry_run\":true}");
+    strip_send(b, 200, "PUT", "/v1/meshes/m/attributes/faces/b",
+               "{\"type\":\"bool\",\"dry_run\":true}");
+    strip_send(b, 200, "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL);
+    const char *const headers[] = {"Content-Type", OCTETS, NULL};
+    bench_reply octets = bench_expect(
+        200, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/faces/b?type=bool&dry_run=true",
+                              headers, "\0\1\0\1\0\1", 6));
+    bench_reply_free(&octets);
+    assert_int_equal(revision_of(b), before);
+    strip_send(b, 404, "GET", "/v1/meshes/m/attributes/faces/b", NULL);
+    bench_reply r = bench_send(b, "GET", "/v1/meshes/m/attributes/faces/a?ids=1", NULL, NULL);
+    assert_non_null(strstr(r.body, "\"values\":[2]"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static const char FLAG[] = "/v1/meshes/m/attributes/faces/a";
+
+static void what_cannot_be_undone_says_so(void **state)
+{
+    (void)state;
+    static const char *const dry[] = {",\"dry_run\":true", ""};
+    static const int then[] = {200, 410};
+    api_bench *b = bench_new_within(4000, 0);
+    strip_send(b, 201, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
+    strip_send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
+    for (int i = 0; i < 2; i++) {
+        char body[80];
+        snprintf(body, sizeof body, "{\"ids\":\"all\",\"value\":true%s}", dry[i]);
+        bench_reply r = bench_expect(200, bench_send(b, "PATCH", FLAG, NULL, body));
+        assert_true(cJSON_IsFalse(cJSON_GetObjectItem(r.json, "undoable")));
+        bench_reply_free(&r);
+        strip_send(b, then[i], "GET", "/v1/meshes/m?revision=2", NULL);
+    }
+    strip_send(b, 409, "POST", "/v1/meshes/m/undo", NULL);
+    bench_free(b);
+}
+
+static void the_history_counts_what_was_written(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    strip_send(b, 201, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    strip_send(b, 201, "PUT", FLAG, "{\"type\":\"bool\"}");
+    strip_send(b, 200, "PATCH", FLAG, "{\"ids\":[1,2],\"value\":true}");
+    strip_send(b, 200, "DELETE", FLAG, NULL);
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/edits", NULL, NULL));
+    static const int modified[] = {0, 2, 0};
+    const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
+    for (size_t i = 0; i < 3; i++, entry = entry->next) {
+        const cJSON *sets = cJSON_GetObjectItem(entry, "modified");
+        assert_non_null(sets);
+        assert_int_equal(cJSON_GetObjectItem(sets, "faces")->valueint, modified[i]);
+    }
+    assert_null(entry);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static void there_is_a_largest_number_of_attributes(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    strip_send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
+    char target[80];
+    for (int i = 0; i < API_MAX_ATTRIBUTES; i++) {
+        snprintf(target, sizeof target, "/v1/meshes/m/attributes/faces/a%d", i);
+        strip_send(b, 201, "PUT", target, "{\"type\":\"bool\"}");
+    }
+    strip_send(b, 413, "PUT", "/v1/meshes/m/attributes/faces/more", "{\"type\":\"bool\"}");
+    strip_send(b, 200, "PUT", "/v1/meshes/m/attributes/faces/a7", "{\"type\":\"float\"}");
+    strip_send(b, 200, "DELETE", "/v1/meshes/m/attributes/faces/a9", NULL);
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/faces/more", "{\"type\":\"bool\"}");
+    bench_free(b);
+}
+
+static void a_page_leads_to_the_next(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    strip_make(b, "m", true);
+    strip_send(b, 201, "PUT", "/v1/meshes/m/attributes/vertices/a%20%22%C3%A4",
+               "{\"type\":\"float\"}");
+    char target[400] = "/v1/meshes/m/attributes/vertices/a%20%22%C3%A4?limit=3";
+    unsigned ids = 0;
+    for (;;) {
+        bench_reply r = bench_expect(200, bench_send(b, "GET", target, NULL, NULL));
+        ids += (unsigned)cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "ids"));
+        const char *link = bench_header(&r, "Link");
+        if (link[0] == '\0') {
+            bench_reply_free(&r);
+            break;
+        }
+        snprintf(target, sizeof target, "%.*s", (int)strcspn(link + 1, ">"), link + 1);
+        bench_reply_free(&r);
+    }
+    assert_int_equal(ids, 8);
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sets_stand_for_lists),
+        cmocka_unit_test(what_changes_nothing_makes_no_revision),
+        cmocka_unit_test(what_cannot_be_undone_says_so),
+        cmocka_unit_test(the_history_counts_what_was_written),
+        cmocka_unit_test(there_is_a_largest_number_of_attributes),
+        cmocka_unit_test(a_page_leads_to_the_next),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

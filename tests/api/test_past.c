@@ -1,0 +1,220 @@
+/* What was: earlier revisions read as they were, and the list of them. */
+#include "tests/api/history.h"
+
+#include <inttypes.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* --- reading what was --- */
+
+static void elements_are_those_of_the_revision(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *target;
+        int status;
+    } rows[] = {
+        {"/v1/meshes/m/vertices/8", 200},
+        {"/v1/meshes/m/vertices/8?revision=1", 404}, /* made by the next revision */
+        {"/v1/meshes/m/vertices/8?revision=2", 200},
+        {"/v1/meshes/m/faces/1?revision=2", 200},
+        {"/v1/meshes/m/faces/1?revision=3", 410},
+        {"/v1/meshes/m/faces/1?revision=4", 200},
+        {"/v1/meshes/m/faces/1/edges?revision=3", 410},
+        {"/v1/meshes/m/vertices/8/faces?revision=3&cw=true", 200},
+        {"/v1/meshes/m/vertices?revision=3&limit=2", 200},
+        {"/v1/meshes/m/boundaries?revision=3", 200},
+        {"/v1/meshes/m/components?revision=3&by=edge", 200},
+        {"/v1/meshes/m/check?revision=3", 200},
+        {"/v1/meshes/m/content?revision=3&format=ply", 200},
+        {"/v1/meshes/m?revision=5", 404},
+        {"/v1/meshes/m?revision=0", 400},
+        {"/v1/meshes/m?revision=x", 400},
+        {"/v1/meshes/m/edits?revision=2", 400},
+    };
+    api_bench *b = history_begin();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        bench_done(bench_expect(rows[i].status, bench_get(b, rows[i].target)));
+    }
+    bench_reply r = bench_expect(404, bench_get(b, "/v1/meshes/m?revision=5"));
+    assert_string_equal(history_code(&r), "no_such_revision");
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m?revision=3"));
+    const cJSON *counts = cJSON_GetObjectItem(r.json, "counts");
+    assert_int_equal(history_number(r.json, "revision"), 3);
+    assert_int_equal(history_number(counts, "faces"), 8);
+    assert_int_equal(history_number(counts, "boundary_loops"), 1);
+    bench_done(r);
+    /* The summary that is kept is that of the present. */
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+    assert_int_equal(history_number(cJSON_GetObjectItem(r.json, "counts"), "faces"), 9);
+    bench_done(r);
+    bench_free(b);
+}
+
+static void a_tag_names_the_revision_that_was_read(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {"?revision=2", "/vertices/8?revision=2",
+                                          "/faces?limit=2&revision=2", "/content?revision=2",
+                                          "/boundaries?revision=2"};
+    api_bench *b = history_begin();
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        char target[TARGET], etag[100];
+        snprintf(target, sizeof target, "/v1/meshes/m%s", targets[i]);
+        bench_reply r = bench_expect(200, bench_get(b, target));
+        snprintf(etag, sizeof etag, "%s", bench_header(&r, "ETag"));
+        assert_non_null(strstr(etag, "-2-"));
+        bench_done(r);
+        const char *const known[] = {"If-None-Match", etag, NULL};
+        bench_done(bench_expect(304, bench_send(b, "GET", target, known, NULL)));
+        /* Of the present it says nothing. */
+        *strstr(target, "revision=2") = '\0';
+        target[strlen(target) - 1] = '\0';
+        bench_done(bench_expect(200, bench_send(b, "GET", target, known, NULL)));
+    }
+    bench_free(b);
+}
+
+/* What no step leads to any more can be had again as a mesh of its own. */
+static void an_earlier_revision_can_be_copied(void **state)
+{
+    (void)state;
+    api_bench *b = history_begin();
+    bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    bench_reply r = bench_expect(201, history_post(b, "copy?revision=3", "{\"id\":\"c\"}"));
+    assert_int_equal(history_number(cJSON_GetObjectItem(r.json, "counts"), "faces"), 8);
+    assert_int_equal(history_number(r.json, "revision"), 1);
+    bench_done(r);
+    bench_reply then = bench_expect(200, bench_get(b, "/v1/meshes/m/faces?revision=3"));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/c/faces"));
+    assert_true(cJSON_Compare(cJSON_GetObjectItem(r.json, "items"),
+                              cJSON_GetObjectItem(then.json, "items"), true));
+    bench_done(then);
+    bench_done(r);
+    bench_free(b);
+}
+
+/* --- the list --- */
+
+static void the_history_tells_what_each_revision_did(void **state)
+{
+    (void)state;
+    api_bench *b = history_begin();
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
+    const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
+    static const struct {
+        const char *action, *op;
+        int created, deleted, inverts;
+    } rows[] = {{"undo", "face_delete", 1, 0, 3},
+                {"edit", "face_delete", 0, 1, 0},
+                {"edit", "face_poke", 3, 0, 0}};
+    for (size_t i = 0; i < 3; i++, entry = entry->next) {
+        assert_string_equal(cJSON_GetObjectItem(entry, "action")->valuestring, rows[i].action);
+        assert_string_equal(cJSON_GetObjectItem(entry, "ops")->child->valuestring, rows[i].op);
+        assert_int_equal(history_number(cJSON_GetObjectItem(entry, "created"), "faces"),
+                         rows[i].created);
+        assert_int_equal(history_number(cJSON_GetObjectItem(entry, "deleted"), "faces"),
+                         rows[i].deleted);
+        assert_int_equal(cJSON_HasObjectItem(entry, "inverts"), rows[i].inverts != 0);
+        if (rows[i].inverts != 0) {
+            assert_int_equal(history_number(entry, "inverts"), rows[i].inverts);
+        }
+        assert_int_equal(cJSON_IsTrue(cJSON_GetObjectItem(entry, "undoable")), i == 2);
+    }
+    assert_null(entry);
+    bench_done(r);
+    bench_free(b);
+}
+
+static void a_page_of_the_history_goes_on_where_it_was(void **state)
+{
+    (void)state;
+    api_bench *b = history_begin();
+    char target[400];
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?limit=2&since=1"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 2);
+    snprintf(target, sizeof target, "/v1/meshes/m/edits?limit=2&cursor=%s",
+             cJSON_GetObjectItem(r.json, "next")->valuestring);
+    bench_done(r);
+    bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
+    r = bench_expect(200, bench_get(b, target));
+    const cJSON *entries = cJSON_GetObjectItem(r.json, "entries");
+    assert_int_equal(cJSON_GetArraySize(entries), 1);
+    assert_int_equal(history_number(entries->child, "revision"), 2);
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(r.json, "next")));
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?since=4"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 1);
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?since=99"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "entries")), 0);
+    bench_done(r);
+    bench_free(b);
+}
+
+/* --- memory --- */
+
+static struct {
+    long calls, fail_at;
+} memory;
+
+static void *failing(void *context, void *block, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(block);
+        return NULL;
+    }
+    return ++memory.calls == memory.fail_at ? NULL : realloc(block, size);
+}
+
+static void every_allocation_of_a_reader_may_fail(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {
+        "/v1/meshes/m?revision=2",       "/v1/meshes/m/faces/2?revision=3",
+        "/v1/meshes/m/faces?revision=2", "/v1/meshes/m/boundaries?revision=3",
+        "/v1/meshes/m/edits?since=2",    "/v1/meshes/m/content?revision=1&format=off"};
+    static const he_mem_hook hook = {failing, NULL};
+    he_mem_set_hook(&hook);
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        bool more = true;
+        for (long n = 1; more; n++) {
+            memory.fail_at = 0;
+            api_bench *b = history_begin();
+            memory.calls = 0;
+            memory.fail_at = n;
+            bench_reply r;
+            bool answered = bench_try(b, "GET", targets[i], NULL, NULL, 0, &r);
+            more = memory.calls >= n;
+            memory.fail_at = 0;
+            if (answered) {
+                /* The cache of a summary, or a copy's slack, can be done without. */
+                assert_true(r.status == 200 || (more && (r.status == 507 || r.status == 503)));
+                bench_reply_free(&r);
+            }
+            bench_done(bench_expect(200, bench_get(b, targets[i])));
+            bench_free(b);
+        }
+    }
+    he_mem_set_hook(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(elements_are_those_of_the_revision),
+        cmocka_unit_test(a_tag_names_the_revision_that_was_read),
+        cmocka_unit_test(an_earlier_revision_can_be_copied),
+        cmocka_unit_test(the_history_tells_what_each_revision_did),
+        cmocka_unit_test(a_page_of_the_history_goes_on_where_it_was),
+        cmocka_unit_test(every_allocation_of_a_reader_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
