@@ -14,9 +14,9 @@ static he_status check(const he_mesh *m, const he_decimate_options *options, he_
         return he_fail_plain(err, HE_BAD_VALUE, "max_error must be at least 0, not %g",
                              options->max_error);
     }
-    if (!(options->boundary_weight >= 0 && isfinite(options->boundary_weight))) {
-        return he_fail_plain(err, HE_BAD_VALUE, "boundary_weight must be at least 0, not %g",
-                             options->boundary_weight);
+    if (!(options->boundary_weight >= 0 && options->boundary_weight <= HE_BOUNDARY_WEIGHT_MAX)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "boundary_weight must be from 0 to %g, not %g",
+                             HE_BOUNDARY_WEIGHT_MAX, options->boundary_weight);
     }
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {

@@ -37,11 +37,13 @@ enum { HE_DECIMATE_DEGREE = 256 };
 
 /* What boundary_weight is where nobody asks for another. */
 #define HE_BOUNDARY_WEIGHT 100.0
+/* Costs of more would not fit into the queue. */
+#define HE_BOUNDARY_WEIGHT_MAX 1e9
 
 typedef struct he_decimate_options {
     uint32_t faces;         /* stop when there are no more than these */
     double max_error;       /* at least 0; may be infinite */
-    double boundary_weight; /* at least 0 */
+    double boundary_weight; /* from 0 to HE_BOUNDARY_WEIGHT_MAX */
 } he_decimate_options;
 
 typedef enum he_decimate_stop {
