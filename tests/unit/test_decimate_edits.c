@@ -5,6 +5,7 @@
 #include "mesh/write.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Asked for so much that it would replace the mesh, and allowed nothing. */
 static void nothing_is_recorded_where_no_edge_may_go(void **state)
@@ -77,6 +78,54 @@ static void both_ways_and_each_time_it_is_the_same(void **state)
         he_delta_free(delta);
         he_mesh_free(a);
     }
+}
+
+static void add_columns(he_mesh *m, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        char name[16];
+        he_column *column = NULL;
+        snprintf(name, sizeof name, "value%u", i);
+        assert_int_equal(he_column_new(name, HE_VERTEX, HE_FLOAT, 1, HE_INTERPOLATE, &column, NULL),
+                         HE_OK);
+        assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
+        assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+        size_t slot = he_mesh_column_slot(m, he_mesh_find_column(m, HE_VERTEX, name));
+        assert_int_equal(he_reserve_values(m, slot, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
+        for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            float value = (float)(v % 7 + i);
+            he_set_attribute(m, slot, v, &value);
+        }
+    }
+}
+
+/* Records there is room for, and those that are used, beyond what it takes without columns. */
+static void record_with(unsigned columns, size_t *room, size_t *used)
+{
+    he_mesh *m = dense_torus(20);
+    he_delta *delta = he_delta_new();
+    add_columns(m, columns);
+    he_mesh_record(m, delta);
+    dense_decimate(m, 200, INFINITY);
+    he_mesh_record(m, NULL);
+    *room = delta->capacity;
+    *used = delta->count;
+    he_delta_free(delta);
+    he_mesh_free(m);
+}
+
+static void a_record_grows_as_columns_do(void **state)
+{
+    (void)state;
+    size_t room[3], used[3];
+    static const unsigned columns[3] = {0, 8, 64};
+    for (size_t i = 0; i < 3; i++) {
+        record_with(columns[i], &room[i], &used[i]);
+        printf("note: %u columns: %zu records used of %zu\n", columns[i], used[i], room[i]);
+    }
+    assert_true(used[1] > used[0]);
+    assert_true(room[2] - room[0] <= 9 * (room[1] - room[0]));
+    assert_true(room[2] <= 2 * used[2]);
 }
 
 static void memory_may_end_anywhere(void **state)
@@ -169,6 +218,7 @@ int main(void)
         cmocka_unit_test(nothing_is_recorded_where_no_edge_may_go),
         cmocka_unit_test(it_is_undone_and_done_again),
         cmocka_unit_test(both_ways_and_each_time_it_is_the_same),
+        cmocka_unit_test(a_record_grows_as_columns_do),
         cmocka_unit_test(memory_may_end_anywhere),
         cmocka_unit_test(a_progressive_mesh_may_run_out_of_memory),
         cmocka_unit_test(it_can_be_given_up),
