@@ -1,6 +1,7 @@
 /* Decimation: what is kept exactly, how far surfaces go apart, where it ends. */
 #include "tests/unit/dense.h"
 
+#include "algo/decimation.h"
 #include "query/vec3.h"
 
 #include <float.h>
@@ -150,6 +151,32 @@ static void the_error_stays_below_its_limit(void **state)
     he_mesh_free(first);
 }
 
+/* Of an edge that is left either the error is larger or the collapse is refused: errors are means,
+ * and those of edges that were too dear may have fallen since. */
+static void no_edge_is_left_within_the_limit(void **state)
+{
+    (void)state;
+    for (double most = 0.001; most < 1; most *= 4) {
+        he_mesh *m = dense_grid(40, dense_waves, 1);
+        he_decimation d = {.mesh = m};
+        const he_decimate_options options = {0, most, 100};
+        assert_int_equal(he_decimation_begin(&d, &options, NULL), HE_OK);
+        assert_int_equal(he_decimation_go(&d, 0, NULL), HE_OK);
+        uint32_t dear = 0;
+        for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
+            he_candidate what;
+            if (!he_mesh_is_live(m, HE_EDGE, e) || !he_decimation_cost(&d, (he_edge){e}, &what)) {
+                continue;
+            }
+            dear += what.error > d.most;
+            assert_true(what.error > d.most || he_decimation_collapse(&d, &what) != HE_OK);
+        }
+        assert_true(dear > 0);
+        he_decimation_end(&d);
+        he_mesh_free(m);
+    }
+}
+
 /* --- ends --- */
 
 static void what_cannot_be_collapsed_is_left(void **state)
@@ -260,6 +287,7 @@ int main(void)
         cmocka_unit_test(more_faces_less_error),
         cmocka_unit_test(no_face_is_turned_over),
         cmocka_unit_test(the_error_stays_below_its_limit),
+        cmocka_unit_test(no_edge_is_left_within_the_limit),
         cmocka_unit_test(what_cannot_be_collapsed_is_left),
         cmocka_unit_test(a_face_of_more_corners_is_refused),
         cmocka_unit_test(options_outside_their_range_are_refused),
