@@ -180,6 +180,12 @@ static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
 
 static bool decode_number(const he_param *param, const api_in *in, he_arg *arg)
 {
+    uint64_t whole = 0;
+    if (param->flags & HE_WHOLE) {
+        bool read = api_in_u64(in, (uint64_t)param->min, (uint64_t)param->max, &whole);
+        arg->number = (double)whole;
+        return read;
+    }
     if (param->flags & HE_RANGE) {
         return api_in_number_within(in, param->min, param->max, (param->flags & HE_EXCLUSIVE) != 0,
                                     &arg->number);

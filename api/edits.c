@@ -324,6 +324,26 @@ static void run(api_exchange *x)
 
 /* --- long edits --- */
 
+/* What the first operation is bound to be refused for: nothing changes the mesh before it. */
+static bool foresee(api_exchange *x, edits *e)
+{
+    const api_in *in = e->is_list ? &e->op.in : &x->root;
+    he_error err = {0};
+    api_call call;
+    if ((e->is_list && !api_item_read(&x->ops, 0, &e->list, &e->op)) ||
+        !decode(e, in, NULL, &call)) {
+        return false;
+    }
+    if (he_op_foresee(call.op, e->content, call.args, &err) == HE_OK) {
+        return true;
+    }
+    api_fail_core(x, &err);
+    if (e->is_list) {
+        api_in_point(in);
+    }
+    return false;
+}
+
 /* Before the client is answered, so that it knows whether the mesh is its own. */
 static bool claim(api_exchange *x, edits *e)
 {
@@ -339,7 +359,7 @@ static bool claim(api_exchange *x, edits *e)
     }
     x->claimed = true;
     /* They hold until the claim ends: nobody else can change the mesh. */
-    return api_preconditions_hold(x, e->has_expected ? &expected : NULL);
+    return api_preconditions_hold(x, e->has_expected ? &expected : NULL) && foresee(x, e);
 }
 
 static bool publish_copy(api_exchange *x, const edits *e, he_mesh *copy, bool barrier)

@@ -17,7 +17,7 @@ static const char *param_type(const he_param *param)
     case HE_PARAM_CYCLE:
         return he_kind_plural(param->kind);
     case HE_PARAM_NUMBER:
-        return "number";
+        return param->flags & HE_WHOLE ? "integer" : "number";
     case HE_PARAM_POINT:
         return "point";
     case HE_PARAM_POINTS:
@@ -177,7 +177,7 @@ static void write_list_schema(api_out *out, unsigned min)
 static void write_number_schema(api_out *out, const he_param *param)
 {
     api_out_object_begin(out);
-    api_out_key_string(out, "type", "number");
+    api_out_key_string(out, "type", param->flags & HE_WHOLE ? "integer" : "number");
     if (param->flags & HE_RANGE) {
         bool exclusive = (param->flags & HE_EXCLUSIVE) != 0;
         api_out_key_number(out, exclusive ? "exclusiveMinimum" : "minimum", param->min);

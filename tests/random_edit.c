@@ -89,8 +89,20 @@ static void put_point(draft *d)
         2 * md_unit(d->random) - 1);
 }
 
+/* Few: more steps would make a large mesh of it. */
+static void put_whole(draft *d, const he_param *p)
+{
+    enum { MANY = 400 };
+    uint32_t low = (uint32_t)p->min, high = (uint32_t)p->max;
+    put(d, "%u", high < MANY ? low : md_from(d->random, low, MANY));
+}
+
 static void put_number(draft *d, const he_param *p)
 {
+    if (p->flags & HE_WHOLE) {
+        put_whole(d, p);
+        return;
+    }
     bool ranged = (p->flags & HE_RANGE) != 0 && p->max - p->min < 1e6;
     double low = ranged ? p->min : 0, high = ranged ? p->max : 1;
     /* A large one leaves nothing of a mesh. */
@@ -119,13 +131,7 @@ static void put_value(draft *d, const he_param *p)
         return;
     case HE_PARAM_NUMBER:
         put(d, "\"%s\":", p->name);
-        if (strcmp(p->name, "steps") == 0) {
-            put(d, "1"); /* a whole number, and more would make a large mesh of it */
-        } else if (strcmp(p->name, "faces") == 0) {
-            put(d, "%u", md_below(d->random, 400)); /* likewise, and fewer leave little of it */
-        } else {
-            put_number(d, p);
-        }
+        put_number(d, p);
         return;
     case HE_PARAM_POINT:
     case HE_PARAM_POINTS:

@@ -14,9 +14,9 @@ static he_status check(const he_mesh *m, const he_decimate_options *options, he_
         return he_fail_plain(err, HE_BAD_VALUE, "max_error must be at least 0, not %g",
                              options->max_error);
     }
-    if (!(options->boundary_weight >= 0 && isfinite(options->boundary_weight))) {
-        return he_fail_plain(err, HE_BAD_VALUE, "boundary_weight must be at least 0, not %g",
-                             options->boundary_weight);
+    if (!(options->boundary_weight >= 0 && options->boundary_weight <= HE_BOUNDARY_WEIGHT_MAX)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "boundary_weight must be from 0 to %g, not %g",
+                             HE_BOUNDARY_WEIGHT_MAX, options->boundary_weight);
     }
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
@@ -162,42 +162,30 @@ static he_status fill_queue(he_decimation *d, he_error *err)
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
         status = he_watch_at(m->watch, e, issued, err);
         if (he_edge_is_live(m, (he_edge){e})) {
-            he_decimation_put(d, (he_edge){e});
+            he_candidate what;
+            he_edge_place place = he_decimation_judge(d, (he_edge){e}, &what);
+            he_decimation_put(d, (he_edge){e}, place, &what);
         }
     }
     return status;
 }
 
-static uint32_t stamp_of(const he_decimation *d, he_edge e)
+/* Edge e was first, in a bucket. */
+static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_error *err)
 {
-    return d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 0)).i].stamp +
-           d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 1)).i].stamp;
-}
-
-/* Edge e was first. */
-static he_status collapse_one(he_decimation *d, he_edge e, he_error *err)
-{
-    uint32_t *stamp = &d->stamps[e.i];
     he_candidate what;
-    if (*stamp != stamp_of(d, e)) {
-        he_decimation_put(d, e);
-        return HE_OK;
+    he_edge_place place = he_decimation_judge(d, e, &what);
+    if (place == HE_EDGE_QUEUED && he_queue_bucket(what.priority) <= bucket) {
+        he_status status = he_decimation_collapse(d, &what);
+        if (status == HE_OK) {
+            return HE_OK;
+        }
+        if (status == HE_NO_MEMORY) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory to collapse edge %u", e.i);
+        }
+        place = HE_EDGE_ASIDE;
     }
-    if (!he_decimation_cost(d, e, &what)) {
-        he_decimation_put_aside(d, e);
-        return HE_OK;
-    }
-    if (what.error > d->most) {
-        *stamp = HE_STAMP_DEAR;
-        return HE_OK;
-    }
-    he_status status = he_decimation_collapse(d, &what);
-    if (status == HE_NO_MEMORY) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to collapse edge %u", e.i);
-    }
-    if (status != HE_OK) {
-        he_decimation_put_aside(d, e);
-    }
+    he_decimation_put(d, e, place, &what);
     return HE_OK;
 }
 
@@ -206,7 +194,6 @@ static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_
 {
     for (uint32_t i = 0; i < count; i++) {
         __builtin_prefetch(&d->mesh->c.origin[2 * (size_t)edges[i]]);
-        __builtin_prefetch(&d->stamps[edges[i]]);
     }
 }
 
@@ -225,7 +212,7 @@ enum { AHEAD = 4 };
 
 /* Edges that were first. Stops at so many faces. */
 static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t count,
-                               uint32_t faces, he_error *err)
+                               uint32_t bucket, uint32_t faces, he_error *err)
 {
     const he_mesh *m = d->mesh;
     he_status status = HE_OK;
@@ -238,7 +225,7 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
             ask_for_ends(d, edges[i + AHEAD]);
         }
         if (he_edge_is_live(m, (he_edge){edges[i]})) {
-            status = collapse_one(d, (he_edge){edges[i]}, err);
+            status = collapse_one(d, (he_edge){edges[i]}, bucket, err);
         }
     }
     return status;
@@ -246,13 +233,14 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
 
 enum { TAKES_PER_LOOK = 256 };
 
-static he_status collapse_all(he_decimation *d, uint32_t faces, he_error *err)
+he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
 {
     const he_mesh *m = d->mesh;
     uint32_t before = he_mesh_faces(m);
     he_status status = he_watch_phase(m->watch, "collapsing edges", 1, err);
     for (uint64_t step = 0; status == HE_OK && he_mesh_faces(m) > faces; step++) {
-        uint32_t edges[HE_QUEUE_CHUNK], count = he_queue_take(&d->queue, edges);
+        uint32_t edges[HE_QUEUE_CHUNK], bucket;
+        uint32_t count = he_queue_take(&d->queue, edges, &bucket);
         if (count == 0) {
             break;
         }
@@ -260,7 +248,7 @@ static he_status collapse_all(he_decimation *d, uint32_t faces, he_error *err)
             status = he_watch_step(m->watch, before - he_mesh_faces(m), before - faces, err);
         }
         if (status == HE_OK) {
-            status = collapse_some(d, edges, count, faces, err);
+            status = collapse_some(d, edges, count, bucket, faces, err);
         }
     }
     return status;
@@ -273,45 +261,59 @@ static he_decimate_stop find_stop(const he_decimation *d, uint32_t faces)
         return HE_STOP_FACES;
     }
     for (uint32_t e = 0; e < m->c.edges.issued; e++) {
-        if (he_edge_is_live(m, (he_edge){e}) && d->stamps[e] == HE_STAMP_DEAR) {
+        if (he_edge_is_live(m, (he_edge){e}) && d->places[e] == HE_EDGE_DEAR) {
             return HE_STOP_ERROR;
         }
     }
     return HE_STOP_EXHAUSTED;
 }
 
+/* Nodes in memory that has one more of them. */
+static he_node *align(void *memory)
+{
+    uintptr_t over = (uintptr_t)memory % HE_CACHE_LINE;
+    return (he_node *)((char *)memory + (over == 0 ? 0 : HE_CACHE_LINE - over));
+}
+
+he_status he_decimation_begin(he_decimation *d, const he_decimate_options *options, he_error *err)
+{
+    const he_mesh *m = d->mesh;
+    d->boundary_weight = options->boundary_weight;
+    d->memory = he_mem_zero((size_t)m->c.vertices.issued + 1, sizeof *d->nodes);
+    d->nodes = align(d->memory);
+    d->flags = he_mem_zero(m->c.vertices.issued, sizeof *d->flags);
+    d->places = he_mem_zero(m->c.edges.issued, sizeof *d->places);
+    he_status status = he_queue_init(&d->queue, m->c.edges.live, err);
+    if (status == HE_OK && (d->memory == NULL || d->flags == NULL || d->places == NULL)) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to weigh the faces");
+    }
+    if (status == HE_OK) {
+        status = weigh(d, err);
+    }
+    d->most = ldexp(options->max_error, -d->exponent);
+    return status == HE_OK ? fill_queue(d, err) : status;
+}
+
+void he_decimation_end(he_decimation *d)
+{
+    he_mem_free(d->memory);
+    he_mem_free(d->flags);
+    he_mem_free(d->places);
+    he_queue_clear(&d->queue);
+}
+
 static he_status run(he_mesh *m, const he_decimate_options *options, he_progressive *log,
                      he_merges *merges, he_decimated *out, he_error *err)
 {
     he_decimation d = {.mesh = m, .log = log, .merges = merges};
-    d.boundary_weight = options->boundary_weight;
-    d.nodes = he_mem_zero(m->c.vertices.issued, sizeof *d.nodes);
-    d.flags = he_mem_zero(m->c.vertices.issued, sizeof *d.flags);
-    d.stamps = he_mem_zero(m->c.edges.issued, sizeof *d.stamps);
-    he_status status = he_queue_init(&d.queue, m->c.edges.live, err);
-    if (status != HE_OK) {
-        goto out;
-    }
-    if (d.nodes == NULL || d.flags == NULL || d.stamps == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to weigh the faces");
-        goto out;
-    }
-    status = weigh(&d, err);
-    d.most = ldexp(options->max_error, -d.exponent);
+    he_status status = he_decimation_begin(&d, options, err);
     if (status == HE_OK) {
-        status = fill_queue(&d, err);
-    }
-    if (status == HE_OK) {
-        status = collapse_all(&d, options->faces, err);
+        status = he_decimation_go(&d, options->faces, err);
     }
     if (status == HE_OK) {
         *out = (he_decimated){find_stop(&d, options->faces), ldexp(d.error, d.exponent)};
     }
-out:
-    he_mem_free(d.nodes);
-    he_mem_free(d.flags);
-    he_mem_free(d.stamps);
-    he_queue_clear(&d.queue);
+    he_decimation_end(&d);
     return status;
 }
 

@@ -1,6 +1,6 @@
 /* decimate.h - fewer triangles, and the shape as it was.
  *
- * Edges are collapsed (edit/collapse.h), always the one that costs least, by the quadrics of
+ * Edges are collapsed (edit/collapse.h), always one of those that cost least, by the quadrics of
  * Garland and Heckbert, "Surface simplification using quadric error metrics", 1997. A vertex has a
  * quadric (quadric.h): the sum of the squared distances to the planes of the faces about it, each
  * weighed by the face's area. An edge costs the least value of the sum of its ends' quadrics; there
@@ -24,7 +24,9 @@
  *     if the vertex that would go or move has more than HE_DECIMATE_DEGREE edges;
  *     if its error would be more than `max_error`.
  *
- * It is tried again when the faces about it have changed. Nothing depends on chance or the clock.
+ * It is tried again when the faces about it have changed, and where its error was too large when an
+ * end has taken another vertex in, unless that end has more than HE_DECIMATE_DEGREE edges. So no
+ * edge is left that could be collapsed within `max_error`. Nothing depends on chance or the clock.
  *
  * Vertices keep their ids or go, and so do edges and faces: nothing is created. Interpolated
  * attributes of the two vertices mix by where between them the new place lies. */
@@ -37,11 +39,13 @@ enum { HE_DECIMATE_DEGREE = 256 };
 
 /* What boundary_weight is where nobody asks for another. */
 #define HE_BOUNDARY_WEIGHT 100.0
+/* Costs of more would not fit into the queue. */
+#define HE_BOUNDARY_WEIGHT_MAX 1e9
 
 typedef struct he_decimate_options {
     uint32_t faces;         /* stop when there are no more than these */
     double max_error;       /* at least 0; may be infinite */
-    double boundary_weight; /* at least 0 */
+    double boundary_weight; /* from 0 to HE_BOUNDARY_WEIGHT_MAX */
 } he_decimate_options;
 
 typedef enum he_decimate_stop {

@@ -14,19 +14,32 @@ static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
     return he_decimation_inside(d, d->mesh->c.position[vertex]);
 }
 
-/* Half-edges that leave the origin of h, from h on. False where there are more than fit. */
-static bool gather(const he_mesh *m, he_halfedge h, he_spokes *out)
+/* Half-edges that leave the ends of h, from h and its twin on: the first end's, or both's, which
+ * are turned about in step, since each turn waits for memory. False where there are more than fit.
+ */
+static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out[2])
 {
-    he_halfedge k = h;
-    out->count = 0;
-    do {
-        if (out->count == HE_DECIMATE_DEGREE) {
-            return false;
+    const he_halfedge first[2] = {h, he_twin(h)};
+    he_halfedge at[2] = {h, he_twin(h)};
+    bool open[2] = {true, ends == 2};
+    out[0].count = out[1].count = 0;
+    while (open[0] || open[1]) {
+        for (unsigned i = 0; i < 2; i++) {
+            he_spokes *s = &out[i];
+            if (!open[i]) {
+                continue;
+            }
+            if (s->count == HE_DECIMATE_DEGREE) {
+                return false;
+            }
+            uint32_t target = he_target(m, at[i]).i;
+            __builtin_prefetch(&m->c.position[target]);
+            s->out[s->count] = at[i].i;
+            s->target[s->count++] = target;
+            at[i] = he_turn_ccw(m, at[i]);
+            open[i] = at[i].i != first[i].i;
         }
-        out->out[out->count] = k.i;
-        out->target[out->count++] = he_target(m, k).i;
-        k = he_turn_ccw(m, k);
-    } while (k.i != h.i);
+    }
     return true;
 }
 
@@ -68,39 +81,42 @@ static bool stay_upright(const he_decimation *d, const he_spokes *spokes, he_vec
     return true;
 }
 
-void he_decimation_put(he_decimation *d, he_edge e)
+he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what)
 {
-    const he_node *a = &d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 0)).i];
-    const he_node *b = &d->nodes[he_origin(d->mesh, he_edge_halfedge(e, 1)).i];
-    he_candidate what;
-    if (he_decimation_cost(d, e, &what)) {
-        d->stamps[e.i] = a->stamp + b->stamp;
-        he_queue_put(&d->queue, e.i, what.priority);
-    } else {
-        he_decimation_put_aside(d, e);
+    if (!he_decimation_cost(d, e, what)) {
+        return HE_EDGE_ASIDE;
     }
+    return what->error > d->most ? HE_EDGE_DEAR : HE_EDGE_QUEUED;
 }
 
-void he_decimation_put_aside(he_decimation *d, he_edge e)
+void he_decimation_put(he_decimation *d, he_edge e, he_edge_place place, const he_candidate *what)
 {
-    d->stamps[e.i] = HE_STAMP_ASIDE;
-    d->flags[he_origin(d->mesh, he_edge_halfedge(e, 0)).i] |= HE_NODE_ASIDE;
-    d->flags[he_origin(d->mesh, he_edge_halfedge(e, 1)).i] |= HE_NODE_ASIDE;
+    d->places[e.i] = (uint8_t)place;
+    if (place == HE_EDGE_QUEUED) {
+        he_queue_put(&d->queue, e.i, what->priority);
+        return;
+    }
+    uint8_t flag = place == HE_EDGE_DEAR ? HE_NODE_DEAR : HE_NODE_ASIDE;
+    d->flags[he_origin(d->mesh, he_edge_halfedge(e, 0)).i] |= flag;
+    d->flags[he_origin(d->mesh, he_edge_halfedge(e, 1)).i] |= flag;
 }
 
-/* Edges about a vertex that are aside go back. */
-static void bring_back(he_decimation *d, uint32_t vertex)
+/* Edges about a vertex that are aside go back, and dear ones too where it has taken another in. */
+static void bring_back(he_decimation *d, uint32_t vertex, bool grown)
 {
     const he_mesh *m = d->mesh;
-    if ((d->flags[vertex] & HE_NODE_ASIDE) == 0 || he_node_is_hub(&d->nodes[vertex])) {
+    uint8_t flags = grown ? HE_NODE_ASIDE | HE_NODE_DEAR : HE_NODE_ASIDE;
+    if ((d->flags[vertex] & flags) == 0 || he_node_is_hub(&d->nodes[vertex])) {
         return;
     }
     he_halfedge first = he_vertex_halfedge(m, (he_vertex){vertex}), h = first;
-    d->flags[vertex] &= (uint8_t)~HE_NODE_ASIDE;
+    d->flags[vertex] &= (uint8_t)~flags;
     do {
         he_edge e = he_edge_of(h);
-        if (d->stamps[e.i] == HE_STAMP_ASIDE) {
-            he_decimation_put(d, e);
+        uint8_t place = d->places[e.i];
+        if (place == HE_EDGE_ASIDE || (grown && place == HE_EDGE_DEAR)) {
+            he_candidate what;
+            he_decimation_put(d, e, he_decimation_judge(d, e, &what), &what);
         }
         h = he_turn_ccw(m, h);
     } while (h.i != first.i);
@@ -201,7 +217,7 @@ static void lose_edge(he_decimation *d, uint32_t vertex)
     he_node *node = &d->nodes[vertex];
     node->degree--;
     if (node->degree == HE_DECIMATE_DEGREE) {
-        bring_back(d, vertex);
+        bring_back(d, vertex, true);
     }
 }
 
@@ -239,10 +255,11 @@ he_status he_decimation_collapse(he_decimation *d, const he_candidate *what)
     he_halfedge h = what->h, back = he_twin(h);
     uint32_t u = he_origin(m, h).i, v = he_target(m, h).i;
     he_node *gone = &d->nodes[u], *kept = &d->nodes[v];
-    he_spokes about_u, about_v;
-    if (!gather(m, h, &about_u) || (what->moves && !gather(m, back, &about_v)) ||
-        !stay_upright(d, &about_u, gone->place, what->place) ||
-        (what->moves && !stay_upright(d, &about_v, kept->place, what->place))) {
+    he_spokes about[2];
+    const he_spokes *about_u = &about[0], *about_v = &about[1];
+    if (!gather(m, h, what->moves ? 2 : 1, about) ||
+        !stay_upright(d, about_u, gone->place, what->place) ||
+        (what->moves && !stay_upright(d, about_v, kept->place, what->place))) {
         return HE_LIMIT;
     }
     uint32_t left = he_face_of(m, h).i, right = he_face_of(m, back).i;
@@ -250,7 +267,7 @@ he_status he_decimation_collapse(he_decimation *d, const he_candidate *what)
     uint32_t e = right != HE_NONE ? he_origin(m, he_prev(m, back)).i : HE_NONE;
     double t = what->moves ? between(gone->place, kept->place, what->place) : 1;
     he_vec3 to = what->moves ? outside(d, what->place) : he_position(m, (he_vertex){v});
-    he_status status = collapse(d, &about_u, t, to);
+    he_status status = collapse(d, about_u, t, to);
     if (status != HE_OK) {
         return status;
     }
@@ -258,17 +275,16 @@ he_status he_decimation_collapse(he_decimation *d, const he_candidate *what)
     he_quadric_shift(&kept->quadric, he_vec3_sub(what->place, kept->place));
     he_quadric_add(&kept->quadric, &gone->quadric);
     kept->place = what->place;
-    kept->stamp += gone->stamp + 1;
-    d->flags[v] |= d->flags[u] & HE_NODE_ASIDE;
+    d->flags[v] |= d->flags[u] & (HE_NODE_ASIDE | HE_NODE_DEAR);
     kept->degree += gone->degree - 2 - (c != HE_NONE) - (e != HE_NONE);
     d->error = fmax(d->error, what->error);
-    for (uint32_t i = 1; i < about_u.count; i++) {
-        bring_back(d, about_u.target[i]);
+    for (uint32_t i = 1; i < about_u->count; i++) {
+        bring_back(d, about_u->target[i], false);
     }
-    for (uint32_t i = 1; what->moves && i < about_v.count; i++) {
-        bring_back(d, about_v.target[i]);
+    for (uint32_t i = 1; what->moves && i < about_v->count; i++) {
+        bring_back(d, about_v->target[i], false);
     }
-    bring_back(d, v);
+    bring_back(d, v, true);
     if (c != HE_NONE) {
         lose_edge(d, c);
     }

@@ -64,7 +64,17 @@ static void count_words(const he_mesh *m, const he_mesh *made, he_need *need)
     }
 }
 
-/* Rows of a column that differ; written with `to`, else only counted. */
+/* Words of two rows that differ. */
+static size_t words_between(const unsigned char *a, const unsigned char *b, size_t bytes)
+{
+    size_t count = 0;
+    for (size_t at = 0; at < bytes; at += 4) {
+        count += differ(a + at, b + at, bytes - at < 4 ? bytes - at : 4);
+    }
+    return count;
+}
+
+/* Words of a column that differ; written with `to`, else only counted. */
 static size_t each_value(const he_mesh *m, const he_mesh *made, size_t slot, he_mesh *to)
 {
     const he_column *from = m->c.columns[slot], *column = made->c.columns[slot];
@@ -72,7 +82,8 @@ static size_t each_value(const he_mesh *m, const he_mesh *made, size_t slot, he_
     for (uint32_t row = 0; row < column->rows; row++) {
         if (is_live(made, column->domain, row) &&
             differ(he_column_value(from, row), he_column_value(column, row), column->row_bytes)) {
-            count++;
+            count += words_between(he_column_value(from, row), he_column_value(column, row),
+                                   column->row_bytes);
             if (to != NULL) {
                 he_set_attribute(to, slot, row, he_column_value(column, row));
             }
@@ -149,7 +160,8 @@ he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *
 {
     he_need need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
     count_words(m, made, &need);
-    need.attributes = each_column(m, made, NULL);
+    /* Not as need.attributes, which is rows of every column there is. */
+    need.links += each_column(m, made, NULL);
     he_status status = he_reserve(m, need, err);
     if (status != HE_OK) {
         return status;

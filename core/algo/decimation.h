@@ -5,12 +5,14 @@
  * its size, so that no product of them leaves the range of a double.
  *
  * AN EDGE'S COST is out of date as soon as one of its ends has taken another vertex in. Costs
- * hardly ever fall, so one that is out of date is found again only when the edge comes first: most
- * edges go before that. Each end counts what went into it, in `stamp`; the stamp of an edge is the
- * sum of its ends' when it was costed, and any vertex that is merged makes the sum larger.
+ * hardly ever fall, so it is found again only when the edge comes first: most edges go before that.
+ * It then waits for its turn again, unless it still is among the first.
  *
  * ASIDE is an edge that was refused. It is in no queue, and goes back when the faces about one of
- * its ends have changed. */
+ * its ends have changed.
+ *
+ * DEAR is one with an error above the most there may be. It is in no queue either, and is looked at
+ * again when one of its ends has taken another vertex in: an error is a mean, and may fall. */
 #ifndef HE_ALGO_DECIMATION_H
 #define HE_ALGO_DECIMATION_H
 
@@ -21,18 +23,26 @@
 #include "mesh/column.h"
 #include "mesh/walk.h"
 
+#include <stdalign.h>
+
 /* Flags of a vertex. They hold throughout: edges and vertices that edge_collapse would have to
  * refuse for them stay. */
 enum {
     HE_NODE_LOCKED = 1, /* stays where it is */
     HE_NODE_HELD = 2,   /* an edge or face about it is locked: it stays, but may move */
-    HE_NODE_ASIDE = 4   /* some edge of it may be aside */
+    HE_NODE_ASIDE = 4,  /* some edge of it may be aside */
+    HE_NODE_DEAR = 8    /* some edge of it may be too dear */
 };
 
+/* Where an edge is. */
+typedef enum he_edge_place { HE_EDGE_QUEUED, HE_EDGE_ASIDE, HE_EDGE_DEAR } he_edge_place;
+
+enum { HE_CACHE_LINE = 64 };
+
 typedef struct he_node {
-    he_quadric quadric; /* about `place` */
+    alignas(HE_CACHE_LINE) he_quadric quadric; /* about `place` */
     he_vec3 place;
-    uint32_t stamp, degree;
+    uint32_t degree;
     uint32_t features; /* feature edges at it; 3 stands for more */
 } he_node;
 
@@ -43,9 +53,10 @@ typedef struct he_merges {
 
 typedef struct he_decimation {
     he_mesh *mesh;
-    he_node *nodes;      /* by vertex */
+    he_node *nodes;      /* by vertex; each lies in two cache lines */
+    void *memory;        /* of the nodes */
     uint8_t *flags;      /* by vertex: HE_NODE_... */
-    uint32_t *stamps;    /* by edge: of its cost, or one of the two below */
+    uint8_t *places;     /* by edge: an he_edge_place */
     he_edge_queue queue; /* no edge twice */
     he_merges *merges;   /* noted there, or NULL */
     he_progressive *log; /* where collapses are remembered, or NULL */
@@ -56,9 +67,6 @@ typedef struct he_decimation {
     double inward; /* 2^-exponent */
     double error;  /* the largest so far, inside */
 } he_decimation;
-
-#define HE_STAMP_ASIDE UINT32_MAX
-#define HE_STAMP_DEAR  (UINT32_MAX - 1u)
 
 /* What to do with an edge. */
 typedef struct he_candidate {
@@ -85,15 +93,23 @@ static inline bool he_node_is_hub(const he_node *node)
 HE_NODISCARD he_status he_decimation_run(he_mesh *m, const he_decimate_options *options,
                                          he_progressive *log, he_decimated *out, he_error *err);
 
+/* The parts of it: `d` has its mesh, and what is to be kept, and he_decimation_end is called in any
+ * case. */
+HE_NODISCARD he_status he_decimation_begin(he_decimation *d, const he_decimate_options *options,
+                                           he_error *err);
+HE_NODISCARD he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err);
+void he_decimation_end(he_decimation *d);
+
 he_vec3 he_decimation_inside(const he_decimation *d, he_vec3 outside);
 /* False where no end may go. */
 bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
 /* Make `m` equal to a copy that was decimated. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
                                            he_error *err);
-/* Put an edge that is not in it in the queue, or aside. */
-void he_decimation_put(he_decimation *d, he_edge e);
-void he_decimation_put_aside(he_decimation *d, he_edge e);
+/* Where an edge belongs, with what to do with it unless that is aside. */
+he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what);
+/* Put one there that is not in the queue. */
+void he_decimation_put(he_decimation *d, he_edge e, he_edge_place place, const he_candidate *what);
 /* Collapse it, keep nodes and queue right. Any refusal of he_edge_collapse, HE_LIMIT where a face
  * would turn over; HE_NO_MEMORY. */
 HE_NODISCARD he_status he_decimation_collapse(he_decimation *d, const he_candidate *what);

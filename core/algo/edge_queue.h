@@ -1,10 +1,10 @@
 /* edge_queue.h - edges by cost, cheapest first, inline.
  *
- * A bucket holds the edges whose costs agree in exponent and eight binary digits: costs that differ
- * by less than 1/256 may come in either order. Within a bucket edges lie in chunks of one cache
- * line, and a chunk is taken whole, so that what its edges need can be asked for ahead of time. A
- * heap, which tells all costs apart, leaves a mesh no better, and waits for memory at each of its
- * ten levels. */
+ * A bucket holds the edges whose costs agree in exponent and two binary digits: costs that differ
+ * by less than a quarter may come in either order. Within a bucket edges lie as they came, most of
+ * them by id, so that neighbours are near in memory; that is worth more than a finer order, which
+ * leaves a mesh no better. They lie in chunks of one cache line, and a chunk is taken whole, so
+ * that what its edges need can be asked for ahead of time. */
 #ifndef HE_ALGO_EDGE_QUEUE_H
 #define HE_ALGO_EDGE_QUEUE_H
 
@@ -12,7 +12,12 @@
 
 #include <string.h>
 
-enum { HE_QUEUE_BUCKETS = 1 << 16, HE_QUEUE_WORDS = HE_QUEUE_BUCKETS / 64, HE_QUEUE_CHUNK = 14 };
+enum {
+    HE_QUEUE_SHIFT = 21,
+    HE_QUEUE_BUCKETS = 1 << (31 - HE_QUEUE_SHIFT),
+    HE_QUEUE_WORDS = HE_QUEUE_BUCKETS / 64,
+    HE_QUEUE_CHUNK = 14
+};
 
 typedef struct he_queue_chunk {
     uint32_t next; /* of the bucket, or of those in no bucket; HE_NONE */
@@ -50,12 +55,17 @@ static inline void he_queue_clear(he_edge_queue *queue)
     he_mem_free(queue->first);
 }
 
-/* Costs are not negative. */
-static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float cost)
+/* Of lower costs a lower one. Costs are not negative. */
+static inline uint32_t he_queue_bucket(float cost)
 {
     uint32_t bits;
     memcpy(&bits, &cost, sizeof bits);
-    size_t bucket = bits >> 15, word = bucket / 64; /* the sign is 0 */
+    return bits >> HE_QUEUE_SHIFT; /* the sign is 0 */
+}
+
+static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float cost)
+{
+    size_t bucket = he_queue_bucket(cost), word = bucket / 64;
     uint32_t *first = &queue->first[bucket];
     if (*first == HE_NONE || queue->chunks[*first].count == HE_QUEUE_CHUNK) {
         uint32_t fresh = queue->free;
@@ -73,8 +83,10 @@ static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float cost)
     queue->word = word < queue->word ? word : queue->word;
 }
 
-/* Takes some of the first edges out, and gives their number: 0 where there are none. */
-static inline uint32_t he_queue_take(he_edge_queue *queue, uint32_t edges[HE_QUEUE_CHUNK])
+/* Takes some of the first edges out, all of one bucket, and gives their number: 0 where there are
+ * none. */
+static inline uint32_t he_queue_take(he_edge_queue *queue, uint32_t edges[HE_QUEUE_CHUNK],
+                                     uint32_t *bucket)
 {
     while (queue->word < HE_QUEUE_WORDS && queue->filled[queue->word] == 0) {
         queue->word++;
@@ -83,7 +95,8 @@ static inline uint32_t he_queue_take(he_edge_queue *queue, uint32_t edges[HE_QUE
         return 0;
     }
     size_t bit = (size_t)__builtin_ctzll(queue->filled[queue->word]);
-    uint32_t *first = &queue->first[queue->word * 64 + bit], taken = *first;
+    *bucket = (uint32_t)(queue->word * 64 + bit);
+    uint32_t *first = &queue->first[*bucket], taken = *first;
     he_queue_chunk *chunk = &queue->chunks[taken];
     memcpy(edges, chunk->edges, sizeof chunk->edges);
     *first = chunk->next;

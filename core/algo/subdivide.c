@@ -93,18 +93,23 @@ static he_status count_polygons(const he_mesh *m, he_sizes *sizes, he_error *err
     return status;
 }
 
+static he_sizes counts_of(const he_content *c)
+{
+    return (he_sizes){.vertices = c->vertices.issued,
+                      .edges = c->edges.issued,
+                      .faces = c->faces.issued,
+                      .live_vertices = c->vertices.live,
+                      .live_edges = c->edges.live,
+                      .live_faces = c->faces.live,
+                      .boundary = c->boundary_halfedges};
+}
+
 static he_status begin(const he_mesh *m, he_scheme scheme, start *out, he_error *err)
 {
     const he_content *c = &m->c;
     he_marks marks = {.feature = NULL};
     (void)he_marks_find(m, &marks);
-    out->sizes = (he_sizes){.vertices = c->vertices.issued,
-                            .edges = c->edges.issued,
-                            .faces = c->faces.issued,
-                            .live_vertices = c->vertices.live,
-                            .live_edges = c->edges.live,
-                            .live_faces = c->faces.live,
-                            .boundary = c->boundary_halfedges};
+    out->sizes = counts_of(c);
     he_status status = scheme == HE_LINEAR ? count_polygons(m, &out->sizes, err) : HE_OK;
     if (status == HE_OK) {
         status = find_features(m, &marks, out, err);
@@ -190,6 +195,13 @@ static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned step
         out[i] = s;
     }
     return HE_OK;
+}
+
+he_status he_subdivide_fits(const he_mesh *m, he_scheme scheme, unsigned steps, he_error *err)
+{
+    he_sizes sizes = counts_of(&m->c), unused[HE_SUBDIVIDE_STEPS];
+    assert(steps >= 1 && steps <= HE_SUBDIVIDE_STEPS);
+    return estimate(&sizes, scheme, steps, unused, err);
 }
 
 /* --- what is locked --- */

@@ -78,4 +78,9 @@ typedef struct he_step_counts {
 HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps,
                                     he_step_counts *counts, he_error *err);
 
+/* HE_LIMIT where the counts of the mesh alone tell that he_subdivide will refuse so, in no time.
+ * HE_OK is no promise: linear makes more of polygons, and sqrt3 of sharp edges. */
+HE_NODISCARD he_status he_subdivide_fits(const he_mesh *m, he_scheme scheme, unsigned steps,
+                                         he_error *err);
+
 #endif

@@ -10,9 +10,6 @@ enum { FACES, RATIO, MAX_ERROR, BOUNDARY_WEIGHT };
 static he_status run_decimate(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     double faces = args[FACES].number;
-    if (args[FACES].given && faces != floor(faces)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "faces must be a whole number, not %g", faces);
-    }
     if (!args[FACES].given) {
         faces = floor(args[RATIO].number * he_mesh_faces(m));
     }
@@ -37,10 +34,10 @@ const he_op he_decimate_rows[] = {
         .size = HE_OP_WHOLE,
         .params = {{.name = "faces",
                     .type = HE_PARAM_NUMBER,
-                    .flags = HE_REQUIRED | HE_RANGE,
+                    .flags = HE_REQUIRED | HE_RANGE | HE_WHOLE,
                     .group = 'f',
                     .max = HE_MAX_ROWS,
-                    .doc = "Stop when there are no more than so many, a whole number."},
+                    .doc = "Stop when there are no more than so many."},
                    {.name = "ratio",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_REQUIRED | HE_RANGE,
@@ -58,7 +55,7 @@ const he_op he_decimate_rows[] = {
                    {.name = "boundary_weight",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_RANGE,
-                    .max = 1e9,
+                    .max = HE_BOUNDARY_WEIGHT_MAX,
                     .fallback = HE_BOUNDARY_WEIGHT,
                     .doc = "How much more a boundary or feature edge counts than a face as large "
                            "as the square over it."}},
@@ -71,7 +68,7 @@ const he_op he_decimate_rows[] = {
                      .type = HE_RESULT_NUMBER,
                      .doc = "The largest error of an edge that was collapsed, as max_error means "
                             "it."}},
-        .refusals = {HE_NOT_TRIANGLE, HE_BAD_VALUE},
+        .refusals = {HE_NOT_TRIANGLE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .run = run_decimate,
     },

@@ -65,6 +65,12 @@ double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS])
     return op->growth == NULL ? 1 : op->growth(args);
 }
 
+he_status he_op_foresee(const he_op *op, const he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
+                        he_error *err)
+{
+    return op->foresee == NULL ? HE_OK : op->foresee(mesh, args, err);
+}
+
 bool he_op_declares(const he_op *op, he_status status)
 {
     if (status == HE_OK || status == HE_NO_MEMORY || status == HE_IDS_EXHAUSTED ||
@@ -125,6 +131,9 @@ static bool is_sound(const he_param *param, const he_arg *arg)
     case HE_PARAM_MESH:
         return arg->mesh != NULL;
     case HE_PARAM_NUMBER:
+        if ((param->flags & HE_WHOLE) && arg->number != floor(arg->number)) {
+            return false;
+        }
         if (param->flags & HE_RANGE) {
             return (param->flags & HE_EXCLUSIVE)
                        ? arg->number > param->min && arg->number < param->max

@@ -33,6 +33,7 @@ enum {
     HE_RANGE = 8,       /* min and max apply */
     HE_DERIVED = 16,    /* a number whose default follows from the mesh, as `doc` says */
     HE_COSTS_MESH = 32, /* where it is given, a local operation costs the mesh */
+    HE_WHOLE = 128,     /* a number with a range that has no fraction */
     /* Elements whose neighbours are looked at too: all corners of the faces about a vertex, all
      * edges at the corners of a face or along a loop, both of an edge. */
     HE_REACHES = 64
@@ -115,6 +116,9 @@ typedef struct he_op {
     int change[3]; /* V, E, F */
     /* By about how many times the mesh grows; NULL where it stays of its size. */
     double (*growth)(const he_arg *args);
+    /* A refusal that the mesh's counts alone tell of, so that nothing need be begun; NULL where
+     * none does. HE_OK is no promise. */
+    he_status (*foresee)(const he_mesh *mesh, const he_arg *args, he_error *err);
     /* Call through he_op_run. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
 } he_op;
@@ -128,6 +132,9 @@ size_t he_op_results(const he_op *op);
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* By about how many times the mesh grows, 1 where it stays of its size. */
 double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS]);
+/* What it would refuse, where that can be told without looking at the elements. */
+HE_NODISCARD he_status he_op_foresee(const he_op *op, const he_mesh *mesh,
+                                     const he_arg args[HE_OP_PARAMS], he_error *err);
 /* Is this a refusal the row declares (or a resource failure any row may have)? */
 bool he_op_declares(const he_op *op, he_status status);
 

@@ -7,11 +7,7 @@
 static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_step_counts counts[HE_SUBDIVIDE_STEPS];
-    double asked = args[1].number;
-    if (asked != floor(asked)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "\"steps\" is a whole number, not %g", asked);
-    }
-    unsigned steps = (unsigned)asked;
+    unsigned steps = (unsigned)args[1].number;
     for (size_t i = 0; i < 3; i++) {
         he_status status = he_give_room(out, i, steps, err);
         if (status != HE_OK) {
@@ -27,11 +23,15 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* Each step makes four of one, or three. What is no number of steps is refused at once. */
+/* Each step makes four of one, or three. */
 static double subdivide_growth(const he_arg *args)
 {
-    double steps = args[1].number;
-    return steps != floor(steps) ? 1 : pow(args[0].choice == HE_SQRT3 ? 3 : 4, steps);
+    return pow(args[0].choice == HE_SQRT3 ? 3 : 4, args[1].number);
+}
+
+static he_status foresee_subdivide(const he_mesh *m, const he_arg *args, he_error *err)
+{
+    return he_subdivide_fits(m, (he_scheme)args[0].choice, (unsigned)args[1].number, err);
 }
 
 /* In the order of he_scheme. */
@@ -54,18 +54,19 @@ const he_op he_refine_rows[] = {
                            "whose `locked` is true stay."},
                    {.name = "steps",
                     .type = HE_PARAM_NUMBER,
-                    .flags = HE_RANGE,
+                    .flags = HE_RANGE | HE_WHOLE,
                     .min = 1,
                     .max = HE_SUBDIVIDE_STEPS,
                     .fallback = 1,
-                    .doc = "How often, a whole number."}},
+                    .doc = "How often."}},
         .results = {{"vertices", HE_RESULT_COUNTS, HE_VERTEX,
                      "How many there are after each step."},
                     {"edges", HE_RESULT_COUNTS, HE_EDGE, "The same of edges."},
                     {"faces", HE_RESULT_COUNTS, HE_FACE, "The same of faces."}},
-        .refusals = {HE_BAD_VALUE, HE_LIMIT, HE_NOT_TRIANGLE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
+        .refusals = {HE_LIMIT, HE_NOT_TRIANGLE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .growth = subdivide_growth,
+        .foresee = foresee_subdivide,
         .run = run_subdivide,
     },
     {.name = NULL},

@@ -381,11 +381,25 @@ static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
     r = expect(200, "GET", "/v1/meshes/m/faces/5", NULL, NULL);
     bench_reply_free(&r);
     send(410, "GET", "/v1/meshes/m/faces/6", NULL);
-    submit("POST", "/v1/meshes/m/edits", "{\"op\":\"subdivide\",\"steps\":12}", path);
-    bench_run_jobs(bench, 1);
-    r = job_in(path, "failed");
-    assert_string_equal(inside(&r, "problem", "code")->valuestring, "limit_exceeded");
-    bench_reply_free(&r);
+}
+
+/* Without a job, and the mesh is free afterwards. */
+static void more_steps_than_ids_allow_are_refused_at_once(void **state)
+{
+    (void)state;
+    static const char *const asked[][2] = {
+        {"{\"op\":\"subdivide\",\"steps\":12}", ""},
+        {"{\"ops\":[{\"op\":\"subdivide\",\"steps\":12}," TRANSFORM "]}", "/ops/0"},
+    };
+    send(201, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    for (size_t i = 0; i < 2; i++) {
+        bench_reply r = expect(413, "POST", "/v1/meshes/m/edits", NULL, asked[i][0]);
+        assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "limit_exceeded");
+        const cJSON *pointer = cJSON_GetObjectItem(r.json, "pointer");
+        assert_string_equal(pointer == NULL ? "" : pointer->valuestring, asked[i][1]);
+        bench_reply_free(&r);
+        send(200, "POST", "/v1/meshes/m/edits", POKE);
+    }
 }
 
 static void a_dry_run_changes_nothing_as_a_job_either(void **state)
@@ -635,6 +649,7 @@ int main(void)
         JOB_TEST(a_mesh_may_be_deleted_under_a_long_edit),
         JOB_TEST(compact_as_a_job_ends_the_undo_stack),
         JOB_TEST(a_mesh_that_grows_large_is_refined_by_a_job),
+        JOB_TEST(more_steps_than_ids_allow_are_refused_at_once),
         JOB_TEST(a_dry_run_changes_nothing_as_a_job_either),
         JOB_TEST(what_is_estimated_above_a_second_becomes_a_job),
         JOB_TEST(a_listener_hears_of_each_state_and_then_the_end),

@@ -541,6 +541,30 @@ static void refusals_name_the_value_and_the_limit(void **state)
     bench_free(b);
 }
 
+/* With the type in what the server tells of its operations. */
+static void whole_numbers_have_no_fraction(void **state)
+{
+    (void)state;
+    static const char *const refused[][2] = {
+        {"{\"op\":\"subdivide\",\"steps\":1.5}", "/steps"},
+        {"{\"op\":\"subdivide\",\"steps\":13}", "/steps"},
+        {"{\"op\":\"subdivide\",\"steps\":0}", "/steps"},
+        {"{\"ops\":[{\"op\":\"decimate\",\"faces\":0.5}]}", "/ops/0/faces"},
+        {"{\"ops\":[{\"op\":\"decimate\",\"faces\":-1}]}", "/ops/0/faces"},
+    };
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+        bench_reply r = bench_expect(400, bench_post(b, "/v1/meshes/m/edits", refused[i][0]));
+        assert_string_equal(text_of(&r, "code"), "bad_value");
+        assert_string_equal(text_of(&r, "pointer"), refused[i][1]);
+        bench_reply_free(&r);
+    }
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/operations"));
+    assert_non_null(strstr(r.body, "\"name\":\"steps\",\"type\":\"integer\""));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -552,6 +576,7 @@ int main(void)
         cmocka_unit_test(lists_of_operations_have_a_price),
         cmocka_unit_test(huge_elements_are_no_work_for_a_worker),
         cmocka_unit_test(refusals_name_the_value_and_the_limit),
+        cmocka_unit_test(whole_numbers_have_no_fraction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,7 +76,7 @@ const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length 
 
 function figureOf(row, { value, amount }) {
     if (row.whole) {
-        return value;
+        return value / row.per;
     }
     return (row.less ? value / amount : amount / value) / row.per;
 }
@@ -96,6 +96,9 @@ function agree(row, part, name, ours, theirs) {
 async function round(row, part, start, sides, figures) {
     const results = {};
     for (const name of ['ours', ...part.sides]) {
+        if (row.slow?.includes(name) && name in figures) {
+            continue;
+        }
         const side = row.fresh ? start(name) : sides[name];
         const result = await side.run(name === 'ours' ? row.ours : (row.theirs ?? row.ours));
         if (row.fresh) {
@@ -106,6 +109,9 @@ async function round(row, part, start, sides, figures) {
         }
         figures[name] = [...(figures[name] ?? []), figureOf(row, result)];
         results[name] = row.after ? await sides.ours.run(row.after) : result;
+        if (row.errors && !(name in row.errors.told)) {
+            row.errors.told[name] = await sides.ours.run(row.errors.by);
+        }
     }
     const { ours } = results;
     for (const name of part.sides) {
@@ -208,11 +214,22 @@ async function runPart(part, folder) {
     }
     for (const row of part.rows) {
         const figures = {};
+        if (row.errors) {
+            row.errors.told = {};
+        }
         const runs = Math.min(row.runs ?? Infinity, Number(options.runs));
         for (let i = 0; i < runs; i++) {
             await round(row, part, start, sides, figures);
         }
         report(row, part, figures);
+        for (const error of row.errors?.rows ?? []) {
+            const told = Object.entries(row.errors.told);
+            report(
+                error,
+                part,
+                Object.fromEntries(told.map(([name, all]) => [name, [all[error.of] / error.per]])),
+            );
+        }
     }
     for (const one of Object.values(sides)) {
         await one.end();

@@ -12,6 +12,9 @@
 //     runs     of each side, where not as many as the rest
 //     fresh    each run in a process of its own
 //     after    a row of ours that describes what a side has left in the folder, compared instead
+//     slow     sides that run but once
+//     errors   rows whose figures are told by one of ours, `by`, of what each side has left in the
+//              folder; `of` says which of its numbers. As far as told, less is better
 
 const M = 1e6;
 const rate = (unit, per = M) => ({ unit, per });
@@ -46,6 +49,18 @@ const file = (title, ours, target, more = {}) => ({
     ...rate('Mface/s'),
     target,
     near: 1e-6,
+    ...more,
+});
+
+// In the unit of the coordinates, of which the torus is 8 wide. Samples tell the farthest point within a few
+// hundredths: that is the tolerance of its target.
+const error = (title, of, more) => ({
+    title,
+    of,
+    unit: 'millionths',
+    per: 1e-6,
+    less: true,
+    whole: true,
     ...more,
 });
 
@@ -213,7 +228,22 @@ export const parts = [
                 less: true,
                 near: 1e-2,
                 target: [['cgal', 10]],
-                runs: 1,
+                runs: 3,
+                slow: ['openmesh', 'cgal'],
+                errors: {
+                    by: 'decimate_error',
+                    rows: [
+                        error('its error, root mean square', 'value', {
+                            target: [['cgal', 1]],
+                        }),
+                        error('its error, Hausdorff', 'near', { target: [['cgal', 0.95]] }),
+                        error('points of it where a face turned', 'amount', {
+                            unit: '',
+                            per: 1,
+                            limit: 0,
+                        }),
+                    ],
+                },
             },
         ],
     },

@@ -8,6 +8,8 @@
 #include "op/op.h"
 #include "unit/fixture.h"
 
+#include <math.h>
+
 enum { STEPS = 16, LIST = 8, MOST_FACES = 600 };
 
 typedef struct call {
@@ -69,13 +71,15 @@ static uint32_t pick(fuzz_tape *t, const he_mesh *mesh, he_kind kind)
 static double number_in(fuzz_tape *t, const he_param *p)
 {
     double value = fuzz_double(t);
+    value = p->flags & HE_WHOLE ? floor(value) : value;
     if ((p->flags & HE_RANGE) == 0 || (value > p->min && value < p->max)) {
         return value;
     }
     bool inside = (p->flags & HE_EXCLUSIVE) != 0;
     double low = p->min, span = p->max - p->min < 4 ? p->max - p->min : 4;
     uint32_t share = fuzz_byte(t) % 9;
-    return inside ? low + span * (share + 1) / 10 : low + span * share / 8;
+    value = inside ? low + span * (share + 1) / 10 : low + span * share / 8;
+    return p->flags & HE_WHOLE ? floor(value) : value;
 }
 
 static void draw_points(fuzz_tape *t, he_vec3 *points, size_t count)

@@ -27,7 +27,7 @@ static bool draw_decimate(md_draft *d)
         md_give_number(d, "ratio", md_from(d->r, 5, 10) / 10.0);
     } else {
         uint32_t faces = md_from(d->r, he_mesh_faces(d->m) / 2, he_mesh_faces(d->m) + 1);
-        md_give_number(d, "faces", md_chance(d->r, 10) ? faces + 0.5 : faces);
+        md_give_number(d, "faces", faces);
     }
     if (md_chance(d->r, 50)) {
         md_give_number(d, "max_error", md_chance(d->r, 20) ? 0 : md_from(d->r, 1, 50) / 100.0);
@@ -44,9 +44,6 @@ static uint64_t play_decimate(const md_call *c, or_mesh *o, const he_mesh *m)
 {
     const he_arg *faces = md_get(c, "faces"), *most = md_get(c, "max_error");
     uint64_t refused = has_polygon(o) ? OR_BIT(HE_NOT_TRIANGLE) : 0;
-    if (faces->given && faces->number != floor(faces->number)) {
-        refused |= OR_BIT(HE_BAD_VALUE);
-    }
     if (refused != 0) {
         return refused;
     }

@@ -33,10 +33,6 @@ static bool draw_subdivide(md_draft *d)
     }
     or_scheme scheme = schemes[md_below(d->r, 4)];
     give_scheme(d, scheme);
-    if (md_chance(d->r, 3)) {
-        md_give_number(d, "steps", 1.5);
-        return true;
-    }
     if (md_chance(d->r, 3) && faces >= LEAST_BEYOND && scheme != OR_SQRT3) {
         md_give_number(d, "steps", BEYOND);
         return true;
@@ -49,9 +45,8 @@ static bool draw_subdivide(md_draft *d)
 static uint64_t play_subdivide(const md_call *c, or_mesh *o, const he_mesh *m)
 {
     static uint32_t start[OR_FACES];
-    double steps = md_get(c, "steps")->number;
-    if (steps != 1) {
-        return OR_BIT(steps < 2 ? HE_BAD_VALUE : HE_LIMIT);
+    if (md_get(c, "steps")->number != 1) {
+        return OR_BIT(HE_LIMIT);
     }
     for (uint32_t f = 0; f < o->faces; f++) {
         if (o->face[f].alive) {

@@ -46,7 +46,6 @@ const scenario refine_scenarios[] = {
      {2, 6, 4}},
     {"subdivide", "", NULL, HE_OK, {0, 0, 0}},
     {"subdivide scheme=loop", "++", NULL, HE_OK, {0, 0, 0}},
-    {"subdivide steps=1.5", QCUBE, NULL, HE_BAD_VALUE, {0}},
     {"subdivide scheme=loop steps=12", TETRA, NULL, HE_LIMIT, {0}},
     {"subdivide scheme=loop", QCUBE, NULL, HE_NOT_TRIANGLE, {0}},
     {"subdivide scheme=loop", "012,0234", NULL, HE_NOT_TRIANGLE, {0}},

@@ -137,7 +137,6 @@ const scenario region_scenarios[] = {
     {"decimate ratio=0", "012,034", NULL, HE_OK, {0, 0, 0}},
     {"decimate ratio=0", "", NULL, HE_OK, {0, 0, 0}},
     {"decimate faces=0", OCTAHEDRON, "mark locked vertices=0,1,2,3,4,5", HE_OK, {0, 0, 0}},
-    {"decimate faces=0.5", "012", NULL, HE_BAD_VALUE, {0}},
     {"decimate faces=0", "012,0234", NULL, HE_NOT_TRIANGLE, {0}},
     {"dual", QCUBE, NULL, HE_OK, {-2, 0, 2}},
     {"dual", OCTAHEDRON, NULL, HE_OK, {2, 0, -2}},

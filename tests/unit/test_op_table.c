@@ -552,6 +552,8 @@ static void test_rows_are_sound(void **state)
             assert_int_equal(param->type == HE_PARAM_ELEMENTS, param->plural != NULL);
             assert_int_equal(param->type == HE_PARAM_CHOICE, param->choices != NULL);
             assert_true(!(param->flags & HE_DERIVED) || param->type == HE_PARAM_NUMBER);
+            assert_true(!(param->flags & HE_WHOLE) ||
+                        (param->type == HE_PARAM_NUMBER && (param->flags & HE_RANGE)));
             for (size_t j = 0; j < k; j++) {
                 assert_string_not_equal(op->params[j].name, param->name);
             }

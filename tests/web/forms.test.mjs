@@ -151,6 +151,14 @@ test('a point that lacks a number is said, and its field marked', async (t) => {
     await checkAccessible(page, 'wrong', '#details');
 });
 
+test('a whole number is asked for in whole steps', async (t) => {
+    const { page } = await openMesh(t, GRID);
+    await choose(page, 'subdivide');
+    assert.equal(await field(page, 'steps').getAttribute('step'), '1');
+    await choose(page, 'face_inset');
+    assert.equal(await field(page, 'factor').getAttribute('step'), 'any');
+});
+
 test('a map is put together of steps, or given as 16 numbers', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, GRID);
     const place = await projector(page, daemon, mesh);

@@ -129,9 +129,10 @@ export class Numeral {
     node;
     #name;
 
-    constructor(name, placeholder) {
+    // `step` is 1 for whole numbers, else any.
+    constructor(name, placeholder, step = 'any') {
         this.#name = name;
-        this.node = make('input', { type: 'number', step: 'any', placeholder });
+        this.node = make('input', { type: 'number', step, placeholder });
         // Else the wheel would change it while one scrolls on.
         this.node.addEventListener('wheel', () => this.node.blur(), { passive: true });
     }

@@ -42,8 +42,8 @@ export function controlFor(param, meshes, pickable) {
         meshes().then((items) => control.add(items.map((item) => [item.id, item.name || item.id])));
         return control;
     }
-    if (type === 'number') {
-        return new Numeral(name, hintFor(param));
+    if (type === 'number' || type === 'integer') {
+        return new Numeral(name, hintFor(param), type === 'integer' ? '1' : 'any');
     }
     if (type === 'matrix') {
         return matrix(name, (part, control) => pickable({ name: part, type: 'point' }, control));
@@ -61,7 +61,7 @@ function hintFor({ default: usual, required }) {
 
 // What is to know of a parameter beside its name.
 export function marksOf({ type, required, min, max, exclusive }) {
-    const marks = [];
+    const marks = type === 'integer' ? ['whole'] : [];
     if (min !== undefined || max !== undefined) {
         const between = exclusive ? 'between' : 'from';
         marks.push(`${between} ${min} ${exclusive ? 'and' : 'to'} ${max}`);

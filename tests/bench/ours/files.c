@@ -1,6 +1,5 @@
 /* Mesh files: the daemon's readers and writers, fed from and into files in pieces of 64 kB. */
 #include "bench/ours/ours.h"
-#include "format/format.h"
 #include "mesh/walk.h"
 
 #include <math.h>
@@ -35,11 +34,9 @@ static void describe(const he_mesh *m, bench_result *out)
     bench_near(out, sum);
 }
 
-static he_mesh *read_mesh(const bench_side *side, const char *format, const char *name)
+void bench_read(const bench_side *side, const char *format, const char *name, he_import *out)
 {
     he_reader *reader;
-    he_import import;
-    he_mesh *mesh;
     char *piece = malloc(PIECE);
     FILE *file = open_file(side, name, "rb");
     bench_require(he_reader_new(he_format_find(format), NULL, &reader, NULL));
@@ -47,17 +44,24 @@ static he_mesh *read_mesh(const bench_side *side, const char *format, const char
     while ((n = fread(piece, 1, PIECE, file)) > 0) {
         bench_require(he_reader_feed(reader, piece, n, NULL));
     }
-    bench_require(he_reader_finish(reader, &import, NULL));
-    bench_require(he_build(&import.soup, HE_BUILD_TAKE, &mesh, NULL, NULL));
+    bench_require(he_reader_finish(reader, out, NULL));
     he_reader_free(reader);
-    he_import_clear(&import);
     fclose(file);
     free(piece);
+}
+
+static he_mesh *read_mesh(const bench_side *side, const char *format, const char *name)
+{
+    he_import import;
+    he_mesh *mesh;
+    bench_read(side, format, name, &import);
+    bench_require(he_build(&import.soup, HE_BUILD_TAKE, &mesh, NULL, NULL));
+    he_import_clear(&import);
     return mesh;
 }
 
-static void write_mesh(const bench_side *side, const he_mesh *m, const char *format,
-                       const char *encoding, const char *name)
+void bench_write(const bench_side *side, const he_mesh *m, const char *format, const char *encoding,
+                 const char *name)
 {
     he_writer *writer;
     const he_format *row = he_format_find(format);
@@ -92,7 +96,7 @@ static void export(bench_side *side, const char *format, const char *encoding, c
 {
     const he_mesh *m = bench_mesh(side);
     double start = bench_seconds();
-    write_mesh(side, m, format, encoding, name);
+    bench_write(side, m, format, encoding, name);
     out->value = bench_seconds() - start;
     describe(m, out);
     out->has_exact = out->has_near = false;

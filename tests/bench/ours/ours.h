@@ -4,6 +4,7 @@
 #define TESTS_BENCH_OURS_OURS_H
 
 #include "bench/side/side.h"
+#include "format/format.h"
 #include "mesh/build.h"
 
 extern const bench_row bench_build_rows[];
@@ -12,6 +13,7 @@ extern const bench_row bench_edit_rows[];
 extern const bench_row bench_file_rows[];
 extern const bench_row bench_document_rows[];
 extern const bench_row bench_decimate_rows[];
+extern const bench_row bench_error_rows[];
 extern const bench_row bench_subdivide_rows[];
 
 /* Ends the program with the status' title unless it is HE_OK. */
@@ -20,6 +22,11 @@ void bench_require(he_status status);
 he_soup bench_soup(const bench_side *side);
 /* The mesh of the input, made at the first call. */
 he_mesh *bench_mesh(bench_side *side);
+/* A file of the folder, fed to a reader in pieces; cleared by the caller. */
+void bench_read(const bench_side *side, const char *format, const char *name, he_import *out);
+/* And written; `encoding` may be empty. */
+void bench_write(const bench_side *side, const he_mesh *m, const char *format, const char *encoding,
+                 const char *name);
 /* Vertices, edges, faces and every face's corners. */
 uint64_t bench_mesh_hash(const he_mesh *m);
 

@@ -1,0 +1,227 @@
+/* Decimation as an edit: undone, recorded, starved, given up. */
+#include "tests/unit/dense.h"
+
+#include "algo/progressive.h"
+#include "mesh/write.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Asked for so much that it would replace the mesh, and allowed nothing. */
+static void nothing_is_recorded_where_no_edge_may_go(void **state)
+{
+    (void)state;
+    he_mesh *m = dense_torus(104), *before = dense_copy(m);
+    he_delta *delta = he_delta_new();
+    assert_non_null(delta);
+    assert_true(he_mesh_faces(m) > HE_DECIMATE_RECORDED);
+    he_mesh_record(m, delta);
+    he_decimated done = dense_decimate(m, 0, 0);
+    assert_int_equal(done.stop, HE_STOP_ERROR);
+    assert_int_equal(delta->count, 0);
+    assert_true(he_mesh_equal(m, before));
+    he_mesh_record(m, NULL);
+    he_delta_free(delta);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+/* A few faces and many are done in two ways. */
+static const struct {
+    uint32_t side, faces;
+    bool replaced;
+} ways[] = {{20, 200, false}, {110, 3000, true}};
+
+static void it_is_undone_and_done_again(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        he_mesh *m = dense_torus(ways[i].side), *before = dense_copy(m);
+        he_delta *delta = he_delta_new();
+        he_mesh_record(m, delta);
+        dense_decimate(m, ways[i].faces, INFINITY);
+        he_mesh_record(m, NULL);
+        he_mesh *after = dense_copy(m);
+        he_changes changes;
+        assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
+        assert_int_equal(changes.replaced, ways[i].replaced);
+        assert_int_equal(changes.created[HE_VERTEX].count, 0);
+        if (!changes.replaced) {
+            assert_int_equal(changes.deleted[HE_FACE].count,
+                             he_mesh_faces(before) - he_mesh_faces(m));
+            assert_int_equal(changes.merged[HE_VERTEX].count,
+                             2 * (he_mesh_vertices(before) - he_mesh_vertices(m)));
+        }
+        he_changes_clear(&changes);
+        he_delta_undo(delta, m);
+        assert_true(he_mesh_equal(m, before));
+        he_delta_redo(delta, m);
+        assert_true(he_mesh_equal(m, after));
+        he_delta_free(delta);
+        he_mesh_free(after);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
+static void both_ways_and_each_time_it_is_the_same(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        he_mesh *a = dense_torus(ways[i].side), *b = dense_torus(ways[i].side);
+        he_delta *delta = he_delta_new();
+        he_mesh_record(b, delta);
+        dense_decimate(a, ways[i].faces, INFINITY);
+        dense_decimate(b, ways[i].faces, INFINITY);
+        assert_true(he_mesh_equal(a, b));
+        he_mesh_free(b);
+        he_delta_free(delta);
+        he_mesh_free(a);
+    }
+}
+
+static void add_columns(he_mesh *m, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        char name[16];
+        he_column *column = NULL;
+        snprintf(name, sizeof name, "value%u", i);
+        assert_int_equal(he_column_new(name, HE_VERTEX, HE_FLOAT, 1, HE_INTERPOLATE, &column, NULL),
+                         HE_OK);
+        assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
+        assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+        size_t slot = he_mesh_column_slot(m, he_mesh_find_column(m, HE_VERTEX, name));
+        assert_int_equal(he_reserve_values(m, slot, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
+        for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            float value = (float)(v % 7 + i);
+            he_set_attribute(m, slot, v, &value);
+        }
+    }
+}
+
+/* Records there is room for, and those that are used, beyond what it takes without columns. */
+static void record_with(unsigned columns, size_t *room, size_t *used)
+{
+    he_mesh *m = dense_torus(20);
+    he_delta *delta = he_delta_new();
+    add_columns(m, columns);
+    he_mesh_record(m, delta);
+    dense_decimate(m, 200, INFINITY);
+    he_mesh_record(m, NULL);
+    *room = delta->capacity;
+    *used = delta->count;
+    he_delta_free(delta);
+    he_mesh_free(m);
+}
+
+static void a_record_grows_as_columns_do(void **state)
+{
+    (void)state;
+    size_t room[3], used[3];
+    static const unsigned columns[3] = {0, 8, 64};
+    for (size_t i = 0; i < 3; i++) {
+        record_with(columns[i], &room[i], &used[i]);
+        printf("note: %u columns: %zu records used of %zu\n", columns[i], used[i], room[i]);
+    }
+    assert_true(used[1] > used[0]);
+    assert_true(room[2] - room[0] <= 9 * (room[1] - room[0]));
+    assert_true(room[2] <= 2 * used[2]);
+}
+
+static void memory_may_end_anywhere(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        he_mesh *first = dense_torus(ways[i].side);
+        bool failed = true;
+        for (long n = 1; failed; n++) {
+            he_mesh *m = dense_copy(first);
+            he_decimate_options options = {ways[i].faces, INFINITY, 100};
+            fixture_fail_at(n);
+            he_status status = he_decimate(m, &options, NULL, NULL);
+            failed = status != HE_OK;
+            fixture_fail_at(0);
+            if (failed) {
+                assert_int_equal(status, HE_NO_MEMORY);
+                assert_true(he_mesh_equal(m, first));
+            }
+            he_mesh_free(m);
+            assert_true(n < 200);
+        }
+        he_mesh_free(first);
+    }
+}
+
+static void a_progressive_mesh_may_run_out_of_memory(void **state)
+{
+    (void)state;
+    he_mesh *first = dense_torus(20);
+    bool failed = true;
+    for (long n = 1; failed; n++) {
+        he_progressive made = {0};
+        fixture_fail_at(n);
+        he_status status = he_progressive_new(first, 0, NULL, &made, NULL);
+        failed = status != HE_OK;
+        fixture_fail_at(0);
+        assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);
+        assert_true(failed ? made.base == NULL : made.count > 100);
+        if (!failed) {
+            fixture_check(made.base);
+            assert_int_equal(he_mesh_vertices(made.base) + made.count, 400);
+        }
+        he_progressive_clear(&made);
+        assert_true(n < 200);
+    }
+    he_mesh_free(first);
+}
+
+static bool give_up(void *context, const char *phase, double done)
+{
+    long *left = context;
+    (void)phase;
+    assert_true(done >= 0 && done <= 1);
+    return --*left > 0;
+}
+
+static void it_can_be_given_up(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        he_mesh *first = dense_torus(ways[i].side);
+        bool cancelled = true;
+        long told = 0;
+        for (long n = 1; cancelled; n++) {
+            he_mesh *m = dense_copy(first);
+            he_watch watch;
+            long left = n;
+            he_watch_init(&watch, give_up, &left);
+            he_mesh_watch(m, &watch);
+            he_decimate_options options = {ways[i].faces, INFINITY, 100};
+            he_status status = he_decimate(m, &options, NULL, NULL);
+            he_mesh_watch(m, NULL);
+            cancelled = status != HE_OK;
+            if (cancelled) {
+                assert_int_equal(status, HE_CANCELLED);
+                assert_true(he_mesh_equal(m, first));
+            }
+            told = n;
+            he_mesh_free(m);
+        }
+        assert_true(told > 3);
+        he_mesh_free(first);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_recorded_where_no_edge_may_go),
+        cmocka_unit_test(it_is_undone_and_done_again),
+        cmocka_unit_test(both_ways_and_each_time_it_is_the_same),
+        cmocka_unit_test(a_record_grows_as_columns_do),
+        cmocka_unit_test(memory_may_end_anywhere),
+        cmocka_unit_test(a_progressive_mesh_may_run_out_of_memory),
+        cmocka_unit_test(it_can_be_given_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
