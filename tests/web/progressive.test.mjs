@@ -232,6 +232,7 @@ test('levels can be shown while more come', async (t) => {
     for (let at = 0; at < stream.length; at += 1000) {
         reader.push(stream.subarray(at, at + 1000));
         if (levels.hasBase) {
+            assert.equal(levels.part, levels.count / levels.most);
             levels.goTo(levels.most);
             assert.equal(levels.level, levels.count);
             halfedgesOf(cornersOf(levels.geometry));
@@ -243,6 +244,11 @@ test('levels can be shown while more come', async (t) => {
     const all = readWhole(stream).levels;
     all.goTo(all.most);
     assert.deepEqual(levels.geometry, all.geometry);
+    assert.equal(levels.part, 1);
+    // One that can be no coarser has no other level.
+    const least = await makeMesh(daemon, { shape: 'tetrahedron' });
+    const { levels: only } = readWhole(await getStream(daemon, least));
+    assert.ok(only.hasBase && only.most === 0 && only.part === 1);
 });
 
 test('what is no stream of levels is refused', async (t) => {

@@ -73,6 +73,11 @@ export class Levels {
         return this.#faces;
     }
 
+    // Of the splits, 0 to 1.
+    get part() {
+        return this.most > 0 ? this.count / this.most : 1;
+    }
+
     // --- what comes ---
 
     addVertex(id, place) {

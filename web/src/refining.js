@@ -133,7 +133,7 @@ export class Refining {
             if (!this.isOn) {
                 this.#showBase();
             }
-            this.#elements.progress.value = levels.count / levels.most;
+            this.#elements.progress.value = levels.part;
             this.#schedule();
         }
     }
