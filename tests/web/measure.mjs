@@ -1,6 +1,9 @@
 // measure.mjs [FOLDER] - how long meshes of a thousand, a hundred thousand and a million faces take
 // to open, to draw, to pick in and to edit, and how many bytes an edit fetches; with FOLDER a
-// screenshot of each. Not a test: what it prints depends on the machine.
+// screenshot of each. Then how long so many triangles take to be shown from coarse to fine: a frame of
+// all of them, until the base is there, the frames of playing, and those in which the slider goes to
+// another place.
+// Not a test: what it prints depends on the machine.
 
 import { writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -10,6 +13,7 @@ import { get, post, startDaemon } from './daemon.mjs';
 
 const SIDES = [32, 316, 1000];
 const FRAMES = 5;
+const PLACES = [0, 1000, 500, 900, 700, 0, 1000];
 
 const folder = process.argv[2];
 const cleanups = [];
@@ -94,6 +98,53 @@ async function measure(browser, daemon, side) {
     return { faces: counts.faces, bytes: edited, times };
 }
 
+const middle = (times) => times.sort((a, b) => a - b)[Math.floor(times.length / 2)];
+
+async function measureLevels(browser, daemon, side) {
+    const shape = { shape: 'torus', major_segments: side, minor_segments: side };
+    const { id: mesh } = await post(daemon, '', { name: `triangles ${side}`, ...shape });
+    await post(daemon, `/${mesh}/edits`, { op: 'triangulate' });
+    const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+    page.setDefaultTimeout(120000);
+    await page.goto(`${daemon.url}/#mesh=${mesh}`);
+    await waitForFrame(page, { mesh, revision: 2 });
+    const whole = await frameTime(page);
+    const base = await timed(
+        () => page.getByRole('button', { name: 'Levels' }).click(),
+        () => page.locator('#canvas[data-faces]').waitFor(),
+    );
+    const [played, dragged] = await page.evaluate(async (places) => {
+        const [play, slider] = ['level-play', 'level'].map((id) => document.getElementById(id));
+        const gl = document.getElementById('canvas').getContext('webgl2');
+        const pixel = new Uint8Array(4);
+        const frame = async () => {
+            await new Promise((resolve) => requestAnimationFrame(resolve));
+            gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+            return performance.now();
+        };
+        const frames = [];
+        for (let last = await frame(); play.textContent === 'Pause';) {
+            const now = await frame();
+            frames.push(now - last);
+            last = now;
+        }
+        const jumps = [];
+        for (const place of places) {
+            slider.value = place;
+            slider.dispatchEvent(new Event('input'));
+            const start = performance.now();
+            await frame(); // goes there
+            jumps.push((await frame()) - start); // is drawn
+        }
+        return [frames, jumps];
+    }, PLACES);
+    await page.close();
+    const { counts } = await get(daemon, `/${mesh}`);
+    const seconds = played.reduce((sum, time) => sum + time, 0) / 1000;
+    const times = [whole, base, middle(played), played.at(-1), middle(dragged), dragged.at(-1)];
+    return { faces: counts.faces, frames: played.length, seconds, times };
+}
+
 const browser = await launch();
 try {
     const daemon = await startDaemon(lifetime);
@@ -102,6 +153,13 @@ try {
     for (const side of SIDES) {
         const { faces, bytes, times } = await measure(browser, daemon, side);
         line([faces, ...times.map((time) => `${time.toFixed(0)} ms`), bytes]);
+    }
+    line(['triangles', 'whole', 'base', 'frame', 'slowest', 'slide', 'slowest', 'frames', 'seconds']);
+    for (const side of SIDES) {
+        const half = Math.round(side / Math.SQRT2);
+        const { faces, frames, seconds, times } = await measureLevels(browser, daemon, half);
+        const cells = times.map((time) => `${time.toFixed(0)} ms`);
+        line([faces, ...cells, frames, seconds.toFixed(1)]);
     }
 } finally {
     await browser.close();

@@ -53,3 +53,18 @@ test('much is sent as a whole, and another array by another texture', () => {
     assert.equal(longer.image.height, 2);
     assert.deepEqual(longer.updateRanges, []);
 });
+
+test('long ranges are sent up to a larger part, and none of what was never sent', () => {
+    const { made, ranges } = rows(3);
+    made.updateWithin([[0, 512]]);
+    assert.deepEqual(ranges(), []);
+    made.onUpdate();
+    const { version } = made;
+    made.updateWithin([]);
+    assert.equal(made.version, version);
+    made.updateWithin([[0, ROW], [ROW + 256, ROW + 512]]);
+    assert.deepEqual(ranges(), [[0, ROW], [ROW + 256, 256]]);
+    assert.ok(made.version > version);
+    made.updateWithin([[0, ROW], [ROW, 2 * ROW]]);
+    assert.deepEqual(ranges(), []);
+});

@@ -193,6 +193,15 @@ async function readArrays(path, onProgress, signal) {
     return whole.buffer;
 }
 
+// The mesh from coarse to fine: `onBytes` gets what comes as it comes, see progressive.js.
+export async function getProgressive(mesh, onBytes, signal) {
+    const answer = await request(`${meshPath(mesh)}/progressive`, { signal });
+    const reader = answer.body.getReader();
+    for (let part = await readOn(reader); !part.done; part = await readOn(reader)) {
+        onBytes(part.value);
+    }
+}
+
 async function readOn(reader) {
     try {
         return await reader.read();

@@ -23,22 +23,22 @@ export function showName({ mesh, summary }) {
     );
 }
 
-// May the open mesh be edited now?
+// May the open mesh be edited?
 export function isReady({ mesh, busy, connection }) {
     return mesh !== null && !busy && connection !== 'gone';
 }
 
-// `isDrawn` where there is a view at all.
-export function showState(session, isDrawn) {
+// `ready` where it may be edited now, `isDrawn` where there is a view at all.
+export function showState(session, ready, isDrawn) {
     const { mesh, split } = session;
     const steps = session.shown?.history;
-    const ready = isReady(session);
     enable(byId('split'), ready && split !== null);
     byId('split').title =
         SPLIT_TITLES[split] ?? 'Select a face, an edge or two vertices to split';
     enable(byId('undo'), ready && steps.undo > 0);
     enable(byId('redo'), ready && steps.redo > 0);
     enable(byId('fit'), mesh !== null && isDrawn);
+    enable(byId('progressive'), mesh !== null && isDrawn);
     enable(byId('screenshot'), mesh !== null && isDrawn);
     enable(byId('goto-id'), mesh !== null);
     enable(byId('goto-button'), mesh !== null);

@@ -77,7 +77,7 @@ export function unpack(buffer) {
 const isLengthOf = (buffer) => (length) => length === buffer.byteLength;
 
 // A copy that fills the rows of a texture, of which there is one at least.
-function wholeRows(array) {
+export function wholeRows(array) {
     const rows = Math.max(Math.ceil(array.length / (4 * ROW)), 1);
     const whole = new array.constructor(4 * ROW * rows);
     whole.set(array);

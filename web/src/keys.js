@@ -23,7 +23,7 @@ const KEYS = [
     ['Ctrl Z', 'ctrl+z', 'Undo', 'undo'],
     ['Ctrl Shift Z', 'ctrl+shift+z', 'Redo', 'redo'],
     ['?', '?', 'This list', 'help'],
-    ['Esc', 'escape', 'Give up a drag or a field that waits, else select nothing', 'clear'],
+    ['Esc', 'escape', 'Give up levels, a drag or a field that waits, else select nothing', 'clear'],
 ];
 
 // `acts` has a function for each act.

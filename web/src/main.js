@@ -10,6 +10,7 @@ import { History } from './history.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
 import { MeshList } from './list.js';
+import { Refining } from './refining.js';
 import { Session } from './session.js';
 import { Stage } from './stage.js';
 import { Statistics } from './statistics.js';
@@ -92,6 +93,20 @@ const stage = new Stage(
 );
 const editing = new Editing(canvas, session, stage, toasts);
 const address = new Address(session, stage);
+const refining = new Refining(
+    {
+        button: byId('progressive'),
+        box: byId('levels'),
+        slider: byId('level'),
+        faces: byId('level-faces'),
+        hint: byId('level-hint'),
+        progress: byId('level-progress'),
+        play: byId('level-play'),
+        done: byId('level-done'),
+    },
+    stage,
+    { onBegin: showWhatMayBeDone, onEnd: () => update('content'), onError: fail },
+);
 
 function importOf({ counts, import: report }) {
     const found = ['repairs', 'warnings']
@@ -107,6 +122,9 @@ function importOf({ counts, import: report }) {
 function update(what, change) {
     const isNew = what === 'mesh' || what === 'content';
     const isChanged = isNew || what === 'change';
+    if (refining.isWanted && (isChanged || session.loading !== null)) {
+        endLevels();
+    }
     if (isNew) {
         stage.show(session.shown.geometry, label());
     } else if (isChanged) {
@@ -172,9 +190,18 @@ function showFacts() {
 }
 
 function showWhatMayBeDone() {
-    showState(session, stage.isThere);
-    editing.setEnabled(isReady(session));
-    history.setEnabled(isReady(session));
+    const ready = isReady(session) && !refining.isOn;
+    showState(session, ready, stage.isThere);
+    editing.setEnabled(ready);
+    history.setEnabled(ready);
+}
+
+// Those of another mesh or another revision are not those of what is shown.
+function endLevels() {
+    refining.end();
+    if (session.loading === null) {
+        toasts.tell('Back to the mesh', 'It has changed, and its levels with it.');
+    }
 }
 
 // The empty state shows where there is nothing to open.
@@ -206,6 +233,14 @@ async function goTo(event) {
     frameSelection();
 }
 
+function toggleLevels() {
+    if (refining.isWanted) {
+        refining.end();
+    } else {
+        refining.begin(session.shown).catch(fail);
+    }
+}
+
 const undo = () => !byId('undo').disabled && session.undo().catch(fail);
 const redo = () => !byId('redo').disabled && session.redo().catch(fail);
 
@@ -224,11 +259,11 @@ listenToKeys(canvas, {
     extrude: () => editing.start('extrude', true),
     inset: () => editing.start('inset', true),
     split: () => byId('split').click(),
-    remove: () => editing.remove().catch(fail),
+    remove: () => byId('remove').click(),
     undo,
     redo,
     help: () => byId('help').showModal(),
-    clear: () => editing.giveUp(),
+    clear: () => (refining.isWanted ? refining.end() : editing.giveUp()),
 });
 byId('keys').append(...keyList());
 byId('help-button').addEventListener('click', () => byId('help').showModal());
@@ -243,6 +278,7 @@ byId('show-boundary').addEventListener('change', (event) => {
     session.showBoundary(event.target.checked).catch(fail);
 });
 byId('fit').addEventListener('click', () => stage.fit());
+byId('progressive').addEventListener('click', toggleLevels);
 byId('refresh').addEventListener('click', () => refreshList().catch(fail));
 for (const button of document.querySelectorAll('.upload')) {
     button.addEventListener('click', () => byId('file').click());

@@ -15,6 +15,7 @@ export class Stage {
     #modes;
     #geometryNow;
     #renderer = null;
+    #isLevel = false; // a level of detail is shown, which has no ids
     #acts;
     #timer = 0;
 
@@ -52,14 +53,28 @@ export class Stage {
 
     // --- what is shown ---
 
-    // New arrays; `label` is what the next frame is marked with: {mesh, revision, selection}.
+    // New arrays; `label` is what the next frame is marked with: {mesh, revision, selection}, of a
+    // level {mesh, revision, faces}.
     show(geometry, label) {
+        this.#isLevel = false;
         this.#draw(label, () => this.#renderer?.show(geometry, label));
     }
 
     // The arrays that are shown were changed, see applyDelta().
     update(change, label) {
         this.#draw(label, () => this.#renderer?.update(change, label));
+    }
+
+    // A level of detail in place of the mesh, until that is shown again. Nothing is picked in it or
+    // marked. Throws a RangeError where it is too large, and shows what it did before.
+    showLevel(geometry, label) {
+        this.#renderer.show(geometry, label);
+        this.#isLevel = true;
+    }
+
+    // Another level, see Levels.
+    refine(ranges, label) {
+        this.#renderer.refine(ranges, label);
     }
 
     #draw(label, act) {
@@ -73,7 +88,7 @@ export class Stage {
 
     // What the frame on the screen shows, for whoever waits for it.
     #markFrame(label) {
-        for (const name of ['mesh', 'revision', 'selection']) {
+        for (const name of ['mesh', 'revision', 'selection', 'faces']) {
             if (label?.[name] === undefined) {
                 delete this.#canvas.dataset[name];
             } else {
@@ -82,21 +97,25 @@ export class Stage {
         }
     }
 
-    // See Renderer.
+    // What marks are on: null where there is nothing to mark. See Renderer for the marks.
+    get #marked() {
+        return this.#isLevel ? null : this.#renderer;
+    }
+
     select(marks, arrows, label) {
-        this.#renderer?.select(marks, arrows, label);
+        this.#marked?.select(marks, arrows, label);
     }
 
     markField(marks) {
-        this.#renderer?.markField(marks);
+        this.#marked?.markField(marks);
     }
 
     setBoundary(ends) {
-        this.#renderer?.setBoundary(ends);
+        this.#marked?.setBoundary(ends);
     }
 
     preview(lines) {
-        this.#renderer?.preview(lines);
+        this.#marked?.preview(lines);
     }
 
     capture() {
@@ -176,7 +195,7 @@ export class Stage {
             const { clientX: x, clientY: y } = event;
             const isClick =
                 down !== null && Math.hypot(x - down.clientX, y - down.clientY) <= CLICK_PIXELS;
-            if (isClick && this.#renderer !== null && this.#geometryNow() !== null) {
+            if (isClick && this.#marked !== null && this.#geometryNow() !== null) {
                 this.#acts.onPick(this.#choose(x, y), event.shiftKey);
             }
         });

@@ -109,6 +109,13 @@ export class Renderer {
         this.#draw();
     }
 
+    // The arrays were changed within ranges, and how much of them is shown, see Levels.
+    refine(ranges, label) {
+        this.#surface.refine(ranges);
+        this.#label = label;
+        this.#draw();
+    }
+
     // Mark elements: {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to} or
     // {kind: 'vertex', id}, and draw half-edges as arrows, see around.js. Replaces what was marked
     // before.

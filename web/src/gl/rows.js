@@ -5,8 +5,10 @@ import { DataTexture, NearestFilter } from 'three';
 
 import { ROW } from '../geometry.js';
 
-// More changed texels than this part of all of them are sent as a whole.
+// More changed texels than this part of all of them are sent as a whole; in ranges that are long
+// already a larger part.
 const MANY = 1 / 8;
+const MOST = 1 / 2;
 
 export class Rows extends DataTexture {
     #isSent = false;
@@ -29,29 +31,30 @@ export class Rows extends DataTexture {
             this.dispose();
             return longer;
         }
-        if (places.length === 0) {
-            return this;
+        const isMany = places.length >= MANY * (array.length / 4);
+        this.#send(isMany ? null : rangesOf(places));
+        return this;
+    }
+
+    // The array was changed in some ranges [begin, end] in rising order, none of which goes beyond
+    // its row.
+    updateWithin(ranges) {
+        const texels = ranges.reduce((sum, [begin, end]) => sum + end - begin, 0);
+        this.#send(texels >= MOST * (this.image.data.length / 4) ? null : ranges);
+    }
+
+    // Ranges, or all of it (null).
+    #send(ranges) {
+        if (ranges?.length === 0) {
+            return;
         }
         // What was never sent is sent whole, and a range would keep it from that.
-        if (this.#isSent && places.length < MANY * (array.length / 4)) {
-            this.#addRanges(places);
+        if (this.#isSent && ranges !== null) {
+            ranges.forEach(([begin, end]) => this.addUpdateRange(4 * begin, 4 * (end - begin)));
         } else {
             this.forget();
         }
         this.needsUpdate = true;
-        return this;
-    }
-
-    // Places in rising order, as few ranges, none of which goes beyond its row.
-    #addRanges(places) {
-        let begin = 0;
-        for (let i = 1; i <= places.length; i++) {
-            const goesOn = places[i] === places[i - 1] + 1 && places[i] % ROW !== 0;
-            if (!goesOn) {
-                this.addUpdateRange(4 * places[begin], 4 * (i - begin));
-                begin = i;
-            }
-        }
     }
 
     // What the graphics memory had of it is lost or old: all of it is sent next time.
@@ -59,4 +62,18 @@ export class Rows extends DataTexture {
         this.#isSent = false;
         this.clearUpdateRanges();
     }
+}
+
+// Places in rising order as few ranges, none of which goes beyond its row.
+function rangesOf(places) {
+    const ranges = [];
+    let begin = 0;
+    for (let i = 1; i <= places.length; i++) {
+        const goesOn = places[i] === places[i - 1] + 1 && places[i] % ROW !== 0;
+        if (!goesOn) {
+            ranges.push([places[begin], places[i - 1] + 1]);
+            begin = i;
+        }
+    }
+    return ranges;
 }

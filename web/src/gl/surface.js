@@ -108,6 +108,15 @@ export class Surface {
         this.#setRanges();
     }
 
+    // The arrays that are shown were changed within some ranges and their counts with them, see
+    // Levels.takeChanges().
+    refine(ranges) {
+        for (const [name, texture] of Object.entries(this.#textures)) {
+            texture.value.updateWithin(ranges[name]);
+        }
+        this.#setRanges();
+    }
+
     // What the graphics memory had is lost.
     forget() {
         Object.values(this.#textures).forEach(({ value }) => value.forget());

@@ -1,0 +1,232 @@
+// refining.js - the open mesh shown from coarse to fine: its levels of detail as they come, a slider
+// that goes to any of them, and playing them. While one is shown nothing is picked or edited: it
+// has other elements than the mesh.
+
+import * as api from './api.js';
+import { formatCount } from './dom.js';
+import { Levels } from './levels.js';
+import { Pace } from './pace.js';
+import { ProgressiveReader } from './progressive.js';
+
+// One has looked away, or a frame was dear: no longer a step of playing, in seconds.
+const LONGEST = 0.5;
+
+const isStill = window.matchMedia('(prefers-reduced-motion: reduce)');
+
+const HINTS = {
+    waiting: 'The server makes the levels.',
+    shown: 'Picking and editing are off meanwhile.',
+};
+
+export class Refining {
+    #elements;
+    #stage;
+    #acts;
+    #mesh = null; // {mesh, revision, faces} of which levels are read or shown
+    #reading = null; // gives up what is read
+    #levels = null;
+    #pace = null; // once the base is shown
+    #position = 0; // of the slider: what is wanted, if it has come
+    #isPlaying = false;
+    #time = 0; // of the last step, and 0 before the first
+    #scheduled = 0;
+
+    // `button` begins and ends it; `box` is shown meanwhile and holds `slider`, `faces` (what is
+    // shown), `hint`, `progress` (what has come), `play` and `done`. `onBegin()` when the base is
+    // shown, `onEnd()` when the mesh is to be shown again.
+    constructor(elements, stage, { onBegin, onEnd, onError }) {
+        [this.#elements, this.#stage] = [elements, stage];
+        this.#acts = { onBegin, onEnd, onError };
+        const { box, slider, play, done } = elements;
+        done.addEventListener('click', () => this.end());
+        play.addEventListener('click', () => (this.#isPlaying ? this.#pause() : this.#play()));
+        slider.addEventListener('input', () => {
+            this.#isPlaying = false;
+            this.#position = Number(slider.value);
+            this.#schedule();
+        });
+        box.addEventListener('keydown', (event) => {
+            if (event.key === 'Escape') {
+                this.end();
+            }
+        });
+    }
+
+    // Is a level shown in place of the mesh?
+    get isOn() {
+        return this.#pace !== null;
+    }
+
+    // Have levels been asked for?
+    get isWanted() {
+        return this.#mesh !== null;
+    }
+
+    // Read the levels of what is shown, a Content, and play them as they come.
+    async begin({ mesh, revision, geometry, summary }) {
+        this.end();
+        const reading = new AbortController();
+        this.#reading = reading;
+        this.#mesh = { mesh, revision, faces: summary.counts.faces };
+        this.#showWaiting();
+        const reader = new ProgressiveReader((header) => {
+            this.#levels = new Levels(header, geometry.frame);
+            return this.#levels;
+        });
+        try {
+            const onBytes = (bytes) => {
+                reader.push(bytes);
+                this.#arrived();
+            };
+            await api.getProgressive(mesh, onBytes, reading.signal);
+            reading.signal.throwIfAborted();
+            reader.end();
+            this.#elements.progress.hidden = true;
+            this.#mesh.faces = this.#levels.faces;
+            this.#schedule();
+        } catch (error) {
+            // Who has given it up does not want to hear of it.
+            if (!reading.signal.aborted) {
+                this.end();
+                this.#acts.onError(error);
+            }
+        }
+    }
+
+    // Show the mesh again.
+    end() {
+        const { box, button } = this.#elements;
+        const { isOn } = this;
+        const hadFocus = box.contains(document.activeElement);
+        this.#reading?.abort();
+        cancelAnimationFrame(this.#scheduled);
+        [this.#mesh, this.#reading, this.#levels, this.#pace] = [null, null, null, null];
+        [this.#isPlaying, this.#scheduled] = [false, 0];
+        box.hidden = true;
+        button.setAttribute('aria-pressed', 'false');
+        if (hadFocus) {
+            button.focus();
+        }
+        if (isOn) {
+            this.#acts.onEnd();
+        }
+    }
+
+    // --- what comes ---
+
+    #showWaiting() {
+        const { box, button, slider, faces, hint, progress, play } = this.#elements;
+        button.setAttribute('aria-pressed', 'true');
+        faces.textContent = '';
+        hint.textContent = HINTS.waiting;
+        box.setAttribute('aria-busy', 'true');
+        progress.hidden = false;
+        progress.removeAttribute('value');
+        slider.disabled = true;
+        play.disabled = true;
+        box.hidden = false;
+    }
+
+    #arrived() {
+        const levels = this.#levels;
+        if (levels?.hasBase) {
+            if (!this.isOn) {
+                this.#showBase();
+            }
+            this.#elements.progress.value = levels.part;
+            this.#schedule();
+        }
+    }
+
+    #showBase() {
+        const { button, box, slider, hint, play } = this.#elements;
+        const { geometry, most } = this.#levels;
+        this.#levels.goTo(0);
+        this.#stage.showLevel(geometry, this.#label);
+        this.#pace = new Pace(geometry.triangleCount, most);
+        slider.max = this.#pace.positions;
+        slider.disabled = false;
+        play.disabled = false;
+        hint.textContent = HINTS.shown;
+        box.setAttribute('aria-busy', 'false');
+        this.#acts.onBegin();
+        if (document.activeElement === button) {
+            slider.focus();
+        }
+        // Who wants no motion waits for all of it.
+        this.#position = isStill.matches ? this.#pace.positions : 0;
+        if (isStill.matches) {
+            this.#showLevel();
+        } else {
+            this.#play();
+        }
+    }
+
+    // --- levels ---
+
+    #play() {
+        this.#isPlaying = true;
+        this.#time = 0;
+        if (this.#position >= this.#pace.positions) {
+            this.#position = 0;
+        }
+        this.#schedule();
+    }
+
+    #pause() {
+        this.#isPlaying = false;
+        this.#schedule();
+    }
+
+    #schedule() {
+        if (this.#scheduled === 0 && this.isOn) {
+            this.#scheduled = requestAnimationFrame((now) => {
+                this.#scheduled = 0;
+                this.#step(now);
+            });
+        }
+    }
+
+    // Before a frame: go on to what it is to show.
+    #step(now) {
+        const [levels, pace] = [this.#levels, this.#pace];
+        const wasPlaying = this.#isPlaying;
+        if (wasPlaying) {
+            const seconds = this.#time > 0 ? Math.min((now - this.#time) / 1000, LONGEST) : 0;
+            this.#time = now;
+            const further = this.#position + (seconds / pace.seconds) * pace.positions;
+            // What has not come is waited for.
+            const most = levels.count < levels.most ? pace.positionOf(levels.count) : Infinity;
+            this.#position = Math.min(further, pace.positions, Math.max(most, this.#position));
+            this.#isPlaying = this.#position < pace.positions;
+        }
+        const before = levels.level;
+        levels.goTo(pace.levelAt(this.#position));
+        if (levels.level !== before) {
+            this.#stage.refine(levels.takeChanges(), this.#label);
+        }
+        // Each level while it runs would be too much to be heard; the slider says those it goes to.
+        const isAtEnd = wasPlaying && !this.#isPlaying;
+        this.#elements.faces.setAttribute('aria-live', isAtEnd ? 'polite' : 'off');
+        this.#showLevel();
+        if (this.#isPlaying) {
+            this.#schedule();
+        }
+    }
+
+    get #label() {
+        const { mesh, revision } = this.#mesh;
+        return { mesh, revision, faces: this.#levels.geometry.triangleCount };
+    }
+
+    #showLevel() {
+        const { slider, faces, play } = this.#elements;
+        const shown = this.#levels.geometry.triangleCount;
+        const all = Math.max(this.#mesh.faces, shown);
+        const text = `${formatCount(shown)} of ${formatCount(all)} faces`;
+        faces.textContent = text;
+        slider.value = Math.round(this.#position);
+        slider.setAttribute('aria-valuetext', text);
+        play.textContent = this.#isPlaying ? 'Pause' : 'Play';
+    }
+}
