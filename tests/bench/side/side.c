@@ -4,16 +4,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <time.h>
 
-double bench_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+/* What a row is measured by. Its work is between two calls of bench_seconds, so that this is where
+ * other meters are read, too. */
+typedef enum measure { TIME, HEAP, PEAK, FAULTS, SYSTEM } measure;
 
-size_t bench_heap_bytes(void)
+static struct {
+    measure by;
+    bool began;
+    size_t before, after;
+} meter;
+
+static size_t heap_bytes(void)
 {
     struct mallinfo2 info = mallinfo2();
     return info.uordblks + info.hblkhd;
@@ -36,23 +41,63 @@ static size_t status_bytes(const char *name)
     return bytes;
 }
 
-size_t bench_resident_bytes(void)
-{
-    return status_bytes("VmRSS:");
-}
-
-size_t bench_peak_bytes(void)
-{
-    return status_bytes("VmHWM:");
-}
-
-void bench_reset_peak(void)
+/* From here on the peak is that of what follows. */
+static void reset_peak(void)
 {
     FILE *file = fopen("/proc/self/clear_refs", "w");
     if (file == NULL || fputs("5", file) == EOF || fclose(file) != 0) {
         fprintf(stderr, "the peak of memory cannot be reset here\n");
         exit(1);
     }
+}
+
+/* Pages that had to be found, or microseconds in the system. */
+static size_t used_of_system(void)
+{
+    struct rusage used;
+    getrusage(RUSAGE_SELF, &used);
+    return meter.by == FAULTS
+               ? (size_t)used.ru_minflt
+               : (size_t)used.ru_stime.tv_sec * 1000000 + (size_t)used.ru_stime.tv_usec;
+}
+
+static size_t metered(void)
+{
+    switch (meter.by) {
+    case HEAP:
+        return heap_bytes();
+    case PEAK:
+        return status_bytes(meter.began ? "VmHWM:" : "VmRSS:");
+    case FAULTS:
+    case SYSTEM:
+        return used_of_system();
+    case TIME:
+        break;
+    }
+    return 0;
+}
+
+static void read_meter(void)
+{
+    if (meter.began) {
+        meter.after = metered();
+    } else {
+        if (meter.by == PEAK) {
+            reset_peak();
+        }
+        meter.before = metered();
+        meter.began = true;
+    }
+}
+
+double bench_seconds(void)
+{
+    struct timespec now;
+    if (meter.by != TIME) {
+        read_meter();
+    }
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 void bench_path(const bench_side *side, const char *name, char *path, size_t size)
@@ -90,6 +135,24 @@ static const bench_row *find(const bench_row *const *tables, const char *name)
     return NULL;
 }
 
+/* The name of the row in a line, which may say first what to measure it by. */
+static const char *set_meter(const char *line)
+{
+    static const struct {
+        const char *word;
+        measure by;
+    } words[] = {{"heap ", HEAP}, {"peak ", PEAK}, {"faults ", FAULTS}, {"system ", SYSTEM}};
+    memset(&meter, 0, sizeof meter);
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        size_t length = strlen(words[i].word);
+        if (strncmp(line, words[i].word, length) == 0) {
+            meter.by = words[i].by;
+            return line + length;
+        }
+    }
+    return line;
+}
+
 static void answer(const bench_row *row, bench_side *side)
 {
     bench_result result = {0};
@@ -98,6 +161,9 @@ static void answer(const bench_row *row, bench_side *side)
         return;
     }
     row->run(side, &result);
+    if (meter.by != TIME) {
+        result.value = (double)meter.after - (double)meter.before;
+    }
     printf("%.9g %.17g ", result.value, result.amount);
     if (result.has_exact) {
         printf("%016llx ", (unsigned long long)result.exact);
@@ -119,12 +185,15 @@ int bench_serve(int argc, char **argv, const bench_row *const *tables)
         fprintf(stderr, "usage: %s INPUT natural|shuffled SIDE FOLDER\n", argv[0]);
         return 2;
     }
+    if (getenv("BENCH_SMALL_PAGES") != NULL) {
+        prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
+    }
     bench_input_make(argv[1], strcmp(argv[2], "shuffled") == 0,
                      (uint32_t)strtoul(argv[3], NULL, 10), &side.input);
     side.folder = argv[4];
     while (fgets(line, sizeof line, stdin) != NULL) {
         line[strcspn(line, "\n")] = '\0';
-        answer(find(tables, line), &side);
+        answer(find(tables, set_meter(line)), &side);
         fflush(stdout);
     }
     return 0;
