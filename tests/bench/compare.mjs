@@ -66,8 +66,12 @@ class Side {
         if (line === 'unknown') {
             return null;
         }
-        const [value, amount, exact, near] = line.split(' ');
-        return { value: Number(value), amount: Number(amount), exact, near: Number(near) };
+        const [value, amount, exact, near, system, faults] = line.split(' ');
+        const numbers = { value, amount, near, system, faults };
+        for (const [name, text] of Object.entries(numbers)) {
+            numbers[name] = Number(text);
+        }
+        return { ...numbers, exact };
     }
 
     async end() {

@@ -10,12 +10,13 @@
 
 /* What a row is measured by. Its work is between two calls of bench_seconds, so that this is where
  * other meters are read, too. */
-typedef enum measure { TIME, HEAP, PEAK, FAULTS, SYSTEM } measure;
+typedef enum measure { TIME, HEAP, PEAK } measure;
 
 static struct {
     measure by;
     bool began;
-    size_t before, after;
+    size_t before, after; /* bytes */
+    struct rusage first, last;
 } meter;
 
 static size_t heap_bytes(void)
@@ -51,51 +52,40 @@ static void reset_peak(void)
     }
 }
 
-/* Pages that had to be found, or microseconds in the system. */
-static size_t used_of_system(void)
-{
-    struct rusage used;
-    getrusage(RUSAGE_SELF, &used);
-    return meter.by == FAULTS
-               ? (size_t)used.ru_minflt
-               : (size_t)used.ru_stime.tv_sec * 1000000 + (size_t)used.ru_stime.tv_usec;
-}
-
 static size_t metered(void)
 {
-    switch (meter.by) {
-    case HEAP:
+    if (meter.by == HEAP) {
         return heap_bytes();
-    case PEAK:
-        return status_bytes(meter.began ? "VmHWM:" : "VmRSS:");
-    case FAULTS:
-    case SYSTEM:
-        return used_of_system();
-    case TIME:
-        break;
     }
-    return 0;
+    return meter.by == PEAK ? status_bytes(meter.began ? "VmHWM:" : "VmRSS:") : 0;
 }
 
-static void read_meter(void)
+static void read_meters(void)
 {
     if (meter.began) {
         meter.after = metered();
+        getrusage(RUSAGE_SELF, &meter.last);
     } else {
         if (meter.by == PEAK) {
             reset_peak();
         }
         meter.before = metered();
+        getrusage(RUSAGE_SELF, &meter.first);
         meter.began = true;
     }
+}
+
+/* What the row had of the system. */
+static double system_seconds(void)
+{
+    const struct timeval *from = &meter.first.ru_stime, *to = &meter.last.ru_stime;
+    return (double)(to->tv_sec - from->tv_sec) + 1e-6 * (double)(to->tv_usec - from->tv_usec);
 }
 
 double bench_seconds(void)
 {
     struct timespec now;
-    if (meter.by != TIME) {
-        read_meter();
-    }
+    read_meters();
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
@@ -138,17 +128,10 @@ static const bench_row *find(const bench_row *const *tables, const char *name)
 /* The name of the row in a line, which may say first what to measure it by. */
 static const char *set_meter(const char *line)
 {
-    static const struct {
-        const char *word;
-        measure by;
-    } words[] = {{"heap ", HEAP}, {"peak ", PEAK}, {"faults ", FAULTS}, {"system ", SYSTEM}};
     memset(&meter, 0, sizeof meter);
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        size_t length = strlen(words[i].word);
-        if (strncmp(line, words[i].word, length) == 0) {
-            meter.by = words[i].by;
-            return line + length;
-        }
+    if (strncmp(line, "heap ", 5) == 0 || strncmp(line, "peak ", 5) == 0) {
+        meter.by = line[0] == 'h' ? HEAP : PEAK;
+        return line + 5;
     }
     return line;
 }
@@ -171,10 +154,11 @@ static void answer(const bench_row *row, bench_side *side)
         printf("- ");
     }
     if (result.has_near) {
-        printf("%.17g\n", result.near);
+        printf("%.17g", result.near);
     } else {
-        printf("-\n");
+        printf("-");
     }
+    printf(" %.6f %ld\n", system_seconds(), meter.last.ru_minflt - meter.first.ru_minflt);
 }
 
 int bench_serve(int argc, char **argv, const bench_row *const *tables)

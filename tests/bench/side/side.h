@@ -5,22 +5,21 @@
  * makes its input and then, for each line `ROW` on its standard input, runs that row once and
  * prints
  *
- *     VALUE AMOUNT EXACT NEAR
+ *     VALUE AMOUNT EXACT NEAR SYSTEM FAULTS
  *
  * VALUE is what was measured, AMOUNT the elements it is for,
  * EXACT a hash that all sides must share, NEAR a number that they must share up to the row's
  * tolerance; "-" stands for one that the row does not have. A row that this side does not know is
  * answered by `unknown`. Files are found and left in FOLDER.
  *
- * What is measured is seconds of processor time between the row's two calls of bench_seconds. A
- * word before the row's name asks for something else:
+ * What is measured is seconds of processor time between the row's two calls of bench_seconds, of
+ * which SYSTEM were spent in the system, and FAULTS pages had to be found. A word before the row's
+ * name asks for bytes:
  *
- *     heap ROW    bytes that the heap has given out at the second call less those at the first
- *     peak ROW    the most bytes resident between them less what was at the first
- *     faults ROW  pages that the system had to find
- *     system ROW  microseconds in the system
+ *     heap ROW    that the heap has given out at the second call less those at the first
+ *     peak ROW    the most that were resident between them less those at the first
  *
- * Heap and peak want a process that has not freed much: its memory would be used again. With
+ * Both want a process that has not freed much: its memory would be used again. With
  * BENCH_SMALL_PAGES in the environment the system gives no huge pages. */
 #ifndef TESTS_BENCH_SIDE_SIDE_H
 #define TESTS_BENCH_SIDE_SIDE_H
