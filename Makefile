@@ -91,8 +91,8 @@ PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof fuzz \
-        targets bench bench-http bench-events bench-large bench-space container screenshot \
+.PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof soak \
+        fuzz targets bench bench-http bench-events bench-large bench-space container screenshot \
         install clean
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
@@ -185,16 +185,18 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 # --- tests ---------------------------------------------------------------------------------
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
 
-TESTS   ?= $(SUITES) fuzz web install
+TESTS   ?= $(SUITES) fuzz web install soak
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web,$(TESTS))
 WITH_FUZZ = $(filter fuzz,$(TESTS))
 WITH_INSTALL = $(filter install,$(TESTS))
+WITH_SOAK = $(filter soak,$(TESTS))
 # What a narrower choice asks does not reach every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(WITH_WEB))
-WITH_DAEMON = $(filter e2e web install tests/e2e/%,$(TESTS))
+WITH_DAEMON = $(filter e2e web install soak tests/e2e/%,$(TESTS))
 TEST_NEEDS = $(if $(WITH_DAEMON),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
-             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(TARGETS))
+             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(TARGETS)) \
+             $(if $(WITH_SOAK),$(STAMPS)/web)
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
@@ -202,10 +204,11 @@ test: $(CHOSEN) $(TEST_NEEDS) | $(STAMPS)/test ## all tests, with their counts
 	@HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
 	    sh .ci/run-tests $(BUILD)/logs $(if $(WITH_WEB),--web) $(if $(WITH_TRAFFIC),--traffic) \
 	    $(CHOSEN) \
-	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh)
+	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh) \
+	    $(if $(WITH_SOAK),tests/soak.sh)
 
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
-	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install,$(TESTS))" TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install soak,$(TESTS))" TEST_SECONDS=900 test
 
 # The kernel has no threads: only what runs on the daemon's is worth the time here.
 tsan: ## the threaded tests with ThreadSanitizer
@@ -214,7 +217,7 @@ tsan: ## the threaded tests with ThreadSanitizer
 
 coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web install,$(TESTS))" TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web install soak,$(TESTS))" TEST_SECONDS=900 test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
@@ -230,10 +233,16 @@ $(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(STAMPS)/crosschec
 
 # The long versions of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another.
 ROUNDS ?= 10
-proof: ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once
+proof: | $(STAMPS)/web ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once; as many minutes of soak
 	+$(MAKE) $(HEDGED) $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)
+
+# A load below 1 leaves the machine to others for the rest of the time.
+MINUTES ?= 60
+LOAD    ?= 1
+soak: $(HEDGED) | $(STAMPS)/web ## MINUTES=60 of everything that clients do: is the daemon's memory flat? build/soak.csv and .svg
+	@HEDGED=$(abspath $(HEDGED)) node tests/soak/soak.mjs --minutes $(MINUTES) --load $(LOAD)
 
 # `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
 FUZZ_SECONDS ?= 20

@@ -222,7 +222,9 @@ he_status he_reader_new(const he_format *format, const he_limits *limits, he_rea
 void he_reader_free(he_reader *reader)
 {
     if (reader != NULL) {
-        reader->reading->close(reader->state);
+        if (reader->state != NULL) {
+            reader->reading->close(reader->state);
+        }
         he_import_clear(&reader->import);
         he_mem_free(reader);
     }
@@ -270,6 +272,9 @@ he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
     if (status == HE_OK) {
         *out = reader->import;
         reader->import = (he_import){0};
+        /* What was needed to read is not kept beside the mesh that is built next. */
+        reader->reading->close(reader->state);
+        reader->state = NULL;
     }
     return settle(reader, status, &failure, err);
 }

@@ -2,6 +2,7 @@
 // `--runs` says, and a table of medians, spread, ratios and what falls short of its target.
 //
 //     node compare.mjs --programs FOLDER [--only build,files] [--runs 5] [--scale 1]
+//         [--picture build/growth.svg]
 //
 // The sides are programs that wait for the name of a row (side/side.h). Only one of them works at a
 // time. What they compute must agree: where it does not, or a side breaks, the exit is 1. Falling
@@ -16,6 +17,7 @@ import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 
+import { measureGrowth } from './growth.mjs';
 import { parts } from './rows.mjs';
 
 const { values: options } = parseArgs({
@@ -26,6 +28,7 @@ const { values: options } = parseArgs({
         scale: { type: 'string', default: '1' },
         flags: { type: 'string', default: '' },
         'peer-flags': { type: 'string', default: '' },
+        picture: { type: 'string', default: 'build/growth.svg' },
     },
 });
 
@@ -39,14 +42,15 @@ const problems = [];
 
 // A side: a program in its folder, or node's part.
 class Side {
-    constructor(name, { input, order }, side, folder) {
+    constructor(name, { input, order }, side, folder, env = {}) {
         this.name = name;
         const args = [input, order, String(side), folder];
         const json = fileURLToPath(new URL('peers/json.mjs', import.meta.url));
+        const how = { stdio: ['pipe', 'pipe', 'inherit'], env: { ...process.env, ...env } };
         this.child =
             name === 'node'
-                ? spawn(process.execPath, [json, ...args], { stdio: ['pipe', 'pipe', 'inherit'] })
-                : spawn(join(options.programs, name), args, { stdio: ['pipe', 'pipe', 'inherit'] });
+                ? spawn(process.execPath, [json, ...args], how)
+                : spawn(join(options.programs, name), args, how);
         this.lines = createInterface({ input: this.child.stdout })[Symbol.asyncIterator]();
         this.ended = new Promise((resolve) => this.child.on('close', resolve));
         this.child.stdin.on('error', () => {});
@@ -62,8 +66,12 @@ class Side {
         if (line === 'unknown') {
             return null;
         }
-        const [value, amount, exact, near] = line.split(' ');
-        return { value: Number(value), amount: Number(amount), exact, near: Number(near) };
+        const [value, amount, exact, near, system, faults] = line.split(' ');
+        const numbers = { value, amount, near, system, faults };
+        for (const [name, text] of Object.entries(numbers)) {
+            numbers[name] = Number(text);
+        }
+        return { ...numbers, exact };
     }
 
     async end() {
@@ -100,7 +108,8 @@ async function round(row, part, start, sides, figures) {
             continue;
         }
         const side = row.fresh ? start(name) : sides[name];
-        const result = await side.run(name === 'ours' ? row.ours : (row.theirs ?? row.ours));
+        const title = name === 'ours' ? row.ours : (row.theirs ?? row.ours);
+        const result = await side.run(row.meter ? `${row.meter} ${title}` : title);
         if (row.fresh) {
             await side.end();
         }
@@ -259,9 +268,9 @@ function header() {
 }
 
 const only = options.only.split(',').filter(Boolean);
-const unknown = only.filter((name) => !parts.some(({ part }) => part === name));
+const known = [...new Set(parts.map(({ part }) => part)), 'growth'];
+const unknown = only.filter((name) => !known.includes(name));
 if (unknown.length > 0 || !options.programs) {
-    const known = [...new Set(parts.map(({ part }) => part))];
     console.error(`compare.mjs: no part ${unknown.join(', ')}; there are ${known.join(', ')}`);
     process.exit(2);
 }
@@ -269,13 +278,21 @@ if (unknown.length > 0 || !options.programs) {
 const memory = '/dev/shm';
 const folder = mkdtempSync(join(existsSync(memory) ? memory : os.tmpdir(), 'bench-'));
 process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+const began = performance.now();
 header();
-print(columns.map(([title]) => title));
+if (only.some((name) => name !== 'growth') || only.length === 0) {
+    print(columns.map(([title]) => title));
+}
 for (const part of parts) {
     if (only.length === 0 || only.includes(part.part)) {
         await runPart(part, folder);
     }
 }
+if (only.length === 0 || only.includes('growth')) {
+    const start = (part, side, env) => new Side('ours', part, side, folder, env);
+    await measureGrowth(start, Number(options.scale), options.picture);
+}
+console.log(`\n${((performance.now() - began) / 1000).toFixed(0)} s in all`);
 for (const problem of new Set(problems)) {
     console.log(`DISAGREE ${problem}`);
 }

@@ -11,6 +11,7 @@
 //     target   [peer, ratio]: so many times the peer's figure; or a limit of our own where `less`
 //     runs     of each side, where not as many as the rest
 //     fresh    each run in a process of its own
+//     meter    what is measured, where not seconds (tests/bench/side/side.h)
 //     after    a row of ours that describes what a side has left in the folder, compared instead
 //     slow     sides that run but once
 //     errors   rows whose figures are told by one of ours, `by`, of what each side has left in the
@@ -64,6 +65,19 @@ const error = (title, of, more) => ({
     ...more,
 });
 
+// By what the heap has given out, or the most that was resident beyond what was before: input.
+const memory = (meter, title, ours, more) => ({
+    title: `bytes a face ${title}`,
+    ours,
+    meter,
+    unit: 'bytes',
+    per: 1,
+    less: true,
+    fresh: true,
+    runs: 1,
+    ...more,
+});
+
 export const parts = [
     kernel('torus', 'natural'),
     kernel('torus', 'shuffled'),
@@ -73,10 +87,37 @@ export const parts = [
         part: 'memory',
         input: 'torus',
         order: 'natural',
+        before: ['make_files', 'make_glb', 'make_document'],
         rows: [
-            { title: 'bytes a face at rest', ours: 'at_rest', less: true, limit: 68 },
-            { title: 'bytes a face at most, building', ours: 'peak', less: true, limit: 85 },
-        ].map((row) => ({ ...row, unit: 'bytes', per: 1, fresh: true, runs: 2 })),
+            memory('heap', 'at rest, built', 'build', { limit: 68 }),
+            memory('peak', 'at most, building', 'build', { limit: 85 }),
+            memory('heap', 'at rest, imported', 'import_obj', { limit: 68 }),
+            ...['OBJ', 'OFF', 'PLY', 'STL', 'GLB', 'JSON'].map((name) =>
+                memory('peak', `at most, importing ${name}`, `import_${name.toLowerCase()}`, {
+                    limit: 100,
+                }),
+            ),
+            ...['OBJ', 'OFF', 'PLY', 'GLB', 'JSON'].map((name) =>
+                memory('peak', `at most, exporting ${name}`, `export_${name.toLowerCase()}`, {
+                    limit: 2,
+                }),
+            ),
+            // How many vertices will be one is told before the first byte: a table of positions.
+            memory('peak', 'at most, exporting STL', 'export_stl', { limit: 24 }),
+            {
+                ...memory('heap', 'a split, mesh alone', 'split', { target: [['best', 1.5]] }),
+                title: 'bytes a split, mesh alone',
+                near: 0,
+            },
+            {
+                ...memory('heap', '', 'split_kept', { limit: 1152 }),
+                title: 'bytes a split, with its history',
+            },
+            {
+                ...memory('heap', '', 'split_undone', { limit: 1152 }),
+                title: 'bytes a split that was undone',
+            },
+        ],
     },
     ...['natural', 'shuffled'].map((order) => ({
         part: 'onering',

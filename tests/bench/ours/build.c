@@ -1,4 +1,4 @@
-/* Building a mesh from arrays: time and memory. */
+/* Building a mesh from arrays. */
 #include "bench/ours/ours.h"
 #include "mesh/walk.h"
 
@@ -69,23 +69,4 @@ static void build(bench_side *side, bench_result *out)
     he_mesh_free(mesh);
 }
 
-/* Bytes of the heap that the mesh keeps, and that its making needs at most, beside the arrays. */
-static void at_rest(bench_side *side, bench_result *out)
-{
-    size_t before = bench_heap_bytes();
-    const he_mesh *mesh = bench_mesh(side);
-    out->value = (double)(bench_heap_bytes() - before);
-    out->amount = he_mesh_faces(mesh);
-}
-
-static void peak(bench_side *side, bench_result *out)
-{
-    bench_reset_peak();
-    size_t before = bench_resident_bytes();
-    const he_mesh *mesh = bench_mesh(side);
-    out->value = (double)(bench_peak_bytes() - before);
-    out->amount = he_mesh_faces(mesh);
-}
-
-const bench_row bench_build_rows[] = {
-    {"build", build}, {"at_rest", at_rest}, {"peak", peak}, {NULL, NULL}};
+const bench_row bench_build_rows[] = {{"build", build}, {NULL, NULL}};

@@ -102,6 +102,10 @@ static void export(bench_side *side, const char *format, const char *encoding, c
     out->has_exact = out->has_near = false;
 }
 
+static void import_glb(bench_side *side, bench_result *out)
+{
+    import(side, "glb", "input.glb", out);
+}
 static void import_obj(bench_side *side, bench_result *out)
 {
     import(side, "obj", "input.obj", out);
@@ -117,6 +121,18 @@ static void import_ply(bench_side *side, bench_result *out)
 static void import_stl(bench_side *side, bench_result *out)
 {
     import(side, "stl", "input.stl", out);
+}
+static void export_glb(bench_side *side, bench_result *out)
+{
+    export(side, "glb", "", "output.glb", out);
+}
+static void export_off(bench_side *side, bench_result *out)
+{
+    export(side, "off", "", "output.off", out);
+}
+static void export_stl(bench_side *side, bench_result *out)
+{
+    export(side, "stl", "binary", "output.stl", out);
 }
 static void export_obj(bench_side *side, bench_result *out)
 {
@@ -217,8 +233,16 @@ static void make_files(bench_side *side, bench_result *out)
     out->amount = side->input.faces;
 }
 
-const bench_row bench_file_rows[] = {{"make_files", make_files}, {"import_obj", import_obj},
-                                     {"import_off", import_off}, {"import_ply", import_ply},
-                                     {"import_stl", import_stl}, {"export_obj", export_obj},
-                                     {"export_ply", export_ply}, {"check_obj", check_obj},
-                                     {"check_ply", check_ply},   {NULL, NULL}};
+/* What no other side reads is our own. */
+static void make_glb(bench_side *side, bench_result *out)
+{
+    write_mesh(side, bench_mesh(side), "glb", "", "input.glb");
+    out->amount = side->input.faces;
+}
+
+const bench_row bench_file_rows[] = {
+    {"make_files", make_files}, {"import_obj", import_obj}, {"import_off", import_off},
+    {"import_ply", import_ply}, {"import_stl", import_stl}, {"export_obj", export_obj},
+    {"export_ply", export_ply}, {"check_obj", check_obj},   {"check_ply", check_ply},
+    {"make_glb", make_glb},     {"import_glb", import_glb}, {"export_glb", export_glb},
+    {"export_off", export_off}, {"export_stl", export_stl}, {NULL, NULL}};

@@ -15,6 +15,8 @@ extern const bench_row bench_document_rows[];
 extern const bench_row bench_decimate_rows[];
 extern const bench_row bench_error_rows[];
 extern const bench_row bench_subdivide_rows[];
+extern const bench_row bench_memory_rows[];
+extern const bench_row bench_growth_rows[];
 
 /* Ends the program with the status' title unless it is HE_OK. */
 void bench_require(he_status status);

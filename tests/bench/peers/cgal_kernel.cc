@@ -81,21 +81,6 @@ void build(bench_side *side, bench_result *out)
     delete mesh;
 }
 
-void at_rest(bench_side *side, bench_result *out)
-{
-    size_t before = bench_heap_bytes();
-    out->amount = cgal_mesh(side).number_of_faces();
-    out->value = static_cast<double>(bench_heap_bytes() - before);
-}
-
-void peak(bench_side *side, bench_result *out)
-{
-    bench_reset_peak();
-    size_t before = bench_resident_bytes();
-    out->amount = cgal_mesh(side).number_of_faces();
-    out->value = static_cast<double>(bench_peak_bytes() - before);
-}
-
 void one_ring(bench_side *side, bench_result *out)
 {
     const Mesh &mesh = cgal_mesh(side);
@@ -199,6 +184,5 @@ void components(bench_side *side, bench_result *out)
 } // namespace
 
 const bench_row cgal_kernel_rows[] = {
-    {"build", build},       {"at_rest", at_rest},           {"peak", peak},
-    {"one_ring", one_ring}, {"face_normals", face_normals}, {"vertex_normals", vertex_normals},
+    {"build", build},       {"one_ring", one_ring}, {"face_normals", face_normals}, {"vertex_normals", vertex_normals},
     {"loops", loops},       {"components", components},     {nullptr, nullptr}};

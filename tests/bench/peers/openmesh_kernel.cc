@@ -21,21 +21,6 @@ void build(bench_side *side, bench_result *out)
     side->input.degree == 3 ? build_as<TriMesh>(side, out) : build_as<PolyMesh>(side, out);
 }
 
-void at_rest(bench_side *side, bench_result *out)
-{
-    size_t before = bench_heap_bytes();
-    out->amount = static_cast<double>(mesh_of<TriMesh>(side).n_faces());
-    out->value = static_cast<double>(bench_heap_bytes() - before);
-}
-
-void peak(bench_side *side, bench_result *out)
-{
-    bench_reset_peak();
-    size_t before = bench_resident_bytes();
-    out->amount = static_cast<double>(mesh_of<TriMesh>(side).n_faces());
-    out->value = static_cast<double>(bench_peak_bytes() - before);
-}
-
 template <class Mesh> void one_ring_as(bench_side *side, bench_result *out)
 {
     const Mesh &mesh = mesh_of<Mesh>(side);
@@ -168,6 +153,5 @@ void components(bench_side *side, bench_result *out)
 } // namespace
 
 const bench_row openmesh_kernel_rows[] = {
-    {"build", build},       {"at_rest", at_rest},           {"peak", peak},
-    {"one_ring", one_ring}, {"face_normals", face_normals}, {"vertex_normals", vertex_normals},
+    {"build", build},       {"one_ring", one_ring}, {"face_normals", face_normals}, {"vertex_normals", vertex_normals},
     {"loops", loops},       {"components", components},     {nullptr, nullptr}};

@@ -4,16 +4,22 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <time.h>
 
-double bench_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+/* What a row is measured by. Its work is between two calls of bench_seconds, so that this is where
+ * other meters are read, too. */
+typedef enum measure { TIME, HEAP, PEAK } measure;
 
-size_t bench_heap_bytes(void)
+static struct {
+    measure by;
+    bool began;
+    size_t before, after; /* bytes */
+    struct rusage first, last;
+} meter;
+
+static size_t heap_bytes(void)
 {
     struct mallinfo2 info = mallinfo2();
     return info.uordblks + info.hblkhd;
@@ -36,23 +42,52 @@ static size_t status_bytes(const char *name)
     return bytes;
 }
 
-size_t bench_resident_bytes(void)
-{
-    return status_bytes("VmRSS:");
-}
-
-size_t bench_peak_bytes(void)
-{
-    return status_bytes("VmHWM:");
-}
-
-void bench_reset_peak(void)
+/* From here on the peak is that of what follows. */
+static void reset_peak(void)
 {
     FILE *file = fopen("/proc/self/clear_refs", "w");
     if (file == NULL || fputs("5", file) == EOF || fclose(file) != 0) {
         fprintf(stderr, "the peak of memory cannot be reset here\n");
         exit(1);
     }
+}
+
+static size_t metered(void)
+{
+    if (meter.by == HEAP) {
+        return heap_bytes();
+    }
+    return meter.by == PEAK ? status_bytes(meter.began ? "VmHWM:" : "VmRSS:") : 0;
+}
+
+static void read_meters(void)
+{
+    if (meter.began) {
+        meter.after = metered();
+        getrusage(RUSAGE_SELF, &meter.last);
+    } else {
+        if (meter.by == PEAK) {
+            reset_peak();
+        }
+        meter.before = metered();
+        getrusage(RUSAGE_SELF, &meter.first);
+        meter.began = true;
+    }
+}
+
+/* What the row had of the system. */
+static double system_seconds(void)
+{
+    const struct timeval *from = &meter.first.ru_stime, *to = &meter.last.ru_stime;
+    return (double)(to->tv_sec - from->tv_sec) + 1e-6 * (double)(to->tv_usec - from->tv_usec);
+}
+
+double bench_seconds(void)
+{
+    struct timespec now;
+    read_meters();
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 void bench_path(const bench_side *side, const char *name, char *path, size_t size)
@@ -90,6 +125,17 @@ static const bench_row *find(const bench_row *const *tables, const char *name)
     return NULL;
 }
 
+/* The name of the row in a line, which may say first what to measure it by. */
+static const char *set_meter(const char *line)
+{
+    memset(&meter, 0, sizeof meter);
+    if (strncmp(line, "heap ", 5) == 0 || strncmp(line, "peak ", 5) == 0) {
+        meter.by = line[0] == 'h' ? HEAP : PEAK;
+        return line + 5;
+    }
+    return line;
+}
+
 static void answer(const bench_row *row, bench_side *side)
 {
     bench_result result = {0};
@@ -98,6 +144,9 @@ static void answer(const bench_row *row, bench_side *side)
         return;
     }
     row->run(side, &result);
+    if (meter.by != TIME) {
+        result.value = (double)meter.after - (double)meter.before;
+    }
     printf("%.9g %.17g ", result.value, result.amount);
     if (result.has_exact) {
         printf("%016llx ", (unsigned long long)result.exact);
@@ -105,10 +154,11 @@ static void answer(const bench_row *row, bench_side *side)
         printf("- ");
     }
     if (result.has_near) {
-        printf("%.17g\n", result.near);
+        printf("%.17g", result.near);
     } else {
-        printf("-\n");
+        printf("-");
     }
+    printf(" %.6f %ld\n", system_seconds(), meter.last.ru_minflt - meter.first.ru_minflt);
 }
 
 int bench_serve(int argc, char **argv, const bench_row *const *tables)
@@ -119,12 +169,15 @@ int bench_serve(int argc, char **argv, const bench_row *const *tables)
         fprintf(stderr, "usage: %s INPUT natural|shuffled SIDE FOLDER\n", argv[0]);
         return 2;
     }
+    if (getenv("BENCH_SMALL_PAGES") != NULL) {
+        prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
+    }
     bench_input_make(argv[1], strcmp(argv[2], "shuffled") == 0,
                      (uint32_t)strtoul(argv[3], NULL, 10), &side.input);
     side.folder = argv[4];
     while (fgets(line, sizeof line, stdin) != NULL) {
         line[strcspn(line, "\n")] = '\0';
-        answer(find(tables, line), &side);
+        answer(find(tables, set_meter(line)), &side);
         fflush(stdout);
     }
     return 0;

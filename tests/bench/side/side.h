@@ -5,12 +5,22 @@
  * makes its input and then, for each line `ROW` on its standard input, runs that row once and
  * prints
  *
- *     VALUE AMOUNT EXACT NEAR
+ *     VALUE AMOUNT EXACT NEAR SYSTEM FAULTS
  *
- * VALUE is what was measured (seconds of processor time, or bytes), AMOUNT the elements it is for,
+ * VALUE is what was measured, AMOUNT the elements it is for,
  * EXACT a hash that all sides must share, NEAR a number that they must share up to the row's
  * tolerance; "-" stands for one that the row does not have. A row that this side does not know is
- * answered by `unknown`. Files are found and left in FOLDER. */
+ * answered by `unknown`. Files are found and left in FOLDER.
+ *
+ * What is measured is seconds of processor time between the row's two calls of bench_seconds, of
+ * which SYSTEM were spent in the system, and FAULTS pages had to be found. A word before the row's
+ * name asks for bytes:
+ *
+ *     heap ROW    that the heap has given out at the second call less those at the first
+ *     peak ROW    the most that were resident between them less those at the first
+ *
+ * Both want a process that has not freed much: its memory would be used again. With
+ * BENCH_SMALL_PAGES in the environment the system gives no huge pages. */
 #ifndef TESTS_BENCH_SIDE_SIDE_H
 #define TESTS_BENCH_SIDE_SIDE_H
 
@@ -37,14 +47,9 @@ typedef struct bench_row {
 /* The main program. `tables` and each table end with a row, and a table, of NULL. */
 int bench_serve(int argc, char **argv, const bench_row *const *tables);
 
-/* Seconds of this program's processor time: what other programs take does not count. */
+/* Seconds of this program's processor time: what other programs take does not count. Called where
+ * the work of a row begins and where it ends. */
 double bench_seconds(void);
-
-/* Bytes the heap has given out, and those resident; bench_reset_peak makes the peak begin anew. */
-size_t bench_heap_bytes(void);
-size_t bench_resident_bytes(void);
-size_t bench_peak_bytes(void);
-void bench_reset_peak(void);
 
 /* The path of a file in the folder, of at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);

@@ -1,0 +1,151 @@
+// growth.mjs - how our cost grows: nanoseconds an element on meshes of 10k, 100k, 1M and 10M faces,
+// as a table and as a picture, tests/bench/growth.svg of the README. The rows are those of
+// tests/bench/ours on the bumpy torus.
+
+import { readFileSync, writeFileSync, mkdirSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+
+import { plot } from './plot.mjs';
+
+// Sides of the torus, which has twice their square in faces, and how often a row is run.
+const SIZES = [
+    { side: 71, runs: 15 },
+    { side: 224, runs: 7 },
+    { side: 707, runs: 3 },
+    { side: 2236, runs: 1 },
+];
+
+// Row of tests/bench/ours, title, element. Lines of a colour are one row in two orders.
+const NATURAL = [
+    ['gather', 'random read', 'read', '#8a8a8a'],
+    ['build', 'build', 'face', '#2f7fc1'],
+    ['one_ring', 'one-ring', 'half-edge', '#2a9d5c'],
+    ['face_normals', 'face normals', 'face', '#c2448c'],
+    ['check', 'check', 'face', '#7a9a1f'],
+    ['split', 'edge split', 'edit', '#d1741f'],
+    ['flip', 'edge flip', 'edit', '#b8860b'],
+    ['collapse', 'edge collapse', 'edit', '#d04040'],
+    ['compact', 'compact', 'face', '#7d5fc4'],
+    ['loop', 'Loop subdivision', 'output face', '#138f9b'],
+    ['decimate', 'decimate to a tenth', 'face', '#a0522d'],
+    ['export_obj', 'export OBJ', 'face', '#5c7fa8'],
+    ['check_obj', 'import OBJ', 'face', '#4a6fd8'],
+];
+const SHUFFLED = ['build', 'one_ring', 'face_normals'];
+// Those in which every element is somewhere else show what pages cost.
+const BY_PAGES = { natural: ['gather', 'split', 'loop'], shuffled: SHUFFLED };
+// The system counts its time in ticks: of less it tells nothing.
+const LEAST_SECONDS = 0.04;
+
+const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
+
+// Nanoseconds an element, of which in the system, and pages that had to be found.
+async function time(side, row, runs) {
+    const list = [];
+    for (let i = 0; i < runs; i++) {
+        const { value, amount, system, faults } = await side.run(row);
+        const known = value >= LEAST_SECONDS;
+        list.push({
+            time: (1e9 * value) / amount,
+            system: known ? (1e9 * system) / amount : NaN,
+            faults,
+        });
+    }
+    return Object.fromEntries(
+        ['time', 'system', 'faults'].map((name) => [name, median(list.map((one) => one[name]))]),
+    );
+}
+
+async function measure(start, size, order, rows, env) {
+    const side = start({ input: 'torus', order }, size.side, env);
+    const found = {};
+    for (const row of rows) {
+        found[row] = await time(side, row, size.runs);
+    }
+    await side.end();
+    return found;
+}
+
+const shown = (number) => {
+    if (Number.isNaN(number)) {
+        return '-';
+    }
+    return number >= 100 ? number.toFixed(0) : number.toPrecision(3);
+};
+const WIDTHS = [22, 10, 13];
+
+function table(title, names, lines, cell) {
+    console.log(`\n${title}`);
+    const head = ['', 'order', 'element', ...names];
+    const print = (cells) =>
+        console.log(cells.map((text, i) => String(text).padEnd(WIDTHS[i] ?? 10)).join(' ').trimEnd());
+    print(head);
+    for (const line of lines) {
+        print([line.title, line.order, line.element, ...names.map((name, i) => cell(line, i))]);
+    }
+}
+
+function machine() {
+    const [cpu] = os.cpus();
+    const cache = (index) => {
+        const folder = `/sys/devices/system/cpu/cpu0/cache/index${index}`;
+        try {
+            return readFileSync(`${folder}/size`, 'utf8').trim();
+        } catch {
+            return '?';
+        }
+    };
+    const date = new Date().toISOString().slice(0, 10);
+    return `${date}, ${cpu.model}, L1d ${cache(0)}, L2 ${cache(2)}, L3 ${cache(3)}`;
+}
+
+export async function measureGrowth(start, scale, picture) {
+    const sizes = SIZES.map((size) => ({ ...size, side: Math.max(8, Math.round(size.side * scale)) }));
+    const names = sizes.map(({ side }) =>
+        new Intl.NumberFormat('en', { notation: 'compact' }).format(2 * side * side),
+    );
+    const orders = { natural: NATURAL.map(([row]) => row), shuffled: SHUFFLED };
+    const lines = Object.entries(orders).flatMap(([order, rows]) =>
+        rows.map((row) => {
+            const [, title, element, colour] = NATURAL.find(([name]) => name === row);
+            return { row, order, title, element, colour, found: [], small: [] };
+        }),
+    );
+    for (const size of sizes) {
+        for (const [order, rows] of Object.entries(orders)) {
+            const found = await measure(start, size, order, rows, {});
+            const env = { BENCH_SMALL_PAGES: '1' };
+            const small = await measure(start, size, order, BY_PAGES[order], env);
+            for (const line of lines.filter((one) => one.order === order)) {
+                line.found.push(found[line.row]);
+                line.small.push(small[line.row]);
+            }
+        }
+    }
+    const show = (title, some, cell) => table(title, names, some, cell);
+    show('How cost grows: nanoseconds an element', lines, ({ found }, i) => shown(found[i].time));
+    show('of which in the system', lines, ({ found }, i) => shown(found[i].system));
+    show('pages that had to be found', lines, ({ found }, i) => found[i].faults);
+    show(
+        'without huge pages',
+        lines.filter(({ small }) => small[0] !== undefined),
+        ({ small }, i) => shown(small[i].time),
+    );
+    mkdirSync(path.dirname(picture), { recursive: true });
+    writeFileSync(
+        picture,
+        plot({
+            sizes: sizes.map(({ side }) => 2 * side * side),
+            names,
+            caption: machine(),
+            lines: lines.map(({ title, order, element, colour, found }) => ({
+                title: `${title}${order === 'shuffled' ? ', shuffled' : ''} / ${element}`,
+                colour,
+                dashed: order === 'shuffled',
+                values: found.map((one) => one.time),
+            })),
+        }),
+    );
+    console.log(`\n${machine()}: ${picture}`);
+}

@@ -1,0 +1,159 @@
+// wire.mjs - the daemon under soak, seen from outside: requests to it, and what it takes of memory.
+
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { Agent, request } from 'node:http';
+import { createInterface } from 'node:readline';
+
+const MIB = 1024 * 1024;
+
+export class Daemon {
+    constructor(child, url) {
+        this.child = child;
+        this.url = url;
+        this.ended = once(child, 'exit');
+    }
+
+    // On a free port.
+    static async start(program, flags) {
+        const child = spawn(program, ['--listen', '127.0.0.1:0', '--log', 'off', ...flags], {
+            stdio: ['ignore', 'ignore', 'pipe'],
+        });
+        process.on('exit', () => child.kill());
+        for await (const line of createInterface({ input: child.stderr })) {
+            const found = /listening on (http:\/\/\S+)$/.exec(line);
+            if (found) {
+                child.stderr.pipe(process.stderr);
+                return new Daemon(child, found[1]);
+            }
+        }
+        throw new Error(`${program} ended before it listened`);
+    }
+
+    // MiB: resident now, the most since the last call with `anew`, and open descriptors.
+    memory(anew = false) {
+        const folder = `/proc/${this.child.pid}`;
+        const status = readFileSync(`${folder}/status`, 'utf8');
+        const mib = (name) => Number(new RegExp(`^${name}:\\s*(\\d+)`, 'm').exec(status)[1]) / 1024;
+        if (anew) {
+            writeFileSync(`${folder}/clear_refs`, '5');
+        }
+        return {
+            resident: mib('VmRSS'),
+            peak: mib('VmHWM'),
+            descriptors: readdirSync(`${folder}/fd`).length,
+        };
+    }
+
+    // Its exit status.
+    async stop() {
+        this.child.kill('SIGTERM');
+        const [status] = await this.ended;
+        return status;
+    }
+}
+
+// One connection that is kept. Every answer must have one of the statuses that are expected.
+export class Client {
+    constructor(url, load) {
+        const { hostname, port } = new URL(url);
+        this.to = { hostname, port };
+        this.agent = new Agent({ keepAlive: true, maxSockets: 1 });
+        this.load = load;
+        this.requests = 0;
+        this.refused = 0;
+        this.problems = [];
+    }
+
+    // Pauses so that no more than `load` of the time is spent on requests.
+    async rest(began) {
+        if (this.load < 1) {
+            const busy = performance.now() - began;
+            await new Promise((resolve) => setTimeout(resolve, busy * (1 / this.load - 1)));
+        }
+    }
+
+    // {status, headers, body} of an answer. With `cut` the connection is closed after its first piece,
+    // and with `type` an object is sent as it is, else as JSON.
+    async send(method, path, expected, { body, type, headers = {}, cut = false } = {}) {
+        const began = performance.now();
+        const bytes = body === undefined || type ? body : Buffer.from(JSON.stringify(body));
+        const all = { 'Accept-Encoding': 'identity', ...headers };
+        if (bytes !== undefined) {
+            all['Content-Type'] = type ?? 'application/json';
+            all['Content-Length'] = bytes.length;
+        }
+        const asked = request({ ...this.to, method, path, headers: all, agent: this.agent });
+        asked.end(bytes);
+        const [answer] = await once(asked, 'response');
+        const pieces = [];
+        for await (const piece of answer) {
+            pieces.push(piece);
+            if (cut) {
+                break; // which destroys the connection
+            }
+        }
+        const result = {
+            status: answer.statusCode,
+            headers: answer.headers,
+            body: Buffer.concat(pieces),
+        };
+        this.requests++;
+        this.refused += result.status >= 400;
+        if (!expected.includes(result.status)) {
+            this.strange(`${method} ${path} ${bytes?.subarray(0, 300) ?? ''}: ${result.status}, ` +
+                `not ${expected.join(' or ')}: ${result.body.subarray(0, 300)}`);
+        }
+        await this.rest(began);
+        return result;
+    }
+
+    async json(method, path, expected, options) {
+        const result = await this.send(method, path, expected, options);
+        const value = result.body.length > 0 ? JSON.parse(result.body) : null;
+        return { ...result, value };
+    }
+
+    // Expectations that are about more than a status.
+    strange(what) {
+        this.problems.push(what);
+    }
+
+    // Listens to a mesh, does `act`, and goes when as many edits have been told. It closes without
+    // a word, as listeners do.
+    async listen(path, act) {
+        const asked = request({ ...this.to, path, agent: false });
+        asked.end();
+        const [stream] = await once(asked, 'response');
+        this.requests++;
+        let text = '';
+        let wake = () => {};
+        stream.setEncoding('utf8');
+        stream.on('data', (piece) => {
+            text += piece;
+            wake();
+        });
+        stream.on('close', () => wake());
+        const until = async (holds) => {
+            while (!holds() && !stream.destroyed) {
+                await new Promise((resolve) => {
+                    wake = resolve;
+                });
+            }
+        };
+        await until(() => text.includes('\n\n'));
+        const edits = await act();
+        await until(() => text.split(/^event: /m).length > edits);
+        if (text.split(/^event: /m).length <= edits) {
+            this.strange(`${path} ended before it told of ${edits} edits: ${text.slice(-300)}`);
+        }
+        asked.destroy();
+    }
+
+    end() {
+        this.agent.destroy();
+    }
+}
+
+export const mebibytes = (bytes) => bytes / MIB;
