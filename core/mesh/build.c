@@ -142,9 +142,12 @@ static void return_positions(he_soup *soup, he_content *k)
     }
 }
 
-static he_status build_links(he_soup *soup, bool take, he_content *k, he_turns *turns,
-                             he_error *err)
+static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_turns *turns,
+                             he_content *k, he_error *err)
 {
+    /* Memory that has been written to is worth keeping: the system clears each fresh page. */
+    k->next = turns->spare;
+    turns->spare = NULL;
     he_status status = he_content_reserve_edges(k, turns->edges, err);
     if (status == HE_OK) {
         status = he_content_reserve_faces(k, soup->face_count, err);
@@ -153,7 +156,7 @@ static he_status build_links(he_soup *soup, bool take, he_content *k, he_turns *
         status = build_vertices(soup, take, k, err);
     }
     if (status == HE_OK) {
-        status = he_link(soup, turns, k, err);
+        status = he_link(corners, turns, k, err);
     }
     return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }
@@ -161,6 +164,7 @@ static he_status build_links(he_soup *soup, bool take, he_content *k, he_turns *
 he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *report, he_error *err)
 {
     uint64_t total = 0;
+    he_corners corners = {0};
     he_turns turns = {0};
     he_report *own = NULL;
     he_mesh *mesh = he_mesh_new();
@@ -174,7 +178,10 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         goto out;
     }
     report->total = 0;
-    status = he_soup_turn(soup, &turns, report, &total, err);
+    status = he_corners_init(soup, &corners, err);
+    if (status == HE_OK) {
+        status = he_soup_turn(&corners, &turns, report, &total, err);
+    }
     if (status == HE_OK && total > 0) {
         status = he_report_fail(report, err);
     }
@@ -183,7 +190,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
                                HE_MAX_ROWS);
     }
     if (status == HE_OK) {
-        status = build_links(soup, (flags & HE_BUILD_TAKE) != 0, &mesh->c, &turns, err);
+        status = build_links(soup, (flags & HE_BUILD_TAKE) != 0, &corners, &turns, &mesh->c, err);
     }
     if (status == HE_OK) {
         if ((flags & HE_BUILD_TAKE) != 0) {
@@ -196,6 +203,8 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
     }
 out:
     he_mem_free(own);
+    he_corners_clear(&corners);
+    he_mem_free(turns.spare);
     he_mem_free(turns.turn);
     he_mem_free(turns.first);
     he_mesh_free(mesh);

@@ -8,11 +8,10 @@
  * is written there. Until it gets its links, next[h] is the corner that half-edge h leaves. */
 typedef struct linking {
     const he_soup *soup;
+    const he_corners *corners;
     he_content *c;
-    uint32_t *turn;    /* of each corner; from the second pass on its half-edge */
-    uint32_t *first;   /* of each vertex, its first corner */
-    uint32_t degree;   /* of all faces, or 0 */
-    uint32_t *face_of; /* of each corner, where faces differ in degree */
+    uint32_t *turn;  /* of each corner; from the second pass on its half-edge */
+    uint32_t *first; /* of each vertex, its first corner */
     uint32_t lanes;
     uint32_t edges[HE_MOST_LANES]; /* first numbers of edges of the lanes */
 } linking;
@@ -55,9 +54,6 @@ static he_status number_edges(void *context, uint32_t lane, size_t from, size_t 
                 corner_of[2 * e + 1] = mate;
                 e++;
             }
-            if (l->face_of != NULL) {
-                l->face_of[c] = (uint32_t)f;
-            }
         }
     }
     l->edges[lane] = e;
@@ -91,19 +87,6 @@ static he_status name_halfedges(void *context, uint32_t part, size_t from, size_
     return HE_OK;
 }
 
-typedef struct corner {
-    uint32_t face, next, prev; /* the corners beside it */
-} corner;
-
-/* `degree` of all faces, or 0: a constant where this is inlined. */
-static inline corner find_corner(const linking *l, uint32_t c, uint32_t degree)
-{
-    uint32_t face = degree != 0 ? c / degree : l->face_of[c];
-    uint32_t first = degree != 0 ? face * degree : l->soup->starts[face];
-    uint32_t end = degree != 0 ? first + degree : he_soup_end(l->soup, face);
-    return (corner){face, c + 1 < end ? c + 1 : first, c > first ? c - 1 : end - 1};
-}
-
 static inline void link_halfedges(const linking *l, size_t from, size_t to, uint32_t degree)
 {
     enum { AHEAD = 24 };
@@ -116,14 +99,14 @@ static inline void link_halfedges(const linking *l, size_t from, size_t to, uint
         if (e < ahead && k->next[h + 2 * AHEAD + 1] != HE_NONE) {
             __builtin_prefetch(&halfedge[k->next[h + 2 * AHEAD + 1]]);
         }
-        corner at = find_corner(l, c, degree);
+        he_corner at = he_corner_find(l->corners, c, degree);
         k->next[h] = halfedge[at.next];
         k->prev[h] = halfedge[at.prev];
         k->origin[h] = corners[c];
         k->origin[h + 1] = corners[at.next];
         k->face[h] = at.face;
         if (mate != HE_NONE) {
-            at = find_corner(l, mate, degree);
+            at = he_corner_find(l->corners, mate, degree);
             k->next[h + 1] = halfedge[at.next];
             k->prev[h + 1] = halfedge[at.prev];
             k->face[h + 1] = at.face;
@@ -138,7 +121,7 @@ static he_status link_range(void *context, uint32_t part, size_t from, size_t to
     const linking *l = context;
     (void)part;
     (void)err;
-    switch (l->degree) {
+    switch (l->corners->degree) {
     case 3:
         link_halfedges(l, from, to, 3);
         break;
@@ -230,17 +213,6 @@ static void link_holes(he_content *k)
 
 /* --- all together ----------------------------------------------------------------------------- */
 
-/* The degree of all faces, or 0 where they differ. */
-static uint32_t common_degree(const he_soup *soup)
-{
-    size_t degree = soup->face_count == 0 ? 0 : soup->corner_count / soup->face_count;
-    bool common = degree * soup->face_count == soup->corner_count;
-    for (size_t f = 0; f < soup->face_count && common; f++) {
-        common = soup->starts[f] == f * degree;
-    }
-    return common ? (uint32_t)degree : 0;
-}
-
 static he_status number_all(linking *l, he_error *err)
 {
     he_watch *watch = l->soup->limits.watch;
@@ -278,26 +250,19 @@ static he_status link_all(linking *l, size_t edges, he_error *err)
     return status;
 }
 
-he_status he_link(const he_soup *soup, he_turns *turns, he_content *c, he_error *err)
+he_status he_link(const he_corners *corners, he_turns *turns, he_content *c, he_error *err)
 {
+    const he_soup *soup = corners->soup;
     linking l = {.soup = soup,
+                 .corners = corners,
                  .c = c,
                  .turn = turns->turn,
                  .first = turns->first,
                  .lanes = he_lanes(soup->limits.watch, soup->face_count)};
-    l.degree = common_degree(soup);
-    if (l.degree != 3 && l.degree != 4) {
-        l.degree = 0;
-        l.face_of = he_mem_array(NULL, soup->corner_count, sizeof *l.face_of);
-        if (l.face_of == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory to link %zu edges", turns->edges);
-        }
-    }
     he_status status = number_all(&l, err);
     if (status == HE_OK) {
         status = link_all(&l, turns->edges, err);
     }
-    he_mem_free(l.face_of);
     if (status == HE_OK) {
         c->edges.issued = c->edges.live = (uint32_t)turns->edges;
         c->faces.issued = c->faces.live = (uint32_t)soup->face_count;

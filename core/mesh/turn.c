@@ -3,11 +3,6 @@
 #include "mesh/exec.h"
 #include "mesh/pair.h"
 
-/* A corner filed under its vertex, between the vertices before and behind it in its face. */
-typedef struct filed {
-    uint32_t from, to, corner;
-} filed;
-
 /* What a part found that is to be told. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
@@ -15,10 +10,11 @@ enum { SMALL_FACE = 16, SMALL_VERTEX = 24 };
 
 typedef struct turning {
     const he_soup *soup;
+    const he_corners *corners;
     uint32_t lanes;
-    uint32_t
-        *places; /* a row of all vertices for each lane: corners, then where the next one goes */
-    filed *entries;
+    /* A row of all vertices for each lane: first how many corners, then where the next one goes. */
+    uint32_t *places;
+    uint32_t *filed; /* corners, vertex by vertex */
     uint32_t *turn, *first;
     unsigned char *found; /* by each part: the flags above */
     size_t *matched;      /* by each part: corners with a turn */
@@ -96,16 +92,8 @@ static he_status file_corners(void *context, uint32_t lane, size_t from, size_t 
     const he_soup *soup = t->soup;
     uint32_t *place = t->places + lane * soup->vertex_count;
     (void)err;
-    for (size_t f = from; f < to; f++) {
-        uint32_t c = soup->starts[f], end = he_soup_end(soup, f), first = soup->corners[c];
-        uint32_t before = soup->corners[end - 1], v = first;
-        for (; c + 1 < end; c++) {
-            uint32_t next = soup->corners[c + 1];
-            t->entries[place[v]++] = (filed){before, next, c};
-            before = v;
-            v = next;
-        }
-        t->entries[place[v]++] = (filed){before, first, c};
+    for (uint32_t c = soup->starts[from], end = he_soup_end(soup, to - 1); c < end; c++) {
+        t->filed[place[soup->corners[c]]++] = c;
     }
     return HE_OK;
 }
@@ -150,23 +138,45 @@ static bool leads_twice(const uint32_t *to, uint32_t count)
     return twice != 0;
 }
 
+/* follow[i] = the last k for which to[k] is from[i], or `count`. The inner loop, over as many as
+ * fit into registers, is the one that compilers turn into vector instructions. */
+static inline void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint32_t *follow)
+{
+    enum { BLOCK = 8 };
+    for (uint32_t begin = 0; begin < count; begin += BLOCK) {
+        uint32_t found[BLOCK];
+        for (uint32_t i = 0; i < BLOCK; i++) {
+            found[i] = count;
+        }
+        for (uint32_t k = 0; k < count; k++) {
+            uint32_t one = to[k];
+            for (uint32_t i = 0; i < BLOCK; i++) {
+                found[i] = from[begin + i] == one ? k : found[i];
+            }
+        }
+        for (uint32_t i = 0; i < BLOCK; i++) {
+            follow[begin + i] = found[i];
+        }
+    }
+}
+
 /* The turns about a vertex of few corners. That they form one ring shows that all is well; only
  * where they do not is it asked why. No branch depends on the ids, which may have no pattern. Two
  * faces that run along an edge in one direction leave one vertex towards the same other. */
-static unsigned turn_few(const filed *at, uint32_t count, uint32_t *turn, size_t *matched)
+static inline unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count,
+                                uint32_t degree, size_t *matched)
 {
-    uint32_t to[SMALL_VERTEX], follow[SMALL_VERTEX], open = 0;
+    uint32_t from[SMALL_VERTEX] = {0}, to[SMALL_VERTEX], follow[SMALL_VERTEX], open = 0;
     for (uint32_t i = 0; i < count; i++) {
-        to[i] = at[i].to;
+        he_corner at = he_corner_find(t->corners, filed[i], degree);
+        from[i] = t->soup->corners[at.prev];
+        to[i] = t->soup->corners[at.next];
     }
+    match(from, to, count, follow);
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t k = count, from = at[i].from;
-        for (uint32_t j = 0; j < count; j++) {
-            k = to[j] == from ? j : k;
-        }
-        follow[i] = k;
+        uint32_t k = follow[i];
         open += k == count;
-        turn[at[i].corner] = k == count ? HE_NONE : at[k].corner;
+        t->turn[filed[i]] = k == count ? HE_NONE : filed[k];
     }
     *matched += count - open;
     if (open == 0) {
@@ -201,23 +211,32 @@ static uint32_t fan_length(const hub_turns *hub, uint32_t from, uint32_t end, ui
     return met;
 }
 
+static uint32_t vertex_before(const turning *t, uint32_t i)
+{
+    return t->soup->corners[he_corner_find(t->corners, t->filed[i], t->corners->degree).prev];
+}
+
+static uint32_t vertex_behind(const turning *t, uint32_t i)
+{
+    return t->soup->corners[he_corner_find(t->corners, t->filed[i], t->corners->degree).next];
+}
+
 static unsigned turn_many(turning *t, uint32_t begin, uint32_t end, const hub_turns *hub,
                           size_t *matched)
 {
-    const filed *e = t->entries;
     for (uint32_t i = begin; i < end; i++) {
-        uint32_t k = hub->leads[e[i].to];
-        if (k >= begin && k < i && e[k].to == e[i].to) {
+        uint32_t to = vertex_behind(t, i), k = hub->leads[to];
+        if (k >= begin && k < i && vertex_behind(t, k) == to) {
             return BAD_EDGE;
         }
-        hub->leads[e[i].to] = i;
+        hub->leads[to] = i;
     }
     uint32_t open = 0, met = 0;
     for (uint32_t i = begin; i < end; i++) {
-        uint32_t k = hub->leads[e[i].from];
-        bool found = k >= begin && k < end && e[k].to == e[i].from;
+        uint32_t from = vertex_before(t, i), k = hub->leads[from];
+        bool found = k >= begin && k < end && vertex_behind(t, k) == from;
         hub->follows[i] = found ? k : end;
-        t->turn[e[i].corner] = found ? e[k].corner : HE_NONE;
+        t->turn[t->filed[i]] = found ? t->filed[k] : HE_NONE;
         open += !found;
         if (found) {
             he_bits_set(hub->entered, k);
@@ -232,30 +251,47 @@ static unsigned turn_many(turning *t, uint32_t begin, uint32_t end, const hub_tu
     return met == end - begin ? 0 : CLOSED_FAN;
 }
 
-static he_status turn_vertices(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to, uint32_t degree)
 {
-    turning *t = context;
-    enum { AHEAD = 24 };
-    const filed *const last = t->entries + end_of(t, t->soup->vertex_count - 1);
+    enum { AHEAD = 32 };
+    const uint32_t *filed = t->filed, *corners = t->soup->corners;
+    const uint32_t last = end_of(t, t->soup->vertex_count - 1);
     unsigned found = 0;
     size_t matched = 0;
-    (void)err;
-    for (size_t v = from; v < to; v++) {
-        const filed *at = t->entries + begin_of(t, v);
-        uint32_t count = (uint32_t)(t->entries + end_of(t, v) - at);
-        /* Where ids are in no order what is written lies far apart: ask for it in time. */
-        for (uint32_t i = 0; i < count && last - at > AHEAD + (ptrdiff_t)i; i++) {
-            __builtin_prefetch(&t->turn[at[AHEAD + i].corner], 1);
+    uint32_t begin = begin_of(t, from), end;
+    for (size_t v = from; v < to; v++, begin = end) {
+        end = end_of(t, v);
+        /* Where ids are in no order what is read and written lies far apart: ask for it in time. */
+        for (uint32_t i = begin; i < end && last - i > AHEAD; i++) {
+            __builtin_prefetch(&corners[filed[i + AHEAD]]);
+            __builtin_prefetch(&t->turn[filed[i + AHEAD]], 1);
         }
-        t->first[v] = count == 0 ? HE_NONE : at->corner;
-        if (count > SMALL_VERTEX) {
+        t->first[v] = begin == end ? HE_NONE : filed[begin];
+        if (end - begin > SMALL_VERTEX) {
             found |= LARGE_VERTEX;
-        } else if (count > 0) {
-            found |= turn_few(at, count, t->turn, &matched);
+        } else if (end > begin) {
+            found |= turn_few(t, filed + begin, end - begin, degree, &matched);
         }
     }
     t->found[part] |= (unsigned char)found;
     t->matched[part] = matched;
+}
+
+static he_status turn_vertices(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    turning *t = context;
+    (void)err;
+    switch (t->corners->degree) {
+    case 3:
+        turn_range(t, part, from, to, 3);
+        break;
+    case 4:
+        turn_range(t, part, from, to, 4);
+        break;
+    default:
+        turn_range(t, part, from, to, 0);
+        break;
+    }
     return HE_OK;
 }
 
@@ -286,7 +322,7 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
         if (end - begin > SMALL_VERTEX) {
             found = turn_many(t, begin, end, &hub, &matched);
         } else if (all && end > begin) {
-            found = turn_few(t->entries + begin, end - begin, t->turn, &matched);
+            found = turn_few(t, t->filed + begin, end - begin, t->corners->degree, &matched);
         }
         t->all |= found;
         if (all && (found & CLOSED_FAN) != 0) {
@@ -362,15 +398,17 @@ static bool allocate(turning *t)
     t->places = he_mem_zero(soup->vertex_count, t->lanes * sizeof *t->places);
     t->first = he_mem_array(NULL, soup->vertex_count, sizeof *t->first);
     t->turn = he_mem_array(NULL, soup->corner_count, sizeof *t->turn);
-    t->entries = he_mem_array(NULL, soup->corner_count, sizeof *t->entries);
+    t->filed = he_mem_array(NULL, soup->corner_count, sizeof *t->filed);
     return t->found != NULL && t->matched != NULL && t->places != NULL && t->first != NULL &&
-           t->turn != NULL && t->entries != NULL;
+           t->turn != NULL && t->filed != NULL;
 }
 
-he_status he_soup_turn(const he_soup *soup, he_turns *out, he_report *report, uint64_t *total,
+he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report, uint64_t *total,
                        he_error *err)
 {
-    turning t = {.soup = soup, .lanes = he_lanes(soup->limits.watch, soup->face_count)};
+    const he_soup *soup = corners->soup;
+    turning t = {
+        .soup = soup, .corners = corners, .lanes = he_lanes(soup->limits.watch, soup->face_count)};
     he_status status = allocate(&t) ? HE_OK : no_memory(soup, err);
     if (status == HE_OK) {
         status = file_all(&t, report, total, err);
@@ -384,14 +422,14 @@ he_status he_soup_turn(const he_soup *soup, he_turns *out, he_report *report, ui
             matched += t.matched[i];
         }
         /* An edge with two faces was matched at both its ends. */
-        *out = (he_turns){t.turn, t.first, soup->corner_count - matched / 2};
-        t.turn = t.first = NULL;
+        *out = (he_turns){t.turn, t.first, t.filed, soup->corner_count - matched / 2};
+        t.turn = t.first = t.filed = NULL;
     }
     he_mem_free(t.found);
     he_mem_free(t.matched);
     he_mem_free(t.places);
     he_mem_free(t.first);
     he_mem_free(t.turn);
-    he_mem_free(t.entries);
+    he_mem_free(t.filed);
     return status;
 }

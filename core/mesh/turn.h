@@ -15,17 +15,18 @@
 #ifndef HE_MESH_TURN_H
 #define HE_MESH_TURN_H
 
-#include "mesh/build.h"
+#include "mesh/corner.h"
 
 typedef struct he_turns {
     uint32_t *turn;  /* of each corner, HE_NONE at a boundary */
     uint32_t *first; /* of each vertex the first of its corners, HE_NONE where there is none */
+    uint32_t *spare; /* as many words as corners, for whoever needs some next */
     size_t edges;
 } he_turns;
 
 /* The arrays are the caller's. HE_NO_MEMORY, HE_CANCELLED; where the structure cannot hold what was
  * found its defects are in `report` and *total, and `out` is as it was. */
-HE_NODISCARD he_status he_soup_turn(const he_soup *soup, he_turns *out, he_report *report,
+HE_NODISCARD he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report,
                                     uint64_t *total, he_error *err);
 
 #endif
