@@ -3,6 +3,8 @@
 #include "mesh/exec.h"
 #include "mesh/pair.h"
 
+#include <string.h>
+
 /* What a part found that is to be told. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
@@ -138,40 +140,32 @@ static bool leads_twice(const uint32_t *to, uint32_t count)
     return twice != 0;
 }
 
-/* follow[i] = the last k for which to[k] is from[i], or `count`. The inner loop, over as many as
- * fit into registers, is the one that compilers turn into vector instructions. */
-static inline void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint32_t *follow)
+/* Four words in a vector register, which compilers of this dialect have for every machine. */
+typedef uint32_t four __attribute__((vector_size(16)));
+
+/* follow[i] = the last k for which to[k] is from[i], or `count`. Arrays of SMALL_VERTEX words. */
+static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint32_t *follow)
 {
-    enum { BLOCK = 8 };
-    for (uint32_t begin = 0; begin < count; begin += BLOCK) {
-        uint32_t found[BLOCK];
-        for (uint32_t i = 0; i < BLOCK; i++) {
-            found[i] = count;
-        }
+    for (uint32_t begin = 0; begin < count; begin += 8) {
+        four low, high, none = {count, count, count, count}, found[2] = {none, none};
+        memcpy(&low, from + begin, sizeof low);
+        memcpy(&high, from + begin + 4, sizeof high);
         for (uint32_t k = 0; k < count; k++) {
-            uint32_t one = to[k];
-            for (uint32_t i = 0; i < BLOCK; i++) {
-                found[i] = from[begin + i] == one ? k : found[i];
-            }
+            four one = {to[k], to[k], to[k], to[k]}, to_k = {k, k, k, k};
+            found[0] ^= (found[0] ^ to_k) & (four)(low == one);
+            found[1] ^= (found[1] ^ to_k) & (four)(high == one);
         }
-        for (uint32_t i = 0; i < BLOCK; i++) {
-            follow[begin + i] = found[i];
-        }
+        memcpy(follow + begin, found, sizeof found);
     }
 }
 
 /* The turns about a vertex of few corners. That they form one ring shows that all is well; only
  * where they do not is it asked why. No branch depends on the ids, which may have no pattern. Two
  * faces that run along an edge in one direction leave one vertex towards the same other. */
-static inline unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count,
-                                uint32_t degree, size_t *matched)
+static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count,
+                         const uint32_t *from, const uint32_t *to, size_t *matched)
 {
-    uint32_t from[SMALL_VERTEX] = {0}, to[SMALL_VERTEX], follow[SMALL_VERTEX], open = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        he_corner at = he_corner_find(t->corners, filed[i], degree);
-        from[i] = t->soup->corners[at.prev];
-        to[i] = t->soup->corners[at.next];
-    }
+    uint32_t follow[SMALL_VERTEX], open = 0;
     match(from, to, count, follow);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t k = follow[i];
@@ -189,6 +183,16 @@ static inline unsigned turn_few(const turning *t, const uint32_t *filed, uint32_
         }
     }
     return leads_twice(to, count) ? BAD_EDGE : all_open(follow, count) ? 0 : CLOSED_FAN;
+}
+
+static inline void find_beside(const turning *t, const uint32_t *filed, uint32_t count,
+                               uint32_t degree, uint32_t *from, uint32_t *to)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        he_corner at = he_corner_find(t->corners, filed[i], degree);
+        from[i] = t->soup->corners[at.prev];
+        to[i] = t->soup->corners[at.next];
+    }
 }
 
 /* The hub of a fan. `leads` remembers, for every vertex, which entry leaves towards it, `follows`
@@ -256,6 +260,7 @@ static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to,
     enum { AHEAD = 32 };
     const uint32_t *filed = t->filed, *corners = t->soup->corners;
     const uint32_t last = end_of(t, t->soup->vertex_count - 1);
+    uint32_t before[SMALL_VERTEX] = {0}, behind[SMALL_VERTEX];
     unsigned found = 0;
     size_t matched = 0;
     uint32_t begin = begin_of(t, from), end;
@@ -270,7 +275,8 @@ static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to,
         if (end - begin > SMALL_VERTEX) {
             found |= LARGE_VERTEX;
         } else if (end > begin) {
-            found |= turn_few(t, filed + begin, end - begin, degree, &matched);
+            find_beside(t, filed + begin, end - begin, degree, before, behind);
+            found |= turn_few(t, filed + begin, end - begin, before, behind, &matched);
         }
     }
     t->found[part] |= (unsigned char)found;
@@ -309,6 +315,7 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
     const he_soup *soup = t->soup;
     he_status status = HE_OK;
     size_t matched = 0;
+    uint32_t before[SMALL_VERTEX] = {0}, behind[SMALL_VERTEX];
     hub_turns hub = {.leads = he_mem_zero(soup->vertex_count, sizeof(uint32_t)),
                      .follows = he_mem_array(NULL, soup->corner_count, sizeof(uint32_t)),
                      .entered = he_bits_new(soup->corner_count)};
@@ -322,7 +329,8 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
         if (end - begin > SMALL_VERTEX) {
             found = turn_many(t, begin, end, &hub, &matched);
         } else if (all && end > begin) {
-            found = turn_few(t, t->filed + begin, end - begin, t->corners->degree, &matched);
+            find_beside(t, t->filed + begin, end - begin, t->corners->degree, before, behind);
+            found = turn_few(t, t->filed + begin, end - begin, before, behind, &matched);
         }
         t->all |= found;
         if (all && (found & CLOSED_FAN) != 0) {
