@@ -115,7 +115,7 @@ static bool make(api_asker *a, const api_in *in, api_tree *tree)
 {
     he_error err = {0};
     he_bvh *bvh = NULL;
-    bool made = he_bvh_new(a->mesh, a->x->watch, &bvh, &err) == HE_OK;
+    bool made = he_bvh_new(a->mesh, &a->x->watch, &bvh, &err) == HE_OK;
     finish(a, tree, bvh);
     if (!made) {
         api_tree_release(tree);
