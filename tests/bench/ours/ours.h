@@ -12,6 +12,7 @@ extern const bench_row bench_edit_rows[];
 extern const bench_row bench_file_rows[];
 extern const bench_row bench_document_rows[];
 extern const bench_row bench_decimate_rows[];
+extern const bench_row bench_scaling_rows[];
 extern const bench_row bench_subdivide_rows[];
 
 /* Ends the program with the status' title unless it is HE_OK. */
