@@ -4,6 +4,7 @@
  * An old vertex gathers in `to` what its rule sums up, its neighbours (at catmull_clark its faces'
  * means too) or, on a curve, its two neighbours there, and is then moved. */
 #include "algo/subdivide_step.h"
+#include "mesh/exec.h"
 
 #include <float.h>
 #include <math.h>
@@ -86,13 +87,12 @@ static uint32_t middle(const he_step *s, uint32_t e)
     return s->from->vertices.issued + he_step_edge_rank(s, e);
 }
 
-/* --- edges, by scheme: the sums of both ends, and the vertices on the edge --- */
+/* --- edges, by scheme: the vertices on them, and what they add to the sums of both ends --- */
 
 static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
     const he_content *c = s->from;
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
-    gather_ends(s, e, from, to);
     he_vec3 ends = sum(from[a], from[b]);
     if (s->sharp != NULL && he_step_is_sharp(s, e)) {
         to[middle(s, e)] = mix(0.5, ends, 0, ends);
@@ -108,26 +108,39 @@ static he_vec3 face_point(const he_step *s, uint32_t f, const he_vec3 *to)
     return to[s->from->vertices.issued + s->from->edges.live + he_step_face_rank(s, f)];
 }
 
+/* The means of the faces beside edge e; zero where there is none. */
+static void find_sides(const he_step *s, uint32_t e, const he_vec3 *to, he_vec3 sides[2])
+{
+    const he_content *c = s->from;
+    for (uint32_t k = 0; k < 2; k++) {
+        uint32_t f = c->face[2 * e + k];
+        sides[k] = f == HE_NONE ? (he_vec3){0, 0, 0} : face_point(s, f, to);
+    }
+}
+
 static void catmull_clark_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
     const he_content *c = s->from;
+    he_vec3 sides[2], ends = sum(from[c->origin[2 * e]], from[c->origin[2 * e + 1]]);
+    find_sides(s, e, to, sides);
+    bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
+    to[middle(s, e)] =
+        sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, sum(sides[0], sides[1]));
+}
+
+static void catmull_clark_ends(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+{
+    const he_content *c = s->from;
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
+    he_vec3 sides[2];
     gather_ends(s, e, from, to);
-    he_vec3 left = {0, 0, 0}, right = {0, 0, 0}, ends = sum(from[a], from[b]);
-    if (c->face[2 * e] != HE_NONE) {
-        left = face_point(s, c->face[2 * e], to);
-    }
-    if (c->face[2 * e + 1] != HE_NONE) {
-        right = face_point(s, c->face[2 * e + 1], to);
-    }
+    find_sides(s, e, to, sides);
     if (sharpness(s, a) <= SMOOTH_AT_MOST) {
-        gather(&to[a], left);
+        gather(&to[a], sides[0]);
     }
     if (sharpness(s, b) <= SMOOTH_AT_MOST) {
-        gather(&to[b], right);
+        gather(&to[b], sides[1]);
     }
-    bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
-    to[middle(s, e)] = sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, sum(left, right));
 }
 
 static void linear_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
@@ -217,32 +230,73 @@ static he_status place_centres(const he_step *s, const he_vec3 *from, he_vec3 *t
     return status;
 }
 
-static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+/* What places new vertices by the old ones. */
+typedef struct placing {
+    const he_step *s;
+    const he_vec3 *from;
+    he_vec3 *to;
+} placing;
+
+static he_status place_middles(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
-    const he_content *c = s->from;
-    for (uint32_t v = 0; v < c->vertices.issued; v++) {
-        to[v] = s->scheme == HE_LINEAR ? from[v] : (he_vec3){0, 0, 0};
-    }
-    he_status status = place_centres(s, from, to, err);
-    for (uint32_t e = 0; e < c->edges.issued && status == HE_OK; e++) {
-        status = he_watch_at(s->watch, e, c->edges.issued, err);
-        if (c->next[2 * e] == HE_DEAD) {
+    const placing *p = context;
+    const he_step *s = p->s;
+    (void)part;
+    (void)err;
+    for (size_t e = from; e < to; e++) {
+        if (s->from->next[2 * e] == HE_DEAD) {
             continue;
         }
         switch (s->scheme) {
         case HE_LOOP:
-            loop_edge(s, e, from, to);
+            loop_edge(s, (uint32_t)e, p->from, p->to);
             break;
         case HE_CATMULL_CLARK:
-            catmull_clark_edge(s, e, from, to);
+            catmull_clark_edge(s, (uint32_t)e, p->from, p->to);
             break;
         case HE_LINEAR:
-            linear_edge(s, e, from, to);
+            linear_edge(s, (uint32_t)e, p->from, p->to);
             break;
         case HE_SQRT3:
-            gather_ends(s, e, from, to);
-            break;
+            break; /* of sharp edges alone, when the sums are there */
         }
+    }
+    return HE_OK;
+}
+
+/* One thread's work: a sum depends on the order of what is summed up. */
+static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
+{
+    const placing *p = context;
+    const he_step *s = p->s;
+    (void)lane;
+    (void)err;
+    for (size_t e = from; e < to; e++) {
+        if (s->from->next[2 * e] == HE_DEAD) {
+            continue;
+        }
+        if (s->scheme == HE_CATMULL_CLARK) {
+            catmull_clark_ends(s, (uint32_t)e, p->from, p->to);
+        } else {
+            gather_ends(s, (uint32_t)e, p->from, p->to);
+        }
+    }
+    return HE_OK;
+}
+
+static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+{
+    const he_content *c = s->from;
+    placing p = {s, from, to};
+    for (uint32_t v = 0; v < c->vertices.issued; v++) {
+        to[v] = s->scheme == HE_LINEAR ? from[v] : (he_vec3){0, 0, 0};
+    }
+    he_status status = place_centres(s, from, to, err);
+    if (status == HE_OK && s->scheme != HE_SQRT3) {
+        status = he_run_ranges(s->watch, c->edges.issued, place_middles, &p, err);
+    }
+    if (status == HE_OK && s->scheme != HE_LINEAR) {
+        status = he_run_lanes(s->watch, 1, c->edges.issued, sum_ends, &p, err);
     }
     if (status == HE_OK && s->scheme != HE_LINEAR) {
         cut_in_thirds(s, from, to);

@@ -262,4 +262,6 @@ export const parts = [
             ['corner normals', 'corner_normals', 'M half-edges/s'],
         ]),
     ),
+    scaling('torus', 'natural', [['Loop, one step', 'loop', 'M output faces/s']], 400),
+    scaling('grid', 'natural', [['Catmull-Clark', 'catmull_clark', 'M output faces/s']], 400),
 ];

@@ -1,9 +1,10 @@
 /* Work in parts: each is run once, whoever runs it, and what comes out does not tell who did. */
 #include "tests/unit/fixture.h"
 
-#include "algo/shape.h"
+#include "algo/subdivide.h"
 #include "mesh/exec.h"
 #include "mesh/walk.h"
+#include "query/geometry.h"
 #include "server/helpers.h"
 
 #include <pthread.h>
@@ -230,6 +231,71 @@ static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
     }
 }
 
+static void expect_same_normals(const he_mesh *mesh, he_watch *watch)
+{
+    size_t faces = he_mesh_issued(mesh, HE_FACE),
+           corners = 2 * (size_t)he_mesh_issued(mesh, HE_EDGE);
+    he_vec3 *alone = malloc((faces + corners) * sizeof *alone);
+    he_vec3 *helped = malloc((faces + corners) * sizeof *helped);
+    assert_true(alone != NULL && helped != NULL);
+    assert_int_equal(he_face_normals(mesh, NULL, alone, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(mesh, 0.5, NULL, alone + faces, NULL), HE_OK);
+    assert_int_equal(he_face_normals(mesh, watch, helped, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(mesh, 0.5, watch, helped + faces, NULL), HE_OK);
+    assert_memory_equal(alone, helped, (faces + corners) * sizeof *alone);
+    free(alone);
+    free(helped);
+}
+
+static he_mesh *subdivided(const he_mesh *mesh, he_scheme scheme, he_watch *watch, he_error *err,
+                           he_status *status)
+{
+    he_mesh *copy;
+    assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
+    he_mesh_watch(copy, watch);
+    *status = he_subdivide(copy, scheme, 1, NULL, err);
+    he_mesh_watch(copy, NULL);
+    return copy;
+}
+
+/* The refusal of loop in a mesh with other faces names the first one. */
+static void expect_same_subdivision(const he_mesh *mesh, he_scheme scheme, he_watch *watch)
+{
+    he_error errors[2] = {{.status = HE_OK}, {.status = HE_OK}};
+    he_status statuses[2];
+    he_mesh *alone = subdivided(mesh, scheme, NULL, &errors[0], &statuses[0]);
+    he_mesh *helped = subdivided(mesh, scheme, watch, &errors[1], &statuses[1]);
+    assert_int_equal(statuses[0], statuses[1]);
+    assert_int_equal(errors[0].id, errors[1].id);
+    assert_string_equal(errors[0].text, errors[1].text);
+    assert_true(he_mesh_equal(alone, helped));
+    he_mesh_free(alone);
+    he_mesh_free(helped);
+}
+
+static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        he_soup soup;
+        make_soup(which, &soup);
+        he_mesh *mesh = build_with(&soup, NULL);
+        for (size_t i = 0; i < HELPER_COUNTS; i++) {
+            he_watch watch;
+            srv_helpers *helpers = srv_helpers_new(helper_counts[i]);
+            he_watch_init(&watch, NULL, NULL);
+            watch.exec = srv_helpers_exec(helpers);
+            expect_same_normals(mesh, &watch);
+            for (int scheme = HE_LOOP; scheme <= HE_SQRT3; scheme++) {
+                expect_same_subdivision(mesh, (he_scheme)scheme, &watch);
+            }
+            srv_helpers_free(helpers);
+        }
+        he_mesh_free(mesh);
+        he_soup_clear(&soup);
+    }
+}
+
 static void defects_are_the_same_on_1_2_and_8_threads(void **state)
 {
     (void)state;
@@ -323,6 +389,7 @@ int main(void)
         cmocka_unit_test(of_parts_that_fail_the_first_one_is_told),
         cmocka_unit_test(work_is_given_up_between_parts_on_its_own_thread),
         cmocka_unit_test(a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads),
+        cmocka_unit_test(normals_and_subdivision_are_the_same_on_1_2_and_8_threads),
         cmocka_unit_test(defects_are_the_same_on_1_2_and_8_threads),
         cmocka_unit_test(memory_that_runs_out_leaves_nothing_behind),
     };

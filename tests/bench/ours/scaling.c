@@ -2,6 +2,8 @@
  * Wall time, since processor time adds up what threads take. */
 #include "bench/ours/ours.h"
 
+#include "algo/subdivide.h"
+#include "mesh/walk.h"
 #include "query/geometry.h"
 #include "server/helpers.h"
 
@@ -95,6 +97,37 @@ static void corner_normals(bench_side *side, bool helped, bench_result *out)
     free(rows);
 }
 
+static void subdivide(bench_side *side, he_scheme scheme, bool helped, bench_result *out)
+{
+    he_mesh *m;
+    he_watch watch;
+    bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
+    lend(&watch, helped);
+    he_mesh_watch(m, &watch);
+    double start = wall_seconds();
+    bench_require(he_subdivide(m, scheme, 1, NULL, NULL));
+    out->value = wall_seconds() - start;
+    out->amount = he_mesh_faces(m);
+    he_mesh_watch(m, NULL);
+    uint64_t hash = bench_mesh_hash(m);
+    for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+        he_vec3 p = he_position(m, (he_vertex){v});
+        hash = hash * 31 + bench_place_hash(p.x, p.y, p.z);
+    }
+    bench_exact(out, hash);
+    he_mesh_free(m);
+}
+
+static void loop(bench_side *side, bool helped, bench_result *out)
+{
+    subdivide(side, HE_LOOP, helped, out);
+}
+
+static void catmull_clark(bench_side *side, bool helped, bench_result *out)
+{
+    subdivide(side, HE_CATMULL_CLARK, helped, out);
+}
+
 #define BOTH(row)                                            \
     static void row##_1(bench_side *side, bench_result *out) \
     {                                                        \
@@ -107,6 +140,8 @@ static void corner_normals(bench_side *side, bool helped, bench_result *out)
 BOTH(build)
 BOTH(face_normals)
 BOTH(corner_normals)
+BOTH(loop)
+BOTH(catmull_clark)
 #undef BOTH
 
 const bench_row bench_scaling_rows[] = {{"build_1", build_1},
@@ -115,4 +150,8 @@ const bench_row bench_scaling_rows[] = {{"build_1", build_1},
                                         {"face_normals_2", face_normals_2},
                                         {"corner_normals_1", corner_normals_1},
                                         {"corner_normals_2", corner_normals_2},
+                                        {"loop_1", loop_1},
+                                        {"loop_2", loop_2},
+                                        {"catmull_clark_1", catmull_clark_1},
+                                        {"catmull_clark_2", catmull_clark_2},
                                         {NULL, NULL}};
