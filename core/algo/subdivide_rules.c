@@ -174,13 +174,23 @@ static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
     }
 }
 
+/* What places new vertices by the old ones. */
+typedef struct placing {
+    const he_step *s;
+    const he_vec3 *from;
+    he_vec3 *to;
+} placing;
+
 /* --- vertices --- */
 
-static he_status move_vertices(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+static he_status move_vertices(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     enum { TABLE = 32 };
-    const he_content *c = s->from;
+    const placing *p = context;
+    const he_step *s = p->s;
     weights table[TABLE];
+    (void)part;
+    (void)err;
     for (uint32_t n = 1; n < TABLE; n++) {
         table[n] = weights_of(s->scheme, n);
     }
@@ -188,54 +198,57 @@ static he_status move_vertices(const he_step *s, const he_vec3 *from, he_vec3 *t
     weights curve = s->scheme != HE_SQRT3 ? (weights){0.75, 0.125}
                     : s->thirds           ? (weights){19.0 / 27, 4.0 / 27}
                                           : (weights){1, 0};
-    he_status status = HE_OK;
-    for (uint32_t v = 0; v < c->vertices.issued && status == HE_OK; v++) {
-        status = he_watch_at(s->watch, v, c->vertices.issued, err);
+    for (size_t v = from; v < to; v++) {
         uint32_t n = s->degree[v];
-        if (n == 0 || sharpness(s, v) == CORNER) {
-            to[v] = from[v];
+        uint8_t sharp = sharpness(s, (uint32_t)v);
+        if (n == 0 || sharp == CORNER) {
+            p->to[v] = p->from[v];
             continue;
         }
-        weights w = sharpness(s, v) == CURVE ? curve
-                    : n < TABLE              ? table[n]
-                                             : weights_of(s->scheme, n);
-        to[v] = mix(w.own, from[v], w.sum, to[v]);
+        weights w = sharp == CURVE ? curve : n < TABLE ? table[n] : weights_of(s->scheme, n);
+        p->to[v] = mix(w.own, p->from[v], w.sum, p->to[v]);
     }
-    return status;
+    return HE_OK;
 }
 
-static he_status place_centres(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+/* catmull_clark and sqrt3, where a face's number or a table says which vertex is its own. */
+static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
+    const placing *p = context;
+    const he_step *s = p->s;
     const he_content *c = s->from;
-    uint32_t at = c->vertices.issued + c->edges.live;
-    bool all = s->scheme == HE_CATMULL_CLARK, chosen = s->scheme == HE_SQRT3;
-    he_status status = HE_OK;
-    if (s->scheme == HE_LOOP || (s->scheme == HE_LINEAR && !s->polygonal)) {
-        return HE_OK;
-    }
-    for (uint32_t f = 0; f < c->faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(s->watch, f, c->faces.issued, err);
+    (void)part;
+    (void)err;
+    for (size_t f = from; f < to; f++) {
         uint32_t h = c->face_halfedge[f];
         if (h == HE_DEAD) {
             continue;
         }
-        if (chosen) {
-            if (s->centre[f] != HE_NONE) {
-                to[s->centre[f]] = mean_of_face(c, h, from);
-            }
-        } else if (all || c->next[c->next[c->next[h]]] != h) {
-            to[at++] = mean_of_face(c, h, from);
+        uint32_t at = s->scheme == HE_SQRT3
+                          ? s->centre[f]
+                          : c->vertices.issued + c->edges.live + he_step_face_rank(s, (uint32_t)f);
+        if (at != HE_NONE) {
+            p->to[at] = mean_of_face(c, h, p->from);
+        }
+    }
+    return HE_OK;
+}
+
+/* linear, where only faces that are no triangles have one. */
+static he_status place_some_centres(const placing *p, he_error *err)
+{
+    const he_content *c = p->s->from;
+    uint32_t at = c->vertices.issued + c->edges.live;
+    he_status status = HE_OK;
+    for (uint32_t f = 0; f < c->faces.issued && status == HE_OK; f++) {
+        status = he_watch_at(p->s->watch, f, c->faces.issued, err);
+        uint32_t h = c->face_halfedge[f];
+        if (h != HE_DEAD && c->next[c->next[c->next[h]]] != h) {
+            p->to[at++] = mean_of_face(c, h, p->from);
         }
     }
     return status;
 }
-
-/* What places new vertices by the old ones. */
-typedef struct placing {
-    const he_step *s;
-    const he_vec3 *from;
-    he_vec3 *to;
-} placing;
 
 static he_status place_middles(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
@@ -284,14 +297,27 @@ static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, 
     return HE_OK;
 }
 
+static he_status clear_sums(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const placing *p = context;
+    (void)part;
+    (void)err;
+    for (size_t v = from; v < to; v++) {
+        p->to[v] = p->s->scheme == HE_LINEAR ? p->from[v] : (he_vec3){0, 0, 0};
+    }
+    return HE_OK;
+}
+
 static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
 {
     const he_content *c = s->from;
     placing p = {s, from, to};
-    for (uint32_t v = 0; v < c->vertices.issued; v++) {
-        to[v] = s->scheme == HE_LINEAR ? from[v] : (he_vec3){0, 0, 0};
+    he_status status = he_run_ranges(s->watch, c->vertices.issued, clear_sums, &p, err);
+    if (status == HE_OK && s->scheme == HE_LINEAR && s->polygonal) {
+        status = place_some_centres(&p, err);
+    } else if (status == HE_OK && (s->scheme == HE_CATMULL_CLARK || s->scheme == HE_SQRT3)) {
+        status = he_run_ranges(s->watch, c->faces.issued, place_centres, &p, err);
     }
-    he_status status = place_centres(s, from, to, err);
     if (status == HE_OK && s->scheme != HE_SQRT3) {
         status = he_run_ranges(s->watch, c->edges.issued, place_middles, &p, err);
     }
@@ -300,7 +326,7 @@ static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_e
     }
     if (status == HE_OK && s->scheme != HE_LINEAR) {
         cut_in_thirds(s, from, to);
-        status = move_vertices(s, from, to, err);
+        status = he_run_ranges(s->watch, c->vertices.issued, move_vertices, &p, err);
     }
     return status;
 }
