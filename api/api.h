@@ -27,7 +27,7 @@
 #include "api/jobs.h"
 #include "api/live.h"
 #include "api/store.h"
-#include "mesh/watch.h"
+#include "mesh/exec.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -99,6 +99,7 @@ typedef struct api_options {
     void (*memory)(uint64_t *used, uint64_t *budget);
     const api_jobs *jobs; /* NULL: nothing becomes a job, and no route shows any */
     bool plain_answers;   /* never coded, whatever a client accepts */
+    const he_exec *exec;  /* threads for parts of large work; NULL: none */
 } api_options;
 
 /* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */

@@ -52,7 +52,7 @@ static bool find_intersections(api_asker *a, report *r)
 
 static bool examine(api_asker *a, report *r)
 {
-    he_watch *watch = a->x->watch;
+    he_watch *watch = &a->x->watch;
     he_error err = {0};
     if (he_check(a->mesh, r->problems, NAMED, &r->broken, &err) != HE_OK) {
         return api_fail_core(a->x, &err);

@@ -71,8 +71,8 @@ static bool build(api_exchange *x, made *out)
     if (!api_upload_build(x, &out->mesh)) {
         return false;
     }
-    he_mesh_watch(out->mesh, x->watch);
-    he_watch_span(x->watch, 1);
+    he_mesh_watch(out->mesh, &x->watch);
+    he_watch_span(&x->watch, 1);
     if (!api_summary_find(x, out->mesh, &out->summary)) {
         he_mesh_free(out->mesh);
         return false;

@@ -215,11 +215,11 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
 {
     if (!e->is_list) {
-        he_watch_span(x->watch, OPS_SHARE);
+        he_watch_span(&x->watch, OPS_SHARE);
         return run_op(x, e, mesh, delta, &x->root);
     }
     for (size_t i = 0; i < e->count; i++) {
-        he_watch_span(x->watch,
+        he_watch_span(&x->watch,
                       COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) / (double)e->count);
         if (!api_item_read(&x->ops, i, &e->list, &e->op) || !run_op(x, e, mesh, delta, &e->op.in)) {
             return false;
@@ -273,7 +273,7 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
     if (e->results.failed) {
         return api_fail_memory(x);
     }
-    he_watch_span(x->watch, CHANGES_SHARE);
+    he_watch_span(&x->watch, CHANGES_SHARE);
     if (he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
@@ -307,7 +307,7 @@ static void run(api_exchange *x)
     if (mesh == NULL) {
         return;
     }
-    he_mesh_watch(mesh, x->watch);
+    he_mesh_watch(mesh, &x->watch);
     bool publish = edit(x, e, mesh, delta, &barrier);
     he_mesh_watch(mesh, NULL);
     if (publish) {
@@ -381,11 +381,11 @@ static void run_claimed(api_exchange *x)
     he_mesh *copy = NULL;
     he_error err = {0};
     bool barrier = false;
-    he_watch_span(x->watch, COPY_SHARE);
+    he_watch_span(&x->watch, COPY_SHARE);
     if (!api_others_take(x, &e->others)) {
         return;
     }
-    if (he_mesh_copy_watched(e->content, x->watch, &copy, &err) != HE_OK) {
+    if (he_mesh_copy_watched(e->content, &x->watch, &copy, &err) != HE_OK) {
         api_fail_core(x, &err);
         return;
     }

@@ -98,9 +98,8 @@ struct api_exchange {
     void *state;
     void (*free_state)(void *state);
     void (*deferred)(api_exchange *x);
-    bool is_job;      /* `deferred` is to be one */
-    he_watch *watch;  /* of the work; NULL: nobody watches */
-    he_watch watched; /* it, when somebody does */
+    bool is_job;    /* `deferred` is to be one */
+    he_watch watch; /* of the work: threads for it and, of a job, who is told */
     const char *kept[API_KEPT_HEADERS];
 
     /* --- the answer --- */

@@ -15,6 +15,7 @@
 typedef struct options {
     he_weight weight;
     double crease;
+    he_watch *watch; /* of the exchange */
 } options;
 
 typedef struct measure {
@@ -142,7 +143,7 @@ static he_status corner_normals(const he_mesh *m, const uint32_t *of, size_t cou
     if (rows == NULL) {
         return HE_NO_MEMORY;
     }
-    he_status status = he_corner_normals(m, o->crease, rows, err);
+    he_status status = he_corner_normals(m, o->crease, o->watch, rows, err);
     if (status == HE_OK) {
         compress(m, HE_HALFEDGE, rows, out);
     }
@@ -393,7 +394,9 @@ static bool find(api_asker *a, const api_in *question, const asked *q, const uin
     }
     uint64_t most = of == NULL ? UINT64_MAX : a->left;
     bool whole = q->measure->one == NULL || (of == NULL && q->measure->many != NULL);
-    he_status status = whole ? q->measure->many(a->mesh, of, count, &q->options, most, out, &err)
+    options chosen = q->options;
+    chosen.watch = &a->x->watch;
+    he_status status = whole ? q->measure->many(a->mesh, of, count, &chosen, most, out, &err)
                              : each(a->mesh, q, of, count, out, &err);
     return status == HE_OK || api_asker_refuse(a, question, &err);
 }

@@ -181,16 +181,16 @@ static void copy(api_exchange *x)
     api_mesh *made = NULL;
     api_summary summary;
     he_error err = {0};
-    he_watch_span(x->watch, COPY_SHARE);
+    he_watch_span(&x->watch, COPY_SHARE);
     if (api_preconditions_hold(x, NULL) &&
-        he_mesh_copy_watched(content, x->watch, &fresh, &err) != HE_OK) {
+        he_mesh_copy_watched(content, &x->watch, &fresh, &err) != HE_OK) {
         api_fail_core(x, &err);
     }
     x->store->snapshot_release(x->store->self, snapshot);
     if (fresh == NULL) {
         return;
     }
-    he_watch_span(x->watch, 1);
+    he_watch_span(&x->watch, 1);
     if (!api_summary_find(x, fresh, &summary)) {
         he_mesh_free(fresh);
         return;

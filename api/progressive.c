@@ -35,7 +35,7 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     he_error err = {0};
     he_box box = {0};
     uint32_t faces = (uint32_t)api_param_u64(x, "faces", 0);
-    if (he_progressive_new(mesh, faces, x->watch, &p->mesh, &err) != HE_OK) {
+    if (he_progressive_new(mesh, faces, &x->watch, &p->mesh, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
     if (he_mesh_box(mesh, &box)) {

@@ -180,13 +180,6 @@ static bool copy_request(api_exchange *x, const api_request *request)
            x->request.request_id != NULL;
 }
 
-void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
-               void *context)
-{
-    he_watch_init(&x->watched, tell, context);
-    x->watch = &x->watched;
-}
-
 /* --- detaching --- */
 
 static const char *const kept_names[API_KEPT_HEADERS] = {"If-Match", "If-None-Match"};
@@ -219,6 +212,13 @@ static bool keep_headers(api_exchange *x)
     return true;
 }
 
+void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
+               void *context)
+{
+    he_watch_init(&x->watch, tell, context);
+    x->watch.exec = x->service->options.exec;
+}
+
 static api_exchange *exchange_new(api_service *service, const api_request *request)
 {
     api_exchange *x = he_mem_zero(1, sizeof *x);
@@ -232,6 +232,7 @@ static api_exchange *exchange_new(api_service *service, const api_request *reque
     x->coding_in = API_IDENTITY;
     x->codings = (api_codings){.allowed = {[API_IDENTITY] = true}, .best = API_IDENTITY};
     api_out_init(&x->out, &x->text);
+    api_watch(x, NULL, NULL);
     if (!copy_request(x, request)) {
         api_arena_clear(&x->arena);
         he_mem_free(x);

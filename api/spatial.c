@@ -109,8 +109,8 @@ static bool write_pairs(api_asker *a, size_t limit, bool complete)
 
 bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
 {
-    he_watch *watch = a->x->watch;
-    he_watch_span(watch, watch == NULL ? 0 : 0.5 * (1 + watch->done)); /* it takes about as long */
+    he_watch *watch = &a->x->watch;
+    he_watch_span(watch, 0.5 * (1 + watch->done)); /* it takes about as long */
     const he_bvh *tree = api_asker_tree(a, in);
     if (tree == NULL) {
         return false;

@@ -105,7 +105,7 @@ static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
             waits = must_be_made(tree);
         }
         store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
-        he_status status = waits ? he_watch_step(a->x->watch, 0, 1, err) : HE_OK;
+        he_status status = waits ? he_watch_step(&a->x->watch, 0, 1, err) : HE_OK;
         if (!waits || status != HE_OK) {
             return status;
         }
@@ -132,7 +132,7 @@ static void finish(const api_asker *a, api_tree *tree, he_bvh *bvh)
 static he_status make(const api_asker *a, api_tree *tree, he_error *err)
 {
     he_bvh *bvh = NULL;
-    he_status status = he_bvh_new(a->mesh, a->x->watch, &bvh, err);
+    he_status status = he_bvh_new(a->mesh, &a->x->watch, &bvh, err);
     finish(a, tree, bvh);
     return status;
 }

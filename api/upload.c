@@ -402,8 +402,8 @@ static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
                                                            u->vertices, u->faces, &x->problem)) {
         return false;
     }
-    he_mesh_watch(mesh, x->watch);
-    he_watch_span(x->watch, FILL_SHARE);
+    he_mesh_watch(mesh, &x->watch);
+    he_watch_span(&x->watch, FILL_SHARE);
     he_status status = he_repair_mesh(mesh, &u->plan, &u->repaired, &err);
     if (status == HE_OK) {
         status = he_bowties_find(mesh, &u->bowties, &err);
@@ -425,31 +425,31 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     he_soup made, *soup = soup_of(u);
     he_error err = {0};
     he_mesh *mesh = NULL;
-    u->limits.watch = x->watch;
+    u->limits.watch = &x->watch;
     if (is_unread(u)) {
-        he_watch_span(x->watch, READ_SHARE);
-        he_reader_watch(u->reader, x->watch);
+        he_watch_span(&x->watch, READ_SHARE);
+        he_reader_watch(u->reader, &x->watch);
         if (!finish_reading(x, u)) {
             return false;
         }
     }
     if (u->shape != NULL) {
-        he_watch_span(x->watch, SHAPE_SHARE);
+        he_watch_span(&x->watch, SHAPE_SHARE);
         if (he_shape_make(u->shape, u->args, &u->limits, &made, &err) != HE_OK) {
             return api_fail_core(x, &err);
         }
         soup = &made;
     }
-    soup->limits.watch = x->watch;
+    soup->limits.watch = &x->watch;
     u->vertices = soup->vertex_count;
     u->faces = soup->face_count;
     he_status status = HE_OK;
     if (u->plan.which != 0) {
-        he_watch_span(x->watch, REPAIR_SHARE);
+        he_watch_span(&x->watch, REPAIR_SHARE);
         status = he_repair_soup(soup, &u->plan, &u->repaired, &err);
     }
     if (status == HE_OK) {
-        he_watch_span(x->watch, BUILD_SHARE);
+        he_watch_span(&x->watch, BUILD_SHARE);
         status = he_build(soup, HE_BUILD_TAKE, &mesh, &u->report, &err);
     }
     if (soup == &made) {

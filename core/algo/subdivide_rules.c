@@ -4,6 +4,7 @@
  * An old vertex gathers in `to` what its rule sums up, its neighbours (at catmull_clark its faces'
  * means too) or, on a curve, its two neighbours there, and is then moved. */
 #include "algo/subdivide_step.h"
+#include "mesh/exec.h"
 
 #include "query/scale.h"
 
@@ -81,13 +82,12 @@ static uint32_t middle(const he_step *s, uint32_t e)
     return s->from->vertices.issued + he_step_edge_rank(s, e);
 }
 
-/* --- edges, by scheme: the sums of both ends, and the vertices on the edge --- */
+/* --- edges, by scheme: the vertices on them, and what they add to the sums of both ends --- */
 
 static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
     const he_content *c = s->from;
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
-    gather_ends(s, e, from, to);
     he_vec3 ends = he_vec3_add(from[a], from[b]);
     if (s->sharp != NULL && he_step_is_sharp(s, e)) {
         to[middle(s, e)] = mix(0.5, ends, 0, ends);
@@ -103,27 +103,39 @@ static he_vec3 face_point(const he_step *s, uint32_t f, const he_vec3 *to)
     return to[s->from->vertices.issued + s->from->edges.live + he_step_face_rank(s, f)];
 }
 
+/* The means of the faces beside edge e; zero where there is none. */
+static void find_sides(const he_step *s, uint32_t e, const he_vec3 *to, he_vec3 sides[2])
+{
+    const he_content *c = s->from;
+    for (uint32_t k = 0; k < 2; k++) {
+        uint32_t f = c->face[2 * e + k];
+        sides[k] = f == HE_NONE ? (he_vec3){0, 0, 0} : face_point(s, f, to);
+    }
+}
+
 static void catmull_clark_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
     const he_content *c = s->from;
-    uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
-    gather_ends(s, e, from, to);
-    he_vec3 left = {0, 0, 0}, right = {0, 0, 0}, ends = he_vec3_add(from[a], from[b]);
-    if (c->face[2 * e] != HE_NONE) {
-        left = face_point(s, c->face[2 * e], to);
-    }
-    if (c->face[2 * e + 1] != HE_NONE) {
-        right = face_point(s, c->face[2 * e + 1], to);
-    }
-    if (sharpness(s, a) <= SMOOTH_AT_MOST) {
-        gather(&to[a], left);
-    }
-    if (sharpness(s, b) <= SMOOTH_AT_MOST) {
-        gather(&to[b], right);
-    }
+    he_vec3 sides[2], ends = he_vec3_add(from[c->origin[2 * e]], from[c->origin[2 * e + 1]]);
+    find_sides(s, e, to, sides);
     bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
     to[middle(s, e)] =
-        sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, he_vec3_add(left, right));
+        sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, he_vec3_add(sides[0], sides[1]));
+}
+
+static void catmull_clark_ends(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+{
+    const he_content *c = s->from;
+    uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
+    he_vec3 sides[2];
+    gather_ends(s, e, from, to);
+    find_sides(s, e, to, sides);
+    if (sharpness(s, a) <= SMOOTH_AT_MOST) {
+        gather(&to[a], sides[0]);
+    }
+    if (sharpness(s, b) <= SMOOTH_AT_MOST) {
+        gather(&to[b], sides[1]);
+    }
 }
 
 static void linear_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
@@ -157,13 +169,23 @@ static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
     }
 }
 
+/* What places new vertices by the old ones. */
+typedef struct placing {
+    const he_step *s;
+    const he_vec3 *from;
+    he_vec3 *to;
+} placing;
+
 /* --- vertices --- */
 
-static he_status move_vertices(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+static he_status move_vertices(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     enum { TABLE = 32 };
-    const he_content *c = s->from;
+    const placing *p = context;
+    const he_step *s = p->s;
     weights table[TABLE];
+    (void)part;
+    (void)err;
     for (uint32_t n = 1; n < TABLE; n++) {
         table[n] = weights_of(s->scheme, n);
     }
@@ -171,78 +193,135 @@ static he_status move_vertices(const he_step *s, const he_vec3 *from, he_vec3 *t
     weights curve = s->scheme != HE_SQRT3 ? (weights){0.75, 0.125}
                     : s->thirds           ? (weights){19.0 / 27, 4.0 / 27}
                                           : (weights){1, 0};
-    he_status status = HE_OK;
-    for (uint32_t v = 0; v < c->vertices.issued && status == HE_OK; v++) {
-        status = he_watch_at(s->watch, v, c->vertices.issued, err);
+    for (size_t v = from; v < to; v++) {
         uint32_t n = s->degree[v];
-        if (n == 0 || sharpness(s, v) == CORNER) {
-            to[v] = from[v];
+        uint8_t sharp = sharpness(s, (uint32_t)v);
+        if (n == 0 || sharp == CORNER) {
+            p->to[v] = p->from[v];
             continue;
         }
-        weights w = sharpness(s, v) == CURVE ? curve
-                    : n < TABLE              ? table[n]
-                                             : weights_of(s->scheme, n);
-        to[v] = mix(w.own, from[v], w.sum, to[v]);
+        weights w = sharp == CURVE ? curve : n < TABLE ? table[n] : weights_of(s->scheme, n);
+        p->to[v] = mix(w.own, p->from[v], w.sum, p->to[v]);
     }
-    return status;
+    return HE_OK;
 }
 
-static he_status place_centres(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+/* catmull_clark and sqrt3, where a face's number or a table says which vertex is its own. */
+static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
+    const placing *p = context;
+    const he_step *s = p->s;
     const he_content *c = s->from;
-    uint32_t at = c->vertices.issued + c->edges.live;
-    bool all = s->scheme == HE_CATMULL_CLARK, chosen = s->scheme == HE_SQRT3;
-    he_status status = HE_OK;
-    if (s->scheme == HE_LOOP || (s->scheme == HE_LINEAR && !s->polygonal)) {
-        return HE_OK;
-    }
-    for (uint32_t f = 0; f < c->faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(s->watch, f, c->faces.issued, err);
+    (void)part;
+    (void)err;
+    for (size_t f = from; f < to; f++) {
         uint32_t h = c->face_halfedge[f];
         if (h == HE_DEAD) {
             continue;
         }
-        if (chosen) {
-            if (s->centre[f] != HE_NONE) {
-                to[s->centre[f]] = mean_of_face(c, h, from);
-            }
-        } else if (all || c->next[c->next[c->next[h]]] != h) {
-            to[at++] = mean_of_face(c, h, from);
+        uint32_t at = s->scheme == HE_SQRT3
+                          ? s->centre[f]
+                          : c->vertices.issued + c->edges.live + he_step_face_rank(s, (uint32_t)f);
+        if (at != HE_NONE) {
+            p->to[at] = mean_of_face(c, h, p->from);
+        }
+    }
+    return HE_OK;
+}
+
+/* linear, where only faces that are no triangles have one. */
+static he_status place_some_centres(const placing *p, he_error *err)
+{
+    const he_content *c = p->s->from;
+    uint32_t at = c->vertices.issued + c->edges.live;
+    he_status status = HE_OK;
+    for (uint32_t f = 0; f < c->faces.issued && status == HE_OK; f++) {
+        status = he_watch_at(p->s->watch, f, c->faces.issued, err);
+        uint32_t h = c->face_halfedge[f];
+        if (h != HE_DEAD && c->next[c->next[c->next[h]]] != h) {
+            p->to[at++] = mean_of_face(c, h, p->from);
         }
     }
     return status;
+}
+
+static he_status place_middles(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const placing *p = context;
+    const he_step *s = p->s;
+    (void)part;
+    (void)err;
+    for (size_t e = from; e < to; e++) {
+        if (s->from->next[2 * e] == HE_DEAD) {
+            continue;
+        }
+        switch (s->scheme) {
+        case HE_LOOP:
+            loop_edge(s, (uint32_t)e, p->from, p->to);
+            break;
+        case HE_CATMULL_CLARK:
+            catmull_clark_edge(s, (uint32_t)e, p->from, p->to);
+            break;
+        case HE_LINEAR:
+            linear_edge(s, (uint32_t)e, p->from, p->to);
+            break;
+        case HE_SQRT3:
+            break; /* of sharp edges alone, when the sums are there */
+        }
+    }
+    return HE_OK;
+}
+
+/* One thread's work: a sum depends on the order of what is summed up. */
+static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
+{
+    const placing *p = context;
+    const he_step *s = p->s;
+    (void)lane;
+    (void)err;
+    for (size_t e = from; e < to; e++) {
+        if (s->from->next[2 * e] == HE_DEAD) {
+            continue;
+        }
+        if (s->scheme == HE_CATMULL_CLARK) {
+            catmull_clark_ends(s, (uint32_t)e, p->from, p->to);
+        } else {
+            gather_ends(s, (uint32_t)e, p->from, p->to);
+        }
+    }
+    return HE_OK;
+}
+
+static he_status clear_sums(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const placing *p = context;
+    (void)part;
+    (void)err;
+    for (size_t v = from; v < to; v++) {
+        p->to[v] = p->s->scheme == HE_LINEAR ? p->from[v] : (he_vec3){0, 0, 0};
+    }
+    return HE_OK;
 }
 
 static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
 {
     const he_content *c = s->from;
-    for (uint32_t v = 0; v < c->vertices.issued; v++) {
-        to[v] = s->scheme == HE_LINEAR ? from[v] : (he_vec3){0, 0, 0};
+    placing p = {s, from, to};
+    he_status status = he_run_ranges(s->watch, c->vertices.issued, clear_sums, &p, err);
+    if (status == HE_OK && s->scheme == HE_LINEAR && s->polygonal) {
+        status = place_some_centres(&p, err);
+    } else if (status == HE_OK && (s->scheme == HE_CATMULL_CLARK || s->scheme == HE_SQRT3)) {
+        status = he_run_ranges(s->watch, c->faces.issued, place_centres, &p, err);
     }
-    he_status status = place_centres(s, from, to, err);
-    for (uint32_t e = 0; e < c->edges.issued && status == HE_OK; e++) {
-        status = he_watch_at(s->watch, e, c->edges.issued, err);
-        if (c->next[2 * e] == HE_DEAD) {
-            continue;
-        }
-        switch (s->scheme) {
-        case HE_LOOP:
-            loop_edge(s, e, from, to);
-            break;
-        case HE_CATMULL_CLARK:
-            catmull_clark_edge(s, e, from, to);
-            break;
-        case HE_LINEAR:
-            linear_edge(s, e, from, to);
-            break;
-        case HE_SQRT3:
-            gather_ends(s, e, from, to);
-            break;
-        }
+    if (status == HE_OK && s->scheme != HE_SQRT3) {
+        status = he_run_ranges(s->watch, c->edges.issued, place_middles, &p, err);
+    }
+    if (status == HE_OK && s->scheme != HE_LINEAR) {
+        status = he_run_lanes(s->watch, 1, c->edges.issued, sum_ends, &p, err);
     }
     if (status == HE_OK && s->scheme != HE_LINEAR) {
         cut_in_thirds(s, from, to);
-        status = move_vertices(s, from, to, err);
+        status = he_run_ranges(s->watch, c->vertices.issued, move_vertices, &p, err);
     }
     return status;
 }

@@ -1,5 +1,6 @@
 /* Links where every edge is cut in halves: loop, catmull_clark, linear. */
 #include "algo/subdivide_step.h"
+#include "mesh/exec.h"
 
 /* Everything about an edge and its halves is where these say:
  *
@@ -143,22 +144,84 @@ static he_status cut_face(const he_step *s, uint32_t f, fresh *at, he_error *err
     return HE_OK;
 }
 
-static he_status cut_faces(he_step *s, he_error *err)
+/* What face f, which lives, gets. */
+static void count_face(const he_step *s, uint32_t f, fresh *at)
+{
+    const he_content *from = s->from;
+    uint32_t h = from->face_halfedge[f], i = from->next[h], count = 3;
+    if (from->next[from->next[i]] == h && s->scheme != HE_CATMULL_CLARK) {
+        at->edge += 3;
+        at->face += 3;
+        return;
+    }
+    for (i = from->next[from->next[i]]; i != h; i = from->next[i]) {
+        count++;
+    }
+    at->vertex++;
+    at->edge += count;
+    at->face += count - 1;
+}
+
+/* The faces in lanes, each of which must know what those before it make. */
+typedef struct cutting {
+    const he_step *s;
+    fresh at[HE_MOST_LANES];
+} cutting;
+
+static he_status count_lane(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
+{
+    cutting *c = context;
+    fresh at = c->at[lane];
+    (void)err;
+    for (size_t f = from; f < to; f++) {
+        if (he_step_is_live(c->s->from->face_halfedge, (uint32_t)f)) {
+            count_face(c->s, (uint32_t)f, &at);
+        }
+    }
+    c->at[lane] = at;
+    return HE_OK;
+}
+
+static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
+{
+    cutting *c = context;
+    const he_step *s = c->s;
+    fresh at = c->at[lane]; /* not there: lanes would write one cache line */
+    he_status status = HE_OK;
+    for (size_t f = from; f < to && status == HE_OK; f++) {
+        if (!he_step_is_live(s->from->face_halfedge, (uint32_t)f)) {
+            s->to->face_halfedge[f] = HE_DEAD;
+        } else {
+            status = cut_face(s, (uint32_t)f, &at, err);
+        }
+    }
+    c->at[lane] = at;
+    return status;
+}
+
+static he_status cut_faces(const he_step *s, uint32_t lanes, he_error *err)
 {
     const he_content *from = s->from;
     fresh at = {.vertex = from->vertices.issued + from->edges.live,
                 .edge = from->edges.issued + from->edges.live,
                 .face = from->faces.issued};
+    cutting c = {.s = s};
     he_status status = HE_OK;
-    for (uint32_t f = 0; f < from->faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(s->watch, f, from->faces.issued, err);
-        if (!he_step_is_live(from->face_halfedge, f)) {
-            s->to->face_halfedge[f] = HE_DEAD;
-        } else if (status == HE_OK) {
-            status = cut_face(s, f, &at, err);
-        }
+    if (lanes > 1) {
+        status = he_run_lanes(s->watch, lanes, from->faces.issued, count_lane, &c, err);
     }
-    return status;
+    for (uint32_t lane = 0; lane < lanes; lane++) {
+        fresh made = c.at[lane];
+        c.at[lane] = at;
+        at.vertex += made.vertex;
+        at.edge += made.edge;
+        at.face += made.face;
+    }
+    if (status == HE_OK) {
+        status = he_run_lanes(s->watch, lanes, from->faces.issued, cut_lane, &c, err);
+    }
+    /* A later lane may have come upon a later face first. */
+    return lanes > 1 && status != HE_OK && status != HE_CANCELLED ? cut_faces(s, 1, err) : status;
 }
 
 static void cut_boundary(const he_step *s, uint32_t h)
@@ -196,23 +259,44 @@ static void cut_edge(const he_step *s, uint32_t e)
     }
 }
 
+static he_status cut_edges(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const he_step *s = context;
+    (void)part;
+    (void)err;
+    for (size_t e = from; e < to; e++) {
+        if (s->from->next[2 * e] == HE_DEAD) {
+            he_step_set(s->to, (uint32_t)(2 * e), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+            he_step_set(s->to, (uint32_t)(2 * e + 1), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+        } else {
+            cut_edge(s, (uint32_t)e);
+        }
+    }
+    return HE_OK;
+}
+
+static he_status keep_vertices(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const he_step *s = context;
+    (void)part;
+    (void)err;
+    for (size_t v = from; v < to; v++) {
+        uint32_t h = s->from->vertex_halfedge[v];
+        s->to->vertex_halfedge[v] = h == HE_DEAD || h == HE_NONE ? h : first(s, h);
+    }
+    return HE_OK;
+}
+
 he_status he_step_split(he_step *s, he_error *err)
 {
     const he_content *from = s->from;
-    he_content *to = s->to;
-    he_status status = cut_faces(s, err);
-    for (uint32_t e = 0; e < from->edges.issued && status == HE_OK; e++) {
-        status = he_watch_at(s->watch, e, from->edges.issued, err);
-        if (from->next[2 * e] == HE_DEAD) {
-            he_step_set(to, 2 * e, HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
-            he_step_set(to, 2 * e + 1, HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
-        } else {
-            cut_edge(s, e);
-        }
+    he_status status = cut_faces(s, he_lanes(s->watch, from->faces.issued), err);
+    if (status == HE_OK) {
+        /* Features are bits: neighbours share words, which two threads must not write. */
+        status = s->feature != NULL
+                     ? he_run_lanes(s->watch, 1, from->edges.issued, cut_edges, s, err)
+                     : he_run_ranges(s->watch, from->edges.issued, cut_edges, s, err);
     }
-    for (uint32_t v = 0; v < from->vertices.issued && status == HE_OK; v++) {
-        uint32_t h = from->vertex_halfedge[v];
-        to->vertex_halfedge[v] = h == HE_DEAD || h == HE_NONE ? h : first(s, h);
-    }
-    return status;
+    return status == HE_OK ? he_run_ranges(s->watch, from->vertices.issued, keep_vertices, s, err)
+                           : status;
 }

@@ -1,8 +1,8 @@
 #include "mesh/build.h"
 
 #include "mesh/content.h"
+#include "mesh/link.h"
 #include "mesh/pair.h"
-#include "mesh/walk.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -36,149 +36,17 @@ he_status he_report_fail(const he_report *report, he_error *err)
                    (unsigned long long)(report->total - 1));
 }
 
-/* What the making of links needs besides the mesh. */
-typedef struct builder {
-    const he_soup *soup;
-    he_content *c;
-    uint32_t *halfedge; /* of each corner; the mate of those not yet assigned */
-    uint64_t *assigned; /* a bit a corner */
-    uint32_t *degree;   /* half-edges that leave each vertex */
-    uint32_t boundary_count;
-} builder;
-
-/* Corner c, from a to b, gets its half-edge; with a new edge when its mate has none yet. */
-static uint32_t assign(builder *b, uint32_t c, uint32_t from, uint32_t to)
-{
-    if (he_bits_get(b->assigned, c)) {
-        return b->halfedge[c];
-    }
-    he_content *k = b->c;
-    uint32_t mate = b->halfedge[c], h = 2 * k->edges.issued++;
-    b->halfedge[c] = h;
-    k->origin[h] = from;
-    k->origin[h + 1] = to;
-    if (mate != HE_NONE) {
-        b->halfedge[mate] = h + 1;
-        he_bits_set(b->assigned, mate);
-    } else {
-        /* Nobody has the other side. Holes are linked when all faces are: until then prev chains
-         * the boundary half-edges that leave one vertex. */
-        uint32_t stored = k->vertex_halfedge[to];
-        bool chained = stored != HE_NONE && (stored & 1) != 0 && k->face[stored] == HE_NONE;
-        k->face[h + 1] = HE_NONE;
-        k->prev[h + 1] = chained ? stored : HE_NONE;
-        k->vertex_halfedge[to] = h + 1;
-        b->degree[to]++;
-        b->boundary_count++;
-    }
-    return h;
-}
-
-static he_status make_faces(builder *b, he_error *err)
-{
-    const he_soup *soup = b->soup;
-    he_content *k = b->c;
-    he_status status = he_watch_phase(soup->limits.watch, "linking", 0.85, err);
-    for (size_t f = 0; f < soup->face_count && status == HE_OK; f++) {
-        status = he_watch_at(soup->limits.watch, f, soup->face_count, err);
-        uint32_t first = soup->starts[f], end = he_soup_end(soup, f);
-        uint32_t start = assign(b, first, soup->corners[first], soup->corners[first + 1]);
-        uint32_t before = start;
-        for (uint32_t c = first; c < end; c++) {
-            uint32_t v = soup->corners[c];
-            uint32_t h =
-                c == first ? start : assign(b, c, v, soup->corners[c + 1 < end ? c + 1 : first]);
-            k->face[h] = (uint32_t)f;
-            k->next[before] = h;
-            k->prev[h] = before;
-            before = h;
-            b->degree[v]++;
-            if (k->vertex_halfedge[v] == HE_NONE) {
-                k->vertex_halfedge[v] = h;
-            }
-        }
-        k->next[before] = start;
-        k->prev[start] = before;
-        k->face_halfedge[f] = start;
-    }
-    return status;
-}
-
-/* At a bow-tie, whose outgoing boundary half-edges are chained by prev from `head`: let each fan be
- * followed, counter-clockwise, by the next one of the chain. Turning clockwise inside a fan from
- * its outgoing boundary half-edge leads to its incoming one. */
-static void link_bowtie(he_content *k, uint32_t head)
-{
-    uint32_t out = head;
-    do {
-        uint32_t following = k->prev[out] != HE_NONE ? k->prev[out] : head, h = following;
-        do {
-            h = k->next[h ^ 1];
-        } while (k->face[h ^ 1] != HE_NONE);
-        k->next[h ^ 1] = out;
-        out = following;
-    } while (out != head);
-}
-
-static void link_holes(builder *b)
-{
-    he_content *k = b->c;
-    uint32_t halfedges = 2 * k->edges.issued;
-    for (uint32_t h = 1; h < halfedges; h += 2) {
-        if (k->face[h] != HE_NONE) {
-            continue;
-        }
-        uint32_t out = k->vertex_halfedge[k->origin[h ^ 1]];
-        if (k->prev[out] == HE_NONE) {
-            k->next[h] = out;
-        }
-        if (k->prev[h] != HE_NONE && k->vertex_halfedge[k->origin[h]] == h) {
-            link_bowtie(k, h);
-        }
-    }
-    for (uint32_t h = 1; h < halfedges; h += 2) {
-        if (k->face[h] == HE_NONE) {
-            k->prev[k->next[h]] = h;
-        }
-    }
-}
-
-/* Turning about a vertex must meet all that leaves it: I9. */
-static he_status check_fans(const builder *b, he_report *report, uint64_t *total, he_error *err)
-{
-    const he_content *k = b->c;
-    he_watch *watch = b->soup->limits.watch;
-    he_status status = he_watch_phase(watch, "turning", 1, err);
-    for (uint32_t v = 0; v < k->vertices.issued && status == HE_OK; v++) {
-        uint32_t first = k->vertex_halfedge[v], degree = b->degree[v];
-        status = he_watch_at(watch, v, k->vertices.issued, err);
-        if (degree == 0) {
-            continue;
-        }
-        uint32_t h = first;
-        do {
-            degree--;
-            h = k->prev[h] ^ 1;
-        } while (h != first);
-        if (degree != 0) {
-            he_report_add(report, total,
-                          (he_defect){HE_CLOSED_FAN, HE_VERTEX, v, HE_NONE, HE_NONE, HE_NONE});
-        }
-    }
-    return status;
-}
-
 /* Corner rows of a soup column become half-edge rows. */
-static he_status build_corners(const he_column *from, const builder *b, he_column **out,
-                               he_error *err)
+static he_status build_corners(const he_column *from, size_t halfedges, const uint32_t *halfedge,
+                               size_t corners, he_column **out, he_error *err)
 {
     he_column *column;
-    he_status status = he_column_like(from, 2 * (size_t)b->c->edges.issued, &column, err);
+    he_status status = he_column_like(from, halfedges, &column, err);
     if (status != HE_OK) {
         return status;
     }
-    for (size_t c = 0; c < from->rows && c < b->soup->corner_count; c++) {
-        memcpy(he_column_row(column, b->halfedge[c]), he_column_row(from, c), from->row_bytes);
+    for (size_t c = 0; c < from->rows && c < corners; c++) {
+        memcpy(he_column_row(column, halfedge[c]), he_column_row(from, c), from->row_bytes);
     }
     *out = column;
     return HE_OK;
@@ -186,9 +54,9 @@ static he_status build_corners(const he_column *from, const builder *b, he_colum
 
 /* The columns whose rows keep their numbers are moved where they may be, which cannot fail, and so
  * comes last. */
-static he_status build_columns(const builder *b, he_soup *soup, bool take, he_error *err)
+static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedge, he_content *k,
+                               he_error *err)
 {
-    he_content *k = b->c;
     if (soup->column_count == 0) {
         return HE_OK;
     }
@@ -201,7 +69,8 @@ static he_status build_columns(const builder *b, he_soup *soup, bool take, he_er
         const he_column *column = soup->columns[i];
         he_status status = HE_OK;
         if (column->domain == HE_HALFEDGE) {
-            status = build_corners(column, b, &k->columns[i], err);
+            status = build_corners(column, 2 * (size_t)k->edges.issued, halfedge,
+                                   soup->corner_count, &k->columns[i], err);
         } else if (!take) {
             status = he_column_copy(column, &k->columns[i], err);
         }
@@ -252,9 +121,6 @@ static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_erro
         soup->vertex_count = soup->vertex_capacity = 0;
     }
     k->vertices.issued = k->vertices.live = (uint32_t)count;
-    for (size_t v = 0; v < count; v++) {
-        k->vertex_halfedge[v] = HE_NONE;
-    }
     return HE_OK;
 }
 
@@ -268,54 +134,30 @@ static void return_positions(he_soup *soup, he_content *k)
     }
 }
 
-static he_status build_links(he_soup *soup, unsigned flags, he_content *k, size_t edges,
-                             uint32_t *mate, he_report *report, uint64_t *total, he_error *err)
+static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_turns *turns,
+                             he_content *k, he_error *err)
 {
-    size_t vertices = soup->vertex_count;
-    builder b = {.soup = soup, .c = k, .halfedge = mate};
-    he_status status = he_content_reserve_edges(k, edges, err);
+    /* Memory that has been written to is worth keeping: the system clears each fresh page. */
+    k->next = turns->spare;
+    turns->spare = NULL;
+    he_status status = he_content_reserve_edges(k, turns->edges, err);
     if (status == HE_OK) {
         status = he_content_reserve_faces(k, soup->face_count, err);
     }
     if (status == HE_OK) {
-        status = build_vertices(soup, (flags & HE_BUILD_TAKE) != 0, k, err);
+        status = build_vertices(soup, take, k, err);
     }
-    if (status != HE_OK) {
-        return status;
+    if (status == HE_OK) {
+        status = he_link(corners, turns, k, err);
     }
-    b.assigned = he_bits_new(soup->corner_count);
-    b.degree = he_mem_zero(vertices, sizeof *b.degree);
-    if (b.assigned == NULL || b.degree == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to link %zu edges", edges);
-        goto out;
-    }
-    status = make_faces(&b, err);
-    if (status != HE_OK) {
-        goto out;
-    }
-    link_holes(&b);
-    k->edges.live = k->edges.issued;
-    k->faces.issued = k->faces.live = (uint32_t)soup->face_count;
-    k->boundary_halfedges = b.boundary_count;
-    status = check_fans(&b, report, total, err);
-    if (status == HE_OK && *total > 0) {
-        status = he_report_fail(report, err);
-    }
-    if (status != HE_OK) {
-        goto out;
-    }
-    status = build_columns(&b, soup, (flags & HE_BUILD_TAKE) != 0, err);
-out:
-    he_mem_free(b.assigned);
-    he_mem_free(b.degree);
-    return status;
+    return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }
 
 he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *report, he_error *err)
 {
     uint64_t total = 0;
-    uint32_t *mate = NULL;
-    size_t edges = 0;
+    he_corners corners = {0};
+    he_turns turns = {0};
     he_report *own = NULL;
     he_mesh *mesh = he_mesh_new();
     he_status status = HE_OK;
@@ -328,34 +170,19 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         goto out;
     }
     report->total = 0;
-    status = he_watch_phase(soup->limits.watch, "checking", 0.05, err);
+    status = he_corners_init(soup, &corners, err);
     if (status == HE_OK) {
-        status = he_soup_check_faces(soup, report, &total, err);
+        status = he_soup_turn(&corners, &turns, report, &total, err);
     }
     if (status == HE_OK && total > 0) {
         status = he_report_fail(report, err);
     }
-    if (status != HE_OK) {
-        goto out;
-    }
-    mate = he_mem_array(NULL, soup->corner_count, sizeof *mate);
-    if (mate == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu corners", soup->corner_count);
-        goto out;
-    }
-    status = he_watch_phase(soup->limits.watch, "pairing", 0.5, err);
-    if (status == HE_OK) {
-        status = he_soup_pair(soup, mate, &edges, report, &total, err);
-    }
-    if (status == HE_OK && total > 0) {
-        status = he_report_fail(report, err);
-    }
-    if (status == HE_OK && edges > HE_MAX_ROWS) {
-        status =
-            he_fail_plain(err, HE_IDS_EXHAUSTED, "%zu edges are more than %u", edges, HE_MAX_ROWS);
+    if (status == HE_OK && turns.edges > HE_MAX_ROWS) {
+        status = he_fail_plain(err, HE_IDS_EXHAUSTED, "%zu edges are more than %u", turns.edges,
+                               HE_MAX_ROWS);
     }
     if (status == HE_OK) {
-        status = build_links(soup, flags, &mesh->c, edges, mate, report, &total, err);
+        status = build_links(soup, (flags & HE_BUILD_TAKE) != 0, &corners, &turns, &mesh->c, err);
     }
     if (status == HE_OK) {
         if ((flags & HE_BUILD_TAKE) != 0) {
@@ -368,7 +195,10 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
     }
 out:
     he_mem_free(own);
-    he_mem_free(mate);
+    he_corners_clear(&corners);
+    he_mem_free(turns.spare);
+    he_mem_free(turns.turn);
+    he_mem_free(turns.first);
     he_mesh_free(mesh);
     return status;
 }

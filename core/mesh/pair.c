@@ -250,17 +250,19 @@ out:
     return status;
 }
 
-he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges, he_report *report,
-                       uint64_t *total, he_error *err)
+he_status he_soup_check_edges(const he_soup *soup, he_report *report, uint64_t *total,
+                              he_error *err)
 {
-    pairing p = {.soup = soup, .mate = mate, .report = report, .total = total};
+    pairing p = {.soup = soup, .report = report, .total = total};
+    p.mate = he_mem_array(NULL, soup->corner_count, sizeof *p.mate);
+    if (p.mate == NULL) {
+        return no_memory(soup, err);
+    }
     for (size_t c = 0; c < soup->corner_count; c++) {
-        mate[c] = HE_NONE;
+        p.mate[c] = HE_NONE;
     }
     he_status status = visit_edges(&p, err);
-    if (status == HE_OK) {
-        *edges = p.edges;
-    }
+    he_mem_free(p.mate);
     return status;
 }
 

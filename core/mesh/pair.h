@@ -1,5 +1,5 @@
-/* pair.h - which corners of a soup run along the same edge: the first half of he_build, and what
- * repairs start from. */
+/* pair.h - what is wrong with the faces and edges of a soup, and which of its corners run along the
+ * same edge: what he_build refuses by, and repairs start from. */
 #ifndef HE_MESH_PAIR_H
 #define HE_MESH_PAIR_H
 
@@ -20,12 +20,10 @@ enum { HE_SMALL_FACE = 16 };
 uint32_t he_soup_find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp,
                              uint32_t mark);
 
-/* mate[c] = the corner whose edge is the same as the one from corner c to the next of its face, run
- * the other way, or HE_NONE at a boundary. `mate` has room for every corner. All faces must have
- * passed he_soup_check_faces. Edges with three faces, or two in one direction, are counted in
- * *total. *edges is the number of edges. */
-HE_NODISCARD he_status he_soup_pair(const he_soup *soup, uint32_t *mate, size_t *edges,
-                                    he_report *report, uint64_t *total, he_error *err);
+/* Edges with three faces, or two in one direction, are counted in *total. All faces must have
+ * passed he_soup_check_faces. */
+HE_NODISCARD he_status he_soup_check_edges(const he_soup *soup, he_report *report, uint64_t *total,
+                                           he_error *err);
 
 /* edge[c] = the number of the edge from corner c to the next of its face, whatever the direction
  * and however many faces share it. Room and faces as above. */

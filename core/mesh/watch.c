@@ -19,7 +19,7 @@ static he_status tell(he_watch *watch, double done, he_error *err)
     if (done > watch->done) {
         watch->done = done;
     }
-    if (!watch->cancelled) {
+    if (!watch->cancelled && watch->tell != NULL) {
         watch->cancelled = !watch->tell(watch->context, watch->phase, watch->done);
     }
     return watch->cancelled ? he_fail_plain(err, HE_CANCELLED, "given up while %s", watch->phase)

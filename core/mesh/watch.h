@@ -12,7 +12,10 @@
  *
  * A caller that wants one number for work of several calls gives each its span; without, every
  * call would count from 0 to 1 and the number would stand still after the first: what is told never
- * falls. A phase without a span has the whole. Functions take NULL for a watch and do nothing. */
+ * falls. A phase without a span has the whole. Functions take NULL for a watch and do nothing.
+ *
+ * A watch also lends the threads of its owner (exec.h). One that lends threads alone has no `tell`:
+ * nobody hears, and the work goes on to its end. */
 #ifndef HE_MESH_WATCH_H
 #define HE_MESH_WATCH_H
 
@@ -26,6 +29,7 @@ typedef struct he_watch {
     /* `done` of 1, never less than before; `phase` lives for ever. False: give up. */
     bool (*tell)(void *context, const char *phase, double done);
     void *context;
+    const struct he_exec *exec; /* threads for the work (exec.h), or NULL */
     const char *phase;
     double span_from, span_to; /* of the whole */
     double from, to;           /* the phase, of the whole */

@@ -1,3 +1,4 @@
+#include "mesh/exec.h"
 #include "mesh/walk.h"
 #include "query/geometry.h"
 #include "query/scale.h"
@@ -144,36 +145,68 @@ he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease, he_ve
     return status;
 }
 
-he_status he_corner_normals(const he_mesh *m, double crease, he_vec3 *out, he_error *err)
+typedef struct corners {
+    const he_mesh *m;
+    double crease;
+    const he_vec3 *normals; /* of all faces */
+    he_vec3 *out;
+} corners;
+
+static he_status clear_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
-    fan f = {.crease = crease};
+    const corners *all = context;
+    (void)part;
+    (void)err;
+    for (size_t h = from; h < to; h++) {
+        all->out[h] = (he_vec3){0, 0, 0};
+    }
+    return HE_OK;
+}
+
+/* Each vertex writes the corners at it, and no others. */
+static he_status vertex_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const corners *all = context;
+    fan f = {.crease = all->crease};
     he_status status = HE_OK;
-    for (size_t h = 0; h < 2 * (size_t)m->c.edges.issued; h++) {
-        out[h] = (he_vec3){0, 0, 0};
-    }
-    he_vec3 *normals = he_mem_zero((size_t)m->c.faces.issued + 1, sizeof *normals);
-    if (normals == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the normals of faces");
-    }
-    status = he_face_normals(m, normals, err);
-    for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
-        uint32_t first = m->c.vertex_halfedge[v];
+    (void)part;
+    for (size_t v = from; v < to && status == HE_OK; v++) {
+        uint32_t first = all->m->c.vertex_halfedge[v];
         if (first == HE_NONE || first == HE_DEAD) {
             continue;
         }
-        status = gather(&f, m, first, normals, err);
+        status = gather(&f, all->m, first, all->normals, err);
         if (status != HE_OK) {
             break;
         }
-        sum_groups(&f, m);
+        sum_groups(&f, all->m);
         for (size_t i = 0; i < f.count; i++) {
             const corner *c = &f.corners[i];
             if (c->group != HE_NONE) {
-                he_vec3_normalise(f.sums[c->group], &out[c->halfedge]);
+                he_vec3_normalise(f.sums[c->group], &all->out[c->halfedge]);
             }
         }
     }
-    he_mem_free(normals);
     clear(&f);
+    return status;
+}
+
+he_status he_corner_normals(const he_mesh *m, double crease, he_watch *watch, he_vec3 *out,
+                            he_error *err)
+{
+    he_vec3 *normals = he_mem_array(NULL, m->c.faces.issued, sizeof *normals);
+    corners all = {m, crease, normals, out};
+    he_status status = HE_OK;
+    if (normals == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the normals of faces");
+    }
+    status = he_face_normals(m, watch, normals, err);
+    if (status == HE_OK) {
+        status = he_run_ranges(watch, 2 * (size_t)m->c.edges.issued, clear_range, &all, err);
+    }
+    if (status == HE_OK) {
+        status = he_run_ranges(watch, m->c.vertices.issued, vertex_range, &all, err);
+    }
+    he_mem_free(normals);
     return status;
 }

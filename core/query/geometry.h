@@ -63,8 +63,10 @@ typedef enum he_weight {
 bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out);
 
 /* Normals of the whole mesh into an array of one entry for each issued row. Dead rows and
- * degenerate ones are zero. Linear. HE_CORRUPT leaves the array half written. */
-HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_vec3 *out, he_error *err);
+ * degenerate ones are zero. Linear. `watch`, which may be NULL, lends threads and can end the work:
+ * HE_CANCELLED and HE_CORRUPT leave the array half written. */
+HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out,
+                                       he_error *err);
 HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_vec3 *out,
                                          he_error *err);
 
@@ -75,11 +77,12 @@ HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_
  * no direction.
  *
  * The one costs the faces about its origin; the whole mesh's fill an array of one entry for each
- * issued half-edge in linear time. HE_NO_MEMORY; HE_CORRUPT leaves the array half written. */
+ * issued half-edge in linear time, with the threads of `watch`. HE_NO_MEMORY; HE_CANCELLED and
+ * HE_CORRUPT leave the array half written. */
 HE_NODISCARD he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease,
                                         he_vec3 *out, he_error *err);
-HE_NODISCARD he_status he_corner_normals(const he_mesh *m, double crease, he_vec3 *out,
-                                         he_error *err);
+HE_NODISCARD he_status he_corner_normals(const he_mesh *m, double crease, he_watch *watch,
+                                         he_vec3 *out, he_error *err);
 
 /* The box around all live vertices, isolated ones included. False and zero when there are none. */
 typedef struct he_box {

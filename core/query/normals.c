@@ -1,3 +1,4 @@
+#include "mesh/exec.h"
 #include "mesh/walk.h"
 #include "query/geometry.h"
 #include "query/ring.h"
@@ -73,6 +74,13 @@ typedef struct triangle {
     double square;    /* its length squared */
 } triangle;
 
+/* Neither degenerate nor of coordinates whose products would overflow or vanish. */
+static inline bool is_plain(double square, double reach)
+{
+    return (reach > HE_LEAST_PRODUCT) & (reach < HE_MOST_PRODUCT) &
+           (square > HE_RING_NOISE * 3 * reach);
+}
+
 /* False where the face has other than three corners, is degenerate, or has coordinates whose
  * products would overflow or vanish, and where links are broken: the general way decides those. */
 static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
@@ -98,8 +106,7 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     t.square = he_vec3_dot(t.vector, t.vector);
     double reach = he_vec3_dot(t.u, t.u) * he_vec3_dot(t.v, t.v);
     *out = t;
-    return reach > HE_LEAST_PRODUCT && reach < HE_MOST_PRODUCT &&
-           t.square > HE_RING_NOISE * 3 * reach;
+    return is_plain(t.square, reach);
 }
 
 /* Ask for what the triangles some way ahead will need: their links first, and nearer by what those
@@ -125,30 +132,137 @@ static inline void look_ahead(const he_mesh *m, uint32_t f)
     }
 }
 
-he_status he_face_normals(const he_mesh *m, he_vec3 *out, he_error *err)
+/* --- faces ------------------------------------------------------------------------------------ */
+
+/* Faces are taken in blocks: first their corners, which asks for the positions of all of them at
+ * once, then their vectors, then the lengths of those, which have no branch between them. */
+enum { BLOCK = 64 };
+
+typedef struct faces {
+    const he_mesh *m;
+    bool triangles; /* all of them, so that none needs to be followed to see that it closes */
+    he_vec3 *out;
+} faces;
+
+/* Every face has three corners at least (I7), so that these are all triangles if they have three
+ * corners each in the mean. */
+static bool are_triangles(const he_content *c)
 {
-    uint32_t budget = he_ring_budget(m);
-    for (uint32_t f = 0; f < m->c.faces.issued; f++) {
-        look_ahead(m, f);
-        uint32_t h = m->c.face_halfedge[f];
-        triangle t;
-        if (plain_triangle(m, h, &t)) {
-            out[f] = he_vec3_scale(t.vector, 1 / sqrt(t.square));
-            continue;
+    return 2 * (uint64_t)c->edges.live - c->boundary_halfedges == 3 * (uint64_t)c->faces.live;
+}
+
+typedef struct triple {
+    uint32_t a, b, c; /* vertices; all HE_NONE where the general way is needed */
+} triple;
+
+static inline triple find_triple(const he_content *c, uint32_t f, bool triangles)
+{
+    const uint32_t end = 2u * c->edges.issued, vertices = c->vertices.issued;
+    const triple none = {HE_NONE, HE_NONE, HE_NONE};
+    uint32_t h = c->face_halfedge[f], i = h < end ? c->next[h] : HE_NONE;
+    if (i >= end) {
+        return none;
+    }
+    if (!triangles) {
+        uint32_t j = c->next[i];
+        if (j >= end || c->next[j] != h) {
+            return none;
         }
-        if (h == HE_DEAD) {
-            out[f] = (he_vec3){0, 0, 0};
-            continue;
+    }
+    /* Targets share a cache line with the origins; the third half-edge is not looked at. */
+    triple t = {c->origin[h], c->origin[h ^ 1u], c->origin[i ^ 1u]};
+    return t.a < vertices && t.b < vertices && t.c < vertices ? t : none;
+}
+
+static inline void block_triples(const he_content *c, size_t from, size_t to, bool triangles,
+                                 triple *out)
+{
+    for (size_t f = from; f < to; f++) {
+        triple t = find_triple(c, (uint32_t)f, triangles);
+        if (t.a != HE_NONE) {
+            __builtin_prefetch(&c->position[t.a]);
+            __builtin_prefetch(&c->position[t.b]);
+            __builtin_prefetch(&c->position[t.c]);
         }
+        out[f - from] = t;
+    }
+}
+
+static he_status one_normal(const he_mesh *m, uint32_t f, uint32_t *budget, he_vec3 *out,
+                            he_error *err)
+{
+    *out = (he_vec3){0, 0, 0};
+    if (m->c.face_halfedge[f] != HE_DEAD) {
         int exponent;
-        he_ring r = he_ring_measure(m, h, &budget, &exponent);
+        he_ring r = he_ring_measure(m, m->c.face_halfedge[f], budget, &exponent);
         if (r.degree == 0) {
             return he_ring_corrupt(f, err);
         }
-        he_ring_normal(&r, &out[f]);
+        he_ring_normal(&r, out);
     }
     return HE_OK;
 }
+
+static he_status face_block(const faces *all, size_t from, size_t to, uint32_t *budget,
+                            he_error *err)
+{
+    const he_content *c = &all->m->c;
+    triple corners[BLOCK];
+    double square[BLOCK];
+    if (all->triangles) {
+        block_triples(c, from, to, true, corners);
+    } else {
+        block_triples(c, from, to, false, corners);
+    }
+    for (size_t k = 0; k < to - from; k++) {
+        square[k] = 0;
+        if (corners[k].a != HE_NONE) {
+            he_vec3 p = c->position[corners[k].a];
+            he_vec3 u = he_vec3_sub(c->position[corners[k].b], p);
+            he_vec3 v = he_vec3_sub(c->position[corners[k].c], p);
+            he_vec3 vector = he_vec3_cross(u, v);
+            double length = he_vec3_dot(vector, vector);
+            double reach = he_vec3_dot(u, u) * he_vec3_dot(v, v);
+            all->out[from + k] = vector;
+            square[k] = is_plain(length, reach) ? length : 0;
+        }
+    }
+    for (size_t k = 0; k < BLOCK; k++) {
+        square[k] = 1 / sqrt(square[k]);
+    }
+    for (size_t k = 0; k < to - from; k++) {
+        he_vec3 *out = &all->out[from + k];
+        if (square[k] < INFINITY) {
+            *out = he_vec3_scale(*out, square[k]);
+            continue;
+        }
+        he_status status = one_normal(all->m, (uint32_t)(from + k), budget, out, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    return HE_OK;
+}
+
+static he_status face_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const faces *all = context;
+    uint32_t budget = he_ring_budget(all->m);
+    he_status status = HE_OK;
+    (void)part;
+    for (size_t f = from; f < to && status == HE_OK; f += BLOCK) {
+        status = face_block(all, f, to - f < BLOCK ? to : f + BLOCK, &budget, err);
+    }
+    return status;
+}
+
+he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out, he_error *err)
+{
+    faces all = {m, are_triangles(&m->c), out};
+    return he_run_ranges(watch, m->c.faces.issued, face_range, &all, err);
+}
+
+/* --- vertices --------------------------------------------------------------------------------- */
 
 static void add_to(he_vec3 *sum, he_vec3 normal, double weight)
 {

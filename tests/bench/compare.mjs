@@ -32,7 +32,13 @@ const { values: options } = parseArgs({
     },
 });
 
-const names = { openmesh: 'OpenMesh', cgal: 'CGAL', meshoptimizer: 'meshoptimizer', node: 'node' };
+const names = {
+    openmesh: 'OpenMesh',
+    cgal: 'CGAL',
+    meshoptimizer: 'meshoptimizer',
+    node: 'node',
+    alone: 'one thread',
+};
 const packages = {
     openmesh: 'libopenmesh-dev',
     cgal: 'libcgal-dev',
@@ -50,7 +56,7 @@ class Side {
         this.child =
             name === 'node'
                 ? spawn(process.execPath, [json, ...args], how)
-                : spawn(join(options.programs, name), args, how);
+                : spawn(join(options.programs, name === 'alone' ? 'ours' : name), args, how);
         this.lines = createInterface({ input: this.child.stdout })[Symbol.asyncIterator]();
         this.ended = new Promise((resolve) => this.child.on('close', resolve));
         this.child.stdin.on('error', () => {});
@@ -190,7 +196,7 @@ function report(row, part, figures) {
         Object.entries(figures).map(([name, list]) => [name, median(list)]),
     );
     const { ratio: reached, target, says } = verdict(row, part, medians);
-    const other = ['meshoptimizer', 'node']
+    const other = ['meshoptimizer', 'node', 'alone']
         .filter((name) => name in medians)
         .map((name) => `${names[name]} ${shown(medians[name])}`)
         .join();
@@ -261,7 +267,8 @@ function header() {
             `${system?.[1] ?? os.type()}, gcc ${compiler}, node ${process.versions.node}\n` +
             `${versions.join(', ')}\n` +
             `ours:  ${options.flags}\npeers: ${options['peer-flags']}\n` +
-            `Medians of ${options.runs} runs or fewer, in turn; processor time of one thread.` +
+            `Medians of ${options.runs} runs or fewer, in turn; processor time of one thread, but for two\n` +
+            `threads beside one (scaling), whose time is the clock's.` +
             `${options.scale === '1' ? '' : ` Inputs scaled by ${options.scale}.`}\n` +
             'Files are read from and written to memory; text is exported so that doubles read back.\n',
     );

@@ -78,6 +78,22 @@ const memory = (meter, title, ours, more) => ({
     ...more,
 });
 
+// Ours on two threads, beside ours on one; a third more is the least that pays.
+const scaling = (input, order, rows, side) => ({
+    part: 'scaling',
+    input,
+    order,
+    side,
+    sides: ['alone'],
+    rows: rows.map(([title, row, unit]) => ({
+        title: `two threads: ${title}`,
+        ours: `${row}_2`,
+        theirs: `${row}_1`,
+        ...rate(unit),
+        target: [['alone', 1.3]],
+    })),
+});
+
 export const parts = [
     kernel('torus', 'natural'),
     kernel('torus', 'shuffled'),
@@ -310,4 +326,13 @@ export const parts = [
             },
         ],
     },
+    ...['natural', 'shuffled'].map((order) =>
+        scaling('torus', order, [
+            ['build from arrays', 'build', 'Mface/s'],
+            ['face normals', 'face_normals', 'Mface/s'],
+            ['corner normals', 'corner_normals', 'M half-edges/s'],
+        ]),
+    ),
+    scaling('torus', 'natural', [['Loop, one step', 'loop', 'M output faces/s']], 400),
+    scaling('grid', 'natural', [['Catmull-Clark', 'catmull_clark', 'M output faces/s']], 400),
 ];

@@ -39,8 +39,8 @@ static void corner_normals_of_a_cube_follow_the_crease(void **state)
     (void)state;
     he_mesh *m = query_shape("cube", 2, 0, 0, 0);
     he_vec3 sharp[24], smooth[24], one;
-    assert_int_equal(he_corner_normals(m, PI / 4, sharp, NULL), HE_OK);
-    assert_int_equal(he_corner_normals(m, 0.51 * PI, smooth, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(m, PI / 4, NULL, sharp, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(m, 0.51 * PI, NULL, smooth, NULL), HE_OK);
     for (uint32_t h = 0; h < 24; h++) {
         he_vec3 face, vertex;
         assert_true(he_face_normal(m, (he_face){m->c.face[h]}, &face));
@@ -69,7 +69,7 @@ static void a_crease_parts_only_the_faces_across_it(void **state)
     fold[0] = acos(he_vec3_dot(n[0], n[1]));
     fold[1] = acos(he_vec3_dot(n[1], n[2]));
     assert_true(fold[0] < 0.1 && fold[1] > 0.5);
-    assert_int_equal(he_corner_normals(m, 0.3, corner, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(m, 0.3, NULL, corner, NULL), HE_OK);
     uint32_t at[3];
     for (uint32_t h = 0; h < he_mesh_issued(m, HE_HALFEDGE); h++) {
         if (m->c.origin[h] == 0 && m->c.face[h] != HE_NONE) {
@@ -93,7 +93,7 @@ static void corner_normals_alone_are_those_of_the_whole(void **state)
         he_vec3 all[64], one;
         assert_true(halfedges <= 64);
         for (double crease = 0; crease < 3.2; crease += 0.4) {
-            assert_int_equal(he_corner_normals(m, crease, all, NULL), HE_OK);
+            assert_int_equal(he_corner_normals(m, crease, NULL, all, NULL), HE_OK);
             for (uint32_t h = 0; h < halfedges; h++) {
                 double length = he_vec3_length(all[h]);
                 assert_true(length == 0 || fabs(length - 1) < 1e-12);
@@ -113,7 +113,7 @@ static void a_degenerate_face_parts_no_others(void **state)
     const he_vec3 places[] = {{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {2, 2, 0}, {-1, 1, 0}};
     memcpy(m->c.position, places, sizeof places);
     he_vec3 corner[16];
-    assert_int_equal(he_corner_normals(m, 0.1, corner, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(m, 0.1, NULL, corner, NULL), HE_OK);
     for (uint32_t h = 0; h < he_mesh_issued(m, HE_HALFEDGE); h++) {
         if (m->c.origin[h] == 0 && m->c.face[h] != HE_NONE) {
             assert_close(corner[h].z, 1, 1e-12);
@@ -130,7 +130,7 @@ static void corner_normals_end_on_broken_links(void **state)
         he_mesh *m = fixture_mesh(query_specimens[query_random(&seed) % QUERY_SPECIMENS]);
         query_spoil(m, &seed);
         he_vec3 normals[64];
-        he_status status = he_corner_normals(m, 1, normals, NULL);
+        he_status status = he_corner_normals(m, 1, NULL, normals, NULL);
         assert_true(status == HE_OK || status == HE_CORRUPT);
         he_mesh_free(m);
     }
@@ -407,7 +407,7 @@ static void starved_questions_say_so(void **state)
                 status = he_edge_cotangents(m, list, 3, UINT64_MAX, weights, NULL);
                 break;
             case 3:
-                status = he_corner_normals(m, 1, normals, NULL);
+                status = he_corner_normals(m, 1, NULL, normals, NULL);
                 break;
             default:
                 status = he_corner_normal(m, (he_halfedge){1}, 1, normals, NULL);

@@ -187,7 +187,7 @@ static void test_geometry_degenerate_faces(void **state)
         he_face_shape shape = he_face_measure(m, (he_face){0});
         assert_int_equal(he_face_normal(m, (he_face){0}, &normal), !rows[i].degenerate);
         assert_int_equal(shape.degenerate, rows[i].degenerate);
-        assert_int_equal(he_face_normals(m, all, NULL), HE_OK);
+        assert_int_equal(he_face_normals(m, NULL, all, NULL), HE_OK);
         assert_vector(all[0], normal.x, normal.y, normal.z);
         if (rows[i].degenerate) {
             assert_true(normal.x == 0 && normal.y == 0 && normal.z == 0);
@@ -215,7 +215,7 @@ static void test_geometry_does_not_depend_on_scale(void **state)
     he_vec3 *again = calloc(vertices, sizeof *again);
     assert_true(normals && scaled && smooth && positions && again);
     memcpy(positions, m->c.position, vertices * sizeof *positions);
-    assert_int_equal(he_face_normals(m, normals, NULL), HE_OK);
+    assert_int_equal(he_face_normals(m, NULL, normals, NULL), HE_OK);
     assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, smooth, NULL), HE_OK);
     he_measures unit;
     assert_int_equal(he_mesh_measure(m, &unit, NULL), HE_OK);
@@ -227,7 +227,7 @@ static void test_geometry_does_not_depend_on_scale(void **state)
             m->c.position[v] = he_vec3_scale(positions[v], ldexp(1, k));
         }
         double other;
-        assert_int_equal(he_face_normals(m, scaled, NULL), HE_OK);
+        assert_int_equal(he_face_normals(m, NULL, scaled, NULL), HE_OK);
         for (uint32_t f = 0; f < faces; f++) {
             he_vec3 n = normals[f];
             assert_vector(scaled[f], n.x, n.y, n.z);
@@ -279,7 +279,7 @@ static void test_geometry_of_extreme_coordinates_is_finite(void **state)
         }
         he_vec3 normals[16], normal;
         assert_true(vertices <= 16 && faces <= 16);
-        assert_int_equal(he_face_normals(m, normals, NULL), HE_OK);
+        assert_int_equal(he_face_normals(m, NULL, normals, NULL), HE_OK);
         for (uint32_t f = 0; f < faces; f++) {
             he_face_shape shape = he_face_measure(m, (he_face){f});
             assert_true(finite_and_at_most_one(shape.normal));
@@ -326,7 +326,7 @@ static void test_geometry_whole_and_single_agree(void **state)
         }
         he_vec3 normals[16], normal;
         double total = 0;
-        assert_int_equal(he_face_normals(m, normals, NULL), HE_OK);
+        assert_int_equal(he_face_normals(m, NULL, normals, NULL), HE_OK);
         for (uint32_t f = 0; f < faces; f++) {
             he_vec3 sum = {0, 0, 0}, mean = {0, 0, 0};
             uint32_t first = m->c.face_halfedge[f], h = m->c.next[first], last = h, n = 0;
@@ -428,7 +428,7 @@ static void test_geometry_of_nothing_and_of_dead_rows(void **state)
     he_vec3 normals[8];
     assert_true(he_mesh_box(m, &box));
     assert_true(box.min.x == -100);
-    assert_int_equal(he_face_normals(m, normals, NULL), HE_OK);
+    assert_int_equal(he_face_normals(m, NULL, normals, NULL), HE_OK);
     assert_true(he_vec3_extent(normals[1]) == 0);
     assert_int_equal(he_vertex_normals(m, HE_WEIGHT_ANGLE, normals, NULL), HE_OK);
     assert_near(he_vec3_length(normals[0]), 1);
@@ -453,7 +453,7 @@ static void test_geometry_ends_on_broken_links(void **state)
         he_measures measures;
         he_status got[4];
         he_error err = {0};
-        got[0] = he_face_normals(m, normals, &err);
+        got[0] = he_face_normals(m, NULL, normals, &err);
         got[1] = he_vertex_normals(m, HE_WEIGHT_AREA, normals, &err);
         got[2] = he_vertex_normals(m, HE_WEIGHT_ANGLE, normals, &err);
         got[3] = he_mesh_measure(m, &measures, &err);

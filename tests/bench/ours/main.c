@@ -15,6 +15,7 @@ int main(int argc, char **argv)
                                               bench_subdivide_rows,
                                               bench_memory_rows,
                                               bench_growth_rows,
+                                              bench_scaling_rows,
                                               NULL};
     /* Memory as the daemon takes it, counted and in mappings of its own. */
     srv_memory_install(0);

@@ -14,6 +14,7 @@ extern const bench_row bench_file_rows[];
 extern const bench_row bench_document_rows[];
 extern const bench_row bench_decimate_rows[];
 extern const bench_row bench_error_rows[];
+extern const bench_row bench_scaling_rows[];
 extern const bench_row bench_subdivide_rows[];
 extern const bench_row bench_memory_rows[];
 extern const bench_row bench_growth_rows[];

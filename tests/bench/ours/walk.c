@@ -54,7 +54,7 @@ static void face_normals(bench_side *side, bench_result *out)
     uint32_t count = he_mesh_issued(m, HE_FACE);
     he_vec3 *normals = normals_new(count);
     double start = bench_seconds();
-    bench_require(he_face_normals(m, normals, NULL));
+    bench_require(he_face_normals(m, NULL, normals, NULL));
     out->value = bench_seconds() - start;
     out->amount = count;
     bench_near(out, size_of(normals, count));

@@ -1,0 +1,157 @@
+/* What a second core gives: each row with the work's own thread alone, and with helpers beside it.
+ * Wall time, since processor time adds up what threads take. */
+#include "bench/ours/ours.h"
+
+#include "algo/subdivide.h"
+#include "mesh/walk.h"
+#include "query/geometry.h"
+#include "server/helpers.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double wall_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The threads of the rows, made once. */
+static void lend(he_watch *watch, bool helped)
+{
+    static srv_helpers *helpers;
+    if (helpers == NULL) {
+        helpers = srv_helpers_new(1);
+    }
+    if (helpers == NULL) {
+        bench_require(HE_NO_MEMORY);
+    }
+    he_watch_init(watch, NULL, NULL);
+    watch->exec = helped ? srv_helpers_exec(helpers) : NULL;
+}
+
+static void build(bench_side *side, bool helped, bench_result *out)
+{
+    he_mesh *mesh;
+    he_watch watch;
+    he_soup soup = bench_soup(side);
+    lend(&watch, helped);
+    soup.limits.watch = &watch;
+    double start = wall_seconds();
+    bench_require(he_build(&soup, 0, &mesh, NULL, NULL));
+    out->value = wall_seconds() - start;
+    out->amount = side->input.faces;
+    bench_exact(out, bench_mesh_hash(mesh));
+    he_mesh_free(mesh);
+}
+
+static uint64_t hash_of(const he_vec3 *rows, size_t count)
+{
+    uint64_t hash = 0;
+    for (size_t i = 0; i < count; i++) {
+        hash = hash * 31 + bench_place_hash(rows[i].x, rows[i].y, rows[i].z);
+    }
+    return hash;
+}
+
+static he_vec3 *rows_new(size_t count)
+{
+    he_vec3 *rows = malloc(count * sizeof *rows);
+    if (rows == NULL) {
+        bench_require(HE_NO_MEMORY);
+        exit(1);
+    }
+    memset(rows, 1, count * sizeof *rows);
+    return rows;
+}
+
+static void face_normals(bench_side *side, bool helped, bench_result *out)
+{
+    he_watch watch;
+    const he_mesh *m = bench_mesh(side);
+    uint32_t count = he_mesh_issued(m, HE_FACE);
+    he_vec3 *rows = rows_new(count);
+    lend(&watch, helped);
+    double start = wall_seconds();
+    bench_require(he_face_normals(m, &watch, rows, NULL));
+    out->value = wall_seconds() - start;
+    out->amount = count;
+    bench_exact(out, hash_of(rows, count));
+    free(rows);
+}
+
+static void corner_normals(bench_side *side, bool helped, bench_result *out)
+{
+    he_watch watch;
+    const he_mesh *m = bench_mesh(side);
+    size_t count = 2 * (size_t)he_mesh_issued(m, HE_EDGE);
+    he_vec3 *rows = rows_new(count);
+    lend(&watch, helped);
+    double start = wall_seconds();
+    bench_require(he_corner_normals(m, 0.5, &watch, rows, NULL));
+    out->value = wall_seconds() - start;
+    out->amount = (double)count;
+    bench_exact(out, hash_of(rows, count));
+    free(rows);
+}
+
+static void subdivide(bench_side *side, he_scheme scheme, bool helped, bench_result *out)
+{
+    he_mesh *m;
+    he_watch watch;
+    bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
+    lend(&watch, helped);
+    he_mesh_watch(m, &watch);
+    double start = wall_seconds();
+    bench_require(he_subdivide(m, scheme, 1, NULL, NULL));
+    out->value = wall_seconds() - start;
+    out->amount = he_mesh_faces(m);
+    he_mesh_watch(m, NULL);
+    uint64_t hash = bench_mesh_hash(m);
+    for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+        he_vec3 p = he_position(m, (he_vertex){v});
+        hash = hash * 31 + bench_place_hash(p.x, p.y, p.z);
+    }
+    bench_exact(out, hash);
+    he_mesh_free(m);
+}
+
+static void loop(bench_side *side, bool helped, bench_result *out)
+{
+    subdivide(side, HE_LOOP, helped, out);
+}
+
+static void catmull_clark(bench_side *side, bool helped, bench_result *out)
+{
+    subdivide(side, HE_CATMULL_CLARK, helped, out);
+}
+
+#define BOTH(row)                                            \
+    static void row##_1(bench_side *side, bench_result *out) \
+    {                                                        \
+        row(side, false, out);                               \
+    }                                                        \
+    static void row##_2(bench_side *side, bench_result *out) \
+    {                                                        \
+        row(side, true, out);                                \
+    }
+BOTH(build)
+BOTH(face_normals)
+BOTH(corner_normals)
+BOTH(loop)
+BOTH(catmull_clark)
+#undef BOTH
+
+const bench_row bench_scaling_rows[] = {{"build_1", build_1},
+                                        {"build_2", build_2},
+                                        {"face_normals_1", face_normals_1},
+                                        {"face_normals_2", face_normals_2},
+                                        {"corner_normals_1", corner_normals_1},
+                                        {"corner_normals_2", corner_normals_2},
+                                        {"loop_1", loop_1},
+                                        {"loop_2", loop_2},
+                                        {"catmull_clark_1", catmull_clark_1},
+                                        {"catmull_clark_2", catmull_clark_2},
+                                        {NULL, NULL}};

@@ -1,0 +1,397 @@
+/* Work in parts: each is run once, whoever runs it, and what comes out does not tell who did. */
+#include "tests/unit/fixture.h"
+
+#include "algo/subdivide.h"
+#include "mesh/exec.h"
+#include "mesh/walk.h"
+#include "query/geometry.h"
+#include "server/helpers.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+static const size_t helper_counts[] = {0, 1, 7};
+enum { HELPER_COUNTS = 3 };
+
+/* --- parts ------------------------------------------------------------------------------------ */
+
+enum { PARTS = 500, OWNERS = 4, ROUNDS = 20 };
+
+typedef struct tally {
+    _Atomic uint32_t runs[PARTS];
+    const he_exec *exec; /* with it each part is cut into parts again */
+    uint32_t failing;    /* this part and all that follow */
+} tally;
+
+static he_status count_part(void *context, uint32_t part, he_error *err)
+{
+    tally *t = context;
+    atomic_fetch_add(&t->runs[part], 1);
+    return part < t->failing ? HE_OK
+                             : he_fail_plain(err, HE_NO_MEMORY, "part %u of the work", part);
+}
+
+static he_status cut_again(void *context, uint32_t part, he_error *err)
+{
+    tally *t = context;
+    (void)part;
+    return t->exec->run(t->exec->self, PARTS, count_part, t, NULL, err);
+}
+
+static bool ran_each(const tally *t, uint32_t times)
+{
+    for (size_t i = 0; i < PARTS; i++) {
+        if (atomic_load(&t->runs[i]) != times) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void *own_work(void *context)
+{
+    const he_exec *exec = context;
+    for (int round = 0; round < ROUNDS; round++) {
+        tally t = {.exec = exec, .failing = PARTS};
+        if (exec->run(exec->self, 8, cut_again, &t, NULL, NULL) != HE_OK || !ran_each(&t, 8)) {
+            return context;
+        }
+    }
+    return NULL;
+}
+
+static void each_part_is_run_once_whoever_else_has_work(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < HELPER_COUNTS; i++) {
+        pthread_t owners[OWNERS];
+        srv_helpers *helpers = srv_helpers_new(helper_counts[i]);
+        const he_exec *exec = srv_helpers_exec(helpers);
+        assert_int_equal(exec->threads, helper_counts[i] + 1);
+        for (size_t k = 0; k < OWNERS; k++) {
+            assert_int_equal(pthread_create(&owners[k], NULL, own_work, (void *)(uintptr_t)exec),
+                             0);
+        }
+        for (size_t k = 0; k < OWNERS; k++) {
+            void *failed;
+            pthread_join(owners[k], &failed);
+            assert_null(failed);
+        }
+        srv_helpers_free(helpers);
+    }
+}
+
+static void of_parts_that_fail_the_first_one_is_told(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < HELPER_COUNTS; i++) {
+        srv_helpers *helpers = srv_helpers_new(helper_counts[i]);
+        const he_exec *exec = srv_helpers_exec(helpers);
+        for (uint32_t failing = 0; failing < PARTS; failing += 7) {
+            tally t = {.failing = failing};
+            he_error err = {0};
+            char text[64];
+            assert_int_equal(exec->run(exec->self, PARTS, count_part, &t, NULL, &err),
+                             HE_NO_MEMORY);
+            snprintf(text, sizeof text, "part %u of the work", failing);
+            assert_string_equal(err.text, text);
+            assert_int_equal(atomic_load(&t.runs[failing]), 1);
+            uint32_t runs = 0;
+            for (uint32_t part = failing; part < PARTS; part++) {
+                runs += atomic_load(&t.runs[part]);
+            }
+            assert_true(runs <= helper_counts[i] + 1);
+        }
+        srv_helpers_free(helpers);
+    }
+}
+
+/* --- giving up -------------------------------------------------------------------------------- */
+
+typedef struct listener {
+    pthread_t owner;
+    long told, give_up_at;
+    bool elsewhere;
+} listener;
+
+static bool hear(void *context, const char *phase, double done)
+{
+    listener *l = context;
+    (void)phase, (void)done;
+    l->elsewhere |= !pthread_equal(l->owner, pthread_self());
+    return ++l->told != l->give_up_at;
+}
+
+static void work_is_given_up_between_parts_on_its_own_thread(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < HELPER_COUNTS; i++) {
+        srv_helpers *helpers = srv_helpers_new(helper_counts[i]);
+        const he_exec *exec = srv_helpers_exec(helpers);
+        tally t = {.failing = PARTS};
+        listener l = {.owner = pthread_self(), .give_up_at = 1};
+        he_watch watch;
+        he_error err = {0};
+        he_watch_init(&watch, hear, &l);
+        assert_int_equal(exec->run(exec->self, PARTS, count_part, &t, &watch, &err), HE_CANCELLED);
+        assert_int_equal(err.status, HE_CANCELLED);
+        assert_false(l.elsewhere);
+        srv_helpers_free(helpers);
+    }
+}
+
+/* --- what core makes with it ------------------------------------------------------------------ */
+
+/* Soups large enough for many parts; vertices and faces are in no order where `shuffled`. */
+enum { SIDE = 220 };
+
+static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
+{
+    /* 7919 is prime and divides neither count below. */
+    return shuffled ? (uint32_t)((uint64_t)i * 7919u % count) : i;
+}
+
+static void add_torus(he_soup *soup, bool shuffled)
+{
+    const uint32_t count = SIDE * SIDE;
+    for (uint32_t v = 0; v < count; v++) {
+        assert_int_equal(he_soup_add_vertex(soup, (he_vec3){v, v % SIDE, v % 7}, NULL), HE_OK);
+    }
+    for (uint32_t n = 0; n < 2 * count; n++) {
+        uint32_t f = scatter(n, 2 * count, shuffled), q = f / 2, i = q / SIDE, j = q % SIDE;
+        uint32_t down = (i + 1) % SIDE * SIDE, right = (j + 1) % SIDE;
+        const uint32_t low[3] = {q, down + j, down + right},
+                       high[3] = {q, down + right, i * SIDE + right};
+        uint32_t corners[3];
+        for (size_t k = 0; k < 3; k++) {
+            corners[k] = scatter(f % 2 == 0 ? low[k] : high[k], count, shuffled);
+        }
+        assert_int_equal(he_soup_add_face(soup, corners, 3, NULL), HE_OK);
+    }
+}
+
+/* Quads and pentagons with holes in them, and a fan of triangles about one vertex. */
+static void add_mixed(he_soup *soup)
+{
+    for (uint32_t v = 0; v < (SIDE + 1) * (SIDE + 1) + 2 * SIDE * SIDE; v++) {
+        assert_int_equal(he_soup_add_vertex(soup, (he_vec3){v % 31, v % 17, v}, NULL), HE_OK);
+    }
+    const uint32_t row = SIDE + 1, hub = row * row;
+    for (uint32_t q = 0; q < SIDE * SIDE; q++) {
+        uint32_t a = q / SIDE * row + q % SIDE;
+        const uint32_t corners[4] = {a, a + 1, a + row + 1, a + row};
+        if (q % 11 != 3) {
+            assert_int_equal(he_soup_add_face(soup, corners, q % 11 == 5 ? 3 : 4, NULL), HE_OK);
+        }
+    }
+    for (uint32_t i = 1; i < SIDE * SIDE; i++) {
+        const uint32_t corners[3] = {hub, hub + i, hub + i + 1};
+        assert_int_equal(he_soup_add_face(soup, corners, 3, NULL), HE_OK);
+    }
+}
+
+static void make_soup(int which, he_soup *soup)
+{
+    he_soup_init(soup, NULL);
+    if (which < 2) {
+        add_torus(soup, which == 1);
+    } else {
+        add_mixed(soup);
+    }
+}
+
+static he_mesh *build_with(he_soup *soup, const he_exec *exec)
+{
+    he_mesh *mesh = NULL;
+    he_watch watch;
+    he_watch_init(&watch, NULL, NULL);
+    watch.exec = exec;
+    soup->limits.watch = &watch;
+    assert_int_equal(he_build(soup, 0, &mesh, NULL, NULL), HE_OK);
+    soup->limits.watch = NULL;
+    return mesh;
+}
+
+static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        he_soup soup;
+        make_soup(which, &soup);
+        he_mesh *alone = build_with(&soup, NULL);
+        for (size_t i = 0; i < HELPER_COUNTS; i++) {
+            srv_helpers *helpers = srv_helpers_new(helper_counts[i]);
+            he_mesh *mesh = build_with(&soup, srv_helpers_exec(helpers));
+            assert_true(he_mesh_equal(alone, mesh));
+            he_mesh_free(mesh);
+            srv_helpers_free(helpers);
+        }
+        he_mesh_free(alone);
+        he_soup_clear(&soup);
+    }
+}
+
+static void expect_same_normals(const he_mesh *mesh, he_watch *watch)
+{
+    size_t faces = he_mesh_issued(mesh, HE_FACE),
+           corners = 2 * (size_t)he_mesh_issued(mesh, HE_EDGE);
+    he_vec3 *alone = malloc((faces + corners) * sizeof *alone);
+    he_vec3 *helped = malloc((faces + corners) * sizeof *helped);
+    assert_true(alone != NULL && helped != NULL);
+    assert_int_equal(he_face_normals(mesh, NULL, alone, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(mesh, 0.5, NULL, alone + faces, NULL), HE_OK);
+    assert_int_equal(he_face_normals(mesh, watch, helped, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(mesh, 0.5, watch, helped + faces, NULL), HE_OK);
+    assert_memory_equal(alone, helped, (faces + corners) * sizeof *alone);
+    free(alone);
+    free(helped);
+}
+
+static he_mesh *subdivided(const he_mesh *mesh, he_scheme scheme, he_watch *watch, he_error *err,
+                           he_status *status)
+{
+    he_mesh *copy;
+    assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
+    he_mesh_watch(copy, watch);
+    *status = he_subdivide(copy, scheme, 1, NULL, err);
+    he_mesh_watch(copy, NULL);
+    return copy;
+}
+
+/* The refusal of loop in a mesh with other faces names the first one. */
+static void expect_same_subdivision(const he_mesh *mesh, he_scheme scheme, he_watch *watch)
+{
+    he_error errors[2] = {{.status = HE_OK}, {.status = HE_OK}};
+    he_status statuses[2];
+    he_mesh *alone = subdivided(mesh, scheme, NULL, &errors[0], &statuses[0]);
+    he_mesh *helped = subdivided(mesh, scheme, watch, &errors[1], &statuses[1]);
+    assert_int_equal(statuses[0], statuses[1]);
+    assert_int_equal(errors[0].id, errors[1].id);
+    assert_string_equal(errors[0].text, errors[1].text);
+    assert_true(he_mesh_equal(alone, helped));
+    he_mesh_free(alone);
+    he_mesh_free(helped);
+}
+
+static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        he_soup soup;
+        make_soup(which, &soup);
+        he_mesh *mesh = build_with(&soup, NULL);
+        for (size_t i = 0; i < HELPER_COUNTS; i++) {
+            he_watch watch;
+            srv_helpers *helpers = srv_helpers_new(helper_counts[i]);
+            he_watch_init(&watch, NULL, NULL);
+            watch.exec = srv_helpers_exec(helpers);
+            expect_same_normals(mesh, &watch);
+            for (int scheme = HE_LOOP; scheme <= HE_SQRT3; scheme++) {
+                expect_same_subdivision(mesh, (he_scheme)scheme, &watch);
+            }
+            srv_helpers_free(helpers);
+        }
+        he_mesh_free(mesh);
+        he_soup_clear(&soup);
+    }
+}
+
+static void defects_are_the_same_on_1_2_and_8_threads(void **state)
+{
+    (void)state;
+    /* A third face on two edges, a face twice, and a closed fan beside another. */
+    static const uint32_t extra[3][3] = {{0, 1, 5000}, {0, SIDE, SIDE + 1}, {9, 10, 11}};
+    for (int which = 0; which < 3; which++) {
+        static he_report alone, report;
+        he_error first = {0}, err = {0};
+        he_soup soup;
+        he_mesh *mesh = NULL;
+        make_soup(0, &soup);
+        assert_int_equal(he_soup_add_face(&soup, extra[which], 3, NULL), HE_OK);
+        he_status status = he_build(&soup, 0, &mesh, &alone, &first);
+        assert_true(status != HE_OK);
+        for (size_t i = 0; i < HELPER_COUNTS; i++) {
+            srv_helpers *helpers = srv_helpers_new(helper_counts[i]);
+            he_watch watch;
+            he_watch_init(&watch, NULL, NULL);
+            watch.exec = srv_helpers_exec(helpers);
+            soup.limits.watch = &watch;
+            assert_int_equal(he_build(&soup, 0, &mesh, &report, &err), status);
+            assert_int_equal(report.total, alone.total);
+            assert_memory_equal(
+                report.defects, alone.defects,
+                (report.total < HE_REPORT_DEFECTS ? report.total : HE_REPORT_DEFECTS) *
+                    sizeof *report.defects);
+            assert_string_equal(err.text, first.text);
+            srv_helpers_free(helpers);
+        }
+        soup.limits.watch = NULL;
+        he_soup_clear(&soup);
+    }
+}
+
+/* --- memory ----------------------------------------------------------------------------------- */
+
+static _Atomic long requests, blocks, failing;
+
+static void *fail_one(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        atomic_fetch_sub(&blocks, memory != NULL);
+        free(memory);
+        return NULL;
+    }
+    if (atomic_fetch_add(&requests, 1) + 1 == atomic_load(&failing)) {
+        return NULL;
+    }
+    void *resized = realloc(memory, size);
+    atomic_fetch_add(&blocks, memory == NULL && resized != NULL);
+    return resized;
+}
+
+static void memory_that_runs_out_leaves_nothing_behind(void **state)
+{
+    (void)state;
+    static const he_mem_hook hook = {fail_one, NULL};
+    he_soup soup;
+    make_soup(2, &soup);
+    srv_helpers *helpers = srv_helpers_new(1);
+    he_watch watch;
+    he_watch_init(&watch, NULL, NULL);
+    watch.exec = srv_helpers_exec(helpers);
+    soup.limits.watch = &watch;
+    he_mem_set_hook(&hook);
+    he_status status = HE_NO_MEMORY;
+    long n = 0;
+    while (status != HE_OK) {
+        he_mesh *mesh = NULL;
+        he_error err = {0};
+        n++;
+        atomic_store(&requests, 0);
+        atomic_store(&failing, n);
+        status = he_build(&soup, 0, &mesh, NULL, &err);
+        assert_true(status == HE_OK || (status == HE_NO_MEMORY && mesh == NULL));
+        he_mesh_free(mesh);
+        assert_int_equal(atomic_load(&blocks), 0);
+    }
+    he_mem_set_hook(NULL);
+    assert_true(n > 10);
+    srv_helpers_free(helpers);
+    soup.limits.watch = NULL;
+    he_soup_clear(&soup);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_part_is_run_once_whoever_else_has_work),
+        cmocka_unit_test(of_parts_that_fail_the_first_one_is_told),
+        cmocka_unit_test(work_is_given_up_between_parts_on_its_own_thread),
+        cmocka_unit_test(a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads),
+        cmocka_unit_test(normals_and_subdivision_are_the_same_on_1_2_and_8_threads),
+        cmocka_unit_test(defects_are_the_same_on_1_2_and_8_threads),
+        cmocka_unit_test(memory_that_runs_out_leaves_nothing_behind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
