@@ -20,11 +20,6 @@ he_rows *he_content_rows(he_content *content, he_kind kind);
 /* Rows issued in an attribute's domain. */
 size_t he_content_issued(const he_content *content, he_kind domain);
 
-/* Write the dead value in a row of a link table: what a row holds when it is issued. */
-void he_content_clear_vertex(he_content *c, uint32_t v);
-void he_content_clear_edge(he_content *c, uint32_t e);
-void he_content_clear_face(he_content *c, uint32_t f);
-
 /* Apply records `from` and later of a delta, forwards or (`undo`) backwards. Columns and contents
  * are exchanged with `objects`, indexed like the delta's own; NULL when it has none. */
 void he_content_apply(he_content *c, const he_delta *delta, size_t from, bool undo, void **objects);
