@@ -11,6 +11,7 @@
 //     target   [peer, ratio]: so many times the peer's figure; or a limit of our own where `less`
 //     runs     of each side, where not as many as the rest
 //     fresh    each run in a process of its own
+//     why      said where the row falls short: what holds it back, and what that allows
 //     after    a row of ours that describes what a side has left in the folder, compared instead
 
 const M = 1e6;
@@ -31,10 +32,13 @@ const kernel = (name, order) => ({
 });
 
 // A row `of a list` tells our kernel which edges come next, as delaunay does; the peers have no such
-// call. One edit after another waits for memory: in links that depend on each other (flip: four such
-// waits, collapse: five), and for some 25 lines of eight arrays where records would take eight. On
-// machines where a line from memory takes 150 ns and sixteen at a time can be waited for, that alone
-// is 350 ns a split and 600 ns a flip.
+// call. One edit after another waits for memory, and the links of a half-edge are in four arrays, so
+// that each place costs four lines where a record costs one. That is what makes traversal fast.
+const waits = (levels, lines) =>
+    `${levels} reads one after another, of some ${lines} lines: at 130 to 150 ns and 16 lines at a ` +
+    `time ${Math.round((Math.max(levels, lines / 16) * 140) / 10) * 10} ns an edit, unless the next is known`;
+const whys = { split: waits(2, 26), flip: waits(4, 40), collapse: waits(4, 70) };
+
 // CGAL's collapses go elsewhere from some point on: cgal_edits.cc tells.
 const edit = (title, ours, target, theirs = ours) => ({
     title,
@@ -43,6 +47,7 @@ const edit = (title, ours, target, theirs = ours) => ({
     theirs,
     ...rate('M/s'),
     target: [['cgal', target]],
+    why: whys[theirs],
 });
 
 const file = (title, ours, target, more = {}) => ({
@@ -53,6 +58,10 @@ const file = (title, ours, target, more = {}) => ({
     near: 1e-6,
     ...more,
 });
+
+const importing =
+    'building with its checks is half of it (three fifths of the instructions of PLY, a third of ' +
+    'OFF), and a tenth and more is the system clearing fresh pages';
 
 export const parts = [
     kernel('torus', 'natural'),
@@ -167,8 +176,8 @@ export const parts = [
         before: ['make_files'],
         rows: [
             file('import OBJ', 'import_obj', [['cgal', 5]]),
-            file('import OFF', 'import_off', [['openmesh', 3]]),
-            file('import PLY, binary', 'import_ply', [['openmesh', 3]]),
+            file('import OFF', 'import_off', [['openmesh', 3]], { why: importing }),
+            file('import PLY, binary', 'import_ply', [['openmesh', 3]], { why: importing }),
             file('import STL, binary', 'import_stl', [['openmesh', 3]], { runs: 3 }),
             file('export OBJ', 'export_obj', [['openmesh', 2]], { after: 'check_obj' }),
             file('export PLY, binary', 'export_ply', [['openmesh', 1.5]], { after: 'check_ply' }),
