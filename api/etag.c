@@ -1,20 +1,36 @@
 #include "api/etag.h"
 
+#include "format/number.h"
+
 #include <assert.h>
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-static int write_state(const api_mesh_info *info, char *out, size_t size)
+/* Without the C library's formats: nearly every answer has one. */
+static size_t write_state(const api_mesh_info *info, char out[API_ETAG])
 {
-    return snprintf(out, size, "\"%016" PRIx64 "-%" PRIu64 "-%" PRIu64 "-", info->incarnation,
-                    info->metadata, info->revision);
+    static const char digits[] = "0123456789abcdef";
+    char *at = out;
+    *at++ = '"';
+    for (int shift = 60; shift >= 0; shift -= 4) {
+        *at++ = digits[info->incarnation >> shift & 15];
+    }
+    *at++ = '-';
+    at += he_u64_print(info->metadata, at);
+    *at++ = '-';
+    at += he_u64_print(info->revision, at);
+    *at++ = '-';
+    return (size_t)(at - out);
 }
 
 void api_etag_write(const api_mesh_info *info, const char *representation, char out[API_ETAG])
 {
-    int used = write_state(info, out, API_ETAG);
-    snprintf(out + used, (size_t)(API_ETAG - used), "%s\"", representation);
+    enum { STATE = 1 + 16 + 1 + 20 + 1 + 20 + 1 };
+    size_t used = write_state(info, out), length = strlen(representation);
+    size_t room = API_ETAG - STATE - 2;
+    length = length < room ? length : room;
+    memcpy(out + used, representation, length);
+    memcpy(out + used + length, "\"", 2);
 }
 
 /* Step through a list of entity tags. False at the end or where the list is not well formed. */
@@ -79,7 +95,7 @@ bool api_etag_is_present(const char *header, const api_mesh_info *info)
         return true;
     }
     char state[API_ETAG];
-    size_t prefix = (size_t)write_state(info, state, sizeof state), length;
+    size_t prefix = write_state(info, state), length;
     bool weak;
     const char *tag;
     while (next_tag(&header, &weak, &tag, &length)) {

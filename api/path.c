@@ -137,9 +137,12 @@ bool api_path_id(const char *text, uint32_t *out)
 
 bool api_path_is_mesh_id(const char *text)
 {
-    static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
-                                  "0123456789._-";
-    size_t length = strlen(text);
-    return length >= 1 && length <= API_MESH_ID && strspn(text, allowed) == length &&
-           strcmp(text, ".") != 0 && strcmp(text, "..") != 0;
+    size_t length = 0;
+    for (char c = text[0]; (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                           (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+         c = text[length]) {
+        length++;
+    }
+    return length >= 1 && length <= API_MESH_ID && text[length] == '\0' && strcmp(text, ".") != 0 &&
+           strcmp(text, "..") != 0;
 }

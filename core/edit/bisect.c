@@ -26,15 +26,13 @@ he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t)
     he_edge part = he_new_edge(m);
     he_halfedge on = he_edge_halfedge(part, 0), off = he_twin(on);
     he_set_position(m, w, he_point_between(he_position(m, a), he_position(m, b), t));
-    he_set_origin(m, on, w);
-    he_set_origin(m, off, b);
     he_set_origin(m, back, w);
-    he_set_face(m, on, left);
-    he_set_face(m, off, right);
-    he_link(m, h, on);
-    he_link(m, on, next);
-    he_link(m, before, off);
-    he_link(m, off, back);
+    he_set_halfedge(m, on, next, h, w, left);
+    he_set_halfedge(m, off, back, before, b, right);
+    he_set_next(m, h, on);
+    he_set_prev(m, next, on);
+    he_set_next(m, before, off);
+    he_set_prev(m, back, off);
     he_set_vertex_halfedge(m, w, right.i == HE_NONE ? back : on);
     if (he_vertex_halfedge(m, b).i == back.i) {
         he_set_vertex_halfedge(m, b, off);

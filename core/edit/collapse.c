@@ -12,58 +12,93 @@ static he_status refuse(he_error *err, he_halfedge h, const char *rule, const ch
                    he_edge_of(h).i, rule, kind, id);
 }
 
-/* Is there a triangle to the left of h? */
-static bool is_triangle(const he_mesh *m, he_halfedge h)
-{
-    return !he_is_boundary_halfedge(m, h) && he_next(m, he_next(m, he_next(m, h))).i == h.i;
-}
-
 /* The corner opposite h in a triangle on its left, HE_NONE without one. */
 static he_vertex opposite(const he_mesh *m, he_halfedge h)
 {
-    return is_triangle(m, h) ? he_origin(m, he_prev(m, h)) : (he_vertex){HE_NONE};
+    return he_is_triangle(m, h) ? he_origin(m, he_prev(m, h)) : (he_vertex){HE_NONE};
 }
 
-enum { SMALL_RING = 24 };
+enum { SMALL_RING = 24, BLOCK = 8 };
 
-/* The half-edges that leave a vertex, with their targets. */
+/* The half-edges that leave a vertex, and their targets, filled up to whole blocks by HE_NONE. */
 typedef struct ring {
     uint32_t count, out[SMALL_RING], target[SMALL_RING];
 } ring;
 
-/* Both ends' rings, from h and its twin on; turned about in step, since each turn waits for memory.
- * False where one is not small. */
+/* Where two hands are that go about a vertex from one half-edge on, and what is not seen yet. */
+typedef struct hands {
+    he_halfedge up, down;
+    uint32_t ups, downs; /* filled from the front of the ring, and from the back */
+    bool open;
+} hands;
+
+static void put(const he_mesh *m, ring *r, uint32_t place, he_halfedge h)
+{
+    r->out[place] = h.i;
+    r->target[place] = he_target(m, h).i;
+}
+
+/* One turn of either hand. False where the ring is not small. */
+static bool turn(const he_mesh *m, hands *at, ring *r)
+{
+    if (at->ups + at->downs + 2 > SMALL_RING) {
+        return false;
+    }
+    put(m, r, at->ups++, at->up);
+    if (at->up.i != at->down.i) {
+        put(m, r, SMALL_RING - ++at->downs, at->down);
+    }
+    he_halfedge up = he_turn_ccw(m, at->up);
+    at->open = at->up.i != at->down.i && up.i != at->down.i;
+    at->up = up;
+    at->down = at->open ? he_turn_cw(m, at->down) : at->down;
+    return true;
+}
+
+/* In the order of turning counter-clockwise from h. */
+static void close_ring(const hands *at, ring *r)
+{
+    r->count = at->ups;
+    for (uint32_t i = SMALL_RING - at->downs; i < SMALL_RING; i++) {
+        r->out[r->count] = r->out[i];
+        r->target[r->count++] = r->target[i];
+    }
+    for (uint32_t i = r->count; i % BLOCK != 0; i++) {
+        r->target[i] = HE_NONE;
+    }
+}
+
+/* Both ends' rings, from h and its twin on. Each turn waits for memory: they are turned about in
+ * step, and both ways at once. False where one is not small. */
 static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
 {
     ring *const rings[2] = {of_u, of_v};
-    const he_halfedge first[2] = {h, he_twin(h)};
-    he_halfedge at[2] = {h, he_twin(h)};
-    bool open[2] = {true, true};
-    of_u->count = of_v->count = 0;
-    while (open[0] || open[1]) {
+    hands at[2];
+    for (unsigned i = 0; i < 2; i++) {
+        he_halfedge from = i == 0 ? h : he_twin(h);
+        at[i] = (hands){.up = from, .down = he_turn_cw(m, from), .open = true};
+    }
+    while (at[0].open || at[1].open) {
         for (unsigned i = 0; i < 2; i++) {
-            ring *r = rings[i];
-            if (open[i]) {
-                if (r->count == SMALL_RING) {
-                    return false;
-                }
-                r->out[r->count] = at[i].i;
-                r->target[r->count++] = he_target(m, at[i]).i;
-                at[i] = he_turn_ccw(m, at[i]);
-                open[i] = at[i].i != first[i].i;
+            if (at[i].open && !turn(m, &at[i], rings[i])) {
+                return false;
             }
         }
     }
+    close_ring(&at[0], of_u);
+    close_ring(&at[1], of_v);
     return true;
 }
 
 static bool is_in(const ring *r, uint32_t vertex)
 {
-    uint32_t i = 0;
-    while (i < r->count && r->target[i] != vertex) {
-        i++;
+    unsigned found = 0;
+    for (uint32_t i = 0; i < r->count && !found; i += BLOCK) {
+        for (uint32_t k = i; k < i + BLOCK; k++) {
+            found |= r->target[k] == vertex;
+        }
     }
-    return i < r->count;
+    return found;
 }
 
 /* L1, and L4 by the way: both turn about u. Without `of_v` its ring is searched for each. */
@@ -109,7 +144,7 @@ static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
 /* L3 for the triangle left of h. */
 static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 {
-    if (is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
+    if (he_is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
         he_is_boundary_halfedge(m, he_twin(he_prev(m, h)))) {
         return refuse(err, h, "both other sides of a triangle are on the boundary", "face",
                       he_face_of(m, h).i);
@@ -121,16 +156,15 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 static bool is_apex(const he_mesh *m, he_halfedge h)
 {
     he_halfedge second = he_turn_ccw(m, h), third = he_turn_ccw(m, second);
-    return he_turn_ccw(m, third).i == h.i && is_triangle(m, h) && is_triangle(m, second) &&
-           is_triangle(m, third);
+    return he_turn_ccw(m, third).i == h.i && he_is_triangle(m, h) && he_is_triangle(m, second) &&
+           he_is_triangle(m, third);
 }
 
 static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_prefetch_links(m, h);
-    he_status status = he_mesh_require(m, HE_HALFEDGE, h.i, err);
-    if (status != HE_OK) {
-        return status;
+    if (!he_edge_is_live(m, he_edge_of(h))) {
+        return he_mesh_require(m, HE_HALFEDGE, h.i, err);
     }
     he_prefetch_about(m, he_edge_of(h));
     he_prefetch_ends(m, he_edge_of(h));
@@ -140,7 +174,7 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
         !he_is_boundary_edge(m, he_edge_of(h))) {
         return refuse(err, h, "it is interior but both ends are on the boundary", "vertex", u.i);
     }
-    status = check_sides(m, h, err);
+    he_status status = check_sides(m, h, err);
     if (status == HE_OK) {
         status = check_sides(m, t, err);
     }
@@ -213,8 +247,8 @@ static he_status check_features(const he_mesh *m, const he_marks *marks, he_half
                        "vertex %u would go, but %u feature edges meet there", u.i, count);
     }
     he_edge left = he_edge_of(he_prev(m, h)), right = he_edge_of(he_next(m, back));
-    if ((is_triangle(m, h) && he_is_feature(marks, left)) ||
-        (is_triangle(m, back) && he_is_feature(marks, right))) {
+    if ((he_is_triangle(m, h) && he_is_feature(marks, left)) ||
+        (he_is_triangle(m, back) && he_is_feature(marks, right))) {
         return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
                        "feature edge %u would merge into another", other.i);
     }
@@ -281,7 +315,7 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     he_halfedge after = he_next(m, h), before = he_prev(m, h);
     he_halfedge back_after = he_next(m, back), back_before = he_prev(m, back);
     he_vertex u = he_origin(m, h), v = he_target(m, h);
-    bool left = is_triangle(m, h), right = is_triangle(m, back);
+    bool left = he_is_triangle(m, h), right = he_is_triangle(m, back);
     bool interior = !he_is_boundary_vertex(m, u) && !he_is_boundary_vertex(m, v);
     for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i;) {
         he_halfedge next = he_turn_ccw(m, k);

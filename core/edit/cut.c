@@ -20,14 +20,12 @@ he_halfedge he_cut_commit(he_mesh *m, he_halfedge from, he_halfedge to)
     for (he_halfedge h = from; h.i != to.i; h = he_next(m, h)) {
         he_set_face(m, h, f);
     }
-    he_set_origin(m, d, he_origin(m, from));
-    he_set_origin(m, back, he_origin(m, to));
-    he_set_face(m, d, old);
-    he_set_face(m, back, f);
-    he_link(m, before_from, d);
-    he_link(m, d, to);
-    he_link(m, before_to, back);
-    he_link(m, back, from);
+    he_set_halfedge(m, d, to, before_from, he_origin(m, from), old);
+    he_set_halfedge(m, back, from, before_to, he_origin(m, to), f);
+    he_set_next(m, before_from, d);
+    he_set_prev(m, to, d);
+    he_set_next(m, before_to, back);
+    he_set_prev(m, from, back);
     he_set_face_halfedge(m, f, from);
     if (he_face_of(m, he_face_halfedge(m, old)).i == f.i) {
         he_set_face_halfedge(m, old, d);

@@ -40,6 +40,12 @@ static he_edge dequeue(flipper *q)
     return (he_edge){e};
 }
 
+/* The i-th that waits, no edge where fewer do. */
+static he_edge waiting_at(const flipper *q, size_t i)
+{
+    return (he_edge){i < q->waiting ? q->queue[(q->head + i) % q->room] : HE_NONE};
+}
+
 /* Would marks forbid the flip of an interior edge? */
 static bool is_held(const flipper *q, he_edge e)
 {
@@ -49,17 +55,13 @@ static bool is_held(const flipper *q, he_edge e)
                          he_is_locked(&q->marks, HE_FACE, he_face_of(q->m, he_twin(h)).i));
 }
 
-static bool is_triangle(const he_mesh *m, he_halfedge h)
-{
-    return he_next(m, he_next(m, he_next(m, h))).i == h.i;
-}
-
 /* Should the edge be flipped, if it can be? */
 static bool is_crooked(const flipper *q, he_edge e)
 {
     const he_mesh *m = q->m;
     he_halfedge h = he_edge_halfedge(e, 0), t = he_twin(h);
-    if (he_is_boundary_edge(m, e) || is_held(q, e) || !is_triangle(m, h) || !is_triangle(m, t)) {
+    if (he_is_boundary_edge(m, e) || is_held(q, e) || !he_is_triangle(m, h) ||
+        !he_is_triangle(m, t)) {
         return false;
     }
     double alpha = he_corner_angle(m, he_prev(m, h)), beta = he_corner_angle(m, he_prev(m, t));
@@ -123,6 +125,7 @@ static he_status empty_queue(flipper *q, he_error *err)
             return he_fail_plain(err, HE_LIMIT, "more than %llu steps, after %zu flips",
                                  (unsigned long long)q->limit, q->flips.count);
         }
+        he_prefetch_coming(q->m, waiting_at(q, 2), waiting_at(q, 4));
         if (is_crooked(q, e)) {
             status = flip(q, e, err);
         }

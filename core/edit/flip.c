@@ -40,9 +40,8 @@ static he_status check_marks(const he_mesh *m, he_edge e, he_error *err)
 static he_status check(const he_mesh *m, he_edge e, he_error *err)
 {
     he_prefetch_links(m, he_edge_halfedge(e, 0));
-    he_status status = he_mesh_require(m, HE_EDGE, e.i, err);
-    if (status != HE_OK) {
-        return status;
+    if (!he_edge_is_live(m, e)) {
+        return he_mesh_require(m, HE_EDGE, e.i, err);
     }
     he_prefetch_about(m, e);
     if (he_is_boundary_edge(m, e)) {
@@ -54,24 +53,26 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
         return he_fail(err, HE_SAME_ENDS, HE_EDGE, e.i,
                        "both ends of edge %u would come to vertex %u", e.i, c.i);
     }
-    status = check_end(m, h, err);
+    he_status status = check_end(m, h, err);
     if (status == HE_OK) {
         status = check_end(m, t, err);
     }
     if (status != HE_OK) {
         return status;
     }
-    he_halfedge joined = he_find_halfedge_from(m, he_next(m, he_next(m, h)), d);
+    /* From here on the search turns both ways about c, and has both sides of face(h) at hand. */
+    he_halfedge joined = he_find_halfedge_from(m, he_twin(he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
                        "edge %u already joins vertices %u and %u", he_edge_of(joined).i, c.i, d.i);
     }
     he_face f = he_face_of(m, h), g = he_face_of(m, t);
-    if (he_face_corner(m, f, d).i != HE_NONE) {
+    /* The corners of a triangle are a, b and its own third. */
+    if (!he_is_triangle(m, h) && he_face_corner(m, f, d).i != HE_NONE) {
         return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i, "face %u would pass vertex %u twice",
                        f.i, d.i);
     }
-    if (he_face_corner(m, g, c).i != HE_NONE) {
+    if (!he_is_triangle(m, t) && he_face_corner(m, g, c).i != HE_NONE) {
         return he_fail(err, HE_REPEATED_CORNER, HE_FACE, g.i, "face %u would pass vertex %u twice",
                        g.i, c.i);
     }

@@ -7,9 +7,8 @@
 static he_status check(const he_mesh *m, he_edge e, double t, he_error *err)
 {
     he_prefetch_links(m, he_edge_halfedge(e, 0));
-    he_status status = he_mesh_require(m, HE_EDGE, e.i, err);
-    if (status != HE_OK) {
-        return status;
+    if (!he_edge_is_live(m, e)) {
+        return he_mesh_require(m, HE_EDGE, e.i, err);
     }
     he_prefetch_about(m, e);
     he_prefetch_ends(m, e);

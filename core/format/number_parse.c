@@ -30,6 +30,20 @@ static uint32_t eight_digits(uint64_t word)
     return (uint32_t)((first + second) >> 32);
 }
 
+/* The digits at the start of a word, fewer than eight: their number, 0 where there are none or
+ * more. Adding makes the top bit of the first byte that is no digit; what it carries goes beyond.
+ */
+static size_t few_digits(uint64_t word, uint64_t *value)
+{
+    uint64_t digits = word ^ 0x3030303030303030;
+    uint64_t others = ((digits + 0x7676767676767676) | digits) & 0x8080808080808080;
+    size_t count = others == 0 ? 0 : (size_t)__builtin_ctzll(others) / 8;
+    if (count > 0) {
+        *value = eight_digits((digits << (64 - 8 * count)) + 0x3030303030303030);
+    }
+    return count;
+}
+
 /* Read digits onto *value, which may wrap; the caller counts them. */
 static const char *read_digits(const char *p, const char *end, uint64_t *value)
 {
@@ -260,6 +274,15 @@ he_status he_double_parse(const char *begin, const char *end, he_grammar grammar
 
 he_status he_u64_parse(const char *begin, const char *end, uint64_t *value, size_t *used)
 {
+    if (end - begin >= 8) { /* as most indices have */
+        uint64_t word;
+        memcpy(&word, begin, 8);
+        size_t count = few_digits(word, value);
+        if (count > 0) {
+            *used = count;
+            return HE_OK;
+        }
+    }
     const char *p = begin;
     uint64_t v = 0;
     bool fits = true;

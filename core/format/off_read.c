@@ -372,10 +372,62 @@ static he_status read_corner(off *o, const he_line *line, const char **p, he_err
     return he_soup_add_corner(&o->into->soup, (uint32_t)value, err);
 }
 
+/* The numbers of a line as most are, whole and with one blank between them; 0 where any are not, or
+ * more than `room`. */
+static size_t plain_numbers(const char *p, const char *end, uint32_t *numbers, size_t room)
+{
+    size_t count = 0;
+    while (p < end) {
+        uint64_t value = 0;
+        size_t used = 0;
+        if (count == room || he_u64_parse(p, end, &value, &used) != HE_OK || value > UINT32_MAX) {
+            return 0;
+        }
+        p += used;
+        if (p < end && *p++ != ' ') {
+            return 0;
+        }
+        numbers[count++] = (uint32_t)value;
+    }
+    return count;
+}
+
+/* A face that is a plain line of its own. False, and nothing done, where there is more to say of
+ * it: then it is read number by number. */
+static bool read_plain_face(off *o, const he_line *line, const char **p, he_status *status,
+                            he_error *err)
+{
+    enum { ROOM = 16 };
+    he_soup *soup = &o->into->soup;
+    uint32_t numbers[ROOM];
+    size_t count = plain_numbers(*p, line->end, numbers, ROOM);
+    bool plain = count > 1 && numbers[0] == count - 1 &&
+                 (soup->limits.corners == 0 || numbers[0] <= soup->limits.corners);
+    for (size_t i = 1; i < count && plain; i++) {
+        plain = numbers[i] < o->vertices;
+    }
+    he_status added = plain ? he_soup_add_face(soup, numbers + 1, count - 1, err) : HE_LIMIT;
+    if (added == HE_LIMIT) {
+        return false;
+    }
+    if (added == HE_OK) {
+        added = he_places_add(&o->into->faces, (uint32_t)soup->face_count - 1, line->number, err);
+    }
+    if (soup->face_count == o->faces) {
+        o->section = DONE;
+    }
+    *p = line->end;
+    *status = he_line_locate(added, line, err);
+    return true;
+}
+
 static he_status read_face(off *o, const he_line *line, const char **p, he_error *err)
 {
     he_soup *soup = &o->into->soup;
     he_status status = HE_OK;
+    if (!o->open && read_plain_face(o, line, p, &status, err)) {
+        return status;
+    }
     if (!o->open) {
         status = read_count(line, p, "corners", soup->limits.corners, &o->missing, err);
         if (status == HE_OK) {

@@ -381,12 +381,58 @@ static he_status take_property(ply *o, const unsigned char **p, const unsigned c
     return status;
 }
 
+/* Few enough for each to be read here, whatever count a byte can hold. */
+enum { PLAIN_CORNERS = 16 };
+
+/* Is a row nothing but a list of corners, with a byte to count them and 32 bits each, as nearly
+ * every file has it? */
+static bool is_plain(const ply *o)
+{
+    const he_ply_element *e = o->rows.element;
+    const he_ply_property *property = &o->header.properties[e->first];
+    return e->properties == 1 && he_ply_rows_role(&o->rows, 0) == HE_PLY_CORNERS &&
+           property->count == HE_PLY_UINT8 &&
+           (property->type == HE_PLY_INT32 || property->type == HE_PLY_UINT32);
+}
+
+/* Whole rows of that kind, up to one that is out of the ordinary or not all there. */
+static he_status take_plain(ply *o, const unsigned char **p, const unsigned char *end,
+                            he_error *err)
+{
+    uint32_t corners[PLAIN_CORNERS];
+    he_status status = HE_OK;
+    while (o->rows.left > 0 && *p < end && status == HE_OK) {
+        const unsigned char *row = *p;
+        size_t count = row[0], size = 1 + count * sizeof *corners;
+        uint64_t highest = 0;
+        if (count > PLAIN_CORNERS || size > (size_t)(end - row)) {
+            break;
+        }
+        for (size_t i = 0; i < count; i++) {
+            corners[i] = bytes_32(row + 1 + i * sizeof *corners, o->big);
+            highest = corners[i] > highest ? corners[i] : highest;
+        }
+        o->rows.at = o->offset;
+        if (highest > INT32_MAX || highest >= o->rows.vertices ||
+            !he_ply_rows_face(&o->rows, corners, count, &status, err)) {
+            break;
+        }
+        *p += size;
+        o->offset += size;
+    }
+    return status;
+}
+
 static he_status take_lists(ply *o, const unsigned char **p, const unsigned char *end,
                             he_error *err)
 {
     he_status status = HE_OK;
     while (o->rows.left > 0 && status == HE_OK && (*p < end || o->property > 0)) {
         if (!o->in_row) {
+            status = is_plain(o) ? take_plain(o, p, end, err) : HE_OK;
+            if (o->rows.left == 0 || *p == end || status != HE_OK) {
+                break;
+            }
             o->rows.at = o->row_at = o->offset;
             o->in_row = true;
             status = he_ply_rows_begin(&o->rows, err);

@@ -364,6 +364,25 @@ he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int64_t count, he
     return HE_OK;
 }
 
+bool he_ply_rows_face(he_ply_rows *rows, const uint32_t *vertices, size_t count, he_status *status,
+                      he_error *err)
+{
+    he_soup *soup = &rows->into->soup;
+    he_status added = HE_LIMIT;
+    if (soup->limits.corners == 0 || count <= soup->limits.corners) {
+        added = he_soup_add_face(soup, vertices, count, err);
+    }
+    if (added == HE_LIMIT) {
+        return false;
+    }
+    if (added == HE_OK) {
+        added = add_place(rows, &rows->into->faces, soup->face_count - 1, err);
+        rows->left--;
+    }
+    *status = at_place(rows, added, err);
+    return true;
+}
+
 static he_status add_to_strip(he_ply_rows *rows, uint32_t vertex, he_error *err)
 {
     uint32_t *strip = rows->strip;

@@ -76,6 +76,11 @@ HE_NODISCARD he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int6
  * are not in its type, names no vertex. */
 HE_NODISCARD he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value,
                                             he_error *err);
+/* All of a row that is nothing but a list of corners, `vertices` of this file. False, and nothing
+ * done, where a limit is reached: the parts tell by which value. Else *status is HE_OK or
+ * HE_NO_MEMORY. */
+bool he_ply_rows_face(he_ply_rows *rows, const uint32_t *vertices, size_t count, he_status *status,
+                      he_error *err);
 /* HE_NOT_FINITE, HE_LIMIT, HE_NO_MEMORY. */
 HE_NODISCARD he_status he_ply_rows_end(he_ply_rows *rows, he_error *err);
 

@@ -110,14 +110,14 @@ static void carry(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *rows,
     }
 }
 
-void he_carry_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t)
+void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t)
 {
     const uint32_t rows[2] = {a, b};
     const double weights[2] = {1 - t, t};
     carry(m, kind, to, rows, weights, 2, t < 1 ? a : b);
 }
 
-void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+void he_values_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {
         const he_column *column = m->c.columns[i];
@@ -138,7 +138,7 @@ void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, 
     }
 }
 
-void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
+void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
 {
     const uint32_t rows[2] = {gone, into};
     const double weights[2] = {1 - t, t};
@@ -152,7 +152,7 @@ void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, doub
     }
 }
 
-void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+void he_values_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {
         const he_column *column = m->c.columns[i];

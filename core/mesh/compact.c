@@ -11,92 +11,205 @@ void he_maps_clear(he_maps *maps)
     *maps = (he_maps){0};
 }
 
-/* Number the live rows of one table. */
-static uint32_t *map_rows(const he_mesh *m, he_kind kind)
+/* Sixty-four rows of a table: which of them live, and how many do before them. The new id of a row
+ * is a count of bits. Where links lead anywhere, tables of new ids would come from memory; these
+ * are an eighth as long and stay in the cache. */
+typedef struct block {
+    uint64_t rows;
+    uint32_t before;
+} block;
+
+enum { BLOCK_ROWS = 64 };
+
+typedef struct ranks {
+    block *vertices, *edges, *faces;
+} ranks;
+
+static size_t block_count(uint32_t issued)
 {
-    uint32_t issued = he_mesh_issued(m, kind), fresh = 0;
-    uint32_t *map = he_mem_array(NULL, issued, sizeof *map);
-    for (uint32_t i = 0; map != NULL && i < issued; i++) {
-        map[i] = he_mesh_is_live(m, kind, i) ? fresh++ : HE_NONE;
+    return (size_t)issued / BLOCK_ROWS + 1;
+}
+
+/* The live rows of a table: those whose `stride`-th link is not dead. */
+static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
+{
+    block *blocks = he_mem_array(NULL, block_count(issued), sizeof *blocks);
+    uint32_t live = 0;
+    for (size_t i = 0; blocks != NULL && i < block_count(issued); i++) {
+        size_t first = i * BLOCK_ROWS,
+               end = first + BLOCK_ROWS < issued ? first + BLOCK_ROWS : issued;
+        blocks[i] = (block){0, live};
+        for (size_t row = first; row < end; row++) {
+            uint64_t lives = links[row * stride] != HE_DEAD;
+            blocks[i].rows |= lives << (row - first);
+            live += (uint32_t)lives;
+        }
     }
-    return map;
+    return blocks;
 }
 
-static uint32_t map_halfedge(const he_maps *maps, uint32_t h)
+/* Bits that are set, counted in parallel in fields of 2, 4 and 8; the product adds those up. */
+static uint32_t count_bits(uint64_t bits)
 {
-    return h == HE_NONE ? HE_NONE : 2 * maps->edge[h >> 1] + (h & 1);
+    bits -= bits >> 1 & 0x5555555555555555u;
+    bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);
+    bits = (bits + (bits >> 4)) & 0x0F0F0F0F0F0F0F0Fu;
+    return (uint32_t)(bits * 0x0101010101010101u >> 56);
 }
 
-static he_status move_links(const he_content *from, const he_maps *maps, he_content *to,
+/* The new id of a live row. */
+static uint32_t rank(const block *blocks, uint32_t row)
+{
+    const block *at = &blocks[row / BLOCK_ROWS];
+    return at->before + count_bits(at->rows & (((uint64_t)1 << row % BLOCK_ROWS) - 1));
+}
+
+static uint32_t rank_halfedge(const block *edges, uint32_t h)
+{
+    return h == HE_NONE ? HE_NONE : 2 * rank(edges, h >> 1) + (h & 1);
+}
+
+/* Live rows one after another: `row` is the old id and `fresh` the new one. Bits are taken from the
+ * lowest up, so that which rows live is nothing to be guessed at. */
+typedef struct walk {
+    const block *blocks;
+    uint64_t left; /* of the block */
+    size_t at;
+    uint32_t row, fresh;
+} walk;
+
+static walk walk_block(const block *blocks, size_t at)
+{
+    return (walk){blocks, blocks[at].rows, at, 0, blocks[at].before - 1};
+}
+
+static bool walk_on(walk *w)
+{
+    if (w->left == 0) {
+        return false;
+    }
+    w->row = (uint32_t)(w->at * BLOCK_ROWS) + (uint32_t)__builtin_ctzll(w->left);
+    w->left &= w->left - 1;
+    w->fresh++;
+    return true;
+}
+
+static void move_vertices(const he_content *from, const ranks *r, size_t at, he_content *to)
+{
+    for (walk w = walk_block(r->vertices, at); walk_on(&w);) {
+        to->position[w.fresh] = from->position[w.row];
+        to->vertex_halfedge[w.fresh] = rank_halfedge(r->edges, from->vertex_halfedge[w.row]);
+    }
+}
+
+static void move_edges(const he_content *from, const ranks *r, size_t at, he_content *to)
+{
+    for (walk w = walk_block(r->edges, at); walk_on(&w);) {
+        for (uint32_t side = 0; side < 2; side++) {
+            uint32_t h = 2 * w.row + side, fresh = 2 * w.fresh + side, face = from->face[h];
+            to->next[fresh] = rank_halfedge(r->edges, from->next[h]);
+            to->prev[fresh] = rank_halfedge(r->edges, from->prev[h]);
+            to->origin[fresh] = rank(r->vertices, from->origin[h]);
+            to->face[fresh] = face == HE_NONE ? HE_NONE : rank(r->faces, face);
+        }
+    }
+}
+
+static void move_faces(const he_content *from, const ranks *r, size_t at, he_content *to)
+{
+    for (walk w = walk_block(r->faces, at); walk_on(&w);) {
+        to->face_halfedge[w.fresh] = rank_halfedge(r->edges, from->face_halfedge[w.row]);
+    }
+}
+
+static he_status move_table(const he_content *from, const ranks *r, uint32_t issued, he_content *to,
+                            void (*move)(const he_content *from, const ranks *r, size_t at,
+                                         he_content *to),
                             he_watch *watch, he_error *err)
 {
-    he_status status = he_watch_phase(watch, "moving vertices", 0.2, err);
-    for (uint32_t v = 0; v < from->vertices.issued && status == HE_OK; v++) {
-        status = he_watch_at(watch, v, from->vertices.issued, err);
-        if (maps->vertex[v] != HE_NONE) {
-            to->position[maps->vertex[v]] = from->position[v];
-            to->vertex_halfedge[maps->vertex[v]] = map_halfedge(maps, from->vertex_halfedge[v]);
-        }
-    }
-    if (status == HE_OK) {
-        status = he_watch_phase(watch, "moving edges", 0.8, err);
-    }
-    for (uint32_t h = 0; h < 2 * from->edges.issued && status == HE_OK; h++) {
-        status = he_watch_at(watch, h, 2 * (uint64_t)from->edges.issued, err);
-        if (maps->edge[h >> 1] != HE_NONE) {
-            uint32_t fresh = map_halfedge(maps, h), face = from->face[h];
-            to->next[fresh] = map_halfedge(maps, from->next[h]);
-            to->prev[fresh] = map_halfedge(maps, from->prev[h]);
-            to->origin[fresh] = maps->vertex[from->origin[h]];
-            to->face[fresh] = face == HE_NONE ? HE_NONE : maps->face[face];
-        }
-    }
-    for (uint32_t f = 0; f < from->faces.issued && status == HE_OK; f++) {
-        if (maps->face[f] != HE_NONE) {
-            to->face_halfedge[maps->face[f]] = map_halfedge(maps, from->face_halfedge[f]);
-        }
+    he_status status = HE_OK;
+    for (size_t at = 0; at < block_count(issued) && status == HE_OK; at++) {
+        status = he_watch_at(watch, at * BLOCK_ROWS, issued, err);
+        move(from, r, at, to);
     }
     return status;
 }
 
-static uint32_t map_row(const he_maps *maps, he_kind domain, size_t row)
+static he_status move_links(const he_content *from, const ranks *r, he_content *to, he_watch *watch,
+                            he_error *err)
 {
-    switch (domain) {
+    he_status status = he_watch_phase(watch, "moving vertices", 0.2, err);
+    if (status == HE_OK) {
+        status = move_table(from, r, from->vertices.issued, to, move_vertices, watch, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(watch, "moving edges", 0.8, err);
+    }
+    if (status == HE_OK) {
+        status = move_table(from, r, from->edges.issued, to, move_edges, watch, err);
+    }
+    return status != HE_OK ? status
+                           : move_table(from, r, from->faces.issued, to, move_faces, NULL, err);
+}
+
+static void move_row(const he_column *from, size_t row, he_column *to, size_t fresh)
+{
+    if (row < from->rows) {
+        memcpy(he_column_row(to, fresh), he_column_row(from, row), from->row_bytes);
+    }
+}
+
+/* `per` rows of the column for each of the table. */
+static void move_rows(const he_column *from, const block *blocks, uint32_t issued, uint32_t per,
+                      he_column *to)
+{
+    for (size_t at = 0; at < block_count(issued); at++) {
+        for (walk w = walk_block(blocks, at); walk_on(&w);) {
+            for (uint32_t i = 0; i < per; i++) {
+                move_row(from, per * (size_t)w.row + i, to, per * (size_t)w.fresh + i);
+            }
+        }
+    }
+}
+
+static void move_values(const he_content *content, const he_column *from, const ranks *r,
+                        he_column *to)
+{
+    switch (from->domain) {
     case HE_VERTEX:
-        return maps->vertex[row];
+        move_rows(from, r->vertices, content->vertices.issued, 1, to);
+        break;
     case HE_HALFEDGE:
-        return maps->edge[row >> 1] == HE_NONE ? HE_NONE : map_halfedge(maps, (uint32_t)row);
+        move_rows(from, r->edges, content->edges.issued, 2, to);
+        break;
     case HE_EDGE:
-        return maps->edge[row];
+        move_rows(from, r->edges, content->edges.issued, 1, to);
+        break;
     case HE_FACE:
-        return maps->face[row];
+        move_rows(from, r->faces, content->faces.issued, 1, to);
+        break;
     case HE_MESH_KIND:
+        move_row(from, 0, to, 0);
+        break;
     case HE_KIND_COUNT:
         break;
     }
-    return (uint32_t)row;
 }
 
-static he_status move_column(const he_column *from, const he_maps *maps, size_t rows,
-                             he_column **out, he_error *err)
+static he_status move_column(const he_content *content, const he_column *from, const ranks *r,
+                             size_t rows, he_column **out, he_error *err)
 {
     he_column *to;
     he_status status = he_column_like(from, rows, &to, err);
     if (status != HE_OK) {
         return status;
     }
-    for (size_t row = 0; row < from->rows; row++) {
-        uint32_t fresh = map_row(maps, from->domain, row);
-        if (fresh != HE_NONE) {
-            memcpy(he_column_row(to, fresh), he_column_row(from, row), from->row_bytes);
-        }
-    }
+    move_values(content, from, r, to);
     *out = to;
     return HE_OK;
 }
 
-static he_status move_columns(const he_content *from, const he_maps *maps, he_content *to,
-                              he_error *err)
+static he_status move_columns(const he_content *from, const ranks *r, he_content *to, he_error *err)
 {
     if (from->column_count == 0) {
         return HE_OK;
@@ -111,49 +224,80 @@ static he_status move_columns(const he_content *from, const he_maps *maps, he_co
         const he_column *column = from->columns[i];
         if (column != NULL) {
             size_t rows = he_content_issued(to, column->domain);
-            status = move_column(column, maps, rows, &to->columns[to->column_count], err);
+            status = move_column(from, column, r, rows, &to->columns[to->column_count], err);
             to->column_count += status == HE_OK;
         }
     }
     return status;
 }
 
-he_status he_compact(he_mesh *mesh, he_maps *out, he_error *err)
+static he_status make_room(const he_content *from, he_content *to, he_error *err)
 {
-    const he_content *from = &mesh->c;
-    he_maps maps = {.vertex = map_rows(mesh, HE_VERTEX),
-                    .edge = map_rows(mesh, HE_EDGE),
-                    .face = map_rows(mesh, HE_FACE),
-                    .vertices = from->vertices.issued,
-                    .edges = from->edges.issued,
-                    .faces = from->faces.issued};
-    he_mesh *fresh = he_mesh_new();
-    he_status status = HE_OK;
-    if (maps.vertex == NULL || maps.edge == NULL || maps.face == NULL || fresh == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to compact the mesh");
-        goto out;
-    }
-    he_content *to = &fresh->c;
-    status = he_content_reserve_vertices(to, from->vertices.live, err);
+    he_status status = he_content_reserve_vertices(to, from->vertices.live, err);
     if (status == HE_OK) {
         status = he_content_reserve_edges(to, from->edges.live, err);
     }
     if (status == HE_OK) {
         status = he_content_reserve_faces(to, from->faces.live, err);
     }
-    if (status != HE_OK) {
+    if (status == HE_OK) {
+        to->vertices.issued = to->vertices.live = from->vertices.live;
+        to->edges.issued = to->edges.live = from->edges.live;
+        to->faces.issued = to->faces.live = from->faces.live;
+        to->boundary_halfedges = from->boundary_halfedges;
+    }
+    return status;
+}
+
+/* NULL when memory is out. */
+static uint32_t *map_rows(const block *blocks, uint32_t issued)
+{
+    uint32_t *map = he_mem_array(NULL, issued, sizeof *map);
+    if (map != NULL && issued > 0) {
+        memset(map, 0xFF, issued * sizeof *map); /* HE_NONE */
+        for (size_t at = 0; at < block_count(issued); at++) {
+            for (walk w = walk_block(blocks, at); walk_on(&w);) {
+                map[w.row] = w.fresh;
+            }
+        }
+    }
+    return map;
+}
+
+static bool make_maps(const he_content *from, const ranks *r, he_maps *maps)
+{
+    *maps = (he_maps){.vertex = map_rows(r->vertices, from->vertices.issued),
+                      .edge = map_rows(r->edges, from->edges.issued),
+                      .face = map_rows(r->faces, from->faces.issued),
+                      .vertices = from->vertices.issued,
+                      .edges = from->edges.issued,
+                      .faces = from->faces.issued};
+    return maps->vertex != NULL && maps->edge != NULL && maps->face != NULL;
+}
+
+he_status he_compact(he_mesh *mesh, he_maps *out, he_error *err)
+{
+    const he_content *from = &mesh->c;
+    ranks r = {.vertices = rank_rows(from->vertex_halfedge, 1, from->vertices.issued),
+               .edges = rank_rows(from->next, 2, from->edges.issued),
+               .faces = rank_rows(from->face_halfedge, 1, from->faces.issued)};
+    he_maps maps = {0};
+    he_mesh *fresh = he_mesh_new();
+    he_status status = HE_OK;
+    if (r.vertices == NULL || r.edges == NULL || r.faces == NULL || fresh == NULL ||
+        (out != NULL && !make_maps(from, &r, &maps))) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to compact the mesh");
         goto out;
     }
-    to->vertices.issued = to->vertices.live = from->vertices.live;
-    to->edges.issued = to->edges.live = from->edges.live;
-    to->faces.issued = to->faces.live = from->faces.live;
-    to->boundary_halfedges = from->boundary_halfedges;
-    status = move_links(from, &maps, to, mesh->watch, err);
+    status = make_room(from, &fresh->c, err);
+    if (status == HE_OK) {
+        status = move_links(from, &r, &fresh->c, mesh->watch, err);
+    }
     if (status == HE_OK) {
         status = he_watch_phase(mesh->watch, "moving attributes", 1, err);
     }
     if (status == HE_OK) {
-        status = move_columns(from, &maps, to, err);
+        status = move_columns(from, &r, &fresh->c, err);
     }
     if (status == HE_OK) {
         status = he_mesh_replace(mesh, fresh, HE_RENUMBERS, err);
@@ -166,6 +310,9 @@ he_status he_compact(he_mesh *mesh, he_maps *out, he_error *err)
         }
     }
 out:
+    he_mem_free(r.vertices);
+    he_mem_free(r.edges);
+    he_mem_free(r.faces);
     he_maps_clear(&maps);
     he_mesh_free(fresh);
     return status;

@@ -237,21 +237,3 @@ size_t he_content_issued(const he_content *c, he_kind domain)
     }
     return 1;
 }
-
-void he_content_clear_vertex(he_content *c, uint32_t v)
-{
-    c->vertex_halfedge[v] = HE_DEAD;
-    c->position[v] = (he_vec3){0, 0, 0};
-}
-
-void he_content_clear_edge(he_content *c, uint32_t e)
-{
-    for (uint32_t h = 2 * e; h <= 2 * e + 1; h++) {
-        c->next[h] = c->prev[h] = c->origin[h] = c->face[h] = HE_DEAD;
-    }
-}
-
-void he_content_clear_face(he_content *c, uint32_t f)
-{
-    c->face_halfedge[f] = HE_DEAD;
-}

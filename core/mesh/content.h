@@ -18,11 +18,6 @@ HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_e
 /* The table of a domain's rows, NULL for the mesh. Half-edge rows are twice the edges'. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
 
-/* Write the dead value in a row of a link table: what a row holds when it is issued. */
-void he_content_clear_vertex(he_content *c, uint32_t v);
-void he_content_clear_edge(he_content *c, uint32_t e);
-void he_content_clear_face(he_content *c, uint32_t f);
-
 /* Apply records `from` and later of a delta, forwards or (`undo`) backwards. Columns and contents
  * are exchanged with `objects`, indexed like the delta's own; NULL when it has none. */
 void he_content_apply(he_content *c, const he_delta *delta, size_t from, bool undo, void **objects);

@@ -1,7 +1,7 @@
 /* What a delta does to a content: he_content_apply, _issue and _withdraw of content.h. */
 #include "mesh/content.h"
 
-#include "mesh/delta.h"
+#include "mesh/write.h"
 
 #include <assert.h>
 #include <string.h>
@@ -113,13 +113,13 @@ he_status he_content_issue(he_content *c, const uint32_t issued[HE_KIND_COUNT], 
         return status;
     }
     for (; c->vertices.issued < issued[HE_VERTEX]; c->vertices.issued++) {
-        he_content_clear_vertex(c, c->vertices.issued);
+        he_clear_vertex(c, c->vertices.issued);
     }
     for (; c->edges.issued < issued[HE_EDGE]; c->edges.issued++) {
-        he_content_clear_edge(c, c->edges.issued);
+        he_clear_edge(c, c->edges.issued);
     }
     for (; c->faces.issued < issued[HE_FACE]; c->faces.issued++) {
-        he_content_clear_face(c, c->faces.issued);
+        he_clear_face(c, c->faces.issued);
     }
     for (size_t i = 0; i < c->column_count && status == HE_OK; i++) {
         he_column *column = c->columns[i];

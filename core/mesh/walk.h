@@ -102,6 +102,15 @@ static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
     }
 }
 
+/* For whoever edits one edge after another and knows which come: `next` at once after this edit,
+ * `soon` after that. The waiting for them happens during the edits before. */
+static inline void he_prefetch_coming(const he_mesh *m, he_edge next, he_edge soon)
+{
+    he_prefetch_links(m, he_edge_halfedge(soon, 0));
+    he_prefetch_about(m, next);
+    he_prefetch_ends(m, next);
+}
+
 static inline bool he_is_none(uint32_t id)
 {
     return id == HE_NONE;
@@ -135,6 +144,12 @@ static inline bool he_edge_is_live(const he_mesh *m, he_edge e)
 static inline bool he_face_is_live(const he_mesh *m, he_face f)
 {
     return f.i < m->c.faces.issued && m->c.face_halfedge[f.i] != HE_DEAD;
+}
+
+/* Is there a triangle to the left of h? */
+static inline bool he_is_triangle(const he_mesh *m, he_halfedge h)
+{
+    return !he_is_boundary_halfedge(m, h) && m->c.next[m->c.next[m->c.next[h.i]]] == h.i;
 }
 
 /* Edges at a vertex; linear in the answer. */

@@ -8,8 +8,6 @@ static size_t row_words(const he_column *column)
     return (column->row_bytes + 3u) / 4u;
 }
 
-enum { POSITION_WORDS = sizeof(he_vec3) / 4 };
-
 static uint32_t word_of(const void *row, size_t row_bytes, size_t word)
 {
     uint32_t value = 0;
@@ -29,8 +27,6 @@ static size_t column_words(const he_mesh *m, he_kind domain)
     return words;
 }
 
-/* Every record COMMIT can make: each link of a new or dying row once more than it has links, since
- * an edit may write a link twice. */
 static size_t records_needed(const he_mesh *m, const he_need *need)
 {
     size_t vertex = column_words(m, HE_VERTEX), face = column_words(m, HE_FACE);
@@ -39,8 +35,9 @@ static size_t records_needed(const he_mesh *m, const he_need *need)
     size_t vertices = need->vertices + need->deleted_vertices;
     size_t edges = need->edges + need->deleted_edges;
     size_t faces = need->faces + need->deleted_faces;
-    return vertices * (2 + POSITION_WORDS + vertex) + edges * (16 + edge) + faces * (2 + face) +
-           need->links + need->positions * POSITION_WORDS + need->attributes * any + need->lineage;
+    return vertices * (HE_VERTEX_RECORDS + vertex) + edges * (HE_EDGE_RECORDS + edge) +
+           faces * (HE_FACE_RECORDS + face) + need->links + need->positions * HE_POSITION_RECORDS +
+           need->attributes * any + need->lineage;
 }
 
 static he_status reserve_column(he_column *column, size_t issued, size_t extra, he_error *err)
@@ -82,30 +79,30 @@ static he_status check_ids(he_kind kind, uint32_t issued, uint32_t extra, he_err
                          he_kind_plural(kind), issued, HE_MAX_ROWS);
 }
 
-he_status he_reserve(he_mesh *m, he_need need, he_error *err)
+he_status he_reserve_more(he_mesh *m, const he_need *need, he_error *err)
 {
     he_content *c = &m->c;
-    he_status status = check_ids(HE_VERTEX, c->vertices.issued, need.vertices, err);
+    he_status status = check_ids(HE_VERTEX, c->vertices.issued, need->vertices, err);
     if (status == HE_OK) {
-        status = check_ids(HE_EDGE, c->edges.issued, need.edges, err);
+        status = check_ids(HE_EDGE, c->edges.issued, need->edges, err);
     }
     if (status == HE_OK) {
-        status = check_ids(HE_FACE, c->faces.issued, need.faces, err);
+        status = check_ids(HE_FACE, c->faces.issued, need->faces, err);
     }
     if (status == HE_OK) {
-        status = he_content_reserve_vertices(c, (size_t)c->vertices.issued + need.vertices, err);
+        status = he_content_reserve_vertices(c, (size_t)c->vertices.issued + need->vertices, err);
     }
     if (status == HE_OK) {
-        status = he_content_reserve_edges(c, (size_t)c->edges.issued + need.edges, err);
+        status = he_content_reserve_edges(c, (size_t)c->edges.issued + need->edges, err);
     }
     if (status == HE_OK) {
-        status = he_content_reserve_faces(c, (size_t)c->faces.issued + need.faces, err);
+        status = he_content_reserve_faces(c, (size_t)c->faces.issued + need->faces, err);
     }
     if (status == HE_OK && c->column_count > 0) {
-        status = reserve_columns(m, &need, err);
+        status = reserve_columns(m, need, err);
     }
     if (status == HE_OK && m->delta != NULL) {
-        status = he_delta_reserve(m->delta, records_needed(m, &need), 0, err);
+        status = he_delta_reserve(m->delta, records_needed(m, need), 0, err);
     }
     return status;
 }
@@ -120,9 +117,9 @@ he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err)
     return status;
 }
 
-/* Overwrite one row, recording the words that differ. */
-static void set_row(he_mesh *m, uint32_t column, uint32_t row, unsigned char *stored,
-                    const void *value, size_t row_bytes)
+/* Record the words of a row that differ. */
+static void record_row(he_mesh *m, uint32_t column, uint32_t row, const void *stored,
+                       const void *value, size_t row_bytes)
 {
     for (size_t w = 0; 4 * w < row_bytes; w++) {
         uint32_t before = word_of(stored, row_bytes, w), after = word_of(value, row_bytes, w);
@@ -130,79 +127,32 @@ static void set_row(he_mesh *m, uint32_t column, uint32_t row, unsigned char *st
             he_record_word(m, column, (uint32_t)w, row, before, after);
         }
     }
-    memcpy(stored, value, row_bytes);
 }
 
-void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
+void he_record_position(he_mesh *m, he_vertex v, he_vec3 position)
 {
-    if (m->delta == NULL) {
-        m->c.position[v.i] = position;
-    } else {
-        set_row(m, HE_COL_POSITION, v.i, (unsigned char *)&m->c.position[v.i], &position,
-                sizeof position);
-    }
+    record_row(m, HE_COL_POSITION, v.i, &m->c.position[v.i], &position, sizeof position);
 }
 
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value)
 {
     he_column *column = m->c.columns[slot];
     assert(row < column->rows);
-    set_row(m, HE_COL_ATTRIBUTE + (uint32_t)slot, row, he_column_row(column, row), value,
-            column->row_bytes);
+    unsigned char *stored = he_column_row(column, row);
+    record_row(m, HE_COL_ATTRIBUTE + (uint32_t)slot, row, stored, value, column->row_bytes);
+    memcpy(stored, value, column->row_bytes);
 }
 
-/* Issue default rows in every column of a domain; he_reserve made room. */
-static void issue_rows(he_mesh *m, he_kind domain, size_t rows)
+void he_issue_values(he_mesh *m)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {
         he_column *column = m->c.columns[i];
-        if (column != NULL && column->domain == domain) {
+        size_t rows = column == NULL ? 0 : he_content_issued(&m->c, column->domain);
+        for (; column != NULL && column->rows < rows; column->rows++) {
             assert(rows <= column->capacity);
-            for (; column->rows < rows; column->rows++) {
-                memcpy(he_column_row(column, column->rows), column->fallback, column->row_bytes);
-            }
+            memcpy(he_column_row(column, column->rows), column->fallback, column->row_bytes);
         }
     }
-}
-
-he_vertex he_new_vertex(he_mesh *m)
-{
-    he_content *c = &m->c;
-    assert(c->vertices.issued < c->vertices.capacity);
-    uint32_t v = c->vertices.issued++;
-    c->vertices.live++;
-    he_content_clear_vertex(c, v);
-    if (c->column_count > 0) {
-        issue_rows(m, HE_VERTEX, c->vertices.issued);
-    }
-    return (he_vertex){v};
-}
-
-he_edge he_new_edge(he_mesh *m)
-{
-    he_content *c = &m->c;
-    assert(c->edges.issued < c->edges.capacity);
-    uint32_t e = c->edges.issued++;
-    c->edges.live++;
-    he_content_clear_edge(c, e);
-    if (c->column_count > 0) {
-        issue_rows(m, HE_EDGE, c->edges.issued);
-        issue_rows(m, HE_HALFEDGE, 2 * (size_t)c->edges.issued);
-    }
-    return (he_edge){e};
-}
-
-he_face he_new_face(he_mesh *m)
-{
-    he_content *c = &m->c;
-    assert(c->faces.issued < c->faces.capacity);
-    uint32_t f = c->faces.issued++;
-    c->faces.live++;
-    he_content_clear_face(c, f);
-    if (c->column_count > 0) {
-        issue_rows(m, HE_FACE, c->faces.issued);
-    }
-    return (he_face){f};
 }
 
 static void reset_attributes(he_mesh *m, he_kind domain, uint32_t row)
@@ -228,10 +178,7 @@ void he_delete_edge(he_mesh *m, he_edge e)
     const he_halfedge dead = {HE_DEAD};
     for (unsigned side = 0; side < 2; side++) {
         he_halfedge h = he_edge_halfedge(e, side);
-        he_set_next(m, h, dead);
-        he_set_prev(m, h, dead);
-        he_set_origin(m, h, (he_vertex){HE_DEAD});
-        he_set_face(m, h, (he_face){HE_DEAD});
+        he_set_halfedge(m, h, dead, dead, (he_vertex){HE_DEAD}, (he_face){HE_DEAD});
         reset_attributes(m, HE_HALFEDGE, h.i);
     }
     reset_attributes(m, HE_EDGE, e.i);

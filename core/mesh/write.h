@@ -28,19 +28,63 @@ typedef struct he_need {
     size_t lineage;    /* parents and merges noted */
 } he_need;
 
-/* HE_NO_MEMORY or HE_IDS_EXHAUSTED leave the mesh as it was. */
-HE_NODISCARD he_status he_reserve(he_mesh *m, he_need need, he_error *err);
+/* Records COMMIT can make at most of a new or dying row, its attributes aside: each link once more
+ * than it has links, since an edit may write a link twice. */
+enum {
+    HE_POSITION_RECORDS = sizeof(he_vec3) / 4,
+    HE_VERTEX_RECORDS = 2 + HE_POSITION_RECORDS,
+    HE_EDGE_RECORDS = 16,
+    HE_FACE_RECORDS = 2
+};
 
-/* Recording needs no branch prediction to be wrong: one test, one store of 16 bytes. */
-static inline void he_record_word(he_mesh *m, uint32_t column, uint32_t word, uint32_t row,
-                                  uint32_t before, uint32_t after)
+/* HE_NO_MEMORY or HE_IDS_EXHAUSTED leave the mesh as it was. Most edits find room and go through
+ * no call. */
+HE_NODISCARD he_status he_reserve_more(he_mesh *m, const he_need *need, he_error *err);
+/* Is there room already, in a mesh without attributes? */
+static inline bool he_has_room(const he_mesh *m, const he_need *need)
+{
+    const he_content *c = &m->c;
+    const he_delta *d = m->delta;
+    size_t vertices = need->vertices + need->deleted_vertices;
+    size_t edges = need->edges + need->deleted_edges, faces = need->faces + need->deleted_faces;
+    return c->column_count == 0 && need->vertices <= c->vertices.capacity - c->vertices.issued &&
+           need->edges <= c->edges.capacity - c->edges.issued &&
+           need->faces <= c->faces.capacity - c->faces.issued &&
+           (d == NULL || HE_VERTEX_RECORDS * vertices + HE_EDGE_RECORDS * edges +
+                                 HE_FACE_RECORDS * faces + need->links +
+                                 HE_POSITION_RECORDS * need->positions + need->lineage <=
+                             d->capacity - d->count);
+}
+static inline he_status he_reserve(he_mesh *m, he_need need, he_error *err)
+{
+    return he_has_room(m, &need) ? HE_OK : he_reserve_more(m, &need, err);
+}
+
+/* Room for `count` records that the caller fills, NULL while nothing is recorded. Writes that
+ * belong together ask once: each count depends on the one before. */
+static inline he_record *he_record_take(he_mesh *m, size_t count)
 {
     he_delta *d = m->delta;
     if (d == NULL) {
-        return;
+        return NULL;
     }
-    assert(d->count < d->capacity);
-    d->records[d->count++] = (he_record){column & 0xFFFFFFu, word & 0xFFu, row, before, after};
+    assert(count <= d->capacity - d->count);
+    he_record *taken = d->records + d->count;
+    d->count += count;
+    return taken;
+}
+static inline he_record he_record_of(uint32_t column, uint32_t word, uint32_t row, uint32_t before,
+                                     uint32_t after)
+{
+    return (he_record){column & 0xFFFFFFu, word & 0xFFu, row, before, after};
+}
+static inline void he_record_word(he_mesh *m, uint32_t column, uint32_t word, uint32_t row,
+                                  uint32_t before, uint32_t after)
+{
+    he_record *r = he_record_take(m, 1);
+    if (r != NULL) {
+        *r = he_record_of(column, word, row, before, after);
+    }
 }
 
 static inline void he_set_next(he_mesh *m, he_halfedge h, he_halfedge next)
@@ -56,8 +100,13 @@ static inline void he_set_prev(he_mesh *m, he_halfedge h, he_halfedge prev)
 /* next(a) = b and prev(b) = a. */
 static inline void he_link(he_mesh *m, he_halfedge a, he_halfedge b)
 {
-    he_set_next(m, a, b);
-    he_set_prev(m, b, a);
+    he_record *r = he_record_take(m, 2);
+    if (r != NULL) {
+        r[0] = he_record_of(HE_COL_NEXT, 0, a.i, m->c.next[a.i], b.i);
+        r[1] = he_record_of(HE_COL_PREV, 0, b.i, m->c.prev[b.i], a.i);
+    }
+    m->c.next[a.i] = b.i;
+    m->c.prev[b.i] = a.i;
 }
 static inline void he_set_origin(he_mesh *m, he_halfedge h, he_vertex v)
 {
@@ -71,6 +120,25 @@ static inline void he_set_face(he_mesh *m, he_halfedge h, he_face f)
     m->c.boundary_halfedges += (uint32_t)(f.i == HE_NONE) - (uint32_t)(before == HE_NONE);
     m->c.face[h.i] = f.i;
 }
+/* All of a half-edge: of a new one, or the same dead value everywhere. */
+static inline void he_set_halfedge(he_mesh *m, he_halfedge h, he_halfedge next, he_halfedge prev,
+                                   he_vertex origin, he_face f)
+{
+    he_content *c = &m->c;
+    uint32_t before = c->face[h.i];
+    he_record *r = he_record_take(m, 4);
+    if (r != NULL) {
+        r[0] = he_record_of(HE_COL_NEXT, 0, h.i, c->next[h.i], next.i);
+        r[1] = he_record_of(HE_COL_PREV, 0, h.i, c->prev[h.i], prev.i);
+        r[2] = he_record_of(HE_COL_ORIGIN, 0, h.i, c->origin[h.i], origin.i);
+        r[3] = he_record_of(HE_COL_FACE, 0, h.i, before, f.i);
+    }
+    c->boundary_halfedges += (uint32_t)(f.i == HE_NONE) - (uint32_t)(before == HE_NONE);
+    c->next[h.i] = next.i;
+    c->prev[h.i] = prev.i;
+    c->origin[h.i] = origin.i;
+    c->face[h.i] = f.i;
+}
 static inline void he_set_vertex_halfedge(he_mesh *m, he_vertex v, he_halfedge h)
 {
     he_record_word(m, HE_COL_VERTEX_HALFEDGE, 0, v.i, m->c.vertex_halfedge[v.i], h.i);
@@ -81,15 +149,67 @@ static inline void he_set_face_halfedge(he_mesh *m, he_face f, he_halfedge h)
     he_record_word(m, HE_COL_FACE_HALFEDGE, 0, f.i, m->c.face_halfedge[f.i], h.i);
     m->c.face_halfedge[f.i] = h.i;
 }
-void he_set_position(he_mesh *m, he_vertex v, he_vec3 position);
+void he_record_position(he_mesh *m, he_vertex v, he_vec3 position);
+static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
+{
+    if (m->delta != NULL) {
+        he_record_position(m, v, position);
+    }
+    m->c.position[v.i] = position;
+}
 /* Copy row_bytes from `value` into a row of attribute slot i. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);
 
+/* The dead value in a row of a link table: what a row holds when it is issued. */
+static inline void he_clear_vertex(he_content *c, uint32_t v)
+{
+    c->position[v] = (he_vec3){0, 0, 0};
+    c->vertex_halfedge[v] = HE_DEAD;
+}
+static inline void he_clear_edge(he_content *c, uint32_t e)
+{
+    for (uint32_t h = 2 * e; h <= 2 * e + 1; h++) {
+        c->next[h] = c->prev[h] = c->origin[h] = c->face[h] = HE_DEAD;
+    }
+}
+static inline void he_clear_face(he_content *c, uint32_t f)
+{
+    c->face_halfedge[f] = HE_DEAD;
+}
+
+/* Issue default rows in every attribute, as far as its domain has; he_reserve made room. */
+void he_issue_values(he_mesh *m);
+static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
+{
+    assert(rows->issued < rows->capacity);
+    rows->live++;
+    uint32_t row = rows->issued++;
+    if (m->c.column_count > 0) {
+        he_issue_values(m);
+    }
+    return row;
+}
+
 /* A new row: dead in every link column until the caller has written them, attributes at their
  * default. he_reserve has made room. */
-he_vertex he_new_vertex(he_mesh *m);
-he_edge he_new_edge(he_mesh *m);
-he_face he_new_face(he_mesh *m);
+static inline he_vertex he_new_vertex(he_mesh *m)
+{
+    uint32_t v = he_issue(m, &m->c.vertices);
+    he_clear_vertex(&m->c, v);
+    return (he_vertex){v};
+}
+static inline he_edge he_new_edge(he_mesh *m)
+{
+    uint32_t e = he_issue(m, &m->c.edges);
+    he_clear_edge(&m->c, e);
+    return (he_edge){e};
+}
+static inline he_face he_new_face(he_mesh *m)
+{
+    uint32_t f = he_issue(m, &m->c.faces);
+    he_clear_face(&m->c, f);
+    return (he_face){f};
+}
 /* Write the dead value everywhere in the row. Nobody may still link to it. */
 void he_delete_vertex(he_mesh *m, he_vertex v);
 void he_delete_edge(he_mesh *m, he_edge e);
@@ -107,16 +227,42 @@ static inline void he_note_merged(he_mesh *m, he_kind kind, uint32_t gone, uint3
 
 /* Carry the attributes of every column in a domain by its rule. Kinds: HE_VERTEX, HE_HALFEDGE,
  * HE_EDGE, HE_FACE. `between` interpolates, copies a (t < 1) or b, or leaves the default;
- * `copy` copies unless the rule is default. Both are no-ops without such columns. */
-void he_carry_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t);
-void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
+ * `copy` copies unless the rule is default. Without such columns these do nothing, and cost one
+ * test where there are none at all. */
+void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t);
+static inline void he_carry_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b,
+                                    double t)
+{
+    if (m->c.column_count > 0) {
+        he_values_between(m, kind, to, a, b, t);
+    }
+}
+void he_values_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
+static inline void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+{
+    if (m->c.column_count > 0) {
+        he_values_copy(m, kind, to, from);
+    }
+}
 /* The mean of n rows; copies the first where the rule is copy. */
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
 /* A row that stays takes in one that goes: interpolated columns become linear from `gone` (t = 0)
  * to `into` (t = 1), all others keep the value of `into`. */
-void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t);
+void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t);
+static inline void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
+{
+    if (m->c.column_count > 0) {
+        he_values_merge(m, kind, into, gone, t);
+    }
+}
 /* The value itself, whatever the rule: a corner that changes its half-edge. */
-void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
+void he_values_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
+static inline void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+{
+    if (m->c.column_count > 0) {
+        he_values_move(m, kind, to, from);
+    }
+}
 /* Are there columns in this domain? Lets a hot edit skip the calls. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 

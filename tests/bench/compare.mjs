@@ -213,6 +213,9 @@ function report(row, part, figures) {
         target,
         says,
     ]);
+    if (says === 'falls short' && row.why) {
+        console.log(`    ${row.why}`);
+    }
 }
 
 async function runPart(part, folder) {

@@ -6,6 +6,7 @@
 #include "edit/split.h"
 #include "mesh/compact.h"
 #include "mesh/delta.h"
+#include "mesh/walk.h"
 
 #include <stdlib.h>
 
@@ -42,22 +43,29 @@ static he_halfedge *find_picks(const bench_side *side, const he_mesh *m, uint32_
     return found;
 }
 
-/* Tries the edit at `count` half-edges of a copy. With `record`, each delta is emptied after its
- * edit, as by a store that hands it on. */
-static he_mesh *run(bench_side *side, edit try, uint32_t count, bool record, bench_result *out)
+/* How edits are made: each delta is emptied after its edit, as by a store that hands it on; and the
+ * kernel is told which edges come, as by delaunay, which has a list of them. */
+enum { RECORDED = 1, OF_A_LIST = 2 };
+
+/* Tries the edit at `count` half-edges of a copy. */
+static he_mesh *run(bench_side *side, edit try, uint32_t count, unsigned how, bench_result *out)
 {
+    enum { NEXT = 2, SOON = 4 };
     he_mesh *m;
     he_halfedge *picks = find_picks(side, bench_mesh(side), &count);
     bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
     he_delta *delta = he_delta_new();
-    if (record) {
+    if (how & RECORDED) {
         he_mesh_record(m, delta);
     }
     uint64_t done = 0;
     double start = bench_seconds();
     for (uint32_t i = 0; i < count; i++) {
+        if ((how & OF_A_LIST) && i + SOON < count) {
+            he_prefetch_coming(m, he_edge_of(picks[i + NEXT]), he_edge_of(picks[i + SOON]));
+        }
         done += try(m, picks[i]);
-        if (record) {
+        if (how & RECORDED) {
             he_delta_empty(delta);
         }
     }
@@ -75,32 +83,47 @@ enum { SPLITS = 300000, FLIPS = 1000000, COLLAPSES = 300000 };
 
 static void time_split(bench_side *side, bench_result *out)
 {
-    he_mesh_free(run(side, split, SPLITS, false, out));
+    he_mesh_free(run(side, split, SPLITS, 0, out));
+}
+
+static void time_split_list(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, split, SPLITS, OF_A_LIST, out));
 }
 
 static void time_split_recorded(bench_side *side, bench_result *out)
 {
-    he_mesh_free(run(side, split, SPLITS, true, out));
+    he_mesh_free(run(side, split, SPLITS, RECORDED, out));
 }
 
 static void time_flip(bench_side *side, bench_result *out)
 {
-    he_mesh_free(run(side, flip, FLIPS, false, out));
+    he_mesh_free(run(side, flip, FLIPS, 0, out));
+}
+
+static void time_flip_list(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, flip, FLIPS, OF_A_LIST, out));
 }
 
 static void time_flip_recorded(bench_side *side, bench_result *out)
 {
-    he_mesh_free(run(side, flip, FLIPS, true, out));
+    he_mesh_free(run(side, flip, FLIPS, RECORDED, out));
 }
 
 static void time_collapse(bench_side *side, bench_result *out)
 {
-    he_mesh_free(run(side, collapse, COLLAPSES, false, out));
+    he_mesh_free(run(side, collapse, COLLAPSES, 0, out));
+}
+
+static void time_collapse_list(bench_side *side, bench_result *out)
+{
+    he_mesh_free(run(side, collapse, COLLAPSES, OF_A_LIST, out));
 }
 
 static void time_collapse_recorded(bench_side *side, bench_result *out)
 {
-    he_mesh_free(run(side, collapse, COLLAPSES, true, out));
+    he_mesh_free(run(side, collapse, COLLAPSES, RECORDED, out));
 }
 
 /* Ids change differently in every library: places name the vertices. */
@@ -122,7 +145,7 @@ static uint64_t place_hash(const he_mesh *m)
 
 static void compact(bench_side *side, bench_result *out)
 {
-    he_mesh *m = run(side, collapse, COLLAPSES, false, out);
+    he_mesh *m = run(side, collapse, COLLAPSES, 0, out);
     double start = bench_seconds();
     bench_require(he_compact(m, NULL, NULL));
     out->value = bench_seconds() - start;
@@ -132,8 +155,14 @@ static void compact(bench_side *side, bench_result *out)
     he_mesh_free(m);
 }
 
-const bench_row bench_edit_rows[] = {
-    {"split", time_split},       {"split_recorded", time_split_recorded},
-    {"flip", time_flip},         {"flip_recorded", time_flip_recorded},
-    {"collapse", time_collapse}, {"collapse_recorded", time_collapse_recorded},
-    {"compact", compact},        {NULL, NULL}};
+const bench_row bench_edit_rows[] = {{"split", time_split},
+                                     {"split_list", time_split_list},
+                                     {"split_recorded", time_split_recorded},
+                                     {"flip", time_flip},
+                                     {"flip_list", time_flip_list},
+                                     {"flip_recorded", time_flip_recorded},
+                                     {"collapse", time_collapse},
+                                     {"collapse_list", time_collapse_list},
+                                     {"collapse_recorded", time_collapse_recorded},
+                                     {"compact", compact},
+                                     {NULL, NULL}};
