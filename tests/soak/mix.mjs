@@ -217,7 +217,7 @@ export class Mix {
     // What hardly ever is refused, so that most lists are done as a whole.
     async batch(mesh) {
         const ops = [];
-        for (let i = this.below(200) + 2; i > 0; i--) {
+        for (let i = this.below(60) + 2; i > 0; i--) {
             ops.push(
                 this.below(20) === 0
                     ? { op: 'vertex_add', position: [i, 0, 0] }
