@@ -16,7 +16,6 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <microhttpd.h>
-#include <poll.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -448,15 +447,13 @@ static void detach(request *r)
     }
 }
 
-/* Is anybody left to answer? A client who has closed his side may still read; one who is gone is
- * known by the reset of the connection. */
+/* Is anybody left to answer? */
 static bool is_awaited(void *context, const char *phase, double done)
 {
     (void)phase;
     (void)done;
     const request *r = context;
-    struct pollfd watched = {.fd = r->socket == NULL ? -1 : r->socket->socket};
-    return poll(&watched, 1, 0) <= 0 || (watched.revents & (POLLERR | POLLHUP)) == 0;
+    return !srv_connection_is_reset(r->socket);
 }
 
 static void do_job(void *context)

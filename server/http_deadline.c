@@ -60,6 +60,12 @@ void srv_connection_moved(srv_connection *c, uint64_t bytes)
     }
 }
 
+bool srv_connection_is_reset(const srv_connection *connection)
+{
+    struct pollfd watched = {.fd = connection == NULL ? -1 : connection->socket};
+    return poll(&watched, 1, 0) > 0 && (watched.revents & (POLLERR | POLLHUP)) != 0;
+}
+
 static bool is_slow(const srv_deadline_options *o, uint64_t elapsed, uint64_t bytes)
 {
     if (o->min_rate == 0 || elapsed <= o->grace * SECOND) {

@@ -77,6 +77,9 @@ size_t srv_deadlines_count(const srv_deadlines *deadlines);
 /* Accept NULL. */
 void srv_connection_enter(srv_connection *connection, srv_stage stage, uint64_t now);
 void srv_connection_moved(srv_connection *connection, uint64_t bytes);
+/* Has the client gone without a goodbye? One who has only closed his side may still read. For its
+ * worker, or who works for the connection while that is suspended. */
+bool srv_connection_is_reset(const srv_connection *connection);
 
 /* Has this connection outstayed its stage at `now`? `crowded`: there are too many. Not for
  * answers. */
