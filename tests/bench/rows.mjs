@@ -37,10 +37,15 @@ const kernel = (name, order) => ({
 
 // A row `of a list` tells our kernel which edges come next, as delaunay does; the peers have no such
 // call. One edit after another waits for memory, and the links of a half-edge are in four arrays, so
-// that each place costs four lines where a record costs one. That is what makes traversal fast.
-const waits = (levels, lines) =>
-    `${levels} reads one after another, of some ${lines} lines: at 130 to 150 ns and 16 lines at a ` +
-    `time ${Math.round((Math.max(levels, lines / 16) * 140) / 10) * 10} ns an edit, unless the next is known`;
+// that each place costs four lines where a record costs one. That is what makes traversal fast. A
+// line takes 130 to 150 ns on the machine this was written on, and 16 are on their way at a time.
+const waits = (deep, lines) => {
+    const least = 10 * Math.round(14 * Math.max(deep, lines / 16));
+    return (
+        `waits for ${deep} reads, each of them for the one before, of about ${lines} lines: ` +
+        `${least} ns an edit at 140 ns a read, unless the next edit is known`
+    );
+};
 const whys = { split: waits(2, 26), flip: waits(4, 40), collapse: waits(4, 70) };
 
 // CGAL's collapses go elsewhere from some point on: cgal_edits.cc tells.
