@@ -10,16 +10,15 @@ void he_progressive_clear(he_progressive *progressive)
     *progressive = (he_progressive){0};
 }
 
-he_status he_progressive_new(const he_mesh *m, uint32_t faces, he_progressive *out, he_error *err)
+he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,
+                             he_progressive *out, he_error *err)
 {
     he_progressive made = {0};
-    const he_decimate_options options = {
-        .faces = faces, .max_error = INFINITY, .boundary_weight = HE_BOUNDARY_WEIGHT};
     he_decimated done;
     he_status status = he_mesh_copy(m, &made.base, err);
     if (status == HE_OK) {
         he_mesh_watch(made.base, m->watch);
-        status = he_decimation_run(made.base, &options, &made, &done, err);
+        status = he_decimation_run(made.base, options, &made, &done, err);
     }
     if (status != HE_OK) {
         he_progressive_clear(&made);
