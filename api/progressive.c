@@ -1,13 +1,16 @@
 /* GET .../progressive: a coarse mesh and the way back, made from a snapshot; see progressive_rows.h
- * for its bytes. It is made anew for each answer, and the same each time: nothing is kept. While it
- * is made, by as many threads as there are for long work, it takes about three times the mesh;
- * while it is sent, what is still to be sent. */
+ * for its bytes. It is made anew for each answer, and the same each time: what decimate did to a
+ * mesh is kept by the history, as the revision before. While it is made, by as many threads as
+ * there are for long work, it takes about three times the mesh; while it is sent, what is still to
+ * be sent. */
 #include "api/handlers.h"
 
+#include "api/hash.h"
 #include "api/progressive_rows.h"
 #include "query/geometry.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 static void free_progressive(void *stream)
@@ -21,21 +24,35 @@ static int64_t read_progressive(void *stream, char *buffer, size_t size)
     return (int64_t)api_progressive_read(stream, buffer, size);
 }
 
-/* Both parameters make another representation. */
-enum { REPRESENTATION = 64 };
+static he_decimate_options options_of(const api_exchange *x)
+{
+    return (he_decimate_options){.faces = (uint32_t)api_param_u64(x, "faces", 0),
+                                 .max_error = api_param_number(x, "max_error", INFINITY),
+                                 .boundary_weight =
+                                     api_param_number(x, "boundary_weight", HE_BOUNDARY_WEIGHT)};
+}
+
+/* All parameters make another representation; a tag has room for their hash. */
+enum { REPRESENTATION = 32 };
 
 static void name_representation(api_exchange *x, char out[REPRESENTATION])
 {
-    snprintf(out, REPRESENTATION, "progressive-%" PRIu64 "-%" PRIu64, api_param_u64(x, "faces", 0),
-             api_param_u64(x, "splits", HE_MAX_ROWS));
+    static const uint64_t key[2] = {0, 0};
+    const he_decimate_options options = options_of(x);
+    char text[128];
+    int length =
+        snprintf(text, sizeof text, "%" PRIu32 " %a %a %" PRIu64, options.faces, options.max_error,
+                 options.boundary_weight, api_param_u64(x, "splits", HE_MAX_ROWS));
+    snprintf(out, REPRESENTATION, "progressive-%016" PRIx64,
+             api_hash_of(key, text, (size_t)length));
 }
 
 static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
 {
     he_error err = {0};
     he_box box = {0};
-    uint32_t faces = (uint32_t)api_param_u64(x, "faces", 0);
-    if (he_progressive_new(mesh, faces, &x->watch, &p->mesh, &err) != HE_OK) {
+    const he_decimate_options options = options_of(x);
+    if (he_progressive_new(mesh, &options, &x->watch, &p->mesh, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
     if (he_mesh_box(mesh, &box)) {

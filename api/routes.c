@@ -1,5 +1,6 @@
 #include "api/routes.h"
 
+#include "algo/decimate.h"
 #include "api/attribute_value.h"
 #include "api/handlers.h"
 #include "repair/repair.h"
@@ -57,6 +58,16 @@ static const api_parameter base_faces = {
     "faces", API_PARAM_U64,
     0,       HE_MAX_ROWS,
     NULL,    "Faces of the base, or more where that few cannot be had; 0 when not given."};
+static const api_parameter most_error = {
+    "max_error", API_PARAM_NUMBER,
+    0,           DBL_MAX,
+    NULL,        "Of the base, as decimate means it; no limit if not said."};
+static const api_parameter boundary_weight = {"boundary_weight",
+                                              API_PARAM_NUMBER,
+                                              0,
+                                              HE_BOUNDARY_WEIGHT_MAX,
+                                              NULL,
+                                              "As decimate means it; its default if not said."};
 static const api_parameter most_splits = {
     "splits", API_PARAM_U64, 0, HE_MAX_ROWS, NULL, "Send no more vertex splits than these."};
 static const api_parameter layout = {
@@ -270,12 +281,14 @@ static const api_route routes[] = {
      .run = api_progressive_get,
      .flags = API_COSTLY,
      .produces = octets,
-     .parameters = {&base_faces, &most_splits},
-     .statuses = {200, 304, 422},
+     .parameters = {&revision, &base_faces, &most_error, &boundary_weight, &most_splits},
+     .statuses = {200, 304, 410, 422},
      .summary = "A mesh from coarse to fine",
      .doc =
          "The mesh decimated, and the vertex splits that lead back to it with all ids: any number "
-         "of them leaves a mesh. Little-endian: \"HEDP\", u32 version 1, u64 revision, u32 "
+         "of them leaves a mesh. Of the revision before a decimate, and with the same faces, "
+         "max_error and boundary_weight, it is the record of that edit: the base is the mesh that "
+         "the edit made. Little-endian: \"HEDP\", u32 version 1, u64 revision, u32 "
          "vertices, edges and faces of the base, splits here, splits there are, 0, ids issued of "
          "vertices, edges and faces, 0, f64 x 3 least and largest coordinates; vertices (u32 id, "
          "0, f64 x 3), edges (u32 id, origin, target, 0), faces (u32 id, three corners); then "

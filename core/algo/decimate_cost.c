@@ -8,6 +8,8 @@ static const double PULL = 1e-6;
 static const double ROUNDING = 1e-14;
 /* Of edges that cost nothing the shortest are first. */
 static const double LENGTH = 1e-9;
+/* Small meshes in large ones have priorities that a float holds. */
+static const double WITHIN = 0x1p40;
 /* Errors below are those of rounding. */
 static const double NOTHING = 1e-12;
 
@@ -77,7 +79,8 @@ static bool find_place(const ends *e, he_candidate *out)
         double weight = e->sum.weight;
         out->error = weight > 0 ? sqrt(out->cost / weight) : 0;
         out->error = out->error > NOTHING ? out->error : 0;
-        out->priority = (float)(out->cost + LENGTH * weight * length);
+        double dear = out->cost + LENGTH * weight * length;
+        out->priority = (float)(weight > 0 ? dear * sqrt(dear / weight) * WITHIN : 0);
     }
     return found;
 }

@@ -1,10 +1,10 @@
-/* edge_queue.h - edges by cost, cheapest first, inline.
+/* edge_queue.h - edges by priority, the least first, inline.
  *
- * A bucket holds the edges whose costs agree in exponent and two binary digits: costs that differ
- * by less than a quarter may come in either order. Within a bucket edges lie as they came, most of
- * them by id, so that neighbours are near in memory; that is worth more than a finer order, which
- * leaves a mesh no better. They lie in chunks of one cache line, and a chunk is taken whole, so
- * that what its edges need can be asked for ahead of time. */
+ * A bucket holds the edges whose priorities agree in exponent and two binary digits: those that
+ * differ by less than a quarter may come in either order. Within a bucket edges lie as they came,
+ * most of them by id, so that neighbours are near in memory; that is worth more than a finer order,
+ * which leaves a mesh no better. They lie in chunks of one cache line, and a chunk is taken whole,
+ * so that what its edges need can be asked for ahead of time. */
 #ifndef HE_ALGO_EDGE_QUEUE_H
 #define HE_ALGO_EDGE_QUEUE_H
 
@@ -55,17 +55,17 @@ static inline void he_queue_clear(he_edge_queue *queue)
     he_mem_free(queue->first);
 }
 
-/* Of lower costs a lower one. Costs are not negative. */
-static inline uint32_t he_queue_bucket(float cost)
+/* Of a lower priority no higher one. Priorities are not negative. */
+static inline uint32_t he_queue_bucket(float priority)
 {
     uint32_t bits;
-    memcpy(&bits, &cost, sizeof bits);
+    memcpy(&bits, &priority, sizeof bits);
     return bits >> HE_QUEUE_SHIFT; /* the sign is 0 */
 }
 
-static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float cost)
+static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float priority)
 {
-    size_t bucket = he_queue_bucket(cost), word = bucket / 64;
+    size_t bucket = he_queue_bucket(priority), word = bucket / 64;
     uint32_t *first = &queue->first[bucket];
     if (*first == HE_NONE || queue->chunks[*first].count == HE_QUEUE_CHUNK) {
         uint32_t fresh = queue->free;

@@ -13,18 +13,16 @@ void he_progressive_clear(he_progressive *progressive)
 /* The share of the copy in the time. */
 static const double COPIED = 0.05;
 
-he_status he_progressive_new(const he_mesh *m, uint32_t faces, he_watch *watch, he_progressive *out,
-                             he_error *err)
+he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options, he_watch *watch,
+                             he_progressive *out, he_error *err)
 {
     he_progressive made = {0};
-    const he_decimate_options options = {
-        .faces = faces, .max_error = INFINITY, .boundary_weight = HE_BOUNDARY_WEIGHT};
     he_decimated done;
     he_watch_span(watch, COPIED);
     he_status status = he_mesh_copy_watched(m, watch, &made.base, err);
     if (status == HE_OK) {
         he_watch_span(watch, 1);
-        status = he_decimation_run(made.base, &options, &made, &done, err);
+        status = he_decimation_run(made.base, options, &made, &done, err);
     }
     if (status != HE_OK) {
         he_progressive_clear(&made);

@@ -16,6 +16,7 @@
 #ifndef HE_ALGO_PROGRESSIVE_H
 #define HE_ALGO_PROGRESSIVE_H
 
+#include "algo/decimate.h"
 #include "mesh/column.h"
 #include "mesh/mesh.h"
 
@@ -40,11 +41,11 @@ typedef struct he_progressive {
     he_ids moved;
 } he_progressive;
 
-/* Decimate a copy to so many faces, or to the fewest there can be, and remember how. What decimate
- * refuses, HE_NO_MEMORY; HE_CANCELLED by the watch, which may be NULL and is not the mesh's: others
- * may read that one meanwhile. */
-HE_NODISCARD he_status he_progressive_new(const he_mesh *m, uint32_t faces, he_watch *watch,
-                                          he_progressive *out, he_error *err);
+/* Decimate a copy, and remember how. What decimate refuses, HE_NO_MEMORY; HE_CANCELLED by the
+ * watch, which may be NULL and is not the mesh's: others may read that one meanwhile. The base is
+ * what decimate makes of the mesh by the same options. */
+HE_NODISCARD he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,
+                                          he_watch *watch, he_progressive *out, he_error *err);
 void he_progressive_clear(he_progressive *progressive);
 
 #endif

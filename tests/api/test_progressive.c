@@ -215,6 +215,19 @@ static void assert_same(const level *l, const he_mesh *m)
     }
 }
 
+/* The mesh of the present revision, which must be this one. */
+static void assert_is(api_bench *b, const char *id, const level *l, uint64_t revision)
+{
+    const api_store *store = bench_store(b);
+    api_mesh *mesh = NULL;
+    api_mesh_info info;
+    assert_int_equal(store->find(store->self, id, &mesh), API_STORE_OK);
+    assert_same(l, store->read_begin(store->self, mesh, &info));
+    assert_int_equal(info.revision, revision);
+    store->read_end(store->self, mesh);
+    store->release(store->self, mesh);
+}
+
 /* Every level where there are few splits, else some. */
 static void replay(api_bench *b, const char *id)
 {
@@ -233,14 +246,7 @@ static void replay(api_bench *b, const char *id)
     }
     assert_level(&l);
     assert_true(l.next == r.body + r.length);
-    const api_store *store = bench_store(b);
-    api_mesh *mesh = NULL;
-    api_mesh_info info;
-    assert_int_equal(store->find(store->self, id, &mesh), API_STORE_OK);
-    assert_same(&l, store->read_begin(store->self, mesh, &info));
-    assert_int_equal(info.revision, u32_at(r.body + 8));
-    store->read_end(store->self, mesh);
-    store->release(store->self, mesh);
+    assert_is(b, id, &l, u32_at(r.body + 8));
     level_clear(&l);
     bench_reply_free(&r);
 }
@@ -457,6 +463,42 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     he_mem_set_hook(NULL);
 }
 
+/* Written word by word, and as one replace: the history has it as long as it has the edit. */
+static void the_history_keeps_the_record_of_a_decimation(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mesh, *edit, *query;
+    } cases[] = {
+        {"{\"shape\":\"torus\"}", "{\"op\":\"decimate\",\"faces\":300,\"boundary_weight\":3}",
+         "faces=300&boundary_weight=3"},
+        {"{\"shape\":\"grid\",\"columns\":20,\"rows\":20}",
+         "{\"op\":\"decimate\",\"faces\":0,\"max_error\":0}", "max_error=0"},
+        {"{\"shape\":\"torus\",\"major_segments\":120,\"minor_segments\":100}",
+         "{\"op\":\"decimate\",\"faces\":1000}", "faces=1000"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char path[160];
+        api_bench *b = bench_new();
+        make(b, "m", cases[i].mesh);
+        bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/edits", cases[i].edit)));
+        snprintf(path, sizeof path, "/v1/meshes/m/progressive?revision=2&%s", cases[i].query);
+        bench_reply r = bench_expect(200, bench_get(b, path));
+        level l = first_level(&r);
+        assert_true(l.left > 0);
+        assert_is(b, "m", &l, 3);
+        while (l.left > 0) {
+            split(&l);
+        }
+        bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", "{}")));
+        assert_is(b, "m", &l, 4);
+        assert_int_equal(u32_at(r.body + 8), 2);
+        level_clear(&l);
+        bench_reply_free(&r);
+        bench_free(b);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -467,6 +509,7 @@ int main(void)
         cmocka_unit_test(it_can_be_given_up_at_any_time),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(an_answer_holds_little_more_than_its_bytes),
+        cmocka_unit_test(the_history_keeps_the_record_of_a_decimation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -205,7 +205,7 @@ function report(row, part, figures) {
         part.order,
         row.unit,
         shown(medians.ours),
-        figures.ours ? spreadOf(figures.ours) : '',
+        figures.ours?.length > 1 ? spreadOf(figures.ours) : '',
         shown(medians.openmesh),
         shown(medians.cgal),
         other,

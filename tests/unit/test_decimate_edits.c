@@ -159,8 +159,9 @@ static void a_progressive_mesh_may_run_out_of_memory(void **state)
     bool failed = true;
     for (long n = 1; failed; n++) {
         he_progressive made = {0};
+        const he_decimate_options options = {0, INFINITY, 100};
         fixture_fail_at(n);
-        he_status status = he_progressive_new(first, 0, NULL, &made, NULL);
+        he_status status = he_progressive_new(first, &options, NULL, &made, NULL);
         failed = status != HE_OK;
         fixture_fail_at(0);
         assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);
