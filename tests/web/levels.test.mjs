@@ -94,7 +94,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     assert.equal((await get(daemon, `/${mesh}`)).revision, 1);
 });
 
-test('levels are given up when the mesh changes or another is opened', async (t) => {
+test('levels are given up when the mesh changes, is picked in, or another is opened', async (t) => {
     const { daemon, page } = await openMesh(t, SPHERE, { allowed: [/422/] });
     await page.emulateMedia({ reducedMotion: 'reduce' });
     await post(daemon, '', { name: 'cube', shape: 'cube' });
@@ -111,6 +111,13 @@ test('levels are given up when the mesh changes or another is opened', async (t)
 
     await levels(page).click();
     await waitForFaces(page, FACES + 2);
+    // Who picks for a field wants the mesh, who wants levels no longer picks.
+    await page.getByRole('button', { name: 'Pick position in the view' }).click();
+    await waitForMesh(page);
+    await page.getByText('Click a vertex for position').waitFor();
+    await levels(page).click();
+    await waitForFaces(page, FACES + 2);
+    assert.ok(await page.locator('#pick-note').isHidden());
     const { id: cube } = items.find(({ name }) => name === 'cube');
     await page.locator('#meshes button').filter({ hasText: 'cube' }).click();
     await waitForFrame(page, { mesh: cube, revision: 1 });

@@ -39,10 +39,13 @@ export class Editing {
     #direct;
     #trial;
     #work;
+    #onPicking;
     #marking = 0; // how often the elements in the fields were asked for
 
-    constructor(canvas, session, stage, toasts) {
+    // `onPicking()` when a field waits for what is clicked.
+    constructor(canvas, session, stage, toasts, onPicking) {
         [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
+        this.#onPicking = onPicking;
         const onError = (error) => toasts.show(error);
         const onRun = (operation) => this.run(operation).catch(onError);
         this.#work = new Work(
@@ -197,6 +200,7 @@ export class Editing {
     #showPicking(wanted) {
         byId('pick-note').hidden = wanted === undefined;
         if (wanted !== undefined) {
+            this.#onPicking();
             const { name, kind, isList } = wanted;
             const what = isList ? PLURALS[kind] : NAMES[kind];
             byId('pick-hint').textContent = `Click ${what} for ${name}.`;
@@ -205,6 +209,11 @@ export class Editing {
             this.#stage.setPickMode(kind);
             this.#stage.bringIntoSight();
         }
+    }
+
+    // No field waits any more.
+    stopPicking() {
+        this.#tools.disarm();
     }
 
     async #giveToField(chosen) {

@@ -91,7 +91,7 @@ const stage = new Stage(
         onError: fail,
     },
 );
-const editing = new Editing(canvas, session, stage, toasts);
+const editing = new Editing(canvas, session, stage, toasts, () => refining.end());
 const address = new Address(session, stage);
 const refining = new Refining(
     {
@@ -105,7 +105,14 @@ const refining = new Refining(
         done: byId('level-done'),
     },
     stage,
-    { onBegin: showWhatMayBeDone, onEnd: () => update('content'), onError: fail },
+    {
+        onBegin: () => {
+            editing.stopPicking();
+            showWhatMayBeDone();
+        },
+        onEnd: () => update('content'),
+        onError: fail,
+    },
 );
 
 function importOf({ counts, import: report }) {
