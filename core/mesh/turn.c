@@ -3,6 +3,7 @@
 #include "mesh/exec.h"
 #include "mesh/pair.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* What a part found that is to be told. */
@@ -166,6 +167,7 @@ static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count
                          const uint32_t *from, const uint32_t *to, size_t *matched)
 {
     uint32_t follow[SMALL_VERTEX], open = 0;
+    assert(count > 0);
     match(from, to, count, follow);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t k = follow[i];
