@@ -1,7 +1,7 @@
 #include "server/daemon.h"
 
 #include "server/assets.h"
-#include "server/helpers.h"
+#include "server/hands.h"
 #include "server/http.h"
 #include "server/job_board.h"
 #include "server/memory.h"
@@ -28,7 +28,7 @@ typedef struct daemon_parts {
     srv_assets *assets;
     api_service *service;
     srv_jobs *jobs, *makers;
-    srv_helpers *helpers;
+    srv_hands *hands;
     srv_board *board;
     api_jobs board_interface;
     srv_access_log *log;
@@ -99,8 +99,8 @@ static bool open_jobs(daemon_parts *parts, const srv_config *config)
     parts->jobs =
         srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
     parts->makers = srv_jobs_new(cores(), MAKER_QUEUE);
-    parts->helpers = srv_helpers_new(cores() - 1);
-    return (parts->jobs != NULL && parts->makers != NULL && parts->helpers != NULL) ||
+    parts->hands = srv_hands_new(cores() - 1);
+    return (parts->jobs != NULL && parts->makers != NULL && parts->hands != NULL) ||
            fail("no memory or threads to start");
 }
 
@@ -156,19 +156,18 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
         return fail("no memory to start");
     }
     parts->board_interface = srv_board_interface(parts->board);
-    parts->service =
-        api_service_new(&parts->interface, &(api_options){
-                                               .max_upload = config->max_upload,
-                                               .version = SRV_VERSION,
-                                               .asset = srv_assets_find,
-                                               .asset_context = parts->assets,
-                                               .ready = is_ready,
-                                               .ready_context = parts,
-                                               .memory = count_memory,
-                                               .jobs = &parts->board_interface,
-                                               .plain_answers = config->no_compression,
-                                               .exec = srv_helpers_exec(parts->helpers),
-                                           });
+    parts->service = api_service_new(&parts->interface, &(api_options){
+                                                            .max_upload = config->max_upload,
+                                                            .version = SRV_VERSION,
+                                                            .asset = srv_assets_find,
+                                                            .asset_context = parts->assets,
+                                                            .ready = is_ready,
+                                                            .ready_context = parts,
+                                                            .memory = count_memory,
+                                                            .jobs = &parts->board_interface,
+                                                            .plain_answers = config->no_compression,
+                                                            .exec = srv_hands_exec(parts->hands),
+                                                        });
     if (config->log == SRV_LOG_ACCESS) {
         parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
     }
@@ -259,7 +258,7 @@ int srv_daemon_run(const srv_config *config)
     }
     srv_jobs_free(parts.jobs);
     srv_jobs_free(parts.makers);
-    srv_helpers_free(parts.helpers);
+    srv_hands_free(parts.hands);
     srv_board_free(parts.board);
     api_service_free(parts.service);
     srv_store_free(parts.store);

@@ -160,16 +160,25 @@ static he_status link_faces(void *context, uint32_t part, size_t from, size_t to
 
 /* --- holes ------------------------------------------------------------------------------------ */
 
+/* The boundary half-edges, of which there are `count`. */
+static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
+{
+    for (uint32_t h = 1; count > 0; h += 2) {
+        if (k->face[h] == HE_NONE) {
+            *holes++ = h;
+            count--;
+        }
+    }
+}
+
 /* Boundary half-edges become those that their origins store, and prev chains the ones that leave
  * one vertex. */
-static void chain_holes(he_content *k)
+static void chain_holes(he_content *k, uint32_t count, const uint32_t *holes)
 {
-    for (uint32_t h = 1; h < 2 * k->edges.issued; h += 2) {
-        if (k->face[h] == HE_NONE) {
-            uint32_t *stored = &k->vertex_halfedge[k->origin[h]];
-            k->prev[h] = k->face[*stored] == HE_NONE ? *stored : HE_NONE;
-            *stored = h;
-        }
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t h = holes[i], *stored = &k->vertex_halfedge[k->origin[h]];
+        k->prev[h] = k->face[*stored] == HE_NONE ? *stored : HE_NONE;
+        *stored = h;
     }
 }
 
@@ -189,14 +198,10 @@ static void link_bowtie(he_content *k, uint32_t head)
     } while (out != head);
 }
 
-static void link_holes(he_content *k)
+static void link_holes(he_content *k, uint32_t count, const uint32_t *holes)
 {
-    uint32_t halfedges = 2 * k->edges.issued;
-    for (uint32_t h = 1; h < halfedges; h += 2) {
-        if (k->face[h] != HE_NONE) {
-            continue;
-        }
-        uint32_t out = k->vertex_halfedge[k->origin[h ^ 1]];
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t h = holes[i], out = k->vertex_halfedge[k->origin[h ^ 1]];
         if (k->prev[out] == HE_NONE) {
             k->next[h] = out;
         }
@@ -204,11 +209,23 @@ static void link_holes(he_content *k)
             link_bowtie(k, h);
         }
     }
-    for (uint32_t h = 1; h < halfedges; h += 2) {
-        if (k->face[h] == HE_NONE) {
-            k->prev[k->next[h]] = h;
-        }
+    for (uint32_t i = 0; i < count; i++) {
+        k->prev[k->next[holes[i]]] = holes[i];
     }
+}
+
+static he_status find_holes(he_content *k, he_error *err)
+{
+    uint32_t count = k->boundary_halfedges;
+    uint32_t *holes = he_mem_array(NULL, count, sizeof *holes);
+    if (holes == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %u boundary half-edges", count);
+    }
+    list_holes(k, count, holes);
+    chain_holes(k, count, holes);
+    link_holes(k, count, holes);
+    he_mem_free(holes);
+    return HE_OK;
 }
 
 /* --- all together ----------------------------------------------------------------------------- */
@@ -268,8 +285,7 @@ he_status he_link(const he_corners *corners, he_turns *turns, he_content *c, he_
         c->faces.issued = c->faces.live = (uint32_t)soup->face_count;
         c->boundary_halfedges = 2 * c->edges.issued - (uint32_t)soup->corner_count;
         if (c->boundary_halfedges > 0) {
-            chain_holes(c);
-            link_holes(c);
+            status = find_holes(c, err);
         }
     }
     return status;

@@ -3,6 +3,7 @@
 #include "mesh/exec.h"
 #include "mesh/pair.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* What a part found that is to be told. */
@@ -25,24 +26,30 @@ typedef struct turning {
 
 /* --- faces ------------------------------------------------------------------------------------ */
 
-/* Larger ones are left to he_soup_check_faces. */
-static unsigned check_face(const uint32_t *corners, uint32_t count, size_t vertices)
+/* `count` is a constant where this is inlined for the usual ones. */
+static inline unsigned check_small(const uint32_t *corners, uint32_t count, size_t vertices)
 {
     unsigned bad = count < 3;
-    if (count > SMALL_FACE) {
-        bad = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            bad |= corners[i] >= vertices;
-        }
-        return bad != 0 ? BAD_FACE : LARGE_FACE;
-    }
     for (uint32_t i = 0; i < count; i++) {
         bad |= corners[i] >= vertices;
         for (uint32_t k = 0; k < i; k++) {
             bad |= corners[i] == corners[k];
         }
     }
-    return bad != 0 ? BAD_FACE : 0;
+    return BAD_FACE * bad;
+}
+
+/* The corners of large faces are left to he_soup_check_faces, their indices are not. */
+static unsigned check_face(const uint32_t *corners, uint32_t count, size_t vertices)
+{
+    unsigned bad = 0;
+    if (count <= SMALL_FACE) {
+        return check_small(corners, count, vertices);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        bad |= corners[i] >= vertices;
+    }
+    return bad != 0 ? BAD_FACE : LARGE_FACE;
 }
 
 /* Whether faces are proper, and how many corners each vertex has. */
@@ -56,12 +63,9 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     for (size_t f = from; f < to; f++) {
         const uint32_t first = soup->starts[f], count = he_soup_end(soup, f) - first;
         const uint32_t *corners = soup->corners + first;
-        unsigned bad =
-            count == 3 ? (corners[0] >= soup->vertex_count) | (corners[1] >= soup->vertex_count) |
-                             (corners[2] >= soup->vertex_count) | (corners[0] == corners[1]) |
-                             (corners[1] == corners[2]) | (corners[2] == corners[0])
-                       : 0;
-        found |= count == 3 ? BAD_FACE * bad : check_face(corners, count, soup->vertex_count);
+        found |= count == 3   ? check_small(corners, 3, soup->vertex_count)
+                 : count == 4 ? check_small(corners, 4, soup->vertex_count)
+                              : check_face(corners, count, soup->vertex_count);
         if ((found & BAD_FACE) != 0) {
             break;
         }
@@ -166,6 +170,7 @@ static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count
                          const uint32_t *from, const uint32_t *to, size_t *matched)
 {
     uint32_t follow[SMALL_VERTEX], open = 0;
+    assert(count > 0);
     match(from, to, count, follow);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t k = follow[i];

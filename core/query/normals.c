@@ -207,15 +207,14 @@ static he_status face_block(const faces *all, size_t from, size_t to, uint32_t *
                             he_error *err)
 {
     const he_content *c = &all->m->c;
-    triple corners[BLOCK];
-    double square[BLOCK];
+    triple corners[BLOCK] = {{0}};
+    double square[BLOCK] = {0};
     if (all->triangles) {
         block_triples(c, from, to, true, corners);
     } else {
         block_triples(c, from, to, false, corners);
     }
     for (size_t k = 0; k < to - from; k++) {
-        square[k] = 0;
         if (corners[k].a != HE_NONE) {
             he_vec3 p = c->position[corners[k].a];
             he_vec3 u = he_vec3_sub(c->position[corners[k].b], p);

@@ -1,11 +1,11 @@
-/* What a second core gives: each row with the work's own thread alone, and with helpers beside it.
+/* What a second core gives: each row with the work's own thread alone, and with hands beside it.
  * Wall time, since processor time adds up what threads take. */
 #include "bench/ours/ours.h"
 
 #include "algo/subdivide.h"
 #include "mesh/walk.h"
 #include "query/geometry.h"
-#include "server/helpers.h"
+#include "server/hands.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,15 +21,15 @@ static double wall_seconds(void)
 /* The threads of the rows, made once. */
 static void lend(he_watch *watch, bool helped)
 {
-    static srv_helpers *helpers;
-    if (helpers == NULL) {
-        helpers = srv_helpers_new(1);
+    static srv_hands *hands;
+    if (hands == NULL) {
+        hands = srv_hands_new(1);
     }
-    if (helpers == NULL) {
+    if (hands == NULL) {
         bench_require(HE_NO_MEMORY);
     }
     he_watch_init(watch, NULL, NULL);
-    watch->exec = helped ? srv_helpers_exec(helpers) : NULL;
+    watch->exec = helped ? srv_hands_exec(hands) : NULL;
 }
 
 static void build(bench_side *side, bool helped, bench_result *out)

@@ -1,4 +1,4 @@
-#include "server/helpers.h"
+#include "server/hands.h"
 
 #include "mesh/mem.h"
 
@@ -17,7 +17,7 @@ typedef struct work {
     struct work *next;
 } work;
 
-struct srv_helpers {
+struct srv_hands {
     he_exec exec;
     pthread_mutex_t lock;
     pthread_cond_t wake;
@@ -34,7 +34,7 @@ static bool has_parts(const work *w)
     return !w->stopped && w->begun < w->parts;
 }
 
-static void append(srv_helpers *h, work *w)
+static void append(srv_hands *h, work *w)
 {
     work **end = &h->first;
     while (*end != NULL) {
@@ -44,7 +44,7 @@ static void append(srv_helpers *h, work *w)
     *end = w;
 }
 
-static void take_out(srv_helpers *h, const work *w)
+static void take_out(srv_hands *h, const work *w)
 {
     for (work **at = &h->first; *at != NULL; at = &(*at)->next) {
         if (*at == w) {
@@ -55,7 +55,7 @@ static void take_out(srv_helpers *h, const work *w)
 }
 
 /* Run the next part of `w`; nobody touches it again once nothing of it runs. */
-static void run_next(srv_helpers *h, work *w)
+static void run_next(srv_hands *h, work *w)
 {
     he_error err = {0};
     uint32_t i = w->begun++;
@@ -78,7 +78,7 @@ static void run_next(srv_helpers *h, work *w)
 
 static void *help(void *context)
 {
-    srv_helpers *h = context;
+    srv_hands *h = context;
     pthread_mutex_lock(&h->lock);
     while (!h->ending) {
         work *w = h->first;
@@ -100,7 +100,7 @@ static void *help(void *context)
 static he_status run(void *self, uint32_t parts, he_part part, void *context, he_watch *watch,
                      he_error *err)
 {
-    srv_helpers *h = self;
+    srv_hands *h = self;
     work w = {.part = part, .context = context, .parts = parts, .failed = parts};
     he_status given_up = HE_OK;
     pthread_cond_init(&w.ended, NULL);
@@ -130,9 +130,9 @@ static he_status run(void *self, uint32_t parts, he_part part, void *context, he
     return w.status != HE_OK ? w.status : given_up;
 }
 
-srv_helpers *srv_helpers_new(size_t threads)
+srv_hands *srv_hands_new(size_t threads)
 {
-    srv_helpers *h = he_mem_zero(1, sizeof *h);
+    srv_hands *h = he_mem_zero(1, sizeof *h);
     if (h == NULL) {
         return NULL;
     }
@@ -146,13 +146,13 @@ srv_helpers *srv_helpers_new(size_t threads)
         h->thread_count += started;
     }
     if (!started) {
-        srv_helpers_free(h);
+        srv_hands_free(h);
         return NULL;
     }
     return h;
 }
 
-void srv_helpers_free(srv_helpers *h)
+void srv_hands_free(srv_hands *h)
 {
     if (h == NULL) {
         return;
@@ -170,7 +170,7 @@ void srv_helpers_free(srv_helpers *h)
     he_mem_free(h);
 }
 
-const he_exec *srv_helpers_exec(const srv_helpers *h)
+const he_exec *srv_hands_exec(const srv_hands *h)
 {
     return &h->exec;
 }
