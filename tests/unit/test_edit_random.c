@@ -109,6 +109,10 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
         return;
     case HE_PARAM_NUMBER:
         arg->number = param->min + random_unit() * (param->max - param->min);
+        if (param->flags &
+            HE_WHOLE) { /* more steps would make a large mesh, of which none is left */
+            arg->number = param->max < 1e6 ? param->min : random_below(100);
+        }
         return;
     case HE_PARAM_FLAG:
         arg->flag = random_below(2);

@@ -152,6 +152,10 @@ void components(bench_side *side, bench_result *out)
 }
 } // namespace
 
-const bench_row openmesh_kernel_rows[] = {
-    {"build", build},       {"one_ring", one_ring}, {"face_normals", face_normals}, {"vertex_normals", vertex_normals},
-    {"loops", loops},       {"components", components},     {nullptr, nullptr}};
+const bench_row openmesh_kernel_rows[] = {{"build", build},
+                                          {"one_ring", one_ring},
+                                          {"face_normals", face_normals},
+                                          {"vertex_normals", vertex_normals},
+                                          {"loops", loops},
+                                          {"components", components},
+                                          {nullptr, nullptr}};
