@@ -172,7 +172,8 @@ static void finish(api_exchange *x, void (*make)(api_exchange *x))
         return;
     }
     uint64_t elements = api_upload_elements(x);
-    api_run_long(x, make, elements > API_COSTLY_ELEMENTS, (double)elements / API_IMPORT_PER_SECOND);
+    bool costly = elements > API_COSTLY_ELEMENTS || api_upload_is_guessed(x);
+    api_run_long(x, make, costly, (double)elements / API_IMPORT_PER_SECOND);
 }
 
 void api_meshes_create(api_exchange *x)

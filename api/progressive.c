@@ -39,12 +39,16 @@ static void name_representation(api_exchange *x, char out[REPRESENTATION])
 {
     static const uint64_t key[2] = {0, 0};
     const he_decimate_options options = options_of(x);
-    char text[128];
-    int length =
-        snprintf(text, sizeof text, "%" PRIu32 " %a %a %" PRIu64, options.faces, options.max_error,
-                 options.boundary_weight, api_param_u64(x, "splits", HE_MAX_ROWS));
-    snprintf(out, REPRESENTATION, "progressive-%016" PRIx64,
-             api_hash_of(key, text, (size_t)length));
+    const uint64_t splits = api_param_u64(x, "splits", HE_MAX_ROWS);
+    uint64_t sum[2];
+    api_hash hash;
+    api_hash_begin(&hash, key);
+    api_hash_add(&hash, &options.faces, sizeof options.faces);
+    api_hash_add(&hash, &options.max_error, sizeof options.max_error);
+    api_hash_add(&hash, &options.boundary_weight, sizeof options.boundary_weight);
+    api_hash_add(&hash, &splits, sizeof splits);
+    api_hash_end(&hash, sum);
+    snprintf(out, REPRESENTATION, "progressive-%016" PRIx64, sum[0]);
 }
 
 static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)

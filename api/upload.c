@@ -13,7 +13,7 @@
 /* Enough to tell any format by. */
 enum { SNIFF_BYTES = 512 };
 
-/* Bytes of a file that is read at its end, for each vertex or corner: seldom fewer. */
+/* Bytes of a file that is read at its end, for each vertex or corner: a guess, of the time alone. */
 enum { ELEMENT_BYTES = 5 };
 
 /* Of the making of a mesh; what is left is its summary's. */
@@ -288,6 +288,11 @@ uint64_t api_upload_elements(const api_exchange *x)
     uint64_t elements =
         is_unread(u) ? x->received / ELEMENT_BYTES : soup->vertex_count + soup->corner_count;
     return u->plan.which == 0 ? elements : 2 * elements; /* repairs read it as often as building */
+}
+
+bool api_upload_is_guessed(const api_exchange *x)
+{
+    return is_unread(x->state);
 }
 
 const char *api_upload_name(const api_exchange *x)

@@ -19,6 +19,9 @@ bool api_upload_feed(api_exchange *x, const char *bytes, size_t length);
 bool api_upload_end(api_exchange *x);
 /* After a good end: what the building will cost, for api_run_long. */
 uint64_t api_upload_elements(const api_exchange *x);
+/* A file that is read as a whole, which api_upload_build does, may make much of few bytes: its
+ * elements are guessed. */
+bool api_upload_is_guessed(const api_exchange *x);
 bool api_upload_build(api_exchange *x, he_mesh **out);
 /* The name the document or ?name= gives, NULL when there is none. */
 const char *api_upload_name(const api_exchange *x);

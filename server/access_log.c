@@ -193,11 +193,7 @@ srv_access_log *srv_access_log_new(int fd, size_t capacity)
     log->capacity = capacity;
     log->ring = he_mem_zero(capacity, sizeof *log->ring);
     pthread_mutex_init(&log->lock, NULL);
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&log->wake, &attributes);
-    pthread_condattr_destroy(&attributes);
+    srv_clock_condition(&log->wake);
     if (log->ring == NULL || pthread_create(&log->thread, NULL, run, log) != 0) {
         pthread_mutex_destroy(&log->lock);
         pthread_cond_destroy(&log->wake);

@@ -16,6 +16,15 @@ uint64_t srv_clock_micros(void)
     return (uint64_t)now.tv_sec * 1000000U + (uint64_t)now.tv_nsec / 1000U;
 }
 
+void srv_clock_condition(pthread_cond_t *condition)
+{
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(condition, &attributes);
+    pthread_condattr_destroy(&attributes);
+}
+
 static char *put_digits(char *at, int value, int digits)
 {
     for (int i = digits - 1; i >= 0; i--, value /= 10) {

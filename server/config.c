@@ -50,7 +50,7 @@ static const option options[] = {
     {"max-meshes", COUNT, MEMBER(max_meshes), "10000", "N", 1, 10000000, "meshes at once"},
     {"workers", COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0 takes one a core"},
-    {"jobs", COUNT, MEMBER(jobs), "0", "N", 0, 64, "threads for long work; 0 takes one a core"},
+    {"jobs", COUNT, MEMBER(jobs), "0", "N", 0, 64, "long requests at once; 0 takes one a core. Parts of one run on all cores"},
     {"job-queue", COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
      "long requests that may wait for a thread; beyond it they are answered 503"},
     {"max-connections", COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,

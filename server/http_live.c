@@ -101,16 +101,6 @@ static void *run(void *context)
     return NULL;
 }
 
-/* Deadlines are of the monotonic clock. */
-static void init_condition(pthread_cond_t *condition)
-{
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(condition, &attributes);
-    pthread_condattr_destroy(&attributes);
-}
-
 srv_live *srv_live_new(uint64_t heartbeat_micros)
 {
     srv_live *live = he_mem_zero(1, sizeof *live);
@@ -119,7 +109,7 @@ srv_live *srv_live_new(uint64_t heartbeat_micros)
     }
     live->heartbeat = heartbeat_micros;
     pthread_mutex_init(&live->lock, NULL);
-    init_condition(&live->changed);
+    srv_clock_condition(&live->changed);
     if (pthread_create(&live->thread, NULL, run, live) != 0) {
         pthread_mutex_destroy(&live->lock);
         pthread_cond_destroy(&live->changed);

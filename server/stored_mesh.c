@@ -48,7 +48,7 @@ api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint6
     srv_keys_init(&mesh->keys, secret);
     for (int kind = 0; kind < API_DERIVED_COUNT; kind++) {
         pthread_mutex_init(&mesh->derived[kind].lock, NULL);
-        pthread_cond_init(&mesh->derived[kind].ended, NULL);
+        srv_clock_condition(&mesh->derived[kind].ended);
     }
     atomic_init(&mesh->uses, 1);
     mesh->journal = journal;
@@ -207,7 +207,7 @@ void srv_derived_wait(void *self, api_mesh *mesh, api_derived_kind kind)
 {
     (void)self;
     struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
+    clock_gettime(CLOCK_MONOTONIC, &until);
     until.tv_nsec += API_DERIVED_MILLIS * 1000000L;
     if (until.tv_nsec >= 1000000000) {
         until.tv_nsec -= 1000000000;

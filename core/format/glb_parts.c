@@ -112,7 +112,8 @@ static bool is_printable(const char *name)
 
 /* What is beyond the numbers of its semantic has a name of its own, as _uv1, and so the same name
  * when it is read back; joints, which are whole, are in extras. */
-static bool find_semantic(const he_mesh *m, const he_column *column, he_glb_part *part)
+static bool find_semantic(const unsigned counts[HE_GLTF_SEMANTICS], const he_column *column,
+                          he_glb_part *part)
 {
     for (size_t i = 0; i < HE_GLTF_SEMANTICS; i++) {
         const he_gltf_semantic *s = &he_gltf_semantics[i];
@@ -120,7 +121,7 @@ static bool find_semantic(const he_mesh *m, const he_column *column, he_glb_part
         while (n < MOST_NUMBERS && type_as(column, s, n) == 0) {
             n++;
         }
-        if (n == MOST_NUMBERS || n >= count_numbers(m, s)) {
+        if (n == MOST_NUMBERS || n >= counts[i]) {
             continue;
         }
         part->type = type_of(column, s);
@@ -187,12 +188,16 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
 static void add_values(he_glb_parts *g, const he_column **used, he_notes *notes)
 {
     const he_mesh *m = g->mesh;
+    unsigned counts[HE_GLTF_SEMANTICS];
+    for (size_t i = 0; i < HE_GLTF_SEMANTICS; i++) {
+        counts[i] = count_numbers(m, &he_gltf_semantics[i]);
+    }
     for (size_t i = 0; i < he_mesh_columns(m); i++) {
         const he_column *column = he_mesh_column(m, i);
         he_glb_part part = {.content = HE_GLB_VALUES, .column = column};
         if (column == NULL || column->domain != HE_VERTEX ||
             he_export_find(m, HE_VERTEX, column->name, 1, HE_COLUMN_COMPONENTS, notes) == NULL ||
-            !find_semantic(m, column, &part)) {
+            !find_semantic(counts, column, &part)) {
             continue;
         }
         part.components = column->components;

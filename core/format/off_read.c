@@ -4,6 +4,7 @@
 #include "format/lines.h"
 #include "format/number.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* What the next token is. read_line goes from one to the next. */
@@ -31,9 +32,10 @@ typedef struct off {
     double numbers[VERTEX_NUMBERS]; /* of the vertex, or of the face's colour, being read */
     size_t number_count;            /* may exceed those kept */
     uint64_t number_line;           /* of the first of them */
-    bool spread, lacking;           /* some vertex goes on on the next line; ends before its last */
-    uint32_t integers;              /* bit i: the i-th was written as an integer */
-    bool open;                      /* the last face still lacks `missing` corners */
+    bool spread;                    /* some vertex goes on on the next line */
+    uint64_t lacking;  /* the line of the first that ends before its last number, or 0 */
+    uint32_t integers; /* bit i: the i-th was written as an integer */
+    bool open;         /* the last face still lacks `missing` corners */
     uint64_t missing;
     he_colors vertex_colors, face_colors;
     he_column *normal, *uv; /* the soup's */
@@ -250,10 +252,10 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
                             ((o->has & HAS_COLORS) != 0 && p.color == 0) ||
                             ((o->has & HAS_UV) != 0 && p.uv == 0));
     o->spread |= spread;
-    o->lacking |= lacking;
+    o->lacking = o->lacking == 0 && lacking ? line->number : o->lacking;
     /* On several lines, what is too much is the next vertex; and where some go on on the next line
      * none may end before its last number, or nothing would tell the two apart. */
-    if (!fits || (spread && count > end) || (o->spread && o->lacking)) {
+    if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers do not fit the header",
                             count);
     }
@@ -515,10 +517,24 @@ static he_status off_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
+/* Vertices that were read without a part may go on on the next line: then all that follows is out
+ * of step, and the refusal is of something else. */
+static he_status explain(const off *o, he_status status, he_error *err)
+{
+    if (o->lacking != 0 && err != NULL && (status == HE_SYNTAX || status == HE_BAD_INDEX)) {
+        size_t length = strlen(err->text);
+        snprintf(err->text + length, sizeof err->text - length,
+                 "; vertices from line %llu on lack what the header announces: one that has it "
+                 "needs it in its own line",
+                 (unsigned long long)o->lacking);
+    }
+    return status;
+}
+
 static he_status off_feed(void *state, const void *bytes, size_t n, he_error *err)
 {
     off *o = state;
-    return he_lines_feed(&o->lines, bytes, n, err);
+    return explain(o, he_lines_feed(&o->lines, bytes, n, err), err);
 }
 
 static he_status too_short(uint64_t last_line, const char *what, size_t came, uint64_t announced,
@@ -529,9 +545,8 @@ static he_status too_short(uint64_t last_line, const char *what, size_t came, ui
                       (unsigned long long)announced, what);
 }
 
-static he_status off_finish(void *state, he_error *err)
+static he_status finish(off *o, he_error *err)
 {
-    off *o = state;
     he_soup *soup = &o->into->soup;
     uint64_t last_line = he_lines_last(&o->lines);
     he_status status = he_lines_finish(&o->lines, err);
@@ -563,6 +578,12 @@ static he_status off_finish(void *state, he_error *err)
         status = he_colors_finish(&o->face_colors, soup, HE_FACE, soup->face_count, err);
     }
     return status;
+}
+
+static he_status off_finish(void *state, he_error *err)
+{
+    off *o = state;
+    return explain(o, finish(o, err), err);
 }
 
 const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close, false};

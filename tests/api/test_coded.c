@@ -432,7 +432,7 @@ static void what_is_not_the_coding_is_refused(void **state)
     bench_free(b);
 }
 
-/* How a body was packed for the way says nothing about what is asked. */
+/* An OBJ file in zstd. */
 static const char *zstd_header(void *context, const char *name)
 {
     (void)context;
@@ -498,6 +498,7 @@ static void decoders_of_all_bodies_have_a_ceiling(void **state)
     bench_free(b);
 }
 
+/* How a body was packed for the way says nothing about what is asked. */
 static void a_key_is_of_the_unfolded_body(void **state)
 {
     (void)state;

@@ -242,6 +242,33 @@ static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
     free(text);
 }
 
+/* A few bytes of it may be a large mesh. */
+static void a_small_file_that_is_read_at_its_end_leaves_the_worker(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":"
+        "{\"POSITION\":0},\"mode\":0}]}],\"accessors\":[{\"componentType\":5126,"
+        "\"type\":\"VEC3\",\"count\":30000,\"min\":[0,0,0],\"max\":[0,0,0]}]}";
+    static const api_request request = {.method = "POST",
+                                        .path = "/v1/meshes",
+                                        .query = "",
+                                        .request_id = "test",
+                                        .header = gltf_header,
+                                        .has_length = true,
+                                        .length = sizeof text - 1,
+                                        .has_body = true};
+    api_bench *b = bench_new();
+    api_step step;
+    size_t used;
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    assert_int_equal(api_body(x, text, sizeof text - 1, &used), API_MORE);
+    assert_int_equal(api_end(x), API_WORK);
+    assert_int_equal(api_work(x), API_READY);
+    api_free(x);
+    bench_free(b);
+}
+
 static const char *warning(const cJSON *report, int i)
 {
     const cJSON *item = cJSON_GetArrayItem(cJSON_GetObjectItem(report, "warnings"), i);
@@ -330,6 +357,7 @@ int main(void)
         cmocka_unit_test(a_wrong_file_names_its_place),
         cmocka_unit_test(gltf_is_read_and_what_is_outside_never),
         cmocka_unit_test(a_file_that_is_read_at_its_end_can_be_given_up),
+        cmocka_unit_test(a_small_file_that_is_read_at_its_end_leaves_the_worker),
         cmocka_unit_test(a_body_of_another_format_is_told),
         cmocka_unit_test(a_report_says_what_was_read_and_what_was_not),
     };

@@ -162,6 +162,12 @@ static void vertices_without_what_is_announced(void **state)
     expect_doubles(&import, HE_VERTEX, "uv", 2, (double[]){0, 0, .5, .5}, 2);
     expect_note(&import, "missing_numbers", "", 1, 3);
     he_import_clear(&import);
+
+    /* What looks so may be numbers on the next line: then the refusal says what to do. */
+    expect_refused("off", "NOFF\n2 0 0\n0 0 0\n0 0 1\n1 0 0\n0 0 1\n", HE_SYNTAX, 5,
+                   "needs it in its own line");
+    expect_refused("off", "COFF\n2 1 0\n0 0 0\n7 8 9\n1 0 0\n7 8 9\n3 0 1 2\n", HE_SYNTAX, 6,
+                   "vertices from line 3 on");
 }
 
 static void face_colors(void **state)
