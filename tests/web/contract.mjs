@@ -39,7 +39,9 @@ function closed(schema, open) {
         } else if ((key === 'oneOf' || key === 'anyOf') && schema.properties !== undefined) {
             result[key] = closed(value, true);
         } else if (key === 'properties') {
-            const members = Object.entries(value).map(([name, each]) => [name, closed(each, false)]);
+            const members = Object.entries(value).map(([name, each]) => {
+                return [name, closed(each, false)];
+            });
             result.properties = Object.fromEntries(members);
         } else if (['oneOf', 'anyOf'].includes(key)) {
             result[key] = closed(value, open);
@@ -285,7 +287,9 @@ export class Contract {
                 wrong.push('an answer to HEAD has a body');
             }
         } else if (isJson(media) && whole) {
-            this.checkJson(schema, bytes, wrong, (value) => besides(value, status, response, headers));
+            this.checkJson(schema, bytes, wrong, (value) => {
+                return besides(value, status, response, headers);
+            });
         } else if (item !== undefined && plain) {
             this.checkLines(item, bytes, whole, wrong);
         }

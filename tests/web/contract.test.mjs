@@ -1,5 +1,5 @@
-// contract.test.mjs - the comparison of traffic with the OpenAPI document passes what a daemon really
-// said, and finds every kind of lie told about it.
+// contract.test.mjs - the comparison of traffic with the OpenAPI document passes what a daemon
+// really said, and finds every kind of lie told about it.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -174,7 +174,8 @@ const lies = [
     ['a refusal elsewhere that is no problem', NOWHERE,
         answeringHead((head) => head.replace('application/problem+json', 'text/html')),
         /a refusal is/],
-    ['success of a method it has not', WRONG_METHOD, (e) => ({ ...e, status: 204 }), /has no DELETE/],
+    ['success of a method it has not', WRONG_METHOD,
+        (e) => ({ ...e, status: 204 }), /has no DELETE/],
     ['an unknown parameter that was taken', SUMMARY,
         (e) => ({ ...e, target: `${e.target}?more=1` }), /more is not declared/],
     ['a bad parameter that was taken', PAGE,

@@ -4,20 +4,63 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { checkAccessible, isSurface, readCanvas, waitForFrame } from './browser.mjs';
-import { get, post } from './daemon.mjs';
+import { get, post, startDaemon } from './daemon.mjs';
+import { holdLevels } from './held.mjs';
 import { click, expectToast, press } from './page.mjs';
-import { openMesh } from './visit.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const SPHERE = { name: 'sphere', shape: 'icosphere', subdivisions: 2 };
 const FACES = 320;
 
 const levels = (page) => page.getByRole('button', { name: 'Levels' });
+const back = (page) => page.getByRole('button', { name: 'Back to the mesh' });
 const slider = (page) => page.getByRole('slider', { name: 'Level' });
 
 // Until a frame with so many faces is on the screen.
 const waitForFaces = (page, faces) => page.locator(`#canvas[data-faces="${faces}"]`).waitFor();
 
 const waitForMesh = (page) => page.locator('#canvas:not([data-faces])').waitFor();
+
+// What was drawn by now is on the screen.
+const waitForFrames = (page) =>
+    page.evaluate(
+        () =>
+            new Promise((resolve) => {
+                requestAnimationFrame(() => requestAnimationFrame(resolve));
+            }),
+    );
+
+// The same as openMesh(), with levels that come as the test lets them.
+async function openHeld(t, options) {
+    const daemon = await startDaemon(t);
+    const { id: mesh } = await post(daemon, '', SPHERE);
+    const held = await holdLevels(t, daemon);
+    const page = await openPage(t, held, options);
+    await waitForFrame(page, { mesh, revision: 1 });
+    // What is sent once levels are asked for.
+    const ask = async () => {
+        const next = held.next();
+        await levels(page).click();
+        return next;
+    };
+    return { daemon, mesh, page, ask };
+}
+
+// Send a part of an answer, until the page has it.
+async function sendTo(page, answer, part) {
+    answer.sendTo(part);
+    await page.waitForFunction(
+        (least) => document.getElementById('level-progress').value > least,
+        part - 0.1,
+    );
+    await waitForFrames(page);
+}
+
+async function checkGivenUp(page) {
+    await waitForMesh(page);
+    assert.ok(await page.locator('#levels').isHidden());
+    assert.equal(await levels(page).getAttribute('aria-pressed'), 'false');
+}
 
 // The faces of all frames from now on, until one has so many.
 function seenUntil(page, faces) {
@@ -99,7 +142,6 @@ test('levels are given up when the mesh changes, is picked in, or another is ope
     await page.emulateMedia({ reducedMotion: 'reduce' });
     await post(daemon, '', { name: 'cube', shape: 'cube' });
     await page.getByRole('button', { name: 'Refresh' }).click();
-    // Without motion the mesh is there as soon as it has come.
     await levels(page).click();
     await waitForFaces(page, FACES);
     const { items } = await get(daemon, '');
@@ -130,4 +172,106 @@ test('levels are given up when the mesh changes, is picked in, or another is ope
     assert.ok(await page.locator('#levels').isHidden());
     assert.equal(await levels(page).getAttribute('aria-pressed'), 'false');
     assert.ok(await page.getByRole('button', { name: 'Apply', exact: true }).isVisible());
+});
+
+test('who wants no motion sees nothing between the base and all', async (t) => {
+    const { page, ask } = await openHeld(t, { reducedMotion: 'reduce' });
+    const seen = seenUntil(page, FACES);
+    const answer = await ask();
+    for (const part of [0.25, 0.5, 0.75]) {
+        await sendTo(page, answer, part);
+    }
+    answer.sendTo(1);
+    answer.end();
+    assert.deepEqual(await seen, [4, FACES]);
+});
+
+test('levels are given up while they are waited for, and asked for again', async (t) => {
+    const { page, ask } = await openHeld(t, { reducedMotion: 'reduce' });
+    for (const giveUp of [
+        () => back(page).click(),
+        () => levels(page).click(),
+        () => page.keyboard.press('Escape'),
+    ]) {
+        const answer = await ask();
+        await page.getByText('The server makes the levels').waitFor();
+        assert.equal(await levels(page).getAttribute('aria-pressed'), 'true');
+        await giveUp();
+        await checkGivenUp(page);
+        await answer.closed();
+    }
+    const first = await ask();
+    await sendTo(page, first, 0.5);
+    await waitForFaces(page, 4);
+    await back(page).click();
+    await checkGivenUp(page);
+    await first.closed();
+    const second = await ask();
+    second.sendTo(1);
+    second.end();
+    await waitForFaces(page, FACES);
+    assert.equal(await page.getByRole('alert').count(), 0);
+});
+
+test('playing waits for what has not come, and can be stopped and begun again', async (t) => {
+    const { page, ask } = await openHeld(t);
+    const answer = await ask();
+    await sendTo(page, answer, 0.5);
+    await page.getByRole('button', { name: 'Pause' }).click();
+    await page.getByRole('button', { name: 'Play' }).waitFor();
+    const place = await slider(page).inputValue();
+    answer.sendTo(1);
+    answer.end();
+    await page.locator('#level-progress').waitFor({ state: 'hidden' });
+    await waitForFrames(page);
+    assert.equal(await slider(page).inputValue(), place);
+    await page.getByRole('button', { name: 'Play' }).click();
+    await waitForFaces(page, FACES);
+    // From the end on it begins with the base.
+    await page.getByRole('button', { name: 'Play' }).waitFor();
+    const again = seenUntil(page, 4);
+    await page.getByRole('button', { name: 'Play' }).click();
+    assert.deepEqual(await again, [FACES, 4]);
+    await page.getByRole('button', { name: 'Pause' }).click();
+    await back(page).click();
+    await checkGivenUp(page);
+});
+
+test('a mesh that changes while its levels come is shown as it is now', async (t) => {
+    const { daemon, mesh, page, ask } = await openHeld(t);
+    const answer = await ask();
+    await sendTo(page, answer, 0.5);
+    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });
+    await waitForFrame(page, { mesh, revision: 2 });
+    await page.getByRole('status').filter({ hasText: 'Back to the mesh' }).waitFor();
+    await checkGivenUp(page);
+    await answer.closed();
+    assert.equal(await page.getByRole('alert').count(), 0);
+});
+
+test('levels that break off are said, and the mesh is back', async (t) => {
+    const { mesh, page, ask } = await openHeld(t, { allowed: [/ERR_INCOMPLETE_CHUNKED/] });
+    for (const [stop, text] of [['breakOff', /cannot be reached/], ['end', /broke off/]]) {
+        const answer = await ask();
+        await sendTo(page, answer, 0.5);
+        answer[stop]();
+        await expectToast(page, text);
+        await checkGivenUp(page);
+        await waitForFrame(page, { mesh, revision: 1 });
+        await page.getByRole('button', { name: 'Close message' }).click();
+    }
+});
+
+test('levels of another revision than the one that is shown are not', async (t) => {
+    const { mesh, page } = await openMesh(t, SPHERE);
+    await page.route('**/progressive', async (route) => {
+        const body = await (await route.fetch()).body();
+        body.writeBigUInt64LE(2n, 8);
+        await route.fulfill({ body });
+    });
+    await levels(page).click();
+    await page.getByRole('status').filter({ hasText: 'Back to the mesh' }).waitFor();
+    await checkGivenUp(page);
+    await waitForFrame(page, { mesh, revision: 1 });
+    assert.equal(await page.getByRole('alert').count(), 0);
 });

@@ -1,8 +1,8 @@
 // measure.mjs [FOLDER] - how long meshes of a thousand, a hundred thousand and a million faces take
 // to open, to draw, to pick in and to edit, and how many bytes an edit fetches; with FOLDER a
-// screenshot of each. Then how long so many triangles take to be shown from coarse to fine: a frame of
-// all of them, until the base is there, the frames of playing, and those in which the slider goes to
-// another place.
+// screenshot of each. Then how long so many triangles take to be shown from coarse to fine: a frame
+// of all of them, until the base is there, the frames of playing, and those in which the slider
+// goes to another place.
 // Not a test: what it prints depends on the machine.
 
 import { writeFile } from 'node:fs/promises';
@@ -154,7 +154,8 @@ try {
         const { faces, bytes, times } = await measure(browser, daemon, side);
         line([faces, ...times.map((time) => `${time.toFixed(0)} ms`), bytes]);
     }
-    line(['triangles', 'whole', 'base', 'frame', 'slowest', 'slide', 'slowest', 'frames', 'seconds']);
+    const head = 'triangles whole base frame slowest slide slowest frames seconds';
+    line(head.split(' '));
     for (const side of SIDES) {
         const half = Math.round(side / Math.SQRT2);
         const { faces, frames, seconds, times } = await measureLevels(browser, daemon, half);

@@ -38,7 +38,7 @@ const groupOf = ({ name }) => GROUPS.find((group) => name.startsWith(`${group}_`
 for (const group of [...GROUPS, 'mesh']) {
     test(`each ${group} operation is filled, tried, applied and undone`, async (t) => {
         const daemon = await startDaemon(t);
-        // What is half filled may be tried, and refused: one edge between inner vertices is not cut.
+        // What is half filled may be tried and refused: one edge between inner vertices is not cut.
         const page = await openPage(t, daemon, { allowed: [/status of 422/] });
         for (const scenario of SCENARIOS.filter((one) => groupOf(one) === group)) {
             await goThrough({ daemon, page }, scenario);

@@ -2,8 +2,8 @@
 // check-traffic.mjs compares it with the served OpenAPI document.
 //
 // Browsers, generated clients and the commands of the README then need no recorder of their own.
-// Lines are those of tests/traffic.h. Of the codings a browser accepts gzip is passed on, which node
-// can undo to look inside.
+// Lines are those of tests/traffic.h. Of the codings a browser accepts gzip is passed on, which
+// node can undo to look inside.
 
 import { appendFileSync } from 'node:fs';
 import { Agent, createServer, request as send } from 'node:http';

@@ -12,11 +12,11 @@
 //          a---b            bit 31: c -> a
 //                           a bit that is clear marks a diagonal, which is not drawn
 //
-// A vertex's place is its id. The triangles of a face lie side by side, in no order of faces; a slot
-// without a face is four zeros. The server has moved and scaled positions into the unit ball ("view
-// coordinates") before it rounded them to floats, so that a mesh far from the origin or of any size
-// draws the same; `frame` says how. Within a `layout` faces keep their slots and the frame stays,
-// so that a change can be put into the arrays: see geometry_delta.js.
+// A vertex's place is its id. The triangles of a face lie side by side, in no order of faces; a
+// slot without a face is four zeros. The server has moved and scaled positions into the unit ball
+// ("view coordinates") before it rounded them to floats, so that a mesh far from the origin or of
+// any size draws the same; `frame` says how. Within a `layout` faces keep their slots and the frame
+// stays, so that a change can be put into the arrays: see geometry_delta.js.
 
 export const VERTEX_USED = 1;
 export const VERTEX_ISOLATED = 2;
@@ -29,9 +29,9 @@ const VERSION = 2;
 const SIDE_SHIFT = 29;
 const FACE_MASK = 2 ** SIDE_SHIFT - 1;
 
-// {revision, base, layout, vertexCount, triangleCount, length} of an answer, an ArrayBuffer of which
-// only the header is read: a base of 0 says that it holds all rows, and `length` how many bytes it
-// has. Throws a RangeError where it is no header.
+// {revision, base, layout, vertexCount, triangleCount, length} of an answer, an ArrayBuffer of
+// which only the header is read: a base of 0 says that it holds all rows, and `length` how many
+// bytes it has. Throws a RangeError where it is no header.
 export function headerOf(buffer) {
     const view = new DataView(buffer);
     const text = String.fromCharCode(...new Uint8Array(buffer, 0, 4));

@@ -6,9 +6,9 @@
 //   16  u64 base                    88  u32 rows of vertices, u32 rows of triangles that follow
 //   24  u64 bytes of each part      96  the two parts
 //
-// A part is u32 places in rising order, zeros up to a multiple of 16 bytes, and as many rows. Within
-// a layout a triangle keeps its slot, counts never fall, and a slot without a face is four zeros.
-// A face's triangles lie side by side.
+// A part is u32 places in rising order, zeros up to a multiple of 16 bytes, and as many rows.
+// Within a layout a triangle keeps its slot, counts never fall, and a slot without a face is four
+// zeros. A face's triangles lie side by side.
 
 import { HEADER_BYTES, headerOf } from './geometry.js';
 

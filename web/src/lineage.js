@@ -9,7 +9,7 @@ export class Lineage {
     #merged = new Map(); // 'face:3' -> the id of the face it is part of now
     #parents = new Map(); // 'face:3' -> the id of the face it was cut from
 
-    // An answer to an edit, or the event of one: `merged` and `parents` are {faces: [[of, id]], ...}.
+    // An answer to an edit, or its event: `merged` and `parents` are {faces: [[of, id]], ...}.
     note({ merged = {}, parents = {} }) {
         for (const [map, told] of [[this.#merged, merged], [this.#parents, parents]]) {
             for (const [plural, pairs] of Object.entries(told)) {

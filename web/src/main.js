@@ -111,6 +111,7 @@ const refining = new Refining(
             showWhatMayBeDone();
         },
         onEnd: () => update('content'),
+        onStale: tellStale,
         onError: fail,
     },
 );
@@ -207,8 +208,12 @@ function showWhatMayBeDone() {
 function endLevels() {
     refining.end();
     if (session.loading === null) {
-        toasts.tell('Back to the mesh', 'It has changed, and its levels with it.');
+        tellStale();
     }
+}
+
+function tellStale() {
+    toasts.tell('Back to the mesh', 'It has changed, and its levels with it.');
 }
 
 // The empty state shows where there is nothing to open.

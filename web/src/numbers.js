@@ -9,8 +9,8 @@ export function wordsOf(text) {
     return text.split(BETWEEN).filter((word) => word !== '');
 }
 
-// The numbers in the text of the parameter `name`. Digits as people write them: what else JavaScript
-// reads, such as 0x10, is a slip.
+// The numbers in the text of the parameter `name`. Digits as people write them: what else
+// JavaScript reads, such as 0x10, is a slip.
 export function numbersOf(text, name) {
     return wordsOf(text).map((word) => {
         const value = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(word) ? Number(word) : NaN;

@@ -33,10 +33,11 @@ export class ProgressiveReader {
     #part = HEADER;
     #left = [1, 0, 0, 0, 0]; // rows of each part that are to come
 
-    // `begin({vertices, faces, splits, vertexIds, faceIds})` gets the counts of the base and of what
-    // follows, and how many ids were issued. It returns who gets the rows: addVertex(id, place),
-    // addFace(id, corners) and addSplit({vertex, from, left, right, at, fromAt, moved}), where `left`
-    // and `right` are {face, corner} or null. `moved` is theirs only until they return.
+    // `begin({revision, vertices, faces, splits, vertexIds, faceIds})` gets the mesh's revision,
+    // the counts of the base and of what follows, and how many ids were issued. It returns who gets
+    // the rows: addVertex(id, place), addFace(id, corners) and addSplit({vertex, from, left, right,
+    // at, fromAt, moved}), where `left` and `right` are {face, corner} or null. `moved` is theirs
+    // only until they return.
     constructor(begin) {
         this.#begin = begin;
         this.#view();
@@ -122,10 +123,11 @@ export class ProgressiveReader {
         if (words[0] !== MAGIC || words[1] !== VERSION) {
             throw unreadable();
         }
+        const revision = words[2] + 2 ** 32 * words[3];
         const [vertices, edges, faces, splits] = words.subarray(4, 8);
         const [vertexIds, , faceIds] = words.subarray(10, 13);
         this.#left = [1, vertices, edges, faces, splits];
-        this.#sink = this.#begin({ vertices, faces, splits, vertexIds, faceIds });
+        this.#sink = this.#begin({ revision, vertices, faces, splits, vertexIds, faceIds });
     }
 
     #readSplit(at) {

@@ -1,6 +1,6 @@
-// refining.js - the open mesh shown from coarse to fine: its levels of detail as they come, a slider
-// that goes to any of them, and playing them. While one is shown nothing is picked or edited: it
-// has other elements than the mesh.
+// refining.js - the open mesh shown from coarse to fine: its levels of detail as they come, a
+// slider that goes to any of them, and playing them. While one is shown nothing is picked or
+// edited: it has other elements than the mesh.
 
 import * as api from './api.js';
 import { formatCount } from './dom.js';
@@ -33,11 +33,12 @@ export class Refining {
 
     // `button` begins and ends it; `box` is shown meanwhile and holds `slider`, `faces` (what is
     // shown), `hint`, `progress` (what has come), `play` and `done`. `onBegin()` when the base is
-    // shown, `onEnd()` when the mesh is to be shown again.
-    constructor(elements, stage, { onBegin, onEnd, onError }) {
+    // shown, `onEnd()` when the mesh is to be shown again, `onStale()` when the server has other
+    // levels than those of what is shown, which ends it too.
+    constructor(elements, stage, { onBegin, onEnd, onStale, onError }) {
         [this.#elements, this.#stage] = [elements, stage];
-        this.#acts = { onBegin, onEnd, onError };
-        const { box, slider, play, done } = elements;
+        this.#acts = { onBegin, onEnd, onStale, onError };
+        const { button, box, slider, play, done } = elements;
         done.addEventListener('click', () => this.end());
         play.addEventListener('click', () => (this.#isPlaying ? this.#pause() : this.#play()));
         slider.addEventListener('input', () => {
@@ -45,11 +46,14 @@ export class Refining {
             this.#position = Number(slider.value);
             this.#schedule();
         });
-        box.addEventListener('keydown', (event) => {
-            if (event.key === 'Escape') {
-                this.end();
-            }
-        });
+        // Until the base has come the focus may be on the button.
+        for (const element of [button, box]) {
+            element.addEventListener('keydown', (event) => {
+                if (event.key === 'Escape') {
+                    this.end();
+                }
+            });
+        }
     }
 
     // Is a level shown in place of the mesh?
@@ -70,6 +74,11 @@ export class Refining {
         this.#mesh = { mesh, revision, faces: summary.counts.faces };
         this.#showWaiting();
         const reader = new ProgressiveReader((header) => {
+            if (header.revision !== revision) {
+                this.end();
+                this.#acts.onStale();
+            }
+            reading.signal.throwIfAborted();
             this.#levels = new Levels(header, geometry.frame);
             return this.#levels;
         });
@@ -134,7 +143,10 @@ export class Refining {
                 this.#showBase();
             }
             this.#elements.progress.value = levels.part;
-            this.#schedule();
+            // Who wants no motion waits for all of it.
+            if (!isStill.matches) {
+                this.#schedule();
+            }
         }
     }
 
@@ -153,7 +165,6 @@ export class Refining {
         if (document.activeElement === button) {
             slider.focus();
         }
-        // Who wants no motion waits for all of it.
         this.#position = isStill.matches ? this.#pace.positions : 0;
         if (isStill.matches) {
             this.#showLevel();

@@ -2,7 +2,7 @@
 // which arrays and which answers of the server belong together.
 //
 //   mesh        of what
-//   geometry    the arrays to draw, see geometry.js: patched in place by changes within their layout
+//   geometry    the arrays to draw, see geometry.js: patched in place within their layout
 //   history     the newest page of it, as the server says
 //   summary     as the server says; of a large mesh it may be of a revision before
 //   boundary    the half-edges of all boundary loops: origin, target, origin, target, ...; likewise

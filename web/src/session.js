@@ -147,7 +147,7 @@ export class Session {
             try {
                 await this.#advance(whole);
             } catch (error) {
-                // Of other arrays, or of a mesh of the same name that is younger than what is shown.
+                // Of other arrays, or of a mesh of that name that is younger than what is shown.
                 if (whole || !(error instanceof RangeError || error.status === 400)) {
                     throw error;
                 }

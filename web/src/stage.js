@@ -19,10 +19,10 @@ export class Stage {
     #acts;
     #timer = 0;
 
-    // `noWebGL` and `contextLost` are shown when that is so, `modes` holds the radio buttons of what
-    // a click picks. `geometry()` gives the arrays that are shown, or null. `onPick(chosen, also)`
-    // gets what choose() made of a click, `also` with Shift; `onRest()` when the camera has been moved
-    // and is at rest.
+    // `noWebGL` and `contextLost` are shown when that is so, `modes` holds the radio buttons of
+    // what a click picks. `geometry()` gives the arrays that are shown, or null. `onPick(chosen,
+    // also)` gets what choose() made of a click, `also` with Shift; `onRest()` when the camera has
+    // been moved and is at rest.
     constructor(canvas, { noWebGL, contextLost, modes }, { geometry, onPick, onRest, onError }) {
         this.#canvas = canvas;
         this.#modes = modes;

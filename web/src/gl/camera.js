@@ -14,8 +14,8 @@ export class Camera {
     #canvas;
     #controls;
 
-    // `onMove(isHeld)` is called after each move, and when it is let go; `isHeld` while a pointer or
-    // a finger goes on with it.
+    // `onMove(isHeld)` is called after each move, and when it is let go; `isHeld` while a pointer
+    // or a finger goes on with it.
     constructor(canvas, onMove) {
         this.#canvas = canvas;
         this.three.up.set(...UP);

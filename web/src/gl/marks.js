@@ -1,5 +1,5 @@
-// marks.js - what lies on the mesh: what is selected, what is in the fields of a form, half-edges as
-// arrows, boundary loops, and lines of what is about to be done.
+// marks.js - what lies on the mesh: what is selected, what is in the fields of a form, half-edges
+// as arrows, boundary loops, and lines of what is about to be done.
 
 import {
     AlwaysDepth,

@@ -1,5 +1,5 @@
-// render.js - draws: the surface of the mesh and what lies on it, as the camera sees them. Only this
-// folder knows WebGL and three.
+// render.js - draws: the surface of the mesh and what lies on it, as the camera sees them. Only
+// this folder knows WebGL and three.
 //
 //   surface.js   the mesh, from the arrays of geometry.js
 //   marks.js     what lies on it: what is selected, arrows, boundary loops, previews
@@ -43,7 +43,8 @@ export class Renderer {
     #onFrame;
 
     // Throws NoWebGL. `onFrame(label)` is called after each frame with what show() was given, and
-    // `onLost(lost)` when the graphics context goes and comes back, `onMove(isHeld)` as Camera says.
+    // `onLost(lost)` when the graphics context goes and comes back, `onMove(isHeld)` as Camera
+    // says.
     constructor(canvas, { onFrame, onLost, onMove }) {
         const context = canvas.getContext('webgl2', { antialias: true, alpha: false });
         if (context === null) {
@@ -89,8 +90,8 @@ export class Renderer {
         new ResizeObserver(() => this.#resize()).observe(canvas);
     }
 
-    // Show a mesh, or nothing (null). `label` is what onFrame will say is shown. Throws a RangeError,
-    // and shows what it did before, when the mesh is larger than a texture can be.
+    // Show a mesh, or nothing (null). `label` is what onFrame will say is shown. Throws a
+    // RangeError, and shows what it did before, when the mesh is larger than a texture can be.
     show(geometry, label) {
         this.#surface.show(geometry);
         this.#geometry = geometry;
@@ -99,8 +100,8 @@ export class Renderer {
         this.#draw();
     }
 
-    // The arrays of the mesh that is shown were changed, see applyDelta(): only what changed goes to
-    // the graphics memory. Boundary and selection stay as they were. Throws as show() does.
+    // The arrays of the mesh that is shown were changed, see applyDelta(): only what changed goes
+    // to the graphics memory. Boundary and selection stay as they were. Throws as show() does.
     update(places, label) {
         if (this.#geometry !== null) {
             this.#surface.update(places);

@@ -1,5 +1,5 @@
-// rows.js - an array of geometry.js as a texture of ROW texels across, of which parts can be sent to
-// the graphics memory again. With render.js the only module that knows three.
+// rows.js - an array of geometry.js as a texture of ROW texels across, of which parts can be sent
+// to the graphics memory again. With render.js the only module that knows three.
 
 import { DataTexture, NearestFilter } from 'three';
 

@@ -99,7 +99,7 @@ export class Surface {
         this.#setRanges();
     }
 
-    // The arrays that are shown were changed at some places, see applyDelta(). Throws as show() does.
+    // The arrays that are shown were changed in places, see applyDelta(). Throws as show() does.
     update(places) {
         const arrays = this.#arraysOf(this.#geometry);
         for (const [name, texture] of Object.entries(this.#textures)) {
