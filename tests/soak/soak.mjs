@@ -62,7 +62,7 @@ const LEFT_BEHIND = 0.0625;
 // Of a run of minutes: so often it is quiet for as long as the daemon needs to give back what it
 // freed, which it does in the second after one without work.
 const REST_EVERY = 10; // seconds
-const MOST_REST = 3;
+const MOST_REST = 5;
 const REST_NOISE = 0.25; // MiB
 const MOST_PROBLEMS = 20;
 
