@@ -12,6 +12,7 @@
 #include <stdatomic.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -215,11 +216,22 @@ static bool open_http(daemon_parts *parts, const srv_config *config)
     return true;
 }
 
+static uint64_t processor_micros(void)
+{
+    struct timespec time = {0};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return (uint64_t)time.tv_sec * 1000000 + (uint64_t)time.tv_nsec / 1000;
+}
+
+/* The main thread serves nobody, and keeps house until it is told to stop. */
 static void wait_for_stop(const sigset_t *signals)
 {
-    int number = 0;
+    const struct timespec second = {.tv_sec = 1};
+    srv_memory_rest rest = {0};
+    int number;
     do {
-        sigwait(signals, &number);
+        number = sigtimedwait(signals, NULL, &second);
+        srv_memory_rests(&rest, processor_micros());
     } while (number != SIGTERM && number != SIGINT);
 }
 

@@ -94,6 +94,22 @@ bool srv_memory_is_full(void)
     return budget != 0 && srv_memory_used() >= budget - budget / RESERVE_SHARE;
 }
 
+/* Every thread has a heap of its own, and glibc gives back only what is free at the end of one.
+ * Pages in between stay: after minutes of mixed requests more than all that is in use. */
+enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
+
+bool srv_memory_rests(srv_memory_rest *rest, uint64_t processor)
+{
+    bool resting = processor - rest->looked < RESTING_MICROS;
+    rest->looked = processor;
+    if (!resting || processor - rest->trimmed < WORKED_MICROS) {
+        return false;
+    }
+    malloc_trim(0);
+    rest->trimmed = processor;
+    return true;
+}
+
 /* The limit of the control group, UINT64_MAX where there is none. */
 static uint64_t group_limit(void)
 {

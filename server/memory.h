@@ -24,6 +24,18 @@ uint64_t srv_memory_budget(void);
 /* Would a large block be refused now? */
 bool srv_memory_is_full(void);
 
+/* The processor time of the process at the last look, and when pages were given back, in
+ * microseconds. */
+typedef struct srv_memory_rest {
+    uint64_t looked, trimmed;
+} srv_memory_rest;
+
+/* Give back to the system what the C library keeps of freed blocks, once the process rests: it
+ * worked for 20 ms or more since that was done, and for less than 50 ms since the last call.
+ * `processor` is its processor time until now. To be called about once a second by one thread that
+ * serves nobody, for it takes the lock of each heap in turn. True when it was done. */
+bool srv_memory_rests(srv_memory_rest *rest, uint64_t processor);
+
 /* Three quarters of what the machine, or the control group the process runs in, has. */
 uint64_t srv_memory_default_budget(void);
 

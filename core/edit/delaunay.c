@@ -21,7 +21,11 @@ typedef struct flipper {
     he_ids flips;
     uint64_t steps, limit;
     uint64_t dequeued;
+    size_t from, fold_at; /* records before this call, and how many are folded next */
 } flipper;
+
+/* Records for each edge before they are folded: about as many as it has words. */
+enum { RECORDS_OF_EDGE = 16 };
 
 static void enqueue(flipper *q, he_edge e)
 {
@@ -82,6 +86,19 @@ static uint32_t search_steps(const he_mesh *m, he_edge e)
     return n;
 }
 
+/* Flips go on about the same edges: what is recorded grows with the mesh, not with their number. */
+static he_status fold(flipper *q, he_error *err)
+{
+    he_delta *delta = q->m->delta;
+    if (delta->count < q->fold_at) {
+        return HE_OK;
+    }
+    he_status status = he_delta_fold(delta, q->from, err);
+    size_t left = delta->count - q->from;
+    q->fold_at = delta->count + left + RECORDS_OF_EDGE * (size_t)q->m->c.edges.live;
+    return status;
+}
+
 static he_status flip(flipper *q, he_edge e, he_error *err)
 {
     const he_mesh *m = q->m;
@@ -107,7 +124,7 @@ static he_status flip(flipper *q, he_edge e, he_error *err)
     enqueue(q, he_edge_of(he_prev(m, h)));
     enqueue(q, he_edge_of(he_next(m, t)));
     enqueue(q, he_edge_of(he_prev(m, t)));
-    return HE_OK;
+    return fold(q, err);
 }
 
 static he_status empty_queue(flipper *q, he_error *err)
@@ -182,6 +199,8 @@ he_status he_delaunay(he_mesh *m, const uint32_t *edges, size_t count, he_ids *f
     if (status != HE_OK) {
         goto out;
     }
+    q.from = bracket.mark.records;
+    q.fold_at = q.from + RECORDS_OF_EDGE * (size_t)m->c.edges.live;
     status = he_watch_phase(m->watch, "flipping", 1, err);
     while (status == HE_OK && q.waiting > 0) {
         status = empty_queue(&q, err);

@@ -77,6 +77,51 @@ void he_delta_trim(he_delta *d)
     }
 }
 
+/* Where a word is looked for first, in a table of 2^(64 - shift) places. */
+static size_t place_of(const he_record *r, uint32_t shift)
+{
+    uint64_t key = (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
+    return (size_t)(key * UINT64_C(0x9E3779B97F4A7C15) >> shift);
+}
+
+/* Open addressing; a place holds one more than the index of a record, 0 when it is free. */
+he_status he_delta_fold(he_delta *d, size_t from, he_error *err)
+{
+    uint32_t bits = 4;
+    while ((size_t)1 << bits < 2 * (d->count - from)) {
+        bits++;
+    }
+    size_t mask = ((size_t)1 << bits) - 1, kept = from;
+    size_t *table = he_mem_zero(mask + 1, sizeof *table);
+    if (table == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to fold %zu records", d->count - from);
+    }
+    for (size_t i = from; i < d->count; i++) {
+        he_record r = d->records[i];
+        if (r.column >= HE_COL_PARENT && r.column < HE_COL_ATTRIBUTE) {
+            d->records[kept++] = r;
+            continue;
+        }
+        size_t at = place_of(&r, 64 - bits);
+        while (table[at] != 0) {
+            const he_record *one = &d->records[table[at] - 1];
+            if (one->row == r.row && one->column == r.column && one->word == r.word) {
+                break;
+            }
+            at = (at + 1) & mask;
+        }
+        if (table[at] != 0) {
+            d->records[table[at] - 1].after = r.after;
+        } else {
+            d->records[kept++] = r;
+            table[at] = kept;
+        }
+    }
+    d->count = kept;
+    he_mem_free(table);
+    return HE_OK;
+}
+
 he_status he_delta_reserve(he_delta *d, size_t records, size_t objects, he_error *err)
 {
     if (records > d->capacity - d->count) {

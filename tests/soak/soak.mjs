@@ -8,14 +8,17 @@
 //
 //     minute, requests so far and those answered by a refusal; meshes and faces held now
 //     loaded   MiB resident, the mean of the minute, and the most in it
-//     at rest  after the last round: MiB resident, MiB the daemon itself counts, open descriptors
+//     at rest  after a round: MiB resident, MiB the daemon itself counts, open descriptors
+//
+// At rest no client asks for anything; what the C library kept of freed blocks the daemon gives back
+// a second later, and a run of minutes waits for that, every ten seconds.
 //
 // Judged is the second half: the slope of what is resident and of what is counted at rest, by least
 // squares; how far rest is above its level after the first quarter; the slope of the loaded means
 // where there are ten of them; descriptors; that every request was answered as expected; that the
 // daemon ends well. Less than ten minutes, as `make test` has it, knows wider bounds. `--load 0.5`
 // pauses for as long as requests take. What came out by the minute goes to soak.csv and soak.svg in
-// build/; the last line is `N passed, N failed`.
+// build/; the slowest requests are told of, and the last line is `N passed, N failed`.
 
 import { mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -24,7 +27,7 @@ import { parseArgs } from 'node:util';
 
 import { drawSoak } from './draw.mjs';
 import { Mix } from './mix.mjs';
-import { Client, Daemon, mebibytes } from './wire.mjs';
+import { Client, Daemon, mebibytes, slowest } from './wire.mjs';
 
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
 const { values: options } = parseArgs({
@@ -56,6 +59,11 @@ const LOADED_SLOPE = { share: 0.1, least: 2 };
 // What a client left behind when it went is found out and freed a moment later.
 const MOST_LOOKS = 1000;
 const LEFT_BEHIND = 0.0625;
+// Of a run of minutes: so often it is quiet for as long as the daemon needs to give back what it
+// freed, which it does in the second after one without work.
+const REST_EVERY = 10; // seconds
+const MOST_REST = 5;
+const REST_NOISE = 0.25; // MiB
 const MOST_PROBLEMS = 20;
 
 const seconds = () => performance.now() / 1000;
@@ -64,7 +72,7 @@ const began = seconds();
 const daemon = await Daemon.start(options.hedged, ['--undo-budget', UNDO_BUDGET]);
 const clients = Array.from(
     { length: Number(options.clients) },
-    () => new Client(daemon.url, Number(options.load)),
+    () => new Client(daemon, Number(options.load)),
 );
 const mixes = clients.map(
     (client, i) => new Mix(client, `c${i}`, seed + 7919 * i, Number(options.faces) / clients.length),
@@ -78,7 +86,22 @@ function sample() {
     loaded.push(daemon.memory().resident);
 }
 
+// Until as little is resident as at any rest before.
+async function settled() {
+    const lowest = Math.min(...rests.map(({ resident }) => resident));
+    const until = seconds() + MOST_REST;
+    while (seconds() < until && !(daemon.memory().resident <= lowest + REST_NOISE)) {
+        await new Promise((resolve) => setTimeout(resolve, SAMPLES));
+    }
+}
+
 async function look() {
+    if (options.minutes !== undefined) {
+        if (seconds() - began < (rests.at(-1)?.time ?? -REST_EVERY) + REST_EVERY) {
+            return;
+        }
+        await settled();
+    }
     const lowest = Math.min(...rests.map((rest) => rest.counted));
     let counted;
     let looks = 0;
@@ -203,6 +226,8 @@ clients.forEach((client) => client.end());
 const status = await daemon.stop();
 console.log(`note: ${rounds} rounds of ${mixes.length} clients in ${(seconds() - began).toFixed(0)} s, ` +
     `SEED=${seed}`);
+slowest(clients.flatMap((client) => client.slowest)).forEach(({ time, processor, what }) =>
+    console.log(`slowest: ${time.toFixed(1)} s, ${processor.toFixed(1)} s of processor, ${what}`));
 if (minutes.length > 0) {
     mkdirSync(options.out, { recursive: true });
     const lines = minutes.map((line) => Object.values(line).join());

@@ -7,6 +7,8 @@ import { Agent, request } from 'node:http';
 import { createInterface } from 'node:readline';
 
 const MIB = 1024 * 1024;
+const TICKS = 100; // of processor time in a second, as /proc tells it
+const SLOWEST = 5; // requests that are told of in the end
 
 export class Daemon {
     constructor(child, url) {
@@ -46,6 +48,13 @@ export class Daemon {
         };
     }
 
+    // Seconds of processor time so far, of all threads.
+    processor() {
+        const line = readFileSync(`/proc/${this.child.pid}/stat`, 'latin1');
+        const [user, system] = line.slice(line.lastIndexOf(')') + 2).split(' ').slice(11, 13);
+        return (Number(user) + Number(system)) / TICKS;
+    }
+
     // Its exit status.
     async stop() {
         this.child.kill('SIGTERM');
@@ -56,14 +65,25 @@ export class Daemon {
 
 // One connection that is kept. Every answer must have one of the statuses that are expected.
 export class Client {
-    constructor(url, load) {
-        const { hostname, port } = new URL(url);
+    constructor(daemon, load) {
+        const { hostname, port } = new URL(daemon.url);
+        this.daemon = daemon;
         this.to = { hostname, port };
         this.agent = new Agent({ keepAlive: true, maxSockets: 1 });
         this.load = load;
         this.requests = 0;
         this.refused = 0;
         this.problems = [];
+        this.slowest = []; // {time, processor, what} in seconds, the slowest first
+    }
+
+    // The processor time of the daemon includes what the other clients asked for meanwhile.
+    timed(began, processor, what) {
+        const time = (performance.now() - began) / 1000;
+        if (this.slowest.length < SLOWEST || time > this.slowest.at(-1).time) {
+            this.slowest.push({ time, processor: this.daemon.processor() - processor, what: what() });
+            this.slowest = slowest(this.slowest);
+        }
     }
 
     // Pauses so that no more than `load` of the time is spent on requests.
@@ -78,6 +98,7 @@ export class Client {
     // and with `type` an object is sent as it is, else as JSON.
     async send(method, path, expected, { body, type, headers = {}, cut = false } = {}) {
         const began = performance.now();
+        const processor = this.daemon.processor();
         const bytes = body === undefined || type ? body : Buffer.from(JSON.stringify(body));
         const all = { 'Accept-Encoding': 'identity', ...headers };
         if (bytes !== undefined) {
@@ -99,6 +120,8 @@ export class Client {
             headers: answer.headers,
             body: Buffer.concat(pieces),
         };
+        this.timed(began, processor, () => `${method} ${path} ` +
+            `${bytes === undefined ? '' : type ? `${type}, ${bytes.length} bytes` : bytes.subarray(0, 200)}`);
         this.requests++;
         this.refused += result.status >= 400;
         if (!expected.includes(result.status)) {
@@ -156,4 +179,5 @@ export class Client {
     }
 }
 
+export const slowest = (list) => [...list].sort((a, b) => b.time - a.time).slice(0, SLOWEST);
 export const mebibytes = (bytes) => bytes / MIB;

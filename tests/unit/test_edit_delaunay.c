@@ -453,6 +453,33 @@ static void test_work_is_limited(void **state)
     he_mesh_free(m);
 }
 
+/* However many flips there are, the record is no longer than what the mesh has words for, and leads
+ * back and forth. */
+static void test_many_flips_are_recorded_in_the_size_of_the_mesh(void **state)
+{
+    (void)state;
+    he_ids flips = {0};
+    he_mesh *m = two_rows(200), *before = copy_of(m);
+    he_delta *delta = he_delta_new();
+    he_mesh_record(m, delta);
+    assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
+    he_mesh_record(m, NULL);
+    size_t edges = m->c.edges.live;
+    assert_true(flips.count > 16 * edges);
+    assert_true(delta->count < 48 * edges);
+    assert_valid(m);
+    he_mesh *after = copy_of(m);
+    he_delta_undo(delta, m);
+    assert_equal(m, before);
+    he_delta_redo(delta, m);
+    assert_equal(m, after);
+    he_ids_clear(&flips);
+    he_delta_free(delta);
+    he_mesh_free(after);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
 /* Ten thousand spokes about one vertex: no flip turns about all of them. */
 static void test_hub(void **state)
 {
@@ -533,6 +560,7 @@ int main(void)
         cmocka_unit_test(test_only_the_list),
         cmocka_unit_test(test_triangles_in_space),
         cmocka_unit_test(test_work_is_limited),
+        cmocka_unit_test(test_many_flips_are_recorded_in_the_size_of_the_mesh),
         cmocka_unit_test(test_hub),
         cmocka_unit_test(test_memory_runs_out),
     };

@@ -1,0 +1,74 @@
+/* What the daemon holds: what is freed goes back to the system once the process rests. */
+#include "tests/unit/fixture.h"
+
+#include "mesh/mem.h"
+#include "server/memory.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+#define MILLIS UINT64_C(1000)
+
+static void pages_are_given_back_once_after_work_when_it_rests(void **state)
+{
+    (void)state;
+    srv_memory_rest rest = {0};
+    assert_false(srv_memory_rests(&rest, 10 * MILLIS)); /* hardly anything was done */
+    assert_false(srv_memory_rests(&rest, 400 * MILLIS));
+    assert_false(srv_memory_rests(&rest, 450 * MILLIS)); /* it still works */
+    assert_true(srv_memory_rests(&rest, 499 * MILLIS));
+    assert_false(srv_memory_rests(&rest, 499 * MILLIS));
+    assert_false(srv_memory_rests(&rest, 518 * MILLIS));
+    assert_true(srv_memory_rests(&rest, 519 * MILLIS)); /* little by little */
+    assert_false(srv_memory_rests(&rest, 520 * MILLIS));
+}
+
+/* A sanitizer has an allocator of its own. */
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+enum { BLOCKS = 4096, BLOCK = 16 * 1024, KEPT = 64 }; /* 64 MiB, and each 64th block stays */
+
+static size_t resident_bytes(void)
+{
+    size_t all = 0, resident = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%zu %zu", &all, &resident), 2);
+    fclose(file);
+    return resident * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+static void what_is_freed_between_used_blocks_goes_back_to_the_system(void **state)
+{
+    (void)state;
+    static void *blocks[BLOCKS];
+    srv_memory_install(0);
+    for (size_t i = 0; i < BLOCKS; i++) {
+        blocks[i] = he_mem_zero(1, BLOCK);
+        assert_non_null(blocks[i]);
+        memset(blocks[i], 1, BLOCK);
+    }
+    size_t full = resident_bytes();
+    for (size_t i = 0; i < BLOCKS; i++) {
+        if (i % KEPT != KEPT - 1) {
+            he_mem_free(blocks[i]);
+        }
+    }
+    srv_memory_rest rest = {0};
+    assert_true(srv_memory_rests(&rest, 20 * MILLIS));
+    assert_true(resident_bytes() < full - (size_t)BLOCKS * BLOCK / 10 * 9);
+    for (size_t i = KEPT - 1; i < BLOCKS; i += KEPT) {
+        he_mem_free(blocks[i]);
+    }
+}
+#endif
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pages_are_given_back_once_after_work_when_it_rests),
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+        cmocka_unit_test(what_is_freed_between_used_blocks_goes_back_to_the_system),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
