@@ -15,7 +15,11 @@ static bool refuse_parameter(api_exchange *x, const api_parameter *parameter, co
     } else if (parameter->type == API_PARAM_TEXT) {
         snprintf(taken, sizeof taken, "at most %.0f bytes", parameter->max);
     } else if (parameter->type == API_PARAM_NUMBER) {
-        snprintf(taken, sizeof taken, "a number from %g to %g", parameter->min, parameter->max);
+        char least[HE_NUMBER_TEXT], most[HE_NUMBER_TEXT];
+        int least_bytes = (int)he_double_print(parameter->min, least);
+        int most_bytes = (int)he_double_print(parameter->max, most);
+        snprintf(taken, sizeof taken, "a number from %.*s to %.*s", least_bytes, least, most_bytes,
+                 most);
     } else if (parameter->choices != NULL) {
         bool many = parameter->type == API_PARAM_CHOICES;
         size_t used = (size_t)snprintf(taken, sizeof taken, "%s", many ? "some of " : "");

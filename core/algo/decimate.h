@@ -16,8 +16,9 @@
  * the planes of the original faces that it stands for. It is no bound on the distance of the
  * surfaces. Errors below 1e-12 of the size of the mesh count as 0.
  *
- * ORDER is by the cost times the error, up to a quarter of the product. By the cost alone the mean
- * distance of the surfaces becomes no smaller, and the largest a tenth larger.
+ * ORDER is by the cost times the error, up to a quarter of the product. By the cost alone the
+ * largest distance of the surfaces was a tenth larger, and the mean no smaller, where that was
+ * measured: on a bumpy torus of a million faces, at a tenth of them.
  *
  * An edge is not collapsed
  *
@@ -29,7 +30,12 @@
  *
  * It is tried again when the faces about it have changed, and where its error was too large when an
  * end has taken another vertex in, unless that end has more than HE_DECIMATE_DEGREE edges. So no
- * edge is left that could be collapsed within `max_error`. Nothing depends on chance or the clock.
+ * edge is left that could be collapsed within `max_error`, but for those at such an end. Nothing
+ * depends on chance or the clock.
+ *
+ * A face that turns a little in each of many steps is not held against what it was: on rough
+ * surfaces some are turned over. Of a grid of 5,000 faces, moved by up to 0.3 of a cell in each
+ * direction, up to 5 of the 2,500 that were left looked down.
  *
  * Vertices keep their ids or go, and so do edges and faces: nothing is created. Interpolated
  * attributes of the two vertices mix by where between them the new place lies. */
@@ -53,7 +59,7 @@ typedef struct he_decimate_options {
 
 typedef enum he_decimate_stop {
     HE_STOP_FACES,     /* there are no more faces than asked for */
-    HE_STOP_ERROR,     /* some edge could be collapsed if max_error were larger */
+    HE_STOP_ERROR,     /* some edge is too dear */
     HE_STOP_EXHAUSTED, /* none can */
     HE_STOP_COUNT
 } he_decimate_stop;

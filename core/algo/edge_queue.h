@@ -3,7 +3,7 @@
  * A bucket holds the edges whose priorities agree in exponent and two binary digits: those that
  * differ by less than a quarter may come in either order. Within a bucket edges lie as they came,
  * most of them by id, so that neighbours are near in memory; that is worth more than a finer order,
- * which leaves a mesh no better. They lie in chunks of one cache line, and a chunk is taken whole,
+ * which leaves a mesh no better. They lie in chunks of 64 bytes, and a chunk is taken whole,
  * so that what its edges need can be asked for ahead of time. */
 #ifndef HE_ALGO_EDGE_QUEUE_H
 #define HE_ALGO_EDGE_QUEUE_H

@@ -277,12 +277,12 @@ static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, 
         if (w != mean) {
             double rest = 1 - mix->mean;
             he_carry_copy(m, HE_VERTEX, w, below);
-            he_carry_merge(m, HE_VERTEX, w, mix->beside.i, rest > 0 ? 1 - mix->side / rest : 1);
-            he_carry_merge(m, HE_VERTEX, w, mean, rest);
+            he_carry_mix(m, HE_VERTEX, w, mix->beside.i, rest > 0 ? 1 - mix->side / rest : 1);
+            he_carry_mix(m, HE_VERTEX, w, mean, rest);
         } else {
             double rest = 1 - mix->side;
-            he_carry_merge(m, HE_VERTEX, w, below, rest > 0 ? mix->mean / rest : 0);
-            he_carry_merge(m, HE_VERTEX, w, mix->beside.i, rest);
+            he_carry_mix(m, HE_VERTEX, w, below, rest > 0 ? mix->mean / rest : 0);
+            he_carry_mix(m, HE_VERTEX, w, mix->beside.i, rest);
         }
     }
 }

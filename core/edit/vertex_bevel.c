@@ -43,7 +43,7 @@ static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, 
     he_halfedge inner = he_twin(out);
     he_set_face(m, inner, he_face_of(m, h));
     he_carry_between(m, HE_HALFEDGE, inner.i, h.i, in.i, s);
-    he_carry_merge(m, HE_HALFEDGE, h.i, he_next(m, h).i, 1 - t);
+    he_carry_mix(m, HE_HALFEDGE, h.i, he_next(m, h).i, 1 - t);
     he_link(m, in, inner);
     he_link(m, inner, h);
     return out;
@@ -55,7 +55,7 @@ static void move(he_mesh *m, he_vertex w, he_vertex v, he_halfedge h, double t)
     he_vertex far = he_target(m, h);
     he_set_position(m, w, he_point_between(he_position(m, v), he_position(m, far), t));
     if (w.i == v.i) {
-        he_carry_merge(m, HE_VERTEX, v.i, far.i, 1 - t);
+        he_carry_mix(m, HE_VERTEX, v.i, far.i, 1 - t);
     } else {
         he_carry_between(m, HE_VERTEX, w.i, v.i, far.i, t);
     }

@@ -1,4 +1,5 @@
 /* How attributes follow an edit: the carry functions of write.h. */
+#include "mesh/marks.h"
 #include "mesh/write.h"
 
 #include <math.h>
@@ -138,17 +139,24 @@ void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, 
     }
 }
 
-void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
+void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t)
 {
-    const uint32_t rows[2] = {gone, into};
+    const uint32_t rows[2] = {other, row};
     const double weights[2] = {1 - t, t};
     for (size_t i = 0; i < m->c.column_count; i++) {
         const he_column *column = m->c.columns[i];
         if (column != NULL && column->domain == kind && column->rule == HE_INTERPOLATE) {
             unsigned char value[HE_COLUMN_ROW_BYTES];
             blend(column, rows, weights, 2, value);
-            he_set_attribute(m, i, into, value);
+            he_set_attribute(m, i, row, value);
         }
+    }
+}
+
+void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
+{
+    if (!he_is_marked(he_mark_find(m, kind, "locked"), into)) {
+        he_values_mix(m, kind, into, gone, t);
     }
 }
 

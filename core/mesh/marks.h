@@ -12,7 +12,8 @@
  * or take one from it. A vertex that moves takes its edges and faces along: lock the corners to
  * hold those in place. Cutting is allowed (edge_bisect, edge_split, edge_cut, face_split,
  * face_poke, face_triangulate, plane_split, vertex_split, vertex_split_corners): the element keeps
- * its part, and its mark; the other part has the mark too where the column's rule is copy.
+ * its part, and its mark; the other part has the mark too where the column's rule is copy. What
+ * becomes one with a locked element of its kind leaves no trace in its attributes: they stay.
  *
  * FEATURE. edge_flip of a feature edge is refused with HE_FEATURE_EDGE. A vertex with exactly two
  * feature edges is inside a line, one with another number, other than none, is an end or a corner

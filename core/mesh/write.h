@@ -246,8 +246,16 @@ static inline void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t
 }
 /* The mean of n rows; copies the first where the rule is copy. */
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
-/* A row that stays takes in one that goes: interpolated columns become linear from `gone` (t = 0)
- * to `into` (t = 1), all others keep the value of `into`. */
+/* Interpolated columns become linear from `other` (t = 0) to what `row` had (t = 1), all others keep
+ * what it had. */
+void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t);
+static inline void he_carry_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t)
+{
+    if (m->c.column_count > 0) {
+        he_values_mix(m, kind, row, other, t);
+    }
+}
+/* A row that stays takes in one that goes: mixed likewise, unless the one that stays is locked. */
 void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t);
 static inline void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
 {

@@ -499,6 +499,26 @@ static void the_history_keeps_the_record_of_a_decimation(void **state)
     }
 }
 
+static void a_limit_is_said_as_it_is(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {"nan", "-1", "1e999"};
+    api_bench *b = bench_new();
+    make(b, "m", "{\"shape\":\"icosphere\"}");
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char path[80], expected[160];
+        snprintf(path, sizeof path, "/v1/meshes/m/progressive?max_error=%s", bad[i]);
+        snprintf(expected, sizeof expected,
+                 "\"max_error\" cannot be \"%s\": a number from 0 to 1.7976931348623157e308",
+                 bad[i]);
+        bench_reply r = bench_expect(400, bench_get(b, path));
+        assert_string_equal(
+            cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(r.json, "detail")), expected);
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -509,6 +529,7 @@ int main(void)
         cmocka_unit_test(it_can_be_given_up_at_any_time),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(an_answer_holds_little_more_than_its_bytes),
+        cmocka_unit_test(a_limit_is_said_as_it_is),
         cmocka_unit_test(the_history_keeps_the_record_of_a_decimation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

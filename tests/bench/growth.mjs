@@ -107,7 +107,12 @@ function table(title, names, lines, cell) {
     console.log(`\n${title}`);
     const head = ['', 'order', 'element', ...names];
     const print = (cells) =>
-        console.log(cells.map((text, i) => String(text).padEnd(WIDTHS[i] ?? 10)).join(' ').trimEnd());
+        console.log(
+            cells
+                .map((text, i) => String(text).padEnd(WIDTHS[i] ?? 10))
+                .join(' ')
+                .trimEnd(),
+        );
     print(head);
     for (const line of lines) {
         print([line.title, line.order, line.element, ...names.map((name, i) => cell(line, i))]);
@@ -129,7 +134,10 @@ function machine() {
 }
 
 export async function measureGrowth(start, scale, picture) {
-    const sizes = SIZES.map((size) => ({ ...size, side: Math.max(8, Math.round(size.side * scale)) }));
+    const sizes = SIZES.map((size) => ({
+        ...size,
+        side: Math.max(8, Math.round(size.side * scale)),
+    }));
     const names = sizes.map(({ side }) =>
         new Intl.NumberFormat('en', { notation: 'compact' }).format(2 * side * side),
     );

@@ -61,6 +61,6 @@ row "GET an adjacency" adjacency 0.8
 row "POST an edit" edit 0.5
 # Both make one recvfrom and one sendmsg a request, no other call; two thirds of our time are those.
 cat <<'NOTE'
-What is between bare and a GET, in processor time: six header fields for one, admission, the element
-with its shortest doubles, and the thread of the access log, which has no core of its own here.
+Not measured here: what hedged does for a GET beyond the bare program is six header fields for one,
+admission, the element with its shortest doubles, and the access log, whose thread shares the cores.
 NOTE

@@ -57,15 +57,18 @@ export function plot({ sizes, names, caption, lines }) {
     lines.forEach(({ title, colour, dashed, values: list }, i) => {
         const points = list.map((value, k) => `${x(sizes[k]).toFixed(1)},${y(value).toFixed(1)}`);
         const dash = dashed ? ' stroke-dasharray="6 4"' : '';
-        const end = `${AREA.right + 4},${y(list.at(-1)).toFixed(1)} ${AREA.right + 18},${labels[i].toFixed(1)}`;
+        const [from, to] = [y(list.at(-1)), labels[i]].map((place) => place.toFixed(1));
+        const end = `${AREA.right + 4},${from} ${AREA.right + 18},${to}`;
         parts.push(
-            `<polyline fill="none" stroke="${colour}" stroke-width="2"${dash} points="${points.join(' ')}"/>`,
+            `<polyline fill="none" stroke="${colour}" stroke-width="2"${dash} ` +
+                `points="${points.join(' ')}"/>`,
             ...points.map((point) => {
                 const [cx, cy] = point.split(',');
                 return `<circle cx="${cx}" cy="${cy}" r="3" fill="${colour}"/>`;
             }),
             `<polyline fill="none" stroke="${colour}" points="${end}"/>`,
-            `<text x="${AREA.right + 22}" y="${(labels[i] + 4).toFixed(1)}">${escape(title)}</text>`,
+            `<text x="${AREA.right + 22}" y="${(labels[i] + 4).toFixed(1)}">` +
+                `${escape(title)}</text>`,
         );
     });
     const middle = (AREA.left + AREA.right) / 2;

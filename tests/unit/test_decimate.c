@@ -2,6 +2,7 @@
 #include "tests/unit/dense.h"
 
 #include "algo/decimation.h"
+#include "mesh/write.h"
 #include "query/vec3.h"
 
 #include <float.h>
@@ -131,6 +132,43 @@ static void no_face_is_turned_over(void **state)
     }
 }
 
+/* 0 to 1. */
+static double draw(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-53;
+}
+
+/* Each step turns a face by so much at most, but there are many: a surface whose faces all look up,
+ * some of them barely, has a few that look down then. */
+static void few_faces_of_a_rough_surface_are_turned(void **state)
+{
+    (void)state;
+    enum { SIDE = 50, SEEDS = 8 };
+    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+        he_mesh *m = dense_grid(SIDE, NULL, 1);
+        uint64_t random = seed;
+        assert_int_equal(he_reserve(m, (he_need){.positions = he_mesh_vertices(m)}, NULL), HE_OK);
+        for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
+            he_vec3 p = he_position(m, (he_vertex){v});
+            p.x += 0.6 * (draw(&random) - 0.5);
+            p.y += 0.6 * (draw(&random) - 0.5);
+            p.z += 0.6 * (draw(&random) - 0.5);
+            he_set_position(m, (he_vertex){v}, p);
+        }
+        uint32_t down = 0;
+        for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+            assert_true(dense_area(m, f).z > 0);
+        }
+        dense_decimate(m, he_mesh_faces(m) / 2, INFINITY);
+        for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+            down += he_mesh_is_live(m, HE_FACE, f) && dense_area(m, f).z < 0;
+        }
+        assert_in_range(down, 0, he_mesh_faces(m) / 200);
+        he_mesh_free(m);
+    }
+}
+
 static void the_error_stays_below_its_limit(void **state)
 {
     (void)state;
@@ -209,8 +247,8 @@ static void a_face_of_more_corners_is_refused(void **state)
 static void options_outside_their_range_are_refused(void **state)
 {
     (void)state;
-    static const he_decimate_options bad[] = {
-        {0, -1, 1}, {0, NAN, 1}, {0, 1, -1}, {0, 1, NAN}, {0, 1, INFINITY}};
+    static const he_decimate_options bad[] = {{0, -1, 1},  {0, NAN, 1},      {0, 1, -1},
+                                              {0, 1, NAN}, {0, 1, INFINITY}, {0, 1, 2e9}};
     he_mesh *m = fixture_mesh("012");
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(he_decimate(m, &bad[i], NULL, NULL), HE_BAD_VALUE);
@@ -286,6 +324,7 @@ int main(void)
         cmocka_unit_test(nothing_happens_where_there_are_few_enough),
         cmocka_unit_test(more_faces_less_error),
         cmocka_unit_test(no_face_is_turned_over),
+        cmocka_unit_test(few_faces_of_a_rough_surface_are_turned),
         cmocka_unit_test(the_error_stays_below_its_limit),
         cmocka_unit_test(no_edge_is_left_within_the_limit),
         cmocka_unit_test(what_cannot_be_collapsed_is_left),

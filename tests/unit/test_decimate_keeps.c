@@ -86,6 +86,43 @@ static void locked_elements_stay(void **state)
     he_mesh_free(m);
 }
 
+static void add_numbers(he_mesh *m, he_kind kind)
+{
+    he_column *column = NULL;
+    uint32_t rows = he_mesh_issued(m, kind);
+    assert_int_equal(he_column_new("number", kind, HE_DOUBLE, 1, HE_INTERPOLATE, &column, NULL),
+                     HE_OK);
+    assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
+    for (uint32_t i = 0; i < rows; i++) {
+        double value = i;
+        memcpy(he_column_row(column, i), &value, sizeof value);
+    }
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+}
+
+static void locked_elements_keep_their_attributes(void **state)
+{
+    (void)state;
+    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        he_mesh *m = dense_grid(12, NULL, 1);
+        add_numbers(m, kinds[k]);
+        uint32_t rows = he_mesh_issued(m, kinds[k]);
+        for (uint32_t i = 0; i < rows; i += 23) {
+            mark(m, kinds[k], "locked", i);
+        }
+        dense_decimate(m, 0, INFINITY);
+        assert_true(he_mesh_count(m, kinds[k]) < rows / 2);
+        const he_column *numbers = he_mesh_find_column(m, kinds[k], "number");
+        for (uint32_t i = 0; i < rows; i += 23) {
+            double value;
+            memcpy(&value, he_column_value(numbers, i), sizeof value);
+            assert_true(he_mesh_is_live(m, kinds[k], i) && value == i);
+        }
+        he_mesh_free(m);
+    }
+}
+
 /* A line across a flat grid would be lost; as a feature it stays, and straight. */
 static void feature_lines_keep_their_shape(void **state)
 {
@@ -151,6 +188,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boundaries_are_kept),
         cmocka_unit_test(locked_elements_stay),
+        cmocka_unit_test(locked_elements_keep_their_attributes),
         cmocka_unit_test(feature_lines_keep_their_shape),
         cmocka_unit_test(attributes_follow_the_place),
     };

@@ -329,6 +329,32 @@ static bool marked(const he_mesh *m, he_kind kind, const char *name, uint32_t id
     return *he_column_value(he_mesh_find_column(m, kind, name), id) != 0;
 }
 
+static void nothing_is_mixed_into_what_is_locked(void **state)
+{
+    (void)state;
+    he_mesh *m = after("012,023,034,045,056,061", HE_EDGE, HE_INTERPOLATE, "mark locked edge=0-2");
+    uint32_t kept = edge_between(m, 0, 2).i;
+    script_prepare(m, "edge_collapse halfedge=1-0");
+    assert_value(m, HE_EDGE, kept, 10.0 * kept);
+    he_mesh_free(m);
+
+    m = after("0123", HE_VERTEX, HE_INTERPOLATE, "mark locked vertex=1");
+    const he_vec3 there = he_position(m, (he_vertex){1});
+    assert_int_equal(he_edge_collapse(m, halfedge_between(m, 2, 1), 0.25, &there, NULL, NULL),
+                     HE_OK);
+    assert_value(m, HE_VERTEX, 1, 10);
+    he_mesh_free(m);
+
+    static const char *const welds[] = {"edge_weld a=0-1 b=3-4", "edge_weld a=0-1 b=3-4 keep=b"};
+    for (unsigned i = 0; i < 2; i++) {
+        m = after("012,345", HE_EDGE, HE_INTERPOLATE, "mark locked edge=0-1");
+        kept = edge_between(m, 0, 1).i;
+        script_prepare(m, welds[i]);
+        assert_value(m, HE_EDGE, kept, 10.0 * kept);
+        he_mesh_free(m);
+    }
+}
+
 /* Both parts of what is cut have the mark; what is new has not. */
 static void test_marks_are_copied(void **state)
 {
@@ -468,10 +494,15 @@ static void test_loops(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_vertices),          cmocka_unit_test(test_edges_and_faces),
-        cmocka_unit_test(test_normals),           cmocka_unit_test(test_marks_are_copied),
-        cmocka_unit_test(test_corners),           cmocka_unit_test(test_bad_values),
-        cmocka_unit_test(test_extreme_positions), cmocka_unit_test(test_loops),
+        cmocka_unit_test(test_vertices),
+        cmocka_unit_test(test_edges_and_faces),
+        cmocka_unit_test(test_normals),
+        cmocka_unit_test(nothing_is_mixed_into_what_is_locked),
+        cmocka_unit_test(test_marks_are_copied),
+        cmocka_unit_test(test_corners),
+        cmocka_unit_test(test_bad_values),
+        cmocka_unit_test(test_extreme_positions),
+        cmocka_unit_test(test_loops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { SAMPLES = 250000 };
+enum { SAMPLES = 1000000 };
 
 /* What is summed up of the points of one surface. */
 typedef struct sums {

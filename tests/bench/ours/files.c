@@ -236,7 +236,7 @@ static void make_files(bench_side *side, bench_result *out)
 /* What no other side reads is our own. */
 static void make_glb(bench_side *side, bench_result *out)
 {
-    write_mesh(side, bench_mesh(side), "glb", "", "input.glb");
+    bench_write(side, bench_mesh(side), "glb", "", "input.glb");
     out->amount = side->input.faces;
 }
 

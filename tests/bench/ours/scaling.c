@@ -128,6 +128,35 @@ static void catmull_clark(bench_side *side, bool helped, bench_result *out)
     subdivide(side, HE_CATMULL_CLARK, helped, out);
 }
 
+/* The build inside has hands, the reading none. */
+static void import(bench_side *side, const char *format, const char *name, bool helped,
+                   bench_result *out)
+{
+    he_import import;
+    he_mesh *mesh;
+    he_watch watch;
+    lend(&watch, helped);
+    double start = wall_seconds();
+    bench_read(side, format, name, &import);
+    import.soup.limits.watch = &watch;
+    bench_require(he_build(&import.soup, HE_BUILD_TAKE, &mesh, NULL, NULL));
+    he_import_clear(&import);
+    out->value = wall_seconds() - start;
+    out->amount = he_mesh_faces(mesh);
+    bench_exact(out, bench_mesh_hash(mesh));
+    he_mesh_free(mesh);
+}
+
+static void import_obj(bench_side *side, bool helped, bench_result *out)
+{
+    import(side, "obj", "input.obj", helped, out);
+}
+
+static void import_ply(bench_side *side, bool helped, bench_result *out)
+{
+    import(side, "ply", "input.ply", helped, out);
+}
+
 #define BOTH(row)                                            \
     static void row##_1(bench_side *side, bench_result *out) \
     {                                                        \
@@ -142,6 +171,8 @@ BOTH(face_normals)
 BOTH(corner_normals)
 BOTH(loop)
 BOTH(catmull_clark)
+BOTH(import_obj)
+BOTH(import_ply)
 #undef BOTH
 
 const bench_row bench_scaling_rows[] = {{"build_1", build_1},
@@ -154,4 +185,8 @@ const bench_row bench_scaling_rows[] = {{"build_1", build_1},
                                         {"loop_2", loop_2},
                                         {"catmull_clark_1", catmull_clark_1},
                                         {"catmull_clark_2", catmull_clark_2},
+                                        {"import_obj_1", import_obj_1},
+                                        {"import_obj_2", import_obj_2},
+                                        {"import_ply_1", import_ply_1},
+                                        {"import_ply_2", import_ply_2},
                                         {NULL, NULL}};
