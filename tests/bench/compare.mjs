@@ -174,7 +174,7 @@ function verdict(row, part, medians) {
         };
     }
     const [[peer, times]] = row.target;
-    const ratios = part.sides
+    const ratios = (row.sides ?? part.sides)
         .filter((name) => name in medians)
         .map((name) => [name, ratio(row, ours, medians[name])]);
     const best = ratios.reduce((a, b) => (b[1] < a[1] ? b : a));
@@ -236,7 +236,8 @@ async function runPart(part, folder) {
     const side = Math.max(8, Math.round((part.side ?? usual) * Number(options.scale)));
     const start = (name) => new Side(name, part, side, folder);
     const sides = {};
-    for (const name of ['ours', ...part.sides]) {
+    const others = part.rows.flatMap((row) => row.sides ?? part.sides);
+    for (const name of new Set(['ours', ...others])) {
         sides[name] = start(name);
     }
     for (const row of part.before ?? []) {

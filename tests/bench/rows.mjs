@@ -128,7 +128,7 @@ const scaling = (input, order, rows, why, more) => ({
 });
 
 const welding =
-    'corners become vertices while they are read: 8 bytes a face more at most than PLY and OBJ take';
+    'corners become vertices while they are read: 8 bytes a face more than PLY and OBJ take';
 
 const normals =
     'bound by its instructions, not by memory, where ids are in order: a mesh of 3,200 faces, ' +
