@@ -625,9 +625,10 @@ static void a_tree_costs_everybody_the_same(void **state)
     put(b, document);
     free(document);
     char *many = repeated("{\"relation\":\"faces\",\"of\":{\"face\":0}}", TIMES);
-    char *body = malloc(strlen(many) + 64);
+    size_t room = strlen(many) + 64;
+    char *body = malloc(room);
     assert_non_null(body);
-    sprintf(body, "{\"queries\":[{\"closest\":[9,9,9]},%s", strchr(many, '[') + 1);
+    snprintf(body, room, "{\"queries\":[{\"closest\":[9,9,9]},%s", strchr(many, '[') + 1);
     bench_reply first = bench_expect(200, bench_post(b, "/v1/meshes/m/query", body));
     bench_reply second = bench_expect(200, bench_post(b, "/v1/meshes/m/query", body));
     assert_non_null(strstr(first.body, "limit_exceeded"));

@@ -451,7 +451,7 @@ static int upload_broken(api_bench *b, const char *text, size_t length,
     if (status == 422) {
         const char *said = strstr(api_answer_of(x)->bytes, "\"total\":"); /* without memory */
         assert_non_null(said);
-        *total = atoi(said + strlen("\"total\":"));
+        *total = (int)strtol(said + strlen("\"total\":"), NULL, 10);
     }
     api_free(x);
     return status;
