@@ -13,7 +13,8 @@
 /* Enough to tell any format by. */
 enum { SNIFF_BYTES = 512 };
 
-/* Bytes of a file that is read at its end, for each vertex or corner: a guess, of the time alone. */
+/* Bytes of a file that is read at its end, for each vertex or corner: a guess, of the time alone.
+ */
 enum { ELEMENT_BYTES = 5 };
 
 /* Of the making of a mesh; what is left is its summary's. */

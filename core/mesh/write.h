@@ -246,8 +246,8 @@ static inline void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t
 }
 /* The mean of n rows; copies the first where the rule is copy. */
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
-/* Interpolated columns become linear from `other` (t = 0) to what `row` had (t = 1), all others keep
- * what it had. */
+/* Interpolated columns become linear from `other` (t = 0) to what `row` had (t = 1), all others
+ * keep what it had. */
 void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t);
 static inline void he_carry_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t)
 {
