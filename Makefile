@@ -210,10 +210,12 @@ test: $(CHOSEN) $(TEST_NEEDS) | $(STAMPS)/test ## all tests, with their counts
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
 	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install soak,$(TESTS))" TEST_SECONDS=900 test
 
-# The kernel has no threads: only what runs on the daemon's is worth the time here.
+# The kernel has no threads, and most of tests/api does one thing after the other: only what begins
+# jobs or threads, and the daemon itself, is worth the time here.
+THREADED_C  = $(shell grep -lE 'pthread_create|bench_run_jobs' tests/api/test_*.c) \
+              $(wildcard tests/unit/test_srv_*.c)
 tsan: ## the threaded tests with ThreadSanitizer
-	+$(MAKE) CONFIG=tsan TESTS="api e2e $(wildcard tests/unit/test_srv_*.c)" \
-	    TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=tsan TESTS="e2e $(THREADED_C)" TEST_SECONDS=900 test
 
 coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
