@@ -62,6 +62,10 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     (void)err;
     for (size_t f = from; f < to; f++) {
         const uint32_t first = soup->starts[f], count = he_soup_end(soup, f) - first;
+        if (count < 3) { /* of faces without corners alone there is no array either */
+            found |= BAD_FACE;
+            break;
+        }
         const uint32_t *corners = soup->corners + first;
         found |= count == 3   ? check_small(corners, 3, soup->vertex_count)
                  : count == 4 ? check_small(corners, 4, soup->vertex_count)
