@@ -8,26 +8,25 @@
 //
 // Caches. A face takes 66 bytes, so 10k faces are 0.7 MB and in L2, 100k are 7 MB and in L3, 1M and
 // 10M are 66 MB and 660 MB and in neither. `random read` reads words all over a block of that size
-// and has its steps there and nowhere else: 1.2, 5.1, 9.3 and 12.9 ns. Flips, collapses, decimation
+// and has its steps there and nowhere else: 1.5, 2.9, 9.1 and 13 ns. Flips, collapses, decimation
 // and everything whose ids are shuffled read and write a few dozen such places an element and rise
-// with it: flips 84, 325, 522, 598 ns. One-rings and normals in natural order read forwards, which
-// the machine foresees, and stay flat: 1.0 to 1.4 and 7.8 to 9.0 ns.
+// with it: flips 71, 162, 426, 627 ns. One-rings in natural order read forwards, which the machine
+// foresees, and stay flat: 1.3 to 1.4 ns. Normals go from 10 to 18 and back without a trend.
 //
 // Translation of addresses. Columns of 4 MiB and more ask for huge pages, which is from 100k to 1M
-// faces on. Without, 10M shuffled faces cost twice in one-rings (109 for 59 ns) and normals (346
-// for 183), and a random read 26 for 13. At 100k and less there is no such difference.
+// faces on. Without, at 10M a random read costs 24 ns for 13, building shuffled faces 407 for 261,
+// one-rings of them 56 for 46; their normals are the same.
 //
 // Pages touched for the first time. What makes new columns (build, split, compact, Loop, import)
-// has the system find and clear their pages. Build rises from 10k to 100k (71 to 121 ns) because
-// its columns of over 1 MiB become mappings of their own: 2,550 small pages, one for 39 faces; it
-// falls at 1M (64), where huge pages make that one for 150. At 10M the system has the greater part
-// of compact (182 of 217 ns) and of Loop, which makes 40M faces (125 of 146); without its part they
-// are flat from 1M on: 34 and 35, 24 and 21 ns. It is not clearing that takes so long but finding
-// blocks of 2 MiB in memory that others use, too: the same compact without huge pages takes 69 ns,
-// 44 of them in the system, for 180,950 small pages in place of 6,188. On such a machine huge pages
-// cost writers what they give readers.
+// has the system find and clear their pages. Build rises from 10k to 100k (84 to 103 ns) because
+// its columns of over 1 MiB become mappings of their own: 1,934 small pages, one for 52 faces; it
+// falls at 1M (52), where huge pages make that one for 175. At 10M the system has the greater part
+// of compact (203 of 250 ns) and of Loop, which makes 40M faces (116 of 136). It is not clearing
+// that takes so long: a compact of 10M faces measured apart took 217 ns with huge pages and 69
+// without, 44 of them in the system, for 180,950 small pages in place of 6,188. On a machine where
+// blocks of 2 MiB are hard to find, huge pages cost writers what they give readers.
 //
-// Import of OBJ bends at 10M by that part, too (168 of 397 ns): its soup grows beside the columns.
+// Import of OBJ bends at 10M by that part, too (128 of 283 ns): its soup grows beside the columns.
 // Splits are both: random places, and columns that grow by half when they are full.
 
 import { readFileSync, writeFileSync, mkdirSync } from 'node:fs';
