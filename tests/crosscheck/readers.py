@@ -497,6 +497,7 @@ KNOWN = [
     ('glb gltf', 'daemon', r'(accessors|bufferViews|buffers|scene|scenes|meshes|nodes)/?',
      'it is no valid glTF, also where the reference looks away'),
     ('ply', 'daemon', 'no properties|name of two|given twice|too many', 'a header that is wrong'),
+    ('ply', 'daemon', 'more than there can be', 'of rows without properties the reference reads any'),
 ]
 
 
