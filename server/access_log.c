@@ -14,7 +14,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -136,16 +135,10 @@ static bool wait_for_records(srv_access_log *log)
     while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
         pthread_cond_wait(&log->wake, &log->lock);
     }
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    until.tv_nsec += GATHER_MILLIS * 1000000L;
-    if (until.tv_nsec >= 1000000000L) {
-        until.tv_nsec -= 1000000000L;
-        until.tv_sec++;
-    }
-    int timed_out = 0;
-    while (timed_out == 0 && log->count < log->capacity / 2 && !atomic_load(&log->ending)) {
-        timed_out = pthread_cond_timedwait(&log->wake, &log->lock, &until);
+    const uint64_t until = srv_clock_micros() + GATHER_MILLIS * 1000;
+    bool in_time = true;
+    while (in_time && log->count < log->capacity / 2 && !atomic_load(&log->ending)) {
+        in_time = srv_clock_wait(&log->wake, &log->lock, until);
     }
     return log->count > 0 || log->dropped > 0;
 }

@@ -25,6 +25,13 @@ void srv_clock_condition(pthread_cond_t *condition)
     pthread_condattr_destroy(&attributes);
 }
 
+bool srv_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until)
+{
+    const struct timespec at = {.tv_sec = (time_t)(until / 1000000U),
+                                .tv_nsec = (long)(until % 1000000U) * 1000};
+    return pthread_cond_timedwait(condition, lock, &at) == 0;
+}
+
 static char *put_digits(char *at, int value, int digits)
 {
     for (int i = digits - 1; i >= 0; i--, value /= 10) {

@@ -1,12 +1,12 @@
 #include "server/http_gate.h"
 
-#include <time.h>
+#include "server/clock.h"
 
 void srv_gate_init(srv_gate *gate)
 {
     *gate = (srv_gate){0};
     pthread_mutex_init(&gate->lock, NULL);
-    pthread_cond_init(&gate->ended, NULL);
+    srv_clock_condition(&gate->ended);
 }
 
 void srv_gate_clear(srv_gate *gate)
@@ -49,18 +49,11 @@ void srv_gate_resume(srv_gate *gate)
 
 bool srv_gate_close(srv_gate *gate, unsigned millis)
 {
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_sec += millis / 1000;
-    until.tv_nsec += (long)(millis % 1000) * 1000000;
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_nsec -= 1000000000;
-        until.tv_sec++;
-    }
+    const uint64_t until = srv_clock_micros() + (uint64_t)millis * 1000;
+    bool in_time = true;
     pthread_mutex_lock(&gate->lock);
-    int timed_out = 0;
-    while (gate->active > 0 && timed_out == 0) {
-        timed_out = pthread_cond_timedwait(&gate->ended, &gate->lock, &until);
+    while (gate->active > 0 && in_time) {
+        in_time = srv_clock_wait(&gate->ended, &gate->lock, until);
     }
     gate->closed = gate->waiting == 0;
     bool closed = gate->closed;

@@ -65,10 +65,7 @@ static void wait_for_change(srv_live *live)
         pthread_cond_wait(&live->changed, &live->lock);
         return;
     }
-    uint64_t until = live->first->deadline;
-    struct timespec at = {.tv_sec = (time_t)(until / 1000000),
-                          .tv_nsec = (long)(until % 1000000) * 1000};
-    pthread_cond_timedwait(&live->changed, &live->lock, &at);
+    (void)srv_clock_wait(&live->changed, &live->lock, live->first->deadline);
 }
 
 /* A stream that was resumed may be gone at once. */

@@ -5,7 +5,6 @@
 #include "server/random.h"
 
 #include <string.h>
-#include <time.h>
 
 static void copy_name(char *out, size_t size, const char *name)
 {
@@ -206,14 +205,8 @@ void srv_derived_end(void *self, api_mesh *mesh, api_derived_kind kind)
 void srv_derived_wait(void *self, api_mesh *mesh, api_derived_kind kind)
 {
     (void)self;
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    until.tv_nsec += API_DERIVED_MILLIS * 1000000L;
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_nsec -= 1000000000;
-        until.tv_sec++;
-    }
-    pthread_cond_timedwait(&mesh->derived[kind].ended, &mesh->derived[kind].lock, &until);
+    (void)srv_clock_wait(&mesh->derived[kind].ended, &mesh->derived[kind].lock,
+                         srv_clock_micros() + API_DERIVED_MILLIS * 1000);
 }
 
 const he_delta *srv_revision_delta(void *self, api_mesh *mesh, uint64_t revision)
