@@ -196,17 +196,7 @@ static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedg
     if (status == HE_OK && moves) {
         status = he_require_unlocked(marks, HE_VERTEX, v.i, err);
     }
-    he_halfedge k = h;
-    do {
-        if (status == HE_OK) {
-            status = he_require_unlocked(marks, HE_EDGE, he_edge_of(k).i, err);
-        }
-        if (status == HE_OK) {
-            status = he_require_unlocked(marks, HE_FACE, he_face_of(m, k).i, err);
-        }
-        k = he_turn_ccw(m, k);
-    } while (status == HE_OK && k.i != h.i);
-    return status;
+    return status == HE_OK ? he_require_unlocked_about(m, marks, h, err) : status;
 }
 
 /* How many feature edges has the origin of h? One of them, other than that of h where it can be,

@@ -203,17 +203,8 @@ static he_status check_vertex_locks(const plan *p, const he_marks *marks, uint32
     if (status == HE_OK && (from.x != to.x || from.y != to.y || from.z != to.z)) {
         status = he_require_unlocked(marks, HE_VERTEX, stays(p, i).i, err);
     }
-    he_halfedge first = he_twin(side_of_b(p, i)), h = first;
-    do {
-        if (status == HE_OK) {
-            status = he_require_unlocked(marks, HE_EDGE, he_edge_of(h).i, err);
-        }
-        if (status == HE_OK) {
-            status = he_require_unlocked(marks, HE_FACE, he_face_of(m, h).i, err);
-        }
-        h = he_turn_ccw(m, h);
-    } while (status == HE_OK && h.i != first.i);
-    return status;
+    return status == HE_OK ? he_require_unlocked_about(m, marks, he_twin(side_of_b(p, i)), err)
+                           : status;
 }
 
 static he_status check_marks(const plan *p, he_error *err)

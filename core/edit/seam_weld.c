@@ -82,7 +82,9 @@ static he_status check_locks(const he_mesh *m, const pair *end, he_keep keep, he
     if (status == HE_OK && (from.x != to.x || from.y != to.y || from.z != to.z)) {
         status = he_require_unlocked(&marks, HE_VERTEX, end->stays.i, err);
     }
-    return status == HE_OK ? he_require_unlocked_about(m, &marks, end->goes, err) : status;
+    return status == HE_OK
+               ? he_require_unlocked_about(m, &marks, he_vertex_halfedge(m, end->goes), err)
+               : status;
 }
 
 static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pair ends[2],

@@ -12,7 +12,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
         return HE_OK;
     }
     he_status status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
-    return status == HE_OK ? he_require_unlocked_about(m, &marks, v, err) : status;
+    return status == HE_OK ? he_require_unlocked_about(m, &marks, he_vertex_halfedge(m, v), err)
+                           : status;
 }
 
 static he_status check(const he_mesh *m, he_vertex v, double width, he_error *err)

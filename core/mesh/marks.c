@@ -51,11 +51,11 @@ he_status he_require_unlocked(const he_marks *marks, he_kind kind, uint32_t id, 
     return HE_OK;
 }
 
-he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks, he_vertex v,
+he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks, he_halfedge first,
                                     he_error *err)
 {
     he_status status = HE_OK;
-    he_halfedge first = he_vertex_halfedge(m, v), h = first;
+    he_halfedge h = first;
     do {
         status = he_require_unlocked(marks, HE_EDGE, he_edge_of(h).i, err);
         if (status == HE_OK) {

@@ -66,8 +66,8 @@ static inline bool he_is_locked(const he_marks *marks, he_kind kind, uint32_t id
 /* HE_LOCKED_ELEMENT for a locked one. An id of HE_NONE is never locked. */
 HE_NODISCARD he_status he_require_unlocked(const he_marks *marks, he_kind kind, uint32_t id,
                                            he_error *err);
-/* The same of each edge and face about a vertex that has some. */
+/* The same of each edge and face about the origin of a half-edge, counter-clockwise from it. */
 HE_NODISCARD he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks,
-                                                 he_vertex v, he_error *err);
+                                                 he_halfedge first, he_error *err);
 
 #endif

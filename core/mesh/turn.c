@@ -9,7 +9,7 @@
 /* What a part found that is to be told. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
-enum { SMALL_FACE = 16, SMALL_VERTEX = 24 };
+enum { SMALL_VERTEX = 24 };
 
 typedef struct turning {
     const he_soup *soup;
@@ -29,7 +29,7 @@ typedef struct turning {
 /* `count` is a constant where this is inlined for the usual ones. */
 static inline unsigned check_small(const uint32_t *corners, uint32_t count, size_t vertices)
 {
-    unsigned bad = count < 3;
+    unsigned bad = 0;
     for (uint32_t i = 0; i < count; i++) {
         bad |= corners[i] >= vertices;
         for (uint32_t k = 0; k < i; k++) {
@@ -43,7 +43,7 @@ static inline unsigned check_small(const uint32_t *corners, uint32_t count, size
 static unsigned check_face(const uint32_t *corners, uint32_t count, size_t vertices)
 {
     unsigned bad = 0;
-    if (count <= SMALL_FACE) {
+    if (count <= HE_SMALL_FACE) {
         return check_small(corners, count, vertices);
     }
     for (uint32_t i = 0; i < count; i++) {
