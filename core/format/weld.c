@@ -1,6 +1,6 @@
 #include "format/weld.h"
 
-#include <string.h>
+#include "mesh/point_hash.h"
 
 enum { FIRST_BITS = 10 };
 
@@ -8,20 +8,6 @@ void he_weld_clear(he_weld *weld)
 {
     he_mem_free(weld->slots);
     *weld = (he_weld){0};
-}
-
-static uint64_t mix(uint64_t h, double value)
-{
-    uint64_t bits;
-    value = value == 0 ? 0 : value; /* -0 too */
-    memcpy(&bits, &value, sizeof bits);
-    h = (h ^ bits) * 0x9E3779B97F4A7C15;
-    return h ^ h >> 32;
-}
-
-static uint32_t hash(const he_weld *weld, he_vec3 p)
-{
-    return (uint32_t)(mix(mix(mix(weld->seed, p.x), p.y), p.z) * 0xBF58476D1CE4E5B9 >> 32);
 }
 
 /* Slots are in the order of the hash, so that growing moves each to about twice its place. */
@@ -33,7 +19,7 @@ static size_t first_slot(const he_weld *weld, uint32_t h)
 void he_weld_expect(const he_weld *weld, he_vec3 position)
 {
     if (weld->slots != NULL) {
-        __builtin_prefetch(&weld->slots[first_slot(weld, hash(weld, position))]);
+        __builtin_prefetch(&weld->slots[first_slot(weld, he_point_hash(weld->seed, position))]);
     }
 }
 
@@ -83,7 +69,7 @@ he_status he_weld_vertex(he_weld *weld, he_soup *soup, he_vec3 position, uint32_
             return status;
         }
     }
-    uint32_t h = hash(weld, position);
+    uint32_t h = he_point_hash(weld->seed, position);
     size_t slot = first_slot(weld, h);
     for (; weld->slots[slot].vertex != 0; slot = following(weld, slot)) {
         const he_weld_slot *s = &weld->slots[slot];

@@ -4,8 +4,9 @@
  * all are when the tolerance is 0. */
 #include "mesh/near.h"
 
+#include "mesh/point_hash.h"
+
 #include <math.h>
-#include <string.h>
 
 #define CELL     4.0
 #define NEAR     0.2525
@@ -33,20 +34,6 @@ void he_near_clear(he_near *near)
 {
     he_mem_free(near->slots);
     near->slots = NULL;
-}
-
-static uint64_t mix(uint64_t h, double value)
-{
-    uint64_t bits;
-    value = value == 0 ? 0 : value; /* -0 too */
-    memcpy(&bits, &value, sizeof bits);
-    h = (h ^ bits) * 0x9E3779B97F4A7C15;
-    return h ^ h >> 29;
-}
-
-static uint32_t hash_of(const he_near *t, const double cell[3])
-{
-    return (uint32_t)(mix(mix(mix(t->seed, cell[0]), cell[1]), cell[2]) * 0xBF58476D1CE4E5B9 >> 32);
 }
 
 /* The cells along one axis where what is near x may be; the first is that of x. */
@@ -87,12 +74,11 @@ uint32_t he_near_find(const he_near *t, he_vec3 p, uint32_t *home)
 {
     double x[3], y[3], z[3];
     size_t nx = cells_of(t, p.x, x), ny = cells_of(t, p.y, y), nz = cells_of(t, p.z, z);
-    const double own[3] = {x[0], y[0], z[0]};
     uint32_t best = HE_NONE;
-    *home = hash_of(t, own);
+    *home = he_point_hash(t->seed, (he_vec3){x[0], y[0], z[0]});
     for (size_t i = 0; i < nx * ny * nz; i++) {
-        const double cell[3] = {x[i % nx], y[i / nx % ny], z[i / nx / ny]};
-        uint32_t h = i == 0 ? *home : hash_of(t, cell);
+        const he_vec3 cell = {x[i % nx], y[i / nx % ny], z[i / nx / ny]};
+        uint32_t h = i == 0 ? *home : he_point_hash(t->seed, cell);
         for (size_t at = h & t->mask; t->slots[at].number != 0; at = (at + 1) & t->mask) {
             uint32_t v = t->slots[at].number - 1;
             if (t->slots[at].hash == h && v < best && is_near(t, t->points[v], p)) {

@@ -197,6 +197,27 @@ static const char *gltf_header(void *context, const char *name)
     return strcmp(name, "Content-Type") == 0 ? "model/gltf+json" : NULL;
 }
 
+/* A file that leaves the worker, up to where it does. */
+static api_exchange *upload_gltf(api_bench *b, const char *text, size_t length)
+{
+    const api_request request = {.method = "POST",
+                                 .path = "/v1/meshes",
+                                 .query = "",
+                                 .request_id = "test",
+                                 .header = gltf_header,
+                                 .has_length = true,
+                                 .length = length,
+                                 .has_body = true};
+    api_step step;
+    size_t used;
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    assert_non_null(x);
+    assert_int_equal(api_body(x, text, length, &used), API_MORE);
+    assert_int_equal(used, length);
+    assert_int_equal(api_end(x), API_WORK);
+    return x;
+}
+
 static bool give_up_reading(void *context, const char *phase, double done)
 {
     unsigned *told = context;
@@ -217,22 +238,9 @@ static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
     }
     text[LENGTH - 1] = ']';
     text[LENGTH - 2] = ' ';
-    static const api_request request = {.method = "POST",
-                                        .path = "/v1/meshes",
-                                        .query = "",
-                                        .request_id = "test",
-                                        .header = gltf_header,
-                                        .has_length = true,
-                                        .length = LENGTH,
-                                        .has_body = true};
     api_bench *b = bench_new();
-    api_step step;
     unsigned told = 0;
-    size_t used;
-    api_exchange *x = api_begin(bench_service(b), &request, &step);
-    assert_int_equal(api_body(x, text, LENGTH, &used), API_MORE);
-    assert_int_equal(used, LENGTH);
-    assert_int_equal(api_end(x), API_WORK);
+    api_exchange *x = upload_gltf(b, text, LENGTH);
     api_watch(x, give_up_reading, &told);
     assert_int_equal(api_work(x), API_READY);
     assert_int_equal(api_answer_of(x)->status, 503);
@@ -250,20 +258,8 @@ static void a_small_file_that_is_read_at_its_end_leaves_the_worker(void **state)
         "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":"
         "{\"POSITION\":0},\"mode\":0}]}],\"accessors\":[{\"componentType\":5126,"
         "\"type\":\"VEC3\",\"count\":30000,\"min\":[0,0,0],\"max\":[0,0,0]}]}";
-    static const api_request request = {.method = "POST",
-                                        .path = "/v1/meshes",
-                                        .query = "",
-                                        .request_id = "test",
-                                        .header = gltf_header,
-                                        .has_length = true,
-                                        .length = sizeof text - 1,
-                                        .has_body = true};
     api_bench *b = bench_new();
-    api_step step;
-    size_t used;
-    api_exchange *x = api_begin(bench_service(b), &request, &step);
-    assert_int_equal(api_body(x, text, sizeof text - 1, &used), API_MORE);
-    assert_int_equal(api_end(x), API_WORK);
+    api_exchange *x = upload_gltf(b, text, sizeof text - 1);
     assert_int_equal(api_work(x), API_READY);
     api_free(x);
     bench_free(b);

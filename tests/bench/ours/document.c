@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PIECE = 65536, PATH = 512 };
+enum { PIECE = 65536 };
 
 static char *print(const he_mesh *m, size_t *length)
 {
@@ -32,13 +32,11 @@ static char *print(const he_mesh *m, size_t *length)
 /* Leaves the document for the other side to read. */
 static void make_document(bench_side *side, bench_result *out)
 {
-    char path[PATH];
     size_t length;
     char *text = print(bench_mesh(side), &length);
-    bench_path(side, "input.json", path, sizeof path);
-    FILE *file = fopen(path, "wb");
-    if (file == NULL || fwrite(text, 1, length, file) != length || fclose(file) != 0) {
-        fprintf(stderr, "%s cannot be written\n", path);
+    FILE *file = bench_open(side, "input.json", "wb");
+    if (fwrite(text, 1, length, file) != length || fclose(file) != 0) {
+        fprintf(stderr, "input.json cannot be written\n");
         exit(1);
     }
     out->amount = (double)length;

@@ -7,19 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PIECE = 65536, PATH = 512 };
-
-static FILE *open_file(const bench_side *side, const char *name, const char *mode)
-{
-    char path[PATH];
-    bench_path(side, name, path, sizeof path);
-    FILE *file = fopen(path, mode);
-    if (file == NULL) {
-        fprintf(stderr, "%s cannot be opened\n", path);
-        exit(1);
-    }
-    return file;
-}
+enum { PIECE = 65536 };
 
 /* Counts, and the sum of the coordinates, to see that two readers read the same. */
 static void describe(const he_mesh *m, bench_result *out)
@@ -38,7 +26,7 @@ void bench_read(const bench_side *side, const char *format, const char *name, he
 {
     he_reader *reader;
     char *piece = malloc(PIECE);
-    FILE *file = open_file(side, name, "rb");
+    FILE *file = bench_open(side, name, "rb");
     bench_require(he_reader_new(he_format_find(format), NULL, &reader, NULL));
     size_t n;
     while ((n = fread(piece, 1, PIECE, file)) > 0) {
@@ -67,7 +55,7 @@ void bench_write(const bench_side *side, const he_mesh *m, const char *format, c
     const he_format *row = he_format_find(format);
     int number = he_format_encoding(row, encoding);
     char *piece = malloc(PIECE);
-    FILE *file = open_file(side, name, "wb");
+    FILE *file = bench_open(side, name, "wb");
     bench_require(he_writer_new(row, m, number < 0 ? 0 : (size_t)number, &writer, NULL));
     size_t n;
     while ((n = he_writer_read(writer, piece, PIECE)) > 0) {
@@ -163,7 +151,7 @@ static void write_text(const bench_side *side, const char *name, const char *hea
                        const char *vertex, const char *face, uint32_t base)
 {
     const bench_input *in = &side->input;
-    FILE *file = open_file(side, name, "wb");
+    FILE *file = bench_open(side, name, "wb");
     setvbuf(file, NULL, _IOFBF, PIECE);
     fputs(head, file);
     for (uint32_t v = 0; v < in->vertices; v++) {
@@ -180,7 +168,7 @@ static void write_text(const bench_side *side, const char *name, const char *hea
 static void write_ply(const bench_side *side)
 {
     const bench_input *in = &side->input;
-    FILE *file = open_file(side, "input.ply", "wb");
+    FILE *file = bench_open(side, "input.ply", "wb");
     setvbuf(file, NULL, _IOFBF, PIECE);
     fprintf(file,
             "ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty float x\n"
@@ -201,7 +189,7 @@ static void write_stl(const bench_side *side)
 {
     const bench_input *in = &side->input;
     char head[80] = "bench";
-    FILE *file = open_file(side, "input.stl", "wb");
+    FILE *file = bench_open(side, "input.stl", "wb");
     setvbuf(file, NULL, _IOFBF, PIECE);
     fwrite(head, sizeof head, 1, file);
     fwrite(&in->faces, sizeof in->faces, 1, file);

@@ -10,19 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SPLITS = 300000, PIECE = 65536, PATH = 512 };
-
-static FILE *open_file(const bench_side *side, const char *name, const char *mode)
-{
-    char path[PATH];
-    bench_path(side, name, path, sizeof path);
-    FILE *file = fopen(path, mode);
-    if (file == NULL) {
-        fprintf(stderr, "%s cannot be opened\n", path);
-        exit(1);
-    }
-    return file;
-}
+enum { SPLITS = 300000, PIECE = 65536 };
 
 /* Splits of edges all over a copy of the mesh, a delta each; of `undone` none is left but the
  * memory. The bytes of the mesh's growth are those of the row `split`. */
@@ -68,7 +56,7 @@ static void import_json(bench_side *side, bench_result *out)
     api_problem problem = {0};
     he_mesh *mesh;
     char *piece = malloc(PIECE);
-    FILE *file = open_file(side, "input.json", "rb");
+    FILE *file = bench_open(side, "input.json", "rb");
     double start = bench_seconds();
     api_document_in *in = api_document_in_new(NULL);
     size_t n;
@@ -93,7 +81,7 @@ static void export_json(bench_side *side, bench_result *out)
 {
     const he_mesh *m = bench_mesh(side);
     char *piece = malloc(PIECE);
-    FILE *file = open_file(side, "output.json", "wb");
+    FILE *file = bench_open(side, "output.json", "wb");
     double start = bench_seconds();
     api_document_out *document = api_document_out_new(m, "");
     int64_t n = 1;

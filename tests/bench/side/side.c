@@ -1,7 +1,6 @@
 #include "bench/side/side.h"
 
 #include <malloc.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -93,6 +92,18 @@ double bench_seconds(void)
 void bench_path(const bench_side *side, const char *name, char *path, size_t size)
 {
     snprintf(path, size, "%s/%s", side->folder, name);
+}
+
+FILE *bench_open(const bench_side *side, const char *name, const char *mode)
+{
+    char path[512];
+    bench_path(side, name, path, sizeof path);
+    FILE *file = fopen(path, mode);
+    if (file == NULL) {
+        fprintf(stderr, "%s cannot be opened\n", path);
+        exit(1);
+    }
+    return file;
 }
 
 void bench_exact(bench_result *out, uint64_t exact)

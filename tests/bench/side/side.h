@@ -26,6 +26,8 @@
 
 #include "bench/side/input.h"
 
+#include <stdio.h>
+
 typedef struct bench_result {
     double value, amount, near;
     uint64_t exact;
@@ -53,6 +55,8 @@ double bench_seconds(void);
 
 /* The path of a file in the folder, of at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
+/* That file, opened; the program ends where it cannot be. */
+FILE *bench_open(const bench_side *side, const char *name, const char *mode);
 
 /* Set what the sides compare. */
 void bench_exact(bench_result *out, uint64_t exact);
