@@ -1,9 +1,9 @@
 /* http.h - sockets on one side, exchanges of api/api.h on the other.
  *
- * http.c is the only file that knows libmicrohttpd. A request is a small state machine there; its
- * states and who moves it are drawn in http.c. Workers never block: what api calls long work runs
- * on the job pool while the connection is suspended, and so does an answer whose revision is not
- * yet durable wait (D1). */
+ * Only the sources server/http*.c know libmicrohttpd, through http_request.h, where the states of a
+ * request and who moves it are drawn. Workers never block: what api calls long work runs on the job
+ * pool while the connection is suspended, and so waits an answer whose revision is not yet durable
+ * (D1). */
 #ifndef HE_SERVER_HTTP_H
 #define HE_SERVER_HTTP_H
 
