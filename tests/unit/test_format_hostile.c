@@ -2,8 +2,6 @@
  * is not linear would be seen. SEED= repeats the mutations, ROUNDS= makes more. */
 #include "unit/format_fixture.h"
 
-#include "format/export.h"
-
 #include <time.h>
 
 static const char obj[] =
@@ -437,115 +435,6 @@ static void nothing_is_quadratic(void **state)
     }
 }
 
-/* --- values picked by their hashes --- */
-
-enum { PICKED = 50000 };
-
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
-
-/* Slots that lie together in every table of up to a million, were the hash FNV-1a. */
-static bool lies_low(const char *name)
-{
-    uint64_t h = 14695981039346656037u;
-    for (const char *p = name; *p != '\0'; p++) {
-        h = (h ^ (unsigned char)*p) * 1099511628211u;
-    }
-    return ((h ^ h >> 32) & ((1 << 20) - 1)) < 1 << 12;
-}
-
-static double add_names(char (*names)[12], size_t count)
-{
-    he_labels *labels = he_labels_new();
-    assert_non_null(labels);
-    double from = seconds_now();
-    for (size_t i = 0; i < count; i++) {
-        uint32_t number;
-        assert_int_equal(he_labels_add(labels, names[i], strlen(names[i]), &number, NULL), HE_OK);
-        assert_int_equal(number, i);
-    }
-    double seconds = seconds_now() - from;
-    he_labels_release(labels);
-    return seconds;
-}
-
-static void names_cannot_be_picked_to_collide(void **state)
-{
-    (void)state;
-    char(*names)[12] = malloc(PICKED * sizeof *names);
-    assert_non_null(names);
-    for (unsigned i = 0, count = 0; count < PICKED; i++) {
-        snprintf(names[count], sizeof *names, "%x", i);
-        count += lies_low(names[count]);
-    }
-    double small = add_names(names, PICKED / 10), large = add_names(names, PICKED);
-    assert_true(large < 0.1 || large < 50 * small);
-    free(names);
-}
-
-/* The same of a hash that begins with the number of bytes. */
-static bool number_lies_low(uint64_t word)
-{
-    uint64_t h = (sizeof word ^ word) * 0x9E3779B97F4A7C15;
-    h ^= h >> 32;
-    return (h * 0xBF58476D1CE4E5B9 >> 16 & ((1 << 20) - 1)) < 1 << 12;
-}
-
-static double number_corners(const double *values, size_t count)
-{
-    he_soup soup;
-    he_mesh *mesh = NULL;
-    he_column *column = NULL;
-    he_distinct distinct;
-    he_soup_init(&soup, NULL);
-    for (uint32_t i = 0; i < count; i++) {
-        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){i, 0, 0}, NULL), HE_OK);
-        if (i % 3 == 2) {
-            const uint32_t corners[3] = {i - 2, i - 1, i};
-            assert_int_equal(he_soup_add_face(&soup, corners, 3, NULL), HE_OK);
-        }
-    }
-    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
-    he_soup_clear(&soup);
-    assert_int_equal(he_column_new("value", HE_HALFEDGE, HE_DOUBLE, 1, HE_COPY, &column, NULL),
-                     HE_OK);
-    assert_int_equal(he_column_extend(column, he_mesh_issued(mesh, HE_HALFEDGE), NULL), HE_OK);
-    for (uint32_t h = 0; h < he_mesh_issued(mesh, HE_HALFEDGE); h++) {
-        if (!he_is_boundary_halfedge(mesh, (he_halfedge){h})) {
-            double value = values[he_origin(mesh, (he_halfedge){h}).i];
-            memcpy(he_column_row(column, h), &value, sizeof value);
-        }
-    }
-    double from = seconds_now();
-    assert_int_equal(he_distinct_make(mesh, column, &distinct, NULL), HE_OK);
-    double seconds = seconds_now() - from;
-    assert_int_equal(distinct.first.count, count / 3 * 3);
-    he_distinct_clear(&distinct);
-    he_column_free(column);
-    he_mesh_free(mesh);
-    return seconds;
-}
-
-static void values_of_corners_cannot_be_picked_to_collide(void **state)
-{
-    (void)state;
-    double *values = malloc(PICKED * sizeof *values);
-    assert_non_null(values);
-    uint64_t word = UINT64_C(0x3FF0000000000000); /* 1, and numbers above it */
-    for (size_t count = 0; count < PICKED; word++) {
-        if (number_lies_low(word)) {
-            memcpy(&values[count++], &word, sizeof word);
-        }
-    }
-    double small = number_corners(values, PICKED / 10), large = number_corners(values, PICKED);
-    assert_true(large < 0.1 || large < 50 * small);
-    free(values);
-}
-
 static void a_face_that_repeats_its_corners(void **state)
 {
     (void)state;
@@ -570,8 +459,6 @@ int main(void)
         cmocka_unit_test(writers_without_memory),
         cmocka_unit_test(mutated_files),
         cmocka_unit_test(nothing_is_quadratic),
-        cmocka_unit_test(names_cannot_be_picked_to_collide),
-        cmocka_unit_test(values_of_corners_cannot_be_picked_to_collide),
         cmocka_unit_test(a_face_that_repeats_its_corners),
     };
     return cmocka_run_group_tests_name("format_hostile", tests, NULL, NULL);
