@@ -34,14 +34,16 @@
  * ids stay dead.
  *
  * CURVES. A boundary edge, and an edge whose bool attribute `feature` is true, is sharp; so are its
- * parts. By the number of sharp edges a vertex is smooth (0), a dart (1: smooth rule), on a curve
- * (2) or a corner (3 or more), as in Hoppe et al., Piecewise Smooth Surface Reconstruction, 1994.
- * Where two meet, the curve becomes their cubic B-spline: the middle of an edge, and (1 6 1) / 8 at
- * vertices, as in DeRose, Kass, Truong, Subdivision Surfaces in Character Animation, 1998. Corners
- * stay in place, and so do a boundary vertex with one face, a bow-tie, an isolated vertex and a
- * vertex whose `locked` is true. By sqrt3 sharp edges are not flipped; in every second step of one
- * call they are cut in three, by the B-spline's rules for that, (1 16 10) / 27 and (4 19 4) / 27,
- * and the triangles beside them become three at the two new vertices instead of having one inside.
+ * parts; what comes to be inside faces is not, in any step of the call, whatever the default of the
+ * attribute is. By the number of sharp edges a vertex is smooth (0), a dart (1: smooth rule), on a
+ * curve (2) or a corner (3 or more), as in Hoppe et al., Piecewise Smooth Surface Reconstruction,
+ * 1994. Where two meet, the curve becomes their cubic B-spline: the middle of an edge, and
+ * (1 6 1) / 8 at vertices, as in DeRose, Kass, Truong, Subdivision Surfaces in Character Animation,
+ * 1998. Corners stay in place, and so do a boundary vertex with one face, a bow-tie, an isolated
+ * vertex and a vertex whose `locked` was true before the call. By sqrt3 sharp edges are not
+ * flipped; in every second step of one call they are cut in three, by the B-spline's rules for
+ * that, (1 16 10) / 27 and (4 19 4) / 27, and the triangles beside them become three at the two new
+ * vertices instead of having one inside.
  *
  * ATTRIBUTES. Of vertices: interpolated columns take the rules positions take, so that a column
  * that is linear in the position remains so; a copy is of the origin of half-edge 2e, of the nearer

@@ -73,8 +73,7 @@ static he_vec3 mean_of_face(const he_content *c, uint32_t first, const he_vec3 *
         h = c->next[h];
         n++;
     } while (h != first);
-    double share = 1 / (double)n;
-    return (he_vec3){total.x * share, total.y * share, total.z * share};
+    return he_vec3_scale(total, 1 / (double)n);
 }
 
 static uint32_t middle(const he_step *s, uint32_t e)
@@ -90,7 +89,7 @@ static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
     he_vec3 ends = he_vec3_add(from[a], from[b]);
     if (s->sharp != NULL && he_step_is_sharp(s, e)) {
-        to[middle(s, e)] = mix(0.5, ends, 0, ends);
+        to[middle(s, e)] = he_vec3_scale(ends, 0.5);
         return;
     }
     uint32_t left = c->origin[c->prev[2 * e]], right = c->origin[c->prev[2 * e + 1]];
@@ -120,7 +119,7 @@ static void catmull_clark_edge(const he_step *s, uint32_t e, const he_vec3 *from
     find_sides(s, e, to, sides);
     bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
     to[middle(s, e)] =
-        sharp ? mix(0.5, ends, 0, ends) : mix(0.25, ends, 0.25, he_vec3_add(sides[0], sides[1]));
+        sharp ? he_vec3_scale(ends, 0.5) : mix(0.25, ends, 0.25, he_vec3_add(sides[0], sides[1]));
 }
 
 static void catmull_clark_ends(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
@@ -153,7 +152,7 @@ static he_vec3 third_from(const he_step *s, uint32_t a, uint32_t b, const he_vec
         return mix(2.0 / 3, from[a], 1.0 / 3, from[b]);
     }
     /* The sum holds b once already. */
-    return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), mix(1.0 / 27, to[a], 0, to[a]));
+    return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), he_vec3_scale(to[a], 1.0 / 27));
 }
 
 static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
@@ -353,7 +352,7 @@ he_status he_step_place(const he_step *s, const he_vec3 *from, he_vec3 *to, he_e
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to scale %u vertices", rows);
     }
     for (uint32_t v = 0; v < rows; v++) {
-        small[v] = (he_vec3){from[v].x * scale, from[v].y * scale, from[v].z * scale};
+        small[v] = he_vec3_scale(from[v], scale);
     }
     he_status status = smooth(s, small, to, err);
     for (uint32_t v = 0; v < s->to->vertices.issued && status == HE_OK; v++) {

@@ -1,6 +1,7 @@
 #include "edit/merge_plan.h"
 
 #include "edit/list.h"
+#include "mesh/word_hash.h"
 
 /* The same before h. */
 static he_halfedge before(const he_merge_plan *p, he_halfedge h)
@@ -168,8 +169,8 @@ he_status he_merge_find_faces(he_merge_plan *p, he_error *err)
 static size_t slot_of(const he_merge_plan *p, uint32_t a, uint32_t b)
 {
     uint64_t low = a < b ? a : b, high = a < b ? b : a;
-    uint64_t h = (low << 32 | high) * UINT64_C(0x9E3779B97F4A7C15);
-    return (size_t)((h ^ h >> 32) * UINT64_C(0xBF58476D1CE4E5B9) >> 32) & (p->slot_count - 1);
+    uint64_t h = he_word_hash((uintptr_t)p->slots, low << 32 | high);
+    return (size_t)(h >> 32) & (p->slot_count - 1);
 }
 
 /* Let edge i stay, or go into the one that is there. */

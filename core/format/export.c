@@ -129,9 +129,10 @@ char *he_export_row(const he_column *column, size_t row, char *to)
     return to;
 }
 
-static size_t hash(const unsigned char *row, size_t bytes)
+/* Nobody who does not know the seed can choose many values of hashes that lie together. */
+static size_t hash(uint64_t seed, const unsigned char *row, size_t bytes)
 {
-    uint64_t h = bytes;
+    uint64_t h = seed * 0x94D049BB133111EB;
     while (bytes > 0) {
         uint64_t word = 0;
         size_t n = bytes < sizeof word ? bytes : sizeof word;
@@ -154,7 +155,8 @@ typedef struct table {
 static size_t slot_of(const table *t, const he_ids *first, uint32_t h)
 {
     const unsigned char *row = he_column_value(t->column, h);
-    size_t bytes = t->column->row_bytes, slot = hash(row, bytes) & t->mask;
+    size_t bytes = t->column->row_bytes;
+    size_t slot = hash((uintptr_t)t->slots, row, bytes) & t->mask;
     while (t->slots[slot] != 0 &&
            memcmp(he_column_value(t->column, first->ids[t->slots[slot] - 1]), row, bytes) != 0) {
         slot = (slot + 1) & t->mask;

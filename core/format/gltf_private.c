@@ -214,9 +214,10 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
 }
 
 /* Each must be there once: two of a name would move the numbers of all behind them. */
-static he_status read_labels(const he_json *json, uint32_t list, he_labels **out, bool *fits,
+static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, bool *fits,
                              he_error *err)
 {
+    const he_json *json = &asset->json;
     he_labels *labels = he_labels_new();
     he_status status = HE_OK;
     size_t count = 0;
@@ -231,6 +232,10 @@ static he_status read_labels(const he_json *json, uint32_t list, he_labels **out
             he_json_raw(json, i, &room);
         }
         *fits &= he_json_type(json, i) == '"';
+        status = he_gltf_spend(asset, i, room, err);
+        if (status != HE_OK) {
+            break;
+        }
         char *text = he_mem_alloc(room + 1);
         if (text == NULL) {
             status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a name of %zu bytes", room);
@@ -408,8 +413,12 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     he_labels *labels = NULL;
     he_status status = d.domain == HE_KIND_COUNT ? HE_OK : describe(s, object, &d, &fits, err);
     fits = fits && has_place(s, &d);
+    if (status == HE_OK && fits) {
+        /* they are looked at even where they come to nothing */
+        status = he_gltf_spend(s->asset, object, d.words.count * sizeof(uint32_t), err);
+    }
     if (status == HE_OK && fits && d.labels != HE_NONE) {
-        status = read_labels(json, d.labels, &labels, &fits, err);
+        status = read_labels(s->asset, d.labels, &labels, &fits, err);
     }
     if (status == HE_OK && fits) {
         status =

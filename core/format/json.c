@@ -1,5 +1,6 @@
 #include "format/json.h"
 
+#include "format/json_string.h"
 #include "format/notes.h"
 #include "format/number.h"
 
@@ -67,15 +68,10 @@ uint32_t he_json_find(const he_json *json, uint32_t object, const char *name)
 
 /* --- strings --- */
 
+/* Four digits of a string that was checked. */
 static unsigned hex(const char *p)
 {
-    unsigned value = 0;
-    for (int i = 0; i < 4; i++) {
-        char c = p[i];
-        unsigned digit = c <= '9' ? (unsigned)(c - '0') : (unsigned)((c | 0x20) - 'a') + 10;
-        value = value << 4 | digit;
-    }
-    return value;
+    return (unsigned)he_json_hex(p, p + 4);
 }
 
 static size_t put_character(unsigned code, char *to)

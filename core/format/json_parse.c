@@ -4,6 +4,7 @@
 #include "format/json_string.h"
 #include "format/notes.h"
 #include "format/number.h"
+#include "mesh/text_hash.h"
 
 #include <string.h>
 
@@ -115,17 +116,6 @@ static he_status scan_string(scan *s)
 
 /* --- members that are given twice --- */
 
-static uint64_t hash_name(const he_json *json, uint32_t name, char *text, size_t size)
-{
-    uint64_t h = (uint64_t)(uintptr_t)json->values * 0x9E3779B97F4A7C15;
-    size_t length = he_json_string(json, name, text, size);
-    for (size_t i = 0; i < length; i++) {
-        h = (h ^ (unsigned char)text[i]) * 0x100000001B3;
-        h ^= h >> 29;
-    }
-    return h * 0xBF58476D1CE4E5B9;
-}
-
 static he_status repeated(const scan *s, uint32_t name)
 {
     char text[60], quoted[60];
@@ -175,7 +165,8 @@ static he_status check_many(scan *s, uint32_t object, size_t count)
         if (i % HE_WATCH_STRIDE == 0) {
             status = tell(s);
         }
-        size_t slot = (size_t)(hash_name(json, i, text, sizeof text) >> 20) & (size - 1);
+        size_t length = he_json_string(json, i, text, sizeof text);
+        size_t slot = he_text_hash((uintptr_t)slots, text, length) & (size - 1);
         while (slots[slot] != 0 && !he_json_is(json, slots[slot], text)) {
             slot = (slot + 1) & (size - 1);
         }

@@ -1,6 +1,7 @@
 #include "mesh/delta.h"
 
 #include "mesh/content.h"
+#include "mesh/word_hash.h"
 
 #include <string.h>
 
@@ -77,11 +78,9 @@ void he_delta_trim(he_delta *d)
     }
 }
 
-/* Where a word is looked for first, in a table of 2^(64 - shift) places. */
-static size_t place_of(const he_record *r, uint32_t shift)
+static uint64_t key_of(const he_record *r)
 {
-    uint64_t key = (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
-    return (size_t)(key * UINT64_C(0x9E3779B97F4A7C15) >> shift);
+    return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
 /* Open addressing; a place holds one more than the index of a record, 0 when it is free. */
@@ -102,10 +101,10 @@ he_status he_delta_fold(he_delta *d, size_t from, he_error *err)
             d->records[kept++] = r;
             continue;
         }
-        size_t at = place_of(&r, 64 - bits);
+        size_t at = he_word_hash((uintptr_t)table, key_of(&r)) >> (64 - bits);
         while (table[at] != 0) {
             const he_record *one = &d->records[table[at] - 1];
-            if (one->row == r.row && one->column == r.column && one->word == r.word) {
+            if (key_of(one) == key_of(&r)) {
                 break;
             }
             at = (at + 1) & mask;

@@ -1,5 +1,7 @@
 #include "mesh/column.h"
 
+#include "mesh/text_hash.h"
+
 #include <stdatomic.h>
 #include <string.h>
 
@@ -53,16 +55,6 @@ const char *he_labels_get(const he_labels *labels, size_t i)
     return labels->text + labels->starts[i];
 }
 
-/* FNV-1a. */
-static uint64_t hash(const char *text, size_t length)
-{
-    uint64_t h = 14695981039346656037u;
-    for (size_t i = 0; i < length; i++) {
-        h = (h ^ (unsigned char)text[i]) * 1099511628211u;
-    }
-    return h ^ h >> 32;
-}
-
 static size_t length_of(const he_labels *labels, size_t i)
 {
     size_t end = i + 1 < labels->count ? labels->starts[i + 1] : labels->text_length;
@@ -73,7 +65,7 @@ static size_t length_of(const he_labels *labels, size_t i)
 static size_t slot_of(const he_labels *labels, const char *text, size_t length)
 {
     size_t mask = labels->slot_count - 1;
-    size_t slot = hash(text, length) & mask;
+    size_t slot = he_text_hash((uintptr_t)labels, text, length) & mask;
     while (labels->slots[slot] != 0) {
         size_t i = labels->slots[slot] - 1;
         if (length_of(labels, i) == length && memcmp(he_labels_get(labels, i), text, length) == 0) {

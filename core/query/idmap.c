@@ -1,17 +1,13 @@
 #include "query/idmap.h"
 
+#include "mesh/word_hash.h"
+
 enum { FIRST_LOG2 = 5 };
 
-/* Knuth's multiplicative hashing, TAOCP 6.4: the high bits of a product with 2^64 / phi; of two,
- * with where the slots are in between. Whoever chooses the ids does not know that, and so cannot
- * choose some that all want the same slots. */
 static size_t slot_of(const he_idmap *map, uint32_t id)
 {
-    const uint64_t phi = UINT64_C(0x9E3779B97F4A7C15);
     size_t mask = ((size_t)1 << map->log2) - 1;
-    uint64_t hash = id * phi;
-    hash = ((hash ^ hash >> 32) + (uint64_t)(uintptr_t)map->slots) * phi;
-    size_t slot = (size_t)((hash ^ hash >> 32) * phi >> (64 - map->log2));
+    size_t slot = he_word_hash((uintptr_t)map->slots, id) >> (64 - map->log2);
     while (map->slots[slot] != 0 && map->ids.ids[map->slots[slot] - 1] != id) {
         slot = (slot + 1) & mask;
     }

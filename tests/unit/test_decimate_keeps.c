@@ -42,6 +42,34 @@ static void boundaries_are_kept(void **state)
     he_mesh_free(m);
 }
 
+/* How far boundary vertices of a decimated grid are from its outline, at most. */
+static double outline_error(double weight)
+{
+    enum { SIDE = 30 };
+    he_mesh *m = dense_grid(SIDE, dense_waves, 1);
+    he_decimate_options options = {he_mesh_faces(m) / 20, INFINITY, weight};
+    double most = 0;
+    assert_int_equal(he_decimate(m, &options, NULL, NULL), HE_OK);
+    fixture_check(m);
+    for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+        if (he_mesh_is_live(m, HE_VERTEX, v) && he_is_boundary_vertex(m, (he_vertex){v})) {
+            he_vec3 p = he_position(m, (he_vertex){v});
+            double x = fmin(fabs(p.x), fabs(p.x - SIDE)), y = fmin(fabs(p.y), fabs(p.y - SIDE));
+            most = fmax(most, fmin(x, y));
+        }
+    }
+    he_mesh_free(m);
+    return most;
+}
+
+static void a_boundary_is_kept_by_its_weight(void **state)
+{
+    (void)state;
+    double free_of = outline_error(0), light = outline_error(0.1), heavy = outline_error(100);
+    printf("note: off the outline by %g, %g and %g\n", free_of, light, heavy);
+    assert_true(free_of > 4 * light && light > 4 * heavy && heavy < 0.1);
+}
+
 /* --- marks --- */
 
 static void mark(he_mesh *m, he_kind kind, const char *name, uint32_t id)
@@ -187,6 +215,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boundaries_are_kept),
+        cmocka_unit_test(a_boundary_is_kept_by_its_weight),
         cmocka_unit_test(locked_elements_stay),
         cmocka_unit_test(locked_elements_keep_their_attributes),
         cmocka_unit_test(feature_lines_keep_their_shape),

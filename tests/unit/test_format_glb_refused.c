@@ -544,6 +544,53 @@ static void bombs(void **state)
     expect_bomb(&w, HE_OK, "");
 }
 
+/* What is ours in extras, read for every column and for every node. */
+static void bombs_in_extras(void **state)
+{
+    (void)state;
+    static const char column[] = "'rule':'copy','components':1,'accessor':1";
+    writing w = {0};
+    char part[300];
+    /* one list of words, of which only the last is no bool, for many columns */
+    for (int many = 0; many < 2; many++) {
+        put(&w, "{'asset':{'version':'2.0'},'buffers':[{'byteLength':120000,'uri':'data:;base64,");
+        for (int i = 0; i < 39999; i++) {
+            put(&w, "AAAA");
+        }
+        put(&w, "AAAC'}],'bufferViews':[{'buffer':0,'byteLength':120000}],'accessors':["
+                "{'componentType':5126,'count':30000,'type':'VEC3'},"
+                "{'bufferView':0,'componentType':5125,'count':30000,'type':'SCALAR'}],'meshes':["
+                "{'primitives':[{'mode':0,'attributes':{'POSITION':0},'extras':{'hedge':{"
+                "'columns':[{}");
+        for (int i = 0; i < (many ? 4000 : 200); i++) {
+            snprintf(part, sizeof part, ",{'domain':'vertex','name':'x','type':'bool',%s}", column);
+            put(&w, part);
+        }
+        put(&w, "]}}}]}]}");
+        expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene makes more than" : "");
+    }
+    /* one long name for many nodes */
+    for (int many = 0; many < 2; many++) {
+        put(&w, "{'asset':{'version':'2.0'},'buffers':[{'byteLength':12,'uri':"
+                "'data:;base64,AAAAAAAAAAAAAAAA'}],'bufferViews':[{'buffer':0,'byteLength':12}],"
+                "'accessors':[{'componentType':5126,'count':1,'type':'VEC3'},"
+                "{'bufferView':0,'componentType':5125,'count':1,'type':'SCALAR'}],'meshes':["
+                "{'primitives':[{'mode':0,'attributes':{'POSITION':0},'extras':{'hedge':{"
+                "'columns':[{'domain':'vertex','name':'x','type':'uint32',");
+        put(&w, column);
+        put(&w, ",'labels':['");
+        for (int i = 0; i < 10000; i++) {
+            put(&w, "name name ");
+        }
+        put(&w, "']}]}}}]}],'nodes':[{}");
+        for (int i = 0; i < (many ? 4000 : 200); i++) {
+            put(&w, ",{'mesh':0}");
+        }
+        put(&w, "]}");
+        expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene makes more than" : "");
+    }
+}
+
 static void limits_of_the_caller(void **state)
 {
     (void)state;
@@ -570,6 +617,7 @@ int main(void)
         cmocka_unit_test(references_and_numbers),
         cmocka_unit_test(numbers_in_the_buffer),
         cmocka_unit_test(bombs),
+        cmocka_unit_test(bombs_in_extras),
         cmocka_unit_test(limits_of_the_caller),
     };
     return cmocka_run_group_tests_name("format_glb_refused", tests, NULL, NULL);

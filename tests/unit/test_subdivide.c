@@ -432,6 +432,25 @@ static void values_linear_in_the_position_remain_so(void **state)
     }
 }
 
+/* New edges have the default of `feature`, and are no curves for that. */
+static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
+{
+    (void)state;
+    for (unsigned s = 0; s < SCHEMES; s++) {
+        he_mesh *m = wheel(6, false), *plain = wheel(6, false);
+        he_column *feature = add_column(m, "feature", HE_EDGE, HE_BOOL, 1, HE_COPY);
+        *feature->fallback = 1;
+        subdivide(m, schemes[s], 3);
+        subdivide(plain, schemes[s], 3);
+        assert_true(features(m) > he_mesh_edges(m) / 2);
+        for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
+            assert_near(at(m, v), at(plain, v), 0);
+        }
+        he_mesh_free(plain);
+        he_mesh_free(m);
+    }
+}
+
 /* Without a smoothing rule a corner's value and its vertex's place say the same all along. */
 static void corners_are_refined_within_their_face(void **state)
 {
@@ -655,6 +674,7 @@ int main(void)
         cmocka_unit_test(creases_are_curves_darts_smooth_and_corners_stay),
         cmocka_unit_test(locked_bowtie_and_isolated_vertices_stay),
         cmocka_unit_test(values_linear_in_the_position_remain_so),
+        cmocka_unit_test(what_comes_inside_faces_is_smooth_in_all_steps),
         cmocka_unit_test(corners_are_refined_within_their_face),
         cmocka_unit_test(corners_of_flipped_triangles_are_of_their_face),
         cmocka_unit_test(old_ids_name_the_parts_at_their_origin),
