@@ -217,9 +217,13 @@ test('levels are given up while they are waited for, and asked for again', async
 test('playing waits for what has not come, and can be stopped and begun again', async (t) => {
     const { page, ask } = await openHeld(t);
     const answer = await ask();
+    const valueText = () => slider(page).getAttribute('aria-valuetext');
     await sendTo(page, answer, 0.5);
+    // Of the levels that run by nothing is to be heard.
+    assert.equal(await valueText(), 'Playing');
     await page.getByRole('button', { name: 'Pause' }).click();
     await page.getByRole('button', { name: 'Play' }).waitFor();
+    assert.match(await valueText(), /^\d+ of 320 faces$/);
     const place = await slider(page).inputValue();
     answer.sendTo(1);
     answer.end();
