@@ -297,14 +297,20 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
     return true;
 }
 
+/* That of a square about the origin that would hold the mesh. */
+static int area_unit_of_all(const he_mesh *m)
+{
+    he_box box;
+    he_mesh_box(m, &box);
+    return 2 * he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
+}
+
 he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_vec3 *out, he_error *err)
 {
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         out[v] = (he_vec3){0, 0, 0};
     }
-    he_box box;
-    he_mesh_box(m, &box);
-    int unit = 2 * he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
+    int unit = weight == HE_WEIGHT_AREA ? area_unit_of_all(m) : 0;
     double half = abs(unit) < 1000 ? ldexp(0.5, -unit) : 0;
     uint32_t budget = he_ring_budget(m);
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {

@@ -37,13 +37,17 @@ static inline double he_clamped(double x)
 /* A unit vector, whatever the size of `a`; zero and false when it is zero. */
 static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
 {
-    double extent = he_vec3_extent(a);
-    if (!(extent > 0)) {
-        *out = (he_vec3){0, 0, 0};
-        return false;
+    double square = he_vec3_dot(a, a);
+    if (!(square > HE_LEAST_PRODUCT && square < HE_MOST_PRODUCT)) {
+        double extent = he_vec3_extent(a);
+        if (!(extent > 0)) {
+            *out = (he_vec3){0, 0, 0};
+            return false;
+        }
+        a = he_vec3_scale(a, ldexp(1, -he_exponent_of(extent)));
+        square = he_vec3_dot(a, a);
     }
-    a = he_vec3_scale(a, ldexp(1, -he_exponent_of(extent)));
-    double length = he_vec3_length(a);
+    double length = sqrt(square);
     *out = (he_vec3){a.x / length, a.y / length, a.z / length}; /* along an axis exactly 1 */
     return true;
 }

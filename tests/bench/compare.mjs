@@ -104,8 +104,9 @@ function agree(row, part, name, ours, theirs) {
         problems.push(`${what} made another result (${theirs.exact}, ours ${ours.exact})`);
     }
     const apart = Math.abs(ours.near - theirs.near);
-    if (row.near > 0 && apart > row.near * Math.abs(ours.near)) {
-        problems.push(`${what} got ${theirs.near}, we ${ours.near}: more than ${row.near} apart`);
+    const near = row.drawn ? row.near / Number(options.scale) : row.near;
+    if (near > 0 && apart > near * Math.abs(ours.near)) {
+        problems.push(`${what} got ${theirs.near}, we ${ours.near}: more than ${near} apart`);
     }
 }
 

@@ -8,26 +8,27 @@
 //
 // Caches. A face takes 66 bytes, so 10k faces are 0.7 MB and in L2, 100k are 7 MB and in L3, 1M and
 // 10M are 66 MB and 660 MB and in neither. `random read` reads words all over a block of that size
-// and has its steps there and nowhere else: 1.5, 2.9, 9.1 and 13 ns. Flips, collapses, decimation
+// and has its steps there and nowhere else: 1.1, 1.8, 8.9 and 9.7 ns. Flips, collapses, decimation
 // and everything whose ids are shuffled read and write a few dozen such places an element and rise
-// with it: flips 71, 162, 426, 627 ns. One-rings in natural order read forwards, which the machine
-// foresees, and stay flat: 1.3 to 1.4 ns. Normals go from 10 to 18 and back without a trend.
+// with it: flips 54, 94, 364, 394 ns, collapses 140, 241, 699, 820. One-rings in natural order read
+// forwards, which the machine foresees, and stay flat: 1.0 to 1.2 ns. So do normals, 9.1 to 9.6.
 //
 // Translation of addresses. Columns of 4 MiB and more ask for huge pages, which is from 100k to 1M
-// faces on. Without, at 10M a random read costs 24 ns for 13, building shuffled faces 407 for 261,
-// one-rings of them 56 for 46; their normals are the same.
+// faces on. Without, at 10M a random read costs 12 ns for 9.7, building shuffled faces 266 for 235,
+// one-rings of them 51 for 43, their normals 93 for 84.
 //
 // Pages touched for the first time. What makes new columns (build, split, compact, Loop, import)
-// has the system find and clear their pages. Build rises from 10k to 100k (84 to 103 ns) because
+// has the system find and clear their pages. Build rises from 10k to 100k (56 to 67 ns) because
 // its columns of over 1 MiB become mappings of their own: 1,934 small pages, one for 52 faces; it
-// falls at 1M (52), where huge pages make that one for 175. At 10M the system has the greater part
-// of compact (203 of 250 ns) and of Loop, which makes 40M faces (116 of 136). It is not clearing
-// that takes so long: a compact of 10M faces measured apart took 217 ns with huge pages and 69
-// without, 44 of them in the system, for 180,950 small pages in place of 6,188. On a machine where
-// blocks of 2 MiB are hard to find, huge pages cost writers what they give readers.
+// falls at 1M (52), where huge pages make that one for 190. So do Loop (33, 39, 24) and import of
+// OBJ (134, 223, 176). At 10M the system has the greater part of compact (129 of 158 ns) and of
+// Loop, which makes 40M faces (112 of 128). It is not clearing that takes so long: a compact of 10M
+// faces measured apart took 217 ns with huge pages and 69 without, 44 of them in the system, for
+// 180,950 small pages in place of 6,188. On a machine where blocks of 2 MiB are hard to find, huge
+// pages cost writers what they give readers.
 //
-// Import of OBJ bends at 10M by that part, too (128 of 283 ns): its soup grows beside the columns.
-// Splits are both: random places, and columns that grow by half when they are full.
+// Import of OBJ bends at 10M by that part, too (80 of 216 ns): its soup grows beside the columns.
+// Splits are both: random places, and columns that grow by half when they are full (252 of 824).
 
 import { readFileSync, writeFileSync, mkdirSync } from 'node:fs';
 import os from 'node:os';

@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { checkAccessible, isSurface, readCanvas, waitForFrame } from './browser.mjs';
+import { cuttable } from './cuttable.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { holdLevels } from './held.mjs';
 import { click, expectToast, press } from './page.mjs';
@@ -216,9 +217,13 @@ test('levels are given up while they are waited for, and asked for again', async
 test('playing waits for what has not come, and can be stopped and begun again', async (t) => {
     const { page, ask } = await openHeld(t);
     const answer = await ask();
+    const valueText = () => slider(page).getAttribute('aria-valuetext');
     await sendTo(page, answer, 0.5);
+    // Of the levels that run by nothing is to be heard.
+    assert.equal(await valueText(), 'Playing');
     await page.getByRole('button', { name: 'Pause' }).click();
     await page.getByRole('button', { name: 'Play' }).waitFor();
+    assert.match(await valueText(), /^\d+ of 320 faces$/);
     const place = await slider(page).inputValue();
     answer.sendTo(1);
     answer.end();
@@ -234,6 +239,34 @@ test('playing waits for what has not come, and can be stopped and begun again', 
     assert.deepEqual(await again, [FACES, 4]);
     await page.getByRole('button', { name: 'Pause' }).click();
     await back(page).click();
+    await checkGivenUp(page);
+});
+
+test('levels stay when the connection was lost and the mesh is as it was', async (t) => {
+    const daemon = await startDaemon(t);
+    const way = await cuttable(t, daemon);
+    const { id: mesh } = await post(daemon, '', SPHERE);
+    const page = await openPage(t, way, { allowed: [/ERR_/], reducedMotion: 'reduce' });
+    await waitForFrame(page, { mesh, revision: 1 });
+    const connection = (state) =>
+        page.locator(`#connection[data-state="${state}"]`).waitFor({ state: 'attached' });
+    await levels(page).click();
+    await waitForFaces(page, FACES);
+    way.cut();
+    await connection('lost');
+    const caughtUp = page.waitForResponse(/geometry\?since=/);
+    way.mend();
+    await connection('on');
+    await (await caughtUp).finished();
+    await page.keyboard.press('Home');
+    await waitForFaces(page, 4);
+    assert.equal(await page.getByText('Back to the mesh').count(), 1);
+    // What has changed meanwhile is seen.
+    way.cut();
+    await connection('lost');
+    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });
+    way.mend();
+    await waitForFrame(page, { mesh, revision: 2 });
     await checkGivenUp(page);
 });
 

@@ -162,13 +162,12 @@ export class Refining {
         hint.textContent = HINTS.shown;
         box.setAttribute('aria-busy', 'false');
         this.#acts.onBegin();
+        this.#position = isStill.matches ? this.#pace.positions : 0;
+        this.#showLevel();
         if (document.activeElement === button) {
             slider.focus();
         }
-        this.#position = isStill.matches ? this.#pace.positions : 0;
-        if (isStill.matches) {
-            this.#showLevel();
-        } else {
+        if (!isStill.matches) {
             this.#play();
         }
     }
@@ -216,7 +215,8 @@ export class Refining {
         if (levels.level !== before) {
             this.#stage.refine(levels.takeChanges(), this.#label);
         }
-        // Each level while it runs would be too much to be heard; the slider says those it goes to.
+        // Each level while it runs would be too much to be heard; the slider, which may have the
+        // focus, says those it is put to.
         const isAtEnd = wasPlaying && !this.#isPlaying;
         this.#elements.faces.setAttribute('aria-live', isAtEnd ? 'polite' : 'off');
         this.#showLevel();
@@ -237,7 +237,7 @@ export class Refining {
         const text = `${formatCount(shown)} of ${formatCount(all)} faces`;
         faces.textContent = text;
         slider.value = Math.round(this.#position);
-        slider.setAttribute('aria-valuetext', text);
+        slider.setAttribute('aria-valuetext', this.#isPlaying ? 'Playing' : text);
         play.textContent = this.#isPlaying ? 'Pause' : 'Play';
     }
 }

@@ -158,6 +158,7 @@ export class Session {
 
     async #advance(whole) {
         const { shown } = this;
+        const { revision } = shown;
         const putGeometry = await shown.readGeometry(whole);
         const puts = await Promise.all([
             this.selection.read(),
@@ -167,7 +168,8 @@ export class Session {
         if (this.shown === shown) {
             const change = putGeometry();
             puts.forEach((put) => put());
-            this.#onChange(change === null ? 'content' : 'change', change);
+            const isSame = shown.revision === revision;
+            this.#onChange(change === null ? 'content' : isSame ? 'facts' : 'change', change);
         }
     }
 

@@ -155,10 +155,15 @@ void bench_input_clear(bench_input *input)
     *input = (bench_input){0};
 }
 
+enum { USUAL_FACES = 2 * 724 * 724 };
+
 bench_pick *bench_picks(const bench_input *input, uint32_t *count)
 {
     uint64_t state = 2463534242u;
     uint32_t halfedges = input->faces * input->degree, picked = 0;
+    if (input->faces < USUAL_FACES) {
+        *count = (uint32_t)((uint64_t)*count * input->faces / USUAL_FACES);
+    }
     uint32_t *order = permutation(&state, halfedges, true);
     bench_pick *picks = (bench_pick *)array(*count, sizeof *picks);
     for (uint32_t i = 0; i < halfedges && picked < *count; i++) {

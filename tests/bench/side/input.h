@@ -27,8 +27,9 @@ void bench_input_make(const char *name, bool shuffled, uint32_t side, bench_inpu
 void bench_input_clear(bench_input *input);
 
 /* Half-edges, each once, in random order and the same in every program: a face and which of its
- * corners the half-edge leaves. No two are of one edge. `count` is lowered to what there is. The
- * caller frees. */
+ * corners the half-edge leaves. No two are of one edge. `count` is how many of a mesh of 1,048,352
+ * faces; of a smaller one it is lowered to the same part of it, so that as much is left. The caller
+ * frees. */
 typedef struct bench_pick {
     uint32_t face, corner;
 } bench_pick;
