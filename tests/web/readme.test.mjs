@@ -31,6 +31,15 @@ function shellWith(text, url) {
     return found[0];
 }
 
+// What each curl of a block is answered.
+async function runCurls(block) {
+    const printed = await run('sh', ['-ec', block.replaceAll('curl ', 'echo; curl -s ')]);
+    return printed
+        .trim()
+        .split('\n')
+        .map((line) => JSON.parse(line));
+}
+
 // The comment at the end of the line that prints.
 function promised(code, mark) {
     const [, text] = new RegExp(`^(?:print|console\\.log)\\(.*${mark} (.*)$`, 'm').exec(code);
@@ -65,11 +74,7 @@ test('the curl lines work as pasted', async (t) => {
 
 test('the lines about repairs work as pasted', async (t) => {
     const { url } = await startDaemon(t);
-    const block = shellWith('repair=split', url);
-    const [refused, made] = (await run('sh', ['-ec', block.replaceAll('curl ', 'echo; curl -s ')]))
-        .trim()
-        .split('\n')
-        .map((line) => JSON.parse(line));
+    const [refused, made] = await runCurls(shellWith('repair=split', url));
     assert.equal(refused.status, 422);
     assert.deepEqual(refused.repair, ['split']);
     assert.equal(made.import.repairs[0].count, 2);
@@ -84,6 +89,18 @@ test('the lines about jobs work as pasted', async (t) => {
     const last = JSON.parse(printed.split('\n').at(-1));
     assert.equal(last.state, 'done');
     assert.equal(last.result.counts.faces, 512 * 512);
+});
+
+test('the lines about finer and coarser meshes work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const block = shellWith('"decimate"', url);
+    const [, subdivided, decimated] = await runCurls(block);
+    assert.deepEqual(subdivided.results[0].faces, [1280, 5120]);
+    const [{ stop, error }] = decimated.results;
+    const [, promisedStop, digits] = /# "stop":"(\w+)" and "error":([\d.]+)\.\.\.$/m.exec(block);
+    assert.equal(stop, promisedStop);
+    assert.ok(String(error).startsWith(digits), `${error}`);
+    assert.equal((await (await fetch(`${url}/v1/meshes/ball`)).json()).counts.faces, 500);
 });
 
 test('the lines about codings work as pasted', async (t) => {
