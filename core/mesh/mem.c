@@ -25,14 +25,20 @@ void he_mem_set_hook(const he_mem_hook *replacement)
 /* Where ids are in no order, reading a large mesh misses the translation of addresses as often as
  * the caches; huge pages end that. Systems give them to those who ask. The pages of the block are
  * asked for to both ends: a mapping of which a part is different could not be moved when it grows,
- * only copied. */
-enum { PAGE = 4096, LARGE_BLOCK = 4 << 20 };
+ * only copied.
+ *
+ * A block that is a mapping of its own begins right behind the C library's header. Any other lies
+ * in a heap, where a large one may be put when much was freed, and what was said of its pages would
+ * stay said of them: small blocks that come there later would take 2 MiB each. */
+enum { PAGE = 4096, LARGE_BLOCK = 4 << 20, HEADER = 2 * sizeof(size_t) };
 
 static void ask_for_huge_pages(void *memory, size_t size)
 {
     size_t before = (uintptr_t)memory % PAGE, length = (before + size + PAGE - 1) / PAGE * PAGE;
-    /* Nothing depends on the answer. */
-    (void)madvise((char *)memory - before, length, MADV_HUGEPAGE);
+    if (before <= HEADER) {
+        /* Nothing depends on the answer. */
+        (void)madvise((char *)memory - before, length, MADV_HUGEPAGE);
+    }
 }
 
 void *he_mem_resize(void *memory, size_t size)

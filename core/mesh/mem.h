@@ -3,7 +3,8 @@
  * The hook is the only global in core. It is set once, before the first thread; tests install
  * one that fails the N-th call, the server one that counts. All functions accept NULL where free
  * does. Sizes are multiplied with an overflow check: a product that does not fit fails like an
- * allocation. Blocks of 4 MiB and more are put on huge pages where the system offers them. */
+ * allocation. Blocks of 4 MiB and more that are a mapping of their own are put on huge pages where
+ * the system offers them. */
 #ifndef HE_MESH_MEM_H
 #define HE_MESH_MEM_H
 

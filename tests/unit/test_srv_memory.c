@@ -60,6 +60,52 @@ static void what_is_freed_between_used_blocks_goes_back_to_the_system(void **sta
         he_mem_free(blocks[i]);
     }
 }
+
+/* Was the system asked for huge pages at this address? */
+static bool asks_for_huge_pages(const void *address)
+{
+    char line[512];
+    unsigned long from = 0, to = 0;
+    bool inside = false, asks = false;
+    FILE *file = fopen("/proc/self/smaps", "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) != NULL) {
+        if (sscanf(line, "%lx-%lx ", &from, &to) == 2) {
+            inside = (unsigned long)address >= from && (unsigned long)address < to;
+        } else if (inside && strncmp(line, "VmFlags:", 8) == 0) {
+            asks = strstr(line, " hg") != NULL;
+        }
+    }
+    fclose(file);
+    return asks;
+}
+
+/* Pieces are in the heap, and once they are freed there is room for a large block among them. */
+static void large_blocks_have_huge_pages_only_in_mappings_of_their_own(void **state)
+{
+    (void)state;
+    enum { PIECES = 32, PIECE = 512 * 1024, LARGE = 8 << 20, HUGE_BLOCK = 256 << 20 };
+    void *pieces[PIECES];
+    srv_memory_install(0);
+    for (size_t i = 0; i < PIECES; i++) {
+        pieces[i] = he_mem_alloc(PIECE);
+        assert_non_null(pieces[i]);
+    }
+    for (size_t i = 0; i + 1 < PIECES; i++) {
+        he_mem_free(pieces[i]);
+    }
+    char *inside = he_mem_alloc(LARGE), *own = he_mem_alloc(HUGE_BLOCK);
+    assert_non_null(inside);
+    assert_non_null(own);
+    assert_true(inside >= (char *)pieces[0] && inside < (char *)pieces[PIECES - 1]);
+    assert_false(asks_for_huge_pages(inside + LARGE / 2));
+    if (access("/sys/kernel/mm/transparent_hugepage/enabled", R_OK) == 0) {
+        assert_true(asks_for_huge_pages(own + LARGE));
+    }
+    he_mem_free(own);
+    he_mem_free(inside);
+    he_mem_free(pieces[PIECES - 1]);
+}
 #endif
 
 int main(void)
@@ -68,6 +114,7 @@ int main(void)
         cmocka_unit_test(pages_are_given_back_once_after_work_when_it_rests),
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
         cmocka_unit_test(what_is_freed_between_used_blocks_goes_back_to_the_system),
+        cmocka_unit_test(large_blocks_have_huge_pages_only_in_mappings_of_their_own),
 #endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
