@@ -51,14 +51,16 @@ const kernel = (name, order) => ({
 // the links of a half-edge are in four arrays, so that each place costs four lines where a record
 // costs one. That is what makes traversal fast. A line takes 130 to 150 ns on the machine this was
 // written on, and 16 are on their way at a time.
-const waits = (deep, lines) => {
-    const least = 10 * Math.round(14 * Math.max(deep, lines / 16));
+// `work` is what an edit takes in nanoseconds where all of the mesh is in the cache.
+const waits = (deep, lines, work) => {
+    const reads = 10 * Math.round(14 * Math.max(deep, lines / 16));
     return (
         `waits for ${deep} reads, each of them for the one before, of about ${lines} lines: ` +
-        `${least} ns an edit at 140 ns a read, unless the next edit is known`
+        `${reads} ns an edit at 140 ns a read, and ${work} of work, less what the processor ` +
+        'begins of the next edit meanwhile'
     );
 };
-const whys = { split: waits(2, 26), flip: waits(4, 40), collapse: waits(4, 70) };
+const whys = { split: waits(2, 26, 115), flip: waits(4, 40, 53), collapse: waits(4, 70, 141) };
 
 // CGAL's collapses go elsewhere from some point on: cgal_edits.cc tells.
 const edit = (title, ours, target, theirs = ours) => ({
