@@ -13,18 +13,24 @@ enum {
 
 /* --- what is sent piece by piece --- */
 
+/* What a reader of libmicrohttpd returns for bytes, for the end (0) and for a failure. */
+static ssize_t pulled(srv_request *r, int64_t got)
+{
+    if (got > 0) {
+        r->bytes_out += (uint64_t)got;
+        return (ssize_t)got;
+    }
+    return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
 static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
 {
     (void)position;
     srv_request *r = context;
     const api_answer *answer = api_answer_of(r->exchange);
     int64_t got = answer->read(answer->context, buffer, size);
-    if (got > 0) {
-        r->bytes_out += (uint64_t)got;
-        return (ssize_t)got;
-    }
-    bool complete = got == 0 && (answer->length < 0 || r->bytes_out == (uint64_t)answer->length);
-    return complete ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+    bool complete = answer->length < 0 || r->bytes_out == (uint64_t)answer->length;
+    return pulled(r, got == 0 && !complete ? -1 : got);
 }
 
 static void resume_ahead(srv_ahead *ahead)
@@ -44,15 +50,11 @@ static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t
     r->ahead.context = answer->context;
     r->ahead.resume = resume_ahead;
     int64_t got = srv_ahead_take(&r->ahead, buffer, size);
-    if (got > 0) {
-        r->bytes_out += (uint64_t)got;
-        return (ssize_t)got;
-    }
     if (got == SRV_AHEAD_WAIT && srv_request_suspend(r)) {
         srv_ahead_make(&r->ahead, r->http->options.makers);
         return 0;
     }
-    return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+    return pulled(r, got);
 }
 
 static void resume_stream(srv_stream *stream)
@@ -72,15 +74,11 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
         srv_live_begin(r->http->live, &r->stream, answer->live, answer->idle, resume_stream);
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
-    if (got > 0) {
-        r->bytes_out += (uint64_t)got;
-        return (ssize_t)got;
-    }
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
         srv_live_aside(&r->stream);
         return 0;
     }
-    return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+    return pulled(r, got);
 }
 
 /* --- the answer --- */
