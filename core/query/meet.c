@@ -1,6 +1,6 @@
 #include "query/meet.h"
 
-#include "query/orient.h"
+#include "mesh/orient.h"
 
 /* --- in the plane of both --- */
 

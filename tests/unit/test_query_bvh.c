@@ -6,7 +6,7 @@
 #include "query/bvh_disc.h"
 #include "query/bvh_walk.h"
 #include "query/meet.h"
-#include "query/orient.h"
+#include "mesh/orient.h"
 
 #include <float.h>
 #include <limits.h>

@@ -4,10 +4,10 @@
  * summed up without any, as an expansion: a sum of doubles of which none overlaps another (J. R.
  * Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
  * 1997). Exact as long as no product of three coordinates overflows or falls below 1e-280. */
-#ifndef HE_QUERY_ORIENT_H
-#define HE_QUERY_ORIENT_H
+#ifndef HE_MESH_ORIENT_H
+#define HE_MESH_ORIENT_H
 
-#include "query/vec3.h"
+#include "mesh/mesh.h"
 
 /* The sign, -1, 0 or 1, of the volume of the tetrahedron: 1 when a, b, c turn clockwise as seen
  * from d, 0 when all four lie in a plane. */

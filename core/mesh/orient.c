@@ -1,6 +1,6 @@
-#include "query/orient.h"
+#include "mesh/orient.h"
 
-#include <float.h>
+#include <math.h>
 
 /* What the rounding of a determinant comes to at most, of the sum of its terms' absolute values;
  * rounded up. */
@@ -99,9 +99,14 @@ static int exact3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
     return sign_of(&e);
 }
 
+static he_vec3 minus(he_vec3 a, he_vec3 b)
+{
+    return (he_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
 int he_orient3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
 {
-    he_vec3 u = he_vec3_sub(a, d), v = he_vec3_sub(b, d), w = he_vec3_sub(c, d);
+    he_vec3 u = minus(a, d), v = minus(b, d), w = minus(c, d);
     double vxwy = v.x * w.y, wxvy = w.x * v.y, wxuy = w.x * u.y, uxwy = u.x * w.y, uxvy = u.x * v.y,
            vxuy = v.x * u.y;
     double determinant = u.z * (vxwy - wxvy) + v.z * (wxuy - uxwy) + w.z * (uxvy - vxuy);
