@@ -42,7 +42,8 @@ static const option options[] = {
     {"max-upload", BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
      "largest mesh document or file"},
     {"memory-budget", BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
-     "memory for everything; 0 takes three quarters of what there is"},
+     "memory for everything; 0 takes three quarters of the machine's, or of the smallest limit of "
+     "its control groups"},
     {"undo-budget", BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
      "memory for the history of one mesh; the oldest edits go first"},
     {"no-compression", FLAG, MEMBER(no_compression), "0", NULL, 0, 0,

@@ -24,7 +24,7 @@ typedef struct srv_config {
     uint64_t log; /* srv_log_kind */
 
     uint64_t max_upload;    /* bytes */
-    uint64_t memory_budget; /* bytes; 0: three quarters of what there is */
+    uint64_t memory_budget; /* bytes; 0: three quarters of srv_memory_limit_find */
     uint64_t undo_budget;   /* bytes a mesh */
     uint64_t max_meshes;
     bool no_compression;

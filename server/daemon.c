@@ -5,8 +5,10 @@
 #include "server/http.h"
 #include "server/job_board.h"
 #include "server/memory.h"
+#include "server/memory_limit.h"
 #include "server/samples.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -247,13 +249,37 @@ static void block_signals(sigset_t *waited)
     pthread_sigmask(SIG_BLOCK, waited, NULL);
 }
 
+/* Say what the budget is and why, for an operator who wonders at a 507. */
+static void choose_budget(const srv_config *config)
+{
+    const uint64_t mib = UINT64_C(1) << 20;
+    const srv_memory_limit limit = srv_memory_limit_find("", srv_memory_limit_machine());
+    uint64_t budget = config->memory_budget;
+    if (budget == 0 && limit.bytes == UINT64_MAX) {
+        fprintf(stderr, "hedged: no memory budget: the system does not say what the machine has\n");
+    } else if (budget == 0) {
+        budget = limit.bytes / 4 * 3;
+        fprintf(stderr,
+                "hedged: memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64
+                " MiB that %s allows\n",
+                budget / mib, limit.bytes / mib, limit.source);
+    } else if (budget > limit.bytes) {
+        fprintf(stderr,
+                "hedged: memory budget %" PRIu64 " MiB as told, more than the %" PRIu64
+                " MiB that %s allows: the kernel may end the daemon before it is used up\n",
+                budget / mib, limit.bytes / mib, limit.source);
+    } else {
+        fprintf(stderr, "hedged: memory budget %" PRIu64 " MiB as told\n", budget / mib);
+    }
+    srv_memory_set_budget(budget);
+}
+
 int srv_daemon_run(const srv_config *config)
 {
     daemon_parts parts = {0};
     sigset_t signals;
     block_signals(&signals);
-    uint64_t budget = config->memory_budget;
-    srv_memory_set_budget(budget == 0 ? srv_memory_default_budget() : budget);
+    choose_budget(config);
 
     bool started = open_jobs(&parts, config) && open_store(&parts, config) &&
                    load_page(&parts, config) && open_service(&parts, config) &&

@@ -2,11 +2,9 @@
 
 #include "mesh/mem.h"
 
-#include <fcntl.h>
 #include <malloc.h>
 #include <stdatomic.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
@@ -108,31 +106,4 @@ bool srv_memory_rests(srv_memory_rest *rest, uint64_t processor)
     malloc_trim(0);
     rest->trimmed = processor;
     return true;
-}
-
-/* The limit of the control group, UINT64_MAX where there is none. */
-static uint64_t group_limit(void)
-{
-    int fd = open("/sys/fs/cgroup/memory.max", O_RDONLY | O_CLOEXEC);
-    if (fd < 0) {
-        return UINT64_MAX;
-    }
-    char text[32];
-    ssize_t length = read(fd, text, sizeof text);
-    close(fd);
-    uint64_t limit = 0;
-    ssize_t digits = 0;
-    while (digits < length && digits < 19 && text[digits] >= '0' && text[digits] <= '9') {
-        limit = limit * 10 + (uint64_t)(text[digits++] - '0');
-    }
-    return digits == 0 ? UINT64_MAX : limit;
-}
-
-uint64_t srv_memory_default_budget(void)
-{
-    long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
-    uint64_t machine = pages > 0 && size > 0 ? (uint64_t)pages * (uint64_t)size : UINT64_MAX;
-    uint64_t group = group_limit();
-    uint64_t available = machine < group ? machine : group;
-    return available == UINT64_MAX ? 0 : available / 4 * 3;
 }

@@ -36,7 +36,4 @@ typedef struct srv_memory_rest {
  * serves nobody, for it takes the lock of each heap in turn. True when it was done. */
 bool srv_memory_rests(srv_memory_rest *rest, uint64_t processor);
 
-/* Three quarters of what the machine, or the control group the process runs in, has. */
-uint64_t srv_memory_default_budget(void);
-
 #endif

@@ -47,7 +47,7 @@ runs_from_there() {
     mkfifo "$work/log" || return 1
     "$hedged" --listen 127.0.0.1:0 --log off 2>"$work/log" &
     daemon=$!
-    read -r line <"$work/log"
+    line=$(sed -n '/listening on /{p;q}' "$work/log")
     base=${line##*listening on }
     python3 - "$base" "$root/usr/share/hedge/web/index.html" <<'PY' || return 1
 import sys, urllib.request
