@@ -53,6 +53,13 @@ typedef struct api_request {
 
 typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
 
+/* What api_work or a job is about to do, so that its host can choose when. */
+typedef struct api_load {
+    bool reads;       /* it changes nothing */
+    double seconds;   /* about how long it takes; far too little for some */
+    const char *mesh; /* id of the mesh it is about, "" where there is none */
+} api_load;
+
 enum { API_ANSWER_HEADERS = 16 };
 
 typedef struct api_header {
@@ -119,6 +126,11 @@ api_exchange *api_detach(api_exchange *exchange);
 /* Before api_work: `tell` is called as watch.h says, by its thread. */
 void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
                void *context);
+/* For `tell`, before it returns false: what the client is answered with in place of HE_CANCELLED.
+ */
+void api_give_up(api_exchange *exchange, int code, const char *text);
+/* After API_WORK and API_JOB, before the work has begun. */
+api_load api_load_of(const api_exchange *exchange);
 const api_answer *api_answer_of(const api_exchange *exchange);
 void api_free(api_exchange *exchange);
 

@@ -342,6 +342,7 @@ void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly
 {
     assert(x->route->flags & API_LONG);
     x->is_job = wants_job(x, seconds);
+    x->seconds = seconds;
     if (x->is_job || (costly && x->phase == API_PHASE_BODY)) {
         x->deferred = handler;
     } else {

@@ -98,8 +98,10 @@ struct api_exchange {
     void *state;
     void (*free_state)(void *state);
     void (*deferred)(api_exchange *x);
-    bool is_job;    /* `deferred` is to be one */
-    he_watch watch; /* of the work: threads for it and, of a job, who is told */
+    bool is_job;          /* `deferred` is to be one */
+    double seconds;       /* that it may take; 0: not estimated */
+    he_watch watch;       /* of the work: threads for it, and who is told */
+    api_problem given_up; /* why the watch ended it; code HE_OK: no reason was given */
     const char *kept[API_KEPT_HEADERS];
 
     /* --- the answer --- */

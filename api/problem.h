@@ -146,6 +146,12 @@
     X(TOO_MANY_CODED, "too_many_coded_bodies", 503, "Too many coded bodies are arriving",          \
       "What it takes to unfold the gzip and zstd bodies that are arriving has a common limit. "    \
       "Try again after Retry-After seconds, or send the body plain.")                              \
+    X(READ_TIMEOUT, "read_timeout", 503, "What was asked takes too long to find",                  \
+      "A client may wait only so long for a check, a walk, questions or an export, because "       \
+      "others "                                                                                    \
+      "wait for the thread. Ask for less at once or, where the route takes it, for a job with "    \
+      "the "                                                                                       \
+      "header Prefer: respond-async: a job has the time it needs.")                                \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \

@@ -125,6 +125,9 @@ static void end_claim(api_exchange *x)
 static api_step finish(api_exchange *x)
 {
     end_claim(x);
+    if (x->problem.code == HE_CANCELLED && x->given_up.code != HE_OK) {
+        x->problem = x->given_up;
+    }
     if (x->problem.code == HE_OK && !x->answered) {
         api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
                  x->route == NULL ? "-" : x->route->name);
@@ -217,6 +220,27 @@ void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, d
 {
     he_watch_init(&x->watch, tell, context);
     x->watch.exec = x->service->options.exec;
+}
+
+void api_give_up(api_exchange *x, int code, const char *text)
+{
+    x->given_up = (api_problem){0};
+    api_problem_set(&x->given_up, code, "%s", text);
+}
+
+api_load api_load_of(const api_exchange *x)
+{
+    const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
+    uint64_t amount = x->received;
+    if (x->mesh != NULL) {
+        api_mesh_info info;
+        amount += api_elements_of(x->store->read_begin(x->store->self, x->mesh, &info));
+        x->store->read_end(x->store->self, x->mesh);
+    }
+    double seconds = (double)amount / API_EDIT_PER_SECOND;
+    return (api_load){.reads = !(x->route->flags & API_WRITES),
+                      .seconds = x->seconds > seconds ? x->seconds : seconds,
+                      .mesh = mesh == NULL ? "" : mesh};
 }
 
 static api_exchange *exchange_new(api_service *service, const api_request *request)
@@ -442,8 +466,14 @@ api_step api_work(api_exchange *x)
         return API_READY;
     }
     void (*handler)(api_exchange * x) = x->deferred;
+    he_error err = {0};
     x->deferred = NULL;
-    handler(x);
+    /* It may have waited for long, and the client may have left. */
+    if (he_watch_step(&x->watch, 0, 1, &err) != HE_OK) {
+        api_fail_core(x, &err);
+    } else {
+        handler(x);
+    }
     return finish_or_go_on(x);
 }
 

@@ -1,7 +1,7 @@
 #include "server/catch_up.h"
 
 #include "api/events.h"
-#include "server/jobs.h"
+#include "server/thread_pool.h"
 #include "server/replay_walk.h"
 
 enum { BATCH = 32 * 1024 }; /* bytes, and an event more */
@@ -127,7 +127,7 @@ static void begin_work(srv_catch_up *c)
 {
     c->working = true;
     c->uses++;
-    if (!srv_jobs_submit(c->mesh->events->jobs, work, c)) {
+    if (!srv_pool_submit(c->mesh->events->pool, &(srv_task){.work = work, .context = c})) {
         c->working = false;
         c->uses--;
         c->failed = true;

@@ -52,9 +52,15 @@ static const option options[] = {
     {"workers", COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0 takes one a core"},
     {"jobs", COUNT, MEMBER(jobs), "0", "N", 0, 64,
-     "long requests at once; 0 takes one a core. Parts of one run on all cores"},
+     "long reads at once, and as many jobs, beside which imports and edits keep a thread; 0 takes "
+     "one a core, but two at least. Parts of one run on all cores"},
     {"job-queue", COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
-     "long requests that may wait for a thread; beyond it they are answered 503"},
+     "jobs, long reads, and imports or edits, each, that may wait for a thread; beyond it they are "
+     "answered 503"},
+    {"read-seconds", COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
+     "that a thread works on a check, a query, a walk or an export; beyond it they are answered "
+     "503, "
+     "while a job has the time it needs"},
     {"max-connections", COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
      "connections at once; beyond it they are answered 503"},
     {"max-listeners", COUNT, MEMBER(max_listeners), "5000", "N", 0, 1000000,

@@ -31,6 +31,7 @@ typedef struct srv_config {
 
     uint64_t workers, jobs; /* threads; 0: one a core */
     uint64_t job_queue;
+    uint64_t read_seconds;
     uint64_t max_connections;
     uint64_t max_listeners, max_mesh_listeners;
 

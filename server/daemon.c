@@ -22,6 +22,7 @@ enum {
     STOP_MILLIS = 4000, /* of the five seconds a stop may take */
     OWN_FILES = 48,     /* descriptors that are not connections */
     DRAIN_FILES = 64,
+    SHORT_THREADS = 2, /* of the pool, beside as many as there may be jobs: thread_pool.h */
     MAKER_QUEUE = 1024 /* pieces of answers; beyond it workers make them */
 };
 
@@ -30,7 +31,7 @@ typedef struct daemon_parts {
     api_store interface;
     srv_assets *assets;
     api_service *service;
-    srv_jobs *jobs, *makers;
+    srv_pool *pool, *makers;
     srv_hands *hands;
     srv_board *board;
     api_jobs board_interface;
@@ -97,13 +98,13 @@ static bool fail(const char *why)
     return false;
 }
 
-static bool open_jobs(daemon_parts *parts, const srv_config *config)
+static bool open_threads(daemon_parts *parts, const srv_config *config)
 {
-    parts->jobs =
-        srv_jobs_new(config->jobs == 0 ? cores() : (size_t)config->jobs, (size_t)config->job_queue);
-    parts->makers = srv_jobs_new(cores(), MAKER_QUEUE);
+    size_t jobs = config->jobs != 0 ? (size_t)config->jobs : cores() > 2 ? cores() : 2;
+    parts->pool = srv_pool_new("hedged-pool", jobs + SHORT_THREADS, (size_t)config->job_queue);
+    parts->makers = srv_pool_new("hedged-answers", cores(), MAKER_QUEUE);
     parts->hands = srv_hands_new(cores() - 1);
-    return (parts->jobs != NULL && parts->makers != NULL && parts->hands != NULL) ||
+    return (parts->pool != NULL && parts->makers != NULL && parts->hands != NULL) ||
            fail("no memory or threads to start");
 }
 
@@ -115,7 +116,7 @@ static bool open_store(daemon_parts *parts, const srv_config *config)
         .journal = srv_journal_memory(),
         .listeners = config->max_listeners,
         .mesh_listeners = config->max_mesh_listeners,
-        .jobs = parts->jobs,
+        .pool = parts->pool,
     });
     if (parts->store == NULL) {
         return fail("no memory to start");
@@ -146,15 +147,15 @@ static void count_memory(uint64_t *used, uint64_t *budget)
     *budget = srv_memory_budget();
 }
 
-static bool submit_job(void *pool, void (*work)(void *context), void *context)
+static bool submit_job(void *pool, const srv_task *task)
 {
-    return srv_jobs_submit(pool, work, context);
+    return srv_pool_submit(pool, task);
 }
 
 static bool open_service(daemon_parts *parts, const srv_config *config)
 {
     parts->board = srv_board_new(&(srv_board_options){
-        .store = parts->store, .submit = submit_job, .pool = parts->jobs, .keep = SRV_JOB_SECONDS});
+        .store = parts->store, .submit = submit_job, .pool = parts->pool, .keep = SRV_JOB_SECONDS});
     if (parts->board == NULL) {
         return fail("no memory to start");
     }
@@ -195,10 +196,11 @@ static bool open_http(daemon_parts *parts, const srv_config *config)
     srv_http_options options = {
         .service = parts->service,
         .store = parts->store,
-        .jobs = parts->jobs,
+        .pool = parts->pool,
         .makers = parts->makers,
         .log = parts->log,
         .policy = &parts->policy,
+        .read_seconds = config->read_seconds,
         .heartbeat_micros = config->heartbeat * 1000000,
     };
     if (!srv_address_parse(config->listen, &options.address)) {
@@ -281,7 +283,7 @@ int srv_daemon_run(const srv_config *config)
     block_signals(&signals);
     choose_budget(config);
 
-    bool started = open_jobs(&parts, config) && open_store(&parts, config) &&
+    bool started = open_threads(&parts, config) && open_store(&parts, config) &&
                    load_page(&parts, config) && open_service(&parts, config) &&
                    open_http(&parts, config);
     if (started) {
@@ -294,8 +296,8 @@ int srv_daemon_run(const srv_config *config)
             _exit(0);
         }
     }
-    srv_jobs_free(parts.jobs);
-    srv_jobs_free(parts.makers);
+    srv_pool_free(parts.pool);
+    srv_pool_free(parts.makers);
     srv_hands_free(parts.hands);
     srv_board_free(parts.board);
     api_service_free(parts.service);

@@ -1,7 +1,7 @@
 /* http.h - sockets on one side, exchanges of api/api.h on the other.
  *
  * Only the sources server/http*.c know libmicrohttpd, through http_request.h, where the states of a
- * request and who moves it are drawn. Workers never block: what api calls long work runs on the job
+ * request and who moves it are drawn. Workers never block: what api calls long work runs on the
  * pool while the connection is suspended, and so waits an answer whose revision is not yet durable
  * (D1). */
 #ifndef HE_SERVER_HTTP_H
@@ -12,7 +12,7 @@
 #include "server/address.h"
 #include "server/http_deadline.h"
 #include "server/http_policy.h"
-#include "server/jobs.h"
+#include "server/thread_pool.h"
 #include "server/store.h"
 
 typedef struct srv_http srv_http;
@@ -22,13 +22,14 @@ typedef struct srv_http_options {
     srv_address address;
     api_service *service;
     srv_store *store;
-    srv_jobs *jobs;
-    srv_jobs *makers;    /* for answers that are made while they are sent: http_ahead.h */
+    srv_pool *pool;
+    srv_pool *makers;    /* for answers that are made while they are sent: http_ahead.h */
     srv_access_log *log; /* NULL: none */
     const srv_policy *policy;
     srv_deadline_options deadlines;
     size_t max_sockets;        /* above deadlines.max_connections: those between are answered 503 */
     size_t workers;            /* threads, from 1 */
+    uint64_t read_seconds;     /* that a client may wait for what it reads */
     uint64_t heartbeat_micros; /* of silence, after which an answer that goes on sends a comment */
 } srv_http_options;
 

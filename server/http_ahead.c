@@ -43,9 +43,9 @@ static void make(void *context)
     ahead->resume(ahead);
 }
 
-void srv_ahead_make(srv_ahead *ahead, srv_jobs *threads)
+void srv_ahead_make(srv_ahead *ahead, srv_pool *threads)
 {
-    if (!srv_jobs_submit(threads, make, ahead)) {
+    if (!srv_pool_submit(threads, &(srv_task){.work = make, .context = ahead})) {
         make(ahead);
     }
 }

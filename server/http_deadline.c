@@ -1,3 +1,5 @@
+#define _GNU_SOURCE /* POLLRDHUP */
+
 #include "server/http_deadline.h"
 
 #include "mesh/mem.h"
@@ -60,10 +62,16 @@ void srv_connection_moved(srv_connection *c, uint64_t bytes)
     }
 }
 
-bool srv_connection_is_reset(const srv_connection *connection)
+bool srv_connection_is_left(const srv_connection *connection, uint64_t now)
 {
-    struct pollfd watched = {.fd = connection == NULL ? -1 : connection->socket};
-    return poll(&watched, 1, 0) > 0 && (watched.revents & (POLLERR | POLLHUP)) != 0;
+    struct pollfd watched = {.fd = connection == NULL ? -1 : connection->socket,
+                             .events = POLLRDHUP};
+    if (poll(&watched, 1, 0) <= 0) {
+        return false;
+    }
+    uint64_t since = atomic_load_explicit(&connection->since, memory_order_relaxed);
+    return (watched.revents & (POLLERR | POLLHUP)) != 0 ||
+           ((watched.revents & POLLRDHUP) != 0 && now > since + SRV_CLOSED_MICROS);
 }
 
 static bool is_slow(const srv_deadline_options *o, uint64_t elapsed, uint64_t bytes)

@@ -12,7 +12,9 @@
  *     HEAD    head seconds
  *     BODY    `total` seconds, and after `grace` seconds min_rate bytes a second on average; not at
  *             all when the client has closed its side, which libmicrohttpd leaves to time out
- *     WORK    not limited: the client is waiting for us
+ *     WORK    not limited here: the client is waiting for us. Who works asks whether it still does:
+ *             work for a client that was reset ends at once, for one that closed its side after a
+ *             second, before which it gets its answer
  *     ANSWER  while bytes wait to be taken: min_rate bytes a second, over `grace` seconds. What
  *             counts is what the client's side has acknowledged, not what fits the socket's buffer
  *     LIVE    an answer that goes on (http_live.h), in place of ANSWER: while bytes wait to be
@@ -77,9 +79,12 @@ size_t srv_deadlines_count(const srv_deadlines *deadlines);
 /* Accept NULL. */
 void srv_connection_enter(srv_connection *connection, srv_stage stage, uint64_t now);
 void srv_connection_moved(srv_connection *connection, uint64_t bytes);
-/* Has the client gone without a goodbye? One who has only closed his side may still read. For its
- * worker, or who works for the connection while that is suspended. */
-bool srv_connection_is_reset(const srv_connection *connection);
+/* Has the client left while its request is worked on? True when the connection was reset, and when
+ * the client closed its side and its request has been in this stage for SRV_CLOSED_MICROS: a client
+ * that only closed its writing side may still read, but is not told from one that is gone. For the
+ * thread that works for the connection. */
+enum { SRV_CLOSED_MICROS = 1000000 };
+bool srv_connection_is_left(const srv_connection *connection, uint64_t now);
 
 /* Has this connection outstayed its stage at `now`? `crowded`: there are too many. Not for
  * answers. */

@@ -1,10 +1,12 @@
 #include "server/http_handle.h"
 
+#include "api/limits.h"
 #include "server/clock.h"
 #include "server/http_answer.h"
 #include "server/http_request.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { SWALLOW = 256 * 1024 }; /* of a refused body, rather than close the connection */
@@ -76,18 +78,31 @@ static void detach(srv_request *r)
     }
 }
 
-/* Is anybody left to answer? */
+/* Is the client still waiting, and may it? */
 static bool is_awaited(void *context, const char *phase, double done)
 {
     (void)phase;
     (void)done;
     const srv_request *r = context;
-    return !srv_connection_is_reset(r->socket);
+    uint64_t now = srv_clock_micros();
+    if (now >= r->work_until) {
+        char text[128];
+        snprintf(text, sizeof text,
+                 "the answer was not found within %" PRIu64 " seconds; a job has more time, for "
+                 "which the header is Prefer: respond-async",
+                 r->http->options.read_seconds);
+        api_give_up(r->exchange, API_READ_TIMEOUT, text);
+        return false;
+    }
+    return !srv_connection_is_left(r->socket, now);
 }
 
-static void do_job(void *context)
+static void do_work(void *context)
 {
     srv_request *r = context;
+    if (r->work_until != UINT64_MAX) {
+        r->work_until = srv_clock_micros() + r->http->options.read_seconds * 1000000;
+    }
     api_watch(r->exchange, is_awaited, r);
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
@@ -100,7 +115,16 @@ static bool begin_work(srv_request *r)
     if (!begin_wait(r, SRV_WORK)) {
         return false;
     }
-    if (!srv_jobs_submit(r->http->options.jobs, do_job, r)) {
+    const api_load load = api_load_of(r->exchange);
+    const bool is_long = load.reads || load.seconds > API_PATIENCE;
+    const srv_task task = {.work = do_work,
+                           .context = r,
+                           .share = is_long ? SRV_SHARE_LONG : SRV_SHARE_BRIEF,
+                           .cost = load.seconds,
+                           .flow =
+                               srv_pool_flow(r->socket == NULL ? "" : r->socket->peer, load.mesh)};
+    r->work_until = load.reads ? 0 : UINT64_MAX;
+    if (!srv_pool_submit(r->http->options.pool, &task)) {
         srv_answer_refuse(r, API_OVERLOADED, "too many long requests are waiting");
         MHD_resume_connection(r->connection);
     }

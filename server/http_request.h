@@ -17,7 +17,7 @@
  *
  *     FRESH -- headers --> BODY -- its end, the answer is there -----------------> DONE
  *       |                   |  \                                                    ^
- *       |                   |   +-- its end, long: begin_work --> WORK --do_job* ---+
+ *       |                   |   +-- its end, long: begin_work --> WORK --do_work* ---+
  *       |                   |                                                       |
  *       |                   +-- refused while reading, much left: CUT               |
  *       +-- refused at once, much to come ------------------------------------------+
@@ -80,6 +80,7 @@ typedef struct srv_request {
     api_text text; /* the refusal as JSON */
     bool preflight;
     srv_hold hold;
+    uint64_t work_until; /* microseconds of the monotonic clock; UINT64_MAX: as long as it takes */
     srv_stream stream;
     srv_ahead ahead;
     int status;

@@ -272,6 +272,11 @@ static api_store_status submit(void *self, api_exchange *work, const char *opera
     if (j == NULL) {
         return API_STORE_NO_MEMORY;
     }
+    const srv_task task = {.work = run,
+                           .context = j,
+                           .share = SRV_SHARE_JOB,
+                           .cost = api_load_of(work).seconds,
+                           .flow = srv_pool_flow("", mesh)};
     pthread_mutex_lock(&board->lock);
     tidy(board, 1);
     bool accepted = !board->stopped && board->count < SRV_JOBS_KEPT;
@@ -280,7 +285,7 @@ static api_store_status submit(void *self, api_exchange *work, const char *opera
         *out = *srv_job_facts(j);
         append(board, j);
         /* It cannot run before the lock is given back. */
-        accepted = board->options.submit(board->options.pool, run, j);
+        accepted = board->options.submit(board->options.pool, &task);
         if (!accepted) {
             forget(board, j);
         }

@@ -25,8 +25,8 @@ enum {
 
 typedef struct srv_board_options {
     srv_store *store; /* tells what is durable */
-    /* Run work(context) on another thread, or later; false when too much waits already. */
-    bool (*submit)(void *pool, void (*work)(void *context), void *context);
+    /* Run the task on another thread, or later; false when too much waits already. */
+    bool (*submit)(void *pool, const srv_task *task);
     void *pool;
     double keep; /* seconds */
 } srv_board_options;

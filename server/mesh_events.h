@@ -14,7 +14,7 @@
 /* What the meshes of a store share. */
 typedef struct srv_events {
     size_t most, most_of_mesh; /* listeners */
-    struct srv_jobs *jobs;
+    struct srv_pool *pool;     /* brings listeners forward from the history */
     struct srv_held *held;
     _Atomic size_t count;     /* listeners */
     _Atomic size_t catch_ups; /* of them from the history */

@@ -43,7 +43,7 @@ srv_store *srv_store_new(const srv_store_options *options)
     store->events = (srv_events){
         .most = options->listeners,
         .most_of_mesh = options->mesh_listeners,
-        .jobs = options->jobs,
+        .pool = options->pool,
         .held = srv_held_new(store),
     };
     if (store->events.held == NULL) {

@@ -21,7 +21,7 @@
 #define HE_SERVER_STORE_H
 
 #include "api/jobs.h"
-#include "server/jobs.h"
+#include "server/thread_pool.h"
 #include "server/journal.h"
 
 typedef struct srv_store srv_store;
@@ -32,8 +32,7 @@ typedef struct srv_store_options {
     srv_journal journal; /* closed with the store */
     size_t listeners;    /* at once, and of one mesh */
     size_t mesh_listeners;
-    srv_jobs *jobs; /* bring listeners forward from the history; run to their end before the store
-                     * is freed */
+    srv_pool *pool; /* brings listeners forward from the history; freed before the store is */
 } srv_store_options;
 
 /* NULL when memory is out; the journal is the caller's then. */

@@ -20,7 +20,7 @@ typedef struct piece {
 } piece;
 
 struct api_bench {
-    srv_jobs *pool; /* of the store */
+    srv_pool *pool; /* of the store */
     srv_store *meshes;
     api_store store;
     srv_board *board;
@@ -31,13 +31,13 @@ struct api_bench {
 };
 
 /* A pool without threads. */
-static bool submit(void *pool, void (*work)(void *context), void *context)
+static bool submit(void *pool, const srv_task *task)
 {
     api_bench *b = pool;
     if (b->waits == b->most) {
         return false;
     }
-    b->waiting[b->waits++] = (piece){work, context};
+    b->waiting[b->waits++] = (piece){task->work, task->context};
     return true;
 }
 
@@ -65,14 +65,14 @@ api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
 {
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
-    b->pool = srv_jobs_new(1, 64);
+    b->pool = srv_pool_new("test", 1, 64);
     assert_non_null(b->pool);
     b->meshes = srv_store_new(&(srv_store_options){.undo_budget = undo_budget,
                                                    .max_meshes = 1000,
                                                    .journal = srv_journal_memory(),
                                                    .listeners = 3,
                                                    .mesh_listeners = 2,
-                                                   .jobs = b->pool});
+                                                   .pool = b->pool});
     assert_non_null(b->meshes);
     b->store = srv_store_interface(b->meshes);
     b->most = BENCH_JOBS;
@@ -93,7 +93,7 @@ void bench_free(api_bench *b)
     srv_board_stop(b->board);
     bench_run_jobs(b, BENCH_JOBS);
     srv_board_free(b->board);
-    srv_jobs_free(b->pool);
+    srv_pool_free(b->pool);
     api_service_free(b->service);
     srv_store_free(b->meshes);
     free(b);
@@ -151,7 +151,7 @@ static bool take_signal(signal *s, bool wait)
 static void wait_for_jobs(api_bench *b)
 {
     signal done = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
-    assert_true(srv_jobs_submit(b->pool, set_signal, &done));
+    assert_true(srv_pool_submit(b->pool, &(srv_task){.work = set_signal, .context = &done}));
     (void)take_signal(&done, true);
 }
 

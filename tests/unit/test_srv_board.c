@@ -6,7 +6,7 @@
 #include "server/held.h"
 #include "server/idempotency.h"
 #include "server/job_board.h"
-#include "server/jobs.h"
+#include "server/thread_pool.h"
 #include "server/memory.h"
 
 #include <pthread.h>
@@ -55,22 +55,22 @@ static void slow_close(void *self)
 
 static srv_store *store;
 static api_store interface;
-static srv_jobs *pool;
+static srv_pool *pool;
 static srv_board *board;
 static api_jobs jobs;
 static api_service *service;
 
 static const char *key; /* of the requests; NULL: none */
 
-static bool submit(void *context, void (*work)(void *context), void *argument)
+static bool submit(void *context, const srv_task *task)
 {
-    return srv_jobs_submit(context, work, argument);
+    return srv_pool_submit(context, task);
 }
 
 static int start_keeping(double keep)
 {
     slow.behind = false;
-    pool = srv_jobs_new(2, 4);
+    pool = srv_pool_new("test", 2, 4);
     store = srv_store_new(&(srv_store_options){
         .undo_budget = 64 << 20,
         .max_meshes = 100,
@@ -94,7 +94,7 @@ static int stop(void **state)
 {
     (void)state;
     srv_board_stop(board);
-    srv_jobs_free(pool);
+    srv_pool_free(pool);
     srv_board_free(board);
     api_service_free(service);
     srv_store_free(store);

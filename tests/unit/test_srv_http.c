@@ -76,8 +76,9 @@ enum { CONNECTIONS = 20 };
 static srv_store *store;
 static api_store interface;
 static api_service *service;
-static srv_jobs *jobs, *makers;
+static srv_pool *jobs, *makers;
 static srv_http *http;
+static uint64_t read_seconds = 3600;
 static const srv_policy policy;
 
 static int start(void **state)
@@ -85,22 +86,22 @@ static int start(void **state)
     (void)state;
     slow.appended = 0;
     slow.durable = 0;
-    jobs = srv_jobs_new(1, 1);
-    makers = srv_jobs_new(1, 1);
+    jobs = srv_pool_new("test", 1, 1);
+    makers = srv_pool_new("test", 1, 1);
     store = srv_store_new(&(srv_store_options){
         .undo_budget = 1 << 20,
         .max_meshes = 100,
         .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
         .listeners = 10,
         .mesh_listeners = 10,
-        .jobs = jobs,
+        .pool = jobs,
     });
     interface = srv_store_interface(store);
     service = api_service_new(&interface, &(api_options){.version = "test"});
     srv_http_options options = {
         .service = service,
         .store = store,
-        .jobs = jobs,
+        .pool = jobs,
         .makers = makers,
         .policy = &policy,
         .deadlines = {.idle = 20,
@@ -110,6 +111,7 @@ static int start(void **state)
                       .min_rate = 1,
                       .max_connections = CONNECTIONS},
         .max_sockets = CONNECTIONS + 4,
+        .read_seconds = read_seconds,
         .heartbeat_micros = UINT64_C(3600) * 1000000,
         .workers = 1,
     };
@@ -127,8 +129,8 @@ static int stop(void **state)
     (void)state;
     bool stopped = http == NULL || srv_http_stop(http, 20000);
     http = NULL;
-    srv_jobs_free(jobs);
-    srv_jobs_free(makers);
+    srv_pool_free(jobs);
+    srv_pool_free(makers);
     api_service_free(service);
     srv_store_free(store);
     return stopped ? 0 : -1;
@@ -361,7 +363,7 @@ static void wait_at_gate(void *context)
 static void shut_gate(void)
 {
     gate_entered = gate_open = false;
-    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    assert_true(srv_pool_submit(jobs, &(srv_task){.work = wait_at_gate}));
     pthread_mutex_lock(&gate);
     while (!gate_entered) {
         pthread_cond_wait(&gate_changed, &gate);
@@ -382,8 +384,8 @@ static void test_full_queue_is_503(void **state)
     (void)state;
     slow_advance(UINT64_MAX);
     shut_gate();
-    assert_true(srv_jobs_submit(jobs, wait_at_gate, NULL));
-    assert_false(srv_jobs_submit(jobs, wait_at_gate, NULL));
+    assert_true(srv_pool_submit(jobs, &(srv_task){.work = wait_at_gate}));
+    assert_false(srv_pool_submit(jobs, &(srv_task){.work = wait_at_gate}));
 
     static const char large[] = "{\"shape\":\"icosphere\",\"subdivisions\":6}";
     char text[4096];
@@ -467,6 +469,29 @@ static void test_work_of_who_hung_up_is_given_up(void **state)
     close(writer);
 }
 
+static void a_read_beyond_its_time_is_refused(void **state)
+{
+    char text[4096];
+    stop(state);
+    read_seconds = 0;
+    start(state);
+    slow_advance(UINT64_MAX);
+    /* Large enough that the read is not a worker's. Imports and edits have no such limit. */
+    int fd = connect_client();
+    ask(fd, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
+    assert_int_equal(answer(fd, text, sizeof text), 201);
+    ask(fd, "GET", "/v1/meshes/m/check", "");
+    assert_int_equal(answer(fd, text, sizeof text), 503);
+    assert_non_null(strstr(text, "\"code\":\"read_timeout\""));
+    assert_non_null(strstr(text, "Prefer: respond-async"));
+    ask(fd, "GET", "/v1/meshes/m/halfedges/0", "");
+    assert_int_equal(answer(fd, text, sizeof text), 200);
+    close(fd);
+    stop(state);
+    read_seconds = 3600;
+    start(state);
+}
+
 static void test_too_many_connections(void **state)
 {
     (void)state;
@@ -548,6 +573,7 @@ int main(void)
         TEST(test_a_stop_after_a_working_client_hung_up),
         TEST(test_work_of_who_hung_up_is_given_up),
         TEST(test_full_queue_is_503),
+        TEST(a_read_beyond_its_time_is_refused),
         TEST(test_too_many_connections),
         TEST(test_refused_bodies),
     };

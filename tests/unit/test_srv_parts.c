@@ -5,7 +5,7 @@
 #include "server/assets.h"
 #include "server/clock.h"
 #include "server/http_deadline.h"
-#include "server/jobs.h"
+#include "server/thread_pool.h"
 #include "server/random.h"
 
 #include <pthread.h>
@@ -31,12 +31,12 @@ static void test_jobs_run_in_order_and_to_the_end(void **state)
     (void)state;
     int numbers[JOBS];
     done = 0;
-    srv_jobs *jobs = srv_jobs_new(1, JOBS);
+    srv_pool *jobs = srv_pool_new("test", 1, JOBS);
     for (int i = 0; i < JOBS; i++) {
         numbers[i] = i;
-        assert_true(srv_jobs_submit(jobs, note, &numbers[i]));
+        assert_true(srv_pool_submit(jobs, &(srv_task){.work = note, .context = &numbers[i]}));
     }
-    srv_jobs_free(jobs);
+    srv_pool_free(jobs);
     assert_int_equal(done, JOBS);
     for (int i = 0; i < JOBS; i++) {
         assert_int_equal(order[i], i);
@@ -299,6 +299,53 @@ static void test_slow_readers(void **state)
     assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(200)));
 }
 
+/* Two ends of a connection; `c` watches the server's, in its present stage since `since`. */
+static int connect_pair(srv_connection *c, uint64_t since)
+{
+    struct sockaddr_in address = {.sin_family = AF_INET};
+    socklen_t length = sizeof address;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    int listener = socket(AF_INET, SOCK_STREAM, 0), client = socket(AF_INET, SOCK_STREAM, 0);
+    assert_int_equal(bind(listener, (struct sockaddr *)&address, length), 0);
+    assert_int_equal(listen(listener, 1), 0);
+    assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &length), 0);
+    assert_int_equal(connect(client, (struct sockaddr *)&address, length), 0);
+    *c = (srv_connection){.socket = accept(listener, NULL, NULL)};
+    assert_true(c->socket >= 0);
+    srv_connection_enter(c, SRV_STAGE_WORK, since);
+    close(listener);
+    return client;
+}
+
+static void a_client_that_closed_its_side_waits_for_a_second(void **state)
+{
+    (void)state;
+    srv_connection c;
+    int client = connect_pair(&c, SECONDS(100));
+    assert_false(srv_connection_is_left(&c, SECONDS(200)));
+    /* What it sends beside its request does not hide that it has closed. */
+    assert_int_equal(send(client, "next", 4, MSG_NOSIGNAL), 4);
+    assert_int_equal(shutdown(client, SHUT_WR), 0);
+    assert_false(srv_connection_is_left(&c, SECONDS(100)));
+    assert_false(srv_connection_is_left(&c, SECONDS(100) + SRV_CLOSED_MICROS));
+    assert_true(srv_connection_is_left(&c, SECONDS(100) + SRV_CLOSED_MICROS + 1));
+    close(client);
+    close(c.socket);
+}
+
+static void a_client_that_was_reset_does_not_wait(void **state)
+{
+    (void)state;
+    srv_connection c;
+    const struct linger at_once = {.l_onoff = 1};
+    int client = connect_pair(&c, SECONDS(100));
+    assert_int_equal(setsockopt(client, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once), 0);
+    close(client);
+    assert_true(srv_connection_is_left(&c, SECONDS(100)));
+    close(c.socket);
+    assert_false(srv_connection_is_left(NULL, SECONDS(200)));
+}
+
 static void test_random_ids(void **state)
 {
     (void)state;
@@ -324,6 +371,8 @@ int main(void)
         cmocka_unit_test(test_assets),
         cmocka_unit_test(test_deadlines),
         cmocka_unit_test(test_slow_readers),
+        cmocka_unit_test(a_client_that_closed_its_side_waits_for_a_second),
+        cmocka_unit_test(a_client_that_was_reset_does_not_wait),
         cmocka_unit_test(test_random_ids),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
