@@ -1,8 +1,9 @@
 # shellcheck shell=sh
 # daemon.sh - sourced by the measuring scripts: a daemon of one's own on a free port.
 #
-# daemon_start HEDGED FLAGS... sets $daemon (its process) and $base (its address); what it logs is
-# read away. daemon_stop ends it and the processes in $others, and removes $work.
+# daemon_start HEDGED FLAGS... sets $daemon (its process) and $base (its address), and no variable that
+# a script may have for itself; what the daemon logs is read away. daemon_stop ends it and the
+# processes in $others, and removes $work.
 work=$(mktemp -d)
 daemon=""; drain=""; others=""
 
@@ -15,14 +16,12 @@ trap daemon_stop EXIT INT TERM
 
 daemon_start() {
     mkfifo "$work/log"
-    program=$1
-    shift
-    "$program" --listen 127.0.0.1:0 "$@" 2>"$work/log" &
+    "$@" --listen 127.0.0.1:0 2>"$work/log" &
     daemon=$!
     exec 4<"$work/log"
     base=
-    while [ -z "$base" ] && read -r line <&4; do
-        case $line in *"listening on "*) base=${line##*listening on } ;; esac
+    while [ -z "$base" ] && read -r daemon_line <&4; do
+        case $daemon_line in *"listening on "*) base=${daemon_line##*listening on } ;; esac
     done
     cat <&4 >/dev/null &
     drain=$!
