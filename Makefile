@@ -1,8 +1,9 @@
 # hedge - everything is done from here; `make help` lists the targets.
 #
 # A configuration is a build folder: release in build/, asan, tsan, coverage and fuzz in build/NAME.
-# Sources are found by pattern, so a new file needs no line here. What must be installed is checked
-# by .ci/deps before the first compilation; pkg-config therefore runs inside recipes only.
+# Sources are found by pattern, so a new file needs no line here. What a target needs to be installed
+# is a line of a table below, and .ci/deps sees to it first; pkg-config therefore runs inside recipes
+# only.
 
 CONFIG ?= release
 BUILD  := $(if $(filter release,$(CONFIG)),build,build/$(CONFIG))
@@ -86,7 +87,7 @@ LIBRARIES  := $(BUILD)/libserver.a $(BUILD)/libapi.a $(BUILD)/libcore.a
 HEDGED     := $(BUILD)/hedged
 PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
 SPACE      := $(BUILD)/tests/bench/space
-TARGETS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
+FUZZERS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
 PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
@@ -94,6 +95,64 @@ STAMPS     := build/.stamps
 .PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof soak \
         fuzz targets bench bench-http bench-events bench-large bench-space container screenshot \
         install clean
+
+# TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
+TESTS   ?= $(SUITES) fuzz web install soak
+CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
+WITH_WEB = $(filter web,$(TESTS))
+WITH_FUZZ = $(filter fuzz,$(TESTS))
+WITH_INSTALL = $(filter install,$(TESTS))
+WITH_SOAK = $(filter soak,$(TESTS))
+# What a narrower choice asks does not reach every route.
+WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(WITH_WEB))
+WITH_DAEMON = $(filter e2e web install soak tests/e2e/%,$(TESTS))
+
+# --- what must be installed ----------------------------------------------------------------
+# The sets of .ci/deps that each target needs. A target asks for all of them in one call before
+# anything else is done, so that a reader who is not root sees one line to install, and apt-get never
+# runs twice at once. A target that is the name of a file needs what compiles it.
+
+NEEDS.all          := build
+NEEDS.run          := build web
+NEEDS.page         := web
+NEEDS.programs     := build test
+NEEDS.test          = build test $(if $(WITH_WEB)$(WITH_INSTALL),web browser) \
+                      $(if $(WITH_SOAK),node)
+NEEDS.asan         := build test
+NEEDS.tsan         := build test
+NEEDS.coverage     := build test coverage
+NEEDS.lint         := build test web lint
+NEEDS.format       := format
+NEEDS.crosscheck   := build crosscheck
+NEEDS.proof        := build test node
+NEEDS.soak         := build node
+NEEDS.fuzz         := build test fuzz
+NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
+NEEDS.bench        := build node bench
+NEEDS.bench-http   := build bench-http
+NEEDS.bench-events := build
+NEEDS.bench-large  := build bench-http
+NEEDS.bench-space  := build
+NEEDS.screenshot   := build web browser
+NEEDS.container    := container
+NEEDS.install      := build web
+NEEDS.help         :=
+NEEDS.clean        :=
+NEEDS_OF_FILE       = build $(if $(findstring /tests/,$(1)),test) \
+                      $(if $(findstring /tests/bench/,$(1)),bench) \
+                      $(if $(findstring /tests/crosscheck/,$(1)),crosscheck)
+
+NEEDS     := $(sort $(foreach goal,$(or $(MAKECMDGOALS),$(.DEFAULT_GOAL)), \
+                 $(if $(filter undefined,$(origin NEEDS.$(goal))),$(call NEEDS_OF_FILE,$(goal)), \
+                     $(NEEDS.$(goal)))))
+empty     :=
+INSTALLED := $(if $(NEEDS),$(STAMPS)/needs-$(subst $(empty) $(empty),+,$(NEEDS)))
+
+$(STAMPS)/needs-%: .ci/deps
+	@sh .ci/deps $(subst +, ,$*)
+	@mkdir -p $(@D) && touch $@
+
+# --- the daemon ----------------------------------------------------------------------------
 
 all: $(HEDGED) ## the daemon, build/hedged (default)
 
@@ -104,39 +163,9 @@ help: ## this list
 run: $(HEDGED) page ## build the daemon and its page, then serve sample meshes
 	exec $(HEDGED) --samples $(RUN_FLAGS)
 
-# --- what must be installed ----------------------------------------------------------------
-# One after another: two apt-get at once would wait for each other's lock.
-
-$(STAMPS)/build: .ci/deps
-	@sh .ci/deps build
-	@mkdir -p $(@D) && touch $@
-$(STAMPS)/web: .ci/deps | $(STAMPS)/build
-	@sh .ci/deps web
-	@mkdir -p $(@D) && touch $@
-$(STAMPS)/test: .ci/deps | $(STAMPS)/web
-	@sh .ci/deps test
-	@mkdir -p $(@D) && touch $@
-$(STAMPS)/bench: .ci/deps | $(STAMPS)/build
-	@sh .ci/deps bench
-	@mkdir -p $(@D) && touch $@
-$(STAMPS)/crosscheck: .ci/deps | $(STAMPS)/test
-	@sh .ci/deps crosscheck
-	@mkdir -p $(@D) && touch $@
-$(STAMPS)/fuzz: .ci/deps | $(STAMPS)/test
-	@sh .ci/deps fuzz
-	@mkdir -p $(@D) && touch $@
-$(STAMPS)/lint: .ci/deps | $(STAMPS)/test
-	@sh .ci/deps lint
-	@mkdir -p $(@D) && touch $@
-
 # --- compiling -----------------------------------------------------------------------------
 
-$(BUILD)/obj/tests/%.o: tests/%.c Makefile | $(STAMPS)/test
-	@mkdir -p $(@D)
-	@echo "CC $<"
-	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
-
-$(BUILD)/obj/%.o: %.c Makefile | $(STAMPS)/build
+$(BUILD)/obj/%.o: %.c Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "CC $<"
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
@@ -157,13 +186,13 @@ $(HEDGED): $(call object,server/main.c) $(LIBRARIES)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
-$(PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/libsupport.a $(LIBRARIES) | $(STAMPS)/test
+$(PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/libsupport.a $(LIBRARIES) | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
 
-$(TARGETS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) $(BUILD)/libsupport.a \
-            $(LIBRARIES) | $(STAMPS)/test
+$(FUZZERS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) $(BUILD)/libsupport.a \
+            $(LIBRARIES) | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
@@ -174,7 +203,7 @@ $(TARGETS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) $(BUILD)/l
 
 page: $(STAMPS)/page ## the browser's page, build/web
 
-$(STAMPS)/modules: web/package.json web/package-lock.json | $(STAMPS)/web
+$(STAMPS)/modules: web/package.json web/package-lock.json | $(INSTALLED)
 	cd web && npm ci --no-audit --no-fund
 	@touch $@
 
@@ -183,24 +212,13 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 	@touch $@
 
 # --- tests ---------------------------------------------------------------------------------
-# TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
 
-TESTS   ?= $(SUITES) fuzz web install soak
-CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
-WITH_WEB = $(filter web,$(TESTS))
-WITH_FUZZ = $(filter fuzz,$(TESTS))
-WITH_INSTALL = $(filter install,$(TESTS))
-WITH_SOAK = $(filter soak,$(TESTS))
-# What a narrower choice asks does not reach every route.
-WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(WITH_WEB))
-WITH_DAEMON = $(filter e2e web install soak tests/e2e/%,$(TESTS))
 TEST_NEEDS = $(if $(WITH_DAEMON),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
-             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(TARGETS)) \
-             $(if $(WITH_SOAK),$(STAMPS)/web)
+             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(FUZZERS))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
-test: $(CHOSEN) $(TEST_NEEDS) | $(STAMPS)/test ## all tests, with their counts
+test: $(CHOSEN) $(TEST_NEEDS) | $(INSTALLED) ## all tests, with their counts
 	@HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
 	    sh .ci/run-tests $(BUILD)/logs $(if $(WITH_WEB),--web) $(if $(WITH_TRAFFIC),--traffic) \
 	    $(CHOSEN) \
@@ -217,7 +235,7 @@ THREADED_C  = $(shell grep -lE 'pthread_create|bench_run_jobs' tests/api/test_*.
 tsan: ## the threaded tests with ThreadSanitizer
 	+$(MAKE) CONFIG=tsan TESTS="e2e $(THREADED_C)" TEST_SECONDS=900 test
 
-coverage: | $(STAMPS)/lint ## line and branch coverage of the C tests
+coverage: | $(INSTALLED) ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
 	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web install soak,$(TESTS))" TEST_SECONDS=900 test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
@@ -228,14 +246,14 @@ crosscheck: $(HEDGED) $(BUILD)/tests/crosscheck/peers ## readers and writers bes
 	@python3 -B tests/crosscheck/run.py --hedged $(abspath $(HEDGED)) \
 	    --peers $(BUILD)/tests/crosscheck/peers $(CHECK_FLAGS)
 
-$(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(STAMPS)/crosscheck
+$(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "CXX $<"
 	$(Q)g++ -std=c++17 -O0 -w -o $@ $< -lOpenMeshCore -lgmp -lmpfr
 
 # The long versions of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another.
 ROUNDS ?= 10
-proof: | $(STAMPS)/web ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once; as many minutes of soak
+proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once; as many minutes of soak
 	+$(MAKE) $(HEDGED) $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)
@@ -243,16 +261,16 @@ proof: | $(STAMPS)/web ## ROUNDS=10 of random edits from every start: a million,
 # A load below 1 leaves the machine to others for the rest of the time.
 MINUTES ?= 60
 LOAD    ?= 1
-soak: $(HEDGED) | $(STAMPS)/web ## MINUTES=60 of everything that clients do: is the daemon's memory flat? build/soak.csv and .svg
+soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is the daemon's memory flat? build/soak.csv and .svg
 	@HEDGED=$(abspath $(HEDGED)) node tests/soak/soak.mjs --minutes $(MINUTES) --load $(LOAD)
 
 # `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
 FUZZ_SECONDS ?= 20
-fuzz: | $(STAMPS)/fuzz ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits and requests
+fuzz: | $(INSTALLED) ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits and requests
 	+$(MAKE) CONFIG=fuzz targets
 	@sh tests/fuzz/run.sh $(FUZZ_SECONDS)
 
-targets: $(TARGETS)
+targets: $(FUZZERS)
 
 # --- the kernel beside its peers -------------------------------------------------------------
 # BENCH narrows: `make bench BENCH=build,onering`; RUNS=3 and SCALE=0.1 make it quicker. The peers are
@@ -268,7 +286,7 @@ SIDES      := $(addprefix $(BUILD)/tests/bench/sides/,ours $(PEERS))
 LIBS_openmesh      := -lOpenMeshTools -lOpenMeshCore
 LIBS_meshoptimizer := -lmeshoptimizer
 
-$(BUILD)/obj/tests/bench/peers/%.o: tests/bench/peers/%.cc Makefile | $(STAMPS)/bench
+$(BUILD)/obj/tests/bench/peers/%.o: tests/bench/peers/%.cc Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "CXX $<"
 	$(Q)g++ -Itests -isystem /usr/include/eigen3 $(PEER_FLAGS) -Wall -Wextra -Wno-maybe-uninitialized -MMD -MP -c -o $@ $<
@@ -294,7 +312,7 @@ $(SPACE): $(call object,tests/bench/space.c) $(BUILD)/libcore.a
 
 -include $(patsubst %.cc,$(BUILD)/obj/%.d,$(PEER_CC))
 
-bench: $(SIDES) | $(STAMPS)/web ## the kernel beside OpenMesh and CGAL; BENCH=build,files for parts
+bench: $(SIDES) | $(INSTALLED) ## the kernel beside OpenMesh and CGAL; BENCH=build,files for parts
 	@node tests/bench/compare.mjs --programs $(BUILD)/tests/bench/sides --only "$(BENCH)" \
 	    --runs $(RUNS) --scale $(SCALE) --flags="$(filter -O% -f% -m%,$(CFLAGS))" \
 	    --peer-flags="$(PEER_FLAGS)"
@@ -302,13 +320,13 @@ bench: $(SIDES) | $(STAMPS)/web ## the kernel beside OpenMesh and CGAL; BENCH=bu
 bench-space: $(SPACE) ## rays, nearest points, intersections and curvature: our figures alone
 	@$(SPACE)
 
-bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(STAMPS)/bench ## requests a second, beside a bare libmicrohttpd
+bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
 
 bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listeners: memory, and time to reach them all
 	@sh tests/bench/events.sh $(HEDGED) $(BUILD)/tests/bench/http/listeners
 
-bench-large: $(HEDGED) | $(STAMPS)/bench ## a million quads through the daemon: times and memory
+bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)
 
 $(patsubst %.c,$(BUILD)/%,$(HTTP_C)): $(BUILD)/%: $(BUILD)/obj/%.o
@@ -318,18 +336,18 @@ $(patsubst %.c,$(BUILD)/%,$(HTTP_C)): $(BUILD)/%: $(BUILD)/obj/%.o
 
 # --- style ---------------------------------------------------------------------------------
 
-lint: $(LIBRARIES) $(HEDGED) | $(STAMPS)/lint ## formatting, names, directions of includes, static analysis
+lint: $(LIBRARIES) $(HEDGED) | $(INSTALLED) ## formatting, names, directions of includes, static analysis
 	@sh .ci/lint "$(CPPFLAGS) $(CFLAGS)" $(BUILD) $(HEADERS) $(ALL_C)
 
-format: | $(STAMPS)/lint ## rewrite all C files as .clang-format says
+format: | $(INSTALLED) ## rewrite all C files as .clang-format says
 	clang-format -i $(HEADERS) $(ALL_C) $(PEER_CC) tests/bench/peers/*.h
 
 # --- the rest ------------------------------------------------------------------------------
 
-screenshot: $(HEDGED) page | $(STAMPS)/test ## the README's picture, web/screenshot.png
+screenshot: $(HEDGED) page | $(INSTALLED) ## the README's picture, web/screenshot.png
 	HEDGED=$(abspath $(HEDGED)) node tests/web/screenshot.mjs
 
-container: ## build the image with buildah and try it (root)
+container: | $(INSTALLED) ## build the image with buildah and try it (root)
 	@sh tests/container.sh
 
 $(BUILD)/hedged.8: $(HEDGED) server/hedged.8.in .ci/man
