@@ -336,7 +336,15 @@ $(patsubst %.c,$(BUILD)/%,$(HTTP_C)): $(BUILD)/%: $(BUILD)/obj/%.o
 
 # --- style ---------------------------------------------------------------------------------
 
-lint: $(LIBRARIES) $(HEDGED) | $(INSTALLED) ## formatting, names, directions of includes, static analysis
+# What reads the OpenAPI document has a lock file of its own, so that a build of the page need not
+# fetch it.
+$(STAMPS)/openapi: .ci/openapi/package.json .ci/openapi/package-lock.json | $(INSTALLED)
+	@mkdir -p build/openapi
+	cp .ci/openapi/package.json .ci/openapi/package-lock.json build/openapi
+	cd build/openapi && npm ci --no-audit --no-fund --ignore-scripts
+	@touch $@
+
+lint: $(LIBRARIES) $(HEDGED) $(STAMPS)/openapi | $(INSTALLED) ## formatting, names, directions of includes, static analysis
 	@sh .ci/lint "$(CPPFLAGS) $(CFLAGS)" $(BUILD) $(HEADERS) $(ALL_C)
 
 format: | $(INSTALLED) ## rewrite all C files as .clang-format says
