@@ -93,7 +93,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof soak \
-        fuzz targets bench bench-http bench-events bench-large bench-space container screenshot \
+        fuzz targets bench bench-http bench-events bench-large bench-space container fresh screenshot \
         install clean
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
@@ -135,6 +135,7 @@ NEEDS.bench-large  := build bench-http
 NEEDS.bench-space  := build
 NEEDS.screenshot   := build web browser
 NEEDS.container    := container
+NEEDS.fresh        := fresh
 NEEDS.install      := build web
 NEEDS.help         :=
 NEEDS.clean        :=
@@ -357,6 +358,10 @@ screenshot: $(HEDGED) page | $(INSTALLED) ## the README's picture, web/screensho
 
 container: | $(INSTALLED) ## build the image with buildah and try it (root)
 	@sh tests/container.sh
+
+# TARGETS="lint bench-http" tries these alone. The table in README.md is the list of all.
+fresh: | $(INSTALLED) ## each command of the README's table alone, in a bare Debian (root); TARGETS="lint fuzz" for some
+	@sh tests/fresh.sh
 
 $(BUILD)/hedged.8: $(HEDGED) server/hedged.8.in .ci/man
 	$(Q)sh .ci/man $(HEDGED) server/hedged.8.in >$@
