@@ -23,7 +23,7 @@ typedef struct option {
 #define KIB       (UINT64_C(1) << 10)
 #define TIB       (UINT64_C(1) << 40)
 
-static const char *const log_kinds[] = {"off", "access", NULL};
+static const char *const log_kinds[] = {"off", "access", "auto", NULL}; /* by srv_log_kind */
 
 static const option options[] = {
     {"listen", TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT", 0, 0,
@@ -37,8 +37,8 @@ static const option options[] = {
     {"web", TEXT, MEMBER(web), "", "DIR", 0, 0,
      "folder of the built page; otherwise looked for beside the executable"},
     {"samples", FLAG, MEMBER(samples), "0", NULL, 0, 0, "start with a few meshes"},
-    {"log", CHOICE, MEMBER(log), "access", "off|access", 0, 0,
-     "a line of JSON on stderr for each request"},
+    {"log", CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
+     "access: a line of JSON on stderr for each request; auto: only if stderr is no terminal"},
     {"max-upload", BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
      "largest mesh document or file"},
     {"memory-budget", BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,

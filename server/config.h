@@ -13,7 +13,9 @@
 
 #define SRV_VERSION "0.1.0"
 
-typedef enum srv_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS } srv_log_kind;
+/* SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury what its
+ * reader wants to see. */
+typedef enum srv_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS, SRV_LOG_AUTO } srv_log_kind;
 
 typedef struct srv_config {
     const char *listen;

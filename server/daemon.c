@@ -172,10 +172,12 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
                                                             .plain_answers = config->no_compression,
                                                             .exec = srv_hands_exec(parts->hands),
                                                         });
-    if (config->log == SRV_LOG_ACCESS) {
+    bool logs = config->log == SRV_LOG_ACCESS ||
+                (config->log == SRV_LOG_AUTO && isatty(STDERR_FILENO) == 0);
+    if (logs) {
         parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
     }
-    return (parts->service != NULL && (parts->log != NULL || config->log == SRV_LOG_OFF)) ||
+    return (parts->service != NULL && (parts->log != NULL || !logs)) ||
            fail("no memory or threads to start");
 }
 
@@ -190,9 +192,26 @@ static void allow_own_host(daemon_parts *parts, const srv_address *address)
     }
 }
 
+/* Programs wait for the first line. The second is for a reader at a terminal: it names localhost
+ * where the daemon listens on all addresses, since 0.0.0.0 in a browser is a Host that is refused.
+ */
+static void tell_ready(const daemon_parts *parts, const srv_address *address)
+{
+    char text[SRV_ADDRESS_TEXT];
+    srv_address_format(&address->socket.any, true, text);
+    fprintf(stderr, "hedged " SRV_VERSION ": listening on http://%s\n", text);
+    if (isatty(STDERR_FILENO) == 0) {
+        return;
+    }
+    if (strcmp(parts->own_host, "0.0.0.0") == 0 || strcmp(parts->own_host, "::") == 0) {
+        snprintf(text, sizeof text, "localhost:%u", srv_http_port(parts->http));
+    }
+    fprintf(stderr, "hedge is at http://%s/ - open it in a browser; Ctrl-C stops it\n", text);
+}
+
 static bool open_http(daemon_parts *parts, const srv_config *config)
 {
-    char message[256], text[SRV_ADDRESS_TEXT];
+    char message[256];
     srv_http_options options = {
         .service = parts->service,
         .store = parts->store,
@@ -215,8 +234,7 @@ static bool open_http(daemon_parts *parts, const srv_config *config)
         return fail(message);
     }
     srv_address_set_port(&options.address, srv_http_port(parts->http));
-    srv_address_format(&options.address.socket.any, true, text);
-    fprintf(stderr, "hedged " SRV_VERSION ": listening on http://%s\n", text);
+    tell_ready(parts, &options.address);
     return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <pty.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -9,6 +10,7 @@
 #include <string.h>
 #include <sys/types.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -39,9 +41,34 @@ static const char *program(void)
     return path != NULL ? path : "build/hedged";
 }
 
-/* Start the program with its stdout and stderr (or only stderr) in a pipe, whose other end is
+/* Where the program writes, and the other end, from which a test reads. */
+typedef struct outlet {
+    int reads, writes;
+} outlet;
+
+static outlet open_pipe(void)
+{
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    return (outlet){ends[0], ends[1]};
+}
+
+/* A terminal that adds no carriage return to a line. */
+static outlet open_terminal(void)
+{
+    outlet o;
+    struct termios modes;
+    assert_int_equal(openpty(&o.reads, &o.writes, NULL, NULL, NULL), 0);
+    assert_int_equal(tcgetattr(o.writes, &modes), 0);
+    cfmakeraw(&modes);
+    assert_int_equal(tcsetattr(o.writes, TCSANOW, &modes), 0);
+    return o;
+}
+
+/* Start the program with its stdout and stderr (or only stderr) in `to`, whose end to read from is
  * given back. */
-static int spawn(const char *const *head, const char *const *tail, bool with_stdout, pid_t *pid)
+static int spawn(const char *const *head, const char *const *tail, outlet to, bool with_stdout,
+                 pid_t *pid)
 {
     const char *argv[MOST_ARGUMENTS];
     size_t count = 0;
@@ -53,23 +80,21 @@ static int spawn(const char *const *head, const char *const *tail, bool with_std
         argv[count++] = tail[i];
     }
     argv[count] = NULL;
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
     *pid = fork();
     assert_true(*pid >= 0);
     if (*pid == 0) {
-        dup2(ends[1], STDERR_FILENO);
+        dup2(to.writes, STDERR_FILENO);
         if (with_stdout) {
-            dup2(ends[1], STDOUT_FILENO);
+            dup2(to.writes, STDOUT_FILENO);
         }
-        close(ends[0]);
-        close(ends[1]);
+        close(to.reads);
+        close(to.writes);
         execv(argv[0], (char *const *)(uintptr_t)argv);
         fprintf(stderr, "%s: %s\n", argv[0], strerror(errno));
         _exit(127);
     }
-    close(ends[1]);
-    return ends[0];
+    close(to.writes);
+    return to.reads;
 }
 
 static void append(daemon_process *d, const char *bytes, size_t length)
@@ -126,14 +151,14 @@ static bool find_url(daemon_process *d)
     return true;
 }
 
-daemon_process *daemon_start(const char *const *arguments)
+static daemon_process *start(const char *const *arguments, outlet to)
 {
     static const char *const listen[] = {"--listen", "127.0.0.1:0", NULL};
     daemon_process *d = calloc(1, sizeof *d);
     assert_non_null(d);
     pthread_mutex_init(&d->lock, NULL);
     pthread_cond_init(&d->changed, NULL);
-    d->log_fd = spawn(listen, arguments, false, &d->pid);
+    d->log_fd = spawn(listen, arguments, to, false, &d->pid);
     assert_int_equal(pthread_create(&d->reader, NULL, read_log, d), 0);
     pthread_mutex_lock(&d->lock);
     while (!find_url(d) && !d->ended) {
@@ -148,28 +173,58 @@ daemon_process *daemon_start(const char *const *arguments)
     return d;
 }
 
+daemon_process *daemon_start(const char *const *arguments)
+{
+    return start(arguments, open_pipe());
+}
+
+daemon_process *daemon_start_on_terminal(const char *const *arguments)
+{
+    return start(arguments, open_terminal());
+}
+
 static int status_of(int waited)
 {
     return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
 }
 
-int daemon_stop(daemon_process *d)
+/* The log is whole when this returns. */
+static int end(daemon_process *d)
 {
     int waited = 0;
     kill(d->pid, SIGTERM);
     while (waitpid(d->pid, &waited, 0) < 0 && errno == EINTR) {
     }
     pthread_join(d->reader, NULL);
-    int status = status_of(waited);
-    if (status != 0) {
-        print_error("hedged ended with %d:\n%s\n", status, d->log);
-    }
+    return status_of(waited);
+}
+
+static void release(daemon_process *d)
+{
     close(d->log_fd);
     pthread_mutex_destroy(&d->lock);
     pthread_cond_destroy(&d->changed);
     free(d->log);
     free(d);
+}
+
+int daemon_stop(daemon_process *d)
+{
+    int status = end(d);
+    if (status != 0) {
+        print_error("hedged ended with %d:\n%s\n", status, d->log);
+    }
+    release(d);
     return status;
+}
+
+char *daemon_stop_and_tell(daemon_process *d)
+{
+    assert_int_equal(end(d), 0);
+    char *log = d->log;
+    d->log = NULL;
+    release(d);
+    return log;
 }
 
 const char *daemon_url(const daemon_process *d)
@@ -211,7 +266,7 @@ char *daemon_wait_log(daemon_process *d, const char *text, int times)
 int daemon_run(const char *const *arguments, char *output, size_t size)
 {
     pid_t pid;
-    int waited = 0, fd = spawn(NULL, arguments, true, &pid);
+    int waited = 0, fd = spawn(NULL, arguments, open_pipe(), true, &pid);
     size_t length = 0;
     ssize_t got;
     char rest[512];

@@ -9,8 +9,13 @@ typedef struct daemon_process daemon_process;
 /* Start $HEDGED (build/hedged without) with --listen 127.0.0.1:0 and more arguments, which end in
  * NULL (or are NULL), and wait until it says where it listens. Fails the test when it does not. */
 daemon_process *daemon_start(const char *const *arguments);
+/* Start it with a terminal of its own as stderr, whose lines end as they are written. */
+daemon_process *daemon_start_on_terminal(const char *const *arguments);
 /* SIGTERM, wait, free. Gives the exit status, or 128 + the signal that ended it. */
 int daemon_stop(daemon_process *d);
+/* Stop it as daemon_stop does, require status 0, and give all it has written to stderr, ended by
+ * NUL; the caller's to free. */
+char *daemon_stop_and_tell(daemon_process *d);
 
 const char *daemon_url(const daemon_process *d); /* "http://127.0.0.1:43121" */
 int daemon_port(const daemon_process *d);

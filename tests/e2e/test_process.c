@@ -101,6 +101,37 @@ static void test_log_lines(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
+static char *log_of_a_request(daemon_process *d)
+{
+    client *c = client_new(d);
+    reply_done(reply_expect(200, client_get(c, "/version")));
+    client_free(c);
+    return daemon_stop_and_tell(d);
+}
+
+static void a_terminal_is_told_what_to_open_and_spared_the_log(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start_on_terminal(NULL);
+    char hint[128];
+    snprintf(hint, sizeof hint,
+             ": listening on %s\nhedge is at %s/ - open it in a browser; Ctrl-C stops it\n",
+             daemon_url(d), daemon_url(d));
+    char *log = log_of_a_request(d);
+    assert_non_null(strstr(log, hint));
+    assert_string_equal(strstr(log, hint) + strlen(hint), "");
+    free(log);
+
+    log = log_of_a_request(daemon_start_on_terminal(ARGUMENTS("--log", "access")));
+    assert_non_null(strstr(log, "\"route\":\"/version\""));
+    free(log);
+
+    log = log_of_a_request(daemon_start(NULL));
+    assert_null(strstr(log, "Ctrl-C"));
+    assert_non_null(strstr(log, "\"route\":\"/version\""));
+    free(log);
+}
+
 typedef struct worker {
     const daemon_process *daemon;
     int id, answered;
@@ -182,9 +213,13 @@ static void test_bounds_of_the_store(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_options),         cmocka_unit_test(test_port_in_use),
-        cmocka_unit_test(test_samples_and_log), cmocka_unit_test(test_log_lines),
-        cmocka_unit_test(test_stop_under_load), cmocka_unit_test(test_bounds_of_the_store),
+        cmocka_unit_test(test_options),
+        cmocka_unit_test(test_port_in_use),
+        cmocka_unit_test(test_samples_and_log),
+        cmocka_unit_test(test_log_lines),
+        cmocka_unit_test(a_terminal_is_told_what_to_open_and_spared_the_log),
+        cmocka_unit_test(test_stop_under_load),
+        cmocka_unit_test(test_bounds_of_the_store),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

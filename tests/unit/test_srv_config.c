@@ -39,7 +39,7 @@ static void test_defaults(void **state)
     assert_true(read_words(&config, (const char *const[]){NULL}));
     assert_string_equal(config.listen, "127.0.0.1:8080");
     assert_int_equal(config.undo_budget, 256 << 20);
-    assert_int_equal(config.log, SRV_LOG_ACCESS);
+    assert_int_equal(config.log, SRV_LOG_AUTO);
     assert_false(config.insecure);
     assert_int_equal(config.policy.hosts.count, 0);
     srv_config_clear(&config);
@@ -126,7 +126,7 @@ static void test_refusals(void **state)
         {{"--listen", "127.0.0.1:"}, "--listen takes"},
         {{"--listen", "0.0.0.0:80"}, "--insecure"},
         {{"--listen", "[::]:80"}, "--insecure"},
-        {{"--log", "all"}, "off|access"},
+        {{"--log", "all"}, "auto|access|off"},
         {{"--samples=maybe"}, "0 or 1"},
         {{"--workers", "65"}, "from 0 to 64"},
         {{"--max-meshes", "0"}, "from 1"},
