@@ -257,12 +257,23 @@ static void wait_for_stop(const sigset_t *signals)
     } while (number != SIGTERM && number != SIGINT);
 }
 
-/* Signals are taken by the main thread alone: every other inherits that they are blocked. A lost
- * terminal (SIGHUP) is no reason to stop, a lost client (SIGPIPE) even less. */
+/* Signals that end a process unless it says otherwise, and mean nothing here: a terminal or client
+ * that is gone, timers, descriptors, and what other daemons take for a command. */
+static void ignore_signals(void)
+{
+    static const int harmless[] = {SIGHUP,    SIGPIPE, SIGALRM, SIGUSR1,   SIGUSR2,
+                                   SIGVTALRM, SIGPROF, SIGPOLL, SIGSTKFLT, SIGPWR};
+    for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
+        signal(harmless[i], SIG_IGN);
+    }
+    for (int number = SIGRTMIN; number <= SIGRTMAX; number++) {
+        signal(number, SIG_IGN);
+    }
+}
+
+/* Signals are taken by the main thread alone: every other inherits that they are blocked. */
 static void block_signals(sigset_t *waited)
 {
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGHUP, SIG_IGN);
     sigemptyset(waited);
     sigaddset(waited, SIGTERM);
     sigaddset(waited, SIGINT);
@@ -298,6 +309,7 @@ int srv_daemon_run(const srv_config *config)
 {
     daemon_parts parts = {0};
     sigset_t signals;
+    ignore_signals();
     block_signals(&signals);
     choose_budget(config);
 

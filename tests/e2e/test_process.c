@@ -210,6 +210,25 @@ static void test_bounds_of_the_store(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
+static void harmless_signals_do_not_end_it(void **state)
+{
+    (void)state;
+    static const int numbers[] = {SIGHUP,    SIGPIPE, SIGALRM, SIGUSR1,   SIGUSR2,
+                                  SIGVTALRM, SIGPROF, SIGPOLL, SIGSTKFLT, SIGPWR};
+    daemon_process *d = daemon_start(NULL);
+    client *c = client_new(d);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        assert_int_equal(kill(daemon_pid(d), numbers[i]), 0);
+        reply_done(reply_expect(200, client_get(c, "/livez")));
+    }
+    for (int number = SIGRTMIN; number <= SIGRTMAX; number++) {
+        assert_int_equal(kill(daemon_pid(d), number), 0);
+    }
+    reply_done(reply_expect(200, client_get(c, "/livez")));
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -220,6 +239,7 @@ int main(void)
         cmocka_unit_test(a_terminal_is_told_what_to_open_and_spared_the_log),
         cmocka_unit_test(test_stop_under_load),
         cmocka_unit_test(test_bounds_of_the_store),
+        cmocka_unit_test(harmless_signals_do_not_end_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
