@@ -3,13 +3,20 @@
 #include "mesh/mem.h"
 #include "server/clock.h"
 
+#include <poll.h>
 #include <pthread.h>
 #include <string.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+enum { GONE_AT_ONCE = 64, LONGEST_MILLIS = 60 * 1000 };
 
 struct srv_live {
     uint64_t heartbeat; /* microseconds */
+    int watch;          /* an epoll set: the streams' sockets, and `changed` */
+    int changed;        /* an eventfd, which wakes the thread */
     pthread_mutex_t lock;
-    pthread_cond_t changed;
     pthread_t thread;
     srv_stream *first, *last; /* aside, in the order of their deadlines */
     srv_stream *ready;        /* to be resumed */
@@ -58,14 +65,39 @@ static void ready_due(srv_live *live)
     }
 }
 
-/* Until somebody is ready; for no longer than the first deadline. */
+/* Streams are taken out of the set under the lock, so those it names under the lock are there. */
+static void ready_gone(srv_live *live)
+{
+    struct epoll_event events[GONE_AT_ONCE];
+    int count = epoll_wait(live->watch, events, GONE_AT_ONCE, 0);
+    for (int i = 0; i < count; i++) {
+        srv_stream *stream = events[i].data.ptr;
+        if (stream == NULL) {
+            uint64_t ignored;
+            (void)!read(live->changed, &ignored, sizeof ignored);
+            continue;
+        }
+        stream->gone = true;
+        if (stream->aside) {
+            make_ready(live, stream);
+        }
+    }
+}
+
+/* Until a stream is ready or its client has gone; for no longer than the first deadline. */
 static void wait_for_change(srv_live *live)
 {
-    if (live->first == NULL) {
-        pthread_cond_wait(&live->changed, &live->lock);
-        return;
+    struct pollfd watched = {.fd = live->watch, .events = POLLIN};
+    int millis = -1;
+    if (live->first != NULL) {
+        uint64_t now = srv_clock_micros(), until = live->first->deadline;
+        uint64_t left = until > now ? (until - now + 999) / 1000 : 0;
+        millis = left < LONGEST_MILLIS ? (int)left : LONGEST_MILLIS;
     }
-    (void)srv_clock_wait(&live->changed, &live->lock, live->first->deadline);
+    pthread_mutex_unlock(&live->lock);
+    (void)poll(&watched, 1, millis);
+    pthread_mutex_lock(&live->lock);
+    ready_gone(live);
 }
 
 /* A stream that was resumed may be gone at once. */
@@ -98,6 +130,24 @@ static void *run(void *context)
     return NULL;
 }
 
+static void wake_thread(srv_live *live)
+{
+    uint64_t one = 1;
+    (void)!write(live->changed, &one, sizeof one); /* full, it is awake */
+}
+
+static void release(srv_live *live)
+{
+    if (live->watch >= 0) {
+        close(live->watch);
+    }
+    if (live->changed >= 0) {
+        close(live->changed);
+    }
+    pthread_mutex_destroy(&live->lock);
+    he_mem_free(live);
+}
+
 srv_live *srv_live_new(uint64_t heartbeat_micros)
 {
     srv_live *live = he_mem_zero(1, sizeof *live);
@@ -105,12 +155,14 @@ srv_live *srv_live_new(uint64_t heartbeat_micros)
         return NULL;
     }
     live->heartbeat = heartbeat_micros;
+    live->watch = epoll_create1(EPOLL_CLOEXEC);
+    live->changed = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     pthread_mutex_init(&live->lock, NULL);
-    srv_clock_condition(&live->changed);
-    if (pthread_create(&live->thread, NULL, run, live) != 0) {
-        pthread_mutex_destroy(&live->lock);
-        pthread_cond_destroy(&live->changed);
-        he_mem_free(live);
+    struct epoll_event wakes = {.events = EPOLLIN, .data.ptr = NULL};
+    if (live->watch < 0 || live->changed < 0 ||
+        epoll_ctl(live->watch, EPOLL_CTL_ADD, live->changed, &wakes) != 0 ||
+        pthread_create(&live->thread, NULL, run, live) != 0) {
+        release(live);
         return NULL;
     }
     return live;
@@ -123,12 +175,10 @@ void srv_live_free(srv_live *live)
     }
     pthread_mutex_lock(&live->lock);
     live->ending = true;
-    pthread_cond_signal(&live->changed);
     pthread_mutex_unlock(&live->lock);
+    wake_thread(live);
     pthread_join(live->thread, NULL);
-    pthread_mutex_destroy(&live->lock);
-    pthread_cond_destroy(&live->changed);
-    he_mem_free(live);
+    release(live);
 }
 
 /* --- one stream --- */
@@ -142,7 +192,7 @@ static void wake(void *context)
         bool first = live->ready == NULL;
         make_ready(live, stream);
         if (first) {
-            pthread_cond_signal(&live->changed);
+            wake_thread(live);
         }
     } else {
         stream->woken = true;
@@ -151,24 +201,38 @@ static void wake(void *context)
 }
 
 void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, const char *idle,
-                    void (*resume)(srv_stream *stream))
+                    int socket, void (*resume)(srv_stream *stream))
 {
-    *stream = (srv_stream){.live = live, .source = source, .idle = idle, .resume = resume};
+    *stream = (srv_stream){
+        .live = live, .source = source, .idle = idle, .resume = resume, .socket = socket};
+    /* Edge triggered: it is said once. Not watched, a dead client shows at the second heartbeat. */
+    struct epoll_event closed = {.events = EPOLLRDHUP | EPOLLET, .data.ptr = stream};
+    if (socket >= 0 && epoll_ctl(live->watch, EPOLL_CTL_ADD, socket, &closed) != 0) {
+        stream->socket = -1;
+    }
     source->start(source->self, wake, stream);
 }
 
-static bool is_stopping(srv_live *live)
+void srv_live_end(srv_stream *stream)
 {
-    pthread_mutex_lock(&live->lock);
-    bool stopping = live->stopping;
-    pthread_mutex_unlock(&live->lock);
-    return stopping;
+    srv_live *live = stream->live;
+    if (live != NULL && stream->socket >= 0) {
+        pthread_mutex_lock(&live->lock);
+        epoll_ctl(live->watch, EPOLL_CTL_DEL, stream->socket, NULL);
+        pthread_mutex_unlock(&live->lock);
+    }
 }
 
 int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size)
 {
     const api_source *source = stream->source;
-    if (!stream->finished && is_stopping(stream->live)) {
+    pthread_mutex_lock(&stream->live->lock);
+    bool stopping = stream->live->stopping, gone = stream->gone;
+    pthread_mutex_unlock(&stream->live->lock);
+    if (gone) {
+        return -1;
+    }
+    if (!stream->finished && stopping) {
         stream->finished = true;
         source->finish(source->self);
     }
@@ -191,13 +255,13 @@ void srv_live_aside(srv_stream *stream)
     stream->deadline = srv_clock_micros() + live->heartbeat;
     stream->aside = true;
     add_last(live, stream);
-    bool at_once = stream->woken || (live->stopping && !stream->finished);
+    bool at_once = stream->woken || stream->gone || (live->stopping && !stream->finished);
     stream->woken = false;
     if (at_once) {
         make_ready(live, stream);
     }
     if (at_once || alone) {
-        pthread_cond_signal(&live->changed);
+        wake_thread(live);
     }
     pthread_mutex_unlock(&live->lock);
 }
@@ -209,6 +273,6 @@ void srv_live_stop(srv_live *live)
     while (live->first != NULL) {
         make_ready(live, live->first);
     }
-    pthread_cond_signal(&live->changed);
+    wake_thread(live);
     pthread_mutex_unlock(&live->lock);
 }

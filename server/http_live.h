@@ -7,10 +7,10 @@
  *
  *     PULLED --srv_live_read gives API_READ_WAIT, srv_live_aside--> ASIDE
  *       ^                                                             | wake, heartbeat, stop
- *       +------------------- resume, by the thread -------------------+
+ *       +------------- resume, by the thread (also: client gone) -----+
  *
- * A suspended connection does not notice that its client has gone: the comment that is sent for a
- * heartbeat does, at the second one at the latest. */
+ * libmicrohttpd does not look at a suspended connection, so the thread does: when the client has
+ * closed its side the stream fails at its next pull, and its descriptor is free. */
 #ifndef HE_SERVER_HTTP_LIVE_H
 #define HE_SERVER_HTTP_LIVE_H
 
@@ -30,20 +30,26 @@ typedef struct srv_stream {
     bool woken;    /* while it was pulled */
     bool due;      /* for a heartbeat */
     bool finished; /* the source knows that the server stops */
+    bool gone;     /* the client has closed */
+    int socket;
     uint64_t deadline;
     struct srv_stream *next, *previous;
 } srv_stream;
 
-/* NULL when memory or threads are out. */
+/* NULL when memory, descriptors or threads are out. */
 srv_live *srv_live_new(uint64_t heartbeat_micros);
 /* No stream may be left. */
 void srv_live_free(srv_live *live);
 
-/* `resume` is called by the thread for each srv_live_aside. */
+/* `resume` is called by the thread for each srv_live_aside. `socket` is the client's, -1: nobody
+ * looks whether it has gone. */
 void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, const char *idle,
-                    void (*resume)(srv_stream *stream));
-/* As api_source's read. After API_READ_WAIT the caller suspends the connection and then calls
- * srv_live_aside, and may touch nothing of the request after that. */
+                    int socket, void (*resume)(srv_stream *stream));
+/* Before the stream's storage and socket go away; it is not aside. Does nothing where none began.
+ */
+void srv_live_end(srv_stream *stream);
+/* As api_source's read, and -1 when the client has gone. After API_READ_WAIT the caller suspends
+ * the connection and then calls srv_live_aside, and may touch nothing of the request after that. */
 int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size);
 void srv_live_aside(srv_stream *stream);
 

@@ -79,6 +79,7 @@ void srv_request_end(srv_request *r)
     }
     bool counted = r->counted;
     srv_request_resumed(r); /* a client who was lost while it was suspended comes here at once */
+    srv_live_end(&r->stream);
     srv_ahead_clear(&r->ahead);
     api_free(r->exchange);
     srv_lists_clear(&r->lists);

@@ -8,7 +8,9 @@
 #include "tests/random_edit.h"
 
 #include "op/op.h"
+#include "server/clock.h"
 
+#include <dirent.h>
 #include <inttypes.h>
 #include <poll.h>
 #include <setjmp.h>
@@ -402,6 +404,53 @@ static void a_thousand_listeners_hear_every_edit_and_the_end(void **state)
     }
 }
 
+enum { GONE = 1000, MOST_LOOKS = 20000 };
+
+static size_t open_descriptors(const daemon_process *d)
+{
+    char path[64];
+    size_t count = 0;
+    snprintf(path, sizeof path, "/proc/%d/fd", daemon_pid(d));
+    DIR *folder = opendir(path);
+    assert_non_null(folder);
+    while (readdir(folder) != NULL) {
+        count++;
+    }
+    closedir(folder);
+    return count;
+}
+
+/* With heartbeats an hour apart nothing but the close itself can tell the daemon. */
+static void closed_listeners_free_their_descriptors(void **state)
+{
+    (void)state;
+    static listener *gone[GONE];
+    daemon_process *d =
+        daemon_start((const char *const[]){"--log", "off", "--heartbeat", "3600", NULL});
+    client *c = client_new(d);
+    reply_done(
+        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}", 16, NULL)));
+    size_t before = open_descriptors(d);
+    for (int i = 0; i < GONE; i++) {
+        gone[i] = listener_open(d, "/v1/meshes/m/events", NULL, 0);
+    }
+    assert_true(open_descriptors(d) >= before + GONE);
+    for (int i = 0; i < GONE; i++) {
+        listener_close(gone[i]);
+    }
+    int looks = 0;
+    uint64_t closed = srv_clock_micros();
+    while (open_descriptors(d) > before && looks < MOST_LOOKS) {
+        looks++;
+        reply_done(reply_expect(200, client_get(c, "/livez")));
+    }
+    print_message("note: %d closed listeners were gone after %.1f s\n", GONE,
+                  (double)(srv_clock_micros() - closed) / 1e6);
+    assert_true(looks < MOST_LOOKS);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -410,6 +459,7 @@ int main(void)
         cmocka_unit_test(a_gap_in_the_history_is_a_resync),
         cmocka_unit_test(who_reads_nothing_is_sent_to_fetch_anew),
         cmocka_unit_test(a_dead_client_makes_room),
+        cmocka_unit_test(closed_listeners_free_their_descriptors),
         cmocka_unit_test(silence_is_filled_with_comments),
         cmocka_unit_test(a_thousand_listeners_hear_every_edit_and_the_end),
     };

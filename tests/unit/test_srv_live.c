@@ -101,7 +101,7 @@ static void pull(talk *t)
     int64_t got;
     if (!t->begun) {
         t->begun = true;
-        srv_live_begin(live, &t->stream, &sources[t - talks], "idle", resume);
+        srv_live_begin(live, &t->stream, &sources[t - talks], "idle", -1, resume);
     }
     while ((got = srv_live_read(&t->stream, buffer, sizeof buffer)) > 0) {
         pthread_mutex_lock(&pool.lock);
