@@ -3,10 +3,12 @@
 #include "mesh/mem.h"
 #include "server/http_handle.h"
 #include "server/http_request.h"
+#include "server/limits.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/socket.h>
 
 enum {
     /* Of a connection's buffer: above SRV_MAX_HEAD and API_MAX_URI, so that we refuse first. No
@@ -62,6 +64,8 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     srv_http *http = context;
     if (what == MHD_CONNECTION_NOTIFY_STARTED) {
         int fd = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+        const int most = SRV_SEND_BUFFER;
+        setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
         const struct sockaddr *peer =
             MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
         *slot = srv_deadlines_add(http->deadlines, fd, peer);

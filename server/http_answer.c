@@ -1,21 +1,27 @@
 #include "server/http_answer.h"
 
 #include "server/clock.h"
+#include "server/memory.h"
 #include "server/http_request.h"
 #include "server/http_wire.h"
 
 #include <string.h>
 
 enum {
-    ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once */
-    LIVE_BLOCK = 1024         /* the same, where thousands wait; used by HTTP/1.0 only */
+    ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once, into memory of libmicrohttpd */
+    LIVE_BLOCK = 1024         /* where thousands wait; used by HTTP/1.0 only */
 };
 
 /* --- what is sent piece by piece --- */
 
-/* What a reader of libmicrohttpd returns for bytes, for the end (0) and for a failure. */
+/* What a reader of libmicrohttpd returns for bytes, for the end (0) and for a failure. An end
+ * before the length that was announced is one. */
 static ssize_t pulled(srv_request *r, int64_t got)
 {
+    int64_t length = api_answer_of(r->exchange)->length;
+    if (got == 0 && length >= 0 && r->bytes_out != (uint64_t)length) {
+        return MHD_CONTENT_READER_END_WITH_ERROR;
+    }
     if (got > 0) {
         r->bytes_out += (uint64_t)got;
         return (ssize_t)got;
@@ -28,9 +34,7 @@ static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
     (void)position;
     srv_request *r = context;
     const api_answer *answer = api_answer_of(r->exchange);
-    int64_t got = answer->read(answer->context, buffer, size);
-    bool complete = answer->length < 0 || r->bytes_out == (uint64_t)answer->length;
-    return pulled(r, got == 0 && !complete ? -1 : got);
+    return pulled(r, answer->read(answer->context, buffer, size));
 }
 
 static void resume_ahead(srv_ahead *ahead)
@@ -39,7 +43,7 @@ static void resume_ahead(srv_ahead *ahead)
     MHD_resume_connection(r->connection);
 }
 
-/* The same for an answer that is slow to make. */
+/* Takes what another thread makes. */
 static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
 {
     (void)position;
@@ -124,17 +128,26 @@ static bool is_streamed(const srv_request *r)
     return is_live(r) || (r->exchange != NULL && api_answer_of(r->exchange)->read != NULL);
 }
 
+/* Making a piece takes up to a millisecond. A worker that serves a few downloads makes them itself,
+ * which saves a way through the pool; a thousand would keep it from all else for a second. */
+static bool is_made_ahead(srv_request *r)
+{
+    size_t others = atomic_fetch_add(&r->http->downloads, 1);
+    r->block = ANSWER_BLOCK;
+    srv_memory_count(ANSWER_BLOCK);
+    return api_answer_of(r->exchange)->slow || others >= r->http->options.workers;
+}
+
 static struct MHD_Response *response_of(srv_request *r, const srv_wire *wire)
 {
     struct MHD_Response *response;
     if (is_streamed(r)) {
-        bool slow = api_answer_of(r->exchange)->slow;
         response = MHD_create_response_from_callback(wire->length < 0 ? MHD_SIZE_UNKNOWN
                                                                       : (uint64_t)wire->length,
                                                      is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK,
-                                                     is_live(r) ? pull_live
-                                                     : slow     ? pull_ahead
-                                                                : pull,
+                                                     is_live(r)         ? pull_live
+                                                     : is_made_ahead(r) ? pull_ahead
+                                                                        : pull,
                                                      r, NULL);
     } else {
         /* The bytes are the exchange's and live until the request has completed. */

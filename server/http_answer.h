@@ -1,8 +1,9 @@
 /* http_answer.h - sending what a request is answered: what its exchange says, or a refusal.
  *
  * Bytes that are there are sent as they are. Others are pulled: those of a reader as the socket
- * takes them, those that are slow to make (http_ahead.h) and those of an answer that goes on
- * (http_live.h) with the connection suspended in between. */
+ * takes them; those that are slow to make, or all where there are more downloads than workers
+ * (http_ahead.h), and those of an answer that goes on (http_live.h) with the connection suspended
+ * in between. */
 #ifndef HE_SERVER_HTTP_ANSWER_H
 #define HE_SERVER_HTTP_ANSWER_H
 

@@ -4,9 +4,11 @@
 
 #include "mesh/mem.h"
 #include "server/clock.h"
+#include "server/memory.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/sock_diag.h>
 #include <linux/sockios.h>
 #include <linux/tcp.h>
 #include <poll.h>
@@ -122,13 +124,37 @@ bool srv_connection_is_stuck(srv_connection *c, const srv_deadline_options *o, u
     return stuck;
 }
 
+static void count_kept(srv_connection *c, uint64_t kept)
+{
+    srv_memory_count((int64_t)kept - (int64_t)c->kept);
+    c->kept = kept;
+}
+
+/* What the kernel holds of an answer, with its own records; 0 where it does not say. */
+static uint64_t kept_by_kernel(int socket)
+{
+    uint32_t info[SK_MEMINFO_VARS] = {0};
+    socklen_t length = sizeof info;
+    return getsockopt(socket, SOL_SOCKET, SO_MEMINFO, info, &length) == 0
+               ? info[SK_MEMINFO_WMEM_QUEUED]
+               : 0;
+}
+
+/* May bytes of an answer wait? While IDLE, no longer than until once none did. */
+static bool may_wait(const srv_connection *c, int stage, uint64_t since)
+{
+    return stage == SRV_STAGE_ANSWER || stage == SRV_STAGE_LIVE ||
+           (stage == SRV_STAGE_IDLE && c->taken != since);
+}
+
 static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, uint64_t now)
 {
     struct tcp_info info = {0};
     socklen_t length = sizeof info;
     int outstanding = 0;
-    int stage = atomic_load_explicit(&c->stage, memory_order_relaxed);
-    if (stage != SRV_STAGE_ANSWER && stage != SRV_STAGE_LIVE) {
+    int stage = atomic_load_explicit(&c->stage, memory_order_acquire);
+    uint64_t since = atomic_load_explicit(&c->since, memory_order_relaxed);
+    if (!may_wait(c, stage, since)) {
         c->window = 0;
         return false;
     }
@@ -136,6 +162,8 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
         getsockopt(c->socket, IPPROTO_TCP, TCP_INFO, &info, &length) != 0) {
         return false;
     }
+    c->taken = stage == SRV_STAGE_IDLE && outstanding == 0 ? since : 0;
+    count_kept(c, outstanding == 0 ? 0 : kept_by_kernel(c->socket));
     const srv_deadline_options patient = {.grace = o->total, .min_rate = 1};
     return srv_connection_is_stuck(c, stage == SRV_STAGE_LIVE ? &patient : o, (uint64_t)outstanding,
                                    info.tcpi_bytes_acked, now);
@@ -330,6 +358,7 @@ void srv_deadlines_remove(srv_deadlines *d, srv_connection *c)
     if (c->next != NULL) {
         c->next->previous = c->previous;
     }
+    count_kept(c, 0);
     if (c->drain) {
         begin_drain(d, c->socket);
     }

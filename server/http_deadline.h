@@ -16,7 +16,8 @@
  *             work for a client that was reset ends at once, for one that closed its side after a
  *             second, before which it gets its answer
  *     ANSWER  while bytes wait to be taken: min_rate bytes a second, over `grace` seconds. What
- *             counts is what the client's side has acknowledged, not what fits the socket's buffer
+ *             counts is what the client's side has acknowledged, not what fits the socket's buffer.
+ *             So it goes on while IDLE, when all of an answer is in that buffer
  *     LIVE    an answer that goes on (http_live.h), in place of ANSWER: while bytes wait to be
  *             taken, one a second over `total` seconds
  *
@@ -59,6 +60,8 @@ typedef struct srv_connection {
     bool drain;             /* drain after closing */
     /* The thread's own. */
     uint64_t window, window_acked; /* since when it measures an answer, 0: not */
+    uint64_t taken;                /* `since` of the IDLE stage in which no byte waited, 0: none */
+    uint64_t kept;                 /* bytes the kernel had for it, as they were counted last */
     uint64_t closed;               /* `since` of the stage in which the client closed, 0: not */
     uint64_t closed_bytes;
     char peer[SRV_ADDRESS_TEXT];

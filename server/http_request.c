@@ -3,6 +3,7 @@
 #include "api/limits.h"
 #include "mesh/mem.h"
 #include "server/clock.h"
+#include "server/memory.h"
 
 #include <string.h>
 
@@ -79,6 +80,10 @@ void srv_request_end(srv_request *r)
     }
     bool counted = r->counted;
     srv_request_resumed(r); /* a client who was lost while it was suspended comes here at once */
+    if (r->block > 0) {
+        atomic_fetch_sub(&http->downloads, 1);
+        srv_memory_count(-(int64_t)r->block);
+    }
     srv_live_end(&r->stream);
     srv_ahead_clear(&r->ahead);
     api_free(r->exchange);

@@ -26,7 +26,7 @@
  *
  * While WORK or HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
  * or the hold resumes it exactly once. An answer that goes on is DONE and suspended again and again
- * by `pull_live`: see http_live.h. So is one that is slow to make, by `pull_ahead`: http_ahead.h.
+ * by `pull_live`: see http_live.h. So is one that is made ahead, by `pull_ahead`: http_ahead.h.
  */
 #ifndef HE_SERVER_HTTP_REQUEST_H
 #define HE_SERVER_HTTP_REQUEST_H
@@ -55,6 +55,7 @@ struct srv_http {
     srv_ids ids;
     _Atomic bool stopping;
     srv_gate gate;
+    _Atomic size_t downloads; /* answers that are sent piece by piece, but for those that go on */
 };
 
 typedef struct srv_request {
@@ -83,6 +84,7 @@ typedef struct srv_request {
     uint64_t work_until; /* microseconds of the monotonic clock; UINT64_MAX: as long as it takes */
     srv_stream stream;
     srv_ahead ahead;
+    size_t block; /* bytes libmicrohttpd holds for a download, 0: it is none */
     int status;
 
     char method[SRV_METHOD + 1];

@@ -9,6 +9,11 @@ enum { SRV_FEED_MESSAGES = 1024, SRV_FEED_BYTES = 1 << 20 };
  * missed: microseconds. */
 enum { SRV_FEED_LINGER = 30 * 1000 * 1000 };
 
+/* Of a connection: what the kernel keeps of answers until the client has taken it, in bytes; it
+ * keeps as much again for its own records. Left alone it lets a client who does not read hold 3
+ * MiB. Over loopback more is not faster; a far client gets this much a round trip. */
+enum { SRV_SEND_BUFFER = 128 * 1024 };
+
 /* Listeners that are brought forward from the history at once, each with a copy of its mesh. */
 enum { SRV_MAX_CATCH_UPS = 8 };
 

@@ -76,6 +76,12 @@ void srv_memory_set_budget(uint64_t budget)
     atomic_store(&budget_bytes, budget);
 }
 
+void srv_memory_count(int64_t bytes)
+{
+    /* Modular arithmetic: adding a negative number subtracts. */
+    atomic_fetch_add_explicit(&used, (uint64_t)bytes, memory_order_relaxed);
+}
+
 uint64_t srv_memory_used(void)
 {
     return atomic_load_explicit(&used, memory_order_relaxed);

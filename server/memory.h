@@ -4,9 +4,8 @@
  * capacity, undo, snapshots, uploads, documents, answers. It is counted as the C library sees it
  * (malloc_usable_size), in one atomic counter.
  *
- * The counter never exceeds the budget: what would do so fails like an allocation. The last
- * sixteenth is kept for blocks of at most 64 KiB, so that a full server still answers, refuses and
- * deletes. */
+ * What would exceed the budget fails like an allocation. The last sixteenth is kept for blocks of
+ * at most 64 KiB, so that a full server still answers, refuses and deletes. */
 #ifndef HE_SERVER_MEMORY_H
 #define HE_SERVER_MEMORY_H
 
@@ -18,6 +17,10 @@
  * first allocation. */
 void srv_memory_install(uint64_t budget);
 void srv_memory_set_budget(uint64_t budget);
+
+/* Count `bytes` more, or fewer, that others hold for us: the kernel in sockets, libmicrohttpd for
+ * connections. Never refused; what is there is only no longer there for large blocks. */
+void srv_memory_count(int64_t bytes);
 
 uint64_t srv_memory_used(void);
 uint64_t srv_memory_budget(void);

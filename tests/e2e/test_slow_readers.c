@@ -2,7 +2,10 @@
  */
 #include "tests/e2e/client.h"
 
+#include "server/limits.h"
+
 #include <errno.h>
+#include <poll.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -134,8 +137,134 @@ static void slow_downloads_delay_nobody(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
+/* --- who does not read at all --- */
+
+enum {
+    IDLERS = 100,
+    PATIENCE_MILLIS = 60 * 1000,
+    LOOKS = 20000,
+    SMALL_SIDE = 30,
+    LARGE_SIDE = 300
+};
+
+static void put_grid(client *c, int side)
+{
+    char body[128];
+    int length =
+        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
+    reply_done(
+        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", body, (size_t)length, NULL)));
+}
+
+static void ask_and_wait(const daemon_process *d, int sockets[IDLERS])
+{
+    static const char request[] =
+        "GET /v1/meshes/m/content?format=obj HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    for (int i = 0; i < IDLERS; i++) {
+        sockets[i] = client_connect(d, 1);
+        assert_int_equal(send(sockets[i], request, sizeof request - 1, MSG_NOSIGNAL),
+                         sizeof request - 1);
+    }
+}
+
+/* The daemon resets a connection whose client took too little, so it shows as an error. */
+static void expect_all_closed(int sockets[IDLERS])
+{
+    for (int i = 0; i < IDLERS; i++) {
+        struct pollfd wait = {.fd = sockets[i], .events = 0};
+        assert_int_equal(poll(&wait, 1, PATIENCE_MILLIS), 1);
+        assert_true((wait.revents & (POLLERR | POLLHUP)) != 0);
+        close(sockets[i]);
+    }
+}
+
+/* With an hour until a silent connection is closed, only the rule about reading can close these. */
+static const char *const impatient[] = {
+    "--log", "off", "--body-grace", "1", "--min-rate", "4K", "--idle-timeout", "3600", NULL};
+
+static void a_reader_who_stops_is_closed_though_all_of_the_answer_was_sent(void **state)
+{
+    (void)state;
+    int sockets[IDLERS];
+    daemon_process *d = daemon_start(impatient);
+    client *c = client_new(d);
+    put_grid(c, SMALL_SIDE);
+    ask_and_wait(d, sockets);
+    expect_all_closed(sockets);
+    reply_done(reply_expect(200, client_get(c, "/livez")));
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* Bytes that wait in the daemon's sockets, without the kernel's own records. */
+static size_t waiting_bytes(const daemon_process *d)
+{
+    char line[512];
+    size_t all = 0;
+    FILE *file = fopen("/proc/net/tcp", "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) != NULL) {
+        unsigned port = 0, sent = 0;
+        if (sscanf(line, " %*u: %*8x:%4x %*8x:%*4x %*2x %8x:", &port, &sent) == 2 &&
+            (int)port == daemon_port(d)) {
+            all += sent;
+        }
+    }
+    fclose(file);
+    return all;
+}
+
+static double counted(client *c)
+{
+    reply r = reply_expect(200, client_get(c, "/v1/meshes"));
+    double bytes = reply_number(&r, "memory_bytes");
+    reply_free(&r);
+    return bytes;
+}
+
+/* Each look is a request, so that what is waited for is work and not time. */
+static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
+{
+    (void)state;
+    int sockets[IDLERS];
+    daemon_process *d =
+        daemon_start((const char *const[]){"--log", "off", "--body-grace", "600", NULL});
+    client *c = client_new(d);
+    put_grid(c, LARGE_SIDE);
+    reply_done(reply_expect(200, client_get(c, "/v1/meshes/m/content?format=obj")));
+    double before = counted(c);
+    ask_and_wait(d, sockets);
+    int looks = 0;
+    while (waiting_bytes(d) < IDLERS * SRV_SEND_BUFFER / 2 && looks < LOOKS) {
+        looks++;
+        (void)counted(c);
+    }
+    size_t waiting = waiting_bytes(d);
+    assert_true(waiting >= IDLERS * SRV_SEND_BUFFER / 2);
+    assert_true(waiting <= 2 * (size_t)IDLERS * SRV_SEND_BUFFER);
+    while (counted(c) < before + (double)waiting && looks < 2 * LOOKS) {
+        looks++;
+    }
+    print_message("note: %d clients who read nothing: %.1f MB in sockets, counted %.1f MB more\n",
+                  IDLERS, (double)waiting / 1e6, (counted(c) - before) / 1e6);
+    assert_true(counted(c) >= before + (double)waiting);
+    for (int i = 0; i < IDLERS; i++) {
+        close(sockets[i]);
+    }
+    while (counted(c) > before + 1e6 && looks < 3 * LOOKS) {
+        looks++;
+    }
+    assert_true(counted(c) <= before + 1e6);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(slow_downloads_delay_nobody)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slow_downloads_delay_nobody),
+        cmocka_unit_test(a_reader_who_stops_is_closed_though_all_of_the_answer_was_sent),
+        cmocka_unit_test(what_readers_leave_in_sockets_is_little_and_counted),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
