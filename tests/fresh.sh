@@ -48,7 +48,8 @@ if [ "${1-}" = --enter ]; then
     root=$2
     name=$3
     downloads=$4
-    mount -t proc proc "$root/proc" && mount --rbind /sys "$root/sys" &&
+    # Programs that change mounts want the root folder to be one.
+    mount --bind "$root" "$root" && mount -t proc proc "$root/proc" && mount --rbind /sys "$root/sys" &&
         mount --rbind /dev "$root/dev" &&
         mount --bind "$downloads/apt" "$root/var/cache/apt/archives" &&
         mount --bind "$downloads/npm" "$root/root/.npm" || exit 1
