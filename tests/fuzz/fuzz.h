@@ -5,7 +5,8 @@
  * it the LLVMFuzzerTestOneInput that libFuzzer and AFL++ call, and sees that each call
  *
  *     holds at most FUZZ_MEMORY bytes of mesh/mem.h at once, and none when it returns,
- *     takes at most FUZZ_SECONDS_OF_CPU,
+ *     takes at most FUZZ_SECONDS of processor time, or on a slow machine FUZZ_PACES times what a
+ *         fixed piece of work takes (tests/pace.h),
  *     depends on its bytes alone.
  *
  * Linked with clang's -fsanitize=fuzzer (CONFIG=fuzz) a target makes up its inputs; with replay.c
@@ -20,7 +21,7 @@
 
 /* The contract for any input is 256 MB over its natural size, and a second: inputs here are small.
  */
-enum { FUZZ_MEMORY = 256 << 20, FUZZ_SECONDS_OF_CPU = 1 };
+enum { FUZZ_MEMORY = 256 << 20, FUZZ_SECONDS = 1, FUZZ_PACES = 100 };
 
 void fuzz_one(const uint8_t *bytes, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);

@@ -1,6 +1,7 @@
 #include "fuzz/fuzz.h"
 
 #include "mesh/mem.h"
+#include "tests/pace.h"
 
 #include <inttypes.h>
 #include <malloc.h>
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static atomic_size_t held;
 
@@ -42,13 +42,6 @@ static void *resize(void *context, void *memory, size_t size)
     return after;
 }
 
-static double cpu_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
     static const he_mem_hook hook = {resize, NULL};
@@ -62,13 +55,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     size_t before = atomic_load(&held);
     double took;
     int tries = 0;
-    /* A virtual processor that was away counts too: slow is what is slow each time. */
     do {
-        double start = cpu_seconds();
+        double start = pace_seconds();
         fuzz_one(bytes, size);
-        took = cpu_seconds() - start;
-    } while (took > FUZZ_SECONDS_OF_CPU && ++tries < 3);
-    FUZZ_REQUIRE(tries < 3, "%.2f s for %zu bytes", took, size);
+        took = pace_seconds() - start;
+    } while (took > FUZZ_SECONDS && took > FUZZ_PACES * pace_unit() && ++tries < PACE_TRIES);
+    FUZZ_REQUIRE(tries < PACE_TRIES, "%.2f s for %zu bytes", took, size);
     FUZZ_REQUIRE(atomic_load(&held) == before, "%zu bytes were not given back",
                  atomic_load(&held) - before);
     return 0;

@@ -7,23 +7,11 @@
 #include "mesh/build.h"
 #include "mesh/delta.h"
 
+#include "tests/pace.h"
+
 #include <stdio.h>
-#include <time.h>
 
 enum { PICKED = 50000 };
-
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
-
-/* Of a tenth, and of all. */
-static void assert_linear(double small, double large)
-{
-    assert_true(large < 0.1 || large < 50 * small);
-}
 
 /* --- names of labels --- */
 
@@ -37,17 +25,23 @@ static bool lies_low(const char *name)
     return ((h ^ h >> 32) & ((1 << 20) - 1)) < 1 << 12;
 }
 
-static double add_names(char (*names)[12], size_t count)
+typedef struct name {
+    char text[12];
+} name;
+
+static double add_names(const void *context, size_t count)
 {
+    const name *names = context;
     he_labels *labels = he_labels_new();
     assert_non_null(labels);
-    double from = seconds_now();
+    double from = pace_seconds();
     for (size_t i = 0; i < count; i++) {
         uint32_t number;
-        assert_int_equal(he_labels_add(labels, names[i], strlen(names[i]), &number, NULL), HE_OK);
+        assert_int_equal(he_labels_add(labels, names[i].text, strlen(names[i].text), &number, NULL),
+                         HE_OK);
         assert_int_equal(number, i);
     }
-    double seconds = seconds_now() - from;
+    double seconds = pace_seconds() - from;
     he_labels_release(labels);
     return seconds;
 }
@@ -55,13 +49,13 @@ static double add_names(char (*names)[12], size_t count)
 static void names_cannot_be_picked_to_collide(void **state)
 {
     (void)state;
-    char(*names)[12] = malloc(PICKED * sizeof *names);
+    name *names = malloc(PICKED * sizeof *names);
     assert_non_null(names);
     for (unsigned i = 0, count = 0; count < PICKED; i++) {
-        snprintf(names[count], sizeof *names, "%x", i);
-        count += lies_low(names[count]);
+        snprintf(names[count].text, sizeof names[count].text, "%x", i);
+        count += lies_low(names[count].text);
     }
-    assert_linear(add_names(names, PICKED / 10), add_names(names, PICKED));
+    pace_require_linear("names", add_names, names, PICKED);
     free(names);
 }
 
@@ -75,8 +69,9 @@ static bool number_lies_low(uint64_t word)
     return (h * 0xBF58476D1CE4E5B9 >> 16 & ((1 << 20) - 1)) < 1 << 12;
 }
 
-static double number_corners(const double *values, size_t count)
+static double number_corners(const void *context, size_t count)
 {
+    const double *values = context;
     he_soup soup;
     he_mesh *mesh = NULL;
     he_column *column = NULL;
@@ -100,9 +95,9 @@ static double number_corners(const double *values, size_t count)
             memcpy(he_column_row(column, h), &value, sizeof value);
         }
     }
-    double from = seconds_now();
+    double from = pace_seconds();
     assert_int_equal(he_distinct_make(mesh, column, &distinct, NULL), HE_OK);
-    double seconds = seconds_now() - from;
+    double seconds = pace_seconds() - from;
     assert_int_equal(distinct.first.count, count / 3 * 3);
     he_distinct_clear(&distinct);
     he_column_free(column);
@@ -121,23 +116,24 @@ static void values_of_corners_cannot_be_picked_to_collide(void **state)
             memcpy(&values[count++], &word, sizeof word);
         }
     }
-    assert_linear(number_corners(values, PICKED / 10), number_corners(values, PICKED));
+    pace_require_linear("values", number_corners, values, PICKED);
     free(values);
 }
 
 /* --- records of a delta, folded --- */
 
-static double fold_rows(const uint32_t *rows, size_t count)
+static double fold_rows(const void *context, size_t count)
 {
+    const uint32_t *rows = context;
     he_delta *delta = he_delta_new();
     assert_non_null(delta);
     assert_int_equal(he_delta_reserve(delta, count, 0, NULL), HE_OK);
     for (size_t i = 0; i < count; i++) {
         delta->records[delta->count++] = (he_record){.row = rows[i], .column = HE_COL_NEXT};
     }
-    double from = seconds_now();
+    double from = pace_seconds();
     assert_int_equal(he_delta_fold(delta, 0, NULL), HE_OK);
-    double seconds = seconds_now() - from;
+    double seconds = pace_seconds() - from;
     assert_int_equal(delta->count, count);
     he_delta_free(delta);
     return seconds;
@@ -154,7 +150,7 @@ static void rows_of_records_cannot_be_picked_to_collide(void **state)
         rows[count] = row;
         count += h >> 58 == 0;
     }
-    assert_linear(fold_rows(rows, PICKED / 10), fold_rows(rows, PICKED));
+    pace_require_linear("rows", fold_rows, rows, PICKED);
     free(rows);
 }
 
@@ -163,8 +159,9 @@ static void rows_of_records_cannot_be_picked_to_collide(void **state)
 enum { PAIRS = PICKED / 4 };
 
 /* Two triangles for each of `lows`, which come to share the edge from it to the vertex after. */
-static double weld_pairs(const uint32_t *lows, size_t count)
+static double weld_pairs(const void *context, size_t count)
 {
+    const uint32_t *lows = context;
     he_soup soup;
     he_mesh *mesh = NULL;
     he_ids into = {0};
@@ -185,9 +182,9 @@ static double weld_pairs(const uint32_t *lows, size_t count)
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    double from = seconds_now();
+    double from = pace_seconds();
     assert_int_equal(he_weld_near(mesh, 0, HE_MERGE_MEAN, &into, NULL), HE_OK);
-    double seconds = seconds_now() - from;
+    double seconds = pace_seconds() - from;
     assert_int_equal(he_mesh_edges(mesh), 5 * count);
     he_ids_clear(&into);
     he_mesh_free(mesh);
@@ -205,7 +202,7 @@ static void edges_to_weld_cannot_be_picked_to_collide(void **state)
         lows[count] = a;
         count += ((h ^ h >> 32) * 0xBF58476D1CE4E5B9 >> 32 & ((1 << 18) - 1)) < 1 << 12;
     }
-    assert_linear(weld_pairs(lows, PAIRS / 10), weld_pairs(lows, PAIRS));
+    pace_require_linear("edges", weld_pairs, lows, PAIRS);
     free(lows);
 }
 
