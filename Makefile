@@ -227,18 +227,18 @@ test: $(CHOSEN) $(TEST_NEEDS) | $(INSTALLED) ## all tests, with their counts
 	    $(if $(WITH_SOAK),tests/soak.sh)
 
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
-	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install soak,$(TESTS))" TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=asan TESTS="$(filter-out web install soak,$(TESTS))" test
 
 # The kernel has no threads, and most of tests/api does one thing after the other: only what begins
 # jobs or threads, and the daemon itself, is worth the time here.
 THREADED_C  = $(shell grep -lE 'pthread_create|bench_run_jobs' tests/api/test_*.c) \
               $(wildcard tests/unit/test_srv_*.c)
 tsan: ## the threaded tests with ThreadSanitizer
-	+$(MAKE) CONFIG=tsan TESTS="e2e $(THREADED_C)" TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=tsan TESTS="e2e $(THREADED_C)" test
 
 coverage: | $(INSTALLED) ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web install soak,$(TESTS))" TEST_SECONDS=900 test
+	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web install soak,$(TESTS))" test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 

@@ -16,6 +16,9 @@ const require = createRequire(new URL('../../web/package.json', import.meta.url)
 const { chromium } = require('playwright-core');
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
+// What a page does not show within so many milliseconds fails: a guard against what never comes.
+export const LONGEST = 300000;
+
 // The graphics of the page are drawn by software: what puts its layers together need not be.
 const FLAGS = [
     '--no-sandbox',
@@ -51,7 +54,7 @@ export async function openPageIn(
         ...options,
     });
     const page = await context.newPage();
-    page.setDefaultTimeout(20000);
+    page.setDefaultTimeout(LONGEST);
     const wrong = [];
     page.on('pageerror', (error) => wrong.push(`page error: ${error.stack}`));
     page.on('console', (message) => {

@@ -3,8 +3,7 @@
 import { EventEmitter, once } from 'node:events';
 import { createServer, request as send } from 'node:http';
 
-// What does not happen within so many milliseconds fails.
-const LONGEST = 20000;
+import { LONGEST } from './browser.mjs';
 
 const soon = (emitter, name) => once(emitter, name, { signal: AbortSignal.timeout(LONGEST) });
 

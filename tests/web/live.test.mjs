@@ -273,7 +273,7 @@ test('what a rival has undone is not undone again, and that is said', async (t) 
     assert.ok(await page.getByRole('button', { name: 'Redo' }).isEnabled());
 });
 
-test('boundary loops are read only where some are shown', { timeout: 120_000 }, async (t) => {
+test('boundary loops are read only where some are shown', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE);
     const asked = requestsOf(page, '/boundaries');
     assert.ok(await page.getByLabel('Show boundary loops').isHidden());

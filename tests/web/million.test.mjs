@@ -25,7 +25,6 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     const { id: mesh, counts } = await post(daemon, '', { name: 'torus', ...shape });
     assert.equal(counts.faces, SIDE * SIDE);
     const page = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
-    page.setDefaultTimeout(120000);
     await waitForFrame(page, { mesh, revision: 1 });
     assert.ok((await readCanvas(page)).countOf(isSurface) > 50000);
 

@@ -20,7 +20,7 @@ function blocks(language, url) {
 }
 
 async function run(program, words) {
-    const { stdout } = await promisify(execFile)(program, words, { timeout: 60000 });
+    const { stdout } = await promisify(execFile)(program, words);
     return stdout;
 }
 

@@ -133,7 +133,7 @@ async function actBeside(daemon, mesh, below, issued) {
     }
 }
 
-test('after random edits the arrays equal fresh ones', { timeout: 280_000 }, async (t) => {
+test('after random edits the arrays equal fresh ones', async (t) => {
     console.log(`note: SEED=${SEED}`);
     const below = numbersFrom(SEED);
     const daemon = await startDaemon(t);
