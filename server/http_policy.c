@@ -127,5 +127,11 @@ bool srv_policy_origin(const srv_policy *policy, const char *method, const char 
         return api_problem_set(problem, API_FOREIGN_ORIGIN,
                                "Sec-Fetch-Site says that another site sent this");
     }
+    if (fetch_site != NULL && strcasecmp(fetch_site, "same-site") == 0 && origin == NULL) {
+        return api_problem_set(
+            problem, API_FOREIGN_ORIGIN,
+            "Sec-Fetch-Site says that another origin of this site sent this, and "
+            "there is no Origin that says which");
+    }
     return true;
 }
