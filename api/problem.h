@@ -64,8 +64,9 @@
       "Positions are built in: they are changed by the operations vertex_move and transform, and " \
       "read with the vertices.")                                                                   \
     X(BAD_FRAMING, "bad_framing", 400, "The request is ambiguous",                                 \
-      "The message has headers that leave open where its body ends or which host it is for. The "  \
-      "connection is closed.")                                                                     \
+      "A byte of the message is not where RFC 9112 has it, or its headers leave open where its "   \
+      "body ends or which host it is for. The connection is closed, since another server might "   \
+      "read the rest of it differently.")                                                          \
     X(BAD_ENCODING, "bad_encoding", 400, "The body is not what Content-Encoding says",             \
       "The bytes do not follow the coding, a checksum or length in them does not hold, something " \
       "else follows, or the body ends too early. The detail names the byte, counted from 0 in "    \
@@ -132,13 +133,16 @@
       "Host must name localhost, a loopback address or a configured name, so that a web page "     \
       "cannot reach a local server through a name of its own.")                                    \
     X(HEADERS_TOO_LARGE, "headers_too_large", 431, "The headers are too large",                    \
-      "The request's headers exceed the limit.")                                                   \
+      "A request may have 100 headers and 16384 bytes of them, fewer with a long target.")         \
     X(IDEMPOTENCY_MISMATCH, "idempotency_mismatch", 422, "The key is of another request",          \
       "A request that carries the Idempotency-Key of one that was answered within a day must be "  \
       "the same in method, path, query, Content-Type and body.")                                   \
     X(RATE_LIMIT, "rate_limit", 429, "Too many requests", "Try again after Retry-After seconds.")  \
     X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
       "The request may be fine; the server broke one of its own rules answering it.")              \
+    X(NOT_IMPLEMENTED, "not_implemented", 501, "The server does not implement this",               \
+      "The method is longer than any there is, or the body has a transfer coding other than "      \
+      "chunked. The connection is closed.")                                                        \
     X(NOT_READY, "not_ready", 503, "The server is not ready",                                      \
       "It is starting or stopping. Try again later.")                                              \
     X(OVERLOADED, "overloaded", 503, "Too many connections",                                       \
@@ -154,6 +158,8 @@
       "header Prefer: respond-async: a job has the time it needs.")                                \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
+    X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \
+      "HTTP/1.1 and HTTP/1.0 are. The connection is closed.")                                      \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
       "What the request would store does not fit the configured budget. Delete a mesh and try "    \
       "again.")                                                                                    \

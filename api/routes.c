@@ -703,7 +703,8 @@ const api_route *api_route_at(size_t i)
 
 const int *api_route_common(void)
 {
-    static const int common[] = {400, 403, 404, 405, 406, 408, 414, 421, 431, 500, 503, 507, 0};
+    static const int common[] = {400, 403, 404, 405, 406, 408, 414, 421,
+                                 431, 500, 501, 503, 505, 507, 0};
     return common;
 }
 
