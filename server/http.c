@@ -2,6 +2,7 @@
 
 #include "mesh/mem.h"
 #include "server/http_handle.h"
+#include "server/http_recv.h"
 #include "server/http_request.h"
 #include "server/limits.h"
 
@@ -68,9 +69,18 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
         const struct sockaddr *peer =
             MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
-        *slot = srv_deadlines_add(http->deadlines, fd, peer);
+        srv_connection *c = srv_deadlines_add(http->deadlines, fd, peer);
+        *slot = c;
+        if (c == NULL || !srv_recv_watch(fd, &c->syntax)) {
+            /* Nothing unchecked is served: libmicrohttpd reads the end at once. */
+            shutdown(fd, SHUT_RDWR);
+        }
     } else {
-        srv_deadlines_remove(http->deadlines, *slot);
+        srv_connection *c = *slot;
+        if (c != NULL) {
+            srv_recv_forget(c->socket);
+        }
+        srv_deadlines_remove(http->deadlines, c);
         *slot = NULL;
     }
 }
@@ -95,8 +105,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         flags |= MHD_USE_IPv6;
     }
     struct MHD_OptionItem numbers[] = {
-        /* Strict, it would refuse a missing Host and a blank in the target with pages of its own,
-         * the former with its headers sent twice: srv_framing_check refuses both. */
+        /* Strict, it would refuse with pages of its own what http_syntax.h has refused already. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
         {MHD_OPTION_CONNECTION_MEMORY_LIMIT, POOL_BYTES, NULL},
         /* Divided among the workers, which connections are not: each may hold them all. */

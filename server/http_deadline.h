@@ -27,6 +27,7 @@
 #define HE_SERVER_HTTP_DEADLINE_H
 
 #include "server/address.h"
+#include "server/http_syntax.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -58,6 +59,9 @@ typedef struct srv_connection {
     _Atomic uint64_t since; /* microseconds of the monotonic clock */
     _Atomic uint64_t bytes; /* received in this stage */
     bool drain;             /* drain after closing */
+    /* The worker's own. */
+    srv_syntax syntax;
+    uint64_t requests; /* begun by libmicrohttpd so far */
     /* The thread's own. */
     uint64_t window, window_acked; /* since when it measures an answer, 0: not */
     uint64_t taken;                /* `since` of the IDLE stage in which no byte waited, 0: none */

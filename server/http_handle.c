@@ -133,17 +133,23 @@ static bool begin_work(srv_request *r)
 
 /* --- reading --- */
 
+/* Did its bytes turn out to be no request (http_syntax.h)? What libmicrohttpd reads then ends with
+ * something else than the client sent. */
+static bool is_faulty(const srv_request *r, api_problem *problem)
+{
+    return r->socket != NULL && srv_syntax_fault(&r->socket->syntax, r->number, problem);
+}
+
 static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, const char *name,
                                     size_t name_length, const char *value, size_t value_length)
 {
     (void)kind;
     srv_head *head = context;
-    if (head->field_count < SRV_MAX_FIELDS) {
-        head->fields[head->field_count] =
-            (srv_field){name, value == NULL ? "" : value, name_length, value_length};
+    if (head->field_count == SRV_MAX_FIELDS) {
+        return MHD_NO;
     }
-    head->field_count++;
-    head->bytes += name_length + value_length;
+    head->fields[head->field_count++] =
+        (srv_field){name, value == NULL ? "" : value, name_length, value_length};
     return MHD_YES;
 }
 
@@ -214,7 +220,6 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     head.target = r->target;
     head.version = version;
     head.field_count = 0;
-    head.bytes = 0;
     MHD_get_connection_values_n(r->connection, MHD_HEADER_KIND, gather_field, &head);
     memcpy(r->method, method, strnlen(method, SRV_METHOD));
     srv_admit_name(&head, &r->http->ids, r->request_id);
@@ -223,7 +228,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     r->state = SRV_BODY;
 
     srv_framing framing;
-    if (!srv_framing_check(&head, &framing, &r->refusal)) {
+    if (is_faulty(r, &r->refusal) || !srv_framing_read(&head, &framing, &r->refusal)) {
         /* Where the body ends is not known, so it cannot be passed over. */
         r->step = API_READY;
         r->announced = UINT64_MAX;
@@ -251,9 +256,23 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     return r->step == API_MORE || answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
+static void refuse_fault(srv_request *r)
+{
+    api_problem problem = {0};
+    (void)is_faulty(r, &problem);
+    srv_answer_refuse(r, problem.code, problem.detail);
+    r->close = true;
+    r->socket->drain = true;
+}
+
 /* `size` goes down to what of the bytes is to come again. */
 static bool read_body(srv_request *r, const char *bytes, size_t *size)
 {
+    if (is_faulty(r, NULL)) {
+        refuse_fault(r);
+        srv_answer_cut_off(r);
+        return false;
+    }
     size_t used = *size;
     if (r->step == API_MORE) {
         r->step = api_body(r->exchange, bytes, *size, &used);
@@ -280,6 +299,9 @@ static bool read_body(srv_request *r, const char *bytes, size_t *size)
 static bool end_body(srv_request *r)
 {
     r->whole = true;
+    if (is_faulty(r, NULL)) {
+        refuse_fault(r);
+    }
     if (r->step == API_MORE) {
         srv_connection_enter(r->socket, SRV_STAGE_WORK, srv_clock_micros());
         r->step = api_end(r->exchange);

@@ -16,6 +16,10 @@ static srv_connection *socket_of(struct MHD_Connection *connection)
 
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection)
 {
+    srv_connection *socket = socket_of(connection);
+    if (socket != NULL) {
+        socket->requests++; /* whatever becomes of it: http_syntax.h counts it too */
+    }
     size_t length = strnlen(uri, API_MAX_URI + 1);
     srv_request *r = he_mem_zero(1, sizeof *r + length + 1);
     if (r == NULL) {
@@ -24,7 +28,8 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
     memcpy(r->target, uri, length);
     r->http = http;
     r->connection = connection;
-    r->socket = socket_of(connection);
+    r->socket = socket;
+    r->number = socket == NULL ? 0 : socket->requests;
     r->started = srv_clock_micros();
     srv_connection_enter(r->socket, SRV_STAGE_HEAD, r->started);
     return r;

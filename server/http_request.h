@@ -67,6 +67,7 @@ typedef struct srv_request {
     bool aside;   /* counted by the gate as suspended: until it runs again or has completed */
     bool whole;   /* all of the body has arrived */
     uint64_t started;
+    uint64_t number; /* on its connection, from 1 */
     uint64_t bytes_in, bytes_out;
     uint64_t announced; /* Content-Length; UINT64_MAX when chunked */
     uint64_t swallowed; /* since the answer was known */
