@@ -267,7 +267,7 @@ soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is t
 
 # `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
 FUZZ_SECONDS ?= 20
-fuzz: | $(INSTALLED) ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits and requests
+fuzz: | $(INSTALLED) ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits, requests and HTTP
 	+$(MAKE) CONFIG=fuzz targets
 	@sh tests/fuzz/run.sh $(FUZZ_SECONDS)
 
