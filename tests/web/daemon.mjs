@@ -14,10 +14,10 @@ const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..')
 const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
 const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
 
-// {url, stop(), closers}; `t` is the context of the test. When it ends the closers are called, then
+// {url, stop(), closers}; `t` is the context of the test, `flags` are more of hedged's. When it ends the closers are called, then
 // the daemon is stopped: a page that is open would miss it.
-export async function startDaemon(t) {
-    const child = spawn(program, ['--listen', '127.0.0.1:0', '--web', page], {
+export async function startDaemon(t, ...flags) {
+    const child = spawn(program, ['--listen', '127.0.0.1:0', '--web', page, ...flags], {
         stdio: ['ignore', 'ignore', 'pipe'],
     });
     const ended = new Promise((resolve) => {
