@@ -96,7 +96,7 @@ STAMPS     := build/.stamps
         fuzz targets bench bench-http bench-events bench-large bench-space container fresh screenshot \
         install clean
 
-# TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_mem.c`.
+# TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`.
 TESTS   ?= $(SUITES) fuzz web install soak
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web,$(TESTS))
