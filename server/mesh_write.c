@@ -213,6 +213,8 @@ api_store_status srv_step_apply(void *self, api_mesh *mesh, api_action which, ui
     for (uint32_t i = 0; i < steps; i++) {
         deltas[i] = take_step(mesh, which);
     }
+    /* Before anybody is told what is left to undo and redo. */
+    srv_log_settle(&mesh->log);
     if (info != NULL) {
         srv_mesh_info(mesh, info);
     }
@@ -258,7 +260,6 @@ void srv_write_end(void *self, api_mesh *mesh)
         he_mesh_record(mesh->content, recording);
         roll_back(mesh);
     }
-    srv_log_settle(&mesh->log);
     bool cut_off = mesh->discard != NULL;
     unlock(mesh);
     /* No copy can travel across a replace. */

@@ -11,9 +11,11 @@ typedef enum srv_place { SRV_NOWHERE, SRV_ON_UNDO, SRV_ON_REDO } srv_place;
 
 struct srv_step {
     he_delta *delta;
-    size_t bytes;
+    size_t bytes;             /* of the step with its delta as it is */
+    size_t charged;           /* what it counts against the budget */
     uint64_t revision;        /* of the edit */
     uint64_t applied;         /* of the entry that applied it last */
+    srv_revision *kept;       /* that entry, when only the redo stack still needs it */
     uint32_t uses;            /* by entries and a stack */
     _Atomic uint32_t holders; /* the log, while it has uses, and srv_log_hold */
     srv_place place;

@@ -29,7 +29,7 @@ void srv_log_init(srv_revision_log *log, uint64_t budget, uint64_t revision, con
 static void release_step(srv_revision_log *log, srv_step *step)
 {
     if (--step->uses == 0) {
-        log->bytes -= step->bytes;
+        log->bytes -= step->charged;
         srv_step_release(step);
     }
 }
@@ -102,7 +102,19 @@ static srv_step *pop_redo(srv_revision_log *log)
     log->redo_top = step->below;
     log->redo_count--;
     step->place = SRV_NOWHERE;
+    if (step->kept != NULL) {
+        log->bytes -= step->kept->size;
+        he_mem_free(step->kept);
+        step->kept = NULL;
+    }
     return step;
+}
+
+static void charge(srv_revision_log *log, srv_step *step, size_t bytes)
+{
+    log->bytes += bytes;
+    log->bytes -= step->charged;
+    step->charged = bytes;
 }
 
 static void forget_delta(srv_revision_log *log, srv_revision *entry)
@@ -118,7 +130,9 @@ static void forget_delta(srv_revision_log *log, srv_revision *entry)
 static void clear_redo(srv_revision_log *log)
 {
     while (log->redo_top != NULL) {
-        release_step(log, pop_redo(log));
+        srv_step *step = pop_redo(log);
+        charge(log, step, step->bytes);
+        release_step(log, step);
     }
 }
 
@@ -144,37 +158,44 @@ static void forget_deltas(srv_revision_log *log)
     }
 }
 
-/* An edit's entry is older than those that undid it or did it again, and edits below it on the
- * undo stack are older still: so the step of the oldest entry, if it is on the undo stack, is at
- * its bottom. On the redo stack it is at the top, and nothing above it can be reached without. */
+static void drop_undo_bottom(srv_revision_log *log)
+{
+    srv_step *step = log->undo_bottom;
+    log->bottom = step->revision;
+    log->undo_bottom = step->above;
+    if (step->above != NULL) {
+        step->above->below = NULL;
+    } else {
+        log->undo_top = NULL;
+    }
+    log->undo_count--;
+    step->place = SRV_NOWHERE;
+    release_step(log, step);
+}
+
+/* The steps of the undo stack were applied last in the order in which they lie there: so the step
+ * that the oldest entry applied last, if it is on the undo stack, is at its bottom. */
 static void drop_oldest(srv_revision_log *log)
 {
     srv_revision *entry = srv_entry_at(log, 0);
     srv_step *step = entry->step;
-    if (step != NULL && step->revision == entry->point.revision) {
-        if (step->place == SRV_ON_UNDO) {
-            assert(step == log->undo_bottom);
-            log->bottom = step->revision;
-            log->undo_bottom = step->above;
-            if (step->above != NULL) {
-                step->above->below = NULL;
-            } else {
-                log->undo_top = NULL;
-            }
-            log->undo_count--;
-            step->place = SRV_NOWHERE;
-            release_step(log, step);
-        } else if (step->place == SRV_ON_REDO) {
-            clear_redo(log);
-        }
+    bool last = step != NULL && step->applied == entry->point.revision;
+    bool keeps = last && step->place == SRV_ON_REDO;
+    if (last && step->place == SRV_ON_UNDO) {
+        assert(step == log->undo_bottom);
+        drop_undo_bottom(log);
     }
     forget_delta(log, entry);
     log->before = entry->point;
     if (log->oldest < entry->point.revision) {
         log->oldest = entry->point.revision;
     }
-    log->bytes -= entry->size;
-    he_mem_free(entry);
+    if (keeps) {
+        step->kept = entry;
+    } else {
+        log->bytes -= entry->size;
+        he_mem_free(entry);
+    }
     log->first = (log->first + 1) & (log->capacity - 1);
     log->count--;
     log->dropped++;
@@ -193,10 +214,6 @@ void srv_log_settle(srv_revision_log *log)
     /* The newest entry stays, whatever the budget: it says what the present revision is. */
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
-    }
-    /* A step can have grown by what it took out of the mesh. */
-    if (log->bytes > log->budget && log->count == 1) {
-        forget_deltas(log);
     }
     shrink_ring(log);
 }
@@ -345,6 +362,7 @@ void srv_log_add_edit(srv_revision_log *log, uint64_t revision, const char *ops,
     log->spare_step = NULL;
     he_delta_trim(step->delta);
     step->bytes = sizeof *step + he_delta_bytes(step->delta);
+    step->charged = step->bytes;
     step->revision = revision;
     step->applied = revision;
     entry->delta_bytes = step->bytes;
@@ -356,9 +374,13 @@ void srv_log_add_edit(srv_revision_log *log, uint64_t revision, const char *ops,
         step->uses = 2;
         entry->step = step;
         push_undo(log, step);
-        log->bytes += step->bytes;
+        log->bytes += step->charged;
     }
     srv_log_settle(log);
+    /* Without memory to trim it, the step can be larger than was foreseen. */
+    if (log->bytes > log->budget) {
+        forget_deltas(log);
+    }
 }
 
 void srv_log_add_barrier(srv_revision_log *log, uint64_t revision, api_action action,
@@ -379,18 +401,28 @@ he_delta *srv_log_next(const srv_revision_log *log, api_action which)
     return step == NULL ? NULL : step->delta;
 }
 
-/* An edit on a stack has its entry still: the two are dropped together. */
+/* What an undo created is what the edit deleted, and the other way round. */
+static void turn_tally(api_tally *tally)
+{
+    api_tally before = *tally;
+    memcpy(tally->created, before.deleted, sizeof tally->created);
+    memcpy(tally->deleted, before.created, sizeof tally->deleted);
+}
+
+/* An entry that applies a step the other way than the entry that applied the step last, which a
+ * step on a stack always has. */
 static srv_revision *step_entry(const srv_revision_log *log, const srv_step *step)
 {
-    const srv_revision *edit = srv_entry_of(log, step->revision);
-    size_t length = strlen(edit->ops);
+    const srv_revision *last = step->kept != NULL ? step->kept : srv_entry_of(log, step->applied);
+    size_t length = strlen(last->ops);
     srv_revision *entry = he_mem_alloc(sizeof *entry + length + 1);
     if (entry == NULL) {
         return NULL;
     }
     *entry = (srv_revision){.inverts = step->revision, .size = entry_size(length)};
-    entry->tally = edit->tally;
-    memcpy(entry->ops, edit->ops, length + 1);
+    entry->tally = last->tally;
+    turn_tally(&entry->tally);
+    memcpy(entry->ops, last->ops, length + 1);
     return entry;
 }
 
@@ -412,14 +444,6 @@ bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t ste
     return reserved;
 }
 
-/* What an undo created is what the edit deleted. */
-static void turn_tally(api_tally *tally)
-{
-    api_tally edit = *tally;
-    memcpy(tally->created, edit.deleted, sizeof tally->created);
-    memcpy(tally->deleted, edit.created, sizeof tally->deleted);
-}
-
 void srv_log_add_step(srv_revision_log *log, uint64_t revision, api_action which, double time,
                       const he_mesh *content)
 {
@@ -429,9 +453,7 @@ void srv_log_add_step(srv_revision_log *log, uint64_t revision, api_action which
     srv_step *step = which == API_UNDO ? pop_undo(log) : pop_redo(log);
     assert(step->revision == entry->inverts);
     /* Columns and contents have changed sides, and with them who holds their bytes. */
-    log->bytes -= step->bytes;
     step->bytes = sizeof *step + he_delta_bytes(step->delta);
-    log->bytes += step->bytes;
     entry->action = which;
     entry->forward = which == API_REDO;
     entry->delta_bytes = step->bytes;
@@ -439,7 +461,6 @@ void srv_log_add_step(srv_revision_log *log, uint64_t revision, api_action which
     step->uses++;
     step->applied = revision;
     if (which == API_UNDO) {
-        turn_tally(&entry->tally);
         push_redo(log, step);
     } else {
         push_undo(log, step);

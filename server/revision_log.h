@@ -13,10 +13,18 @@
  * the revision whose edit was the last to be done and not undone: entries of equal state hold the
  * same content.
  *
- * Bytes of entries and deltas stay within a budget: the oldest entries go first, and with an edit's
- * entry its step leaves the stacks. An edit larger than the budget keeps its entry without a delta
- * and ends both stacks. So do a replace and a compact, which make deltas before them useless.
- * A revision can be read for as long as every delta after it is there.
+ * Bytes of entries and deltas stay within a budget: the oldest entries go first. A step on the undo
+ * stack leaves it with the entry that applied the step last; those entries are in the order of the
+ * stack, so the oldest steps to undo go first. A step on the redo stack never goes to save memory:
+ * when its last entry leaves the ring, the step keeps that entry, because the entry that will do
+ * the step again is made from it. This always fits, because the budget is charged for a step what
+ * the edit took, however often the step is undone and done again. What a delta then holds may be
+ * more (undone, it holds the columns and contents that the edit had put into the mesh), but the
+ * mesh holds as much less. Once a step can no longer be done again, it is charged as it is.
+ *
+ * An edit larger than the budget keeps its entry without a delta and ends both stacks. So do a
+ * replace and a compact, which make deltas before them useless. A revision can be read for as long
+ * as every delta after it is there.
  *
  * The log has no lock: it is read under the mesh's shared lock and written under its exclusive
  * one. Only the count of those who hold a step is shared beyond. */
@@ -38,7 +46,7 @@ typedef struct srv_point {
 
 typedef struct srv_revision_log {
     uint64_t budget;     /* bytes */
-    uint64_t bytes;      /* of entries and steps */
+    uint64_t bytes;      /* of entries and steps, as charged */
     srv_revision **ring; /* a power of two of places */
     size_t capacity, first, count;
     uint64_t dropped; /* entries, to stay within the budget */
@@ -89,10 +97,11 @@ bool srv_log_reserve_steps(srv_revision_log *log, api_action which, uint32_t ste
                            const he_mesh *content);
 /* The delta that undo or redo would apply, NULL when there is none. */
 he_delta *srv_log_next(const srv_revision_log *log, api_action which);
-/* It was applied: move its step to the other stack and add the entry. The delta stays valid until
- * srv_log_settle, which brings the log back within its budget. */
+/* It was applied: move its step to the other stack and add the entry. */
 void srv_log_add_step(srv_revision_log *log, uint64_t revision, api_action which, double time,
                       const he_mesh *content);
+/* Bring the log back within its budget after steps were added. Their deltas stay valid until the
+ * next change. */
 void srv_log_settle(srv_revision_log *log);
 
 /* The i-th newest entry; false past the end. */

@@ -25,10 +25,9 @@ api_store_status srv_log_steps_to(const srv_revision_log *log, api_action which,
     if (revision > srv_log_head(log)) {
         return API_STORE_AHEAD;
     }
-    if (revision < log->before.revision) {
-        return API_STORE_GONE;
-    }
-    uint64_t wanted = point_of(log, revision)->state;
+    /* A step on a stack still leads to its edit's revision when the entry of that has gone. */
+    bool has_entry = revision >= log->before.revision;
+    uint64_t wanted = has_entry ? point_of(log, revision)->state : revision;
     bool undo = which == API_UNDO;
     if (point_of(log, srv_log_head(log))->state == wanted) {
         *steps = 0;
@@ -41,7 +40,7 @@ api_store_status srv_log_steps_to(const srv_revision_log *log, api_action which,
         count++;
     }
     if (step == NULL && !(undo && wanted == log->bottom)) {
-        return wanted < log->bottom ? API_STORE_GONE : API_STORE_ELSEWHERE;
+        return !has_entry || wanted < log->bottom ? API_STORE_GONE : API_STORE_ELSEWHERE;
     }
     *steps = count;
     return API_STORE_OK;

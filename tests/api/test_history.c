@@ -349,7 +349,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
     enum { BUDGET = 6000, EDITS = 300 };
     md_random random = {seed_of_run()};
     api_bench *b = bench_new_within(BUDGET, 0);
-    char *dumps[EDITS + 2] = {NULL}, body[BODY], target[TARGET];
+    char *dumps[10 * EDITS] = {NULL}, body[BODY], target[TARGET];
     bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
                                             "{\"shape\":\"icosphere\",\"subdivisions\":1}")));
     dumps[1] = dump(b, 0);
@@ -392,9 +392,10 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
                 char *same = dump(b, 0);
                 assert_string_equal(same, dumps[oldest - 1]);
                 free(same);
-                head = head_of(b);
-                free(dumps[head]);
-                dumps[head] = dump(b, 0);
+                while (head < head_of(b)) {
+                    assert_true(++head < sizeof dumps / sizeof *dumps);
+                    dumps[head] = dump(b, head);
+                }
             }
             bench_done(r);
         }
@@ -404,6 +405,114 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
     for (size_t i = 0; i < sizeof dumps / sizeof *dumps; i++) {
         free(dumps[i]);
     }
+    bench_free(b);
+}
+
+/* Add `edits` vertices; what is left to undo. */
+static uint32_t fill_history(api_bench *b, int edits)
+{
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    for (int i = 0; i < edits; i++) {
+        bench_done(bench_expect(
+            200, history_post(b, "edits", "{\"op\":\"edge_split\",\"edge\":0,\"t\":0.5}")));
+    }
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
+    assert_true(history_number(r.json, "dropped") > 0);
+    uint32_t left = (uint32_t)history_number(r.json, "undo");
+    bench_done(r);
+    return left;
+}
+
+/* Take steps; what the answer says of both stacks must be what the history says right after, and
+ * is `undo` and `redo`. */
+static void expect_stacks(api_bench *b, const char *which, uint32_t steps, uint32_t undo,
+                          uint32_t redo)
+{
+    char body[BODY];
+    snprintf(body, sizeof body, "{\"steps\":%u}", steps);
+    bench_reply r = bench_expect(200, history_post(b, which, body));
+    assert_int_equal(history_number(r.json, "redo"), redo);
+    assert_int_equal(history_number(r.json, "undo"), undo);
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
+    assert_int_equal(history_number(r.json, "redo"), redo);
+    assert_int_equal(history_number(r.json, "undo"), undo);
+    assert_true(history_number(r.json, "bytes") <= history_number(r.json, "budget"));
+    bench_done(r);
+}
+
+static void all_that_was_undone_in_a_full_history_can_be_done_again(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new_within(20 * 1024, 0);
+    uint32_t all = fill_history(b, 60);
+    assert_true(all > 10);
+    char *before = dump(b, 0);
+    for (int round = 0; round < 3; round++) {
+        expect_stacks(b, "undo", all, 0, all);
+        expect_stacks(b, "redo", all, all, 0);
+        char *after = dump(b, 0);
+        assert_string_equal(after, before);
+        free(after);
+    }
+    free(before);
+    bench_free(b);
+}
+
+/* The entries of undos displace the oldest, and with them the oldest steps to undo: never one to
+ * redo. */
+static void an_undo_never_costs_a_redo(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new_within(20 * 1024, 0);
+    uint32_t all = fill_history(b, 60), redo = 0, undo = all;
+    while (undo > 0) {
+        bench_reply r = bench_expect(200, history_post(b, "undo", NULL));
+        redo++;
+        assert_int_equal(history_number(r.json, "redo"), redo);
+        assert_true(history_number(r.json, "undo") < undo);
+        undo = (uint32_t)history_number(r.json, "undo");
+        bench_done(r);
+    }
+    assert_true(redo >= all / 2);
+    for (int i = 0; i < 100; i++) {
+        expect_stacks(b, "redo", 1, 1, redo - 1);
+        expect_stacks(b, "undo", 1, 0, redo);
+    }
+    expect_stacks(b, "redo", redo, redo, 0);
+    bench_free(b);
+}
+
+/* Undone, a subdivision's step holds the fine mesh, which alone is beyond the budget. */
+static void what_an_edit_made_does_not_count_against_its_redo(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new_within(20 * 1024, 0);
+    fill_history(b, 60);
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/c", NULL, "{\"shape\":\"cube\"}")));
+    bench_reply r = bench_expect(200, bench_post(b, "/v1/meshes/c/edits",
+                                                 "{\"op\":\"subdivide\",\"scheme\":\"linear\","
+                                                 "\"steps\":4}"));
+    assert_null(cJSON_GetObjectItem(r.json, "undoable"));
+    bench_done(r);
+    for (int i = 0; i < 3; i++) {
+        r = bench_expect(200, bench_post(b, "/v1/meshes/c/undo", NULL));
+        assert_int_equal(history_number(r.json, "redo"), 1);
+        bench_done(r);
+        r = bench_expect(200, bench_post(b, "/v1/meshes/c/redo", NULL));
+        assert_int_equal(history_number(r.json, "undo"), 1);
+        bench_done(r);
+    }
+    /* When it cannot be done again it counts as what it holds, and goes. */
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/c/undo", NULL)));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/c/edits",
+                                            "{\"op\":\"face_poke\",\"face\":0}")));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/c/edits"));
+    assert_true(history_number(r.json, "dropped") >= 2);
+    assert_int_equal(history_number(r.json, "undo"), 1);
+    bench_done(r);
     bench_free(b);
 }
 
@@ -534,6 +643,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_revision_stays_what_it_was),
         cmocka_unit_test(the_history_stays_within_its_budget_and_says_so),
+        cmocka_unit_test(all_that_was_undone_in_a_full_history_can_be_done_again),
+        cmocka_unit_test(an_undo_never_costs_a_redo),
+        cmocka_unit_test(what_an_edit_made_does_not_count_against_its_redo),
         cmocka_unit_test(an_edit_beyond_the_budget_says_that_the_history_ends),
         cmocka_unit_test(steps_that_cannot_be_taken_change_nothing),
         cmocka_unit_test(a_finer_mesh_is_one_step_of_the_history),
