@@ -2,6 +2,8 @@
 
 #include "query/vec3.h"
 
+#include <float.h>
+
 /* Of the mesh's size, and of the coordinates along the normal. */
 static const double TOLERANCE = 1e-9, NOISE = 0x1p-48;
 
@@ -35,12 +37,19 @@ static he_vec3 unit_of(he_vec3 normal)
     return (he_vec3){n.x / length, n.y / length, n.z / length};
 }
 
+/* An isolated vertex only has a side, so it has no part in the size of things. */
+static bool is_cut(const he_mesh *m, uint32_t v)
+{
+    return m->c.vertex_halfedge[v] < HE_DEAD;
+}
+
 static double find_scale(const he_mesh *m, he_vec3 point)
 {
     double extent = he_vec3_extent(point);
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
-        /* A dead row lies at the origin. */
-        extent = fmax(extent, he_vec3_extent(m->c.position[v]));
+        if (is_cut(m, v)) {
+            extent = fmax(extent, he_vec3_extent(m->c.position[v]));
+        }
     }
     int exponent = 0;
     (void)frexp(extent, &exponent);
@@ -53,6 +62,21 @@ static double weigh(he_vec3 n, he_vec3 p)
     return fabs(n.x * p.x) + fabs(n.y * p.y) + fabs(n.z * p.z);
 }
 
+/* The distance of a vertex that may be farther from the plane than those that are cut. */
+static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
+{
+    he_vec3 near = he_vec3_scale(p, scale);
+    if (he_vec3_extent(near) <= 1) {
+        return he_vec3_dot(n, he_vec3_sub(near, he_vec3_scale(point, scale)));
+    }
+    int exponent = 0;
+    (void)frexp(he_vec3_extent(p), &exponent);
+    he_vec3 way = he_vec3_sub(he_vec3_scale(p, ldexp(1, -exponent)),
+                              he_vec3_scale(point, ldexp(1, -exponent)));
+    double far = ldexp(he_vec3_dot(n, way), exponent) * scale;
+    return fmax(fmin(far, DBL_MAX), -DBL_MAX);
+}
+
 /* Fill in the distances, and the default tolerance, in their unit. */
 static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *sides,
                          double *tolerance, he_error *err)
@@ -63,14 +87,16 @@ static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *s
     for (uint32_t v = 0; v < sides->count && status == HE_OK; v++) {
         status = he_watch_at(m->watch, v, sides->count, err);
         if (he_vertex_is_live(m, (he_vertex){v})) {
+            sides->distance[v] = distance_of(m->c.position[v], point, n, sides->scale);
+        }
+        if (is_cut(m, v)) {
             he_vec3 p = he_vec3_scale(m->c.position[v], sides->scale);
-            sides->distance[v] = he_vec3_dot(n, he_vec3_sub(p, q));
             weight = fmax(weight, weigh(n, p));
             low = (he_vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
             high = (he_vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
         }
     }
-    double size = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
+    double size = fmax(0, fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z)));
     *tolerance = fmax(TOLERANCE * size, NOISE * (weight + weigh(n, q)));
     return status;
 }

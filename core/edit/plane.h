@@ -12,13 +12,14 @@ typedef struct he_sides {
     double *distance; /* of each vertex, times `scale`; exactly 0 in the plane and in dead rows */
     uint32_t count;   /* vertices issued when they were measured; those made since are in the plane,
                          since only cuts along it make any */
-    double scale;     /* a power of two that brings all coordinates within [-1, 1]: no size of mesh
-                         overflows or vanishes */
+    double scale;     /* a power of two that brings the coordinates of the point and of all vertices
+                         with edges within [-1, 1]: no size of mesh overflows or vanishes */
 } he_sides;
 
 /* Measure against the plane through `point` with a normal of any length. `tolerance` is a distance;
- * NULL stands for 1e-9 of the longest side of the box about the live vertices, but no less than
- * 2^-48 of the coordinates along the normal, below which distances are rounding noise. A vertex put
+ * NULL stands for 1e-9 of the longest side of the box about the vertices that have edges, but no
+ * less than 2^-48 of their coordinates along the normal, below which distances are rounding noise:
+ * an isolated vertex, however far away, has no part in what is cut. A vertex put
  * where an edge meets the plane is then in it when measured again.
  *
  * Refused: HE_NOT_FINITE for point, normal or tolerance; HE_BAD_VALUE for a normal of zero or a

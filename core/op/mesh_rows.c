@@ -92,8 +92,8 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
     {                                                                                    \
         .name = "tolerance", .type = HE_PARAM_NUMBER, .flags = HE_DERIVED,               \
         .doc = "Vertices within this distance of the plane count as in it; 1e-9 of the " \
-               "longest side of the mesh's box when not given, or what rounding needs "  \
-               "where coordinates are larger than that."                                 \
+               "longest side of the box around the edges when not given, or what "       \
+               "rounding needs where coordinates are larger than that."                  \
     }
 #define SPLIT_COUNTS                                                            \
     {"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges got a vertex."}, \

@@ -9,20 +9,29 @@ static double dot(he_vec3 a, he_vec3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/* 1e-9 of the longest side of the box. The model's meshes are not small beside their coordinates,
- * so that rounding asks for less. */
+static bool has_edge(const or_mesh *o, uint32_t v)
+{
+    bool found = false;
+    for (uint32_t e = 0; e < o->edges && !found; e++) {
+        found = o->edge[e].alive && (o->edge[e].a == v || o->edge[e].b == v);
+    }
+    return found;
+}
+
+/* 1e-9 of the longest side of the box around the vertices that have edges. The model's meshes are
+ * not small beside their coordinates, so that rounding asks for less. */
 static double tolerance_of(const or_mesh *o)
 {
     he_vec3 low = {INFINITY, INFINITY, INFINITY};
     he_vec3 high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t v = 0; v < o->vertices; v++) {
-        if (o->vertex[v].alive) {
+        if (o->vertex[v].alive && has_edge(o, v)) {
             he_vec3 p = o->vertex[v].at;
             low = (he_vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
             high = (he_vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
         }
     }
-    return 1e-9 * fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
+    return 1e-9 * fmax(0, fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z)));
 }
 
 /* False when some vertex is closer to the end of the tolerance than rounding can tell. */
