@@ -130,23 +130,23 @@ static const api_parameter merge = {
     DBL_MAX,
     NULL,
     "Vertices no farther apart are in one place, edges no longer have no length, faces no wider "
-    "have no area; 1e-9 of the box's diagonal if not said."};
+    "have no area; 1e-9 of the diagonal of the box around the edges if not said."};
 static const api_parameter flat = {
     "flat",
     API_PARAM_NUMBER,
     0,
     DBL_MAX,
     NULL,
-    "A corner farther from the plane of its face makes that nonplanar; 1e-4 of the box's diagonal "
-    "if not said."};
+    "A corner farther from the plane of its face makes that nonplanar; 1e-4 of the diagonal of "
+    "the box around the edges if not said."};
 static const api_parameter small = {
     "small",
     API_PARAM_NUMBER,
     0,
     DBL_MAX,
     NULL,
-    "Components in boxes whose diagonal is no longer are small; 1e-2 of the whole box's diagonal "
-    "if not said."};
+    "Components in boxes whose diagonal is no longer are small; 1e-2 of the diagonal of the "
+    "box around the edges if not said."};
 static const api_parameter dry_run = {
     "dry_run", API_PARAM_FLAG, 0, 0, NULL, "Do nothing, and answer as if; members say it in JSON."};
 static const api_parameter rule = {

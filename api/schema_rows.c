@@ -229,7 +229,8 @@ const api_member api_answer_members[] = {
      "How many there are of each; the first 100 of each are listed. `self_intersection` is there "
      "when it was asked for."},
     {"check", "thresholds", "#thresholds", REQUIRED,
-     "The lengths that were gone by, given or taken from the box of the mesh. 0 when it is not "
+     "The lengths that were gone by, given or taken from the box around the edges. 0 when it is "
+     "not "
      "valid: then no defects are looked for."},
     {"check", "complete", "flag", REQUIRED,
      "False when there may be more self-intersections than were found within the limits."},

@@ -42,7 +42,7 @@ static void find_frame(he_decimation *d)
     const he_mesh *m = d->mesh;
     he_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
-        if (he_vertex_is_live(m, (he_vertex){v})) {
+        if (he_vertex_is_live(m, (he_vertex){v}) && m->c.vertex_halfedge[v] != HE_NONE) {
             he_vec3 p = m->c.position[v];
             low = (he_vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
             high = (he_vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};

@@ -319,7 +319,7 @@ he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *
     if (b.tree == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of boxes");
     }
-    he_mesh_box(m, &bounds);
+    he_surface_box(m, &bounds);
     b.tree->exponent = he_exponent_of(fmax(he_vec3_extent(bounds.min), he_vec3_extent(bounds.max)));
     b.tree->scale = ldexp(1, -b.tree->exponent);
     if (count == 0) {

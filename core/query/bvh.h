@@ -6,8 +6,10 @@
  * halved instead, so that no input makes it deeper than what the walks have room for.
  *
  *     nodes      0: the root; children of a node stand together, first and first + 1
- *     boxes      in coordinates times `scale`, a power of two that brings the mesh near the unit
- *                cube: no finite input overflows. Floats, rounded outward
+ *     boxes      in coordinates times `scale`, a power of two that brings the faces near the unit
+ *                cube, whatever isolated vertices there are: no finite input overflows. Faces that
+ *                are 1e70 times smaller than the largest coordinate of a face are points to a ray
+ *                and to a search for the nearest. Floats, rounded outward
  *     discs      of the same triangles, see bvh_disc.h
  *
  * A tree belongs to the mesh as it was when the tree was made: the functions take that mesh along,

@@ -81,7 +81,7 @@ he_status he_defects_of_components(const he_mesh *m, double small, he_watch *wat
 {
     he_box box;
     uint32_t *component = NULL, count = 0;
-    he_mesh_box(m, &box);
+    he_surface_box(m, &box);
     survey s = {.m = m};
     s.exponent = he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
     s.scale = ldexp(1, -s.exponent);

@@ -33,7 +33,7 @@ he_thresholds he_thresholds_of(const he_mesh *m)
 {
     he_box box;
     double diagonal;
-    he_mesh_box(m, &box);
+    (void)(he_surface_box(m, &box) || he_mesh_box(m, &box));
     he_direction(box.min, box.max, &diagonal);
     return (he_thresholds){1e-9 * diagonal, 1e-4 * diagonal, 1e-2 * diagonal, 0};
 }
@@ -162,7 +162,7 @@ static he_status of_faces(const he_mesh *m, const he_thresholds *t, he_watch *wa
                           he_defects *out, he_error *err)
 {
     he_box box;
-    he_mesh_box(m, &box);
+    he_surface_box(m, &box);
     measure s = {.m = m};
     s.exponent = he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
     s.scale = ldexp(1, -s.exponent);

@@ -50,7 +50,8 @@ typedef struct he_thresholds {
     uint64_t seed;
 } he_thresholds;
 
-/* Parts of the diagonal of the box of all vertices: 1e-9, 1e-4 and 1e-2. The seed is 0. */
+/* Parts of the diagonal of the box around the vertices that have edges, of all vertices where none
+ * has: 1e-9, 1e-4 and 1e-2. The seed is 0. */
 he_thresholds he_thresholds_of(const he_mesh *m);
 
 /* The first of each, by rising id, and how many there are. */

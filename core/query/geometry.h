@@ -28,8 +28,12 @@ he_vec3 he_direction(he_vec3 from, he_vec3 to, double *length);
 double he_edge_length(const he_mesh *m, he_edge e);
 
 /* The angle between the normals of the two faces of an edge, in (-pi, pi]: positive where they form
- * a convex ridge, negative in a valley, 0 where they are coplanar. False, and 0, on the boundary or
- * beside a degenerate face. */
+ * a convex ridge, negative in a valley, 0 where they are coplanar. A face that is not flat counts
+ * with the direction of its area vector, which is that of the plane nearest to its corners only
+ * roughly and need not be perpendicular to the edge: the angle is then atan2((a x b) . d, a . b)
+ * of the unit normals a of the first half-edge's face and b of its twin's, with d the unit vector
+ * along the first half-edge, and |sin| of it may be less than |a x b|. False, and 0, on the
+ * boundary or beside a degenerate face. */
 bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out);
 
 /* Inside its face, between a half-edge and the one before it; in [0, pi], so a reflex corner gives
@@ -90,15 +94,21 @@ typedef struct he_box {
 } he_box;
 
 bool he_mesh_box(const he_mesh *m, he_box *out);
+/* The box around the vertices that have edges: what lengths and areas are measured in goes by this
+ * one, so that an isolated vertex far away changes none of them. False and zero when there are no
+ * edges. */
+bool he_surface_box(const he_mesh *m, he_box *out);
 
 /* The sum of the faces' areas, and the volume that a closed mesh encloses: positive where normals
  * point out of it, each face taken as the fan from the corner its stored half-edge leaves
- * (divergence theorem); for planar faces any fan is the same. Sums are compensated (Neumaier 1974).
- */
+ * (divergence theorem); for planar faces any fan is the same. Sums are compensated (Neumaier 1974)
+ * and each face is measured in a scale of its own, so that large faces elsewhere and the distance
+ * to the coordinates' origin take no digits away from small ones but those that the sum itself,
+ * being one double, cannot hold. */
 typedef struct he_measures {
     double area;
     double volume;   /* 0 unless closed */
-    bool has_volume; /* no boundary half-edge */
+    bool has_volume; /* closed: there are faces, and no boundary half-edge */
 } he_measures;
 
 HE_NODISCARD he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err);

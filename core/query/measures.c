@@ -2,26 +2,42 @@
 #include "query/geometry.h"
 #include "query/ring.h"
 
-bool he_mesh_box(const he_mesh *m, he_box *out)
+static void extend(he_box *box, bool *any, he_vec3 p)
 {
-    he_vec3 low = {0, 0, 0}, high = {0, 0, 0};
+    if (!*any) {
+        box->min = box->max = p;
+        *any = true;
+    }
+    he_vec3 low = box->min, high = box->max;
+    box->min =
+        (he_vec3){p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y, p.z < low.z ? p.z : low.z};
+    box->max = (he_vec3){p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y,
+                         p.z > high.z ? p.z : high.z};
+}
+
+/* `isolated`: with vertices that have no edge. */
+static bool find_box(const he_mesh *m, bool isolated, he_box *out)
+{
+    he_box box = {{0, 0, 0}, {0, 0, 0}};
     bool any = false;
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
-        if (!he_vertex_is_live(m, (he_vertex){v})) {
-            continue;
+        uint32_t h = m->c.vertex_halfedge[v];
+        if (h != HE_DEAD && (isolated || h != HE_NONE)) {
+            extend(&box, &any, m->c.position[v]);
         }
-        he_vec3 p = m->c.position[v];
-        if (!any) {
-            low = high = p;
-            any = true;
-        }
-        low = (he_vec3){p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y,
-                        p.z < low.z ? p.z : low.z};
-        high = (he_vec3){p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y,
-                         p.z > high.z ? p.z : high.z};
     }
-    *out = (he_box){low, high};
+    *out = box;
     return any;
+}
+
+bool he_mesh_box(const he_mesh *m, he_box *out)
+{
+    return find_box(m, true, out);
+}
+
+bool he_surface_box(const he_mesh *m, he_box *out)
+{
+    return find_box(m, false, out);
 }
 
 /* Neumaier's sum: the rounding errors are summed beside it. */
@@ -36,16 +52,101 @@ static void add(total *t, double x)
     t->sum = sum;
 }
 
+/* Terms of any size: those whose exponents are in one window of WINDOW share a total. A volume's
+ * exponent is within three times that of a double. */
+enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
+
+typedef struct sums {
+    total plain;       /* of terms that are far from the ends of a double */
+    total of[WINDOWS]; /* of the others, times 2^-(LEAST + WINDOW i) */
+} sums;
+
+static void add_window(sums *s, double x, int exponent)
+{
+    int own;
+    double part = frexp(x, &own);
+    if (part == 0) {
+        return;
+    }
+    int above = own + exponent - LEAST;
+    int window = above < 0 ? 0 : above / WINDOW < WINDOWS ? above / WINDOW : WINDOWS - 1;
+    add(&s->of[window], ldexp(part, above - window * WINDOW));
+}
+
+/* x 2^exponent */
+static void add_scaled(sums *s, double x, int exponent)
+{
+    double size = fabs(x);
+    if (exponent == 0 && size > HE_LEAST_PRODUCT && size < HE_MOST_PRODUCT) {
+        add(&s->plain, x);
+    } else {
+        add_window(s, x, exponent);
+    }
+}
+
+/* The sum by `divisor`; what a double cannot hold is the largest that it can. */
+static double sum_of(sums *s, double divisor)
+{
+    total plain = s->plain;
+    s->plain = (total){0, 0};
+    add_window(s, plain.sum, 0);
+    add_window(s, plain.error, 0);
+    int top = WINDOWS - 1;
+    while (top > 0 && s->of[top].sum + s->of[top].error == 0) {
+        top--;
+    }
+    total all = {0, 0};
+    for (int i = top, down = 0; i >= 0; i--, down -= WINDOW) {
+        add(&all, ldexp(s->of[i].sum, down));
+        add(&all, ldexp(s->of[i].error, down));
+    }
+    return he_clamped(ldexp((all.sum + all.error) / divisor, LEAST + top * WINDOW));
+}
+
+/* From where volumes are measured: of the vertices with edges one of the nearest to the
+ * coordinates' origin. Far from the mesh the volume would cancel, and so would that of what is
+ * small and near if it were measured from a corner that is far. */
+static he_vec3 find_base(const he_mesh *m)
+{
+    double least = HUGE_VAL;
+    he_vec3 base = {0, 0, 0};
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        if (m->c.vertex_halfedge[v] < HE_DEAD) {
+            double extent = he_vec3_extent(m->c.position[v]);
+            if (extent < least) {
+                least = extent;
+                base = m->c.position[v];
+            }
+        }
+    }
+    return base;
+}
+
+/* `vector` is in a scale of its own: true ones are that times 4^exponent. */
+static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector, int exponent)
+{
+    int halved = 0;
+    he_vec3 way = he_vec3_sub(corner, base);
+    double extent = he_vec3_extent(way);
+    if (exponent == 0 && extent > 1e-100 && extent < 1e100) {
+        add_scaled(volume, he_vec3_dot(way, vector), 0);
+        return;
+    }
+    if (!he_vec3_is_finite(way)) {
+        way = he_vec3_sub(he_vec3_scale(corner, 0.5), he_vec3_scale(base, 0.5));
+        halved = 1;
+    }
+    int own = he_exponent_of(he_vec3_extent(way));
+    double term = he_vec3_dot(he_vec3_scale(way, ldexp(1, -own)), vector);
+    add_scaled(volume, term, own + halved + 2 * exponent);
+}
+
 he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
 {
-    he_box box;
-    he_mesh_box(m, &box);
-    int exponent = he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
-    double scale = ldexp(1, -exponent);
-    total area = {0, 0}, volume = {0, 0};
+    sums area = {0}, volume = {0};
     uint32_t budget = he_ring_budget(m);
-    he_vec3 about = {0, 0, 0}; /* a corner of the mesh: far from it, the sum would cancel */
-    bool any = false;
+    bool closed = m->c.boundary_halfedges == 0 && m->c.faces.live > 0;
+    he_vec3 base = closed ? find_base(m) : (he_vec3){0, 0, 0};
     he_status status = he_watch_phase(m->watch, "measuring", 1, err);
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (status == HE_OK) {
@@ -57,24 +158,21 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
         if (!he_face_is_live(m, (he_face){f})) {
             continue;
         }
+        int exponent;
         uint32_t first = m->c.face_halfedge[f];
-        he_ring r = he_ring_walk(m, first, scale, &budget);
+        he_ring r = he_ring_measure(m, first, &budget, &exponent);
         if (r.degree == 0) {
             return he_ring_corrupt(f, err);
         }
-        he_vec3 corner = he_vec3_scale(m->c.position[m->c.origin[first]], scale);
-        if (!any) {
-            about = corner;
-            any = true;
-        }
+        add_scaled(&area, he_vec3_length(r.vector), 2 * exponent);
         /* The tetrahedra over a fan of triangles from p0 add up to p0 . A, whatever the other
          * corners: p0 . (p0 x q) is nothing. */
-        add(&area, he_vec3_length(r.vector));
-        add(&volume, he_vec3_dot(he_vec3_sub(corner, about), r.vector));
+        if (closed) {
+            add_cone(&volume, base, m->c.position[m->c.origin[first]], r.vector, exponent);
+        }
     }
-    out->area = he_saturated(ldexp((area.sum + area.error) / 2, 2 * exponent));
-    out->has_volume = m->c.boundary_halfedges == 0;
-    double signed_volume = ldexp((volume.sum + volume.error) / 6, 3 * exponent);
-    out->volume = out->has_volume ? he_clamped(signed_volume) : 0;
+    out->area = sum_of(&area, 2);
+    out->has_volume = closed;
+    out->volume = closed ? sum_of(&volume, 6) : 0;
     return HE_OK;
 }

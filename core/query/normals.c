@@ -301,7 +301,7 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
 static int area_unit_of_all(const he_mesh *m)
 {
     he_box box;
-    he_mesh_box(m, &box);
+    he_surface_box(m, &box);
     return 2 * he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
 }
 

@@ -50,6 +50,35 @@ static double largest_coordinate(const he_mesh *m, uint32_t first)
     return largest;
 }
 
+/* The walk of a ring whose links are known to close, in a scale where its largest difference is
+ * near 1, be it of tiny coordinates, of huge ones, or lost beside the distance to the origin. */
+static he_ring walk_apart(const he_mesh *m, uint32_t first, uint32_t degree, int *exponent)
+{
+    he_vec3 o = m->c.position[m->c.origin[first]], u = {0, 0, 0};
+    bool halves = largest_coordinate(m, first) > DBL_MAX / 4; /* a difference might overflow */
+    double part = halves ? 0.5 : 1, largest = 0;
+    uint32_t h = first;
+    do {
+        he_vec3 p = he_vec3_scale(m->c.position[m->c.origin[h]], part);
+        largest = fmax(largest, he_vec3_extent(he_vec3_sub(p, he_vec3_scale(o, part))));
+        h = m->c.next[h];
+    } while (h != first);
+    int own = he_exponent_of(largest);
+    he_ring r = {.degree = degree};
+    do {
+        he_vec3 p = m->c.position[m->c.origin[h]];
+        he_vec3 v = he_vec3_sub(he_vec3_scale(p, part), he_vec3_scale(o, part));
+        v = he_vec3_scale(v, ldexp(1, -own));
+        r.vector = he_vec3_add(r.vector, he_vec3_cross(u, v));
+        r.reach += he_vec3_dot(u, u) * he_vec3_dot(v, v);
+        r.sum = he_vec3_add(r.sum, he_vec3_scale(he_vec3_scale(p, part), ldexp(1, -own)));
+        u = v;
+        h = m->c.next[h];
+    } while (h != first);
+    *exponent = own + (halves ? 1 : 0);
+    return r;
+}
+
 he_ring he_ring_measure(const he_mesh *m, uint32_t first, uint32_t *budget, int *exponent)
 {
     *exponent = 0;
@@ -57,9 +86,7 @@ he_ring he_ring_measure(const he_mesh *m, uint32_t first, uint32_t *budget, int 
     if ((r.reach > HE_LEAST_PRODUCT && r.reach < HE_MOST_PRODUCT) || r.degree == 0) {
         return r;
     }
-    *exponent = he_exponent_of(largest_coordinate(m, first));
-    uint32_t again = r.degree;
-    return he_ring_walk(m, first, ldexp(1, -*exponent), &again);
+    return walk_apart(m, first, r.degree, exponent);
 }
 
 uint32_t he_ring_budget(const he_mesh *m)

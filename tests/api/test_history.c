@@ -507,8 +507,8 @@ static void what_an_edit_made_does_not_count_against_its_redo(void **state)
     }
     /* When it cannot be done again it counts as what it holds, and goes. */
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/c/undo", NULL)));
-    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/c/edits",
-                                            "{\"op\":\"face_poke\",\"face\":0}")));
+    bench_done(bench_expect(
+        200, bench_post(b, "/v1/meshes/c/edits", "{\"op\":\"face_poke\",\"face\":0}")));
     r = bench_expect(200, bench_get(b, "/v1/meshes/c/edits"));
     assert_true(history_number(r.json, "dropped") >= 2);
     assert_int_equal(history_number(r.json, "undo"), 1);

@@ -315,6 +315,63 @@ static void crowded_places_have_a_budget(void **state)
     bench_free(b);
 }
 
+/* --- far vertices --- */
+
+/* The answer to a request about a cube, with an isolated vertex that far away or, for 0, at the
+ * origin, which is in no face's way either. */
+static bench_reply ask_cube(api_bench *b, double far, const char *method, const char *target,
+                            const char *body)
+{
+    char vertex[200];
+    bench_done(bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL));
+    put(b, "{\"shape\":\"cube\",\"size\":2}");
+    snprintf(vertex, sizeof vertex, "{\"op\":\"vertex_add\",\"position\":[%.17g,%.17g,0]}", far,
+             -far);
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/edits", vertex)));
+    return bench_expect(200, bench_send(b, method, target, NULL, body));
+}
+
+static void a_far_isolated_vertex_changes_no_answer(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *method, *what, *body, *members[8];
+    } rows[] = {
+        {"GET", "", NULL, {"area", "volume", "closed"}},
+        {"GET", "/check", NULL, {"defects", "totals", "thresholds"}},
+        {"POST",
+         "/query",
+         "{\"queries\":[{\"ray\":{\"origin\":[0.25,0.5,5],\"direction\":[0,0,-1]}},"
+         "{\"closest\":[0.25,-3,0.5]},"
+         "{\"measure\":\"normal\",\"of\":{\"vertex\":0}}]}",
+         {"results"}},
+        {"POST",
+         "/edits",
+         "{\"op\":\"plane_split\",\"point\":[0.1,0,0],\"normal\":[1,0,0]}",
+         {"results", "created", "deleted"}},
+    };
+    static const double far_away[] = {1e60, 1e81, 1e108, -1e200, 1e308};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char target[100];
+        snprintf(target, sizeof target, "/v1/meshes/m%s", rows[i].what);
+        api_bench *b = bench_new();
+        bench_reply near = ask_cube(b, 0, rows[i].method, target, rows[i].body);
+        for (size_t k = 0; k < sizeof far_away / sizeof *far_away; k++) {
+            bench_reply far = ask_cube(b, far_away[k], rows[i].method, target, rows[i].body);
+            for (const char *const *name = rows[i].members; *name != NULL; name++) {
+                char *wanted = cJSON_PrintUnformatted(in(near.json, *name));
+                char *got = cJSON_PrintUnformatted(in(far.json, *name));
+                assert_string_equal(got, wanted);
+                cJSON_free(wanted);
+                cJSON_free(got);
+            }
+            bench_reply_free(&far);
+        }
+        bench_reply_free(&near);
+        bench_free(b);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -328,6 +385,7 @@ int main(void)
         cmocka_unit_test(a_mesh_that_changes_is_asked_anew),
         cmocka_unit_test(faces_that_meet_are_listed_up_to_a_limit),
         cmocka_unit_test(crowded_places_have_a_budget),
+        cmocka_unit_test(a_far_isolated_vertex_changes_no_answer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  */
 #include "query_specimens.h"
 
+#include "edit/vertex.h"
 #include "query/bvh.h"
 #include "query/bvh_disc.h"
 #include "query/bvh_walk.h"
@@ -361,6 +362,51 @@ static void faces_without_area_are_the_segments_they_look_like(void **state)
     he_mesh_free(m);
 }
 
+/* Nothing but faces is hit or near, so nothing else decides the scale. */
+static void a_far_vertex_does_not_hide_faces(void **state)
+{
+    (void)state;
+    static const double far_away[] = {1e60, 1e81, 1e108, -1e200, 1e300, DBL_MAX};
+    for (size_t i = 0; i < sizeof far_away / sizeof *far_away; i++) {
+        he_mesh *m = query_shape("cube", 2, 0, 0, 0);
+        he_vertex v;
+        assert_int_equal(he_vertex_add(m, (he_vec3){far_away[i], 0, -far_away[i]}, &v, NULL),
+                         HE_OK);
+        he_bvh *tree = tree_of(m);
+        he_hit hit = cast(tree, m, (he_vec3){0.25, 0.5, 5}, (he_vec3){0, 0, -1}, HUGE_VAL);
+        assert_true(hit.face != HE_NONE && hit.distance == 4);
+        assert_true(hit.point.x == 0.25 && hit.point.y == 0.5 && hit.point.z == 1);
+        hit = closest(tree, m, (he_vec3){0.25, -3, 0.5}, HUGE_VAL);
+        assert_true(hit.face != HE_NONE && hit.distance == 2);
+        assert_true(hit.point.x == 0.25 && hit.point.y == -1 && hit.point.z == 0.5);
+        he_bvh_free(tree);
+        he_mesh_free(m);
+    }
+}
+
+/* bvh.h says up to which difference in size. */
+static void a_far_face_does_not_hide_near_ones(void **state)
+{
+    (void)state;
+    static const double far_away[] = {1e10, 1e30, 1e60, 1e70};
+    for (size_t i = 0; i < sizeof far_away / sizeof *far_away; i++) {
+        he_mesh *m = fixture_mesh("012,345");
+        m->c.position[0] = (he_vec3){-1, -1, 0};
+        m->c.position[1] = (he_vec3){3, -1, 0};
+        m->c.position[2] = (he_vec3){-1, 3, 0};
+        for (uint32_t k = 3; k < 6; k++) {
+            m->c.position[k] = (he_vec3){far_away[i], k == 4 ? 1 : 0, k == 5 ? 1 : 0};
+        }
+        he_bvh *tree = tree_of(m);
+        he_hit hit = cast(tree, m, (he_vec3){0.25, 0.5, 5}, (he_vec3){0, 0, -1}, HUGE_VAL);
+        assert_true(hit.face == 0 && hit.distance == 5);
+        hit = closest(tree, m, (he_vec3){0.25, 0.5, 2}, HUGE_VAL);
+        assert_true(hit.face == 0 && fabs(hit.distance - 2) < 1e-14);
+        he_bvh_free(tree);
+        he_mesh_free(m);
+    }
+}
+
 static void a_tree_of_triangles_in_one_place_has_a_budget(void **state)
 {
     (void)state;
@@ -668,6 +714,8 @@ int main(void)
         cmocka_unit_test(boxes_and_discs_hold_what_is_below_them),
         cmocka_unit_test(nearest_points_of_a_cube),
         cmocka_unit_test(faces_without_area_are_the_segments_they_look_like),
+        cmocka_unit_test(a_far_vertex_does_not_hide_faces),
+        cmocka_unit_test(a_far_face_does_not_hide_near_ones),
         cmocka_unit_test(a_tree_of_triangles_in_one_place_has_a_budget),
         cmocka_unit_test(hostile_coordinates_give_finite_hits),
         cmocka_unit_test(orientation_is_exact_where_doubles_round),

@@ -1,6 +1,7 @@
 /* Lengths, areas, normals and angles, against closed forms and other formulas. */
 #include "query_specimens.h"
 
+#include "edit/vertex.h"
 #include "query/geometry.h"
 
 #include <float.h>
@@ -353,7 +354,8 @@ static void test_geometry_whole_and_single_agree(void **state)
         he_measures measures;
         assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
         assert_true(fabs(measures.area - total) < 1e-9 * (1 + total));
-        assert_int_equal(measures.has_volume, he_mesh_boundary_halfedges(m) == 0);
+        assert_int_equal(measures.has_volume,
+                         he_mesh_boundary_halfedges(m) == 0 && he_mesh_faces(m) > 0);
         for (int weight = 0; weight < 3; weight++) {
             assert_int_equal(he_vertex_normals(m, (he_weight)weight, normals, NULL), HE_OK);
             for (uint32_t v = 0; v < vertices; v++) {
@@ -412,16 +414,133 @@ static void test_geometry_volume(void **state)
     he_mesh_free(m);
 }
 
+static he_vertex add_vertex(he_mesh *m, double x, double y, double z)
+{
+    he_vertex v;
+    assert_int_equal(he_vertex_add(m, (he_vec3){x, y, z}, &v, NULL), HE_OK);
+    return v;
+}
+
+static void assert_measures(const he_mesh *m, double area, double volume)
+{
+    he_measures got;
+    assert_int_equal(he_mesh_measure(m, &got, NULL), HE_OK);
+    if (got.area != area || got.volume != volume) {
+        fail_msg("%.17g and %.17g, not %.17g and %.17g", got.area, got.volume, area, volume);
+    }
+}
+
+/* How far away the far vertices of the tests below lie. */
+static const double far_away[] = {1e60, 1e81, 1e108, 1e160, -1e200, 1e300, DBL_MAX};
+enum { DISTANCES = sizeof far_away / sizeof *far_away };
+
+static void a_far_vertex_does_not_change_the_area(void **state)
+{
+    (void)state;
+    for (int i = 0; i < DISTANCES; i++) {
+        he_mesh *m = cube();
+        he_vec3 before[8], after[9];
+        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, before, NULL), HE_OK);
+        add_vertex(m, far_away[i], -far_away[i], 1);
+        assert_measures(m, 24, 8);
+        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, after, NULL), HE_OK);
+        assert_memory_equal(after, before, sizeof before);
+        he_mesh_free(m);
+    }
+}
+
+/* A component that is only far, not large, has no area: one that is near keeps its own. */
+static void a_far_face_without_size_does_not_change_area_and_volume(void **state)
+{
+    (void)state;
+    for (int i = 0; i < DISTANCES; i++) {
+        for (int first = 0; first < 2; first++) {
+            he_mesh *m = fixture_mesh("021,032,013,123,465,476,457,567");
+            uint32_t near = first ? 4 : 0, far = 4 - near;
+            for (uint32_t k = 0; k < 4; k++) {
+                m->c.position[near + k] = (he_vec3){k == 1, k == 2, k == 3};
+                m->c.position[far + k] = (he_vec3){far_away[i], far_away[i], -far_away[i]};
+            }
+            he_measures got;
+            assert_int_equal(he_mesh_measure(m, &got, NULL), HE_OK);
+            assert_near(got.area, 1.5 + sqrt(3) / 2);
+            assert_near(got.volume, 1.0 / 6);
+            he_mesh_free(m);
+        }
+    }
+}
+
+/* A right tetrahedron with legs `leg` has the volume leg^3 / 6, whatever that is. */
+static void sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches(void **state)
+{
+    (void)state;
+    static const double legs[] = {1e-100, 1e-60, 0x1p-20, 1, 0x1p70, 1e100, 1e-160, 1e160};
+    for (size_t a = 0; a < 8; a++) {
+        for (size_t b = 0; b < 8; b++) {
+            he_mesh *m = fixture_mesh("021,032,013,123,465,476,457,567");
+            for (uint32_t k = 0; k < 4; k++) {
+                double p = legs[a], q = legs[b];
+                m->c.position[k] = (he_vec3){k == 1 ? p : 0, k == 2 ? p : 0, k == 3 ? p : 0};
+                m->c.position[4 + k] = (he_vec3){k == 1 ? q : 0, k == 2 ? q : 0, k == 3 ? q : 0};
+            }
+            long double p = legs[a], q = legs[b];
+            long double area = (1.5L + sqrtl(3) / 2) * (p * p + q * q);
+            long double volume = (p * p * p + q * q * q) / 6;
+            he_measures got;
+            assert_int_equal(he_mesh_measure(m, &got, NULL), HE_OK);
+            double wanted = (double)(area < DBL_MAX ? area : DBL_MAX);
+            assert_true(fabs(got.area - wanted) <= 1e-14 * wanted);
+            wanted = (double)(volume < DBL_MAX ? volume : DBL_MAX);
+            assert_true(fabs(got.volume - wanted) <= 1e-14 * wanted);
+            he_mesh_free(m);
+        }
+    }
+}
+
+/* The distance to the origin, be it along an axis of no other use, takes no digits away. */
+static void a_small_face_far_from_the_origin_has_its_area(void **state)
+{
+    (void)state;
+    static const double legs[] = {1e-150, 1e-100, 1e-70, 0x1p-30, 1e70, 1e150};
+    for (int i = 0; i < DISTANCES; i++) {
+        for (size_t k = 0; k < 6; k++) {
+            he_mesh *m = fixture_mesh("012");
+            place(m, 0, 0, 0, far_away[i]);
+            place(m, 1, legs[k], 0, far_away[i]);
+            place(m, 2, 0, legs[k], far_away[i]);
+            he_face_shape shape = he_face_measure(m, (he_face){0});
+            double wanted = legs[k] * legs[k] / 2;
+            assert_true(fabs(shape.area - wanted) <= 1e-14 * wanted);
+            assert_vector(shape.normal, 0, 0, 1);
+            assert_measures(m, shape.area, 0);
+            he_mesh_free(m);
+        }
+    }
+}
+
+static void volume_is_of_closed_meshes_with_faces_only(void **state)
+{
+    (void)state;
+    he_measures got;
+    he_mesh *m = fixture_mesh("");
+    assert_int_equal(he_mesh_measure(m, &got, NULL), HE_OK);
+    assert_false(got.has_volume);
+    add_vertex(m, 1, 2, 3);
+    assert_int_equal(he_mesh_measure(m, &got, NULL), HE_OK);
+    assert_true(!got.has_volume && got.volume == 0 && got.area == 0);
+    he_mesh_free(m);
+}
+
 static void test_geometry_of_nothing_and_of_dead_rows(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("");
     he_box box = {{1, 1, 1}, {1, 1, 1}};
-    he_measures measures = {1, 1, false};
+    he_measures measures = {1, 1, true};
     assert_false(he_mesh_box(m, &box));
     assert_vector(box.min, 0, 0, 0);
     assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
-    assert_true(measures.area == 0 && measures.volume == 0 && measures.has_volume);
+    assert_true(measures.area == 0 && measures.volume == 0 && !measures.has_volume);
     he_mesh_free(m);
     m = query_with_dead_rows();
     place(m, 3, -100, 0, 0);
@@ -490,6 +609,11 @@ int main(void)
         cmocka_unit_test(test_geometry_of_extreme_coordinates_is_finite),
         cmocka_unit_test(test_geometry_whole_and_single_agree),
         cmocka_unit_test(test_geometry_volume),
+        cmocka_unit_test(a_far_vertex_does_not_change_the_area),
+        cmocka_unit_test(a_far_face_without_size_does_not_change_area_and_volume),
+        cmocka_unit_test(sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches),
+        cmocka_unit_test(a_small_face_far_from_the_origin_has_its_area),
+        cmocka_unit_test(volume_is_of_closed_meshes_with_faces_only),
         cmocka_unit_test(test_geometry_of_nothing_and_of_dead_rows),
         cmocka_unit_test(test_geometry_ends_on_broken_links),
     };
