@@ -18,7 +18,7 @@ class Daemon:
             if line == '':
                 raise RuntimeError('the daemon does not start')
         u = urllib.parse.urlsplit(re.search(r'http://\S+', line)[0])
-        self.connection = http.client.HTTPConnection(u.hostname, u.port, timeout=60)
+        self.connection = http.client.HTTPConnection(u.hostname, u.port, timeout=600)
 
     def __enter__(self):
         return self
