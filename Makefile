@@ -71,7 +71,7 @@ SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle
                 $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
 SIDE_C     := $(sort $(wildcard tests/bench/side/*.c))
 OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
-BENCH_C    := tests/bench/space.c $(SIDE_C) $(OURS_C)
+BENCH_C    := tests/bench/space.c tests/bench/polygons.c $(SIDE_C) $(OURS_C)
 PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
 FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 # What all targets are linked with; libFuzzer brings its own main program.
@@ -86,7 +86,7 @@ ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM
 LIBRARIES  := $(BUILD)/libserver.a $(BUILD)/libapi.a $(BUILD)/libcore.a
 HEDGED     := $(BUILD)/hedged
 PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
-SPACE      := $(BUILD)/tests/bench/space
+SPACE      := $(BUILD)/tests/bench/space $(BUILD)/tests/bench/polygons
 FUZZERS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
 PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
@@ -306,7 +306,7 @@ $(BUILD)/tests/bench/sides/ours: $(call object,$(OURS_C) $(SIDE_C)) $(LIBRARIES)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
-$(SPACE): $(call object,tests/bench/space.c) $(BUILD)/libcore.a
+$(SPACE): $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(call object,tests/polygons.c) $(BUILD)/libcore.a
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
@@ -318,8 +318,8 @@ bench: $(SIDES) | $(INSTALLED) ## the kernel beside OpenMesh and CGAL; BENCH=bui
 	    --runs $(RUNS) --scale $(SCALE) --flags="$(filter -O% -f% -m%,$(CFLAGS))" \
 	    --peer-flags="$(PEER_FLAGS)"
 
-bench-space: $(SPACE) ## rays, nearest points, intersections and curvature: our figures alone
-	@$(SPACE)
+bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangulation: our figures alone
+	@for program in $(SPACE); do $$program; done
 
 bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare

@@ -6,7 +6,7 @@
 
 /* Both are NULL when there is no memory. */
 
-/* A star of so many points that cutting its ears is too much. */
+/* A star of very many points. */
 he_mesh *giant_star(void);
 /* Two rows of points, joined so that flips grow with the square of their number. */
 he_mesh *giant_rows(void);

@@ -72,7 +72,7 @@ he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out
         status = he_poke_plan(m, h, false, &poke, &need, err);
         break;
     case HE_FILL_TRIANGULATE:
-        status = he_triangles_plan(m, h, &triangles, err);
+        status = he_triangles_plan(m, h, NULL, &triangles, err);
         if (status == HE_OK) {
             he_triangles_need(&triangles, false, &need);
         }

@@ -32,7 +32,7 @@ typedef struct he_filled {
  * id; faces and the vertex have no parents. A polygon's half-edge is h.
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_NOT_BOUNDARY; HE_REPEATED_CORNER when the
- * loop visits a vertex twice; for triangulate HE_DOUBLED_EDGE and HE_LIMIT, as in triangles.h.
+ * loop visits a vertex twice; for triangulate HE_DOUBLED_EDGE, as in triangulation.h.
  * HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else he_filled_clear frees it. */
 HE_NODISCARD he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out,
                                     he_error *err);

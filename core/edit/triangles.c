@@ -7,10 +7,11 @@ void he_triangles_clear(he_triangles *plan)
     plan->side = NULL;
 }
 
-he_status he_triangles_plan(const he_mesh *m, he_halfedge first, he_triangles *out, he_error *err)
+he_status he_triangles_plan(const he_mesh *m, he_halfedge first, he_triangulation_work *work,
+                            he_triangles *out, he_error *err)
 {
     he_triangles plan = {.side = NULL};
-    he_status status = he_triangulation_make(m, first, HE_AVOID_EDGES, NULL, &plan.of, err);
+    he_status status = he_triangulation_make(m, first, HE_AVOID_EDGES, work, &plan.of, err);
     if (status != HE_OK) {
         return status;
     }

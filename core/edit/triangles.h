@@ -10,9 +10,10 @@ typedef struct he_triangles {
     uint32_t *side; /* COMMIT's: the half-edge that leaves each corner in what is left */
 } he_triangles;
 
-/* CHECK: fails as he_triangulation_make, which avoids the edges there are. he_triangles_clear
- * frees. */
-HE_NODISCARD he_status he_triangles_plan(const he_mesh *m, he_halfedge first, he_triangles *out,
+/* CHECK: fails as he_triangulation_make, which avoids the edges there are; `work` is as there, NULL
+ * for one loop alone. he_triangles_clear frees. */
+HE_NODISCARD he_status he_triangles_plan(const he_mesh *m, he_halfedge first,
+                                         he_triangulation_work *work, he_triangles *out,
                                          he_error *err);
 void he_triangles_clear(he_triangles *plan);
 

@@ -8,18 +8,25 @@ static he_status room(he_ids *list, size_t extra, he_error *err)
     return list == NULL ? HE_OK : he_ids_reserve(list, extra, err);
 }
 
-/* Between two looks at the watch. */
-enum { STEPS = 1 << 14 };
+/* Later faces must see the diagonals of earlier ones. */
+static void note_diagonals(const he_mesh *m, const he_triangulation *t, he_joins *joins)
+{
+    for (uint32_t k = 0; joins->rank != NULL && k + 3 < t->flat.n; k++) {
+        const uint32_t *corners = t->corners + 3 * (size_t)k;
+        he_joins_note(joins, he_origin(m, (he_halfedge){t->flat.halfedge[corners[0]]}),
+                      he_origin(m, (he_halfedge){t->flat.halfedge[corners[2]]}));
+    }
+}
 
 static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *faces,
-                                 he_ids *degenerate, uint64_t *steps, he_error *err)
+                                 he_ids *degenerate, he_triangulation_work *work, he_error *err)
 {
     he_triangles plan;
-    he_status status = he_triangles_plan(m, he_face_halfedge(m, f), &plan, err);
+    he_status status = he_triangles_plan(m, he_face_halfedge(m, f), work, &plan, err);
     if (status != HE_OK) {
         return status;
     }
-    *steps += plan.of.flat.n + plan.of.steps;
+    work->steps += plan.of.flat.n;
     he_need need = {0};
     he_triangles_need(&plan, true, &need);
     status = room(edges, need.edges, err);
@@ -30,12 +37,16 @@ static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *f
         status = room(degenerate, 1, err);
     }
     if (status == HE_OK) {
+        status = he_joins_reserve(&work->own, plan.of.flat.n, err);
+    }
+    if (status == HE_OK) {
         status = he_reserve(m, need, err);
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */
         if (plan.of.flat.n > 3) {
             he_triangles_commit(m, &plan, true, edges, faces);
+            note_diagonals(m, &plan.of, &work->own);
         }
         if (plan.of.degenerate && degenerate != NULL) {
             degenerate->ids[degenerate->count++] = f.i;
@@ -63,18 +74,13 @@ he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count
     if (status != HE_OK) {
         return status;
     }
-    uint64_t steps = STEPS;
+    he_triangulation_work work = {.watch = m->watch, .of = count};
     status = he_watch_phase(m->watch, "triangulating", 1, err);
     for (size_t i = 0; status == HE_OK && i < count; i++) {
-        if (steps >= STEPS) {
-            steps = 0;
-            status = he_watch_step(m->watch, i, count, err);
-        }
-        if (status == HE_OK) {
-            status =
-                triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, &steps, err);
-        }
+        work.done = i;
+        status = triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, &work, err);
     }
+    he_triangulation_work_clear(&work);
     for (unsigned i = 0; status != HE_OK && i < 3; i++) {
         if (lists[i] != NULL) {
             lists[i]->count = before[i];

@@ -1,8 +1,5 @@
 #include "format/cuts.h"
 
-/* From here on edges are no longer looked for round their ends. */
-enum { STEPS_ALONE = 1 << 20 };
-
 void he_cuts_clear(he_cuts *cuts)
 {
     he_ids_clear(&cuts->corners);
@@ -14,24 +11,10 @@ uint64_t he_cuts_count(const he_cuts *cuts)
     return 2 * (uint64_t)c->edges.live - c->boundary_halfedges - 2 * (uint64_t)c->faces.live;
 }
 
-/* About the first corner. */
-static void add_fan(he_cuts *cuts, he_halfedge first)
-{
-    const he_mesh *m = cuts->mesh;
-    he_ids *ids = &cuts->corners;
-    he_halfedge h = he_next(m, first);
-    for (he_halfedge k = he_next(m, h); k.i != first.i; h = k, k = he_next(m, k)) {
-        ids->ids[ids->count++] = he_origin(m, first).i;
-        ids->ids[ids->count++] = he_origin(m, h).i;
-        ids->ids[ids->count++] = he_origin(m, k).i;
-    }
-    cuts->fans++;
-}
-
-static he_status cut_face(he_cuts *cuts, he_halfedge first, he_error *err)
+static he_status cut_face(he_cuts *cuts, he_halfedge first, he_triangulation_work *work,
+                          he_error *err)
 {
     he_triangulation cut;
-    he_triangulation_work *work = &cuts->work;
     const he_mesh *m = cuts->mesh;
     he_ids *ids = &cuts->corners;
     size_t corners = 3 * ((size_t)he_loop_length(m, first) - 2);
@@ -39,18 +22,9 @@ static he_status cut_face(he_cuts *cuts, he_halfedge first, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    status = HE_LIMIT;
-    if (work->steps < HE_TRIANGULATION_STEPS) {
-        unsigned flags = HE_ANY_DIAGONALS | HE_AVOID_EDGES;
-        status = he_triangulation_make(m, first, flags, work, &cut, err);
-    }
+    status = he_triangulation_make(m, first, HE_ANY_DIAGONALS | HE_AVOID_EDGES, work, &cut, err);
     if (status == HE_DOUBLED_EDGE) {
         status = he_triangulation_make(m, first, HE_ANY_DIAGONALS, work, &cut, err);
-    }
-    if (status == HE_LIMIT) {
-        add_fan(cuts, first);
-        work->steps = HE_TRIANGULATION_STEPS;
-        return HE_OK;
     }
     if (status != HE_OK) {
         return status;
@@ -67,24 +41,17 @@ static he_status cut_face(he_cuts *cuts, he_halfedge first, he_error *err)
 he_status he_cuts_make(const he_mesh *mesh, he_cuts *out, he_error *err)
 {
     he_cuts made = {.mesh = mesh};
-    he_joins joins = {0};
+    he_triangulation_work work = {0};
     he_error reason = {0};
     he_status status = HE_OK;
     for (uint32_t f = 0; f < mesh->c.faces.issued && status == HE_OK; f++) {
-        if (!he_face_is_live(mesh, (he_face){f}) || he_face_degree(mesh, (he_face){f}) == 3) {
-            continue;
-        }
-        if (made.work.joins == NULL && made.work.steps > STEPS_ALONE) {
-            status = he_joins_make(mesh, &joins, &reason);
-            made.work.joins = &joins;
-        }
-        made.polygons++;
-        if (status == HE_OK) {
-            status = cut_face(&made, he_face_halfedge(mesh, (he_face){f}), &reason);
+        if (he_face_is_live(mesh, (he_face){f}) && he_face_degree(mesh, (he_face){f}) != 3) {
+            made.polygons++;
+            status = cut_face(&made, he_face_halfedge(mesh, (he_face){f}), &work, &reason);
         }
     }
-    he_joins_clear(&joins);
-    made.work.joins = NULL;
+    made.steps = work.steps;
+    he_triangulation_work_clear(&work);
     if (status != HE_OK) {
         he_cuts_clear(&made);
         if (err != NULL) {

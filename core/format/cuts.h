@@ -1,9 +1,7 @@
 /* cuts.h - the triangles of all faces, for formats that have no others.
  *
  * A polygon is cut as triangulation.h says, with diagonals that avoid the edges there are where
- * they can: an edge that is doubled would have more than two faces when the file is read again.
- * When cutting has taken as many steps as one loop may, with those for loops that would not be cut
- * so, what is left is cut into fans. */
+ * they can: an edge that is doubled would have more than two faces when the file is read again. */
 #ifndef HE_FORMAT_CUTS_H
 #define HE_FORMAT_CUTS_H
 
@@ -12,9 +10,9 @@
 /* {0} is empty. */
 typedef struct he_cuts {
     const he_mesh *mesh;
-    he_ids corners;                  /* three vertices a triangle, of all faces that are none */
-    uint64_t polygons, turned, fans; /* faces: cut; with triangles turned over; without a choice */
-    he_triangulation_work work;
+    he_ids corners;            /* three vertices a triangle, of all faces that are none */
+    uint64_t polygons, turned; /* faces: cut; with triangles turned over */
+    uint64_t steps;            /* that cutting them took */
 } he_cuts;
 
 /* Borrows the mesh, which must not change meanwhile. HE_NO_MEMORY. */

@@ -269,8 +269,6 @@ static void note_geometry(const he_glb_parts *g, he_notes *notes)
     he_notes_add_count(notes, "turned_triangles",
                        "cut into triangles some of which have no area or are turned over: a face",
                        g->cuts.turned);
-    he_notes_add_count(notes, "fans", "cut into a fan, since cutting took too much: a face",
-                       g->cuts.fans);
 }
 
 static he_status make(he_glb_parts *g, he_notes *notes, he_error *err)

@@ -36,8 +36,6 @@ static void note_cuts(const he_cuts *cuts, he_notes *notes)
     he_notes_add_count(notes, "turned_triangles",
                        "cut into triangles some of which have no area or are turned over: a face",
                        cuts->turned);
-    he_notes_add_count(notes, "fans", "cut into a fan, since cutting took too much: a face",
-                       cuts->fans);
 }
 
 /* What becomes of vertices when there are only positions. */

@@ -1,10 +1,13 @@
 #include "mesh/joins.h"
 
+#include "mesh/word_hash.h"
+
 void he_joins_clear(he_joins *joins)
 {
     he_mem_free(joins->rank);
     he_mem_free(joins->starts);
     he_mem_free(joins->lists);
+    he_mem_free(joins->noted);
     *joins = (he_joins){.rank = NULL};
 }
 
@@ -84,6 +87,57 @@ he_status he_joins_make(const he_mesh *m, he_joins *out, he_error *err)
     return HE_OK;
 }
 
+/* --- what was joined later --- */
+
+/* Not 0, since the larger id is not. */
+static uint64_t key_of(he_vertex a, he_vertex b)
+{
+    return a.i < b.i ? (uint64_t)b.i << 32 | a.i : (uint64_t)a.i << 32 | b.i;
+}
+
+/* The slot of a key, or the free one where it belongs. */
+static size_t slot_of(const he_joins *j, uint64_t key)
+{
+    size_t mask = j->noted_slots - 1;
+    size_t at = (size_t)(he_word_hash((uintptr_t)j->noted, key) >> 32) & mask;
+    while (j->noted[at] != 0 && j->noted[at] != key) {
+        at = (at + 1) & mask;
+    }
+    return at;
+}
+
+he_status he_joins_reserve(he_joins *joins, size_t extra, he_error *err)
+{
+    if (joins->rank == NULL || 2 * (joins->noted_count + extra) <= joins->noted_slots) {
+        return HE_OK;
+    }
+    he_joins grown = {.noted_slots = 64};
+    while (grown.noted_slots < 4 * (joins->noted_count + extra)) {
+        grown.noted_slots *= 2;
+    }
+    grown.noted = he_mem_zero(grown.noted_slots, sizeof *grown.noted);
+    if (grown.noted == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu new edges", extra);
+    }
+    for (size_t i = 0; i < joins->noted_slots; i++) {
+        if (joins->noted[i] != 0) {
+            grown.noted[slot_of(&grown, joins->noted[i])] = joins->noted[i];
+        }
+    }
+    he_mem_free(joins->noted);
+    joins->noted = grown.noted;
+    joins->noted_slots = grown.noted_slots;
+    return HE_OK;
+}
+
+void he_joins_note(he_joins *joins, he_vertex a, he_vertex b)
+{
+    if (joins->rank[a.i] != HE_NONE && joins->rank[b.i] != HE_NONE) {
+        joins->noted[slot_of(joins, key_of(a, b))] = key_of(a, b);
+        joins->noted_count++;
+    }
+}
+
 bool he_joined(const he_mesh *m, const he_joins *joins, he_vertex a, he_vertex b, uint64_t *steps)
 {
     if (joins == NULL || joins->rank == NULL || joins->rank[a.i] == HE_NONE ||
@@ -104,5 +158,6 @@ bool he_joined(const he_mesh *m, const he_joins *joins, he_vertex a, he_vertex b
             to = middle;
         }
     }
-    return false;
+    *steps += 1;
+    return joins->noted_count > 0 && joins->noted[slot_of(joins, key_of(a, b))] != 0;
 }

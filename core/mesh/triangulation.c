@@ -1,23 +1,57 @@
 #include "mesh/triangulation.h"
 
+#include "mesh/ears.h"
+#include "mesh/sweep.h"
+
 #include <float.h>
 
-/* Adds the steps of the search: where very many edges meet it may be long. */
-static bool is_joined(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
-                      he_triangulation_work *work)
+/* --- what loops share --- */
+
+/* Steps between two looks at the watch: below a millisecond. */
+enum { STEPS_UNTOLD = 1 << 15 };
+
+/* Edges are looked for around their ends until that has cost about as much as sorting them. */
+enum { SEARCHED_AT_LEAST = 4096 };
+
+bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
+                        he_triangulation_work *work)
 {
     he_vertex a = he_origin(m, (he_halfedge){flat->halfedge[i]});
     he_vertex b = he_origin(m, (he_halfedge){flat->halfedge[k]});
-    return he_joined(m, work->joins, a, b, &work->steps);
+    uint64_t steps = 0;
+    bool exists = he_joined(m, work->joins, a, b, &steps);
+    work->steps += steps;
+    work->searched += steps;
+    return exists;
 }
 
-static he_status refuse_work(const he_flat *flat, he_error *err)
+he_status he_triangulation_step(const he_mesh *m, he_triangulation_work *work, he_error *err)
 {
-    return he_fail_plain(err, HE_LIMIT, "a loop of %u corners takes more than %llu steps", flat->n,
-                         (unsigned long long)HE_TRIANGULATION_STEPS);
+    if ((work->joins == NULL || work->joins == &work->own) &&
+        work->searched - work->sorted > SEARCHED_AT_LEAST + 2 * (uint64_t)m->c.edges.issued) {
+        he_joins_clear(&work->own);
+        work->joins = NULL;
+        he_status status = he_joins_make(m, &work->own, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        work->joins = &work->own;
+        work->sorted = work->searched;
+    }
+    if (work->watch != NULL && work->steps - work->told > STEPS_UNTOLD) {
+        work->told = work->steps;
+        return he_watch_step(work->watch, work->done, work->of, err);
+    }
+    return HE_OK;
 }
 
-static he_status refuse_doubled(const he_mesh *m, const he_flat *flat, he_error *err)
+void he_triangulation_work_clear(he_triangulation_work *work)
+{
+    he_joins_clear(&work->own);
+    *work = (he_triangulation_work){0};
+}
+
+he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *err)
 {
     uint32_t v = m->c.origin[flat->halfedge[0]];
     return he_fail(err, HE_DOUBLED_EDGE, HE_VERTEX, v,
@@ -70,16 +104,17 @@ static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, tabl
         t->cost[i * n + i + 1] = t->cost[(i + 1) * n + i] = 0;
     }
     for (uint32_t span = 2; span < n; span++) {
+        he_status status = he_triangulation_step(m, t->work, err);
+        if (status != HE_OK) {
+            return status;
+        }
         for (uint32_t i = 0; i + span < n; i++) {
             uint32_t k = i + span;
-            bool free = span == n - 1 || !avoid || !is_joined(m, f, i, k, t->work);
+            bool free = span == n - 1 || !avoid || !he_diagonal_exists(m, f, i, k, t->work);
             double side = span < n - 1 ? diagonal_cost(f, i, k) : 0;
             double cost = free ? fill_cell(f, i, k, side, t) : DBL_MAX;
             t->cost[i * n + k] = t->cost[k * n + i] = cost;
             t->work->steps += span;
-            if (t->work->steps > HE_TRIANGULATION_STEPS) {
-                return refuse_work(f, err);
-            }
         }
     }
     return HE_OK;
@@ -124,7 +159,7 @@ static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation_work 
         /* Did avoiding edges make it so? */
         status = fill_table(m, f, false, &t, err);
         if (status == HE_OK && cost >= t.cost[whole] + BAD / 2) {
-            status = refuse_doubled(m, f, err);
+            status = he_diagonals_refuse(m, f, err);
         }
         if (status == HE_OK) {
             status = fill_table(m, f, true, &t, err);
@@ -141,187 +176,6 @@ out:
     return status;
 }
 
-/* --- ears --- */
-
-typedef enum ear_state { UNKNOWN, NO_EAR, EAR } ear_state;
-
-typedef struct ears {
-    const he_mesh *m;
-    const he_flat *f;
-    bool avoid;                     /* diagonals that exist as edges */
-    uint32_t *next, *prev;          /* of what is left of the loop */
-    uint8_t *state;                 /* of corners */
-    uint8_t *convex;                /* does the corner turn left? Never becomes false again */
-    uint32_t *reflex, reflex_count; /* corners that were not convex when last looked at */
-    uint32_t left;
-    he_triangulation_work *work;
-    bool blocked; /* an ear was passed over because its diagonal exists */
-} ears;
-
-static void look_at(ears *e, uint32_t i)
-{
-    e->convex[i] = he_flat_turns_left(e->f, e->prev[i], i, e->next[i]);
-    e->state[i] = UNKNOWN;
-}
-
-static bool same_place(const he_flat *f, uint32_t a, uint32_t b)
-{
-    return f->x[a] == f->x[b] && f->y[a] == f->y[b];
-}
-
-/* On the left of a -> b, or on it? */
-static bool not_right(const he_flat *f, uint32_t a, uint32_t b, uint32_t p)
-{
-    return (f->x[b] - f->x[a]) * (f->y[p] - f->y[a]) >= (f->y[b] - f->y[a]) * (f->x[p] - f->x[a]);
-}
-
-/* Does a corner that is not convex lie in the triangle? Only such a one can be the nearest in the
- * way of a diagonal. Corners that have become convex or were cut leave the list here. */
-static bool is_pierced(ears *e, uint32_t a, uint32_t b, uint32_t c)
-{
-    const he_flat *f = e->f;
-    for (uint32_t r = 0; r < e->reflex_count;) {
-        uint32_t p = e->reflex[r];
-        if (e->convex[p]) {
-            e->reflex[r] = e->reflex[--e->reflex_count];
-            continue;
-        }
-        e->work->steps++;
-        if (p != a && p != b && p != c && not_right(f, a, b, p) && not_right(f, b, c, p) &&
-            not_right(f, c, a, p) && !same_place(f, p, a) && !same_place(f, p, b) &&
-            !same_place(f, p, c)) {
-            return true;
-        }
-        r++;
-    }
-    return false;
-}
-
-static bool is_taken(ears *e, uint32_t a, uint32_t c)
-{
-    return e->avoid && is_joined(e->m, e->f, a, c, e->work);
-}
-
-static bool is_ear(ears *e, uint32_t i)
-{
-    if (e->state[i] == UNKNOWN) {
-        e->work->steps++;
-        uint32_t a = e->prev[i], c = e->next[i];
-        bool ear = e->convex[i] && !is_pierced(e, a, i, c);
-        if (ear && is_taken(e, a, c)) {
-            e->blocked = true;
-            ear = false;
-        }
-        e->state[i] = ear ? EAR : NO_EAR;
-    }
-    return e->state[i] == EAR;
-}
-
-static uint32_t cut_ear(ears *e, uint32_t i, uint32_t *corners)
-{
-    uint32_t a = e->prev[i], c = e->next[i], *triangle = corners + 3 * (size_t)(e->f->n - e->left);
-    triangle[0] = a;
-    triangle[1] = i;
-    triangle[2] = c;
-    e->next[a] = c;
-    e->prev[c] = a;
-    e->convex[i] = true; /* out of the list of reflex corners */
-    e->left--;
-    look_at(e, a);
-    look_at(e, c);
-    return e->next[c];
-}
-
-/* The first ear from i on; i itself when there is none. */
-static bool find_ear(ears *e, uint32_t i, uint32_t *out)
-{
-    for (uint32_t seen = 0; seen < e->left && e->work->steps <= HE_TRIANGULATION_STEPS; seen++) {
-        if (is_ear(e, i)) {
-            *out = i;
-            return true;
-        }
-        i = e->next[i];
-    }
-    return false;
-}
-
-/* Cutting ears frees corners that were pierced: look at all of them again. */
-static void forget_states(ears *e, uint32_t i)
-{
-    for (uint32_t seen = 0; seen < e->left; seen++) {
-        e->state[i] = UNKNOWN;
-        i = e->next[i];
-    }
-}
-
-/* Any corner whose diagonal is free, convex ones first. */
-static bool find_corner(ears *e, uint32_t i, uint32_t *out)
-{
-    for (unsigned convex = 2; convex-- > 0;) {
-        for (uint32_t seen = 0; seen < e->left; seen++, i = e->next[i]) {
-            e->work->steps++;
-            if (e->convex[i] >= convex && !is_taken(e, e->prev[i], e->next[i])) {
-                *out = i;
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-static he_status cut_ears(ears *e, he_triangulation *plan, he_error *err)
-{
-    uint32_t at = 0, i;
-    while (e->left > 3) {
-        if (!find_ear(e, at, &i)) {
-            e->blocked = false;
-            forget_states(e, at);
-            if (!find_ear(e, at, &i)) {
-                if (e->work->steps > HE_TRIANGULATION_STEPS) {
-                    return refuse_work(e->f, err);
-                }
-                if (e->blocked || !find_corner(e, at, &i)) {
-                    return refuse_doubled(e->m, e->f, err);
-                }
-                plan->degenerate = true;
-            }
-        }
-        at = cut_ear(e, i, plan->corners);
-    }
-    plan->degenerate |= !he_flat_turns_left(e->f, e->prev[at], at, e->next[at]);
-    (void)cut_ear(e, at, plan->corners);
-    return HE_OK;
-}
-
-static he_status plan_ears(const he_mesh *m, bool avoid, he_triangulation_work *work,
-                           he_triangulation *plan, he_error *err)
-{
-    uint32_t n = plan->flat.n;
-    ears e = {.m = m, .f = &plan->flat, .avoid = avoid, .left = n, .work = work};
-    uint32_t *block = he_mem_zero(n, 3 * sizeof(uint32_t) + 2 * sizeof(uint8_t));
-    if (block == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop of %u corners", n);
-    }
-    e.next = block;
-    e.prev = e.next + n;
-    e.reflex = e.prev + n;
-    e.state = (uint8_t *)(e.reflex + n);
-    e.convex = e.state + n;
-    for (uint32_t i = 0; i < n; i++) {
-        e.next[i] = i + 1 == n ? 0 : i + 1;
-        e.prev[i] = i == 0 ? n - 1 : i - 1;
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        look_at(&e, i);
-        if (!e.convex[i]) {
-            e.reflex[e.reflex_count++] = i;
-        }
-    }
-    he_status status = cut_ears(&e, plan, err);
-    he_mem_free(block);
-    return status;
-}
-
 /* --- both --- */
 
 void he_triangulation_clear(he_triangulation *triangulation)
@@ -331,46 +185,104 @@ void he_triangulation_clear(he_triangulation *triangulation)
     *triangulation = (he_triangulation){.corners = NULL};
 }
 
+/* Is a side of the triangles that is none of the loop an edge of the mesh? */
+static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
+                         he_triangulation_work *work)
+{
+    /* The third side of a triangle is the diagonal it is cut off by; the last one has none. */
+    for (uint32_t k = 0; k + 3 < plan->flat.n; k++) {
+        const uint32_t *corners = plan->corners + 3 * (size_t)k;
+        if (he_diagonal_exists(m, &plan->flat, corners[0], corners[2], work)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Where the ears of a loop were not enough. */
+static he_status plan_sweep(const he_mesh *m, unsigned flags, he_triangulation_work *work,
+                            he_triangulation *plan, bool *done, he_error *err)
+{
+    const he_flat *f = &plan->flat;
+    he_status status = he_sweep_cut(f, plan->corners, done, &work->steps, err);
+    if (status != HE_OK || !*done) {
+        return status;
+    }
+    if ((flags & HE_AVOID_EDGES) != 0 && doubles_edge(m, plan, work)) {
+        return he_diagonals_refuse(m, f, err);
+    }
+    plan->degenerate = false;
+    for (uint32_t k = 0; k + 2 < f->n && !plan->degenerate; k++) {
+        const uint32_t *corners = plan->corners + 3 * (size_t)k;
+        plan->degenerate = !he_flat_turns_left(f, corners[0], corners[1], corners[2]);
+    }
+    return HE_OK;
+}
+
+static he_status plan_long(const he_mesh *m, unsigned flags, he_triangulation_work *work,
+                           he_triangulation *plan, he_error *err)
+{
+    bool stuck = true;
+    he_status status = HE_OK;
+    if (!plan->flat.degenerate) {
+        status = he_ears_cut(m, flags, work, plan, &stuck, err);
+        if (status == HE_OK && stuck) {
+            bool done = false;
+            status = plan_sweep(m, flags, work, plan, &done, err);
+            stuck = !done;
+        }
+    }
+    if (status == HE_OK && stuck) {
+        status = he_ears_cut(m, flags | HE_ANY_CORNER, work, plan, &stuck, err);
+    }
+    return status;
+}
+
 static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_work *work,
                            he_triangulation *plan, he_error *err)
 {
-    bool avoid = (flags & HE_AVOID_EDGES) != 0;
     if (plan->flat.n > HE_EXACT_CORNERS) {
-        return plan_ears(m, avoid, work, plan, err);
+        return plan_long(m, flags, work, plan, err);
     }
     if (flags & HE_ANY_DIAGONALS) {
-        he_status status = plan_ears(m, avoid, work, plan, err);
-        bool done = status == HE_OK && (!plan->degenerate || plan->flat.degenerate);
+        bool stuck = false, flat = plan->flat.degenerate;
+        he_status status =
+            he_ears_cut(m, flat ? flags | HE_ANY_CORNER : flags, work, plan, &stuck, err);
+        bool done = status == HE_OK && !stuck && (!plan->degenerate || flat);
         if (done || (status != HE_OK && status != HE_DOUBLED_EDGE)) {
             return status;
         }
     }
-    return plan_exact(m, avoid, work, plan, err);
+    return plan_exact(m, (flags & HE_AVOID_EDGES) != 0, work, plan, err);
+}
+
+static he_status make(const he_mesh *m, he_halfedge first, unsigned flags,
+                      he_triangulation_work *work, he_triangulation *plan, he_error *err)
+{
+    he_status status = he_flat_init(&plan->flat, m, first, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    plan->corners = he_mem_array(NULL, 3 * (size_t)(plan->flat.n - 2), sizeof *plan->corners);
+    if (plan->corners == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
+    }
+    return plan_loop(m, flags, work, plan, err);
 }
 
 he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
                                 he_triangulation_work *work, he_triangulation *out, he_error *err)
 {
     he_triangulation plan = {.degenerate = false};
-    he_triangulation_work own = {0};
-    work = work == NULL ? &own : work;
-    uint64_t before = work->steps;
-    he_status status = he_flat_init(&plan.flat, m, first, err);
-    if (status != HE_OK) {
-        return status;
-    }
-    uint32_t n = plan.flat.n;
-    plan.corners = he_mem_array(NULL, 3 * (size_t)(n - 2), sizeof *plan.corners);
-    if (plan.corners == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
-    } else {
-        status = plan_loop(m, flags, work, &plan, err);
-    }
+    he_triangulation_work alone = {0}, *shared = work == NULL ? &alone : work;
+    uint64_t before = shared->steps;
+    he_status status = make(m, first, flags, shared, &plan, err);
+    plan.steps = shared->steps - before;
+    he_triangulation_work_clear(&alone);
     if (status != HE_OK) {
         he_triangulation_clear(&plan);
         return status;
     }
-    plan.steps = work->steps - before;
     *out = plan;
     return HE_OK;
 }

@@ -231,8 +231,7 @@ const he_op he_face_rows[] = {
                     {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
                      "Those of the given faces in whose plane a triangle has no area or is "
                      "turned over."}},
-        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_DOUBLED_EDGE,
-                     HE_LIMIT},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
         .run = run_face_triangulate,
     },
@@ -253,7 +252,7 @@ const he_op he_face_rows[] = {
                     {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The new edges."},
                     {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_REPEATED_CORNER,
-                     HE_DOUBLED_EDGE, HE_LIMIT},
+                     HE_DOUBLED_EDGE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .run = run_hole_fill,
     },

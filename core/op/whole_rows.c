@@ -46,7 +46,7 @@ const he_op he_whole_rows[] = {
                     {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new triangles."},
                     {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
                      "Faces some triangle of which has no area or is turned over."}},
-        .refusals = {HE_DOUBLED_EDGE, HE_LIMIT},
+        .refusals = {HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
         .run = run_triangulate,
     },

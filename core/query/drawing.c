@@ -133,14 +133,13 @@ static uint32_t side(uint32_t a, uint32_t b, uint32_t n, unsigned bit)
     return (uint32_t)(a + 1 == b || (a + 1 == n && b == 0)) << (HE_DRAWN_SIDES + bit);
 }
 
-/* HE_LIMIT leaves the face to be drawn as a fan. */
 static he_status cut(he_drawing *d, uint32_t face, he_error *err)
 {
     he_triangulation t;
     he_halfedge first = {d->mesh->c.face_halfedge[face]};
     he_status status = he_triangulation_make(d->mesh, first, HE_ANY_DIAGONALS, NULL, &t, err);
     if (status != HE_OK) {
-        return status == HE_LIMIT ? HE_OK : status;
+        return status;
     }
     uint32_t n = t.flat.n;
     size_t need = d->cut_rows + n - 2;

@@ -19,8 +19,7 @@
  *
  * A face whose corners are all seen from its first one is the fan about it; a quadrilateral is cut
  * along the diagonal that turns no triangle over, the shorter one where both do not; others are cut
- * as triangulation.h says. A loop that would take too long (HE_LIMIT) is drawn as a fan: its
- * outline stays right. */
+ * as triangulation.h says. */
 #ifndef HE_QUERY_DRAWING_H
 #define HE_QUERY_DRAWING_H
 

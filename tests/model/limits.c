@@ -17,9 +17,6 @@ typedef struct limit {
 
 static const limit limits[] = {
     {"delaunay", giant_rows, NULL, 0, NULL, NULL},
-    {"face_triangulate", giant_star, "face", 0, NULL, NULL},
-    {"hole_fill", giant_star, "halfedge", 1, NULL, "triangulate"},
-    {"triangulate", giant_star, NULL, 0, NULL, NULL},
     {"face_inset", giant_star, "face", 0, "distance", NULL},
     {"face_collapse", giant_star, "face", 0, NULL, NULL},
 };

@@ -13,6 +13,7 @@
 #include "edit/hole.h"
 #include "edit/triangulate.h"
 #include "mesh/build.h"
+#include "mesh/check.h"
 #include "mesh/triangulation.h"
 #include "mesh/walk.h"
 
@@ -256,6 +257,36 @@ static void test_blocked_ears(void **state)
     he_mesh_free(m);
 }
 
+/* Faces that share two corners of very many edges, which the last of them would rather join: that
+ * is found out in few steps, for diagonals of the same edit too. */
+static void test_hubs(void **state)
+{
+    (void)state;
+    enum { FACES = 20000, LAST = 100 };
+    he_soup soup;
+    he_mesh *m = NULL;
+    he_soup_init(&soup, NULL);
+    assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){-1, 0, 0}, NULL), HE_OK);
+    assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){1, 0, 0}, NULL), HE_OK);
+    for (uint32_t i = 0; i < FACES; i++) {
+        uint32_t a = (uint32_t)soup.vertex_count;
+        double y = i + LAST < FACES ? 0.1 : 5;
+        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){0, -y, i}, NULL), HE_OK);
+        assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){0, y, i}, NULL), HE_OK);
+        assert_int_equal(he_soup_add_face(&soup, (uint32_t[]){0, a, 1, a + 1}, 4, NULL), HE_OK);
+    }
+    assert_int_equal(he_build(&soup, 0, &m, NULL, NULL), HE_OK);
+    he_soup_clear(&soup);
+    assert_int_equal(he_triangulate(m, NULL, NULL, NULL, NULL), HE_OK);
+    assert_counts(m, 2 + 2 * FACES, 5 * FACES, 2 * FACES);
+    he_problem problem;
+    size_t problems = 0;
+    assert_int_equal(he_check(m, &problem, 1, &problems, NULL), HE_OK);
+    assert_int_equal(problems, 0);
+    assert_true(edge_between(m, 0, 1).i < he_mesh_issued(m, HE_EDGE));
+    he_mesh_free(m);
+}
+
 /* Two faces over the same corners must not both take the same diagonal. */
 static void test_list_sees_its_own_diagonals(void **state)
 {
@@ -377,6 +408,7 @@ int main(void)
         cmocka_unit_test(test_blocked_ears),
         cmocka_unit_test(test_list_sees_its_own_diagonals),
         cmocka_unit_test(test_holes),
+        cmocka_unit_test(test_hubs),
         cmocka_unit_test(test_same_every_time),
         cmocka_unit_test(test_any_diagonals_take_few_steps),
         cmocka_unit_test(test_searching_for_edges_counts),

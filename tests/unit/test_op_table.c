@@ -496,9 +496,6 @@ static void test_limit(void **state)
     (void)state;
     static const char *const operations[] = {
         "delaunay",
-        "face_triangulate face=0",
-        "hole_fill halfedge=1-0 method=triangulate",
-        "triangulate",
         "face_inset face=0 distance=0.1",
         "face_collapse face=0",
     };

@@ -275,8 +275,7 @@ static void test_faces_without_a_plane(void **state)
     }
 }
 
-/* A comb of so many teeth that to cut it well would take too long. */
-static void test_a_face_that_takes_too_long_is_a_fan(void **state)
+static void test_a_comb_of_many_teeth_is_covered_once(void **state)
 {
     (void)state;
     enum { TEETH = 20000, N = 2 * TEETH + 2 };
@@ -290,11 +289,12 @@ static void test_a_face_that_takes_too_long_is_a_fan(void **state)
     he_mesh *m = face_of(&(polygon){point, N}, 0, 1, 0);
     rows all = draw(m, NULL);
     assert_int_equal(all.count, N - 2);
+    double area = 0;
     for (uint32_t i = 0; i < all.count; i++) {
-        const row *r = &all.row[i];
-        assert_true(r->corner[0] == 0 && r->corner[1] == i + 1 && r->corner[2] == i + 2);
-        assert_int_equal(r->sides, 2 | (i == 0) | (i + 1 == all.count) << 2);
+        area += he_vec3_length(area_vector(m, &all.row[i]));
     }
+    double whole = he_face_area(m, (he_face){0});
+    assert_true(fabs(area - whole) < 1e-9 * whole);
     free(all.row);
     free(point);
     he_mesh_free(m);
@@ -430,7 +430,7 @@ int main(void)
         cmocka_unit_test(test_concave_faces_from_every_corner),
         cmocka_unit_test(test_random_polygons),
         cmocka_unit_test(test_faces_without_a_plane),
-        cmocka_unit_test(test_a_face_that_takes_too_long_is_a_fan),
+        cmocka_unit_test(test_a_comb_of_many_teeth_is_covered_once),
         cmocka_unit_test(test_dead_rows),
         cmocka_unit_test(test_moving_a_vertex_changes_only_faces_at_it),
         cmocka_unit_test(test_frames),

@@ -1,0 +1,373 @@
+/* Long polygons, whatever their shape: valid triangles, none turned over, in bounded work. */
+#include "unit/fixture.h"
+
+#include "mesh/ears.h"
+#include "mesh/orient.h"
+#include "mesh/sweep.h"
+#include "mesh/triangulation.h"
+#include "mesh/walk.h"
+#include "polygons.h"
+#include "seed.h"
+
+#include <math.h>
+
+static int turn(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+{
+    return he_orient2((he_vec2){f->x[a], f->y[a]}, (he_vec2){f->x[b], f->y[b]},
+                      (he_vec2){f->x[c], f->y[c]});
+}
+
+static double doubled_area(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+{
+    return (f->x[b] - f->x[a]) * (f->y[c] - f->y[a]) - (f->y[b] - f->y[a]) * (f->x[c] - f->x[a]);
+}
+
+/* Each triangle cuts its middle corner off what is left: so there are n - 2, every diagonal belongs
+ * to two of them and every side to one. */
+static void assert_cuts_corners(const he_flat *f, const uint32_t *corners)
+{
+    uint32_t n = f->n, *next = calloc(n, sizeof *next);
+    assert_non_null(next);
+    for (uint32_t i = 0; i < n; i++) {
+        next[i] = (i + 1) % n;
+    }
+    for (uint32_t k = 0; k + 2 < n; k++) {
+        const uint32_t *t = corners + 3 * (size_t)k;
+        assert_true(t[0] < n && t[1] < n && t[2] < n);
+        assert_int_equal(next[t[0]], t[1]);
+        assert_int_equal(next[t[1]], t[2]);
+        next[t[0]] = t[2];
+        next[t[1]] = HE_NONE;
+        if (k + 3 == n) {
+            assert_int_equal(next[t[2]], t[0]);
+        }
+    }
+    free(next);
+}
+
+/* Triangles that all turn left, and whose areas add up to the polygon's, cover it once. */
+static void assert_covers(const he_flat *f, const uint32_t *corners)
+{
+    double whole = 0, sum = 0;
+    for (uint32_t i = 1; i + 1 < f->n; i++) {
+        whole += doubled_area(f, 0, i, i + 1);
+    }
+    for (uint32_t k = 0; k + 2 < f->n; k++) {
+        const uint32_t *t = corners + 3 * (size_t)k;
+        assert_int_equal(turn(f, t[0], t[1], t[2]), 1);
+        sum += doubled_area(f, t[0], t[1], t[2]);
+    }
+    assert_true(fabs(sum - whole) <= 1e-9 * whole);
+}
+
+static he_mesh *mesh_of(const polygon_shape *shape, uint32_t n)
+{
+    he_vec3 *points = calloc(n, sizeof *points);
+    assert_non_null(points);
+    shape->make(n, points);
+    he_mesh *m = polygon_mesh(points, n);
+    assert_non_null(m);
+    free(points);
+    return m;
+}
+
+static he_halfedge first_of(const he_mesh *m)
+{
+    return he_face_halfedge(m, (he_face){0});
+}
+
+static void every_shape_is_covered(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[] = {66, 100, 1000, 3000};
+    for (unsigned s = 0; s < polygon_shape_count; s++) {
+        for (unsigned i = 0; i < 4; i++) {
+            he_mesh *m = mesh_of(&polygon_shapes[s], sizes[i]);
+            he_triangulation t;
+            he_flat f;
+            print_message("%s of %u corners\n", polygon_shapes[s].name, sizes[i]);
+            assert_int_equal(
+                he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, NULL, &t, NULL), HE_OK);
+            assert_int_equal(he_flat_init(&f, m, first_of(m), NULL), HE_OK);
+            assert_cuts_corners(&f, t.corners);
+            if (polygon_shapes[s].simple) {
+                assert_false(t.degenerate);
+                assert_covers(&f, t.corners);
+            }
+            he_flat_clear(&f);
+            he_triangulation_clear(&t);
+            he_mesh_free(m);
+        }
+    }
+}
+
+/* Steps, not seconds: at most a few times n log n for any of them. */
+static void work_grows_as_n_log_n(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[] = {4096, 65536};
+    const char *name = "";
+    double most = 0;
+    for (unsigned s = 0; s < polygon_shape_count; s++) {
+        for (unsigned i = 0; i < 2; i++) {
+            uint32_t n = sizes[i];
+            he_mesh *m = mesh_of(&polygon_shapes[s], n);
+            he_triangulation t;
+            assert_int_equal(
+                he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, NULL, &t, NULL), HE_OK);
+            double steps = (double)t.steps / (n * log2(n));
+            if (steps > most) {
+                most = steps;
+                name = polygon_shapes[s].name;
+            }
+            assert_true(steps < 3 * HE_EAR_STEPS);
+            he_triangulation_clear(&t);
+            he_mesh_free(m);
+        }
+    }
+    print_message("note: %s takes %.1f steps for each of n log2 n, others less\n", name, most);
+}
+
+/* --- random simple polygons, by an obvious test --- */
+
+/* xorshift64 (Marsaglia 2003) */
+static uint64_t random_bits(uint64_t *state)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return *state >> 11;
+}
+
+static bool on_segment(const he_flat *f, uint32_t a, uint32_t b, uint32_t p)
+{
+    return turn(f, a, b, p) == 0 && fmin(f->x[a], f->x[b]) <= f->x[p] &&
+           f->x[p] <= fmax(f->x[a], f->x[b]) && fmin(f->y[a], f->y[b]) <= f->y[p] &&
+           f->y[p] <= fmax(f->y[a], f->y[b]);
+}
+
+static bool meet(const he_flat *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+    return (turn(f, a, b, c) * turn(f, a, b, d) < 0 && turn(f, c, d, a) * turn(f, c, d, b) < 0) ||
+           on_segment(f, a, b, c) || on_segment(f, a, b, d) || on_segment(f, c, d, a) ||
+           on_segment(f, c, d, b);
+}
+
+/* Turns pieces round until no two sides meet; false when that goes on too long, or where points lie
+ * on sides. Points are few and on a grid, so that three often lie on a line. */
+static bool untangle(he_flat *f)
+{
+    uint32_t n = f->n;
+    for (unsigned tries = 0; tries < 2000; tries++) {
+        bool found = false;
+        for (uint32_t i = 0; i + 2 < n && !found; i++) {
+            for (uint32_t k = i + 2; k < n && !found; k++) {
+                if (!(i == 0 && k == n - 1) && meet(f, i, i + 1, k, (k + 1) % n)) {
+                    for (uint32_t a = i + 1, b = k; a < b; a++, b--) {
+                        double x = f->x[a], y = f->y[a];
+                        f->x[a] = f->x[b];
+                        f->y[a] = f->y[b];
+                        f->x[b] = x;
+                        f->y[b] = y;
+                    }
+                    found = true;
+                }
+            }
+        }
+        if (!found) {
+            double area = 0;
+            for (uint32_t i = 0; i < n; i++) {
+                uint32_t k = (i + 1) % n, l = (i + 2) % n;
+                area += f->x[i] * f->y[k] - f->x[k] * f->y[i];
+                /* A side that runs back along the one before it meets it in more than a corner. */
+                if (on_segment(f, i, k, l) || on_segment(f, k, l, i)) {
+                    return false;
+                }
+            }
+            for (uint32_t i = 0; i < n / 2 && area < 0; i++) {
+                double x = f->x[i], y = f->y[i];
+                f->x[i] = f->x[n - 1 - i];
+                f->y[i] = f->y[n - 1 - i];
+                f->x[n - 1 - i] = x;
+                f->y[n - 1 - i] = y;
+            }
+            return true;
+        }
+    }
+    return false;
+}
+
+/* No diagonal meets a side but at its ends. */
+static void assert_inside(const he_flat *f, const uint32_t *corners)
+{
+    for (uint32_t k = 0; k + 3 < f->n; k++) {
+        uint32_t a = corners[3 * (size_t)k], b = corners[3 * (size_t)k + 2];
+        for (uint32_t i = 0; i < f->n; i++) {
+            uint32_t j = (i + 1) % f->n;
+            if (i != a && i != b && j != a && j != b) {
+                assert_false(meet(f, a, b, i, j));
+            }
+        }
+    }
+}
+
+static void random_polygons_both_ways(void **state)
+{
+    (void)state;
+    enum { MOST = 40, POLYGONS = 400 };
+    uint64_t seed = seed_of_run() | 1;
+    double x[MOST], y[MOST];
+    uint32_t halfedges[MOST] = {0}, corners[3 * MOST];
+    he_mesh *m = mesh_of(&polygon_shapes[0], 64);
+    unsigned made = 0, swept = 0;
+    for (unsigned round = 0; round < POLYGONS; round++) {
+        he_flat f = {.n = 3 + (uint32_t)(random_bits(&seed) % (MOST - 2)), halfedges, x, y, false};
+        uint32_t side = round % 2 == 0 ? 64 : 1u << 20;
+        for (uint32_t i = 0; i < f.n; i++) {
+            x[i] = (double)(random_bits(&seed) % side) / side;
+            y[i] = (double)(random_bits(&seed) % side) / side;
+        }
+        if (!untangle(&f)) {
+            continue;
+        }
+        made++;
+        bool done = false, stuck = true;
+        uint64_t steps = 0;
+        assert_int_equal(he_sweep_cut(&f, corners, &done, &steps, NULL), HE_OK);
+        assert_true(done);
+        assert_cuts_corners(&f, corners);
+        assert_covers(&f, corners);
+        assert_inside(&f, corners);
+        he_triangulation t = {.flat = f, .corners = corners};
+        he_triangulation_work work = {0};
+        assert_int_equal(he_ears_cut(m, HE_ANY_DIAGONALS, &work, &t, &stuck, NULL), HE_OK);
+        assert_false(stuck);
+        assert_cuts_corners(&f, corners);
+        assert_covers(&f, corners);
+        assert_inside(&f, corners);
+        swept += t.degenerate;
+    }
+    print_message("note: %u random polygons, each by ears and by a sweep\n", made);
+    assert_int_equal(swept, 0);
+    assert_true(made > POLYGONS / 4);
+    he_mesh_free(m);
+}
+
+static void what_meets_itself_is_not_swept(void **state)
+{
+    (void)state;
+    for (unsigned s = 0; s < polygon_shape_count; s++) {
+        he_mesh *m = mesh_of(&polygon_shapes[s], 500);
+        he_flat f;
+        bool done = false;
+        uint64_t steps = 0;
+        uint32_t corners[3 * 500];
+        assert_int_equal(he_flat_init(&f, m, first_of(m), NULL), HE_OK);
+        assert_int_equal(he_sweep_cut(&f, corners, &done, &steps, NULL), HE_OK);
+        if (!done && polygon_shapes[s].simple) {
+            fail_msg("%s was not swept", polygon_shapes[s].name);
+        }
+        if (done) {
+            assert_cuts_corners(&f, corners);
+            assert_covers(&f, corners);
+        }
+        he_flat_clear(&f);
+        he_mesh_free(m);
+    }
+}
+
+/* --- edges, memory, watches --- */
+
+/* Exports take what was cut without looking at edges where none of its diagonals is one. */
+static void avoiding_edges_changes_nothing_where_there_are_none(void **state)
+{
+    (void)state;
+    for (unsigned s = 0; s < polygon_shape_count; s++) {
+        he_mesh *m = mesh_of(&polygon_shapes[s], 700);
+        he_triangulation any, avoiding;
+        assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, NULL, &any, NULL),
+                         HE_OK);
+        assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS | HE_AVOID_EDGES,
+                                               NULL, &avoiding, NULL),
+                         HE_OK);
+        assert_memory_equal(any.corners, avoiding.corners, 3 * sizeof(uint32_t) * 698);
+        assert_int_equal(any.degenerate, avoiding.degenerate);
+        he_triangulation_clear(&any);
+        he_triangulation_clear(&avoiding);
+        he_mesh_free(m);
+    }
+}
+
+static void each_allocation_fails_cleanly(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"comb", "tilted comb", "scribble", "one point"};
+    for (unsigned s = 0; s < polygon_shape_count; s++) {
+        bool wanted = false;
+        for (unsigned i = 0; i < 4; i++) {
+            wanted |= strcmp(polygon_shapes[s].name, names[i]) == 0;
+        }
+        if (!wanted) {
+            continue;
+        }
+        he_mesh *m = mesh_of(&polygon_shapes[s], 2000);
+        he_status status = HE_NO_MEMORY;
+        long n = 0;
+        while (status != HE_OK) {
+            he_triangulation t;
+            he_error err = {0};
+            fixture_fail_at(++n);
+            status = he_triangulation_make(m, first_of(m), HE_AVOID_EDGES, NULL, &t, &err);
+            fixture_memory_back();
+            if (status == HE_OK) {
+                he_triangulation_clear(&t);
+            } else {
+                assert_int_equal(status, HE_NO_MEMORY);
+                assert_int_equal(err.status, HE_NO_MEMORY);
+            }
+        }
+        assert_true(n > 5);
+        he_mesh_free(m);
+    }
+}
+
+static bool give_up(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    ++*(unsigned *)context;
+    return false;
+}
+
+static void a_long_loop_is_given_up(void **state)
+{
+    (void)state;
+    for (unsigned s = 0; s < polygon_shape_count; s++) {
+        he_mesh *m = mesh_of(&polygon_shapes[s], 40000);
+        he_watch watch;
+        unsigned told = 0;
+        he_watch_init(&watch, give_up, &told);
+        he_triangulation_work work = {.watch = &watch, .of = 1};
+        he_triangulation t;
+        assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, &work, &t, NULL),
+                         HE_CANCELLED);
+        assert_int_equal(told, 1);
+        /* Not long after the first time: a corner, or a sweep, later. */
+        assert_true(work.steps < 40 * 40000);
+        he_mesh_free(m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_shape_is_covered),
+        cmocka_unit_test(work_grows_as_n_log_n),
+        cmocka_unit_test(random_polygons_both_ways),
+        cmocka_unit_test(what_meets_itself_is_not_swept),
+        cmocka_unit_test(avoiding_edges_changes_nothing_where_there_are_none),
+        cmocka_unit_test(each_allocation_fails_cleanly),
+        cmocka_unit_test(a_long_loop_is_given_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
