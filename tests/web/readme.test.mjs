@@ -158,6 +158,13 @@ test('each file and make target it names is there', async () => {
     for (const [, target] of readme.matchAll(/`make ([a-z-]+)/g)) {
         assert.match(makefile, new RegExp(`^${target}:`, 'm'), target);
     }
+    // And the table, which `make fresh` tries, has each target but those that only serve others.
+    const [table] = /^\| command \|.*?\n\n/ms.exec(readme);
+    const named = new Set([...table.matchAll(/`(?:make )?([a-z-]+)/g)].map(([, name]) => name));
+    const parts = ['help', 'page', 'programs', 'clean'];
+    for (const [, target] of makefile.matchAll(/^([a-z-]+):.*##/gm)) {
+        assert.ok(named.has(target === 'all' ? 'make' : target) || parts.includes(target), target);
+    }
     for (const [, link] of readme.matchAll(/\]\(([^):]+)\)/g)) {
         await readFile(new URL(`../../${link}`, import.meta.url));
     }
