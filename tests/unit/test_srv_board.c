@@ -154,9 +154,9 @@ static api_job wait_for(const char *id, api_job_state state)
     return job;
 }
 
-static void progress_is_seen_and_never_falls(void **state)
+/* How many values of a job's progress are seen before it has ended. */
+static size_t watch_a_job(void)
 {
-    (void)state;
     char id[API_JOB_ID + 1];
     double last = 0;
     size_t values = 0;
@@ -167,6 +167,17 @@ static void progress_is_seen_and_never_falls(void **state)
         last = job.progress;
     }
     assert_int_equal(look(id).state, API_JOB_DONE);
+    return values;
+}
+
+/* Where other programs want the processor, a job may end between two looks: it is watched again. */
+static void progress_is_seen_and_never_falls(void **state)
+{
+    (void)state;
+    size_t values = 0;
+    for (int tries = 0; tries < 10 && values < 20; tries++) {
+        values = watch_a_job();
+    }
     assert_true(values >= 20);
     print_message("note: %zu values seen\n", values);
 }
