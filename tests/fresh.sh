@@ -131,7 +131,7 @@ for target in $targets; do
         unshare --mount --pid --fork --kill-child sh tests/fresh.sh --enter "$work/root" "$target" \
             "$downloads" >"$log" 2>&1 </dev/null; then
         passed=$((passed + 1))
-        echo "ok $shown ($(($(date +%s) - start)) s): $(tail -n 1 "$log")"
+        echo "ok $shown ($(($(date +%s) - start)) s): $(tail -n 1 "$log" | cut -c 1-100)"
     else
         failed=$((failed + 1))
         tail -n 40 "$log"
