@@ -12,12 +12,14 @@
 #include <sys/socket.h>
 
 enum {
-    /* Of a connection's buffer: above SRV_MAX_HEAD and API_MAX_URI, so that we refuse first. No
-     * larger: libmicrohttpd zeroes all of it after each request, and with 64 connections of
-     * 128 KiB that leaves the cache and costs more than half of the throughput. */
+    /* Of a connection's buffer: all that http_syntax.h lets through of a head, and the head of its
+     * answer. No larger: libmicrohttpd zeroes all of it after each request, and with 64 connections
+     * of 128 KiB that leaves the cache and costs more than half of the throughput. */
     POOL_BYTES = 32 * 1024,
     BACKLOG = 1024
 };
+
+_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= POOL_BYTES, "a head that passes leaves room");
 
 /* --- what libmicrohttpd calls --- */
 

@@ -61,7 +61,7 @@ typedef struct srv_connection {
     bool drain;             /* drain after closing */
     /* The worker's own. */
     srv_syntax syntax;
-    uint64_t requests; /* begun by libmicrohttpd so far */
+    uint64_t requests; /* begun so far, as libmicrohttpd sees it */
     /* The thread's own. */
     uint64_t window, window_acked; /* since when it measures an answer, 0: not */
     uint64_t taken;                /* `since` of the IDLE stage in which no byte waited, 0: none */

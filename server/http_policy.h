@@ -3,10 +3,10 @@
  * P1  Host must name localhost, a loopback address or a configured name, whatever the port: a page
  *     that resolves its own name to 127.0.0.1 (DNS rebinding) is refused with 421.
  * P2  A write with an Origin needs it to be this server's own (http or https, the authority of
- *     Host) or a configured one; `null` never is: 403.
+ *     Host) or a configured one; `null` never is: 403. Two are refused before, by http_syntax.h.
  * P3  A write whose Sec-Fetch-Site is cross-site is 403, unless its Origin is a configured one. So
- * is one whose Sec-Fetch-Site is same-site and that has no Origin: a sibling on another port or
- *     subdomain sent it, and which one nobody says.
+ *     is one whose Sec-Fetch-Site is same-site and that has no Origin: a page on another port or
+ *     subdomain sent it, and nothing says which.
  * P4  Configured origins, and no others, get CORS headers. */
 #ifndef HE_SERVER_HTTP_POLICY_H
 #define HE_SERVER_HTTP_POLICY_H

@@ -17,8 +17,10 @@ static srv_connection *socket_of(struct MHD_Connection *connection)
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection)
 {
     srv_connection *socket = socket_of(connection);
-    if (socket != NULL) {
-        socket->requests++; /* whatever becomes of it: http_syntax.h counts it too */
+    /* Counted first, whatever becomes of it, as http_syntax.h has counted it (S4). One that was not
+     * counted there came past the check. */
+    if (socket == NULL || !srv_syntax_has_begun(&socket->syntax, ++socket->requests)) {
+        return NULL;
     }
     size_t length = strnlen(uri, API_MAX_URI + 1);
     srv_request *r = he_mem_zero(1, sizeof *r + length + 1);
@@ -29,7 +31,7 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
     r->http = http;
     r->connection = connection;
     r->socket = socket;
-    r->number = socket == NULL ? 0 : socket->requests;
+    r->number = socket->requests;
     r->started = srv_clock_micros();
     srv_connection_enter(r->socket, SRV_STAGE_HEAD, r->started);
     return r;

@@ -93,8 +93,8 @@ typedef struct srv_request {
     char target[];    /* raw */
 } srv_request;
 
-/* The request line has arrived. NULL when memory is out. Targets longer than are allowed are kept
- * to one character more. */
+/* The request line has arrived. NULL when memory is out, or when its bytes were not checked
+ * (http_recv.h): then the connection is closed without an answer. */
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection);
 /* Answered, or its client was lost: writes the line of the access log and frees the request. The
  * server may be freed at once after that. */

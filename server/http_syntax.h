@@ -32,7 +32,8 @@
  *       requests before it were answered in their order.
  *   S4  The handler asks srv_syntax_fault whether the request is the faulty one. Requests are told
  *       apart by counting them on both sides of libmicrohttpd, which nothing that a client sends
- *       can imitate. It answers the fault and closes the connection: one answer, and the last.
+ *       can imitate. It answers the fault and closes the connection: one answer, and the last. A
+ *       request that libmicrohttpd has begun and the machine has not is not served at all.
  *   S5  Where the bytes were cut into pieces changes neither what is passed on nor the fault.
  *
  * What a request must be (RFC 9112; refused with 400 where nothing else is said):
@@ -96,6 +97,11 @@ size_t srv_syntax_end(srv_syntax *s, char *bytes, size_t size);
 static inline bool srv_syntax_is_faulty(const srv_syntax *s)
 {
     return s->fault != SRV_FAULT_NONE;
+}
+/* Have the first bytes of the request of this number (the first is 1) passed? */
+static inline bool srv_syntax_has_begun(const srv_syntax *s, uint64_t request)
+{
+    return request <= s->requests;
 }
 /* Is the request of this number (the first is 1) the one with a fault? Then the problem is filled,
  * unless it is NULL. */

@@ -156,6 +156,7 @@ static const framing_case cases[] = {
     TAKEN("a body", POST CL "16\r\n\r\n" CUBE, 201),
     TAKEN("leading zeros", POST CL "0000000000000000000000000000016\r\n\r\n" CUBE, 201),
     TAKEN("blanks around the length", POST "Content-Length: \t 16 \t \r\n\r\n" CUBE, 201),
+    TAKEN("a body after Expect", POST "Expect: 100-continue\r\n" CL "16\r\n\r\n" CUBE, 201),
     TAKEN("a length of zero", GET HOST CL "0\r\n\r\n", 200),
     BAD("an empty length", POST "Content-Length:\r\n\r\n" CUBE),
     BAD("a blank length", POST CL "  \r\n\r\n" CUBE),
@@ -231,6 +232,8 @@ static const framing_case cases[] = {
     TAKEN("trailers", CHUNKS "10\r\n" CUBE "\r\n0\r\nX: a\r\nY: b\r\n\r\n", 201),
     TAKEN("a length among the trailers", CHUNKS "10\r\n" CUBE "\r\n0\r\n" CL "3\r\n\r\n", 201),
     ANSWERED("no chunk", CHUNKS LAST, 400, "missing_body"),
+    BAD("a fault after Expect", POST "Expect: 100-continue\r\n" TE "chunked\r\n\r\n"
+                                     "xyz\r\n"),
     BAD("a size with a bare LF", CHUNKS "10\n" CUBE "\r\n" LAST),
     BAD("data with a bare LF", CHUNKS "10\r\n" CUBE "\n" LAST),
     BAD("the last size with a bare LF", CHUNKS "10\r\n" CUBE "\r\n0\n\r\n"),

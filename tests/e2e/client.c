@@ -269,9 +269,8 @@ static int count_answers(const char *data, size_t length)
     return count;
 }
 
-/* The first answer to bytes that are, as far as the end of the header, a request that reaches the
- * server's own code: libmicrohttpd answers one without Host by itself. Its body is not told from
- * the framing, which is what such tests are about. */
+/* Records the first answer to bytes that are, up to the end of the head, a request of a method and
+ * a target. The body is left out: where it ends is what such tests are about. */
 static void record_raw(const char *request, size_t length, const char *answer)
 {
     char method[16], target[8192];

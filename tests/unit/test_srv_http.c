@@ -3,6 +3,7 @@
 #include "tests/unit/fixture.h"
 
 #include "server/http.h"
+#include "server/http_recv.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -561,6 +562,23 @@ static void test_refused_bodies(void **state)
     close(fd);
 }
 
+/* Whatever let libmicrohttpd read from the socket directly. */
+static void a_request_that_was_not_checked_is_not_served(void **state)
+{
+    (void)state;
+    char text[4096];
+    int fd = connect_client();
+    ask(fd, "GET", "/livez", "");
+    assert_int_equal(answer(fd, text, sizeof text), 200);
+    for (int socket = 0; socket < 1024; socket++) {
+        srv_recv_forget(socket);
+    }
+    ask(fd, "GET", "/livez", "");
+    assert_int_equal(answer(fd, text, sizeof text), 0);
+    close(fd);
+    assert_int_equal(round_trip("GET", "/livez", ""), 200);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, start, stop)
@@ -576,6 +594,7 @@ int main(void)
         TEST(a_read_beyond_its_time_is_refused),
         TEST(test_too_many_connections),
         TEST(test_refused_bodies),
+        TEST(a_request_that_was_not_checked_is_not_served),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
