@@ -171,6 +171,25 @@ static he_status dihedral(const he_mesh *m, uint32_t id, const options *o, doubl
     return HE_OK;
 }
 
+static he_status dihedrals(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
+                           uint64_t most, double *out, he_error *err)
+{
+    (void)of, (void)count, (void)most;
+    uint32_t issued = he_mesh_issued(m, HE_EDGE);
+    double *rows = he_mem_array(NULL, (size_t)issued + 1, sizeof *rows);
+    if (rows == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the dihedrals of a mesh");
+    }
+    he_status status = he_edge_dihedrals(m, o->watch, rows, err);
+    for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
+        if (he_mesh_is_live(m, HE_EDGE, e)) {
+            *out++ = rows[e];
+        }
+    }
+    he_mem_free(rows);
+    return status;
+}
+
 static he_status edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
                                  const options *o, uint64_t most, double *out, he_error *err)
 {
@@ -215,7 +234,7 @@ static const measure measures[] = {
     {HE_HALFEDGE, "angle", 1, PLAIN, corner_angle, NULL},
     {HE_HALFEDGE, "normal", 3, CREASE, corner_normal, corner_normals},
     {HE_EDGE, "length", 1, PLAIN, edge_length, NULL},
-    {HE_EDGE, "dihedral", 1, PLAIN, dihedral, NULL},
+    {HE_EDGE, "dihedral", 1, PLAIN, dihedral, dihedrals},
     {HE_EDGE, "cotangent", 1, PLAIN, NULL, edge_cotangents},
     {HE_FACE, "normal", 3, PLAIN, face_normal, NULL},
     {HE_FACE, "area", 1, PLAIN, face_area, NULL},

@@ -85,6 +85,17 @@ double he_corner_angle(const he_mesh *m, he_halfedge h)
     return ahead == 0 || behind == 0 ? 0 : he_vec3_angle(a, b);
 }
 
+/* `left` and `right` are the normals of the faces on both sides of e. */
+static double dihedral_between(const he_mesh *m, he_edge e, he_vec3 left, he_vec3 right)
+{
+    he_halfedge h = he_edge_halfedge(e, 0);
+    he_vec3 along =
+        he_direction(he_position(m, he_origin(m, h)), he_position(m, he_target(m, h)), NULL);
+    double sine = he_vec3_dot(he_vec3_cross(left, right), along);
+    double angle = atan2(sine, he_vec3_dot(left, right)) + 0.0; /* no minus zero */
+    return angle > -HE_PI ? angle : HE_PI;
+}
+
 bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -94,10 +105,43 @@ bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out)
         !he_face_normal(m, he_face_of(m, he_twin(h)), &right)) {
         return false;
     }
-    he_vec3 along =
-        he_direction(he_position(m, he_origin(m, h)), he_position(m, he_target(m, h)), NULL);
-    double sine = he_vec3_dot(he_vec3_cross(left, right), along);
-    double angle = atan2(sine, he_vec3_dot(left, right)) + 0.0; /* no minus zero */
-    *out = angle > -HE_PI ? angle : HE_PI;
+    *out = dihedral_between(m, e, left, right);
     return true;
+}
+
+static bool is_zero(he_vec3 v)
+{
+    return v.x == 0 && v.y == 0 && v.z == 0;
+}
+
+static double dihedral_or_nan(const he_mesh *m, he_edge e, const he_vec3 *normals)
+{
+    if (!he_edge_is_live(m, e) || he_is_boundary_edge(m, e)) {
+        return NAN;
+    }
+    he_vec3 left = normals[he_face_of(m, he_edge_halfedge(e, 0)).i];
+    he_vec3 right = normals[he_face_of(m, he_edge_halfedge(e, 1)).i];
+    return is_zero(left) || is_zero(right) ? NAN : dihedral_between(m, e, left, right);
+}
+
+he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, double *out, he_error *err)
+{
+    uint32_t faces = m->c.faces.issued, edges = m->c.edges.issued;
+    he_vec3 *normals = he_mem_array(NULL, (size_t)faces + 1, sizeof *normals);
+    he_status status = HE_OK;
+    if (normals == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the normals of %u faces", faces);
+    }
+    for (uint32_t f = 0; f < faces && status == HE_OK; f++) {
+        status = he_watch_at(watch, f, (uint64_t)faces + edges, err);
+        if (he_face_is_live(m, (he_face){f})) {
+            (void)he_face_normal(m, (he_face){f}, &normals[f]);
+        }
+    }
+    for (uint32_t e = 0; e < edges && status == HE_OK; e++) {
+        status = he_watch_at(watch, (uint64_t)faces + e, (uint64_t)faces + edges, err);
+        out[e] = dihedral_or_nan(m, (he_edge){e}, normals);
+    }
+    he_mem_free(normals);
+    return status;
 }

@@ -35,6 +35,12 @@ double he_edge_length(const he_mesh *m, he_edge e);
  * along the first half-edge, and |sin| of it may be less than |a x b|. False, and 0, on the
  * boundary or beside a degenerate face. */
 bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out);
+/* The dihedrals of the whole mesh, into an array with one entry for each issued edge; NaN where
+ * he_edge_dihedral returns false, and in dead rows. Each face is measured once, so the cost is
+ * linear in the half-edges however many corners a face has. HE_NO_MEMORY; HE_CANCELLED leaves the
+ * array half written. */
+HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, double *out,
+                                         he_error *err);
 
 /* Inside its face, between a half-edge and the one before it; in [0, pi], so a reflex corner gives
  * the smaller angle. At a hole the angle between the two boundary edges. 0 where an edge has no

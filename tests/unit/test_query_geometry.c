@@ -137,6 +137,63 @@ static void test_geometry_dihedral_has_a_sign(void **state)
     he_mesh_free(m);
 }
 
+static void assert_dihedrals_agree(const he_mesh *m)
+{
+    double *all = he_mem_array(NULL, (size_t)m->c.edges.issued + 1, sizeof *all);
+    assert_non_null(all);
+    assert_int_equal(he_edge_dihedrals(m, NULL, all, NULL), HE_OK);
+    for (uint32_t e = 0; e < m->c.edges.issued; e++) {
+        double one = NAN;
+        bool known =
+            he_edge_is_live(m, (he_edge){e}) && he_edge_dihedral(m, (he_edge){e}, &one);
+        assert_true(known ? memcmp(&one, &all[e], sizeof one) == 0 : isnan(all[e]));
+    }
+    he_mem_free(all);
+}
+
+static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
+{
+    (void)state;
+    for (int i = 0; i < QUERY_SPECIMENS; i++) {
+        he_mesh *m = fixture_mesh(query_specimens[i]);
+        assert_dihedrals_agree(m);
+        if (m->c.vertices.issued > 2) {
+            m->c.position[1] = m->c.position[2]; /* degenerate faces */
+        }
+        assert_dihedrals_agree(m);
+        he_mesh_free(m);
+    }
+    he_mesh *m = query_with_dead_rows();
+    assert_dihedrals_agree(m);
+    he_mesh_free(m);
+}
+
+/* Each rim edge of a cone lies beside its base of 200,000 corners: measuring the base again for
+ * each would take 40 billion steps, which a run of the tests does not survive. */
+static void dihedrals_measure_a_face_of_many_corners_once(void **state)
+{
+    (void)state;
+    he_mesh *m = query_shape("cone", 200000, 1, 1, 1);
+    double *all = he_mem_array(NULL, m->c.edges.issued, sizeof *all);
+    assert_non_null(all);
+    assert_int_equal(he_edge_dihedrals(m, NULL, all, NULL), HE_OK);
+    assert_true(all[0] > 0 && all[m->c.edges.issued - 1] > 0);
+    he_mem_free(all);
+    he_mesh_free(m);
+}
+
+static void dihedrals_are_refused_where_memory_is_out(void **state)
+{
+    (void)state;
+    he_mesh *m = cube();
+    double all[12];
+    fixture_fail_at(1);
+    he_status status = he_edge_dihedrals(m, NULL, all, NULL);
+    fixture_memory_back();
+    assert_int_equal(status, HE_NO_MEMORY);
+    he_mesh_free(m);
+}
+
 /* Gauss and Bonnet: what the angles at all vertices lack of 2 pi is 2 pi times euler. */
 static void test_geometry_angle_defects_sum_to_euler(void **state)
 {
@@ -603,6 +660,9 @@ int main(void)
         cmocka_unit_test(test_geometry_of_a_cube),
         cmocka_unit_test(test_geometry_weights_differ),
         cmocka_unit_test(test_geometry_dihedral_has_a_sign),
+        cmocka_unit_test(dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one),
+        cmocka_unit_test(dihedrals_measure_a_face_of_many_corners_once),
+        cmocka_unit_test(dihedrals_are_refused_where_memory_is_out),
         cmocka_unit_test(test_geometry_angle_defects_sum_to_euler),
         cmocka_unit_test(test_geometry_degenerate_faces),
         cmocka_unit_test(test_geometry_does_not_depend_on_scale),
