@@ -169,3 +169,122 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
     }
     return total > most;
 }
+
+/* --- what a list of operations is charged --- */
+
+/* Rings and loops of fewer steps are not remembered. */
+enum { HUB = 256 };
+
+/* Steps about a vertex, or around the face of `first`. */
+static uint64_t hub_steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most,
+                          api_hubs *hubs)
+{
+    uint32_t id = turn ? he_origin(mesh, first).i : he_face_of(mesh, first).i;
+    if (id >= HE_MAX_ROWS) {
+        return steps(mesh, first, turn, most); /* of a hole, which has no id */
+    }
+    uint32_t key = 2 * id + 2 + (turn ? 0 : 1);
+    size_t slot = key / 2 % (sizeof hubs->slots / sizeof hubs->slots[0]);
+    if (hubs->slots[slot].key == key && hubs->slots[slot].uses++ < API_HUB_USES) {
+        return hubs->slots[slot].steps;
+    }
+    uint64_t count = steps(mesh, first, turn, most);
+    if (count >= HUB) {
+        hubs->slots[slot].key = key;
+        hubs->slots[slot].uses = 0;
+        hubs->slots[slot].steps = count;
+    }
+    return count;
+}
+
+static uint64_t walk_about_edge(const he_mesh *mesh, he_edge e, bool holes, uint64_t most,
+                                api_hubs *hubs)
+{
+    uint64_t count = 0;
+    for (unsigned side = 0; side < 2; side++) {
+        he_halfedge h = he_edge_halfedge(e, side);
+        count += hub_steps(mesh, h, true, most, hubs);
+        if (holes || !he_is_boundary_halfedge(mesh, h)) {
+            count += hub_steps(mesh, h, false, most, hubs);
+        }
+    }
+    return count;
+}
+
+/* Around the corners of a face but the origin of h. */
+static uint64_t walk_about_corners(const he_mesh *mesh, he_halfedge h, uint64_t most,
+                                   api_hubs *hubs)
+{
+    uint64_t count = 0;
+    for (he_halfedge k = he_next(mesh, h); k.i != h.i && count < most; k = he_next(mesh, k)) {
+        count += hub_steps(mesh, k, true, most, hubs);
+    }
+    return count;
+}
+
+static uint64_t walk_about_faces(const he_mesh *mesh, he_vertex v, uint64_t most, api_hubs *hubs)
+{
+    he_halfedge first = he_vertex_halfedge(mesh, v), h = first;
+    uint64_t count = 0;
+    do {
+        count++;
+        count += he_is_boundary_halfedge(mesh, h) ? 0 : walk_about_corners(mesh, h, most, hubs);
+        h = he_turn_ccw(mesh, h);
+    } while (h.i != first.i && count < most);
+    return count;
+}
+
+static uint64_t walk_about(const he_mesh *mesh, const he_param *param, uint32_t id, uint64_t most,
+                           api_hubs *hubs)
+{
+    if (id >= he_mesh_issued(mesh, param->kind) || !he_mesh_is_live(mesh, param->kind, id)) {
+        return 0;
+    }
+    switch (param->kind) {
+    case HE_VERTEX:
+        if (he_is_isolated(mesh, (he_vertex){id})) {
+            return 1;
+        }
+        return (param->flags & HE_REACHES) != 0
+                   ? walk_about_faces(mesh, (he_vertex){id}, most, hubs)
+                   : hub_steps(mesh, he_vertex_halfedge(mesh, (he_vertex){id}), true, most, hubs);
+    case HE_HALFEDGE:
+        return walk_about_edge(mesh, he_edge_of((he_halfedge){id}), true, most, hubs);
+    case HE_EDGE:
+        return walk_about_edge(mesh, (he_edge){id}, false, most, hubs);
+    case HE_FACE: {
+        he_halfedge first = he_face_halfedge(mesh, (he_face){id});
+        return (param->flags & HE_REACHES) != 0 ? hub_steps(mesh, first, true, most, hubs) +
+                                                      walk_about_corners(mesh, first, most, hubs)
+                                                : hub_steps(mesh, first, false, most, hubs);
+    }
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return 0;
+}
+
+uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t most,
+                             api_hubs *hubs)
+{
+    uint64_t count = 0;
+    for (size_t i = 0; i < he_op_params(call->op); i++) {
+        const he_param *param = &call->op->params[i];
+        const he_arg *arg = &call->args[i];
+        if (!arg->given || (param->flags & HE_WALKS) == 0) {
+            continue;
+        }
+        if (param->type == HE_PARAM_ELEMENT) {
+            count += walk_about(mesh, param, arg->id, most, hubs);
+            continue;
+        }
+        for (size_t j = 0; j < arg->count && count <= most; j++) {
+            count += walk_about(mesh, param, arg->ids[j], most, hubs);
+        }
+    }
+    /* An operation walks over no part of the mesh more than a few times, however often its
+     * elements have it about them. */
+    uint64_t all = 8 * (uint64_t)he_mesh_count(mesh, HE_HALFEDGE);
+    return count < all ? count : all;
+}

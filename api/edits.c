@@ -18,10 +18,20 @@ typedef struct edits {
     api_in expected;
     bool has_expected;
     bool dry_run;
-    size_t whole;  /* operations that cost the mesh */
-    double growth; /* by how many times they make it larger, all in all */
+    size_t whole;    /* operations that cost the mesh */
+    uint64_t passes; /* over the mesh that they take as long as */
+    double growth;   /* by how many times they make it larger, all in all */
     api_edit_cost cost;
     uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
+    uint64_t steps;     /* about hubs, by the operations so far */
+    uint64_t work;      /* of both, in the unit of API_POOL_EDITS */
+    uint64_t most_work; /* more belongs elsewhere */
+    bool exceeded;      /* it would be more */
+    uint64_t paid;      /* looks at its watch that the operation at hand was charged for */
+    uint64_t look;      /* what another one costs */
+    bool unlimited;     /* there is no better place than this thread */
+    he_watch told;      /* x->watch, which x->watch passes on to meanwhile */
+    api_hubs hubs;
     api_names names;
     api_others others;
     api_arena scratch; /* arguments of the operation at hand */
@@ -80,7 +90,13 @@ static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *ca
 static bool note(edits *e, const api_in *in, const api_call *call)
 {
     he_error err = {0};
-    e->whole += he_op_is_whole(call->op, call->args) || call->has_set;
+    if (he_op_is_whole(call->op, call->args)) {
+        e->whole++;
+        e->passes += he_op_pace(call->op);
+    } else if (call->has_set) {
+        e->whole++;
+        e->passes++;
+    }
     e->growth *= he_op_growth(call->op, call->args);
     note_name(e, call->op->name);
     return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
@@ -135,32 +151,57 @@ static bool read_request(api_exchange *x, edits *e)
     return check_ops(x, e);
 }
 
+/* Elements in number beyond which it does not matter how many more there are. */
+static const double MANY = 1e12;
+
 static uint64_t issued(const he_mesh *mesh)
 {
     return (uint64_t)he_mesh_issued(mesh, HE_VERTEX) + he_mesh_issued(mesh, HE_EDGE) +
            he_mesh_issued(mesh, HE_FACE);
 }
 
-/* A list of few bytes may ask for the whole mesh as often as it has operations. */
-static bool within_limits(edits *e, const he_mesh *mesh, const he_delta *delta, const api_in *in,
-                          const api_call *call)
+/* A list of few bytes may ask for the whole mesh as often as it has operations, and for one hub. */
+static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
 {
     if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
         return api_in_fail(in, HE_LIMIT, "the operations before look at %llu elements, over %d",
                            (unsigned long long)e->looked_at, (int)API_MAX_EDITS_ELEMENTS);
     }
+    if (e->steps > API_MAX_EDITS_STEPS) {
+        return api_in_fail(in, HE_LIMIT, "the operations before take %llu steps, over %llu",
+                           (unsigned long long)e->steps, (unsigned long long)API_MAX_EDITS_STEPS);
+    }
     if (delta->count > API_MAX_EDITS_ROWS) {
         return api_in_fail(in, HE_LIMIT, "the operations before change %zu rows, over %d",
                            delta->count, (int)API_MAX_EDITS_ROWS);
     }
-    if (he_op_is_whole(call->op, call->args) || call->has_set) {
-        e->looked_at += issued(mesh);
-    }
-    for (size_t i = 0; i < he_op_params(call->op); i++) {
-        e->looked_at += call->args[i].list ? call->args[i].count : 0;
-        e->looked_at += call->args[i].mesh != NULL ? issued(call->args[i].mesh) : 0;
-    }
     return true;
+}
+
+/* Looks that an operation takes at its watch however small it is. */
+enum { PHASES = 24 };
+
+/* Charge one operation. False where it and those before it belong on another thread. */
+static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
+{
+    bool whole = he_op_is_whole(call->op, call->args);
+    uint64_t elements = whole || call->has_set ? issued(mesh) : 0, listed = 0;
+    for (size_t i = 0; i < he_op_params(call->op); i++) {
+        listed += call->args[i].list ? call->args[i].count : 0;
+        elements += call->args[i].mesh != NULL ? issued(call->args[i].mesh) : 0;
+    }
+    double many = he_op_growth(call->op, call->args) * (double)elements;
+    uint64_t grown = many < MANY ? (uint64_t)many : (uint64_t)MANY;
+    uint64_t steps = e->is_list ? api_edit_cost_steps(call, mesh, UINT64_MAX / 2, &e->hubs) : 0;
+    e->looked_at += elements + listed;
+    e->steps += steps;
+    uint64_t work = (whole ? grown * he_op_pace(call->op) : elements) +
+                    listed * (whole ? 1 : he_op_pace(call->op)) + steps / API_STEPS_OF_WORK;
+    e->work += work;
+    e->paid = PHASES + work / HE_WATCH_STRIDE;
+    e->look = (uint64_t)HE_WATCH_STRIDE * he_op_pace(call->op);
+    e->exceeded = e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
+    return !e->exceeded;
 }
 
 static size_t count_columns(const he_mesh *mesh, const he_mesh *unless)
@@ -195,8 +236,8 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     api_call call;
     he_results results = {0};
     he_error err = {0};
-    if (!decode(e, in, mesh, &call) || !within_limits(e, mesh, delta, in, &call) ||
-        !within_attributes(mesh, in, &call)) {
+    if (!decode(e, in, mesh, &call) || !within_limits(e, delta, in) ||
+        !within_attributes(mesh, in, &call) || !charge(e, mesh, delta, &call)) {
         return false;
     }
     if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
@@ -212,6 +253,9 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return true;
 }
 
+/* Operations of a list that are not told to whoever may end it. */
+enum { OPS_PER_LOOK = 16 };
+
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
 {
     if (!e->is_list) {
@@ -219,8 +263,13 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
         return run_op(x, e, mesh, delta, &x->root);
     }
     for (size_t i = 0; i < e->count; i++) {
+        he_error err = {0};
         he_watch_span(&x->watch,
                       COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) / (double)e->count);
+        e->paid = PHASES;
+        if (i % OPS_PER_LOOK == 0 && he_watch_phase(&x->watch, "editing", 0, &err) != HE_OK) {
+            return api_fail_core(x, &err);
+        }
         if (!api_item_read(&x->ops, i, &e->list, &e->op) || !run_op(x, e, mesh, delta, &e->op.in)) {
             return false;
         }
@@ -273,6 +322,7 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
     if (e->results.failed) {
         return api_fail_memory(x);
     }
+    e->paid = UINT64_MAX; /* what follows depends on the rows of the delta, which were counted */
     he_watch_span(&x->watch, CHANGES_SHARE);
     if (he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
         return api_fail_core(x, &err);
@@ -295,32 +345,55 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
     return publish;
 }
 
-static void run(api_exchange *x)
+/* --- work that turns out to be long --- */
+
+/* What an operation will take is not always known before: flips spread. It looks at its watch every
+ * HE_WATCH_STRIDE elements, and looks beyond those that it was charged for are charged. */
+static bool tell_and_charge(void *context, const char *phase, double done)
 {
-    edits *e = x->state;
-    he_delta *delta = NULL;
-    bool barrier = false;
-    if (!api_others_take(x, &e->others)) {
-        return;
-    }
-    he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
-    if (mesh == NULL) {
-        return;
-    }
-    he_mesh_watch(mesh, &x->watch);
-    bool publish = edit(x, e, mesh, delta, &barrier);
-    he_mesh_watch(mesh, NULL);
-    if (publish) {
-        x->store->write_commit(x->store->self, x->mesh, e->ops, barrier, &x->info);
-        api_publish(x, 204);
+    edits *e = context;
+    if (e->paid > 0) {
+        e->paid--;
     } else {
-        x->store->write_abort(x->store->self, x->mesh);
+        e->work += e->look;
+        e->exceeded = e->exceeded || e->work > e->most_work;
     }
-    api_others_release(&e->others);
-    if (x->problem.code == HE_OK) {
-        answer(x, e);
-    }
+    return !e->exceeded && (e->told.tell == NULL || e->told.tell(e->told.context, phase, done));
 }
+
+/* Until unlimit_work no more is done than this thread has time for. */
+static void limit_work(api_exchange *x, edits *e)
+{
+    e->most_work = e->unlimited                 ? UINT64_MAX
+                   : x->phase == API_PHASE_BODY ? API_WORKER_EDITS
+                                                : API_POOL_EDITS;
+    e->paid = PHASES;
+    e->told = x->watch;
+    x->watch.tell = tell_and_charge;
+    x->watch.context = e;
+}
+
+static void unlimit_work(api_exchange *x, const edits *e)
+{
+    x->watch.tell = e->told.tell;
+    x->watch.context = e->told.context;
+    x->watch.cancelled = x->watch.cancelled && !e->exceeded;
+}
+
+/* A list that was rolled back, as if it had not begun. */
+static void start_over(edits *e)
+{
+    e->looked_at = e->steps = e->work = 0;
+    e->exceeded = false;
+    e->hubs = (api_hubs){.slots = {{0}}};
+    api_names_unbind(&e->names);
+    api_text_empty(&e->results);
+    api_out_init(&e->out, &e->results);
+}
+
+static void run(api_exchange *x);
+static void run_claimed(api_exchange *x);
+static void go_on_elsewhere(api_exchange *x, edits *e);
 
 /* --- long edits --- */
 
@@ -381,6 +454,8 @@ static void run_claimed(api_exchange *x)
     he_mesh *copy = NULL;
     he_error err = {0};
     bool barrier = false;
+    /* There is no better place than a job, and none where the client would rather wait. */
+    e->unlimited = e->unlimited || x->phase == API_PHASE_JOB || x->prefer.wait >= 0;
     he_watch_span(&x->watch, COPY_SHARE);
     if (!api_others_take(x, &e->others)) {
         return;
@@ -390,19 +465,66 @@ static void run_claimed(api_exchange *x)
         return;
     }
     he_mesh_record(copy, e->delta);
+    limit_work(x, e);
     bool publish = edit(x, e, copy, e->delta, &barrier);
+    unlimit_work(x, e);
     he_mesh_watch(copy, NULL);
     if (!publish || !publish_copy(x, e, copy, barrier)) {
         he_mesh_free(copy);
     }
     api_others_release(&e->others);
-    if (x->problem.code == HE_OK) {
+    if (e->exceeded && !publish) {
+        go_on_elsewhere(x, e);
+    } else if (x->problem.code == HE_OK) {
         answer(x, e);
     }
 }
 
-/* Elements in number beyond which it does not matter how many more there are. */
-static const double MANY = 1e12;
+/* From a worker to the pool, from there to a job. */
+static void go_on_elsewhere(api_exchange *x, edits *e)
+{
+    bool on_worker = x->phase == API_PHASE_BODY;
+    x->problem = (api_problem){.code = HE_OK}; /* of what was ended, if any */
+    start_over(e);
+    if (on_worker) {
+        api_run_long(x, run, true, 0);
+    } else if (x->claimed || claim(x, e)) {
+        he_delta_empty(e->delta); /* of what was recorded in a copy that is gone */
+        e->unlimited = true;
+        api_run_long(x, run_claimed, true, 2 * API_PATIENCE);
+    }
+}
+
+static void run(api_exchange *x)
+{
+    edits *e = x->state;
+    he_delta *delta = NULL;
+    bool barrier = false;
+    if (!api_others_take(x, &e->others)) {
+        return;
+    }
+    he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
+    if (mesh == NULL) {
+        return;
+    }
+    limit_work(x, e);
+    he_mesh_watch(mesh, &x->watch);
+    bool publish = edit(x, e, mesh, delta, &barrier);
+    he_mesh_watch(mesh, NULL);
+    unlimit_work(x, e);
+    if (publish) {
+        x->store->write_commit(x->store->self, x->mesh, e->ops, barrier, &x->info);
+        api_publish(x, 204);
+    } else {
+        x->store->write_abort(x->store->self, x->mesh);
+    }
+    api_others_release(&e->others);
+    if (e->exceeded && !publish) {
+        go_on_elsewhere(x, e);
+    } else if (x->problem.code == HE_OK) {
+        answer(x, e);
+    }
+}
 
 /* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a
  * thread that may block; what costs a really large mesh must not keep it locked. */
@@ -416,14 +538,14 @@ static void choose(api_exchange *x, edits *e)
     elements += api_elements_of(mesh);
     elements = e->growth * (double)elements < MANY ? (uint64_t)(e->growth * (double)elements)
                                                    : (uint64_t)MANY;
-    bool costly = e->count > API_COSTLY_EDITS ||
+    bool costly = e->count > API_COSTLY_EDITS || e->passes * elements > API_WORKER_EDITS ||
                   (elements > API_COSTLY_ELEMENTS &&
                    (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
     api_read_end(x);
-    if (e->whole > 0 && elements > API_CLAIM_ELEMENTS) {
+    double seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;
+    if (e->whole > 0 && (elements > API_CLAIM_ELEMENTS || seconds > API_PATIENCE)) {
         if (claim(x, e)) {
-            api_run_long(x, run_claimed, true,
-                         (double)e->whole * (double)elements / API_EDIT_PER_SECOND);
+            api_run_long(x, run_claimed, true, seconds);
         }
     } else {
         api_run_long(x, run, costly, 0);

@@ -59,10 +59,11 @@ enum {
     API_MAX_PAGE_BYTES = 1 << 26, /* a page of elements ends after the one that passes this */
     API_MAX_OPS = 65536,          /* operations of one edit list */
     /* What the operations of one list may look at and change before the next one is refused: ids
-     * named, elements of the mesh for each operation on the whole of it; rows of the delta. The
-     * mesh is locked meanwhile, and a row takes 16 bytes. */
+     * named, elements of the mesh for each operation on the whole of it; rows of the delta, of 16
+     * bytes. */
     API_MAX_EDITS_ELEMENTS = 1 << 26,
     API_MAX_EDITS_ROWS = 1 << 26,
+    API_HUB_USES = 256,        /* of a degree that was counted, see api/edit_cost.h */
     API_MAX_IDS = 1 << 24,     /* in one list of ids, what references stand for included */
     API_MAX_OTHERS = 16,       /* meshes that one request names beside its own */
     API_MAX_AS = 64,           /* characters of an "as" name */
@@ -101,6 +102,15 @@ enum {
 #define API_COPY_PER_SECOND   2e7
 #define API_CHECK_PER_SECOND  1e7
 #define API_MEET_PER_SECOND   2e6
+/* What a list of operations may have of a worker and of a thread of the pool, beside the mesh's
+ * lock, before it is rolled back and begun again on the pool and as a job: in elements that are
+ * transformed, API_EDIT_PER_SECOND. An operation counts with its pace. A row of the delta takes as
+ * long as half an element, and a step about a hub as long as a sixteenth. The steps of all
+ * operations of a list have a maximum, too, which a job meets after half a minute. */
+#define API_WORKER_EDITS    ((uint64_t)1 << 18)
+#define API_POOL_EDITS      ((uint64_t)1 << 23)
+#define API_MAX_EDITS_STEPS ((uint64_t)1 << 33)
+enum { API_ROWS_OF_WORK = 2, API_STEPS_OF_WORK = 16 };
 enum {
     /* Above this an operation on the whole mesh claims it and works on a copy; below, it takes the
      * lock for a few milliseconds. */

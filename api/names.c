@@ -189,3 +189,11 @@ void api_names_bind(api_names *names, const api_call *call, he_results *results)
         *results = (he_results){0};
     }
 }
+
+void api_names_unbind(api_names *names)
+{
+    for (size_t i = 0; i < names->count; i++) {
+        he_results_clear(&names->names[i].results);
+        names->names[i].bound = false;
+    }
+}

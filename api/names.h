@@ -40,5 +40,7 @@ void api_names_clear(api_names *names);
 bool api_names_add(api_names *names, const api_in *at, const api_call *call);
 /* Takes the results where the operation is named (and leaves {0}), else leaves them alone. */
 void api_names_bind(api_names *names, const api_call *call, he_results *results);
+/* Forget all results, before the list is run once more. */
+void api_names_unbind(api_names *names);
 
 #endif

@@ -142,6 +142,7 @@ const he_op he_mesh_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_DOUBLED_EDGE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 6,
         .run = run_plane_split,
     },
     {
@@ -165,6 +166,7 @@ const he_op he_mesh_rows[] = {
         .refusals = {HE_BAD_VALUE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT, HE_OPEN_LOOP,
                      HE_REPEATED_CORNER},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 10,
         .run = run_plane_cut,
     },
     {
@@ -184,6 +186,7 @@ const he_op he_mesh_rows[] = {
                      "What was flipped, in order; twice what was flipped twice."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_LIMIT},
         .change = {0, 0, 0},
+        .pace = 4,
         .run = run_delaunay,
     },
     {
@@ -194,6 +197,7 @@ const he_op he_mesh_rows[] = {
                     {"edges", HE_RESULT_MAP, HE_EDGE, "The new id of each old one."},
                     {"faces", HE_RESULT_MAP, HE_FACE, "The new id of each old one."}},
         .change = {0, 0, 0},
+        .pace = 2,
         .run = run_compact,
     },
     {.name = NULL},

@@ -65,6 +65,11 @@ double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS])
     return op->growth == NULL ? 1 : op->growth(args);
 }
 
+unsigned he_op_pace(const he_op *op)
+{
+    return op->pace > 0 ? op->pace : 1;
+}
+
 he_status he_op_foresee(const he_op *op, const he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
                         he_error *err)
 {

@@ -36,7 +36,11 @@ enum {
     HE_WHOLE = 128,     /* a number with a range that has no fraction */
     /* Elements whose neighbours are looked at too: all corners of the faces about a vertex, all
      * edges at the corners of a face or along a loop, both of an edge. */
-    HE_REACHES = 64
+    HE_REACHES = 64,
+    /* Each call walks about all of the elements given here: around the vertices and along the loops
+     * of faces and holes, and with HE_REACHES around all corners of their faces. A list of
+     * operations is charged for that, since it may name one hub again and again. */
+    HE_WALKS = 256
 };
 
 typedef struct he_param {
@@ -114,6 +118,9 @@ typedef struct he_op {
      * HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
     int change[3]; /* V, E, F */
+    /* How long it takes beside `transform`: for each element of the mesh where it costs the mesh,
+     * else for each element of its lists. Measured, and rounded up; 0 stands for 1. */
+    unsigned pace;
     /* By about how many times the mesh grows; NULL where it stays of its size. */
     double (*growth)(const he_arg *args);
     /* A refusal that the mesh's counts alone tell of, so that nothing need be begun; NULL where
@@ -132,6 +139,8 @@ size_t he_op_results(const he_op *op);
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* By about how many times the mesh grows, 1 where it stays of its size. */
 double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS]);
+/* Its pace, at least 1. */
+unsigned he_op_pace(const he_op *op);
 /* What it would refuse, where that can be told without looking at the elements. */
 HE_NODISCARD he_status he_op_foresee(const he_op *op, const he_mesh *mesh,
                                      const he_arg args[HE_OP_PARAMS], he_error *err);

@@ -77,6 +77,7 @@ const he_op he_region_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NO_RIM,
                      HE_RIM_MEETS_ITSELF, HE_NO_NORMAL, HE_NOT_FINITE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 80,
         .run = run_face_extrude,
     },
     {
@@ -114,6 +115,7 @@ const he_op he_region_rows[] = {
                      HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_NO_NORMAL, HE_LIMIT, HE_NOT_FINITE,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 120,
         .run = run_face_inset,
     },
     {
@@ -122,7 +124,7 @@ const he_op he_region_rows[] = {
         .params = {{.name = "face",
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_FACE,
-                    .flags = HE_REQUIRED | HE_REACHES,
+                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
                     .doc = "What goes; the corner its stored half-edge leaves stays."}},
         .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The vertex that stays."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_LINK_CONDITION, HE_FEATURE_EDGE,

@@ -152,7 +152,7 @@ const he_op he_vertex_rows[] = {
         .params = {{.name = "vertex",
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_VERTEX,
-                    .flags = HE_REQUIRED,
+                    .flags = HE_REQUIRED | HE_WALKS,
                     .doc = "What is split; it stays where it is."},
                    {.name = "left",
                     .type = HE_PARAM_ELEMENT,
@@ -200,7 +200,7 @@ const he_op he_vertex_rows[] = {
         .params = {{.name = "a",
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_HALFEDGE,
-                    .flags = HE_REQUIRED,
+                    .flags = HE_REQUIRED | HE_WALKS,
                     .doc = "The first half-edge, counter-clockwise, that goes to the new vertex; "
                            "the edge comes into the corner clockwise of it."},
                    {.name = "b",

@@ -57,7 +57,7 @@ const he_op he_weld_rows[] = {
                     .plural = "vertices",
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_VERTEX,
-                    .flags = HE_REQUIRED | HE_REACHES,
+                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
                     .group = 'w',
                     .doc = "What becomes one; the lowest id stays."},
                    {.name = "tolerance",
@@ -75,6 +75,7 @@ const he_op he_weld_rows[] = {
                      HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 60,
         .run = run_vertex_weld,
     },
     {
@@ -91,6 +92,7 @@ const he_op he_weld_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, 0},
+        .pace = 40,
         .run = run_vertex_separate,
     },
     {
@@ -107,6 +109,7 @@ const he_op he_weld_rows[] = {
         .refusals = {HE_BAD_VALUE, HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION,
                      HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 8,
         .run = run_weld,
     },
     {
@@ -117,6 +120,7 @@ const he_op he_weld_rows[] = {
                      "The new vertices; each descends from the one it was part of."}},
         .refusals = {HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, 0},
+        .pace = 4,
         .run = run_separate_bowties,
     },
     {

@@ -48,6 +48,7 @@ const he_op he_whole_rows[] = {
                      "Faces some triangle of which has no area or is turned over."}},
         .refusals = {HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
+        .pace = 5,
         .run = run_triangulate,
     },
     {
@@ -62,6 +63,7 @@ const he_op he_whole_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_ORIENTATION,
                      HE_BOWTIE},
         .change = {0, 0, 0},
+        .pace = 2,
         .run = run_reverse,
     },
     {
@@ -71,6 +73,7 @@ const he_op he_whole_rows[] = {
         .refusals = {HE_BOUNDARY_EDGE, HE_ISOLATED_VERTEX, HE_TOO_FEW_CORNERS, HE_DOUBLED_EDGE,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, HE_VARIES},
+        .pace = 8,
         .run = run_dual,
     },
     {
@@ -88,6 +91,7 @@ const he_op he_whole_rows[] = {
                     {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The same of faces."}},
         .refusals = {HE_ATTRIBUTE_CLASH},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 2,
         .run = run_append,
     },
     {.name = NULL},

@@ -382,6 +382,12 @@ static void a_write_is_never_not_modified(void **state)
 
 /* --- costs --- */
 
+/* Without becoming a job. */
+static bench_reply post_and_wait(api_bench *b, const char *target, const char *body)
+{
+    return bench_send(b, "POST", target, (const char *const[]){"Prefer", "wait=3600", NULL}, body);
+}
+
 static void lists_of_operations_have_a_price(void **state)
 {
     (void)state;
@@ -398,7 +404,7 @@ static void lists_of_operations_have_a_price(void **state)
                             i == 0 ? "" : ",");
     }
     api_text_add(&body, "]}", sizeof "]}");
-    bench_reply r = bench_expect(413, bench_post(b, "/v1/meshes/m/edits", body.bytes));
+    bench_reply r = bench_expect(413, post_and_wait(b, "/v1/meshes/m/edits", body.bytes));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
     int at_most = API_MAX_EDITS_ELEMENTS / (SIDE * SIDE * 4);
     int refused = 0;
@@ -417,12 +423,74 @@ static void lists_of_operations_have_a_price(void **state)
     }
     api_text_add(&body, "]}]}", sizeof "]}]}");
     assert_false(body.failed);
-    r = bench_expect(413, bench_post(b, "/v1/meshes/m/edits", body.bytes));
+    r = bench_expect(413, post_and_wait(b, "/v1/meshes/m/edits", body.bytes));
     assert_string_equal(text_of(&r, "code"), "limit_exceeded");
     bench_reply_free(&r);
 
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
+    bench_reply_free(&r);
+    bench_free(b);
+    api_text_clear(&body);
+}
+
+/* A disk of so many triangles; the vertex of that id is its hub. */
+enum { SPOKES = 20000 };
+
+/* The second operation names what the first one made, and the list goes on about the hub: each of
+ * these looks at all half-edges there, from which it takes one. */
+static void write_hub_list(api_bench *b, api_text *body, int operations)
+{
+    char path[100];
+    (void)snprintf(path, sizeof path, "/v1/meshes/m/vertices/%d/outgoing", (int)SPOKES);
+    bench_reply r = bench_expect(200, bench_get(b, path));
+    cJSON *spoke = cJSON_GetObjectItem(r.json, "ids")->child;
+    api_text_add_string(body, "{\"ops\":[{\"op\":\"face_poke\",\"face\":0,\"as\":\"a\"},"
+                              "{\"op\":\"vertex_move\",\"vertex\":\"$a.vertex\",\"by\":[0,0,1]}");
+    for (int i = 0; i < operations; i++) {
+        api_text_add_format(body, ",{\"op\":\"vertex_split_corners\",\"a\":%d,\"b\":%d}",
+                            spoke->valueint, spoke->next->valueint);
+        spoke = spoke->next->next;
+    }
+    api_text_add(body, "]}", sizeof "]}");
+    assert_false(body->failed);
+    bench_reply_free(&r);
+}
+
+static void a_list_about_one_hub_becomes_a_job(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    char shape[100];
+    (void)snprintf(shape, sizeof shape, "{\"shape\":\"disk\",\"segments\":%d}", (int)SPOKES);
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=waited", shape)));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", shape)));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=short", shape)));
+    api_text body = {0};
+    write_hub_list(b, &body, 100);
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/short/edits", body.bytes)));
+    api_text_clear(&body);
+
+    write_hub_list(b, &body, 8000);
+    bench_done(bench_expect(200, post_and_wait(b, "/v1/meshes/waited/edits", body.bytes)));
+    bench_reply r = bench_expect(202, bench_post(b, "/v1/meshes/m/edits", body.bytes));
+    char job[100];
+    (void)snprintf(job, sizeof job, "%s", bench_header(&r, "Location"));
+    bench_reply_free(&r);
+    /* Rolled back: others read the mesh as it was, and cannot write until the job has ended. */
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
+    bench_reply_free(&r);
+    bench_done(bench_expect(409, bench_post(b, "/v1/meshes/m/undo", "{}")));
+    bench_run_jobs(b, 1);
+    r = bench_expect(200, bench_get(b, job));
+    assert_string_equal(text_of(&r, "state"), "done");
+    bench_reply_free(&r);
+    bench_reply one = bench_expect(200, bench_get(b, "/v1/meshes/waited/content?format=obj"));
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/content?format=obj"));
+    assert_true(one.length > 0 && one.length == r.length);
+    assert_memory_equal(one.body, r.body, r.length);
+    bench_reply_free(&one);
     bench_reply_free(&r);
     bench_free(b);
     api_text_clear(&body);
@@ -454,6 +522,60 @@ static api_step step_of(api_bench *b, const char *path, const char *body)
     }
     api_free(x);
     return step;
+}
+
+/* Two rows of so many points, joined so that flips grow with the square of their number. */
+static void put_rows(api_bench *b, int row)
+{
+    api_text body = {0};
+    api_text_add_string(&body, "{\"vertices\":[");
+    for (int i = 0; i < 2 * row; i++) {
+        api_text_add_format(&body, "%s[%d,%d,0]", i == 0 ? "" : ",", i % row, i / row);
+    }
+    api_text_add_string(&body, "],\"faces\":[");
+    for (int i = 0; i + 1 < row; i++) {
+        api_text_add_format(&body, "%s[%d,%d,%d],[%d,%d,%d]", i == 0 ? "" : ",", i, i + 1, row,
+                            row + i + 1, row + i, row - 1);
+    }
+    api_text_add(&body, "]}", sizeof "]}");
+    assert_false(body.failed);
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=rows", body.bytes)));
+    api_text_clear(&body);
+}
+
+/* 20,000 elements are few enough for a worker, but not again and again, and not where flips go on
+ * and on. */
+static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_done(bench_expect(
+        201, bench_post(b, "/v1/meshes?id=d", "{\"shape\":\"disk\",\"segments\":3000}")));
+    put_rows(b, 650);
+    assert_int_equal(step_of(b, "/v1/meshes/d/edits", "{\"op\":\"delaunay\",\"dry_run\":true}"),
+                     API_READY);
+    assert_int_equal(step_of(b, "/v1/meshes/rows/edits", "{\"op\":\"delaunay\",\"dry_run\":true}"),
+                     API_WORK);
+    api_text body = {0};
+    api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[{\"op\":\"weld\",\"tolerance\":0}");
+    for (int i = 1; i < 50; i++) {
+        api_text_add_string(&body, ",{\"op\":\"weld\",\"tolerance\":0}");
+    }
+    api_text_add(&body, "]}", sizeof "]}");
+    assert_false(body.failed);
+    assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
+    api_text_empty(&body);
+    /* Each of these looks at all that is about the hub, too. */
+    api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
+    for (int i = 0; i < 1000; i++) {
+        api_text_add_format(&body, "%s{\"op\":\"vertex_weld\",\"vertices\":[%d,%d]}",
+                            i == 0 ? "" : ",", 2 * i, 2 * i + 1);
+    }
+    api_text_add(&body, "]}", sizeof "]}");
+    assert_false(body.failed);
+    assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
+    api_text_clear(&body);
+    bench_free(b);
 }
 
 static void huge_elements_are_no_work_for_a_worker(void **state)
@@ -574,7 +696,9 @@ int main(void)
         cmocka_unit_test(a_stale_write_shows_a_state),
         cmocka_unit_test(a_write_is_never_not_modified),
         cmocka_unit_test(lists_of_operations_have_a_price),
+        cmocka_unit_test(a_list_about_one_hub_becomes_a_job),
         cmocka_unit_test(huge_elements_are_no_work_for_a_worker),
+        cmocka_unit_test(long_work_with_a_small_mesh_leaves_the_worker),
         cmocka_unit_test(refusals_name_the_value_and_the_limit),
         cmocka_unit_test(whole_numbers_have_no_fraction),
     };

@@ -91,10 +91,57 @@ static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state
     he_mesh_free(m);
 }
 
+/* Steps of an operation whose first parameter is an element or a list of these. */
+static uint64_t steps_of(const he_mesh *m, const char *name, const uint32_t *ids, size_t count,
+                         api_hubs *hubs)
+{
+    api_call call = {.op = he_op_find(name, strlen(name))};
+    assert_non_null(call.op);
+    he_op_defaults(call.op, call.args);
+    call.args[0].given = true;
+    call.args[0].id = ids[0];
+    call.args[0].ids = ids;
+    call.args[0].count = count;
+    return api_edit_cost_steps(&call, m, UINT64_MAX / 2, hubs);
+}
+
+static void a_list_is_charged_for_the_hubs_it_walks_about(void **state)
+{
+    (void)state;
+    he_mesh *m = cone();
+    uint32_t base = find_face(m, true), side = find_face(m, false);
+    he_halfedge rim = he_face_halfedge(m, (he_face){base});
+    uint32_t ends[2] = {he_origin(m, rim).i, he_target(m, rim).i}, none = HE_MAX_ROWS;
+    uint32_t spoke = he_edge_of(he_turn_ccw(m, rim)).i;
+    api_hubs hubs = {.slots = {{0}}};
+    /* What touches a few rows only costs nothing beside. */
+    assert_int_equal(steps_of(m, "edge_split", &spoke, 1, &hubs), 0);
+    assert_int_equal(steps_of(m, "vertex_move", ends, 2, &hubs), 0);
+    /* Both corners see the hub twice, and the base with all its corners. */
+    uint64_t weld = steps_of(m, "vertex_weld", ends, 2, &hubs);
+    assert_true(weld > 4 * LONG && weld < 20 * LONG);
+    assert_true(steps_of(m, "vertex_weld", ends, 2, &hubs) == weld); /* remembered */
+    assert_int_equal(steps_of(m, "vertex_weld", &none, 1, &hubs), 0);
+    assert_true(steps_of(m, "face_split", &base, 1, &hubs) == LONG);
+    assert_true(steps_of(m, "face_split", &side, 1, &hubs) == 3);
+    assert_true(steps_of(m, "face_collapse", &side, 1, &hubs) > LONG);
+    /* No operation costs more than a few meshes. */
+    uint32_t *all = he_mem_array(NULL, LONG, sizeof *all);
+    assert_non_null(all);
+    for (uint32_t i = 0; i < LONG; i++) {
+        all[i] = i;
+    }
+    assert_true(steps_of(m, "vertex_weld", all, LONG, &hubs) ==
+                8 * (uint64_t)he_mesh_count(m, HE_HALFEDGE));
+    he_mem_free(all);
+    he_mesh_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_lies_about_neighbours_counts_where_it_is_looked_at),
+        cmocka_unit_test(a_list_is_charged_for_the_hubs_it_walks_about),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
