@@ -144,8 +144,7 @@ static void assert_dihedrals_agree(const he_mesh *m)
     assert_int_equal(he_edge_dihedrals(m, NULL, all, NULL), HE_OK);
     for (uint32_t e = 0; e < m->c.edges.issued; e++) {
         double one = NAN;
-        bool known =
-            he_edge_is_live(m, (he_edge){e}) && he_edge_dihedral(m, (he_edge){e}, &one);
+        bool known = he_edge_is_live(m, (he_edge){e}) && he_edge_dihedral(m, (he_edge){e}, &one);
         assert_true(known ? memcmp(&one, &all[e], sizeof one) == 0 : isnan(all[e]));
     }
     he_mem_free(all);
