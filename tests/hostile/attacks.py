@@ -1,0 +1,238 @@
+"""attacks.py - THE table of attacks: what is sent, what is asked of it, and where that must end.
+
+A row is a file of less than a megabyte and the requests that follow it. Its statuses are all that
+may answer: an attack that is refused must be refused with the right words, one that is a large but
+honest mesh must be answered.
+"""
+import gzip
+import json
+
+import meshes
+
+
+class Ask:
+    """A request about the mesh of its row, whose path goes before `path`."""
+
+    def __init__(self, name, method, path='', body=b'', statuses=(200,), headers=()):
+        self.name, self.method, self.path, self.statuses = name, method, path, statuses
+        self.body = json.dumps(body).encode() if isinstance(body, (dict, list)) else body
+        self.headers = ['Content-Type: application/json', *headers] if self.body else [*headers]
+
+
+class Row:
+    def __init__(self, name, file, asks=(), statuses=(201,), query='', headers=(), quick=False):
+        self.name, self.make, self.asks, self.statuses = name, file, asks, statuses
+        self.query, self.headers, self.quick = query, headers, quick
+
+
+def get(name, path, *statuses):
+    return Ask(name, 'GET', path, statuses=statuses or (200,))
+
+
+def query(name, *questions, statuses=(200, 413)):
+    return Ask(name, 'POST', '/query', {'queries': list(questions)}, statuses)
+
+
+def edit(op, statuses=(200, 202), **arguments):
+    return Ask(op, 'POST', '/edits', {'op': op, **arguments}, statuses)
+
+
+# What a job is offered for may become one.
+CHECK = get('check', '/check', 200, 202)
+CROSSINGS = get('crossings', '/check?self_intersections=true', 200, 202, 413)
+STL = get('STL', '/content?format=stl')
+GLB = get('GLB', '/content?format=glb')
+JSON = get('JSON', '/content?format=json')
+ASCII = get('PLY text', '/content?format=ply&encoding=ascii')
+GEOMETRY = get('geometry', '/geometry')
+# Of a mesh of triangles only.
+PROGRESSIVE = get('progressive', '/progressive', 200, 202, 413, 422)
+RAY = query('ray', {'ray': {'origin': [0.3, 0.2, -1e5], 'direction': [0, 0, 1]}})
+RAYS = query('500 rays', *[{'ray': {'origin': [i % 25 * 999 - 9000.0, i // 25 * 999 - 9000.0, -1e5],
+                                    'direction': [0.001, 0.002, 1]}} for i in range(500)])
+SIDEWAYS = query('500 rays in the plane', *[{'ray': {'origin': [-1e5, i - 250.0, 0],
+                                                     'direction': [1, 0, 0]}} for i in range(500)])
+CLOSEST = query('500 nearest points', *[{'closest': [i * 77.0, 0, 1e6]} for i in range(500)])
+CROSS = query('crossings asked', {'self_intersections': {'limit': 10}})
+CROSS_OFTEN = query('400 times crossings asked', *[{'self_intersections': {}}] * 400)
+MEASURES = [query(name + ' of all', {'measure': name, 'of': {kind: 'all'}}) for name, kind in (
+    ('normal', 'vertices'), ('mean_curvature', 'vertices'), ('gaussian_curvature', 'vertices'),
+    ('area', 'faces'), ('normal', 'faces'), ('dihedral', 'edges'), ('normal', 'halfedges'))]
+WALKS = [
+    Ask('breadth first', 'POST', '/traverse', {'walk': 'breadth_first', 'from': {'vertex': 0}},
+        (200, 413)),
+    Ask('shortest path', 'POST', '/traverse',
+        {'walk': 'shortest_path', 'from': {'vertex': 1}, 'to': {'vertex': 2}}, (200, 413)),
+    Ask('a path of many steps', 'POST', '/traverse',
+        {'walk': 'path', 'from': {'halfedge': 0}, 'path': ['twin', 'next'], 'repeat': 4000000},
+        (200, 413)),
+]
+HUB = [
+    get('faces of a vertex', '/vertices/0/faces'),
+    query('10,000 times the faces of a vertex',
+          *[{'relation': 'faces', 'of': {'vertex': 0}}] * 10000),
+    query('10,000 searches for a half-edge', *[{'find': 'halfedge', 'vertices': [0, 1]}] * 10000),
+    query('relations of all', {'relation': 'vertices', 'of': {'vertices': 'all'}},
+          {'relation': 'faces', 'of': {'faces': 'all'}}),
+]
+TABLES = [get('a page of vertices', '/vertices?limit=10000'), get('summary', ''),
+          Ask('vertices as lines', 'GET', '/vertices', headers=['Accept: application/x-ndjson']),
+          get('components', '/components'), get('components by edge', '/components?by=edge'),
+          get('boundaries', '/boundaries'),
+          Ask('content in zstd', 'GET', '/content?format=obj', headers=['Accept-Encoding: zstd'])]
+POLYGON = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, RAY, CLOSEST, *MEASURES[3:5],
+           edit('triangulate'), Ask('undo', 'POST', '/undo'),
+           edit('dual', (200, 202, 422)), edit('face_poke', face=0)]
+SURFACE = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, PROGRESSIVE, RAYS, SIDEWAYS, CLOSEST, CROSS,
+           CROSS_OFTEN, *MEASURES, *WALKS, *HUB, *TABLES]
+COPY = Ask('copy', 'POST', '/copy', statuses=(201, 202, 415), body=b'')
+
+
+def zipped(make):
+    kind, body = make()
+    return kind, gzip.compress(body, 9)
+
+
+ZIP = ('Content-Encoding: gzip',)
+REPAIRS = '&repair=weld,drop_degenerate,drop_duplicates,orient,split,fill'
+
+ROWS = [
+    # fans: everything meets in one vertex, in one plane
+    Row('flat fan of 2,500', lambda: meshes.fan(2500), SURFACE, quick=True),
+    Row('flat fan of 10,000', lambda: meshes.fan(10000), SURFACE),
+    Row('flat fan of 60,000', lambda: meshes.fan(60000), SURFACE),
+    Row('cone of 10,000', lambda: meshes.cone(10000), SURFACE),
+    Row('cone of 60,000', lambda: meshes.cone(60000), SURFACE),
+    Row('folded fan of 2,500', lambda: meshes.folded_fan(2500), SURFACE, quick=True),
+    Row('folded fan of 60,000', lambda: meshes.folded_fan(60000), SURFACE),
+    Row('fan of 10,000, wound 50 times', lambda: meshes.wound_fan(10000), SURFACE),
+    Row('two fans as one mesh', lambda: meshes.fan(30000),
+        [edit('weld', tolerance=0), edit('weld', tolerance=1e9), Ask('undo', 'POST', '/undo')]),
+    Row('fan far away', lambda: meshes.fan_at(20000, 1e12),
+        [CHECK, CROSSINGS, GEOMETRY, PROGRESSIVE, RAY, CLOSEST, edit('delaunay'),
+         edit('decimate', faces=10)]),
+    Row('fan of a parabola', lambda: meshes.parabola(20000),
+        [edit('delaunay', (200, 202, 413)), CHECK, CROSSINGS, PROGRESSIVE,
+         edit('decimate', faces=10)]),
+
+    # polygons: what has to be triangulated
+    Row('4 combs of 15,000', lambda: meshes.combs(4, 15000), POLYGON),
+    Row('40 combs of 1,500', lambda: meshes.combs(40, 1500), POLYGON, quick=True),
+    Row('convex disc of 60,000', lambda: meshes.disc(60000), POLYGON),
+    Row('spiral of 60,000', lambda: meshes.spiral(60000), POLYGON),
+    Row('star of 60,000', lambda: meshes.star(60000), POLYGON),
+    Row('bent polygon of 60,000', lambda: meshes.zigzag(60000), POLYGON),
+    Row('quads that are not flat', lambda: meshes.saddles(180),
+        [*SURFACE, edit('triangulate'), edit('dual', (200, 202, 422)),
+         edit('subdivide', steps=1)]),
+
+    # soups
+    Row('5,000 needles through a point', lambda: meshes.needles(5000), SURFACE),
+    Row('20,000 needles through a point', lambda: meshes.needles(20000), [CROSSINGS, CROSS, RAYS]),
+    Row('10,000 triangles, every box in every other', lambda: meshes.stack(10000), SURFACE),
+    Row('20,000 triangles in one place', lambda: meshes.plates(20000),
+        [CHECK, CROSSINGS, CROSS, RAYS, CLOSEST, edit('weld', (200, 202, 413, 422), tolerance=0)]),
+    Row('60,000 vertices in one cell of a grid', lambda: meshes.cells(60000),
+        [CHECK, get('check with merge', '/check?merge=10', 200, 202),
+         edit('weld', (200, 202, 413, 422), tolerance=0.1),
+         edit('weld', (200, 202, 413, 422), tolerance=1e6)]),
+    Row('60,000 vertices in one place', lambda: meshes.one_place(60000),
+        [CHECK, edit('weld', (200, 202, 413, 422), tolerance=0)]),
+    Row('60,000 vertices in a row', lambda: meshes.almost_one_place(60000),
+        [get('check with merge', '/check?merge=3', 200, 202),
+         edit('weld', (200, 202, 413, 422), tolerance=3)]),
+
+    # what repair has to mend
+    Row('a book of 60,000 pages', lambda: meshes.book(60000), statuses=(422,)),
+    Row('a book of 60,000 pages, split', lambda: meshes.book(60000), [CHECK], (201, 202, 422),
+        query='&repair=split'),
+    Row('20,000 triangles in one place, repaired', lambda: meshes.plates(20000), [CHECK],
+        (201, 202, 422), query=REPAIRS + '&tolerance=0'),
+    Row('60,000 vertices in one cell, welded', lambda: meshes.cells(60000), [CHECK],
+        (201, 202, 422), query='&repair=weld&tolerance=1'),
+    Row('flat fan of 60,000, repaired', lambda: meshes.fan(60000), [CHECK], (201, 202),
+        query=REPAIRS + '&tolerance=1&hole_edges=100000'),
+
+    # text and coding
+    Row('400,000 brackets', lambda: meshes.nested(400000), statuses=(400, 413), quick=True),
+    Row('a number of 900,000 digits', lambda: meshes.long_number(900000), statuses=(400, 413),
+        quick=True),
+    Row('900 numbers of 1,000 digits', lambda: meshes.long_numbers(300, 1000),
+        statuses=(201, 400)),
+    Row('60,000 members', lambda: meshes.many_members(60000), statuses=(400, 413), quick=True),
+    Row('20,000 groups', lambda: meshes.many_groups(20000)),
+    Row('100,000 times one face', lambda: meshes.repeated_face(100000), statuses=(422,)),
+    Row('100,000 times one face, repaired', lambda: meshes.repeated_face(100000),
+        statuses=(201, 202, 422), query=REPAIRS + '&tolerance=0'),
+    Row('100 MB of zeros in gzip', lambda: ('model/obj', gzip.compress(bytes(10 ** 8), 9)),
+        statuses=(400, 413), headers=ZIP, quick=True),
+    Row('100 MB of vertices in gzip', lambda: zipped(lambda: ('model/obj', b'v 0 0 0\n' * 12500000)),
+        statuses=(201, 202, 413), headers=ZIP),
+    Row('30 MB of one face in gzip',
+        lambda: zipped(lambda: ('model/obj', b'v 0 0 0\nf' + b' 1' * 15000000)),
+        statuses=(413, 422), headers=ZIP),
+    Row('20 MB of brackets in gzip', lambda: zipped(lambda: meshes.nested(20000000)),
+        statuses=(400, 413), headers=ZIP),
+
+    # whole meshes from a few bytes
+    Row('a torus of 300,000 faces', lambda: ('application/json', json.dumps(
+        {'shape': 'torus', 'major_segments': 600, 'minor_segments': 500}).encode()),
+        [edit('dual'), Ask('undo', 'POST', '/undo'), CHECK, CROSSINGS, STL, GLB, GEOMETRY, JSON,
+         ASCII, *MEASURES, *TABLES, edit('subdivide'), edit('triangulate'),
+         PROGRESSIVE, COPY], (201, 202)),
+    Row('an icosphere of 80,000 faces', lambda: (
+        'application/json', b'{"shape":"icosphere","subdivisions":6}'),
+        [PROGRESSIVE, CROSS_OFTEN, RAYS, CLOSEST, edit('decimate', faces=10),
+         edit('delaunay')], (201, 202)),
+]
+
+
+# --- the rows of the table of operations ---
+
+def argument(parameter, count):
+    """A value for a parameter, such that much is to be done; None to leave it out."""
+    kind = parameter['type']
+    if 'default' in parameter or not parameter['required']:
+        return None
+    if parameter.get('plural'):
+        return parameter['plural'], list(range(count if kind == 'vertex' else count - 1))
+    values = {'vertex': 0, 'halfedge': 0, 'edge': 0, 'face': 0, 'point': [0.5, 0.25, 0.5],
+              'points': [0.5, 0.25, 0.5], 'number': 0.5, 'integer': 10, 'flag': True,
+              'vertices': [1, 2, 3], 'choice': parameter.get('choices', [None])[0],
+              'matrix': [2, 0, 0, 1, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], 'mesh': 'hostile'}
+    return parameter['name'], values[kind]
+
+
+def one_of_each(parameters, choose):
+    """Of each group of alternatives the one that `choose` picks of its list."""
+    groups = {}
+    for parameter in parameters:
+        groups.setdefault(parameter.get('group', parameter['name']), []).append(parameter)
+    return [choose(group) for group in groups.values()]
+
+
+def operation_asks(operations, count):
+    """Each row twice: with what comes first of alternatives and with what comes last, and, where
+    it takes one element or many, with the hub alone. Any refusal that names a rule is an end."""
+    statuses = (200, 202, 400, 409, 413, 422)
+    asks, seen = [], set()
+    for operation in operations:
+        for choose in (lambda group: group[0], lambda group: group[-1]):
+            arguments = {}
+            for parameter in one_of_each(operation['params'], choose):
+                value = argument(parameter, count)
+                if value is not None:
+                    arguments[value[0]] = value[1]
+            for single in (False, True):
+                if single:
+                    for parameter in operation['params']:
+                        if parameter.get('plural') in arguments:
+                            del arguments[parameter['plural']]
+                            arguments[parameter['name']] = 0
+                ask = edit(operation['name'], statuses, **arguments)
+                if ask.body not in seen:
+                    seen.add(ask.body)
+                    ask.name += '' if not any(isinstance(v, list) and len(v) > 99
+                                              for v in arguments.values()) else ' of all'
+                    asks.append(ask)
+    return asks

@@ -1,0 +1,226 @@
+"""meshes.py - files of less than a megabyte that are made to be slow.
+
+Each function gives a media type and the bytes of a file. Binary PLY with 16-bit indices holds the
+most faces in a megabyte."""
+import json
+import math
+import random
+import struct
+
+LARGEST = 1000 * 1000
+
+
+def ply(points, faces, coordinate='float'):
+    """`coordinate` is float or short; indices have 16 bits, degrees as many as the largest needs."""
+    code = {'float': 'f', 'short': 'h', 'double': 'd'}[coordinate]
+    wide = any(len(face) > 255 for face in faces)
+    head = ('ply\nformat binary_little_endian 1.0\n'
+            f'element vertex {len(points)}\n' +
+            ''.join(f'property {coordinate} {axis}\n' for axis in 'xyz') +
+            f'element face {len(faces)}\n'
+            f'property list {"ushort" if wide else "uchar"} ushort vertex_indices\nend_header\n')
+    rows = [struct.pack('<3' + code, *point) for point in points]
+    for face in faces:
+        rows.append(struct.pack(f'<{"H" if wide else "B"}{len(face)}H', len(face), *face))
+    return 'model/ply', head.encode() + b''.join(rows)
+
+
+def obj(points, faces):
+    lines = ['v %.9g %.9g %.9g' % tuple(point) for point in points]
+    lines += ['f ' + ' '.join(str(i + 1) for i in face) for face in faces]
+    return 'model/obj', ('\n'.join(lines) + '\n').encode()
+
+
+def circle(count, radius=1.0, z=0.0, at=(0.0, 0.0)):
+    return [(at[0] + radius * math.cos(2 * math.pi * i / count),
+             at[1] + radius * math.sin(2 * math.pi * i / count), z) for i in range(count)]
+
+
+def spokes(count, closed=True):
+    """Triangles about vertex 0 to a rim of `count` vertices."""
+    return [(0, 1 + i, 1 + (i + 1) % count) for i in range(count if closed else count - 1)]
+
+
+# --- fans ---
+
+def fan(count):
+    """A flat disc: all triangles in one plane, about one vertex."""
+    rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
+    return ply([(0, 0, 0)] + rim, spokes(count), 'short')
+
+
+def cone(count):
+    rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
+    return ply([(0, 0, 20000)] + rim, spokes(count), 'short')
+
+
+def folded_fan(count):
+    """A flat fan that goes back and forth: its triangles lie on one another."""
+    rim = [(30000, (i % 2) * 2000 + i // 32 - 1000, 0) for i in range(count)]
+    return ply([(0, 0, 0)] + rim, spokes(count, False), 'short')
+
+
+def wound_fan(count, turns=50):
+    """A flat fan that goes about its vertex many times."""
+    angle = 2 * math.pi * turns / count
+    rim = [(round(32000 * math.cos(angle * i)), round(32000 * math.sin(angle * i)), 0)
+           for i in range(count)]
+    return ply([(0, 0, 0)] + rim, spokes(count, False), 'short')
+
+
+def fan_at(count, place):
+    """A fan far from the origin, where coordinates are coarse."""
+    rim = [(place + x, place + y, z) for x, y, z in circle(count)]
+    return ply([(place, place, 0.0)] + rim, spokes(count), 'double')
+
+
+def parabola(count):
+    """A fan of a convex polygon whose every diagonal has to be flipped again and again."""
+    rim = [(i / count, (i / count) ** 2, 0.0) for i in range(count)]
+    faces = [(0, i, i + 1) for i in range(1, count - 1)]
+    return ply(rim, faces, 'double')
+
+
+# --- polygons ---
+
+def comb_points(corners, z=0.0):
+    """A comb: teeth up from a base, so that most corners see few others."""
+    teeth = corners // 2 - 1
+    points = [(0.0, -1.0, z), (float(teeth), -1.0, z)]
+    for i in range(teeth, 0, -1):
+        points.append((float(i), 1000.0, z))
+        points.append((i - 0.5, 0.0, z))
+    return points
+
+
+def combs(count, corners):
+    points, faces = [], []
+    for k in range(count):
+        one = comb_points(corners, float(k))
+        faces.append(range(len(points), len(points) + len(one)))
+        points += one
+    return ply(points, faces)
+
+
+def disc(corners):
+    """One convex face."""
+    return ply(circle(corners), [range(corners)])
+
+
+def spiral(corners):
+    half = corners // 2
+    inner = [((i + 10) * math.cos(i / 40), (i + 10) * math.sin(i / 40), 0.0) for i in range(half)]
+    outer = [((i + 60) * math.cos(i / 40), (i + 60) * math.sin(i / 40), 0.0) for i in range(half)]
+    return ply(inner + outer[::-1], [range(2 * half)])
+
+
+def star(corners):
+    rim = circle(corners)
+    points = [(x * (1 if i % 2 else 0.001), y * (1 if i % 2 else 0.001), 0.0)
+              for i, (x, y, _) in enumerate(rim)]
+    return ply(points, [range(corners)])
+
+
+def zigzag(corners):
+    """A corner line that no plane holds, as one face."""
+    half = corners // 2
+    there = [(float(i), float(i % 2) * 3, float(i % 3)) for i in range(half)]
+    back = [(float(i), 10.0 + float(i % 2) * 3, float(i % 5)) for i in range(half)]
+    return ply(there + back[::-1], [range(2 * half)])
+
+
+def saddles(side):
+    """Quads that are far from flat."""
+    points = [(float(x), float(y), float((x + y) % 2) * 5) for y in range(side)
+              for x in range(side)]
+    faces = [(y * side + x, y * side + x + 1, (y + 1) * side + x + 1, (y + 1) * side + x)
+             for y in range(side - 1) for x in range(side - 1)]
+    return ply(points, faces)
+
+
+# --- soups ---
+
+def needles(count):
+    """Triangles that all pass through the middle, each with each."""
+    r = random.Random(13)
+    points, faces = [], []
+    for i in range(count):
+        a, b = r.uniform(0, 2 * math.pi), r.uniform(-1, 1)
+        p = (math.cos(a), math.sin(a), b)
+        points += [p, (-p[0], -p[1], -p[2] + 1e-3), (-p[0], -p[1] + 1e-3, -p[2])]
+        faces.append((3 * i, 3 * i + 1, 3 * i + 2))
+    return ply(points, faces)
+
+
+def stack(count):
+    """Large triangles in planes that hardly differ: every box meets every other."""
+    points, faces = [], []
+    for i in range(count):
+        z = i * 1e-6
+        points += [(0.0, 0.0, z), (1.0, 0.0, z + 0.5), (0.0, 1.0, z + 0.5)]
+        faces.append((3 * i, 3 * i + 1, 3 * i + 2))
+    return ply(points, faces)
+
+
+def plates(count):
+    """Equal triangles in one place."""
+    points = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)] * count
+    return ply(points, [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(count)])
+
+
+def cells(count):
+    """Vertices in one cell of a grid that a far one stretches."""
+    r = random.Random(14)
+    points = [(r.random(), r.random(), r.random()) for _ in range(count - 3)]
+    points += [(1e9, 0.0, 0.0), (0.0, 1e9, 0.0), (0.0, 0.0, 1e9)]
+    return ply(points, [(count - 3, count - 2, count - 1)])
+
+
+def one_place(count):
+    return ply([(1, 2, 3)] * count + [(0, 0, 0), (9, 0, 0), (0, 9, 0)],
+               [(count, count + 1, count + 2)], 'short')
+
+
+def almost_one_place(count):
+    """A row of vertices, each within the tolerance of the next."""
+    points = [(i % 32000, i // 32000, 0) for i in range(count)]
+    return ply(points + [(0, 0, 9), (9, 0, 9), (0, 9, 9)], [(count, count + 1, count + 2)], 'short')
+
+
+# --- text ---
+
+def nested(depth):
+    return 'application/json', b'{"vertices":' + b'[' * depth
+
+
+def long_number(digits):
+    return 'application/json', b'{"vertices":[[' + b'1' * digits + b',0,0]],"faces":[]}'
+
+
+def long_numbers(count, digits):
+    number = '0.' + '123456789' * (digits // 9)
+    row = '[' + ','.join([number] * 3) + ']'
+    return 'application/json', ('{"vertices":[' + ','.join([row] * count) +
+                                '],"faces":[]}').encode()
+
+
+def many_members(count):
+    return 'application/json', json.dumps({'x%d' % i: 0 for i in range(count)}).encode()
+
+
+def many_groups(count):
+    lines = ['v 0 0 0', 'v 1 0 0', 'v 0 1 0']
+    for i in range(count):
+        lines += ['g a%d' % i, 'usemtl m%d' % i, 's %d' % i]
+    return 'model/obj', ('\n'.join(lines) + '\nf 1 2 3\n').encode()
+
+
+def repeated_face(count):
+    return 'model/obj', ('v 0 0 0\nv 1 0 0\nv 0 1 0\n' + 'f 1 2 3\n' * count).encode()
+
+
+def book(pages):
+    """Faces on one edge, which repair has to split."""
+    points = [(0, 0, 0), (0, 0, 9)] + [(round(30000 * x), round(30000 * y), 0)
+                                       for x, y, _ in circle(pages)]
+    return ply(points, [(0, 1, 2 + i) for i in range(pages)], 'short')
