@@ -211,12 +211,26 @@ void api_out_id(api_out *out, uint32_t id)
 /* Room is asked for once per so many ids. */
 enum { IDS_AT_ONCE = 256, ID_TEXT = 11 };
 
+/* What is given up is not shown to anyone: that the text is incomplete shows as if memory had run
+ * out. */
+static bool goes_on(api_out *out, size_t i)
+{
+    he_error err = {0};
+    if (he_watch_at(out->watch, i, UINT64_MAX, &err) != HE_OK) {
+        out->text->failed = true;
+    }
+    return !out->text->failed;
+}
+
 void api_out_ids(api_out *out, const uint32_t *ids, size_t count)
 {
     begin_value(out);
     api_text *text = out->text;
     api_text_add_char(text, '[');
     for (size_t i = 0; i < count;) {
+        if (!goes_on(out, i)) {
+            return;
+        }
         size_t stop = count - i > IDS_AT_ONCE ? i + IDS_AT_ONCE : count;
         char *room = api_text_room(text, (stop - i) * ID_TEXT + HE_NUMBER_TEXT);
         if (room == NULL) {
@@ -243,7 +257,7 @@ void api_out_pairs(api_out *out, const uint32_t *ids, size_t count)
 {
     assert(count % 2 == 0);
     api_out_array_begin(out);
-    for (size_t i = 0; i < count; i += 2) {
+    for (size_t i = 0; i < count && goes_on(out, i); i += 2) {
         api_out_ids(out, ids + i, 2);
     }
     api_out_array_end(out);

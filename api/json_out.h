@@ -25,7 +25,8 @@ typedef struct api_out {
     uint64_t objects; /* bit d: level d is an object */
     uint64_t filled;  /* bit d: level d has a value already */
     unsigned depth;
-    bool keyed; /* a key waits for its value */
+    bool keyed;             /* a key waits for its value */
+    struct he_watch *watch; /* asked in long lists whether to go on; NULL: they are written whole */
 } api_out;
 
 void api_out_init(api_out *out, api_text *text);

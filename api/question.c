@@ -49,6 +49,7 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
     if (a.spent) {
         api_text_empty(&x->text);
         api_out_init(&x->out, &x->text);
+        x->out.watch = &x->watch;
         api_defer(x, handler);
     }
 }
@@ -367,6 +368,10 @@ bool api_question_ask(api_asker *a, const api_in *question)
         }
         if (a->left == 0) {
             return api_asker_exceed(a, question);
+        }
+        he_error err = {0};
+        if (he_watch_step(&a->x->watch, 0, 1, &err) != HE_OK) {
+            return api_asker_refuse(a, question, &err);
         }
         api_asker_pay(a, QUESTION_COST);
         return kinds[i].ask(a, question);

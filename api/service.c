@@ -122,12 +122,21 @@ static void end_claim(api_exchange *x)
     }
 }
 
+/* However the work noticed that it was given up, that is what happened. */
+static void end_given_up(api_exchange *x)
+{
+    if (x->watch.cancelled && x->problem.code != HE_OK) {
+        x->problem = x->given_up;
+        if (x->problem.code == HE_OK) {
+            api_fail(x, HE_CANCELLED, "given up while %s", x->watch.phase);
+        }
+    }
+}
+
 static api_step finish(api_exchange *x)
 {
     end_claim(x);
-    if (x->problem.code == HE_CANCELLED && x->given_up.code != HE_OK) {
-        x->problem = x->given_up;
-    }
+    end_given_up(x);
     if (x->problem.code == HE_OK && !x->answered) {
         api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
                  x->route == NULL ? "-" : x->route->name);
@@ -220,6 +229,7 @@ void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, d
 {
     he_watch_init(&x->watch, tell, context);
     x->watch.exec = x->service->options.exec;
+    x->out.watch = &x->watch;
 }
 
 void api_give_up(api_exchange *x, int code, const char *text)

@@ -131,7 +131,7 @@ static bool ask_path(api_asker *a, const api_in *walk)
         return api_asker_exceed(a, walk);
     }
     if (he_traverse_path(a->mesh, (he_halfedge){p.from}, p.steps, p.count, p.repeat, p.until, limit,
-                         &a->first, &err) != HE_OK) {
+                         &a->x->watch, &a->first, &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }
     api_asker_pay(a, a->first.count);

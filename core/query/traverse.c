@@ -41,8 +41,8 @@ static uint32_t take(const he_mesh *m, uint32_t h, he_step step)
 }
 
 static he_status walk_path(const he_mesh *m, he_halfedge from, const he_step *steps, size_t count,
-                           uint64_t repeat, he_until until, uint64_t limit, he_ids *out,
-                           he_error *err)
+                           uint64_t repeat, he_until until, uint64_t limit, he_watch *watch,
+                           he_ids *out, he_error *err)
 {
     const uint32_t end = halfedge_end(m);
     uint32_t h = from.i;
@@ -53,7 +53,12 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_step *st
             return corrupt(HE_HALFEDGE, from.i, err);
         }
         for (size_t i = 0; i < count && status == HE_OK; i++) {
-            if (limit != 0 && taken++ == limit) {
+            /* How much is left is not known, so that this only asks whether to go on. */
+            status = he_watch_at(watch, taken, UINT64_MAX, err);
+            if (status != HE_OK) {
+                return status;
+            }
+            if (taken++ == limit && limit != 0) {
                 return he_fail_plain(err, HE_LIMIT, "the path is longer than %llu steps",
                                      (unsigned long long)limit);
             }
@@ -75,8 +80,8 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_step *st
 }
 
 he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *steps, size_t count,
-                           uint64_t repeat, he_until until, uint64_t limit, he_ids *out,
-                           he_error *err)
+                           uint64_t repeat, he_until until, uint64_t limit, he_watch *watch,
+                           he_ids *out, he_error *err)
 {
     he_status status = he_mesh_require(m, HE_HALFEDGE, from.i, err);
     if (status != HE_OK) {
@@ -86,7 +91,7 @@ he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *st
         return he_fail_plain(err, HE_BAD_VALUE, "a path needs at least one step");
     }
     size_t before = out->count;
-    status = walk_path(m, from, steps, count, repeat, until, limit, out, err);
+    status = walk_path(m, from, steps, count, repeat, until, limit, watch, out, err);
     if (status != HE_OK) {
         out->count = before;
     }

@@ -23,10 +23,12 @@ typedef enum he_until {
  * `until` is looked at after each step, not before the first. `repeat` 0 takes no step; UINT64_MAX
  * is for walks that `until` ends. Those always end: a list of steps maps half-edges one to one, so
  * that taking it as often as there are half-edges has come back (else HE_CORRUPT). `limit` bounds
- * the steps (0: nothing does): HE_LIMIT. An empty list of steps is HE_BAD_VALUE. */
+ * the steps (0: nothing does): HE_LIMIT. `watch` may be NULL; HE_CANCELLED. An empty list of steps
+ * is HE_BAD_VALUE. */
 HE_NODISCARD he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *steps,
                                         size_t count, uint64_t repeat, he_until until,
-                                        uint64_t limit, he_ids *out, he_error *err);
+                                        uint64_t limit, he_watch *watch, he_ids *out,
+                                        he_error *err);
 
 /* LOOP. The half-edges of the face or hole of `from`, from itself by next. Their origins are the
  * vertices. */

@@ -181,47 +181,55 @@ static void test_traverse_path(void **state)
     he_ids ids = {0};
     he_halfedge start = {0};
     /* Half-edges: 0 = 0>1, 2 = 1>2, 4 = 2>0; the second face is 5 = 0>2, 6 = 2>3, 8 = 3>0. */
-    assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 0, &ids, NULL), HE_OK);
+    assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "0 2 4 0 2");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, start, prev, 1, 1, HE_UNTIL_COUNT, 0, &ids, NULL), HE_OK);
+    assert_int_equal(he_traverse_path(m, start, prev, 1, 1, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "0 4");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, start, next, 1, 0, HE_UNTIL_COUNT, 0, &ids, NULL), HE_OK);
+    assert_int_equal(he_traverse_path(m, start, next, 1, 0, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "0");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_START, 0, &ids, NULL),
-                     HE_OK);
+    assert_int_equal(
+        he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_START, 0, NULL, &ids, NULL),
+        HE_OK);
     assert_ids(&ids, "0 2 4 0");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, start, next, 1, 2, HE_UNTIL_START, 0, &ids, NULL), HE_OK);
+    assert_int_equal(he_traverse_path(m, start, next, 1, 2, HE_UNTIL_START, 0, NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "0 2 4");
     ids.count = 0;
     /* From 0 over the diagonal 5, to the hole's 9 = 0>3. */
     assert_int_equal(
-        he_traverse_path(m, start, turn, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, &ids, NULL), HE_OK);
+        he_traverse_path(m, start, turn, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
+        HE_OK);
     assert_ids(&ids, "0 4 5 8 9");
     ids.count = 0;
     /* Never at a hole: ends when the list has led back. */
     assert_int_equal(
-        he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, &ids, NULL), HE_OK);
+        he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
+        HE_OK);
     assert_ids(&ids, "0 2 4 0");
     ids.count = 0;
     assert_int_equal(he_traverse_path(m, (he_halfedge){5}, round, 2, UINT64_MAX, HE_UNTIL_BOUNDARY,
-                                      0, &ids, NULL),
+                                      0, NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1");
     /* The limit is in steps, and what was there stays. */
-    assert_int_equal(he_traverse_path(m, start, next, 1, 3, HE_UNTIL_COUNT, 3, &ids, NULL), HE_OK);
+    assert_int_equal(he_traverse_path(m, start, next, 1, 3, HE_UNTIL_COUNT, 3, NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "5 4 0 1 0 2 4 0");
     ids.count = 1;
     he_error err = {0};
-    assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 3, &ids, &err),
+    assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 3, NULL, &ids, &err),
                      HE_LIMIT);
-    assert_int_equal(he_traverse_path(m, start, next, 0, 4, HE_UNTIL_COUNT, 3, &ids, &err),
+    assert_int_equal(he_traverse_path(m, start, next, 0, 4, HE_UNTIL_COUNT, 3, NULL, &ids, &err),
                      HE_BAD_VALUE);
     assert_int_equal(
-        he_traverse_path(m, (he_halfedge){10}, next, 1, 4, HE_UNTIL_COUNT, 0, &ids, &err),
+        he_traverse_path(m, (he_halfedge){10}, next, 1, 4, HE_UNTIL_COUNT, 0, NULL, &ids, &err),
         HE_NO_SUCH_ELEMENT);
     assert_ids(&ids, "5");
     he_ids_clear(&ids);
@@ -403,8 +411,9 @@ static void walk_all(const he_mesh *m, he_status *worst)
         size_t n = 0;
         he_vertex v = {i}, w = {(i * 7 + 3) % rows};
         he_halfedge h = {i};
-        got[n++] = he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_START, 0, &a, NULL);
-        got[n++] = he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, &a, NULL);
+        got[n++] = he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_START, 0, NULL, &a, NULL);
+        got[n++] =
+            he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &a, NULL);
         got[n++] = he_traverse_loop(m, h, &a, NULL);
         got[n++] = he_traverse_breadth_first(m, HE_VERTEX, v.i, 3, 0, &a, &b, NULL);
         got[n++] = he_traverse_breadth_first(m, HE_FACE, i, HE_NONE, 0, &a, &b, NULL);
@@ -471,7 +480,7 @@ static void test_traverse_survives_failing_memory(void **state)
             switch (walk) {
             case 0:
                 status = he_traverse_path(m, (he_halfedge){0}, steps, 3, UINT64_MAX, HE_UNTIL_START,
-                                          0, &a, NULL);
+                                          0, NULL, &a, NULL);
                 break;
             case 1:
                 status = he_traverse_loop(m, (he_halfedge){0}, &a, NULL);
@@ -533,12 +542,38 @@ static void test_traverse_costs_what_it_touches(void **state)
     assert_int_equal(calls[0], calls[1]);
 }
 
+static bool give_up(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    return ++*(int *)context < 3;
+}
+
+static void a_long_path_can_be_given_up(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh("012,023");
+    const he_step steps[] = {HE_STEP_NEXT};
+    he_ids ids = {0};
+    he_watch watch;
+    int told = 0;
+    he_watch_init(&watch, give_up, &told);
+    assert_int_equal(he_traverse_path(m, (he_halfedge){0}, steps, 1, 1000000, HE_UNTIL_COUNT, 0,
+                                      &watch, &ids, NULL),
+                     HE_CANCELLED);
+    assert_int_equal(told, 3);
+    assert_int_equal(ids.count, 0);
+    he_ids_clear(&ids);
+    he_mesh_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_traverse_agrees_with_all_distances),
         cmocka_unit_test(test_traverse_agrees_on_random_positions),
         cmocka_unit_test(test_traverse_path),
+        cmocka_unit_test(a_long_path_can_be_given_up),
         cmocka_unit_test(test_traverse_loop),
         cmocka_unit_test(test_traverse_edge_loops_and_rings),
         cmocka_unit_test(test_traverse_refuses),
