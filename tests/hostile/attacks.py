@@ -37,6 +37,9 @@ def edit(op, statuses=(200, 202), **arguments):
     return Ask(op, 'POST', '/edits', {'op': op, **arguments}, statuses)
 
 
+# Done, refused by a rule with its name, or too much.
+ENDS = (200, 202, 400, 409, 413, 422)
+
 # What a job is offered for may become one.
 CHECK = get('check', '/check', 200, 202)
 CROSSINGS = get('crossings', '/check?self_intersections=true', 200, 202, 413)
@@ -106,8 +109,22 @@ ROWS = [
     Row('folded fan of 2,500', lambda: meshes.folded_fan(2500), SURFACE, quick=True),
     Row('folded fan of 60,000', lambda: meshes.folded_fan(60000), SURFACE),
     Row('fan of 10,000, wound 50 times', lambda: meshes.wound_fan(10000), SURFACE),
-    Row('two fans as one mesh', lambda: meshes.fan(30000),
-        [edit('weld', tolerance=0), edit('weld', tolerance=1e9), Ask('undo', 'POST', '/undo')]),
+    Row('flat fan of 30,000, welded', lambda: meshes.fan(30000),
+        [edit('weld', tolerance=0), edit('weld', ENDS, tolerance=8),
+         edit('weld', ENDS, tolerance=1e9), Ask('undo', 'POST', '/undo', statuses=(200, 409))]),
+    Row('bipyramid of 50,000', lambda: meshes.bipyramid(25000), [
+        *SURFACE,
+        Ask('3,000 times the hub split and joined', 'POST', '/edits', {'ops': [
+            op for i in range(3000) for op in (
+                {'op': 'vertex_split', 'vertex': 0, 'left': 1, 'right': 12500, 'to': [0, 0, 30000],
+                 'as': f's{i}'},
+                {'op': 'edge_collapse', 'edge': f'$s{i}.edge', 't': 0})]}, ENDS),
+        Ask('3,000 spokes split', 'POST', '/edits', {'ops': [
+            {'op': 'edge_split', 'edge': 3 * i} for i in range(3000)]}, ENDS),
+        Ask('summary of many components', 'GET', '/components'),
+        edit('decimate', faces=10), Ask('undo', 'POST', '/undo', statuses=(200, 409)),
+        edit('subdivide', ENDS, scheme='loop', steps=2), edit('delaunay'),
+        edit('plane_cut', ENDS, point=[0, 0, 0], normal=[1, 0.5, 0], cap=True)]),
     Row('fan far away', lambda: meshes.fan_at(20000, 1e12),
         [CHECK, CROSSINGS, GEOMETRY, PROGRESSIVE, RAY, CLOSEST, edit('delaunay'),
          edit('decimate', faces=10)]),
@@ -189,6 +206,10 @@ ROWS = [
 
 # --- the rows of the table of operations ---
 
+REPEATED = 3000
+STRIDE = 16  # of ids, so that what one operation changes is not named by the next
+
+
 def argument(parameter, count):
     """A value for a parameter, such that much is to be done; None to leave it out."""
     kind = parameter['type']
@@ -203,6 +224,15 @@ def argument(parameter, count):
     return parameter['name'], values[kind]
 
 
+def repeated(operation, arguments, times):
+    """A list of operations, each at the hub but on another edge or face about it."""
+    kinds = {p['name']: p['type'] for p in operation['params']}
+    ops = [{'op': operation['name'],
+            **{name: (STRIDE * i if kinds.get(name) in ('halfedge', 'edge', 'face') else value)
+               for name, value in arguments.items()}} for i in range(times)]
+    return Ask(f'{times} times {operation["name"]}', 'POST', '/edits', {'ops': ops}, ENDS)
+
+
 def one_of_each(parameters, choose):
     """Of each group of alternatives the one that `choose` picks of its list."""
     groups = {}
@@ -214,7 +244,6 @@ def one_of_each(parameters, choose):
 def operation_asks(operations, count):
     """Each row twice: with what comes first of alternatives and with what comes last, and, where
     it takes one element or many, with the hub alone. Any refusal that names a rule is an end."""
-    statuses = (200, 202, 400, 409, 413, 422)
     asks, seen = [], set()
     for operation in operations:
         for choose in (lambda group: group[0], lambda group: group[-1]):
@@ -229,10 +258,15 @@ def operation_asks(operations, count):
                         if parameter.get('plural') in arguments:
                             del arguments[parameter['plural']]
                             arguments[parameter['name']] = 0
-                ask = edit(operation['name'], statuses, **arguments)
+                ask = edit(operation['name'], ENDS, **arguments)
                 if ask.body not in seen:
                     seen.add(ask.body)
                     ask.name += '' if not any(isinstance(v, list) and len(v) > 99
                                               for v in arguments.values()) else ' of all'
+                    asks.append(ask)
+            if operation['size'] == 'local':
+                ask = repeated(operation, arguments, REPEATED)
+                if ask.body not in seen:
+                    seen.add(ask.body)
                     asks.append(ask)
     return asks

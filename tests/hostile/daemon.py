@@ -197,10 +197,10 @@ class Daemon:
             return self.ended.pop(name)
 
     def spent(self, names):
-        """Nanoseconds of processor time by thread, of those with one of these names."""
+        """Nanoseconds of processor time by thread, of those with one of these names, None for all."""
         out = {}
         for thread, name in self.threads:
-            if name in names:
+            if names is None or name in names:
                 with open(f'/proc/{self.process.pid}/task/{thread}/schedstat') as file:
                     out[thread] = int(file.read().split()[0])
         return out

@@ -54,6 +54,13 @@ def cone(count):
     return ply([(0, 0, 20000)] + rim, spokes(count), 'short')
 
 
+def bipyramid(count):
+    """Two cones on one rim: closed, with two vertices of degree `count`."""
+    rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
+    below = [(count + 1, i % count + 1, i) for i in range(1, count + 1)]
+    return ply([(0, 0, 20000)] + rim + [(0, 0, -20000)], spokes(count) + below, 'short')
+
+
 def folded_fan(count):
     """A flat fan that goes back and forth: its triangles lie on one another."""
     rim = [(30000, (i % 2) * 2000 + i // 32 - 1000, 0) for i in range(count)]
