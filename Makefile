@@ -93,7 +93,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof soak \
-        fuzz targets bench bench-http bench-events bench-large bench-space container fresh screenshot \
+        hostile fuzz targets bench bench-http bench-events bench-large bench-space container fresh screenshot \
         install clean
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`.
@@ -126,6 +126,7 @@ NEEDS.format       := format
 NEEDS.crosscheck   := build crosscheck
 NEEDS.proof        := build test node
 NEEDS.soak         := build node
+NEEDS.hostile      := build hostile
 NEEDS.fuzz         := build test fuzz
 NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
 NEEDS.bench        := build node bench
@@ -264,6 +265,11 @@ MINUTES ?= 60
 LOAD    ?= 1
 soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is the daemon's memory flat? build/soak.csv and .svg
 	@HEDGED=$(abspath $(HEDGED)) node tests/soak/soak.mjs --minutes $(MINUTES) --load $(LOAD)
+
+# HOSTILE_FLAGS="--only fan" for the rows whose name has that; SEED=... repeats a run.
+hostile: $(HEDGED) | $(INSTALLED) ## files and requests made to be slow: what each may hold of the daemon, and what it held
+	@python3 -B tests/hostile/run.py --hedged $(abspath $(HEDGED)) \
+	    --corpus ../shared/corpus/files $(HOSTILE_FLAGS)
 
 # `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
 FUZZ_SECONDS ?= 20
