@@ -222,6 +222,13 @@ def many_groups(count):
     return 'model/obj', ('\n'.join(lines) + '\nf 1 2 3\n').encode()
 
 
+def runs(size):
+    """Vertices that gzip makes about fifty times smaller, which is less than it may."""
+    r = random.Random(15)
+    return 'model/obj', b''.join(b'v %d 0 0\n' % r.randrange(1000) * 30
+                                 for _ in range(size // 280)) + b'f 1 31 61\n'
+
+
 def repeated_face(count):
     return 'model/obj', ('v 0 0 0\nv 1 0 0\nv 0 1 0\n' + 'f 1 2 3\n' * count).encode()
 
