@@ -54,7 +54,7 @@ static bool examine(api_asker *a, report *r)
 {
     he_watch *watch = &a->x->watch;
     he_error err = {0};
-    if (he_check(a->mesh, r->problems, NAMED, &r->broken, &err) != HE_OK) {
+    if (he_check_watched(a->mesh, watch, r->problems, NAMED, &r->broken, &err) != HE_OK) {
         return api_fail_core(a->x, &err);
     }
     if (r->broken > 0) {

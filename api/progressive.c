@@ -69,7 +69,7 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     uint64_t most = api_param_u64(x, "splits", HE_MAX_ROWS);
     p->revision = x->info.revision;
     p->wanted = p->mesh.count < most ? p->mesh.count : (size_t)most;
-    return api_progressive_write(p, &err) == HE_OK || api_fail_core(x, &err);
+    return api_progressive_write(p, &x->watch, &err) == HE_OK || api_fail_core(x, &err);
 }
 
 void api_progressive_get(api_exchange *x)

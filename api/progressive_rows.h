@@ -54,8 +54,8 @@ typedef struct api_progressive {
 void api_progressive_clear(api_progressive *p);
 
 /* Write the base, and let go of its mesh and of the splits that are not wanted. All members down to
- * `high` are set. HE_NO_MEMORY. */
-HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_error *err);
+ * `high` are set. `watch` may be NULL. HE_NO_MEMORY, HE_CANCELLED. */
+HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_watch *watch, he_error *err);
 /* Of the answer; after write. */
 int64_t api_progressive_bytes(const api_progressive *p);
 /* The next bytes of it, 0 at its end. */

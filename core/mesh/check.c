@@ -274,6 +274,16 @@ static void check_rows(checker *c)
 he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, size_t *total,
                    he_error *err)
 {
+    return he_check_watched(mesh, NULL, problems, capacity, total, err);
+}
+
+he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
+                           size_t capacity, size_t *total, he_error *err)
+{
+    /* Later passes follow the links that the first has found to lead somewhere. */
+    static void (*const passes[])(checker * c) = {check_links, check_halfedges, check_faces,
+                                                  check_vertices, check_rows};
+    enum { PASSES = sizeof passes / sizeof *passes };
     size_t halfedges = 2 * (size_t)mesh->c.edges.issued;
     he_status status = HE_OK;
     checker c = {.m = mesh, .problems = problems, .capacity = capacity};
@@ -284,14 +294,15 @@ he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, s
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to check the mesh");
         goto out;
     }
-    check_links(&c);
-    if (c.total == 0) {
-        check_halfedges(&c);
-        check_faces(&c);
-        check_vertices(&c);
-        check_rows(&c);
+    for (size_t i = 0; i < PASSES && status == HE_OK && (i != 1 || c.total == 0); i++) {
+        status = he_watch_step(watch, i, PASSES, err);
+        if (status == HE_OK) {
+            passes[i](&c);
+        }
     }
-    *total = c.total;
+    if (status == HE_OK) {
+        *total = c.total;
+    }
 out:
     he_mem_free(c.in_face);
     he_mem_free(c.in_ring);

@@ -21,5 +21,8 @@ typedef struct he_problem {
  * HE_NO_MEMORY. A mesh that passes gives total 0. */
 HE_NODISCARD he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity,
                                 size_t *total, he_error *err);
+/* he_check for work that is watched: it can also fail with HE_CANCELLED, between its passes. */
+HE_NODISCARD he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
+                                        size_t capacity, size_t *total, he_error *err);
 
 #endif
