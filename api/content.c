@@ -3,6 +3,7 @@
 
 #include "api/document_out.h"
 #include "format/format.h"
+#include "mesh/long_faces.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -110,7 +111,9 @@ static void answer(api_exchange *x, const he_format *format, size_t encoding, co
         if (c->document == NULL) {
             api_fail_memory(x);
         }
-    } else if (he_writer_new(format, mesh, encoding, &c->writer, &err) != HE_OK) {
+    } else if ((format->writing != NULL && format->writing->cuts &&
+                he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
+               he_writer_new(format, mesh, encoding, &c->writer, &err) != HE_OK) {
         api_fail_core(x, &err);
     }
     if (x->problem.code != HE_OK) {

@@ -7,6 +7,7 @@
 #include "api/handlers.h"
 
 #include "api/geometry_rows.h"
+#include "mesh/long_faces.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -187,7 +188,8 @@ static void answer_stream(api_exchange *x, geometry *g)
 {
     he_error err = {0};
     const he_mesh *mesh = x->store->snapshot_content(g->snapshot, NULL);
-    if (api_rows_draw(&g->rows, mesh, UINT64_MAX, &err) != HE_OK) {
+    if ((g->rows.base == 0 && he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
+        api_rows_draw(&g->rows, mesh, UINT64_MAX, &err) != HE_OK) {
         free_geometry(g);
         api_fail_core(x, &err);
         return;

@@ -61,6 +61,7 @@ typedef struct he_writing {
                       he_error *err);
     bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
+    bool cuts; /* polygons are cut into triangles (cuts.h): long_faces.h may do that before */
 } he_writing;
 
 typedef struct he_format {

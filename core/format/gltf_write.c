@@ -264,4 +264,4 @@ static bool glb_step(void *state, char **p, const char *end)
     return w->stage != END;
 }
 
-const he_writing he_glb_writing = {glb_open, glb_step, glb_close};
+const he_writing he_glb_writing = {glb_open, glb_step, glb_close, true};

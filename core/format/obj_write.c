@@ -327,4 +327,4 @@ static bool obj_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_obj_writing = {obj_open, obj_step, obj_close};
+const he_writing he_obj_writing = {obj_open, obj_step, obj_close, false};

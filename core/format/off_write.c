@@ -168,4 +168,4 @@ static bool off_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_off_writing = {off_open, off_step, off_close};
+const he_writing he_off_writing = {off_open, off_step, off_close, false};

@@ -386,4 +386,4 @@ static bool ply_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_ply_writing = {ply_open, ply_step, ply_close};
+const he_writing he_ply_writing = {ply_open, ply_step, ply_close, false};

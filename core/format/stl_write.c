@@ -230,4 +230,4 @@ static bool stl_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_stl_writing = {stl_open, stl_step, stl_close};
+const he_writing he_stl_writing = {stl_open, stl_step, stl_close, true};

@@ -29,8 +29,9 @@ size_t he_content_issued(const he_content *content, he_kind domain);
 
 struct he_mesh {
     he_content c;
-    he_delta *delta; /* where writes are recorded, or NULL */
-    he_watch *watch; /* who is told of long work, or NULL */
+    he_delta *delta;      /* where writes are recorded, or NULL */
+    he_watch *watch;      /* who is told of long work, or NULL */
+    struct he_kept *kept; /* of a mesh that stays as it is: see long_faces.h. Else NULL */
 };
 
 #endif

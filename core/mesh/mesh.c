@@ -1,6 +1,7 @@
 #include "mesh/mesh.h"
 
 #include "mesh/content.h"
+#include "mesh/long_faces.h"
 #include "mesh/walk.h"
 
 #include <assert.h>
@@ -15,6 +16,7 @@ void he_mesh_free(he_mesh *mesh)
 {
     if (mesh != NULL) {
         he_content_clear(&mesh->c);
+        he_long_faces_clear(mesh);
         he_mem_free(mesh);
     }
 }

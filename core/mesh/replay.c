@@ -1,6 +1,7 @@
 #include "mesh/replay.h"
 
 #include "mesh/content.h"
+#include "mesh/long_faces.h"
 
 /* What one delta's crossing took out of the copy, in the order of the delta's objects. */
 typedef struct other_side {
@@ -45,8 +46,11 @@ he_status he_replay_new(const he_mesh *mesh, he_replay **out, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a copy of the mesh");
     }
     he_status status = he_mesh_copy(mesh, &replay->mesh, err);
+    if (status == HE_OK) {
+        status = he_long_faces_allow(replay->mesh, err);
+    }
     if (status != HE_OK) {
-        he_mem_free(replay);
+        he_replay_free(replay);
         return status;
     }
     *out = replay;
@@ -74,7 +78,7 @@ const he_mesh *he_replay_mesh(const he_replay *replay)
 
 size_t he_replay_bytes(const he_replay *replay)
 {
-    size_t bytes = sizeof *replay + he_mesh_bytes(replay->mesh);
+    size_t bytes = sizeof *replay + he_mesh_bytes(replay->mesh) + he_long_faces_bytes(replay->mesh);
     for (const other_side *side = replay->sides; side != NULL; side = side->next) {
         bytes += sizeof *side + side->count * (sizeof *side->objects + sizeof *side->contents);
         for (size_t i = 0; i < side->count; i++) {
@@ -184,6 +188,7 @@ he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_err
 {
     he_content *c = &replay->mesh->c;
     void **objects;
+    he_long_faces_forget(replay->mesh);
     he_status status = require_side(replay, crossing, &objects, err);
     if (status == HE_OK && !crossing->undo) {
         status = he_content_issue(c, crossing->issued, err);

@@ -27,7 +27,8 @@ typedef struct he_crossing {
     const uint32_t *issued; /* the high-water marks there, indexed by kind */
 } he_crossing;
 
-/* A copy of `mesh` as it is. HE_NO_MEMORY. */
+/* A copy of `mesh` as it is, which keeps its long faces (long_faces.h) until it moves on.
+ * HE_NO_MEMORY. */
 HE_NODISCARD he_status he_replay_new(const he_mesh *mesh, he_replay **out, he_error *err);
 void he_replay_free(he_replay *replay);
 /* Where it is. The mesh stays the same one for as long as the replay lives. */

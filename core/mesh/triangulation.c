@@ -1,9 +1,11 @@
 #include "mesh/triangulation.h"
 
 #include "mesh/ears.h"
+#include "mesh/long_faces.h"
 #include "mesh/sweep.h"
 
 #include <float.h>
+#include <string.h>
 
 /* --- what loops share --- */
 
@@ -256,11 +258,44 @@ static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_wo
     return plan_exact(m, (flags & HE_AVOID_EDGES) != 0, work, plan, err);
 }
 
+/* Where the mesh keeps it. `found` stays false if it does not, or doubles an edge. */
+static he_status take_kept(const he_mesh *m, he_halfedge first, unsigned flags,
+                           he_triangulation_work *work, he_triangulation *plan, bool *found,
+                           he_error *err)
+{
+    const he_long_face *kept = he_long_faces_find(m, first);
+    if (kept == NULL || (flags & HE_ANY_DIAGONALS) == 0) {
+        return HE_OK;
+    }
+    size_t n = kept->n, bytes = 3 * (n - 2) * sizeof *plan->corners;
+    plan->flat.n = kept->n;
+    plan->flat.halfedge = he_mem_array(NULL, n, sizeof *plan->flat.halfedge);
+    plan->corners = he_mem_alloc(bytes);
+    if (plan->flat.halfedge == NULL || plan->corners == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
+    }
+    for (size_t i = 0; i < n; i++, first = he_next(m, first)) {
+        plan->flat.halfedge[i] = first.i;
+    }
+    memcpy(plan->corners, kept->corners, bytes);
+    plan->degenerate = kept->degenerate;
+    work->steps += n;
+    *found = (flags & HE_AVOID_EDGES) == 0 || !doubles_edge(m, plan, work);
+    if (!*found) {
+        he_triangulation_clear(plan);
+    }
+    return he_triangulation_step(m, work, err);
+}
+
 static he_status make(const he_mesh *m, he_halfedge first, unsigned flags,
                       he_triangulation_work *work, he_triangulation *plan, he_error *err)
 {
-    he_status status = he_flat_init(&plan->flat, m, first, err);
-    if (status != HE_OK) {
+    bool found = false;
+    he_status status = take_kept(m, first, flags, work, plan, &found, err);
+    if (status == HE_OK && !found) {
+        status = he_flat_init(&plan->flat, m, first, err);
+    }
+    if (status != HE_OK || found) {
         return status;
     }
     plan->corners = he_mem_array(NULL, 3 * (size_t)(plan->flat.n - 2), sizeof *plan->corners);

@@ -23,6 +23,8 @@
  * more, the edges at vertices of many are sorted (joins.h). So the work for the loops of a mesh is
  * bounded by its corners and needs no limit.
  *
+ * A mesh that keeps the triangulations of its long faces (long_faces.h) lends them.
+ *
  * All depends on nothing but the loop, its first half-edge and the mesh's edges. */
 #ifndef HE_MESH_TRIANGULATION_H
 #define HE_MESH_TRIANGULATION_H
@@ -34,7 +36,7 @@
 enum { HE_EXACT_CORNERS = 64 };
 
 typedef struct he_triangulation {
-    he_flat flat;
+    he_flat flat;      /* without x and y where the mesh kept the triangulation */
     uint32_t *corners; /* three a triangle, counter-clockwise, of flat.n - 2 triangles */
     bool degenerate;   /* some triangle has no area in the plane, or is seen from behind */
     uint64_t steps;    /* that were taken */

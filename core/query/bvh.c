@@ -1,5 +1,6 @@
 #include "query/bvh.h"
 
+#include "mesh/long_faces.h"
 #include "mesh/walk.h"
 #include "query/bvh_disc.h"
 #include "query/drawing.h"
@@ -312,6 +313,9 @@ he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *
     uint32_t count = 0;
     he_box bounds;
     he_status status = count_triangles(m, &count, err);
+    if (status == HE_OK) {
+        status = he_long_faces_keep(m, watch, err);
+    }
     if (status != HE_OK) {
         return status;
     }

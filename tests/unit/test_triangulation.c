@@ -2,10 +2,13 @@
 #include "unit/fixture.h"
 
 #include "mesh/ears.h"
+#include "mesh/long_faces.h"
 #include "mesh/orient.h"
+#include "mesh/replay.h"
 #include "mesh/sweep.h"
 #include "mesh/triangulation.h"
 #include "mesh/walk.h"
+#include "mesh/write.h"
 #include "polygons.h"
 #include "seed.h"
 
@@ -358,6 +361,108 @@ static void a_long_loop_is_given_up(void **state)
     }
 }
 
+/* --- what a copy keeps --- */
+
+static he_replay *replay_of(const polygon_shape *shape, uint32_t n)
+{
+    he_mesh *m = mesh_of(shape, n);
+    he_replay *replay = NULL;
+    assert_int_equal(he_replay_new(m, &replay, NULL), HE_OK);
+    he_mesh_free(m);
+    return replay;
+}
+
+static uint64_t steps_of(const he_mesh *m, unsigned flags, uint32_t *first)
+{
+    he_triangulation t;
+    assert_int_equal(he_triangulation_make(m, first_of(m), flags, NULL, &t, NULL), HE_OK);
+    uint64_t steps = t.steps;
+    memcpy(first, t.corners, 3 * sizeof *first);
+    he_triangulation_clear(&t);
+    return steps;
+}
+
+/* The tree of boxes, the arrays of a renderer and the formats of triangles cut a face once. */
+static void a_long_face_is_cut_once_for_all(void **state)
+{
+    (void)state;
+    enum { N = 5000 };
+    he_replay *replay = replay_of(&polygon_shapes[3], N);
+    const he_mesh *m = he_replay_mesh(replay);
+    uint32_t alone[3], kept[3], avoiding[3];
+    uint64_t steps = steps_of(m, HE_ANY_DIAGONALS, alone);
+    size_t bytes = he_replay_bytes(replay);
+    assert_true(steps > 10 * N);
+    assert_null(he_long_faces_find(m, first_of(m)));
+    assert_int_equal(he_long_faces_keep(m, NULL, NULL), HE_OK);
+    assert_int_equal(he_replay_bytes(replay), bytes + sizeof(he_long_face) + 12 * (N - 2));
+    const he_long_face *face = he_long_faces_find(m, first_of(m));
+    assert_non_null(face);
+    assert_int_equal(he_long_faces_keep(m, NULL, NULL), HE_OK);
+    assert_ptr_equal(he_long_faces_find(m, first_of(m)), face);
+    assert_int_equal(steps_of(m, HE_ANY_DIAGONALS, kept), N);
+    assert_true(steps_of(m, HE_ANY_DIAGONALS | HE_AVOID_EDGES, avoiding) < 10 * N);
+    assert_memory_equal(alone, kept, sizeof alone);
+    assert_memory_equal(alone, avoiding, sizeof alone);
+    he_replay_free(replay);
+}
+
+static void a_mesh_that_may_change_keeps_nothing(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_of(&polygon_shapes[3], 1000);
+    assert_int_equal(he_long_faces_keep(m, NULL, NULL), HE_OK);
+    assert_null(he_long_faces_find(m, first_of(m)));
+    he_mesh_free(m);
+}
+
+static void a_copy_that_moves_on_forgets(void **state)
+{
+    (void)state;
+    he_mesh *m = mesh_of(&polygon_shapes[3], 1000);
+    he_replay *replay = NULL;
+    assert_int_equal(he_replay_new(m, &replay, NULL), HE_OK);
+    assert_int_equal(he_long_faces_keep(he_replay_mesh(replay), NULL, NULL), HE_OK);
+    he_delta *delta = he_delta_new();
+    assert_non_null(delta);
+    he_mesh_record(m, delta);
+    assert_int_equal(he_reserve(m, (he_need){.positions = 1}, NULL), HE_OK);
+    he_set_position(m, (he_vertex){7}, (he_vec3){-1, -2, 3});
+    he_mesh_record(m, NULL);
+    const uint32_t issued[HE_KIND_COUNT] = {
+        [HE_VERTEX] = he_mesh_issued(m, HE_VERTEX),
+        [HE_EDGE] = he_mesh_issued(m, HE_EDGE),
+        [HE_FACE] = he_mesh_issued(m, HE_FACE),
+    };
+    const he_crossing crossing = {.key = 1, .delta = delta, .issued = issued};
+    assert_int_equal(he_replay_cross(replay, &crossing, NULL), HE_OK);
+    assert_null(he_long_faces_find(he_replay_mesh(replay), first_of(m)));
+    he_replay_free(replay);
+    he_delta_free(delta);
+    he_mesh_free(m);
+}
+
+static void keeping_fails_cleanly(void **state)
+{
+    (void)state;
+    he_replay *replay = replay_of(&polygon_shapes[4], 1000);
+    const he_mesh *m = he_replay_mesh(replay);
+    he_watch watch;
+    unsigned told = 0;
+    he_watch_init(&watch, give_up, &told);
+    assert_int_equal(he_long_faces_keep(m, &watch, NULL), HE_CANCELLED);
+    assert_null(he_long_faces_find(m, first_of(m)));
+    he_status status = HE_NO_MEMORY;
+    for (long n = 1; status != HE_OK; n++) {
+        fixture_fail_at(n);
+        status = he_long_faces_keep(m, NULL, NULL);
+        fixture_memory_back();
+        assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        assert_true((he_long_faces_find(m, first_of(m)) != NULL) == (status == HE_OK));
+    }
+    he_replay_free(replay);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -368,6 +473,10 @@ int main(void)
         cmocka_unit_test(avoiding_edges_changes_nothing_where_there_are_none),
         cmocka_unit_test(each_allocation_fails_cleanly),
         cmocka_unit_test(a_long_loop_is_given_up),
+        cmocka_unit_test(a_long_face_is_cut_once_for_all),
+        cmocka_unit_test(a_mesh_that_may_change_keeps_nothing),
+        cmocka_unit_test(a_copy_that_moves_on_forgets),
+        cmocka_unit_test(keeping_fails_cleanly),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
