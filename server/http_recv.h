@@ -17,8 +17,11 @@
  *       the worker that owns the descriptor, after accept() and before close(): between those no
  *       other socket has its number.
  *
- * A TLS listener would define gnutls_record_recv() beside it in the same way, with srv_recv_checked
- * and a `receive` that calls the library's function, found by dlsym(RTLD_NEXT). */
+ * A TLS listener needs gnutls_record_recv() beside it, which libmicrohttpd imports as well: defined
+ * here, with srv_recv_checked and a `receive` that calls the library's own, found by
+ * dlsym(RTLD_NEXT). Its sockets must not be in this table, since gnutls calls recv() to read what
+ * is still encrypted: their machine is found by session. Until that is written, no request that
+ * came over TLS would be served: the machine has not counted it (S4). */
 #ifndef HE_SERVER_HTTP_RECV_H
 #define HE_SERVER_HTTP_RECV_H
 
