@@ -44,7 +44,7 @@ static char *fail(srv_syntax *s, char *at, srv_fault fault)
     return at;
 }
 
-/* What a byte is that ends a line where it must not, or is no part of one at all. */
+/* A line feed where none may be is a fault of its own. */
 static srv_fault line_fault(char c, srv_fault otherwise)
 {
     return c == '\n' ? SRV_FAULT_BARE_LF : otherwise;
@@ -201,20 +201,32 @@ static bool choose_field(srv_syntax *s)
     return first;
 }
 
+/* How far headers may go on: to the end of what came, or to their limit. */
+static const char *stop_of(const srv_syntax *s, const char *at, const char *end)
+{
+    size_t room = s->limit > s->head ? s->limit - s->head : 0;
+    return (size_t)(end - at) > room ? at + room : end;
+}
+
 /* NAME --> VALUE */
 static char *read_name(srv_syntax *s, char *at, const char *end)
 {
-    for (; at < end && srv_is_token(*at); at++) {
-        if (s->head >= s->limit) {
-            return fail(s, at, SRV_FAULT_LARGE_HEAD);
+    static const char cookie[] = "cookie";
+    const char *stop = stop_of(s, at, end);
+    char *from = at;
+    size_t length = s->text_length, before = length, last = sizeof cookie - 2;
+    for (; at < stop && srv_is_token(*at); at++) {
+        if (length < SRV_SYNTAX_TEXT) {
+            s->text[length++] = srv_lower(*at);
         }
-        s->head++;
-        if (s->text_length < SRV_SYNTAX_TEXT) {
-            s->text[s->text_length++] = srv_lower(*at);
-            if (is_named(s, "cookie")) {
-                *at = '-';
-            }
-        }
+    }
+    if (before <= last && length > last && memcmp(s->text, cookie, last + 1) == 0) {
+        from[last - before] = '-';
+    }
+    s->text_length = (uint8_t)length;
+    s->head += (uint32_t)(at - from);
+    if (at == stop && stop < end && srv_is_token(*at)) {
+        return fail(s, at, SRV_FAULT_LARGE_HEAD);
     }
     if (at == end) {
         return at;
@@ -324,8 +336,7 @@ static char *read_known_value(srv_syntax *s, char *at, const char *end)
 /* The value of any other header, up to its CR. */
 static char *read_other_value(srv_syntax *s, char *at, const char *end)
 {
-    size_t room = s->limit > s->head ? s->limit - s->head : 0;
-    const char *stop = (size_t)(end - at) > room ? at + room : end;
+    const char *stop = stop_of(s, at, end);
     char *from = at;
     while (at < stop && srv_is_value(*at)) {
         at++;
