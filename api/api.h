@@ -126,6 +126,10 @@ api_exchange *api_detach(api_exchange *exchange);
 /* Before api_work: `tell` is called as watch.h says, by its thread. */
 void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
                void *context);
+/* Before api_end: `tell` is called as watch.h says while api_end works on a read. What it gives up
+ * begins anew: api_end returns API_WORK. */
+void api_watch_worker(api_exchange *exchange,
+                      bool (*tell)(void *context, const char *phase, double done), void *context);
 /* For `tell`, before it returns false: what the client is answered with in place of HE_CANCELLED.
  */
 void api_give_up(api_exchange *exchange, int code, const char *text);

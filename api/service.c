@@ -232,6 +232,14 @@ void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, d
     x->out.watch = &x->watch;
 }
 
+void api_watch_worker(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
+                      void *context)
+{
+    if (x->route != NULL && !(x->route->flags & API_WRITES)) {
+        api_watch(x, tell, context);
+    }
+}
+
 void api_give_up(api_exchange *x, int code, const char *text)
 {
     x->given_up = (api_problem){0};
@@ -433,8 +441,22 @@ static bool is_costly(api_exchange *x)
     return large;
 }
 
+/* A read that took too long for the worker, and has changed nothing. */
+static void begin_anew(api_exchange *x)
+{
+    drop_answer(x);
+    x->problem = (api_problem){0};
+    api_text_empty(&x->text);
+    api_out_init(&x->out, &x->text);
+    api_watch(x, NULL, NULL);
+    x->deferred = x->route->run;
+}
+
 static api_step finish_or_go_on(api_exchange *x)
 {
+    if (x->phase == API_PHASE_BODY && x->watch.cancelled && x->problem.code != HE_OK) {
+        begin_anew(x);
+    }
     if (x->deferred == NULL || x->answered || x->problem.code != HE_OK) {
         return finish(x);
     }

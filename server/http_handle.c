@@ -9,7 +9,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SWALLOW = 256 * 1024 }; /* of a refused body, rather than close the connection */
+enum {
+    SWALLOW = 256 * 1024, /* of a refused body, rather than close the connection */
+    WORKER_MICROS = 20000 /* that a worker spends on a read, which then goes to the pool */
+};
 
 /* Where a function of this file says nothing else, false has the connection closed. */
 
@@ -76,6 +79,15 @@ static void detach(srv_request *r)
     } else {
         r->exchange = answer;
     }
+}
+
+/* May the worker go on with a read, or do its other connections wait for too long? */
+static bool is_short(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    const srv_request *r = context;
+    return srv_clock_micros() < r->work_until;
 }
 
 /* Is the client still waiting, and may it? */
@@ -303,7 +315,10 @@ static bool end_body(srv_request *r)
         refuse_fault(r);
     }
     if (r->step == API_MORE) {
-        srv_connection_enter(r->socket, SRV_STAGE_WORK, srv_clock_micros());
+        uint64_t now = srv_clock_micros();
+        srv_connection_enter(r->socket, SRV_STAGE_WORK, now);
+        r->work_until = now + WORKER_MICROS;
+        api_watch_worker(r->exchange, is_short, r);
         r->step = api_end(r->exchange);
     }
     if (r->step == API_JOB) {

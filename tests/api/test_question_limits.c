@@ -433,6 +433,17 @@ static const char *content_type(void *context, const char *name)
                                              : NULL;
 }
 
+/* A worker that has no time at all. */
+static bool is_hurried;
+
+static bool has_no_time(void *context, const char *phase, double done)
+{
+    (void)context;
+    (void)phase;
+    (void)done;
+    return false;
+}
+
 /* Step by step, to see whether the worker was left; streams are read in odd pieces. */
 static driven drive(api_bench *b, const char *method, const char *path, const char *accept,
                     const char *body)
@@ -456,6 +467,9 @@ static driven drive(api_bench *b, const char *method, const char *path, const ch
     }
     for (size_t at = 0, used; step == API_MORE && at < length; at += used) {
         step = api_body(x, body + at, length - at, &used);
+    }
+    if (is_hurried) {
+        api_watch_worker(x, has_no_time, NULL);
     }
     step = step == API_MORE ? api_end(x) : step;
     if (step == API_WORK) {
@@ -566,6 +580,40 @@ static char *repeated(const char *question, unsigned times)
     }
     snprintf(text + used, size - used, "]}");
     return text;
+}
+
+/* What is told to stop on a worker begins anew where it may take its time, and is answered the same
+ * way. What changes something goes on. */
+static void a_read_that_outstays_the_worker_begins_anew(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *method, *path, *body;
+        bool leaves;
+    } asked[] = {
+        {"POST", "/v1/meshes/m/query",
+         "{\"queries\":[{\"get\":{\"face\":3}},{\"closest\":[1,2,3]}]}", true},
+        {"POST", "/v1/meshes/m/traverse",
+         "{\"walk\":\"path\",\"from\":{\"halfedge\":0},\"path\":[\"next\"],\"repeat\":9}", true},
+        {"GET", "/v1/meshes/m/check", NULL, true},
+        {"GET", "/v1/meshes/m/vertices/3", NULL, false},
+        {"POST", "/v1/meshes/m/edits",
+         "{\"op\":\"vertex_move\",\"vertex\":1,\"by\":[0,0,1],\"dry_run\":true}", false},
+    };
+    api_bench *b = bench_new();
+    put(b, "{\"shape\":\"grid\",\"columns\":5,\"rows\":5}");
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+        driven calm = drive(b, asked[i].method, asked[i].path, NULL, asked[i].body);
+        is_hurried = true;
+        driven hurried = drive(b, asked[i].method, asked[i].path, NULL, asked[i].body);
+        is_hurried = false;
+        assert_int_equal(calm.status, 200);
+        assert_int_equal(hurried.status, 200);
+        assert_int_equal(hurried.length, calm.length);
+        assert_false(calm.worked);
+        assert_int_equal(hurried.worked, asked[i].leaves);
+    }
+    bench_free(b);
 }
 
 static void expect_exhaustion(api_bench *b, const char *question, unsigned times, int least)
@@ -742,6 +790,7 @@ int main(void)
         cmocka_unit_test(tags_hold_until_the_mesh_changes),
         cmocka_unit_test(a_cursor_is_of_its_revision),
         cmocka_unit_test(long_questions_leave_the_worker),
+        cmocka_unit_test(a_read_that_outstays_the_worker_begins_anew),
         cmocka_unit_test(the_work_of_a_query_is_bounded),
         cmocka_unit_test(a_tree_costs_everybody_the_same),
         cmocka_unit_test(too_many_queries_are_refused),
