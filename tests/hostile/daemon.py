@@ -96,6 +96,12 @@ class Connection:
             self.skip(int(headers.get('content-length', 0)), body)
         return Reply(status, headers, bytes(body))
 
+    def close_side(self):
+        try:
+            self.socket.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass  # answered and closed meanwhile
+
     def reset(self):
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
         self.socket.close()

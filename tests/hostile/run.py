@@ -13,7 +13,6 @@ import argparse
 import json
 import os
 import random
-import socket
 import sys
 import threading
 
@@ -196,7 +195,7 @@ class Field:
         if how == 'RST':
             connection.reset()
         else:
-            connection.socket.shutdown(socket.SHUT_WR)
+            connection.close_side()
         entry = self.daemon.await_end(name)
         connection.close()
         allowed = CANCELLED if how == 'RST' else CANCELLED + CLOSED
