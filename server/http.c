@@ -1,23 +1,19 @@
 #include "server/http.h"
 
 #include "mesh/mem.h"
+#include "server/http_buffer.h"
 #include "server/http_handle.h"
 #include "server/http_recv.h"
 #include "server/http_request.h"
 #include "server/limits.h"
+#include "server/memory.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 
-enum {
-    /* Of a connection's buffer: all that http_syntax.h lets through of a head, and the head of its
-     * answer. No larger: libmicrohttpd zeroes all of it after each request, and with 64 connections
-     * of 128 KiB that leaves the cache and costs more than half of the throughput. */
-    POOL_BYTES = 32 * 1024,
-    BACKLOG = 1024
-};
+enum { BACKLOG = 1024 };
 
 _Static_assert(SRV_MAX_POOLED + 4 * 1024 <= POOL_BYTES, "a head that passes leaves room");
 
@@ -71,7 +67,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
         const struct sockaddr *peer =
             MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
-        srv_connection *c = srv_deadlines_add(http->deadlines, fd, peer);
+        srv_connection *c = srv_deadlines_add(http->deadlines, fd, peer, srv_buffer_taken());
         *slot = c;
         if (c == NULL || !srv_recv_watch(fd, &c->syntax)) {
             /* Nothing unchecked is served: libmicrohttpd reads the end at once. */
@@ -87,13 +83,15 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     }
 }
 
-/* Nobody beyond even those that are answered 503, and nobody once the server stops. */
+/* Nobody beyond even those that are answered 503, nobody for whom there is no memory, and nobody
+ * once the server stops. */
 static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer, socklen_t length)
 {
     (void)peer;
     (void)length;
     const srv_http *http = context;
-    bool room = srv_deadlines_count(http->deadlines) < http->options.max_sockets;
+    bool room = srv_deadlines_count(http->deadlines) < http->options.max_sockets &&
+                srv_memory_has(SRV_BUFFER_BYTES);
     return room && !atomic_load(&http->stopping) ? MHD_YES : MHD_NO;
 }
 
@@ -109,7 +107,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
     struct MHD_OptionItem numbers[] = {
         /* Strict, it would refuse with pages of its own what http_syntax.h has refused already. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
-        {MHD_OPTION_CONNECTION_MEMORY_LIMIT, POOL_BYTES, NULL},
+        {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
         /* Divided among the workers, which connections are not: each may hold them all. */
         {MHD_OPTION_CONNECTION_LIMIT, (intptr_t)(o->max_sockets * o->workers), NULL},
         {MHD_OPTION_CONNECTION_TIMEOUT, (intptr_t)o->deadlines.idle + 1, NULL},
@@ -148,6 +146,12 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     http->live = srv_live_new(options->heartbeat_micros);
     if (http->deadlines == NULL || http->live == NULL) {
         snprintf(message, size, "no memory or threads to start");
+        http_free(http);
+        return NULL;
+    }
+    /* Each worker may have taken one for a connection that is not yet, or no longer, counted. */
+    if (!srv_buffers_reserve(options->max_sockets + options->workers)) {
+        snprintf(message, size, "no address space for %zu connections", options->max_sockets);
         http_free(http);
         return NULL;
     }

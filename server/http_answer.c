@@ -1,6 +1,7 @@
 #include "server/http_answer.h"
 
 #include "server/clock.h"
+#include "server/http_buffer.h"
 #include "server/memory.h"
 #include "server/http_request.h"
 #include "server/http_wire.h"
@@ -82,6 +83,8 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
+        /* Of the buffer only the request's headers are needed. */
+        srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, srv_clock_micros());
         srv_live_aside(&r->stream);
         return 0;
     }

@@ -4,6 +4,7 @@
 
 #include "mesh/mem.h"
 #include "server/clock.h"
+#include "server/http_buffer.h"
 #include "server/memory.h"
 
 #include <errno.h>
@@ -309,13 +310,16 @@ void srv_deadlines_free(srv_deadlines *d)
     he_mem_free(d);
 }
 
-srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct sockaddr *peer)
+srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct sockaddr *peer,
+                                  uint32_t buffer)
 {
     srv_connection *c = he_mem_zero(1, sizeof *c);
     if (c == NULL) {
         return NULL;
     }
     c->socket = socket;
+    c->buffer = buffer;
+    srv_buffer_rest(buffer, srv_clock_micros());
     srv_address_format(peer, false, c->peer);
     srv_connection_enter(c, SRV_STAGE_IDLE, srv_clock_micros());
     pthread_mutex_lock(&d->lock);

@@ -59,6 +59,7 @@ typedef struct srv_connection {
     _Atomic uint64_t since; /* microseconds of the monotonic clock */
     _Atomic uint64_t bytes; /* received in this stage */
     bool drain;             /* drain after closing */
+    uint32_t buffer;        /* http_buffer.h */
     /* The worker's own. */
     srv_syntax syntax;
     uint64_t requests; /* begun so far, as libmicrohttpd sees it */
@@ -77,8 +78,8 @@ srv_deadlines *srv_deadlines_new(const srv_deadline_options *options);
 void srv_deadlines_free(srv_deadlines *deadlines);
 
 /* NULL when memory is out: then the socket is not watched. */
-srv_connection *srv_deadlines_add(srv_deadlines *deadlines, int socket,
-                                  const struct sockaddr *peer);
+srv_connection *srv_deadlines_add(srv_deadlines *deadlines, int socket, const struct sockaddr *peer,
+                                  uint32_t buffer);
 /* The socket is about to be closed. Accepts NULL. */
 void srv_deadlines_remove(srv_deadlines *deadlines, srv_connection *connection);
 size_t srv_deadlines_count(const srv_deadlines *deadlines);

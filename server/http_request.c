@@ -3,6 +3,7 @@
 #include "api/limits.h"
 #include "mesh/mem.h"
 #include "server/clock.h"
+#include "server/http_buffer.h"
 #include "server/memory.h"
 
 #include <string.h>
@@ -34,6 +35,7 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
     r->number = socket->requests;
     r->started = srv_clock_micros();
     srv_connection_enter(r->socket, SRV_STAGE_HEAD, r->started);
+    srv_buffer_use(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer);
     return r;
 }
 
@@ -82,6 +84,7 @@ void srv_request_end(srv_request *r)
     srv_http *http = r->http;
     uint64_t now = srv_clock_micros();
     srv_connection_enter(r->socket, SRV_STAGE_IDLE, now);
+    srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
     if (r->counted && http->options.log != NULL) {
         write_log(r, now);
     }

@@ -92,6 +92,12 @@ uint64_t srv_memory_budget(void)
     return atomic_load(&budget_bytes);
 }
 
+bool srv_memory_has(uint64_t bytes)
+{
+    uint64_t budget = srv_memory_budget();
+    return budget == 0 || srv_memory_used() + bytes <= budget;
+}
+
 bool srv_memory_is_full(void)
 {
     uint64_t budget = srv_memory_budget();

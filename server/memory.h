@@ -24,6 +24,8 @@ void srv_memory_count(int64_t bytes);
 
 uint64_t srv_memory_used(void);
 uint64_t srv_memory_budget(void);
+/* Is there still so much, counting what is kept for small blocks? */
+bool srv_memory_has(uint64_t bytes);
 /* Would a large block be refused now? */
 bool srv_memory_is_full(void);
 

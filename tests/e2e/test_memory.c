@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -78,6 +79,49 @@ static void what_is_counted_is_what_is_taken(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
+enum { CONNECTIONS = 1000, LOOKS = 200000, IDLE_BYTES = 10 * 1024 };
+
+/* Each has asked once, so that libmicrohttpd has used its buffer. They rest while another client
+ * asks on; how often is the bound, not how long. */
+static void a_connection_at_rest_holds_little(void **state)
+{
+    (void)state;
+    static const char request[] = "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    static int sockets[CONNECTIONS];
+    char answer[4096];
+    daemon_process *d =
+        daemon_start((const char *const[]){"--log", "off", "--idle-timeout", "3600", NULL});
+    client *c = client_new(d);
+    const double start[2] = {counted(c, "memory_bytes"), resident(d)};
+    for (int i = 0; i < CONNECTIONS; i++) {
+        sockets[i] = client_connect(d, 0);
+        assert_int_equal(send(sockets[i], request, sizeof request - 1, MSG_NOSIGNAL),
+                         sizeof request - 1);
+        assert_true(recv(sockets[i], answer, sizeof answer, 0) > 0);
+    }
+    double used = counted(c, "memory_bytes") - start[0];
+    int looks = 0;
+    while (counted(c, "memory_bytes") - start[0] > CONNECTIONS * 1024 && looks < LOOKS) {
+        looks++;
+    }
+    double count = (counted(c, "memory_bytes") - start[0]) / CONNECTIONS;
+    double real = (resident(d) - start[1]) / CONNECTIONS;
+    print_message("note: a connection: counted %.1f KiB after its request, %.1f KiB at rest, "
+                  "resident %.1f KiB\n",
+                  used / CONNECTIONS / 1024, count / 1024, real / 1024);
+    assert_true(count <= 1024);
+    assert_true(real <= IDLE_BYTES);
+    for (int i = 0; i < CONNECTIONS; i++) {
+        assert_int_equal(send(sockets[i], request, sizeof request - 1, MSG_NOSIGNAL),
+                         sizeof request - 1);
+        assert_true(recv(sockets[i], answer, sizeof answer, 0) > 0);
+        assert_memory_equal(answer, "HTTP/1.1 200", 12);
+        close(sockets[i]);
+    }
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 #endif
 
 enum { MANY = 400, SIDE = 100 };
@@ -145,6 +189,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
         cmocka_unit_test(what_is_counted_is_what_is_taken),
+        cmocka_unit_test(a_connection_at_rest_holds_little),
 #endif
         cmocka_unit_test(what_does_not_fit_the_budget_is_refused),
     };
