@@ -93,7 +93,8 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof soak \
-        hostile fuzz targets bench bench-http bench-events bench-large bench-space container fresh screenshot \
+        hostile fuzz targets bench bench-http bench-events bench-slow bench-large bench-space container fresh \
+        screenshot \
         install clean
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
@@ -133,6 +134,7 @@ NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
 NEEDS.bench        := build node bench
 NEEDS.bench-http   := build bench-http
 NEEDS.bench-events := build
+NEEDS.bench-slow   := build bench-http bench-slow
 NEEDS.bench-large  := build bench-http
 NEEDS.bench-space  := build
 NEEDS.screenshot   := build web browser
@@ -333,6 +335,9 @@ bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## requests 
 
 bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listeners: memory, and time to reach them all
 	@sh tests/bench/events.sh $(HEDGED) $(BUILD)/tests/bench/http/listeners
+
+bench-slow: $(HEDGED) | $(INSTALLED) ## a thousand clients who read slowly: what others wait for, and when those are closed
+	@sh tests/bench/slow.sh $(HEDGED)
 
 bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)
