@@ -39,7 +39,7 @@
 struct api_service {
     const api_store *store;
     api_options options;
-    _Atomic size_t unpacking; /* bytes, by the decoders of bodies that are arriving */
+    api_unpack_room unpacking; /* of the decoders of bodies that are arriving */
 };
 
 /* Where an exchange is, forwards only: on a worker, on a thread that may block, a job, answered. */

@@ -23,15 +23,24 @@ static void give_back(void *context, void *block)
 }
 
 /* Counting first and taking back on failure keeps two threads from passing the ceiling together. */
-static bool lend(api_packing_memory *memory, size_t size)
+static bool fits(api_packing_memory *memory, size_t size)
 {
     size_t before = atomic_fetch_add_explicit(memory->lent, size, memory_order_relaxed);
-    bool fits = size <= memory->most && before <= memory->most - size;
-    if (!fits) {
-        atomic_fetch_sub_explicit(memory->lent, size, memory_order_relaxed);
-        memory->refused = true;
+    if (size <= memory->most && before <= memory->most - size) {
+        return true;
     }
-    return fits;
+    atomic_fetch_sub_explicit(memory->lent, size, memory_order_relaxed);
+    return false;
+}
+
+static bool lend(api_packing_memory *memory, size_t size)
+{
+    bool lent = fits(memory, size);
+    while (!lent && size <= memory->most && memory->make_room(memory->context)) {
+        lent = fits(memory, size);
+    }
+    memory->refused = memory->refused || !lent;
+    return lent;
 }
 
 static void *take(void *context, size_t size)

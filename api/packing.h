@@ -18,6 +18,8 @@
 typedef struct api_packing_memory {
     _Atomic size_t *lent; /* by all of them, counted with what each block costs; NULL: no ceiling */
     size_t most;
+    bool (*make_room)(void *context); /* at the ceiling: has another stream given way? */
+    void *context;
     bool refused; /* the ceiling, not memory, was in the way */
 } api_packing_memory;
 

@@ -1,6 +1,5 @@
 #include "api/unpack.h"
 
-#include "api/limits.h"
 #include "api/packing.h"
 #include "mesh/mem.h"
 
@@ -21,6 +20,8 @@ struct api_unpack {
     uint64_t from, to; /* bytes of this one: compressed data, and what it unfolded to */
     size_t turn;       /* bytes unfolded by this feed */
     bool inside;       /* of a member or frame */
+    api_unpack_room *room;
+    api_unpack_place *place; /* NULL: it does not give way */
     api_packing_memory memory;
     z_stream zlib;
     bool has_zlib;
@@ -42,7 +43,89 @@ static bool fail_memory(const api_unpack *u, api_problem *problem)
                : api_problem_set(problem, HE_NO_MEMORY, "no memory to unfold the body");
 }
 
-api_unpack *api_unpack_new(api_coding coding, _Atomic size_t *lent,
+/* --- giving way --- */
+
+enum { EMPTY, BUSY, WAITING, TAKING, GONE };
+
+/* Decoders of gzip are small. Without a place left this one does not give way. */
+static void find_place(api_unpack *u)
+{
+    for (size_t i = 0; u->place == NULL && i < API_UNPACK_PLACES; i++) {
+        api_unpack_place *place = &u->room->places[i];
+        int empty = EMPTY;
+        if (atomic_compare_exchange_strong(&place->state, &empty, BUSY)) {
+            u->place = place;
+            atomic_store(&place->owner, u);
+            atomic_store(&place->bytes, 0);
+        }
+    }
+}
+
+/* Take the decoder from WAITING. False when it gave way. */
+static bool enter(api_unpack *u)
+{
+    int state = WAITING;
+    if (u->place == NULL) {
+        return true;
+    }
+    while (!atomic_compare_exchange_weak(&u->place->state, &state, BUSY)) {
+        if (state == GONE || state == BUSY) {
+            return state == BUSY;
+        }
+        state = WAITING; /* while it is TAKING, which is as long as a block takes to be freed */
+    }
+    return true;
+}
+
+static void leave(api_unpack *u, size_t bytes)
+{
+    uint64_t before = atomic_fetch_add(&u->room->arrived, bytes);
+    if (u->place != NULL) {
+        if (atomic_load(&u->place->bytes) == 0) {
+            atomic_store(&u->place->began, before);
+        }
+        atomic_fetch_add(&u->place->bytes, bytes);
+        atomic_store(&u->place->state, WAITING);
+    }
+}
+
+/* What part of all that arrived since it began came for it. */
+static double part_of(const api_unpack_room *room, const api_unpack_place *place)
+{
+    uint64_t all = atomic_load(&room->arrived) - atomic_load(&place->began);
+    return all == 0 ? 1 : (double)atomic_load(&place->bytes) / (double)all;
+}
+
+/* False when no decoder waits. */
+static bool take_slowest(void *context)
+{
+    api_unpack_room *room = context;
+    for (;;) {
+        api_unpack_place *slowest = NULL;
+        double part = 0;
+        for (size_t i = 0; i < API_UNPACK_PLACES; i++) {
+            api_unpack_place *place = &room->places[i];
+            double its = part_of(room, place);
+            if (atomic_load(&place->state) == WAITING && (slowest == NULL || its < part)) {
+                slowest = place;
+                part = its;
+            }
+        }
+        int waiting = WAITING;
+        if (slowest == NULL) {
+            return false;
+        }
+        if (atomic_compare_exchange_strong(&slowest->state, &waiting, TAKING)) {
+            api_unpack *u = atomic_load(&slowest->owner);
+            ZSTD_freeDCtx(u->zstd);
+            u->zstd = NULL;
+            atomic_store(&slowest->state, GONE);
+            return true;
+        }
+    }
+}
+
+api_unpack *api_unpack_new(api_coding coding, api_unpack_room *room,
                            bool (*take)(void *context, const char *bytes, size_t length),
                            void *context, api_problem *problem)
 {
@@ -55,7 +138,9 @@ api_unpack *api_unpack_new(api_coding coding, _Atomic size_t *lent,
     u->coding = coding;
     u->take = take;
     u->context = context;
-    u->memory = (api_packing_memory){.lent = lent, .most = API_MAX_UNPACKING};
+    u->room = room;
+    u->memory = (api_packing_memory){
+        .lent = &room->lent, .most = API_MAX_UNPACKING, .make_room = take_slowest, .context = room};
     if (coding == API_GZIP) {
         api_packing_zlib(&u->zlib, &u->memory);
         u->has_zlib = inflateInit2(&u->zlib, MAX_WBITS + 16) == Z_OK; /* gzip's framing alone */
@@ -63,6 +148,7 @@ api_unpack *api_unpack_new(api_coding coding, _Atomic size_t *lent,
         u->zstd = ZSTD_createDCtx_advanced(api_packing_zstd(&u->memory));
         if (u->zstd != NULL) {
             ZSTD_DCtx_setParameter(u->zstd, ZSTD_d_windowLogMax, API_UNPACK_WINDOW);
+            find_place(u);
         }
     }
     if (!u->has_zlib && u->zstd == NULL) {
@@ -76,10 +162,14 @@ api_unpack *api_unpack_new(api_coding coding, _Atomic size_t *lent,
 void api_unpack_free(api_unpack *u)
 {
     if (u != NULL) {
+        (void)enter(u);
         if (u->has_zlib) {
             inflateEnd(&u->zlib);
         }
         ZSTD_freeDCtx(u->zstd);
+        if (u->place != NULL) {
+            atomic_store(&u->place->state, EMPTY);
+        }
         he_mem_free(u);
     }
 }
@@ -281,18 +371,34 @@ static bool feed_zstd(api_unpack *u, const unsigned char *bytes, size_t length, 
     return true;
 }
 
+static bool refuse_gone(const api_unpack *u, api_problem *problem)
+{
+    return api_problem_set(problem, API_TOO_MANY_CODED,
+                           "this body came the slowest, and gave way to another: the decoders of "
+                           "all bodies have %zu bytes",
+                           u->memory.most);
+}
+
 bool api_unpack_feed(api_unpack *u, const char *bytes, size_t length, size_t *used,
                      api_problem *problem)
 {
     const unsigned char *from = (const unsigned char *)bytes;
     u->turn = 0;
     *used = length;
-    return u->coding == API_GZIP ? feed_gzip(u, from, length, used, problem)
-                                 : feed_zstd(u, from, length, used, problem);
+    if (!enter(u)) {
+        return refuse_gone(u, problem);
+    }
+    bool good = u->coding == API_GZIP ? feed_gzip(u, from, length, used, problem)
+                                      : feed_zstd(u, from, length, used, problem);
+    leave(u, *used);
+    return good;
 }
 
 bool api_unpack_end(api_unpack *u, api_problem *problem)
 {
-    return (!u->inside && u->head_length == 0) ||
-           refuse(u, problem, "the body ends before the coding does");
+    if (!u->inside && u->head_length == 0) {
+        return true;
+    }
+    return enter(u) ? refuse(u, problem, "the body ends before the coding does")
+                    : refuse_gone(u, problem);
 }

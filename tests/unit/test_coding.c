@@ -108,8 +108,8 @@ static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *ou
 {
     *problem = (api_problem){0};
     *out = (bytes){0};
-    _Atomic size_t lent = 0;
-    api_unpack *u = api_unpack_new(coding, &lent, take, out, problem);
+    static api_unpack_room room;
+    api_unpack *u = api_unpack_new(coding, &room, take, out, problem);
     assert_non_null(u);
     bool good = true;
     for (size_t at = 0, used; at < coded->length && good; at += used) {
@@ -127,9 +127,9 @@ static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *ou
     }
     good = good && api_unpack_end(u, problem);
     assert_int_equal(good, problem->code == HE_OK);
-    assert_true(lent > 0);
+    assert_true(room.lent > 0);
     api_unpack_free(u);
-    assert_int_equal(lent, 0);
+    assert_int_equal(room.lent, 0);
     return good;
 }
 
@@ -604,20 +604,21 @@ static void decoders_have_a_common_ceiling(void **state)
     bytes small[2] = {
         [API_ZSTD] = pack_bytes(API_ZSTD, &plain), [API_GZIP] = pack_bytes(API_GZIP, &plain)};
     for (size_t c = 0; c < 2; c++) {
-        for (size_t room = 0; room <= 12u << 20; room = room == 0 ? 1000 : room * 5) {
+        for (size_t left = 0; left <= 12u << 20; left = left == 0 ? 1000 : left * 5) {
             const bytes *coded = both[c] == API_ZSTD ? &wide : &small[both[c]];
-            size_t used, others = API_MAX_UNPACKING - room;
-            _Atomic size_t lent = others;
+            size_t used, others = API_MAX_UNPACKING - left;
+            static api_unpack_room room;
+            room.lent = others;
             bytes out = {0};
             api_problem problem = {0};
-            api_unpack *u = api_unpack_new(both[c], &lent, take, &out, &problem);
+            api_unpack *u = api_unpack_new(both[c], &room, take, &out, &problem);
             bool good =
                 u != NULL && api_unpack_feed(u, coded->data, coded->length, &used, &problem);
-            assert_true(lent <= API_MAX_UNPACKING);
+            assert_true(room.lent <= API_MAX_UNPACKING);
             api_unpack_free(u);
-            assert_int_equal(lent, others);
+            assert_int_equal(room.lent, others);
             assert_int_equal(problem.code, good ? HE_OK : API_TOO_MANY_CODED);
-            assert_int_equal(good, room > (both[c] == API_ZSTD ? 8u << 20 : 40000u));
+            assert_int_equal(good, left > (both[c] == API_ZSTD ? 8u << 20 : 40000u));
             free(out.data);
         }
         free(small[c].data);
@@ -643,8 +644,8 @@ static void who_takes_may_have_enough(void **state)
         int calls = 0;
         api_problem problem = {0};
         size_t used;
-        _Atomic size_t lent = 0;
-        api_unpack *u = api_unpack_new(both[c], &lent, take_none, &calls, &problem);
+        static api_unpack_room room;
+        api_unpack *u = api_unpack_new(both[c], &room, take_none, &calls, &problem);
         assert_non_null(u);
         assert_false(api_unpack_feed(u, coded.data, coded.length, &used, &problem));
         assert_int_equal(calls, 1);
@@ -667,13 +668,13 @@ static void every_allocation_may_fail(void **state)
             api_problem problem = {0};
             fixture_fail_at(n);
             size_t used;
-            _Atomic size_t lent = 0;
-            api_unpack *u = api_unpack_new(both[c], &lent, take, &out, &problem);
+            static api_unpack_room room;
+            api_unpack *u = api_unpack_new(both[c], &room, take, &out, &problem);
             done = u != NULL && api_unpack_feed(u, coded.data, coded.length, &used, &problem) &&
                    api_unpack_end(u, &problem);
             api_unpack_free(u);
             fixture_memory_back();
-            assert_int_equal(lent, 0);
+            assert_int_equal(room.lent, 0);
             assert_true(done || problem.code == HE_NO_MEMORY);
             assert_true(done == (n > fixture_memory.calls));
             free(out.data);
