@@ -12,6 +12,7 @@
 #include <string.h>
 #include <sys/epoll.h>
 #include <sys/mman.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 enum {
@@ -281,6 +282,10 @@ static void put(uint32_t i)
 typedef void *(*map_function)(void *, size_t, int, int, int, off_t);
 typedef int (*unmap_function)(void *, size_t);
 
+/* Before anything is reserved the program may not even have begun, and a sanitizer not be ready to
+ * watch it: then neither is called, and the system is asked directly. */
+#define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
+
 /* The next definition after this program's: the C library's, or a sanitizer's before it. */
 static void *next_definition(_Atomic(void *) *kept, const char *name)
 {
@@ -292,12 +297,11 @@ static void *next_definition(_Atomic(void *) *kept, const char *name)
     return found;
 }
 
-void *mmap(void *address, size_t length, int protection, int flags, int fd, off_t offset)
+static void *map(void *address, size_t length, int protection, int flags, int fd, off_t offset)
 {
     static _Atomic(void *) next;
     map_function system = NULL;
-    if (all.memory != NULL && address == NULL && length == all.bytes &&
-        flags == (MAP_PRIVATE | MAP_ANONYMOUS)) {
+    if (address == NULL && length == all.bytes && flags == (MAP_PRIVATE | MAP_ANONYMOUS)) {
         void *memory = take();
         if (memory != NULL) {
             return memory;
@@ -307,17 +311,31 @@ void *mmap(void *address, size_t length, int protection, int flags, int fd, off_
     return system(address, length, protection, flags, fd, offset);
 }
 
-int munmap(void *address, size_t length)
+static int unmap(void *address, size_t length)
 {
     static _Atomic(void *) next;
     unmap_function system = NULL;
     size_t at = (size_t)((char *)address - all.memory);
-    if (all.memory != NULL && (char *)address >= all.memory && at < (size_t)all.most * all.bytes) {
+    if ((char *)address >= all.memory && at < (size_t)all.most * all.bytes) {
         put((uint32_t)(at / all.bytes));
         return 0;
     }
     *(void **)&system = next_definition(&next, "munmap");
     return system(address, length);
+}
+
+UNWATCHED void *mmap(void *address, size_t length, int protection, int flags, int fd, off_t offset)
+{
+    if (all.memory == NULL) {
+        long mapped = syscall(SYS_mmap, address, length, protection, flags, fd, offset);
+        return (void *)mapped; /* an address, or MAP_FAILED */
+    }
+    return map(address, length, protection, flags, fd, offset);
+}
+
+UNWATCHED int munmap(void *address, size_t length)
+{
+    return all.memory == NULL ? (int)syscall(SYS_munmap, address, length) : unmap(address, length);
 }
 
 /* epoll_pwait without signals is the same call. */
