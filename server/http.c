@@ -15,7 +15,7 @@
 
 enum { BACKLOG = 1024 };
 
-_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= POOL_BYTES, "a head that passes leaves room");
+_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES, "a head that passes leaves room");
 
 /* --- what libmicrohttpd calls --- */
 
