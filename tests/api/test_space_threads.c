@@ -109,6 +109,7 @@ static struct {
     pthread_cond_t changed;
     const api_store *store;
     bool begun, met;
+    atomic_bool making; /* the first asker is about to make the tree */
     /* Under the place. */
     api_derived *place;
     bool held;
@@ -145,6 +146,7 @@ static void end_and_hold_up(void *self, api_mesh *mesh, api_derived_kind kind)
     gate.held |= first;
     gate.store->derived_end(self, mesh, kind);
     if (first) {
+        atomic_store(&gate.making, true);
         open_gate(&gate.begun);
         pass(&gate.met);
     }
@@ -161,11 +163,12 @@ static void wait_and_tell(void *self, api_mesh *mesh, api_derived_kind kind)
     gate.store->derived_wait(self, mesh, kind);
 }
 
+/* An impatient asker gives up the tree, and no work that is done before it. */
 static bool give_up(void *context, const char *phase, double done)
 {
     (void)phase;
     (void)done;
-    return *(const bool *)context;
+    return *(const bool *)context || !atomic_load(&gate.making);
 }
 
 static const char *header(void *context, const char *name)
@@ -225,6 +228,7 @@ static void ask_twice(bool patient, bool second_gives_up, asker askers[2])
     api_store store = *bench_store(b);
     gate.store = bench_store(b);
     gate.begun = gate.met = gate.held = false;
+    atomic_store(&gate.making, false);
     gate.waited = 0;
     gate.gives_up = second_gives_up ? &askers[1].patient : NULL;
     store.derived_begin = begin;
