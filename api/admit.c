@@ -141,6 +141,10 @@ static bool find_route(api_exchange *x)
         return false;
     }
     x->route = api_route_find(x->request.method, &path, &variables, x->allow);
+    if (x->route == NULL && x->allow[0] == '\0' && path.has_slash) {
+        return api_fail(x, API_BAD_PATH,
+                        "an escaped slash is taken only in the name of an attribute");
+    }
     if (x->route == NULL && x->allow[0] == '\0') {
         return api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
     }

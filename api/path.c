@@ -65,7 +65,7 @@ bool api_path_split(const char *raw, api_arena *arena, api_path *out, api_proble
         if (path.count == API_MAX_SEGMENTS || length > 3 * (size_t)API_MAX_SEGMENT) {
             return api_problem_set(problem, API_NO_SUCH_ROUTE, "no path is that long");
         }
-        const char *segment = decode(at, length, API_BAD_PATH, false, arena, problem);
+        const char *segment = decode(at, length, API_BAD_PATH, end == NULL, arena, problem);
         if (segment == NULL) {
             return false;
         }
@@ -74,6 +74,7 @@ bool api_path_split(const char *raw, api_arena *arena, api_path *out, api_proble
         }
         path.segments[path.count++] = segment;
         if (end == NULL) {
+            path.has_slash = strchr(segment, '/') != NULL;
             break;
         }
         at = end;

@@ -1,7 +1,9 @@
 /* path.h - splitting and decoding the request target.
  *
  * The raw path is split at '/' first and each segment decoded then, so an encoded slash can never
- * make another segment; it is refused, and so are %00, bad escapes and bytes that are not UTF-8. */
+ * make another segment. In the last one it is part of the text, for names of attributes may hold
+ * one; elsewhere it is refused, and so are %00, bad escapes and bytes that are not UTF-8
+ * everywhere. */
 #ifndef HE_API_PATH_H
 #define HE_API_PATH_H
 
@@ -12,6 +14,7 @@
 typedef struct api_path {
     const char *segments[API_MAX_SEGMENTS]; /* decoded, in the arena */
     size_t count;                           /* 0 for "/" */
+    bool has_slash;                         /* the last segment holds one, which was escaped */
 } api_path;
 
 /* bad_path (400), no_such_route (404: an empty segment such as in "//" or a trailing slash, or too

@@ -61,6 +61,7 @@ static bool match_variable(const char *variable, const char *segment, api_variab
 static bool match(const char *template, const api_path *path, api_variables *out)
 {
     size_t i = 0;
+    bool is_name = false; /* the segment before: only a name may hold a slash */
     *out = (api_variables){0};
     const char *at = template[1] == '\0' ? template + 1 : template;
     while (*at == '/') {
@@ -77,15 +78,17 @@ static bool match(const char *template, const api_path *path, api_variables *out
             if (*segment != '\0' || (*at != '/' && *at != '\0')) {
                 return false;
             }
+            is_name = false;
         } else if (at[1] == 'a') { /* {asset} */
-            return true;
+            return !path->has_slash;
         } else if (match_variable(at, segment, out)) {
+            is_name = at[1] == 'n';
             at = strchr(at, '}') + 1;
         } else {
             return false;
         }
     }
-    return i == path->count;
+    return i == path->count && (is_name || !path->has_slash);
 }
 
 static void add_method(char *allow, const char *method)
