@@ -185,7 +185,9 @@ static const api_example examples[] = {
      .target = "/v1/meshes/kite/query",
      .consumes = "application/json",
      .request = "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"vertex\":2}},"
-                "{\"find\":\"halfedge\",\"vertices\":[0,2]},{\"get\":{\"face\":1}},"
+                "{\"find\":\"halfedge\",\"vertices\":[0,2]},"
+                "{\"find\":\"edge\",\"vertices\":[0,2]},"
+                "{\"find\":\"faces\",\"vertices\":[0,2]},{\"get\":{\"face\":1}},"
                 "{\"measure\":\"dihedral\",\"of\":{\"edge\":0}},"
                 "{\"measure\":\"normal\",\"of\":{\"faces\":\"all\"}},"
                 "{\"ray\":{\"origin\":[0,0.5,2],\"direction\":[0,0,-1]}},"
@@ -194,7 +196,8 @@ static const api_example examples[] = {
      .produces = "application/json",
      .response =
          "{\"revision\":1,\"results\":[{\"revision\":1,\"of\":{\"vertex\":2},"
-         "\"relation\":\"faces\",\"ids\":[1,0]},{\"halfedge\":5},{\"id\":1,"
+         "\"relation\":\"faces\",\"ids\":[1,0]},{\"halfedge\":5},{\"edge\":2},{\"faces\":[0,1]},{"
+         "\"id\":1,"
          "\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,8],"
          "\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
          "0.6666666666666666,0]},{\"revision\":1,\"of\":{\"edge\":0},\"measure\":\"dihedral\","

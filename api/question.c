@@ -308,10 +308,62 @@ static uint64_t smaller_degree(const he_mesh *mesh, he_vertex a, he_vertex b, ui
     return steps;
 }
 
+/* The degree of a vertex, or `most`. */
+static uint64_t degree_of(const he_mesh *mesh, he_vertex v, uint64_t most)
+{
+    he_halfedge first = he_vertex_halfedge(mesh, v), h = first;
+    uint64_t degree = 0;
+    if (!he_is_none(first.i)) {
+        do {
+            h = he_turn_ccw(mesh, h);
+            degree++;
+        } while (h.i != first.i && degree < most);
+    }
+    return degree;
+}
+
+static bool find_faces(api_asker *a, const api_in *question, he_vertex v, he_vertex w)
+{
+    he_error err = {0};
+    uint64_t cost = degree_of(a->mesh, v, a->left);
+    cost += degree_of(a->mesh, w, a->left - cost);
+    if (cost >= a->left) {
+        return api_asker_exceed(a, question);
+    }
+    a->first.count = 0;
+    if (he_common_faces(a->mesh, v, w, &a->first, &err) != HE_OK) {
+        return api_asker_refuse(a, question, &err);
+    }
+    api_asker_pay(a, cost);
+    api_out_object_begin(a->out);
+    api_out_key_ids(a->out, "faces", a->first.ids, a->first.count);
+    api_out_object_end(a->out);
+    return true;
+}
+
+static bool find_edge(api_asker *a, const api_in *question, he_vertex v, he_vertex w, bool halfedge)
+{
+    uint64_t cost = smaller_degree(a->mesh, v, w, a->left);
+    if (cost >= a->left) {
+        return api_asker_exceed(a, question);
+    }
+    api_asker_pay(a, cost);
+    he_halfedge h = he_find_halfedge(a->mesh, v, w);
+    api_out_object_begin(a->out);
+    if (halfedge) {
+        api_out_key_id(a->out, "halfedge", h.i);
+    } else {
+        api_out_key_id(a->out, "edge", he_is_none(h.i) ? HE_NONE : he_edge_of(h).i);
+    }
+    api_out_object_end(a->out);
+    return true;
+}
+
 static bool ask_find(api_asker *a, const api_in *question)
 {
+    enum { HALFEDGE, EDGE, FACES };
     static const char *const members[] = {"find", "vertices", NULL};
-    static const char *const finds[] = {"halfedge", NULL};
+    static const char *const finds[] = {"halfedge", "edge", "faces", NULL};
     api_in find, vertices;
     int choice;
     uint32_t *ends;
@@ -322,15 +374,8 @@ static bool ask_find(api_asker *a, const api_in *question)
         return false;
     }
     he_vertex from = {ends[0]}, to = {ends[1]};
-    uint64_t cost = smaller_degree(a->mesh, from, to, a->left);
-    if (cost >= a->left) {
-        return api_asker_exceed(a, question);
-    }
-    api_asker_pay(a, cost);
-    api_out_object_begin(a->out);
-    api_out_key_id(a->out, "halfedge", he_find_halfedge(a->mesh, from, to).i);
-    api_out_object_end(a->out);
-    return true;
+    return choice == FACES ? find_faces(a, question, from, to)
+                           : find_edge(a, question, from, to, choice == HALFEDGE);
 }
 
 static bool ask_get(api_asker *a, const api_in *question)

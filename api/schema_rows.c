@@ -289,7 +289,9 @@ const api_member api_answer_members[] = {
     {"history", "budget", "count", REQUIRED, "What they may take: the flag --undo-budget."},
     {"history", "next", "text?", REQUIRED, "The cursor of the next page."},
 
-    {"found", "halfedge", "id?", REQUIRED, "From the first vertex to the second."},
+    {"found", "halfedge", "id?", OPTIONAL, "From the first vertex to the second."},
+    {"found", "edge", "id?", OPTIONAL, "Between the two vertices."},
+    {"found", "faces", "*id", OPTIONAL, "In the order about the first vertex."},
 
     {"measured", "revision", "count", REQUIRED, NULL},
     {"measured", "of", "#of", REQUIRED, NULL},
@@ -444,7 +446,9 @@ const api_member api_request_members[] = {
     {"relation_query", "of", "#of_any", REQUIRED, NULL},
     {"relation_query", "cw", "flag", OPTIONAL, NULL},
 
-    {"find_query", "find", "text", REQUIRED, "halfedge"},
+    {"find_query", "find", "#find_name", REQUIRED,
+     "halfedge: from the first vertex to the second. edge: between them. faces: those that have "
+     "both as corners."},
     {"find_query", "vertices", "*id", REQUIRED, "From, to."},
 
     {"get_query", "get", "#of", REQUIRED, NULL},

@@ -128,6 +128,7 @@ static const struct {
      "{\"oneOf\":[{\"type\":\"number\"},{\"$ref\":\"#/components/schemas/point\"},"
      "{\"type\":\"null\"}]}"},
     {"weights", "{\"enum\":[\"area\",\"angle\",\"uniform\"]}"},
+    {"find_name", "{\"enum\":[\"halfedge\",\"edge\",\"faces\"]}"},
     {"walk_name", "{\"enum\":[\"path\",\"loop\",\"rings\",\"breadth_first\",\"shortest_path\","
                   "\"edge_loop\",\"edge_ring\"]}"},
     {"step_name", "{\"enum\":[\"next\",\"prev\",\"twin\"]}"},

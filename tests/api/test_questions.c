@@ -237,6 +237,58 @@ static void try_query(api_bench *b, const pg_mesh *pg)
     expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
 }
 
+static bool is_in(const pg_list *list, unsigned id)
+{
+    bool found = false;
+    for (unsigned i = 0; i < list->count; i++) {
+        found = found || list->ids[i] == id;
+    }
+    return found;
+}
+
+static void try_finds(api_bench *b, const pg_mesh *pg)
+{
+    page body = {.used = 0}, wanted = {.used = 0};
+    say(&body, "{\"queries\":[{\"find\":\"loop\",\"vertices\":[0,0]}");
+    say(&wanted, "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
+                 "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"loop\\\" is "
+                 "none of halfedge, edge, faces\","
+                 "\"code\":\"bad_value\",\"pointer\":\"/queries/0/find\"}");
+    for (unsigned i = 0; i < pg->vertices; i++) {
+        pg_list about_i, about_j;
+        pg_relation(pg, "vertex", i, "faces", false, &about_i);
+        for (unsigned j = 0; j < pg->vertices; j++) {
+            unsigned found = PG_NONE;
+            for (unsigned h = 0; h < pg->halfedges; h++) {
+                found = pg->origin[h] == i && pg->origin[h ^ 1u] == j ? h / 2 : found;
+            }
+            say(&body, ",{\"find\":\"edge\",\"vertices\":[%u,%u]}", i, j);
+            say(&wanted, ",{\"edge\":");
+            say_id(&wanted, found);
+            say(&body, ",{\"find\":\"faces\",\"vertices\":[%u,%u]}", i, j);
+            say(&wanted, "},{\"faces\":[");
+            pg_relation(pg, "vertex", j, "faces", false, &about_j);
+            const char *comma = "";
+            for (unsigned k = 0; k < about_i.count; k++) {
+                if (is_in(&about_j, about_i.ids[k])) {
+                    say(&wanted, "%s%u", comma, about_i.ids[k]);
+                    comma = ",";
+                }
+            }
+            say(&wanted, "]}");
+        }
+    }
+    say(&body, "]}");
+    say(&wanted, "]}");
+    expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
+}
+
+static void edges_and_common_faces_of_two_vertices_are_found(void **state)
+{
+    (void)state;
+    for_each_specimen(try_finds);
+}
+
 static void queries_answer_in_order(void **state)
 {
     (void)state;
@@ -372,6 +424,7 @@ int main(void)
         cmocka_unit_test(relations_turn_counter_clockwise),
         cmocka_unit_test(pages_go_through_all_elements),
         cmocka_unit_test(lines_give_all_elements_and_their_count),
+        cmocka_unit_test(edges_and_common_faces_of_two_vertices_are_found),
         cmocka_unit_test(queries_answer_in_order),
         cmocka_unit_test(dense_answers_are_offsets_and_ids),
         cmocka_unit_test(questions_are_of_the_revision),
