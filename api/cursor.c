@@ -75,7 +75,7 @@ bool api_cursor_read(const char *text, const char *collection, const api_mesh_in
     }
     if (!is_of(&cursor, info)) {
         return api_problem_set(problem, API_REVISION_GONE,
-                               "the cursor is of another mesh that had this id");
+                               "the cursor is of another mesh, or of one that had this id before");
     }
     *position = cursor.position;
     return true;

@@ -17,7 +17,8 @@ void api_cursor_write(const char *collection, const api_mesh_info *info, uint64_
                       char out[API_CURSOR]);
 /* The revision a cursor pins. False when it is none of this mesh. */
 bool api_cursor_pins(const char *text, const api_mesh_info *info, uint64_t *revision);
-/* bad_cursor; revision_gone where it is of another mesh that had the id before. */
+/* bad_cursor; revision_gone where it is of another mesh: one that had the id before, or has another
+ * id. A cursor does not tell which. */
 bool api_cursor_read(const char *text, const char *collection, const api_mesh_info *info,
                      uint64_t *position, api_problem *problem);
 
