@@ -66,7 +66,7 @@ bool api_coding_choose(const char *accept_encoding, api_codings *out)
     bool any = false;
     int most = 0;
     for (api_coding c = 0; c < API_CODING_COUNT; c++) {
-        int weight = q[c] >= 0 ? q[c] : others;
+        int weight = q[c] >= 0 ? q[c] : c == API_ZSTD ? -1 : others;
         if (weight < 0) {
             weight = c == API_IDENTITY ? 1 : 0; /* allowed, and liked least */
         }
@@ -76,6 +76,10 @@ bool api_coding_choose(const char *accept_encoding, api_codings *out)
             most = weight;
             out->best = c;
         }
+    }
+    if (!any && q[API_ZSTD] < 0 && others > 0) {
+        out->allowed[API_ZSTD] = any = true;
+        out->best = API_ZSTD;
     }
     return any;
 }

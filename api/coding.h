@@ -29,8 +29,9 @@ typedef struct api_codings {
 
 /* False when it allows none: then `best` is identity all the same. NULL allows identity alone:
  * who says nothing gets what needs no decoder. Identity is allowed unless it, or "*" without it,
- * has q=0; another coding that is liked as much or more is better. An entry that is not well formed
- * is passed over. */
+ * has q=0; another coding that is liked as much or more is better. "*" stands for identity and
+ * gzip, which everything between reads: zstd is taken only by name, or where nothing else is
+ * allowed. An entry that is not well formed is passed over. */
 bool api_coding_choose(const char *accept_encoding, api_codings *out);
 
 #endif
