@@ -1,10 +1,14 @@
 #include "server/http_wire.h"
 
+#include "api/answer_headers.h"
+
+#include <assert.h>
 #include <string.h>
 #include <sys/socket.h>
 
 void srv_wire_add(srv_wire *wire, const char *name, const char *value)
 {
+    assert(api_header_is_listed(name));
     if (wire->header_count < SRV_WIRE_HEADERS) {
         wire->headers[wire->header_count++] = (api_header){name, value};
     }
@@ -57,8 +61,7 @@ void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight)
             "Last-Event-ID, Prefer, X-Request-Id");
         srv_wire_add(wire, "Access-Control-Max-Age", "600");
     } else {
-        srv_wire_add(wire, "Access-Control-Expose-Headers",
-                     "ETag, Idempotency-Replayed, Link, Location, Retry-After, X-Request-Id");
+        srv_wire_add(wire, "Access-Control-Expose-Headers", api_exposed_headers);
     }
 }
 

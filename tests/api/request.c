@@ -1,5 +1,7 @@
 #include "tests/api/request.h"
 
+#include "api/answer_headers.h"
+
 #include "tests/traffic.h"
 
 #include "server/job_board.h"
@@ -241,6 +243,9 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
     r.status = answer->status;
     r.route = answer->route;
     memcpy(r.headers, answer->headers, sizeof r.headers);
+    for (size_t i = 0; i < answer->header_count; i++) {
+        assert_true(api_header_is_listed(answer->headers[i].name));
+    }
     r.header_count = answer->header_count;
     read_all(b, answer, &r);
     *out = r;

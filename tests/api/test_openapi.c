@@ -2,6 +2,8 @@
 #include "tests/api/request.h"
 
 #include "algo/shape.h"
+#include "api/answer_headers.h"
+#include "api/routes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -123,12 +125,65 @@ static void bodies_take_what_their_schemas_list(void **state)
     bench_free(b);
 }
 
+/* Does the list, in which names are parted by ", ", have this one? */
+static bool is_exposed(const char *name)
+{
+    size_t length = strlen(name);
+    bool found = false;
+    for (const char *at = api_exposed_headers; at != NULL && !found; at = strchr(at, ' ')) {
+        at += *at == ' ';
+        found = strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0');
+    }
+    return found;
+}
+
+/* Every member of every object called "headers" is a header of some answer. */
+static unsigned expect_exposed(const cJSON *at)
+{
+    unsigned count = 0;
+    const cJSON *child, *header;
+    cJSON_ArrayForEach(child, at)
+    {
+        if (child->string != NULL && strcmp(child->string, "headers") == 0) {
+            cJSON_ArrayForEach(header, child)
+            {
+                if (!is_exposed(header->string) || !api_header_is_listed(header->string)) {
+                    fail_msg("%s is not exposed", header->string);
+                }
+                count++;
+            }
+        }
+        count += expect_exposed(child);
+    }
+    return count;
+}
+
+static void pages_of_other_origins_may_read_every_header_described(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/openapi.json"));
+    assert_true(expect_exposed(r.json) > 100);
+    assert_true(is_exposed("ETag") && is_exposed("X-Request-Id") && is_exposed("Export-Warnings"));
+    assert_false(is_exposed("Request-Id") || is_exposed("X-Request"));
+    assert_false(api_header_is_listed("X-New"));
+    for (size_t i = 0; i < api_route_count(); i++) {
+        const api_told_header *const *told = api_route_at(i)->headers;
+        for (; *told != NULL; told++) {
+            assert_true(is_exposed((*told)->name));
+        }
+    }
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(references_meet_and_nothing_is_left_over),
         cmocka_unit_test(shapes_are_those_of_the_table),
         cmocka_unit_test(bodies_take_what_their_schemas_list),
+        cmocka_unit_test(pages_of_other_origins_may_read_every_header_described),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
