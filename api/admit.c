@@ -129,6 +129,14 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
     return true;
 }
 
+/* An image or a link of any page sends such a request. Browsers keep the answer from the page, but
+ * it would have been worked out. */
+static bool is_of_other_site(const api_exchange *x)
+{
+    const char *site = api_header_of(x, "Sec-Fetch-Site");
+    return site != NULL && !x->request.has_consent && api_equal_nocase(site, "cross-site");
+}
+
 static bool find_route(api_exchange *x)
 {
     api_path path;
@@ -159,6 +167,10 @@ static bool find_route(api_exchange *x)
     }
     x->answer.route = x->route->path;
     x->head = strcmp(x->request.method, "HEAD") == 0;
+    if ((x->route->flags & API_EXPENSIVE) && is_of_other_site(x)) {
+        return api_fail(x, API_FOREIGN_ORIGIN,
+                        "Sec-Fetch-Site says that another site asks for what is expensive to find");
+    }
     return check_variables(x, &variables) && check_query(x);
 }
 
@@ -227,7 +239,11 @@ static bool check_body(api_exchange *x)
     if (empty) {
         bool optional =
             x->route->body_kind == API_BODY_NONE || x->route->body_kind == API_BODY_OPTION;
-        return optional || api_fail(x, API_MISSING_BODY, "%s needs a body here", r->method);
+        /* A form may send an empty body of a type of its own: no body is not a type of body. */
+        bool typed = x->route->body_kind == API_BODY_OPTION &&
+                     api_header_of(x, "Content-Type") != NULL && !check_content_type(x);
+        return (optional && !typed) ||
+               (!typed && api_fail(x, API_MISSING_BODY, "%s needs a body here", r->method));
     }
     if (r->has_length && r->length > api_body_cap(x)) {
         return api_refuse_size(x);

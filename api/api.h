@@ -48,7 +48,8 @@ typedef struct api_request {
     void *context;
     bool has_length; /* Content-Length was given */
     uint64_t length;
-    bool has_body; /* a body will follow, of known length or chunked */
+    bool has_body;    /* a body will follow, of known length or chunked */
+    bool has_consent; /* its Origin is one that was configured: such pages may do anything */
 } api_request;
 
 typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;

@@ -356,6 +356,22 @@ static void write_header_parameters(api_out *out, const api_route *route)
     }
 }
 
+/* Longer than any row's, with a sentence more. */
+enum { MOST_DOC = 2000 };
+
+static void write_doc(api_out *out, const api_route *route)
+{
+    static const char expensive[] = "Expensive: refused to pages of other sites.";
+    const char *doc = route->doc == NULL ? "" : route->doc;
+    char text[MOST_DOC];
+    bool is_expensive = (route->flags & API_EXPENSIVE) != 0;
+    snprintf(text, sizeof text, "%s%s%s", doc, doc[0] != '\0' && is_expensive ? " " : "",
+             is_expensive ? expensive : "");
+    if (text[0] != '\0') {
+        api_out_key_string(out, "description", text);
+    }
+}
+
 static void write_operation(api_out *out, const api_route *route)
 {
     char method[16] = "";
@@ -367,9 +383,7 @@ static void write_operation(api_out *out, const api_route *route)
     api_out_object_begin(out);
     api_out_key_string(out, "operationId", route->name);
     api_out_key_string(out, "summary", route->summary);
-    if (route->doc != NULL) {
-        api_out_key_string(out, "description", route->doc);
-    }
+    write_doc(out, route);
     api_out_key(out, "parameters");
     api_out_array_begin(out);
     for (const api_parameter *const *p = route->parameters; *p != NULL; p++) {
@@ -498,7 +512,9 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
                        "Half-edge meshes over HTTP. Every GET answers HEAD too. Every refusal is "
                        "application/problem+json. Bodies of more than 1 KiB are sent in gzip or "
                        "zstd where Accept-Encoding likes that best; their ETag is one of its own, "
-                       "and as good in If-Match.");
+                       "and as good in If-Match. Pages of other sites may change nothing and "
+                       "are refused expensive reads, which say that they are: 403 where "
+                       "Sec-Fetch-Site is cross-site, unless --allow-origin names the Origin.");
     api_out_key(out, "license");
     api_out_object_begin(out);
     api_out_key_string(out, "name", "MIT");

@@ -50,7 +50,9 @@ enum {
     API_KEYED_NEW = 64,   /* the same of what makes a mesh: kept with the store */
     API_LONG = 128,       /* may become a job: Prefer is read, and 202 may be the answer */
     API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
-    API_REHEARSED = 512   /* takes `dry_run`: an answer may be about nothing that is */
+    API_REHEARSED = 512,  /* takes `dry_run`: an answer may be about nothing that is */
+    API_EXPENSIVE = 1024  /* a read that costs the mesh: refused to pages of other sites, which need
+                             not be able to read the answer to make us work */
 };
 
 /* A header that only some of a route's answers with 200 have. */

@@ -204,6 +204,7 @@ static void begin_exchange(srv_request *r, const srv_framing *framing)
         .has_length = framing->has_length,
         .length = framing->length,
         .has_body = framing->chunked || framing->length > 0,
+        .has_consent = r->cors != NULL,
     };
     r->exchange = api_begin(r->http->options.service, &asked, &r->step);
     if (r->exchange == NULL) {

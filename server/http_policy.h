@@ -7,6 +7,7 @@
  * P3  A write whose Sec-Fetch-Site is cross-site is 403, unless its Origin is a configured one. So
  *     is one whose Sec-Fetch-Site is same-site and that has no Origin: a page on another port or
  *     subdomain sent it, and nothing says which.
+ *     A read that the table of routes calls expensive is 403 likewise: see api/admit.c.
  * P4  Configured origins, and no others, get CORS headers. */
 #ifndef HE_SERVER_HTTP_POLICY_H
 #define HE_SERVER_HTTP_POLICY_H

@@ -212,7 +212,8 @@ static bool has_code(const api_answer *answer, const char *slug)
     return false;
 }
 
-#define JSON "Content-Type: application/json"
+#define JSON       "Content-Type: application/json"
+#define OTHER_SITE "Sec-Fetch-Site: cross-site"
 
 static const struct {
     sent request;
@@ -312,6 +313,25 @@ static const struct {
     {{"POST /v1/meshes/m/query", JSON, "{\"queries\":"}, 400, "malformed_json"},
     {{"POST /v1/meshes/m/query", JSON, "{\"a\":1,\"a\":1}"}, 400, "duplicate_member"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", "{}"}, 415, "unsupported_media_type"},
+    /* A form may send no body, of a type that asks nobody. */
+    {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
+    {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", ""}, 415, "unsupported_media_type"},
+    {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
+    {{"POST /v1/meshes/m/redo", "Content-Type: application/x-www-form-urlencoded", NULL},
+     415,
+     "unsupported_media_type"},
+    /* what pages of other sites may ask for */
+    {{"GET /v1/meshes/m/check", OTHER_SITE, NULL}, 403, "foreign_origin"},
+    {{"HEAD /v1/meshes/m/check", OTHER_SITE, NULL}, 403, NULL},
+    {{"GET /v1/meshes/m", "Sec-Fetch-Site: Cross-Site", NULL}, 403, "foreign_origin"},
+    {{"GET /v1/meshes/m/content", OTHER_SITE, NULL}, 403, "foreign_origin"},
+    {{"GET /v1/meshes/m/vertices", OTHER_SITE, NULL}, 403, "foreign_origin"},
+    {{"GET /version", OTHER_SITE, NULL}, 200, NULL},
+    {{"GET /", OTHER_SITE, NULL}, 200, NULL},
+    {{"GET /v1/operations", OTHER_SITE, NULL}, 200, NULL},
+    {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-origin", NULL}, 200, NULL},
+    {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-site", NULL}, 200, NULL},
+    {{"GET /v1/meshes/m", "Sec-Fetch-Site: none", NULL}, 200, NULL},
     /* The upload's cap is 100 bytes here. */
     {{"POST /v1/meshes", JSON,
       "{\"name\":\"012345678901234567890123456789012345678901234567890123456789012345678901234567"
@@ -354,6 +374,29 @@ static void requests_are_answered(void **state)
                     (type != NULL && strcmp(type, "application/problem+json") == 0));
         assert_true(answer->status != 405 || answer_header(answer, "Allow") != NULL);
         assert_non_null(answer->route);
+        api_free(x);
+    }
+}
+
+static const char *from_another_site(void *context, const char *name)
+{
+    (void)context;
+    return strcmp(name, "Sec-Fetch-Site") == 0 ? "cross-site" : NULL;
+}
+
+static void pages_of_a_configured_origin_may_ask_for_everything(void **state)
+{
+    (void)state;
+    api_request request = {.method = "GET",
+                           .path = "/v1/meshes/m",
+                           .query = "",
+                           .request_id = "id-1",
+                           .header = from_another_site};
+    for (int consent = 0; consent < 2; consent++) {
+        request.has_consent = consent != 0;
+        api_exchange *x = api_handle(service, &request, NULL, 0);
+        assert_non_null(x);
+        assert_int_equal(api_answer_of(x)->status, consent != 0 ? 200 : 403);
         api_free(x);
     }
 }
@@ -589,6 +632,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(requests_are_answered),
+        cmocka_unit_test(pages_of_a_configured_origin_may_ask_for_everything),
         cmocka_unit_test(allow_lists_the_methods_of_a_path),
         cmocka_unit_test(pages_carry_a_strict_policy),
         cmocka_unit_test(readiness_is_the_servers_to_say),
