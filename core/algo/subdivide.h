@@ -53,7 +53,8 @@
  * parts have the face's, unless the rule is default. Parts of `feature` edges are features under
  * any rule.
  *
- * LOCKED edges and faces are cut, like by other edits: the part that keeps the id is locked. */
+ * LOCKED edges and faces are cut, like by other edits: the part that keeps the id is locked. New
+ * vertices are not locked, whatever those about them are: see marks.h. */
 #ifndef HE_ALGO_SUBDIVIDE_H
 #define HE_ALGO_SUBDIVIDE_H
 

@@ -1,6 +1,8 @@
 /* Attributes of a finer mesh: subdivide.h says what they become. */
 #include "algo/subdivide_step.h"
 
+#include "mesh/marks.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -212,18 +214,18 @@ static he_status carry_corners(const he_step *s, const he_column *from, he_colum
 
 static bool is_feature(const he_column *column)
 {
-    return column->domain == HE_EDGE && column->type == HE_BOOL && column->components == 1 &&
-           strcmp(column->name, "feature") == 0;
+    return column->domain == HE_EDGE && he_is_mark(column, "feature");
 }
 
-/* Rows that stay keep their value; those of a parent have it unless the rule is default. */
+/* Rows that stay keep their value; those of a parent have it unless the rule is default. `parents`
+ * NULL: none has one. */
 static void carry_rows(const he_column *from, he_column *to, size_t issued, const uint32_t *parents)
 {
     for (size_t row = 0; row < to->rows; row++) {
         const unsigned char *value = from->fallback;
         if (row < issued) {
             value = he_column_value(from, row);
-        } else if (parents[row - issued] != HE_NONE &&
+        } else if (parents != NULL && parents[row - issued] != HE_NONE &&
                    (from->rule != HE_DEFAULT || is_feature(from))) {
             value = he_column_value(from, parents[row - issued]);
         }
@@ -235,6 +237,10 @@ static he_status fill(const he_step *s, const he_column *from, he_column *to, he
 {
     switch (from->domain) {
     case HE_VERTEX:
+        if (he_is_mark(from, "locked")) {
+            carry_rows(from, to, s->from->vertices.issued, NULL);
+            return HE_OK;
+        }
         if (from->rule == HE_INTERPOLATE) {
             return smooth_column(s, from, to, err);
         }

@@ -95,7 +95,8 @@ static void carry(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *rows,
             continue;
         }
         unsigned char value[HE_COLUMN_ROW_BYTES];
-        switch (column->rule) {
+        bool spreads = kind != HE_VERTEX || !he_is_mark(column, "locked");
+        switch (spreads ? column->rule : HE_DEFAULT) {
         case HE_COPY:
             memcpy(value, he_column_value(column, nearest), column->row_bytes);
             break;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-static bool is_mark(const he_column *column, const char *name)
+bool he_is_mark(const he_column *column, const char *name)
 {
     return column != NULL && column->type == HE_BOOL && column->components == 1 &&
            strcmp(column->name, name) == 0;
@@ -14,7 +14,7 @@ const he_column *he_mark_find(const he_mesh *m, he_kind domain, const char *name
 {
     for (size_t i = 0; i < m->c.column_count; i++) {
         const he_column *column = m->c.columns[i];
-        if (is_mark(column, name) && column->domain == domain) {
+        if (he_is_mark(column, name) && column->domain == domain) {
             return column;
         }
     }
@@ -27,12 +27,12 @@ bool he_marks_search(const he_mesh *m, he_marks *out)
     bool any = false;
     for (size_t i = 0; i < m->c.column_count; i++) {
         const he_column *column = m->c.columns[i];
-        if (is_mark(column, "locked")) {
+        if (he_is_mark(column, "locked")) {
             if (column->domain != HE_HALFEDGE && column->domain != HE_MESH_KIND) {
                 found.locked[column->domain] = column;
                 any = true;
             }
-        } else if (is_mark(column, "feature") && column->domain == HE_EDGE) {
+        } else if (he_is_mark(column, "feature") && column->domain == HE_EDGE) {
             found.feature = column;
             any = true;
         }

@@ -12,7 +12,9 @@
  * or take one from it. A vertex that moves takes its edges and faces along: lock the corners to
  * hold those in place. Cutting is allowed (edge_bisect, edge_split, edge_cut, face_split,
  * face_poke, face_triangulate, plane_split, vertex_split, vertex_split_corners): the element keeps
- * its part, and its mark; the other part has the mark too where the column's rule is copy. What
+ * its part, and its mark; the other part has the mark too where the column's rule is copy. A vertex
+ * that is made between others (on an edge that is cut, in a face) is no part of any: it has the
+ * column's default, under any rule, so a lock never spreads to midpoints. What
  * becomes one with a locked element of its kind leaves no trace in its attributes: they stay.
  *
  * FEATURE. edge_flip of a feature edge is refused with HE_FEATURE_EDGE. A vertex with exactly two
@@ -41,6 +43,8 @@ typedef struct he_marks {
     const he_column *locked[HE_KIND_COUNT]; /* of HE_VERTEX, HE_EDGE, HE_FACE */
 } he_marks;
 
+/* Is it a bool column of one component with that name? */
+bool he_is_mark(const he_column *column, const char *name);
 /* The bool column of one component with that domain and name, NULL when there is none. */
 const he_column *he_mark_find(const he_mesh *m, he_kind domain, const char *name);
 

@@ -355,6 +355,39 @@ static void nothing_is_mixed_into_what_is_locked(void **state)
     }
 }
 
+/* Whichever end is the origin of half-edge 2e, whatever the rule. */
+static void a_lock_does_not_spread_to_a_vertex_between(void **state)
+{
+    (void)state;
+    static const char *const edits[] = {"edge_split edge=0-1",
+                                        "edge_bisect edge=1-2",
+                                        "face_poke face=0",
+                                        "subdivide scheme=loop steps=2",
+                                        "subdivide scheme=sqrt3 steps=2",
+                                        "subdivide scheme=catmull_clark steps=1"};
+    static const he_rule rules[] = {HE_COPY, HE_INTERPOLATE, HE_DEFAULT};
+    for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+        for (size_t k = 0; k < 3 * 7; k++) {
+            he_mesh *m = script_mesh("012,103", NULL);
+            he_column *column = NULL;
+            assert_int_equal(
+                he_column_new("locked", HE_VERTEX, HE_BOOL, 1, rules[k % 3], &column, NULL), HE_OK);
+            assert_int_equal(he_column_extend(column, 4, NULL), HE_OK);
+            for (uint32_t v = 0; v < 3; v++) {
+                *he_column_row(column, v) = (unsigned char)((k / 3 + 1) >> v & 1);
+            }
+            assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+            script_prepare(m, edits[i]);
+            assert_true(he_mesh_issued(m, HE_VERTEX) > 4);
+            for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+                assert_int_equal(marked(m, HE_VERTEX, "locked", v),
+                                 v < 3 && ((k / 3 + 1) >> v & 1) != 0);
+            }
+            he_mesh_free(m);
+        }
+    }
+}
+
 /* Both parts of what is cut have the mark; what is new has not. */
 static void test_marks_are_copied(void **state)
 {
@@ -498,6 +531,7 @@ int main(void)
         cmocka_unit_test(test_edges_and_faces),
         cmocka_unit_test(test_normals),
         cmocka_unit_test(nothing_is_mixed_into_what_is_locked),
+        cmocka_unit_test(a_lock_does_not_spread_to_a_vertex_between),
         cmocka_unit_test(test_marks_are_copied),
         cmocka_unit_test(test_corners),
         cmocka_unit_test(test_bad_values),
