@@ -56,9 +56,11 @@ typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
 
 /* What api_work or a job is about to do, so that its host can choose when. */
 typedef struct api_load {
-    bool reads;       /* it changes nothing */
-    double seconds;   /* about how long it takes; far too little for some */
-    const char *mesh; /* id of the mesh it is about, "" where there is none */
+    bool reads;             /* it changes nothing */
+    double seconds;         /* about how long it takes; far too little for some */
+    const char *mesh;       /* id of the mesh it is about, "" where there is none */
+    struct api_mesh *about; /* that mesh, held by the exchange; NULL while there is none */
+    bool claims;            /* the exchange has claimed it: see api_store.claim */
 } api_load;
 
 enum { API_ANSWER_HEADERS = 16 };

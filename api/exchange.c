@@ -138,7 +138,10 @@ bool api_fail_store(api_exchange *x, api_store_status status)
     case API_STORE_TOO_MANY:
         return api_fail(x, API_TOO_MANY_MESHES, "the server holds as many meshes as it may");
     case API_STORE_BUSY:
-        return api_fail(x, API_MESH_BUSY, "a long operation changes the mesh");
+        return x->info.job[0] == '\0'
+                   ? api_fail(x, API_MESH_BUSY, "a long operation changes the mesh")
+                   : api_fail(x, API_MESH_BUSY, "job %s changes the mesh: see /v1/jobs/%s",
+                              x->info.job, x->info.job);
     case API_STORE_NOTHING:
         return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
     case API_STORE_LISTENERS:

@@ -29,7 +29,7 @@ typedef enum api_job_state {
     API_JOB_CANCELLED
 } api_job_state;
 
-enum { API_JOB_ID = 22, API_JOB_LOCATION = sizeof "/v1/meshes/" + API_MESH_ID };
+enum { API_JOB_LOCATION = sizeof "/v1/meshes/" + API_MESH_ID };
 
 /* What is known of a job. */
 typedef struct api_job {

@@ -18,7 +18,7 @@ typedef struct api_snapshot api_snapshot; /* an immutable copy at one revision; 
 struct api_entry;                         /* one line of the history, below */
 struct api_history;
 
-enum { API_MESH_ID = 64, API_MESH_NAME = 256 };
+enum { API_MESH_ID = 64, API_MESH_NAME = 256, API_JOB_ID = 22 };
 
 /* Plain facts about a stored mesh, copied out under its lock. */
 typedef struct api_mesh_info {
@@ -31,7 +31,8 @@ typedef struct api_mesh_info {
     double created, modified;     /* seconds since 1970 UTC */
     uint32_t undo, redo;          /* steps on the stacks */
     bool removed;
-    bool busy; /* claimed by a long edit, see `claim` */
+    bool busy;                /* claimed by a long edit, see `claim` */
+    char job[API_JOB_ID + 1]; /* the job whose edit that is, "" when it is none */
 } api_mesh_info;
 
 /* What handlers derive from a mesh and keep with it, one of each kind. */

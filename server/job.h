@@ -16,6 +16,7 @@ typedef struct srv_job {
     api_job facts;      /* but for phase and progress until it has ended */
     char *body;         /* facts.body, owned */
     api_exchange *work; /* NULL when it has ended */
+    api_mesh *about;    /* the mesh whose followers are told, with a use; NULL: none, or it ended */
     srv_hold hold;      /* from the end of the work until that is durable */
     uint32_t uses;      /* by the list, by the pool, by listeners */
     bool listed;

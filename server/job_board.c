@@ -2,7 +2,9 @@
 
 #include "server/clock.h"
 #include "server/job.h"
+#include "server/mesh_events.h"
 #include "server/random.h"
+#include "server/stored_mesh.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -136,16 +138,23 @@ static void keep_answer(srv_job *j)
     j->facts.length = j->body == NULL ? 0 : j->facts.length;
 }
 
+/* Followers of the mesh that the job is about: not of one that has its id since. */
+static void tell_mesh(api_mesh *mesh, const api_job *facts)
+{
+    if (mesh != NULL) {
+        srv_events_job(mesh, facts);
+    }
+}
+
 /* Frees the work first: its memory is back before the end shows. */
 static void end(srv_job *j)
 {
     srv_board *board = j->board;
-    srv_store *store = board->options.store;
-    char mesh[API_MESH_ID + 1];
     api_free(j->work);
     pthread_mutex_lock(&board->lock);
     j->work = NULL;
-    memcpy(mesh, j->facts.mesh, sizeof mesh); /* of which it was told that the job began */
+    api_mesh *about = j->about;
+    j->about = NULL;
     const char *slash = strrchr(j->facts.location, '/');
     if (slash != NULL && strlen(slash + 1) <= API_MESH_ID) {
         memcpy(j->facts.mesh, slash + 1, strlen(slash + 1) + 1);
@@ -162,7 +171,8 @@ static void end(srv_job *j)
     tidy(board, 0);
     srv_job_release(j);
     pthread_mutex_unlock(&board->lock);
-    srv_store_tell_job(store, mesh, &facts);
+    tell_mesh(about, &facts);
+    srv_mesh_release(about);
 }
 
 /* Nobody is told that something was done which the journal may never have. */
@@ -222,7 +232,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    srv_store_tell_job(board->options.store, facts.mesh, &facts);
+    tell_mesh(j->about, &facts); /* which only the end lets go */
     api_watch(j->work, tell, j);
     api_work(j->work);
     pthread_mutex_lock(&board->lock);
@@ -272,10 +282,14 @@ static api_store_status submit(void *self, api_exchange *work, const char *opera
     if (j == NULL) {
         return API_STORE_NO_MEMORY;
     }
+    const api_load load = api_load_of(work);
+    if (load.claims) {
+        srv_claimed_by(load.about, j->facts.id);
+    }
     const srv_task task = {.work = run,
                            .context = j,
                            .share = SRV_SHARE_JOB,
-                           .cost = api_load_of(work).seconds,
+                           .cost = load.seconds,
                            .flow = srv_pool_flow("", mesh)};
     pthread_mutex_lock(&board->lock);
     tidy(board, 1);
@@ -283,6 +297,7 @@ static api_store_status submit(void *self, api_exchange *work, const char *opera
     if (accepted) {
         j->facts.number = ++board->submitted;
         *out = *srv_job_facts(j);
+        j->about = load.about == NULL ? NULL : srv_mesh_retain(load.about);
         append(board, j);
         /* It cannot run before the lock is given back. */
         accepted = board->options.submit(board->options.pool, &task);
@@ -292,6 +307,7 @@ static api_store_status submit(void *self, api_exchange *work, const char *opera
     }
     pthread_mutex_unlock(&board->lock);
     if (!accepted) {
+        srv_mesh_release(j->about);
         he_mem_free(j);
     }
     return accepted ? API_STORE_OK : API_STORE_TOO_MANY;
@@ -329,14 +345,18 @@ static bool list(void *self, uint64_t after, size_t limit,
     return j != NULL;
 }
 
-/* Under the lock; what is left of one that waited is to be freed without it. */
-static api_exchange *cancel(srv_job *j)
+/* Under the lock; what is left of one that waited, and its use of a mesh, are to be given back
+ * without it. */
+static api_exchange *cancel(srv_job *j, api_mesh **about)
 {
     api_exchange *work = NULL;
+    *about = NULL;
     atomic_store(&j->stop, true);
     if (j->facts.state == API_JOB_QUEUED) {
         work = j->work;
+        *about = j->about;
         j->work = NULL;
+        j->about = NULL;
         j->facts.state = API_JOB_CANCELLED;
         j->facts.finished = srv_clock_utc();
         srv_job_wake(j);
@@ -349,6 +369,7 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
 {
     srv_board *board = self;
     api_exchange *over = NULL;
+    api_mesh *about = NULL;
     api_job facts = {.number = 0};
     pthread_mutex_lock(&board->lock);
     tidy(board, 0);
@@ -358,7 +379,7 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
         if (*forgotten) {
             forget(board, j);
         } else {
-            over = cancel(j);
+            over = cancel(j, &about);
             facts = *srv_job_facts(j);
             show(context, &facts);
         }
@@ -366,7 +387,8 @@ static bool remove_job(void *self, const char *id, bool *forgotten,
     pthread_mutex_unlock(&board->lock);
     if (over != NULL) {
         api_free(over);
-        srv_store_tell_job(board->options.store, facts.mesh, &facts);
+        tell_mesh(about, &facts);
+        srv_mesh_release(about);
     }
     return j != NULL;
 }
@@ -382,13 +404,13 @@ api_jobs srv_board_interface(srv_board *board)
 }
 
 /* What is left of some job that waited; NULL when none does. */
-static api_exchange *cancel_one(srv_board *board)
+static api_exchange *cancel_one(srv_board *board, api_mesh **about)
 {
     api_exchange *work = NULL;
     pthread_mutex_lock(&board->lock);
     board->stopped = true;
     for (srv_job *j = board->first; j != NULL && work == NULL; j = j->next) {
-        work = cancel(j);
+        work = cancel(j, about);
     }
     pthread_mutex_unlock(&board->lock);
     return work;
@@ -396,8 +418,10 @@ static api_exchange *cancel_one(srv_board *board)
 
 void srv_board_stop(srv_board *board)
 {
-    for (api_exchange *work; (work = cancel_one(board)) != NULL;) {
+    api_mesh *about = NULL;
+    for (api_exchange *work; (work = cancel_one(board, &about)) != NULL;) {
         api_free(work);
+        srv_mesh_release(about);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "server/store.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <string.h>
 
 he_mesh *srv_write_begin(void *self, api_mesh *mesh, api_mesh_info *info, he_delta **delta)
@@ -103,10 +104,25 @@ api_store_status srv_claim(void *self, api_mesh *mesh, const he_mesh **content, 
     return status;
 }
 
+void srv_claimed_by(api_mesh *mesh, const char *id)
+{
+    pthread_rwlock_wrlock(&mesh->lock);
+    if (mesh->claimed) {
+        snprintf(mesh->info.job, sizeof mesh->info.job, "%s", id);
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+}
+
+static void forget_claim(api_mesh *mesh)
+{
+    mesh->claimed = false;
+    mesh->info.job[0] = '\0';
+}
+
 /* Under the lock. Objects in the reserved delta are the copy's old side. */
 static void end_claim(api_mesh *mesh)
 {
-    mesh->claimed = false;
+    forget_claim(mesh);
     he_delta_empty(srv_log_reserve(&mesh->log));
     srv_log_unreserve(&mesh->log);
 }
@@ -123,7 +139,7 @@ api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const
     }
     he_delta *delta = he_mesh_record(content, NULL);
     assert(mesh->claimed && mesh->discard == NULL);
-    mesh->claimed = false;
+    forget_claim(mesh);
     mesh->claim = keyed;
     mesh->discard = mesh->content;
     mesh->content = content;

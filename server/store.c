@@ -346,15 +346,6 @@ srv_held *srv_store_held(srv_store *store)
     return store->events.held;
 }
 
-void srv_store_tell_job(srv_store *store, const char *mesh, const api_job *job)
-{
-    api_mesh *found;
-    if (find(store, mesh, &found) == API_STORE_OK) {
-        srv_events_job(found, job);
-        srv_mesh_release(found);
-    }
-}
-
 size_t srv_store_count(srv_store *store)
 {
     pthread_rwlock_rdlock(&store->lock);

@@ -49,9 +49,6 @@ void srv_store_listen(srv_store *store, void (*notify)(void *context), void *con
 /* Where to wait for that. */
 struct srv_held *srv_store_held(srv_store *store);
 
-/* A job has begun or ended, which those who listen to this mesh are told; without a lock. */
-void srv_store_tell_job(srv_store *store, const char *mesh, const api_job *job);
-
 size_t srv_store_count(srv_store *store);
 /* Free the cached copies and bodies of kept answers that nobody reads, and what was derived from
  * meshes. Without a lock. */

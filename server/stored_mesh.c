@@ -100,6 +100,12 @@ void srv_mesh_release(api_mesh *mesh)
     he_mem_free(mesh);
 }
 
+api_mesh *srv_mesh_retain(api_mesh *mesh)
+{
+    atomic_fetch_add_explicit(&mesh->uses, 1, memory_order_relaxed);
+    return mesh;
+}
+
 void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out)
 {
     *out = mesh->info;

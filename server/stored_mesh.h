@@ -31,7 +31,7 @@ struct api_mesh {
     he_savepoint mark;      /* where the writer began */
     he_mesh *discard;       /* freed when the writer has given the lock back */
     const api_claim *claim; /* whom the writer works for, NULL: for no keyed request */
-    bool claimed;           /* the log's reserve is lent to a long edit */
+    bool claimed;           /* the log's reserve is lent to a long edit, of info.job */
 
     /* See mesh_events.h. */
     srv_feed feed;
@@ -61,6 +61,8 @@ struct api_mesh {
 api_mesh *srv_mesh_new(const char *id, const char *name, he_mesh *content, uint64_t undo_budget,
                        const srv_journal *journal, const uint64_t secret[2]);
 void srv_mesh_release(api_mesh *mesh);
+/* One use more, to be released. */
+api_mesh *srv_mesh_retain(api_mesh *mesh);
 /* Under its lock. */
 void srv_mesh_info(const api_mesh *mesh, api_mesh_info *out);
 /* Free the cached copies and the bodies of kept answers, unless somebody reads them, and what was
@@ -98,6 +100,8 @@ api_store_status srv_claim(void *self, api_mesh *mesh, const he_mesh **content, 
 api_store_status srv_publish(void *self, api_mesh *mesh, he_mesh *content, const char *ops,
                              bool barrier, const api_claim *keyed, api_mesh_info *info);
 void srv_unclaim(void *self, api_mesh *mesh);
+/* Who claimed the mesh is job `id`: said to those who find it busy. Without a lock. */
+void srv_claimed_by(api_mesh *mesh, const char *id);
 void srv_mesh_replace(void *self, api_mesh *mesh, he_mesh *content, api_mesh_info *info);
 void srv_mesh_rename(void *self, api_mesh *mesh, const char *name, api_mesh_info *info);
 

@@ -230,6 +230,17 @@ static void jobs_are_listed_in_pages(void **state)
     send(400, "GET", "/v1/jobs?cursor=m1", NULL);
 }
 
+/* Refused, because of this job, which it names. */
+static void expect_named(const char *job, const char *method, const char *target, const char *body)
+{
+    bench_reply r = expect(409, method, target, NULL, body);
+    const char *detail = cJSON_GetObjectItem(r.json, "detail")->valuestring;
+    if (strstr(detail, job) == NULL) {
+        fail_msg("%s does not name %s", detail, job);
+    }
+    bench_reply_free(&r);
+}
+
 static void a_long_edit_keeps_writers_out_and_lets_readers_in(void **state)
 {
     (void)state;
@@ -240,6 +251,9 @@ static void a_long_edit_keeps_writers_out_and_lets_readers_in(void **state)
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "mesh_busy");
     assert_string_not_equal(bench_header(&r, "Retry-After"), "");
     bench_reply_free(&r);
+    expect_named(path, "POST", "/v1/meshes/m/edits", POKE);
+    expect_named(path, "POST", "/v1/meshes/m/edits", TRANSFORM);
+    expect_named(path, "PUT", "/v1/meshes/m", CUBE);
     send(409, "POST", "/v1/meshes/m/edits", TRANSFORM);
     send(409, "POST", "/v1/meshes/m/undo", NULL);
     send(409, "PATCH", "/v1/meshes/m", "{\"name\":\"x\"}");
@@ -498,6 +512,34 @@ static api_exchange *listen_to(const char *job, const api_source **live)
     return x;
 }
 
+/* A mesh that got the id of one that a job was about has nothing to do with that job. */
+static void a_job_is_told_to_followers_of_its_own_mesh_only(void **state)
+{
+    (void)state;
+    for (int cancelled = 0; cancelled < 2; cancelled++) {
+        char path[64];
+        static char text[100000];
+        int64_t last;
+        const api_source *old, *anew;
+        send(201, "PUT", "/v1/meshes/m", LARGE);
+        api_exchange *x = listen_to("/v1/meshes/m", &old);
+        submit("POST", "/v1/meshes/m/edits", TRANSFORM, path);
+        send(204, "DELETE", "/v1/meshes/m", NULL);
+        send(201, "PUT", "/v1/meshes/m", CUBE);
+        api_exchange *y = listen_to("/v1/meshes/m", &anew);
+        if (cancelled != 0) {
+            send(202, "DELETE", path, NULL);
+        }
+        bench_run_jobs(bench, 1);
+        read_some(anew, text, sizeof text, &last);
+        assert_int_equal(last, API_READ_WAIT);
+        assert_null(strstr(text, "event: job"));
+        api_free(x);
+        api_free(y);
+        send(204, "DELETE", "/v1/meshes/m", NULL);
+    }
+}
+
 static void a_listener_hears_of_each_state_and_then_the_end(void **state)
 {
     (void)state;
@@ -652,6 +694,7 @@ int main(void)
         JOB_TEST(more_steps_than_ids_allow_are_refused_at_once),
         JOB_TEST(a_dry_run_changes_nothing_as_a_job_either),
         JOB_TEST(what_is_estimated_above_a_second_becomes_a_job),
+        JOB_TEST(a_job_is_told_to_followers_of_its_own_mesh_only),
         JOB_TEST(a_listener_hears_of_each_state_and_then_the_end),
         JOB_TEST(a_listener_is_told_that_the_server_stops),
         cmocka_unit_test(preferences_are_read),
