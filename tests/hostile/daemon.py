@@ -33,6 +33,7 @@ class Connection:
     def __init__(self, port):
         self.socket = socket.create_connection(('127.0.0.1', port), timeout=PATIENCE)
         self.impatient = None
+        self.most_kept = 1 << 12  # bytes of an answer, about as many; the rest is only read
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.rest = b''
 
@@ -78,7 +79,7 @@ class Connection:
             if not self.rest and not self.more():
                 raise ConnectionError('cut off')
             part, self.rest = self.rest[:count], self.rest[count:]
-            if len(kept) < 1 << 20:
+            if len(kept) < self.most_kept:
                 kept += part
             count -= len(part)
 
@@ -217,6 +218,7 @@ class Daemon:
 
     def send(self, method, path, body=b'', headers=()):
         connection = Connection(self.port)
+        connection.most_kept = 1 << 30
         connection.send(method, path, body, headers)
         try:
             return connection.read()
