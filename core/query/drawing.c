@@ -187,7 +187,8 @@ static he_status prepare(he_drawing *d, uint32_t face, uint64_t *most, he_error 
     if (is_fan(d, first, normal)) {
         return HE_OK;
     }
-    uint64_t cost = (uint64_t)degree * degree;
+    uint64_t most_of_each = degree < HE_EXACT_CORNERS ? degree : HE_EXACT_CORNERS;
+    uint64_t cost = most_of_each * degree;
     if (cost > *most) {
         return he_fail(err, HE_LIMIT, HE_FACE, face, "face %u has %u corners", face, degree);
     }

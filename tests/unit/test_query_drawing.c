@@ -1,6 +1,7 @@
 /* The arrays for drawing, against the polygons they are made from. */
 #include "query_specimens.h"
 
+#include "mesh/triangulation.h"
 #include "query/drawing.h"
 #include "query/geometry.h"
 
@@ -296,6 +297,14 @@ static void test_a_comb_of_many_teeth_is_covered_once(void **state)
     double whole = he_face_area(m, (he_face){0});
     assert_true(fabs(area - whole) < 1e-9 * whole);
     free(all.row);
+    /* Alone it costs what its corners do, not their square. */
+    const uint32_t face = 0;
+    he_frame frame = he_frame_of(m);
+    he_drawing d;
+    uint64_t cost = (uint64_t)HE_EXACT_CORNERS * N;
+    assert_int_equal(he_drawing_init_faces(&d, m, &frame, &face, 1, cost - 1, NULL), HE_LIMIT);
+    assert_int_equal(he_drawing_init_faces(&d, m, &frame, &face, 1, cost, NULL), HE_OK);
+    he_drawing_clear(&d);
     free(point);
     he_mesh_free(m);
 }
