@@ -518,7 +518,9 @@ static const api_route routes[] = {
      .summary = "History of a mesh",
      .doc =
          "What each revision did, newest first. `oldest` can still be read and undone to; entries "
-         "before were dropped to keep within the undo budget, `dropped` of them."},
+         "before were dropped to keep within the undo budget, `dropped` of them. The steps to undo "
+         "that were taken first go with them; what was undone can be done again until the next "
+         "edit, however full the history is."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/undo",
      .name = "undo_post",
