@@ -3,6 +3,7 @@
 #include "mesh/mem.h"
 
 #include <pthread.h>
+#include <sys/prctl.h>
 
 /* Work in parts, on the stack of its owner. */
 typedef struct work {
@@ -79,6 +80,7 @@ static void run_next(srv_hands *h, work *w)
 static void *help(void *context)
 {
     srv_hands *h = context;
+    prctl(PR_SET_NAME, "hedged-parts");
     pthread_mutex_lock(&h->lock);
     while (!h->ending) {
         work *w = h->first;

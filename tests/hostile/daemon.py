@@ -15,7 +15,7 @@ import tempfile
 import threading
 
 WORKERS = ('MHD-worker', 'MHD-single')
-POOL = ('hedged-pool', 'hedged-answers')
+POOL = ('hedged-pool', 'hedged-answers', 'hedged-parts')
 PATIENCE = 300  # seconds until an answer that does not come ends the run
 
 
