@@ -82,13 +82,47 @@ static pair difference(double a, double b)
     return exact_sum(a, -b);
 }
 
+/* --- pairs as numbers of twice the digits (T. J. Dekker, "A floating-point technique for extending
+ * the available precision", 1971) --- */
+
+/* What rounding makes of a determinant in pairs, of the sum of its terms' absolute values: each of
+ * a dozen operations adds less than 2^-102 of them. */
+static const double PAIR_ERROR3 = 0x1p-96;
+
+static pair sum_of(pair a, pair b)
+{
+    pair high = exact_sum(a.high, b.high), low = exact_sum(a.low, b.low);
+    pair sum = exact_sum(high.high, high.low + low.high);
+    return exact_sum(sum.high, sum.low + low.low);
+}
+
+static pair product_of(pair a, pair b)
+{
+    pair p = exact_product(a.high, b.high);
+    return exact_sum(p.high, p.low + (a.high * b.low + a.low * b.high));
+}
+
+/* a * d - b * c */
+static pair minor_of(pair a, pair b, pair c, pair d)
+{
+    pair left = product_of(a, d), right = product_of(b, c);
+    return sum_of(left, (pair){-right.low, -right.high});
+}
+
 /* --- determinants --- */
 
-static int exact3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
+/* `size` is the sum of the terms' absolute values. */
+static int exact3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d, double size)
 {
     pair ax = difference(a.x, d.x), ay = difference(a.y, d.y), az = difference(a.z, d.z);
     pair bx = difference(b.x, d.x), by = difference(b.y, d.y), bz = difference(b.z, d.z);
     pair cx = difference(c.x, d.x), cy = difference(c.y, d.y), cz = difference(c.z, d.z);
+    pair close = sum_of(
+        sum_of(product_of(az, minor_of(bx, by, cx, cy)), product_of(bz, minor_of(cx, cy, ax, ay))),
+        product_of(cz, minor_of(ax, ay, bx, by)));
+    if (fabs(close.high) > PAIR_ERROR3 * size) {
+        return sign(close.high);
+    }
     expansion e = {.count = 0};
     add_product(&e, ax, by, cz, 1);
     add_product(&e, ax, bz, cy, -1);
@@ -115,7 +149,7 @@ int he_orient3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
     if (size == 0) {
         return 0; /* a difference is 0 between equal numbers only */
     }
-    return fabs(determinant) > ERROR3 * size ? sign(determinant) : exact3(a, b, c, d);
+    return fabs(determinant) > ERROR3 * size ? sign(determinant) : exact3(a, b, c, d, size);
 }
 
 int he_orient2(he_vec2 a, he_vec2 b, he_vec2 c)
@@ -123,6 +157,9 @@ int he_orient2(he_vec2 a, he_vec2 b, he_vec2 c)
     double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x);
     if (fabs(left - right) > ERROR2 * (fabs(left) + fabs(right))) {
         return sign(left - right);
+    }
+    if (left == 0 && right == 0) {
+        return 0; /* a difference is 0 between equal numbers only */
     }
     expansion e = {.count = 0};
     const pair one = {0, 1};
