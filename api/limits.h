@@ -70,7 +70,14 @@ enum {
     API_MAX_QUERIES = 10000,   /* questions of one query */
     API_MAX_PATH_STEPS = 4096, /* of a traversal's path */
     API_MAX_WALK = 10000000,   /* half-edges a walk may answer with, or a query look at */
-    API_MAX_PAIRS = 1 << 20    /* of faces that meet; of polygons perhaps fewer */
+    API_HALFEDGE_STEPS = 8,    /* what looking at one of those is charged: mesh/budget.h */
+    /* What all questions of a request may be charged; of larger meshes as much as one pass takes.
+     * Up to a second of work: steps take 10 ns and less. */
+    API_MAX_STEPS = API_HALFEDGE_STEPS * API_MAX_WALK,
+    /* Beside those, what the first search for intersections of a request may be charged, for each
+     * element of the mesh. Ordinary surfaces take half of it. */
+    API_MEET_STEPS = 320,
+    API_MAX_PAIRS = 1 << 20 /* of faces that meet; of polygons perhaps fewer */
 };
 
 /* Above these a costly request leaves the worker for the job pool (API_WORK). */

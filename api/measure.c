@@ -366,17 +366,17 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const uint
     if (of == NULL) {
         uint64_t cost = he_mesh_count(a->mesh, HE_HALFEDGE) + (uint64_t)count;
         cost += q->measure->one == NULL ? cost_of_cutting(a->mesh) : 0;
-        if (a->on_worker && cost >= a->left) {
+        if (a->on_worker && cost >= api_asker_left(a)) {
             return api_asker_exceed(a, question);
         }
         api_asker_pay(a, cost); /* one pass is granted */
         return true;
     }
     uint64_t cost = 0;
-    for (size_t i = 0; i < count && cost <= a->left; i++) {
-        cost += cost_of(a->mesh, q, of[i], a->left);
+    for (size_t i = 0; i < count && cost <= api_asker_left(a); i++) {
+        cost += cost_of(a->mesh, q, of[i], api_asker_left(a));
     }
-    if (cost > a->left) {
+    if (cost > api_asker_left(a)) {
         return api_asker_exceed(a, question);
     }
     api_asker_pay(a, cost);
@@ -411,7 +411,7 @@ static bool find(api_asker *a, const api_in *question, const asked *q, const uin
     if (!pay(a, question, q, of, count)) {
         return false;
     }
-    uint64_t most = of == NULL ? UINT64_MAX : a->left;
+    uint64_t most = of == NULL ? UINT64_MAX : api_asker_left(a);
     bool whole = q->measure->one == NULL || (of == NULL && q->measure->many != NULL);
     options chosen = q->options;
     chosen.watch = &a->x->watch;

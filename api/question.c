@@ -19,12 +19,9 @@ enum {
 
 static uint64_t allowance(const api_asker *a)
 {
-    if (a->on_worker) {
-        return API_COSTLY_ELEMENTS;
-    }
-    uint64_t elements = (uint64_t)he_mesh_vertices(a->mesh) + he_mesh_count(a->mesh, HE_HALFEDGE) +
-                        he_mesh_faces(a->mesh);
-    return elements > API_MAX_WALK ? elements : API_MAX_WALK;
+    uint64_t elements = api_elements_of(a->mesh);
+    uint64_t most = elements > API_MAX_WALK ? elements : API_MAX_WALK;
+    return API_HALFEDGE_STEPS * (a->on_worker ? API_COSTLY_ELEMENTS : most);
 }
 
 void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
@@ -39,8 +36,10 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
                    .revision = x->info.revision,
                    .out = &x->out,
                    .arena = &x->arena,
+                   .budget = {.watch = &x->watch},
+                   .asked = "this",
                    .on_worker = x->phase == API_PHASE_BODY};
-    a.left = allowance(&a);
+    a.budget.left = allowance(&a);
     answer(x, &a);
     api_view_end(x, &view);
     he_ids_clear(&a.first);
@@ -54,9 +53,15 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
     }
 }
 
+uint64_t api_asker_left(const api_asker *a)
+{
+    return a->budget.left / API_HALFEDGE_STEPS;
+}
+
 void api_asker_pay(api_asker *a, uint64_t halfedges)
 {
-    a->left = a->left > halfedges ? a->left - halfedges : 0;
+    uint64_t left = api_asker_left(a);
+    a->budget.left = left > halfedges ? a->budget.left - API_HALFEDGE_STEPS * halfedges : 0;
 }
 
 bool api_asker_exceed(api_asker *a, const api_in *in)
@@ -65,10 +70,11 @@ bool api_asker_exceed(api_asker *a, const api_in *in)
         a->spent = true;
         return false;
     }
-    const char *limit = "a request may look at %llu half-edges of this mesh";
+    const char *limit = "\"%s\" takes more than is left of the %llu steps that a request may take "
+                        "on this mesh";
     unsigned long long most = allowance(a);
-    return in == NULL ? api_fail(a->x, HE_LIMIT, limit, most)
-                      : api_in_fail(in, HE_LIMIT, limit, most);
+    return in == NULL ? api_fail(a->x, HE_LIMIT, limit, a->asked, most)
+                      : api_in_fail(in, HE_LIMIT, limit, a->asked, most);
 }
 
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err)
@@ -244,11 +250,11 @@ static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_
     he_error err = {0};
     uint64_t count =
         q->target.of != NULL ? q->target.count : he_mesh_count(a->mesh, q->relation->of);
-    if (count >= a->left) {
+    if (count >= api_asker_left(a)) {
         return api_asker_exceed(a, question);
     }
-    if (he_relation_dense(a->mesh, q->relation, q->target.of, q->target.count, q->flags, a->left,
-                          out, &err) != HE_OK) {
+    if (he_relation_dense(a->mesh, q->relation, q->target.of, q->target.count, q->flags,
+                          api_asker_left(a), out, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }
     api_asker_pay(a, count + looked_at(a->mesh, q, out->ids.count));
@@ -325,9 +331,9 @@ static uint64_t degree_of(const he_mesh *mesh, he_vertex v, uint64_t most)
 static bool find_faces(api_asker *a, const api_in *question, he_vertex v, he_vertex w)
 {
     he_error err = {0};
-    uint64_t cost = degree_of(a->mesh, v, a->left);
-    cost += degree_of(a->mesh, w, a->left - cost);
-    if (cost >= a->left) {
+    uint64_t cost = degree_of(a->mesh, v, api_asker_left(a));
+    cost += degree_of(a->mesh, w, api_asker_left(a) - cost);
+    if (cost >= api_asker_left(a)) {
         return api_asker_exceed(a, question);
     }
     a->first.count = 0;
@@ -343,8 +349,8 @@ static bool find_faces(api_asker *a, const api_in *question, he_vertex v, he_ver
 
 static bool find_edge(api_asker *a, const api_in *question, he_vertex v, he_vertex w, bool halfedge)
 {
-    uint64_t cost = smaller_degree(a->mesh, v, w, a->left);
-    if (cost >= a->left) {
+    uint64_t cost = smaller_degree(a->mesh, v, w, api_asker_left(a));
+    if (cost >= api_asker_left(a)) {
         return api_asker_exceed(a, question);
     }
     api_asker_pay(a, cost);
@@ -411,7 +417,8 @@ bool api_question_ask(api_asker *a, const api_in *question)
         if (!api_in_find(question, kinds[i].member, &member)) {
             continue;
         }
-        if (a->left == 0) {
+        a->asked = kinds[i].member;
+        if (api_asker_left(a) == 0) {
             return api_asker_exceed(a, question);
         }
         he_error err = {0};

@@ -12,15 +12,18 @@
  *
  * POST .../traverse takes one walk, POST .../query a list of any of them; both come here.
  *
- * COST is counted in half-edges looked at, because a question of forty bytes may concern the whole
- * mesh and a request may hold thousands. On a worker an asker has little to spend; when that is
- * used up the request begins anew on the job pool with API_MAX_WALK, or the elements of the mesh
- * where those are more. What exceeds that is refused (limit_exceeded). A question overspends by at
- * most one pass over the mesh. */
+ * COST is counted in steps (mesh/budget.h), because a question of forty bytes may concern the whole
+ * mesh and a request may hold thousands. Walks and relations are charged API_HALFEDGE_STEPS for
+ * each half-edge that they look at; searches in space are charged for the boxes, triangles and
+ * pairs that they do look at, as they go. On a worker an asker has little to spend; when that is
+ * used up the request begins anew on the job pool with API_MAX_STEPS, or what one pass over the
+ * mesh takes where that is more. What exceeds that is refused (limit_exceeded). A question
+ * overspends by at most one pass over the mesh. */
 #ifndef HE_API_QUESTION_H
 #define HE_API_QUESTION_H
 
 #include "api/view.h"
+#include "mesh/budget.h"
 #include "query/adjacency.h"
 
 struct api_tree;
@@ -31,9 +34,11 @@ typedef struct api_asker {
     uint64_t revision;
     api_out *out;
     api_arena *arena;
-    uint64_t left;  /* half-edges that may still be looked at */
-    bool on_worker; /* what is not left is looked for on the job pool */
-    bool spent;     /* it has to be */
+    he_budget budget;  /* what may still be spent; it asks the watch of the exchange */
+    const char *asked; /* the kind of question at hand, for refusals */
+    bool on_worker;    /* what is not left is looked for on the job pool */
+    bool spent;        /* it has to be */
+    bool has_met;      /* the one search for intersections beside the budget is done */
     he_ids first, second;
     struct api_tree *tree; /* once asked for: see tree.h */
 } api_asker;
@@ -78,6 +83,8 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 #define API_KIND_BIT(kind) (1u << (kind))
 /* {"vertex":5}, an element that lives and is of one of the kinds in this set of bits. */
 bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);
+/* Half-edges that may still be looked at, and the charge for some that were. */
+uint64_t api_asker_left(const api_asker *a);
 void api_asker_pay(api_asker *a, uint64_t halfedges);
 /* Always false: with a->spent on a worker, else limit_exceeded. `in` is NULL where no body asks. */
 bool api_asker_exceed(api_asker *a, const api_in *in);

@@ -4,9 +4,6 @@
 #include <float.h>
 #include <math.h>
 
-/* Boxes that a search for intersections may look at for each half-edge it may spend. */
-enum { BOXES = 8 };
-
 static bool read_max(const api_in *in, double *out)
 {
     api_in max;
@@ -65,7 +62,7 @@ bool api_ray_ask(api_asker *a, const api_in *question)
     }
     he_hit hit;
     he_error err = {0};
-    if (he_bvh_ray(tree, a->mesh, origin, direction, max, &a->left, &hit, &err) != HE_OK) {
+    if (he_bvh_ray(tree, a->mesh, origin, direction, max, &a->budget, &hit, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }
     write_hit(a->out, "hit", &hit);
@@ -88,7 +85,7 @@ bool api_closest_ask(api_asker *a, const api_in *question)
     }
     he_hit hit;
     he_error err = {0};
-    if (he_bvh_closest(tree, a->mesh, point, max, &a->left, &hit, &err) != HE_OK) {
+    if (he_bvh_closest(tree, a->mesh, point, max, &a->budget, &hit, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }
     write_hit(a->out, "closest", &hit);
@@ -107,26 +104,35 @@ static bool write_pairs(api_asker *a, size_t limit, bool complete)
     return true;
 }
 
+/* Steps beside the budget, once a request: so many that a large mesh can be searched at all. */
+static uint64_t granted_for(const api_asker *a)
+{
+    return a->on_worker || a->has_met ? 0 : API_MEET_STEPS * api_elements_of(a->mesh);
+}
+
 bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
 {
     he_watch *watch = &a->x->watch;
+    a->asked = "self_intersections";
     he_watch_span(watch, 0.5 * (1 + watch->done)); /* it takes about as long */
     const he_bvh *tree = api_asker_tree(a, in);
     if (tree == NULL) {
         return false;
     }
-    uint64_t budget = a->left * BOXES;
+    uint64_t granted = granted_for(a), left = a->budget.left;
+    he_budget budget = {.left = left + granted, .watch = watch};
     he_error err = {0};
     a->first.count = 0;
     he_watch_span(watch, 1);
-    if (he_bvh_intersections(tree, a->mesh, API_MAX_PAIRS, &budget, watch, &a->first, complete,
-                             &err) != HE_OK) {
+    if (he_bvh_intersections(tree, a->mesh, API_MAX_PAIRS, &budget, &a->first, complete, &err) !=
+        HE_OK) {
         return api_asker_refuse(a, in, &err);
     }
-    if (budget == 0 && a->on_worker) {
+    if (budget.left == 0 && a->on_worker) {
         return api_asker_exceed(a, in);
     }
-    a->left = budget / BOXES;
+    a->budget.left = budget.left < left ? budget.left : left;
+    a->has_met = true;
     return true;
 }
 
@@ -147,5 +153,7 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question)
     if (!api_asker_intersections(a, question, &complete)) {
         return false;
     }
+    size_t total = a->first.count / 2;
+    api_asker_pay(a, total < limit ? total : limit); /* the text */
     return write_pairs(a, (size_t)limit, complete);
 }

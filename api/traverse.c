@@ -126,7 +126,7 @@ static bool ask_path(api_asker *a, const api_in *walk)
     if (!read_path(a, walk, &p)) {
         return false;
     }
-    uint64_t limit = a->on_worker ? a->left : API_MAX_WALK;
+    uint64_t limit = a->on_worker ? api_asker_left(a) : API_MAX_WALK;
     if (limit == 0 || (p.until == HE_UNTIL_COUNT && p.repeat > limit / p.count)) {
         return api_asker_exceed(a, walk);
     }
@@ -178,7 +178,7 @@ static bool flood(api_asker *a, const api_in *walk, he_kind kind, uint32_t from,
                   size_t limit)
 {
     he_error err = {0};
-    size_t most = 1 + (size_t)(a->on_worker ? a->left / FLOOD_COST : API_MAX_WALK);
+    size_t most = 1 + (size_t)(a->on_worker ? api_asker_left(a) / FLOOD_COST : API_MAX_WALK);
     bool bounded = limit != 0 && limit < most;
     if (he_traverse_breadth_first(a->mesh, kind, from, depth, bounded ? limit : most, &a->first,
                                   &a->second, &err) != HE_OK) {
@@ -285,7 +285,7 @@ static bool ask_shortest_path(api_asker *a, const api_in *walk)
     if (api_in_find(walk, "by", &in) && !api_in_choice(&in, measure_names, &by)) {
         return false;
     }
-    if (a->on_worker && he_mesh_count(a->mesh, HE_HALFEDGE) > a->left) {
+    if (a->on_worker && he_mesh_count(a->mesh, HE_HALFEDGE) > api_asker_left(a)) {
         return api_asker_exceed(a, walk);
     }
     he_path found = {0};

@@ -62,7 +62,7 @@ static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tr
         hold(kept);
         return kept;
     }
-    if (a->on_worker && cost_of(a) >= a->left) {
+    if (a->on_worker && cost_of(a) >= api_asker_left(a)) {
         api_asker_exceed(a, in);
         return NULL;
     }

@@ -9,43 +9,6 @@
 
 #include <string.h>
 
-enum { BINS = 16 };
-
-typedef struct box {
-    double min[3], max[3];
-} box;
-
-typedef struct builder {
-    he_bvh *tree;
-    box *boxes;      /* of triangles, in the order in which they were listed */
-    uint32_t *order; /* the triangles, rearranged */
-    size_t capacity; /* nodes there is room for */
-    he_watch *watch;
-} builder;
-
-static const box NOTHING = {{DBL_MAX, DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX, -DBL_MAX}};
-
-static void include(box *b, const box *other)
-{
-    for (int k = 0; k < 3; k++) {
-        b->min[k] = other->min[k] < b->min[k] ? other->min[k] : b->min[k];
-        b->max[k] = other->max[k] > b->max[k] ? other->max[k] : b->max[k];
-    }
-}
-
-/* Half the surface. */
-static double surface(const box *b)
-{
-    double x = b->max[0] - b->min[0], y = b->max[1] - b->min[1], z = b->max[2] - b->min[2];
-    return x * y + y * z + z * x;
-}
-
-/* Twice the centre. */
-static double middle(const box *b, int axis)
-{
-    return b->min[axis] + b->max[axis];
-}
-
 /* --- the triangles --- */
 
 static he_status count_triangles(const he_mesh *m, uint32_t *out, he_error *err)
@@ -85,216 +48,130 @@ static he_status list_triangles(he_bvh *tree, const he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-static void find_boxes(const builder *b, const he_mesh *m)
+static he_bounds *find_boxes(const he_bvh *tree, const he_mesh *m)
 {
-    for (uint32_t i = 0; i < b->tree->count; i++) {
-        box bounds = NOTHING;
+    he_bounds *boxes = he_mem_array(NULL, tree->count, sizeof *boxes);
+    for (uint32_t i = 0; boxes != NULL && i < tree->count; i++) {
+        he_bounds bounds = he_bounds_none();
         for (int k = 0; k < 3; k++) {
-            he_vec3 p =
-                he_vec3_scale(m->c.position[b->tree->triangles[i].vertex[k]], b->tree->scale);
-            box corner = {{p.x, p.y, p.z}, {p.x, p.y, p.z}};
-            include(&bounds, &corner);
+            he_vec3 p = he_vec3_scale(m->c.position[tree->triangles[i].vertex[k]], tree->scale);
+            he_bounds corner = {{p.x, p.y, p.z}, {p.x, p.y, p.z}};
+            he_bounds_include(&bounds, &corner);
         }
-        b->boxes[i] = bounds;
-        b->order[i] = i;
+        boxes[i] = bounds;
     }
+    return boxes;
 }
 
-/* --- splitting --- */
+/* --- groups: triangles that no box tells apart --- */
 
-/* A run of `order` to be made a node. */
-typedef struct run {
-    uint32_t node, first, count, depth;
-} run;
-
-typedef struct cut {
-    int axis; /* -1: none was found */
-    int bin;  /* what lies in bins below goes left */
-    double low, factor;
-} cut;
-
-static int bin_of(const cut *c, const box *b)
+static uint32_t end_of_face(const he_bvh *tree, uint32_t i)
 {
-    int bin = (int)((middle(b, c->axis) - c->low) * c->factor);
-    return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
+    uint32_t face = tree->triangles[i].face;
+    while (i < tree->count && tree->triangles[i].face == face) {
+        i++;
+    }
+    return i;
 }
 
-/* The cheapest place to cut along one axis; the cost comes back, DBL_MAX where all go one way. */
-static double cut_along(const builder *b, const run *r, cut *c)
+/* Triangles are listed face by face. How many groups there are, with group 0. */
+static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
 {
-    uint32_t counts[BINS] = {0};
-    box bins[BINS];
-    double right_cost[BINS];
-    for (int i = 0; i < BINS; i++) {
-        bins[i] = NOTHING;
-    }
-    for (uint32_t i = 0; i < r->count; i++) {
-        const box *own = &b->boxes[b->order[r->first + i]];
-        int bin = bin_of(c, own);
-        counts[bin]++;
-        include(&bins[bin], own);
-    }
-    box side = NOTHING;
-    uint32_t held = 0;
-    for (int i = BINS - 1; i > 0; i--) {
-        include(&side, &bins[i]);
-        held += counts[i];
-        right_cost[i] = held == 0 || held == r->count ? DBL_MAX : surface(&side) * held;
-    }
-    double best = DBL_MAX;
-    side = NOTHING;
-    held = 0;
-    for (int i = 1; i < BINS; i++) {
-        include(&side, &bins[i - 1]);
-        held += counts[i - 1];
-        if (right_cost[i] < DBL_MAX && held > 0 && surface(&side) * held + right_cost[i] < best) {
-            best = surface(&side) * held + right_cost[i];
-            c->bin = i;
+    uint32_t groups = 1;
+    for (uint32_t i = 0, end; i < tree->count; i = end) {
+        end = end_of_face(tree, i);
+        bool wide = end - i >= HE_HUB_SPOKES;
+        for (uint32_t k = i; k < end; k++) {
+            group[k] = wide ? groups : 0;
         }
+        groups += wide;
     }
-    return best;
+    return groups;
 }
 
-static cut find_cut(const builder *b, const run *r)
+/* A triangle at several hubs goes with the one that has the most spokes. */
+static uint32_t group_spokes(const he_bvh *tree, uint32_t groups, uint32_t *group)
 {
-    cut best = {.axis = -1};
-    double cost = DBL_MAX;
-    box middles = NOTHING;
-    for (uint32_t i = 0; i < r->count; i++) {
-        const box *own = &b->boxes[b->order[r->first + i]];
-        for (int k = 0; k < 3; k++) {
-            double x = middle(own, k);
-            middles.min[k] = x < middles.min[k] ? x : middles.min[k];
-            middles.max[k] = x > middles.max[k] ? x : middles.max[k];
+    const he_hubs *hubs = &tree->hubs;
+    for (uint32_t h = 0; h < hubs->count; h++) {
+        uint32_t size = hubs->first[h + 1] - hubs->first[h];
+        for (uint32_t i = hubs->first[h]; i < hubs->first[h + 1]; i++) {
+            uint32_t *own = &group[hubs->spokes[i]];
+            bool larger = *own >= groups &&
+                          hubs->first[*own - groups + 1] - hubs->first[*own - groups] < size;
+            *own = *own == 0 || larger ? groups + h : *own;
         }
     }
-    for (int k = 0; k < 3; k++) {
-        double factor = BINS / (middles.max[k] - middles.min[k]);
-        if (!isfinite(factor)) {
-            continue;
-        }
-        cut c = {k, 0, middles.min[k], factor};
-        double own = cut_along(b, r, &c);
-        if (own < cost) {
-            cost = own;
-            best = c;
-        }
-    }
-    return best;
+    return groups + hubs->count;
 }
 
-/* How many of the run went left. */
-static uint32_t divide(builder *b, const run *r)
+static bool has_wide_faces(const he_bvh *tree)
 {
-    cut c = {.axis = -1};
-    if (r->depth < HE_BVH_DEEP) {
-        c = find_cut(b, r);
-    }
-    if (c.axis < 0) {
-        return r->count / 2;
-    }
-    uint32_t *order = b->order + r->first, left = 0;
-    for (uint32_t i = 0; i < r->count; i++) {
-        if (bin_of(&c, &b->boxes[order[i]]) < c.bin) {
-            uint32_t swap = order[i];
-            order[i] = order[left];
-            order[left++] = swap;
+    for (uint32_t i = 0, end; i < tree->count; i = end) {
+        end = end_of_face(tree, i);
+        if (end - i >= HE_HUB_SPOKES) {
+            return true;
         }
     }
-    return left;
+    return false;
 }
 
-/* Room for two more nodes. */
-static he_status grow(builder *b, he_error *err)
+/* *group stays NULL where all triangles are of group 0. */
+static he_status find_groups(he_bvh *tree, const he_mesh *m, he_budget *budget, uint32_t **group,
+                             uint32_t *groups, he_error *err)
 {
-    size_t need = (size_t)b->tree->node_count + 2;
-    if (need > b->capacity) {
-        size_t grown = he_mem_grown(b->capacity, need);
-        he_bvh_node *nodes = he_mem_array(b->tree->nodes, grown, sizeof *nodes);
-        if (nodes == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory for the boxes of a tree");
-        }
-        b->tree->nodes = nodes;
-        b->capacity = grown;
+    const size_t stride = sizeof *tree->triangles / sizeof tree->triangles->vertex[0];
+    he_status status =
+        he_hubs_find(m, tree->triangles[0].vertex, stride, tree->count, budget, &tree->hubs, err);
+    tree->has_wide_faces = has_wide_faces(tree);
+    *groups = 1;
+    if (status != HE_OK || (!tree->has_wide_faces && tree->hubs.count == 0)) {
+        return status;
     }
+    *group = he_mem_array(NULL, tree->count, sizeof **group);
+    if (*group == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the groups of %u triangles",
+                             tree->count);
+    }
+    *groups = group_spokes(tree, group_faces(tree, *group), *group);
     return HE_OK;
 }
 
-/* Not greater, not less. */
-static float downward(double x)
-{
-    float near = (float)x;
-    return near > x ? nextafterf(near, -HUGE_VALF) : near;
-}
-
-static float upward(double x)
-{
-    return -downward(-x);
-}
-
-static he_status build(builder *b, he_error *err)
-{
-    run stack[HE_BVH_STACK];
-    int depth = 0;
-    uint32_t made = 0;
-    stack[depth++] = (run){0, 0, b->tree->count, 0};
-    b->tree->node_count = 1;
-    while (depth > 0) {
-        run r = stack[--depth];
-        he_status status = grow(b, err);
-        if (status == HE_OK) {
-            status = he_watch_at(b->watch, made++, b->capacity, err);
-        }
-        if (status != HE_OK) {
-            return status;
-        }
-        he_bvh_node *node = &b->tree->nodes[r.node];
-        box bounds = NOTHING;
-        for (uint32_t i = 0; i < r.count; i++) {
-            include(&bounds, &b->boxes[b->order[r.first + i]]);
-        }
-        for (int k = 0; k < 3; k++) {
-            node->min[k] = downward(bounds.min[k]);
-            node->max[k] = upward(bounds.max[k]);
-        }
-        if (r.node == 0) {
-            memcpy(b->tree->min, bounds.min, sizeof bounds.min);
-            memcpy(b->tree->max, bounds.max, sizeof bounds.max);
-        }
-        node->first = r.first;
-        node->count = r.count;
-        if (r.count > HE_BVH_LEAF) {
-            uint32_t left = divide(b, &r), child = b->tree->node_count;
-            b->tree->node_count += 2;
-            node->first = child;
-            node->count = 0;
-            stack[depth++] = (run){child + 1, r.first + left, r.count - left, r.depth + 1};
-            stack[depth++] = (run){child, r.first, left, r.depth + 1};
-        }
-    }
-    return HE_OK;
-}
+/* --- the tree --- */
 
 /* In the order of leaves. */
-static bool arrange(builder *b)
+static bool arrange(he_bvh *tree, he_boxes *boxes)
 {
-    he_bvh *tree = b->tree;
     he_bvh_triangle *sorted = he_mem_array(NULL, tree->count, sizeof *sorted);
-    if (sorted == NULL) {
+    uint32_t *place = tree->hubs.count == 0 ? NULL : he_mem_array(NULL, tree->count, sizeof *place);
+    if (sorted == NULL || (tree->hubs.count > 0 && place == NULL)) {
+        he_mem_free(sorted);
+        he_mem_free(place);
         return false;
     }
     for (uint32_t i = 0; i < tree->count; i++) {
-        sorted[i] = tree->triangles[b->order[i]];
+        sorted[i] = tree->triangles[boxes->order[i]];
     }
+    for (uint32_t i = 0; place != NULL && i < tree->count; i++) {
+        place[boxes->order[i]] = i;
+    }
+    for (uint32_t i = 0; place != NULL && i < tree->hubs.first[tree->hubs.count]; i++) {
+        tree->hubs.spokes[i] = place[tree->hubs.spokes[i]];
+    }
+    he_mem_free(place);
     he_mem_free(tree->triangles);
     tree->triangles = sorted;
-    tree->discs = he_mem_array(NULL, tree->node_count, sizeof *tree->discs);
+    tree->discs = he_mem_array(NULL, boxes->node_count, sizeof *tree->discs);
     if (tree->discs == NULL) {
         return false;
     }
     /* Smaller, so what was there is kept if it cannot be moved. */
-    he_bvh_node *nodes = he_mem_array(tree->nodes, tree->node_count, sizeof *nodes);
-    tree->nodes = nodes == NULL ? tree->nodes : nodes;
+    he_box_node *nodes = he_mem_array(boxes->nodes, boxes->node_count, sizeof *nodes);
+    tree->nodes = nodes == NULL ? boxes->nodes : nodes;
+    tree->node_count = boxes->node_count;
+    boxes->nodes = NULL;
+    memcpy(tree->min, boxes->all.min, sizeof tree->min);
+    memcpy(tree->max, boxes->all.max, sizeof tree->max);
     return true;
 }
 
@@ -304,14 +181,53 @@ void he_bvh_free(he_bvh *tree)
         he_mem_free(tree->nodes);
         he_mem_free(tree->discs);
         he_mem_free(tree->triangles);
+        he_hubs_clear(&tree->hubs);
         he_mem_free(tree);
     }
+}
+
+static he_status build(he_bvh *tree, const he_mesh *m, uint32_t count, he_budget *budget,
+                       he_error *err)
+{
+    uint32_t *group = NULL, groups = 1;
+    he_bounds *bounds = NULL;
+    he_boxes boxes = {.nodes = NULL};
+    he_status status = HE_OK;
+    tree->triangles = he_mem_array(NULL, count, sizeof *tree->triangles);
+    if (tree->triangles == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
+    }
+    status = list_triangles(tree, m, err);
+    if (status == HE_OK) {
+        status = find_groups(tree, m, budget, &group, &groups, err);
+    }
+    if (status != HE_OK) {
+        goto out;
+    }
+    bounds = find_boxes(tree, m);
+    if (bounds == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the boxes of %u triangles", count);
+        goto out;
+    }
+    status = he_boxes_make(bounds, count, group, groups, budget, &boxes, err);
+    if (status == HE_OK && !arrange(tree, &boxes)) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
+    }
+    if (status == HE_OK) {
+        status = he_bvh_find_discs(tree, m, budget, err);
+    }
+out:
+    he_mem_free(group);
+    he_mem_free(bounds);
+    he_boxes_clear(&boxes);
+    return status;
 }
 
 he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err)
 {
     uint32_t count = 0;
     he_box bounds;
+    he_budget budget = {.left = UINT64_MAX, .watch = watch};
     he_status status = count_triangles(m, &count, err);
     if (status == HE_OK) {
         status = he_long_faces_keep(m, watch, err);
@@ -319,48 +235,21 @@ he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *
     if (status != HE_OK) {
         return status;
     }
-    builder b = {.tree = he_mem_zero(1, sizeof *b.tree), .watch = watch};
-    if (b.tree == NULL) {
+    he_bvh *tree = he_mem_zero(1, sizeof *tree);
+    if (tree == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of boxes");
     }
     he_surface_box(m, &bounds);
-    b.tree->exponent = he_exponent_of(fmax(he_vec3_extent(bounds.min), he_vec3_extent(bounds.max)));
-    b.tree->scale = ldexp(1, -b.tree->exponent);
-    if (count == 0) {
-        *out = b.tree;
-        return HE_OK;
+    tree->exponent = he_exponent_of(fmax(he_vec3_extent(bounds.min), he_vec3_extent(bounds.max)));
+    tree->scale = ldexp(1, -tree->exponent);
+    if (count > 0) {
+        status = he_watch_phase(watch, "sorting by place", 1, err);
+        status = status == HE_OK ? build(tree, m, count, &budget, err) : status;
     }
-    /* As many as there are when most leaves are full, and one for the first look ahead. */
-    b.capacity = count / 2 + 4;
-    b.tree->nodes = he_mem_array(NULL, b.capacity, sizeof *b.tree->nodes);
-    b.tree->triangles = he_mem_array(NULL, count, sizeof *b.tree->triangles);
-    b.boxes = he_mem_array(NULL, count, sizeof *b.boxes);
-    b.order = he_mem_array(NULL, count, sizeof *b.order);
-    if (b.tree->nodes == NULL || b.tree->triangles == NULL || b.boxes == NULL || b.order == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
-        goto done;
-    }
-    status = he_watch_phase(watch, "sorting by place", 1, err);
-    if (status == HE_OK) {
-        status = list_triangles(b.tree, m, err);
-    }
-    if (status == HE_OK) {
-        find_boxes(&b, m);
-        status = build(&b, err);
-    }
-    if (status == HE_OK && !arrange(&b)) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
-    }
-    if (status == HE_OK) {
-        he_bvh_find_discs(b.tree, m);
-    }
-done:
-    he_mem_free(b.boxes);
-    he_mem_free(b.order);
     if (status != HE_OK) {
-        he_bvh_free(b.tree);
+        he_bvh_free(tree);
         return status;
     }
-    *out = b.tree;
+    *out = tree;
     return HE_OK;
 }

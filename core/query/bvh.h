@@ -1,11 +1,10 @@
 /* bvh.h - a tree of boxes over the triangles of a mesh: rays, nearest points, self-intersections.
  *
- * The triangles are those of drawing.h, so that what is hit is what is drawn. The tree is made
- * top-down by binned surface area heuristics (I. Wald, "On fast construction of SAH-based bounding
- * volume hierarchies", 2007), each node down to HE_BVH_LEAF triangles; from HE_BVH_DEEP on it is
- * halved instead, so that no input makes it deeper than what the walks have room for.
+ * The triangles are those of drawing.h, so that what is hit is what is drawn. The tree is one of
+ * boxes.h; the triangles of a hub (hubs.h), and those of a face that has many, have subtrees of
+ * their own.
  *
- *     nodes      0: the root; children of a node stand together, first and first + 1
+ *     nodes      as in boxes.h, over `triangles`
  *     boxes      in coordinates times `scale`, a power of two that brings the faces near the unit
  *                cube, whatever isolated vertices there are: no finite input overflows. Faces that
  *                are 1e70 times smaller than the largest coordinate of a face are points to a ray
@@ -16,25 +15,17 @@
  * and a mesh that has changed gets another tree. Trees are never written to: any number of threads
  * may ask.
  *
- * BUDGETS count boxes and triangles looked at and are taken from; what runs out is HE_LIMIT. In
- * ordinary meshes a ray or a nearest point takes some hundred, but in one whose triangles all lie
- * in the same place, all there are. */
+ * BUDGETS (mesh/budget.h) are charged HE_BVH_LOOK for each box and triangle that a ray or a point
+ * looks at, a step for each pair of boxes and HE_BVH_PAIR for each pair of triangles that is tried;
+ * what runs out is HE_LIMIT. In ordinary meshes a ray or a nearest point takes some thousand steps,
+ * but in one whose triangles all lie in the same place, as many as there are triangles. */
 #ifndef HE_QUERY_BVH_H
 #define HE_QUERY_BVH_H
 
-#include "mesh/mesh.h"
+#include "query/boxes.h"
+#include "query/hubs.h"
 
-enum {
-    HE_BVH_LEAF = 4,
-    HE_BVH_DEEP = 48, /* below this, halves */
-    HE_BVH_STACK = 96 /* more than any path is long */
-};
-
-typedef struct he_bvh_node {
-    float min[3], max[3];
-    uint32_t first; /* triangle, or node */
-    uint32_t count; /* triangles of a leaf, 0 inside */
-} he_bvh_node;
+enum { HE_BVH_LOOK = 8, HE_BVH_PAIR = 64 };
 
 typedef struct he_bvh_disc {
     float center[3], normal[3], thick, radius; /* the thickness to either side */
@@ -49,10 +40,12 @@ typedef struct he_bvh {
     int exponent;
     double scale;          /* 2^-exponent */
     double min[3], max[3]; /* of all, not rounded */
-    he_bvh_node *nodes;
+    he_box_node *nodes;
     he_bvh_disc *discs; /* one a node */
     he_bvh_triangle *triangles;
     uint32_t node_count, count; /* both 0 without faces */
+    bool has_wide_faces;        /* some face has HE_HUB_SPOKES triangles or more */
+    he_hubs hubs;
 } he_bvh;
 
 /* n log n in triangles. HE_NO_MEMORY; HE_IDS_EXHAUSTED as for drawings, or where there are more
@@ -79,14 +72,14 @@ typedef struct he_hit {
  * least id is met, so that it is one hit. A face seen exactly from its side, or without area, is
  * not. */
 HE_NODISCARD he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, he_vec3 origin,
-                                  he_vec3 direction, double max, uint64_t *budget, he_hit *out,
+                                  he_vec3 direction, double max, he_budget *budget, he_hit *out,
                                   he_error *err);
 
 /* The point of the faces nearest to `point`, and within `max` of it. Of faces at the same distance
  * the one with the least id. C. Ericson, "Real-Time Collision Detection", 2005, 5.1.5; triangles
  * without area are the segments they look like. */
 HE_NODISCARD he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point,
-                                      double max, uint64_t *budget, he_hit *out, he_error *err);
+                                      double max, he_budget *budget, he_hit *out, he_error *err);
 
 /* Append pairs of faces that meet where they should not, each pair once and the lesser id first, in
  * rising order: faces that share a point which is not a corner of both, be they neighbours or not.
@@ -100,7 +93,7 @@ HE_NODISCARD he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_v
  * perhaps more than once: then there may be more. HE_NO_MEMORY; HE_CANCELLED by the watch, which
  * may be NULL. */
 HE_NODISCARD he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most,
-                                            uint64_t *budget, he_watch *watch, he_ids *pairs,
-                                            bool *complete, he_error *err);
+                                            he_budget *budget, he_ids *pairs, bool *complete,
+                                            he_error *err);
 
 #endif

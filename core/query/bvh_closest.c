@@ -106,7 +106,7 @@ static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint
  * when it is more than `far`. */
 static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
 {
-    const he_bvh_node *node = &tree->nodes[at];
+    const he_box_node *node = &tree->nodes[at];
     const double x[3] = {p.x, p.y, p.z};
     double sum = 0;
     for (int k = 0; k < 3; k++) {
@@ -121,24 +121,25 @@ static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
     return disc > sum ? disc : sum;
 }
 
-static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, uint64_t *budget,
+static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, he_budget *budget,
                       he_error *err)
 {
     struct {
         uint32_t node;
         double near;
-    } stack[HE_BVH_STACK];
+    } stack[HE_BOXES_STACK];
     int depth = 0;
     stack[0].near = 0;
     stack[depth++].node = 0;
     while (depth > 0) {
         double near = stack[--depth].near, far = a->best.far * SLACK;
-        const he_bvh_node *node = &tree->nodes[stack[depth].node];
+        const he_box_node *node = &tree->nodes[stack[depth].node];
         if (near > far) {
             continue;
         }
-        if (!he_bvh_spend(budget)) {
-            return he_bvh_exhausted(err);
+        he_status status = he_budget_take(budget, HE_BVH_LOOK * (1 + (uint64_t)node->count), err);
+        if (status != HE_OK) {
+            return status;
         }
         for (uint32_t i = 0; i < node->count; i++) {
             try_triangle(a, tree, m, node->first + i);
@@ -158,7 +159,7 @@ static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, uint64_
 }
 
 he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point, double max,
-                         uint64_t *budget, he_hit *out, he_error *err)
+                         he_budget *budget, he_hit *out, he_error *err)
 {
     he_hit none = {.face = HE_NONE};
     if (tree->count == 0) {

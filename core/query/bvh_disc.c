@@ -34,7 +34,7 @@ static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
     *wide = he_vec3_length(he_vec3_sub(from, he_vec3_scale(normal, along)));
 }
 
-static void set(he_bvh_disc *disc, const he_bvh_node *node, he_vec3 normal, double thick,
+static void set(he_bvh_disc *disc, const he_box_node *node, he_vec3 normal, double thick,
                 double radius)
 {
     /* Never more than the box reaches. */
@@ -51,7 +51,7 @@ static void set(he_bvh_disc *disc, const he_bvh_node *node, he_vec3 normal, doub
     disc->radius = upward(fmin(radius, sqrt(diagonal)));
 }
 
-static void center(he_bvh_disc *disc, const he_bvh_node *node)
+static void center(he_bvh_disc *disc, const he_box_node *node)
 {
     for (int k = 0; k < 3; k++) {
         disc->center[k] = 0.5f * node->min[k] + 0.5f * node->max[k];
@@ -59,7 +59,7 @@ static void center(he_bvh_disc *disc, const he_bvh_node *node)
 }
 
 /* A run of triangles. */
-static void about(const he_bvh *tree, const he_mesh *m, const he_bvh_node *node, uint32_t begin,
+static void about(const he_bvh *tree, const he_mesh *m, const he_box_node *node, uint32_t begin,
                   uint32_t end, he_vec3 normal, he_bvh_disc *disc)
 {
     double thick = 0, radius = 0;
@@ -77,7 +77,7 @@ static void about(const he_bvh *tree, const he_mesh *m, const he_bvh_node *node,
     set(disc, node, normal, thick, radius);
 }
 
-static void about_leaf(const he_bvh *tree, const he_mesh *m, const he_bvh_node *node,
+static void about_leaf(const he_bvh *tree, const he_mesh *m, const he_box_node *node,
                        he_bvh_disc *disc)
 {
     he_vec3 sum = {0, 0, 0}, normal;
@@ -107,7 +107,7 @@ static he_vec3 mean_normal(const he_bvh_disc children[2])
 }
 
 /* About the discs of both children. */
-static void about_children(const he_bvh_node *node, const he_bvh_disc children[2], he_vec3 normal,
+static void about_children(const he_box_node *node, const he_bvh_disc children[2], he_vec3 normal,
                            he_bvh_disc *disc)
 {
     double thick = 0, radius = 0;
@@ -124,7 +124,7 @@ static void about_children(const he_bvh_node *node, const he_bvh_disc children[2
     set(disc, node, normal, thick, radius);
 }
 
-static uint32_t begin_of(const he_bvh *tree, const he_bvh_node *node)
+static uint32_t begin_of(const he_bvh *tree, const he_box_node *node)
 {
     while (node->count == 0) {
         node = &tree->nodes[node->first];
@@ -132,7 +132,7 @@ static uint32_t begin_of(const he_bvh *tree, const he_bvh_node *node)
     return node->first;
 }
 
-static uint32_t end_of(const he_bvh *tree, const he_bvh_node *node)
+static uint32_t end_of(const he_bvh *tree, const he_box_node *node)
 {
     while (node->count == 0) {
         node = &tree->nodes[node->first + 1];
@@ -140,11 +140,12 @@ static uint32_t end_of(const he_bvh *tree, const he_bvh_node *node)
     return node->first + node->count;
 }
 
-void he_bvh_find_discs(he_bvh *tree, const he_mesh *m)
+he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget, he_error *err)
 {
+    he_status status = HE_OK;
     /* Children have greater numbers. */
-    for (uint32_t i = tree->node_count; i-- > 0;) {
-        const he_bvh_node *node = &tree->nodes[i];
+    for (uint32_t i = tree->node_count; i-- > 0 && status == HE_OK;) {
+        const he_box_node *node = &tree->nodes[i];
         he_bvh_disc *disc = &tree->discs[i];
         if (node->count > 0) {
             about_leaf(tree, m, node, disc);
@@ -152,12 +153,14 @@ void he_bvh_find_discs(he_bvh *tree, const he_mesh *m)
         }
         const he_bvh_disc *children = &tree->discs[node->first];
         uint32_t begin = begin_of(tree, node), end = end_of(tree, node);
+        status = he_budget_take(budget, end - begin <= PATCH ? end - begin : 1, err);
         if (end - begin <= PATCH) {
             about(tree, m, node, begin, end, mean_normal(children), disc);
         } else {
             about_children(node, children, mean_normal(children), disc);
         }
     }
+    return status;
 }
 
 double he_bvh_to_disc(const he_bvh_disc *disc, he_vec3 p)

@@ -11,8 +11,10 @@
 
 #include "query/bvh.h"
 
-/* Give tree->discs, which has room, a disc for each node. The rest of the tree is there. */
-void he_bvh_find_discs(he_bvh *tree, const he_mesh *m);
+/* Give tree->discs, which has room, a disc for each node. The rest of the tree is there.
+ * HE_CANCELLED and HE_LIMIT by the budget. */
+HE_NODISCARD he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget,
+                                         he_error *err);
 
 /* The squared distance to the disc at most, in the tree's coordinates. */
 double he_bvh_to_disc(const he_bvh_disc *disc, he_vec3 p);

@@ -1,11 +1,9 @@
+#include "query/bvh_pairs.h"
+
 #include "query/bvh_walk.h"
 #include "query/meet.h"
 
-#include <assert.h>
 #include <stdlib.h>
-
-/* On the way down each level leaves two pairs behind at most; a pair is split on either side. */
-enum { PAIRS = 6 * HE_BVH_STACK };
 
 /* A triangle of a leaf, and its box. */
 typedef struct prism {
@@ -13,24 +11,57 @@ typedef struct prism {
     double min[3], max[3];
 } prism;
 
-typedef struct search {
-    const he_bvh *tree;
-    const he_mesh *m;
-    size_t most;
-    uint64_t *budget;
-    he_ids *pairs;
-    he_watch *watch;
-    he_error *err;
-} search;
+/* What the triangles below a node have in common: hubs, and a face. What is left is HE_NONE. */
+enum { HUBS = HE_HUBS_OF, COMMON = HUBS + 1 };
 
-static bool nodes_apart(const he_bvh_node *a, const he_bvh_node *b)
+typedef struct common {
+    uint32_t of[COMMON]; /* the face last */
+} common;
+
+typedef struct walk {
+    he_pair_search search;
+    common *commons; /* one a node; NULL where nothing is in common to many */
+    uint32_t done;   /* triangles that met all that are to come */
+    uint32_t leaves; /* that were tried with themselves */
+} walk;
+
+/* The watch is told how far the walk is after so many leaves. */
+enum { TOLD = 1024 };
+
+/* --- triangles --- */
+
+uint32_t he_pair_hub(const he_pair_search *s, uint32_t i, uint32_t k)
 {
-    for (int k = 0; k < 3; k++) {
-        if (a->min[k] > b->max[k] || b->min[k] > a->max[k]) {
-            return true;
+    const uint32_t *a = s->hubs_of + (size_t)i * HUBS, *b = s->hubs_of + (size_t)k * HUBS;
+    for (int x = 0; x < HUBS && a[x] != HE_NONE; x++) {
+        for (int y = 0; y < HUBS; y++) {
+            if (a[x] == b[y]) {
+                return a[x];
+            }
         }
     }
-    return false;
+    return HE_NONE;
+}
+
+he_status he_pair_try(he_pair_search *s, uint32_t i, uint32_t k, const he_vec3 a[3],
+                      const he_vec3 b[3], he_error *err)
+{
+    uint32_t f = s->tree->triangles[i].face, g = s->tree->triangles[k].face;
+    if (f == g) {
+        return HE_OK;
+    }
+    he_status status = he_budget_take(s->budget, HE_BVH_PAIR, err);
+    if (status != HE_OK || !he_triangles_meet(a, b)) {
+        return status;
+    }
+    status = he_ids_reserve(s->pairs, 2, err);
+    if (status == HE_OK) {
+        s->pairs->ids[s->pairs->count++] = f < g ? f : g;
+        s->pairs->ids[s->pairs->count++] = f < g ? g : f;
+    }
+    return status == HE_OK && s->pairs->count >= s->most
+               ? he_fail_plain(err, HE_LIMIT, "more faces meet than can be listed")
+               : status;
 }
 
 static bool apart(const prism *a, const prism *b)
@@ -43,7 +74,7 @@ static bool apart(const prism *a, const prism *b)
     return false;
 }
 
-static prism load(const search *s, uint32_t triangle)
+static prism load(const he_pair_search *s, uint32_t triangle)
 {
     prism p;
     he_bvh_corners(s->tree, s->m, triangle, p.corner);
@@ -59,87 +90,157 @@ static prism load(const search *s, uint32_t triangle)
     return p;
 }
 
-static he_status try_triangles(search *s, uint32_t i, uint32_t k, const prism *a, const prism *b)
-{
-    uint32_t f = s->tree->triangles[i].face, g = s->tree->triangles[k].face;
-    if (f == g || !he_triangles_meet(a->corner, b->corner)) {
-        return HE_OK;
-    }
-    he_status status = he_ids_reserve(s->pairs, 2, s->err);
-    if (status == HE_OK) {
-        s->pairs->ids[s->pairs->count++] = f < g ? f : g;
-        s->pairs->ids[s->pairs->count++] = f < g ? g : f;
-    }
-    return status;
-}
-
 /* a may be b. */
-static he_status try_leaves(search *s, const he_bvh_node *a, const he_bvh_node *b)
+static he_status try_leaves(void *context, const he_box_node *a, const he_box_node *b,
+                            he_error *err)
 {
-    prism others[HE_BVH_LEAF];
-    he_status status = HE_OK;
+    walk *w = context;
+    he_pair_search *s = &w->search;
+    prism others[HE_BOXES_LEAF];
+    he_status status = he_budget_take(s->budget, (uint64_t)a->count * b->count, err);
     for (uint32_t k = 0; k < b->count; k++) {
         others[k] = load(s, b->first + k);
     }
     for (uint32_t i = 0; i < a->count; i++) {
         const prism own = a == b ? others[i] : load(s, a->first + i);
         for (uint32_t k = a == b ? i + 1 : 0; k < b->count && status == HE_OK; k++) {
-            if (!apart(&own, &others[k])) {
-                status = try_triangles(s, a->first + i, b->first + k, &own, &others[k]);
+            if (!apart(&own, &others[k]) &&
+                (s->hubs_of == NULL || he_pair_hub(s, a->first + i, b->first + k) == HE_NONE)) {
+                status =
+                    he_pair_try(s, a->first + i, b->first + k, own.corner, others[k].corner, err);
             }
+        }
+    }
+    if (a == b) {
+        w->done += a->count;
+        if (status == HE_OK) {
+            status = w->leaves++ % TOLD == 0
+                         ? he_watch_step(s->budget->watch, w->done, s->tree->count, err)
+                         : HE_OK;
         }
     }
     return status;
 }
 
-/* False when there may be more than what was found. */
-static he_status walk(search *s, size_t begin, bool *complete)
+/* --- nodes --- */
+
+static bool have(const common *c, uint32_t what, int from, int to)
 {
-    struct {
-        uint32_t a, b;
-    } stack[PAIRS];
-    size_t depth = 0;
-    uint64_t steps = 0;
-    uint32_t done = 0; /* triangles that met all that are to come */
-    he_status status = he_watch_phase(s->watch, "intersecting", 1, s->err);
-    stack[depth].a = 0;
-    stack[depth++].b = 0;
-    *complete = true;
-    while (depth > 0 && status == HE_OK) {
-        uint32_t at = stack[--depth].a, other = stack[depth].b;
-        const he_bvh_node *a = &s->tree->nodes[at], *b = &s->tree->nodes[other];
-        if (!he_bvh_spend(s->budget) || (s->pairs->count - begin) / 2 >= s->most) {
-            *complete = false;
-            break;
-        }
-        if (nodes_apart(a, b)) {
-            continue;
-        }
-        if (s->watch != NULL && steps++ % HE_WATCH_STRIDE == 0) {
-            status = he_watch_step(s->watch, done, s->tree->count, s->err);
-        }
-        assert(depth + 3 <= PAIRS);
-        if (a->count > 0 && b->count > 0) {
-            uint64_t tests = (uint64_t)a->count * b->count;
-            *s->budget -= tests < *s->budget ? tests : *s->budget;
-            status = status == HE_OK ? try_leaves(s, a, b) : status;
-            done += a == b ? a->count : 0;
-        } else if (at == other) {
-            stack[depth].a = a->first;
-            stack[depth++].b = a->first;
-            stack[depth].a = a->first + 1;
-            stack[depth++].b = a->first + 1;
-            stack[depth].a = a->first;
-            stack[depth++].b = a->first + 1;
-        } else {
-            /* Split the one that is no leaf, or is higher up: nodes are numbered from the root. */
-            bool first = b->count > 0 || (a->count == 0 && at < other);
-            for (uint32_t side = 0; side < 2; side++) {
-                stack[depth].a = first ? a->first + side : at;
-                stack[depth++].b = first ? other : b->first + side;
-            }
+    for (int i = from; i < to; i++) {
+        if (c->of[i] == what) {
+            return true;
         }
     }
+    return false;
+}
+
+static common both(const common *a, const common *b)
+{
+    common out = {{HE_NONE, HE_NONE, HE_NONE, HE_NONE}};
+    int count = 0;
+    for (int i = 0; i < HUBS; i++) {
+        if (a->of[i] != HE_NONE && have(b, a->of[i], 0, HUBS)) {
+            out.of[count++] = a->of[i];
+        }
+    }
+    out.of[HUBS] = a->of[HUBS] == b->of[HUBS] ? a->of[HUBS] : HE_NONE;
+    return out;
+}
+
+static common of_triangle(const he_pair_search *s, uint32_t i)
+{
+    common out = {{HE_NONE, HE_NONE, HE_NONE, s->tree->triangles[i].face}};
+    for (int k = 0; k < HUBS && s->hubs_of != NULL; k++) {
+        out.of[k] = s->hubs_of[(size_t)i * HUBS + (size_t)k];
+    }
+    return out;
+}
+
+/* Children have greater numbers. */
+static void find_commons(walk *w)
+{
+    for (uint32_t at = w->search.tree->node_count; at-- > 0;) {
+        const he_box_node *node = &w->search.tree->nodes[at];
+        if (node->count == 0) {
+            w->commons[at] = both(&w->commons[node->first], &w->commons[node->first + 1]);
+            continue;
+        }
+        w->commons[at] = of_triangle(&w->search, node->first);
+        for (uint32_t i = 1; i < node->count; i++) {
+            common other = of_triangle(&w->search, node->first + i);
+            w->commons[at] = both(&w->commons[at], &other);
+        }
+    }
+}
+
+/* Does the box lie beside the slab that a disc bounds? Its normal is rounded to floats, by less
+ * than the allowance here (bvh_disc.c). */
+static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
+{
+    double off = 0, reach = slab->thick, size = 0;
+    for (int k = 0; k < 3; k++) {
+        double from = 0.5 * ((double)box->min[k] + box->max[k]) - slab->center[k];
+        double half = 0.5 * ((double)box->max[k] - box->min[k]);
+        off += slab->normal[k] * from;
+        reach += fabs((double)slab->normal[k]) * half;
+        size += fabs(from) + half;
+    }
+    return fabs(off) > reach + 1e-6 * size;
+}
+
+static bool is_needless(void *context, uint32_t a, uint32_t b)
+{
+    const walk *w = context;
+    const he_bvh *tree = w->search.tree;
+    if (w->commons != NULL) {
+        common shared = both(&w->commons[a], &w->commons[b]);
+        if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
+            return true; /* tried at the hub, or parts of one face */
+        }
+    }
+    return a != b && (is_beside(&tree->discs[a], &tree->nodes[b]) ||
+                      is_beside(&tree->discs[b], &tree->nodes[a]));
+}
+
+/* --- the whole --- */
+
+static he_status prepare(walk *w, he_error *err)
+{
+    const he_bvh *tree = w->search.tree;
+    if (tree->hubs.count == 0 && !tree->has_wide_faces) {
+        return HE_OK;
+    }
+    w->commons = he_mem_array(NULL, tree->node_count, sizeof *w->commons);
+    w->search.hubs_of = tree->hubs.count == 0
+                            ? NULL
+                            : he_mem_array(NULL, tree->count, HUBS * sizeof *w->search.hubs_of);
+    if (w->commons == NULL || (tree->hubs.count > 0 && w->search.hubs_of == NULL)) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the hubs of %u triangles",
+                             tree->count);
+    }
+    if (w->search.hubs_of != NULL) {
+        he_hubs_of_triangles(&tree->hubs, tree->count, w->search.hubs_of);
+    }
+    find_commons(w);
+    return HE_OK;
+}
+
+static he_status search(walk *w, he_error *err)
+{
+    static const he_boxes_visit visit = {is_needless, try_leaves};
+    he_pair_search *s = &w->search;
+    he_status status = he_watch_phase(s->budget->watch, "intersecting", 1, err);
+    if (status == HE_OK) {
+        status = prepare(w, err);
+    }
+    for (uint32_t hub = 0; hub < s->tree->hubs.count && status == HE_OK; hub++) {
+        status = he_pairs_at_hub(s, hub, err);
+    }
+    if (status == HE_OK) {
+        status = he_boxes_visit_pairs(s->tree->nodes, &visit, w, s->budget, err);
+    }
+    he_mem_free(w->commons);
+    he_mem_free(s->hubs_of);
     return status;
 }
 
@@ -152,15 +253,18 @@ static int compare(const void *left, const void *right)
     return (a[1] > b[1]) - (a[1] < b[1]);
 }
 
-he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most, uint64_t *budget,
-                               he_watch *watch, he_ids *pairs, bool *complete, he_error *err)
+he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most, he_budget *budget,
+                               he_ids *pairs, bool *complete, he_error *err)
 {
-    search s = {tree, m, most, budget, pairs, watch, err};
-    size_t begin = pairs->count, kept = begin;
-    bool all = true;
-    he_status status = tree->count == 0 ? HE_OK : walk(&s, begin, &all);
-    if (status != HE_OK) {
+    size_t begin = pairs->count, kept = begin, room = (SIZE_MAX - begin) / 2;
+    walk w = {.search = {tree, m, budget, begin + 2 * (most < room ? most : room), pairs, NULL}};
+    he_error own = {0};
+    he_status status = tree->count == 0 ? HE_OK : search(&w, &own);
+    if (status != HE_OK && status != HE_LIMIT) {
         pairs->count = begin;
+        if (err != NULL) {
+            *err = own;
+        }
         return status;
     }
     if (pairs->count > begin) {
@@ -173,6 +277,6 @@ he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most
         }
     }
     pairs->count = kept;
-    *complete = all;
+    *complete = status == HE_OK;
     return HE_OK;
 }

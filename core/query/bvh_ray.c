@@ -39,7 +39,7 @@ static const double SLACK = 32 * DBL_EPSILON;
 
 /* Where the ray enters the box, not before 0; HUGE_VAL when it misses it or enters beyond `far`. A
  * ray that runs in the plane of a side gives NaN there, which counts as inside. */
-static double enter(const ray *r, const he_bvh_node *node, double far)
+static double enter(const ray *r, const he_box_node *node, double far)
 {
     double near = 0, out = far;
     for (int k = 0; k < 3; k++) {
@@ -96,24 +96,25 @@ static void meet(const ray *r, const he_bvh *tree, const he_mesh *m, uint32_t tr
     }
 }
 
-static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, uint64_t *budget,
+static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_budget *budget,
                       he_bvh_found *best, he_error *err)
 {
     struct {
         uint32_t node;
         double near;
-    } stack[HE_BVH_STACK];
+    } stack[HE_BOXES_STACK];
     int depth = 0;
     stack[0].near = enter(r, &tree->nodes[0], best->far);
     stack[depth++].node = 0;
     while (depth > 0) {
         double near = stack[--depth].near;
-        const he_bvh_node *node = &tree->nodes[stack[depth].node];
+        const he_box_node *node = &tree->nodes[stack[depth].node];
         if (near == HUGE_VAL || near > best->far + SLACK * best->far) {
             continue;
         }
-        if (!he_bvh_spend(budget)) {
-            return he_bvh_exhausted(err);
+        he_status status = he_budget_take(budget, HE_BVH_LOOK * (1 + (uint64_t)node->count), err);
+        if (status != HE_OK) {
+            return status;
         }
         for (uint32_t i = 0; i < node->count; i++) {
             meet(r, tree, m, node->first + i, best);
@@ -135,7 +136,7 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, uint64
 /* From far out, begin where the ray enters the box of all; the distance to there comes back,
  * HUGE_VAL when it misses. Along the axis by which it enters its place is that side of the box
  * exactly, however coarse the numbers are so far out. */
-static double approach(ray *r, const he_bvh_node *root)
+static double approach(ray *r, const he_box_node *root)
 {
     double near = enter(r, root, HUGE_VAL), latest = -HUGE_VAL;
     int axis = 0;
@@ -159,7 +160,7 @@ static double approach(ray *r, const he_bvh_node *root)
 }
 
 he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, he_vec3 origin, he_vec3 direction,
-                     double max, uint64_t *budget, he_hit *out, he_error *err)
+                     double max, he_budget *budget, he_hit *out, he_error *err)
 {
     he_vec3 unit;
     if (!he_vec3_normalise(direction, &unit)) {

@@ -19,19 +19,6 @@ static inline void he_bvh_corners(const he_bvh *tree, const he_mesh *m, uint32_t
     }
 }
 
-/* Take one from a budget. */
-static inline bool he_bvh_spend(uint64_t *budget)
-{
-    bool any = *budget > 0;
-    *budget -= any;
-    return any;
-}
-
-static inline he_status he_bvh_exhausted(he_error *err)
-{
-    return he_fail_plain(err, HE_LIMIT, "too many boxes and triangles would be looked at");
-}
-
 /* What a walk has found yet: a triangle, and where in it. */
 typedef struct he_bvh_found {
     uint32_t triangle; /* HE_NONE: nothing */

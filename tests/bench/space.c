@@ -1,5 +1,6 @@
 /* The figures of questions about space: making a tree of boxes, rays, nearest points,
- * intersections, and curvature, on a bumpy torus of about a million triangles.
+ * intersections, and curvature, on a bumpy torus of about a million triangles; and intersections
+ * where all triangles share a vertex.
  *
  *     build/tests/bench/space                                                                   */
 #include "mesh/build.h"
@@ -69,10 +70,48 @@ static he_vec3 random_point(double reach)
     return (he_vec3){reach * random_number(), reach * random_number(), reach * random_number()};
 }
 
-static void show(const char *what, double took, uint64_t budget, uint32_t hits)
+static void show(const char *what, double took, const he_budget *budget, uint32_t hits)
 {
-    printf("%-16s %8.2f us each   %6.1f boxes each   %u of %d\n", what, 1e6 * took / ASKED,
-           (double)(UINT64_MAX - budget) / ASKED, hits, ASKED);
+    printf("%-16s %8.2f us each   %6.1f steps each   %u of %d\n", what, 1e6 * took / ASKED,
+           (double)(UINT64_MAX - budget->left) / ASKED, hits, ASKED);
+}
+
+/* The tree of boxes, and all pairs of faces that meet. */
+static void show_intersections(const char *what, const he_mesh *m, const he_bvh *tree)
+{
+    he_budget budget = {.left = UINT64_MAX};
+    he_ids pairs = {0};
+    bool complete;
+    double start = seconds();
+    require(he_bvh_intersections(tree, m, (size_t)1 << 20, &budget, &pairs, &complete, NULL));
+    printf("%-16s %8.2f s   %.1f steps a triangle   %zu pairs%s\n", what, seconds() - start,
+           (double)(UINT64_MAX - budget.left) / tree->count, pairs.count / 2,
+           complete ? "" : " and more");
+    he_ids_clear(&pairs);
+}
+
+/* A disc, a cone, or a disc that is folded as often as there are spokes. */
+static void show_fan(const char *what, double height, double stride)
+{
+    enum { SPOKES = 60000 };
+    he_soup soup;
+    he_mesh *m;
+    he_bvh *tree;
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i <= SPOKES; i++) {
+        double turn = 6.283185307179586 * (stride == 1 ? i : fmod(i * stride, SPOKES) / 2) / SPOKES;
+        he_vec3 p = {cos(turn), sin(turn), 0.3 * cos(turn)};
+        require(he_soup_add_vertex(&soup, i < SPOKES ? p : (he_vec3){0, 0, height}, NULL));
+    }
+    for (uint32_t i = 0; i < SPOKES; i++) {
+        const uint32_t triangle[3] = {SPOKES, i, (i + 1) % SPOKES};
+        require(he_soup_add_face(&soup, triangle, 3, NULL));
+    }
+    require(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL));
+    require(he_bvh_new(m, NULL, &tree, NULL));
+    show_intersections(what, m, tree);
+    he_bvh_free(tree);
+    he_mesh_free(m);
 }
 
 int main(void)
@@ -88,7 +127,7 @@ int main(void)
                     tree->count * sizeof *tree->triangles) /
                tree->count);
 
-    uint64_t budget = UINT64_MAX;
+    he_budget budget = {.left = UINT64_MAX};
     uint32_t hits = 0;
     start = seconds();
     for (int i = 0; i < ASKED; i++) {
@@ -96,13 +135,13 @@ int main(void)
         require(he_bvh_ray(tree, m, from, along, HUGE_VAL, &budget, &hit, NULL));
         hits += hit.face != HE_NONE;
     }
-    show("rays", seconds() - start, budget, hits);
+    show("rays", seconds() - start, &budget, hits);
 
     static const double reaches[] = {1, 5, 100};
     for (int k = 0; k < 3; k++) {
         char name[32];
         snprintf(name, sizeof name, "nearest in %g", reaches[k]);
-        budget = UINT64_MAX;
+        budget.left = UINT64_MAX;
         hits = 0;
         start = seconds();
         for (int i = 0; i < ASKED; i++) {
@@ -110,10 +149,10 @@ int main(void)
                 he_bvh_closest(tree, m, random_point(reaches[k]), HUGE_VAL, &budget, &hit, NULL));
             hits += hit.face != HE_NONE;
         }
-        show(name, seconds() - start, budget, hits);
+        show(name, seconds() - start, &budget, hits);
     }
 
-    budget = UINT64_MAX;
+    budget.left = UINT64_MAX;
     hits = 0;
     start = seconds();
     for (int i = 0; i < ASKED; i++) {
@@ -122,15 +161,12 @@ int main(void)
         require(he_bvh_closest(tree, m, p, HUGE_VAL, &budget, &hit, NULL));
         hits += hit.face != HE_NONE;
     }
-    show("nearest, beside", seconds() - start, budget, hits);
+    show("nearest, beside", seconds() - start, &budget, hits);
 
-    he_ids pairs = {0};
-    bool complete;
-    budget = UINT64_MAX;
-    start = seconds();
-    require(he_bvh_intersections(tree, m, (size_t)1 << 20, &budget, NULL, &pairs, &complete, NULL));
-    printf("intersections    %8.2f s   %.1f boxes a triangle   %zu pairs\n", seconds() - start,
-           (double)(UINT64_MAX - budget) / FACES, pairs.count / 2);
+    show_intersections("intersections", m, tree);
+    show_fan("a disc's", 0, 1);
+    show_fan("a cone's", 1, 1);
+    show_fan("a folded disc's", 0, 7919);
 
     he_curvature *all = malloc(VERTICES * sizeof *all);
     start = seconds();
@@ -138,7 +174,6 @@ int main(void)
     printf("curvatures       %8.2f s   %d vertices\n", seconds() - start, VERTICES);
 
     free(all);
-    he_ids_clear(&pairs);
     he_bvh_free(tree);
     he_mesh_free(m);
     return 0;

@@ -177,7 +177,7 @@ dense_apart dense_measure(const he_mesh *from, const he_mesh *to)
             }
             he_vec3 p = he_vec3_add(he_vec3_scale(a, 1 - u - v),
                                     he_vec3_add(he_vec3_scale(b, u), he_vec3_scale(c, v)));
-            uint64_t budget = UINT64_MAX;
+            he_budget budget = {.left = UINT64_MAX};
             he_hit hit;
             assert_int_equal(he_bvh_closest(tree, to, p, HUGE_VAL, &budget, &hit, NULL), HE_OK);
             out.farthest = fmax(out.farthest, hit.distance);

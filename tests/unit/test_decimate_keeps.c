@@ -28,7 +28,7 @@ static void boundaries_are_kept(void **state)
     dense_apart there = dense_measure(first, m);
     assert_true(there.farthest < 0.6);
     for (unsigned i = 0; i < 4; i++) {
-        uint64_t budget = UINT64_MAX;
+        he_budget budget = {.left = UINT64_MAX};
         he_bvh *tree = NULL;
         he_hit hit;
         assert_int_equal(he_bvh_new(m, NULL, &tree, NULL), HE_OK);

@@ -23,7 +23,7 @@ static he_bvh *tree_of(const he_mesh *m)
 static he_hit cast(const he_bvh *tree, const he_mesh *m, he_vec3 from, he_vec3 to, double max)
 {
     he_hit hit;
-    uint64_t budget = UINT64_MAX;
+    he_budget budget = {.left = UINT64_MAX};
     assert_int_equal(he_bvh_ray(tree, m, from, to, max, &budget, &hit, NULL), HE_OK);
     return hit;
 }
@@ -31,7 +31,7 @@ static he_hit cast(const he_bvh *tree, const he_mesh *m, he_vec3 from, he_vec3 t
 static he_hit closest(const he_bvh *tree, const he_mesh *m, he_vec3 p, double max)
 {
     he_hit hit;
-    uint64_t budget = UINT64_MAX;
+    he_budget budget = {.left = UINT64_MAX};
     assert_int_equal(he_bvh_closest(tree, m, p, max, &budget, &hit, NULL), HE_OK);
     return hit;
 }
@@ -191,7 +191,7 @@ static void a_ray_needs_a_direction(void **state)
     he_bvh *tree = tree_of(m), *empty = tree_of(none);
     he_hit hit;
     he_error err = {0};
-    uint64_t budget = 1000;
+    he_budget budget = {.left = 1000};
     const he_vec3 zero = {0, 0, -0.0}, tiny = {0, 0, 5e-324}, huge = {0, 0, DBL_MAX};
     assert_int_equal(he_bvh_ray(tree, m, zero, zero, 1, &budget, &hit, &err), HE_BAD_VALUE);
     assert_true(cast(tree, m, zero, tiny, HUGE_VAL).distance == 1);
@@ -273,7 +273,7 @@ static void the_nearest_point_is_that_of_all_triangles(void **state)
 /* Whether p is nearer to a corner of the triangles below a node than node or disc let it be. */
 static void check_bounds(const he_bvh *tree, const he_mesh *m, uint32_t at, he_vec3 p)
 {
-    const he_bvh_node *node = &tree->nodes[at];
+    const he_box_node *node = &tree->nodes[at];
     double bound = sqrt(he_bvh_to_disc(&tree->discs[at], p));
     uint32_t begin = at, end = at;
     while (tree->nodes[begin].count == 0) {
@@ -416,10 +416,10 @@ static void a_tree_of_triangles_in_one_place_has_a_budget(void **state)
     he_bvh *tree = tree_of(m);
     he_hit hit = closest(tree, m, (he_vec3){0, 3, 4}, HUGE_VAL), unused;
     assert_true(hit.face == 0 && hit.distance == 5);
-    uint64_t budget = 100;
+    he_budget budget = {.left = 100};
     assert_int_equal(he_bvh_closest(tree, m, (he_vec3){0, 3, 4}, HUGE_VAL, &budget, &unused, NULL),
                      HE_LIMIT);
-    assert_true(budget == 0);
+    assert_true(budget.left == 0);
     he_bvh_free(tree);
     he_mesh_free(m);
 }
@@ -455,10 +455,10 @@ static void hostile_coordinates_give_finite_hits(void **state)
                                                h->weight[1] >= 0 && h->weight[2] >= 0));
         }
         he_ids pairs = {0};
-        uint64_t budget = UINT64_MAX;
+        he_budget budget = {.left = UINT64_MAX};
         bool complete;
-        assert_int_equal(
-            he_bvh_intersections(tree, m, 1000, &budget, NULL, &pairs, &complete, NULL), HE_OK);
+        assert_int_equal(he_bvh_intersections(tree, m, 1000, &budget, &pairs, &complete, NULL),
+                         HE_OK);
         he_ids_clear(&pairs);
         he_bvh_free(tree);
         he_mesh_free(m);
@@ -543,10 +543,9 @@ static void triangles_meet_where_they_should_not(void **state)
 static void pairs_of(const he_mesh *m, size_t most, he_ids *pairs, bool *complete)
 {
     he_bvh *tree = tree_of(m);
-    uint64_t budget = UINT64_MAX;
+    he_budget budget = {.left = UINT64_MAX};
     pairs->count = 0;
-    assert_int_equal(he_bvh_intersections(tree, m, most, &budget, NULL, pairs, complete, NULL),
-                     HE_OK);
+    assert_int_equal(he_bvh_intersections(tree, m, most, &budget, pairs, complete, NULL), HE_OK);
     he_bvh_free(tree);
 }
 
@@ -647,13 +646,13 @@ static void trees_and_searches_can_be_given_up(void **state)
         he_bvh *tree = NULL;
         he_ids pairs = {0};
         bool complete;
-        uint64_t budget = UINT64_MAX;
+        he_budget budget = {.left = UINT64_MAX, .watch = &watch};
         he_watch_init(&watch, tell, &p);
         he_watch_span(&watch, 0.5);
         he_status status = he_bvh_new(m, &watch, &tree, NULL);
         if (status == HE_OK) {
             he_watch_span(&watch, 1);
-            status = he_bvh_intersections(tree, m, 1000, &budget, &watch, &pairs, &complete, NULL);
+            status = he_bvh_intersections(tree, m, 1000, &budget, &pairs, &complete, NULL);
         } else {
             assert_null(tree);
         }
@@ -678,12 +677,12 @@ static void starved_trees_and_searches_say_so(void **state)
             he_bvh *tree = NULL;
             he_ids pairs = {0};
             bool complete;
-            uint64_t budget = UINT64_MAX;
+            he_budget budget = {.left = UINT64_MAX};
             fixture_fail_at(n);
             he_status status = he_bvh_new(meshes[i], NULL, &tree, NULL);
             if (status == HE_OK) {
-                status = he_bvh_intersections(tree, meshes[i], 1000, &budget, NULL, &pairs,
-                                              &complete, NULL);
+                status =
+                    he_bvh_intersections(tree, meshes[i], 1000, &budget, &pairs, &complete, NULL);
             }
             bool failed = status != HE_OK;
             assert_true(!failed || status == HE_NO_MEMORY);

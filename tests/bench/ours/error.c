@@ -56,7 +56,7 @@ static double total_area(const he_mesh *m)
 
 static void look(const he_bvh *tree, const he_mesh *to, he_vec3 point, he_vec3 area, sums *out)
 {
-    uint64_t budget = UINT64_MAX;
+    he_budget budget = {.left = UINT64_MAX};
     he_vec3 p[3];
     he_hit hit;
     bench_require(he_bvh_closest(tree, to, point, HUGE_VAL, &budget, &hit, NULL));

@@ -1,0 +1,150 @@
+/* Spokes of one hub share points beyond it exactly where the SECTORS of directions in which they
+ * leave it do: a point of both is one of a ray from the hub that both begin with.
+ *
+ *         .--u           A sector is an arc from u to v of a great circle of the unit sphere about
+ *       .'   |           the hub, shorter than half of it. Boxes about arcs tell spokes apart that
+ *     hub    | arc       boxes about triangles do not: around a disc or cone of n spokes each box
+ *       '.   |           meets those of a few neighbours, and n log n steps do.
+ *         '--v
+ *
+ * The boxes are rounded outward; what they do not tell apart is tried exactly, like all pairs. */
+#include "query/bvh_pairs.h"
+#include "query/bvh_walk.h"
+#include "query/meet.h"
+
+/* Coordinates of directions, and of what is made of them here, are not farther off than this. */
+static const double ROUNDING = 1e-14;
+
+typedef struct sectors {
+    he_pair_search *search;
+    uint32_t hub;
+    uint32_t *spokes; /* triangles that have area */
+    he_bounds *arcs;  /* about the arc of each */
+    uint32_t count;
+    const uint32_t *order; /* of the tree over the arcs */
+} sectors;
+
+static void include(he_bounds *b, he_vec3 p, double pad)
+{
+    const he_bounds point = {{p.x - pad, p.y - pad, p.z - pad}, {p.x + pad, p.y + pad, p.z + pad}};
+    he_bounds_include(b, &point);
+}
+
+static bool same(he_vec3 a, he_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* A point of the arc between u and v is one of the chord, pushed out to length 1: by no more than
+ * what the middle of the chord lacks, along any axis. */
+static he_bounds about_arc(he_vec3 u, he_vec3 v)
+{
+    he_bounds bounds = he_bounds_none();
+    double pad = fmax(1 - 0.5 * he_vec3_length(he_vec3_add(u, v)), 0) + ROUNDING;
+    include(&bounds, u, pad);
+    include(&bounds, v, pad);
+    return bounds;
+}
+
+/* The corners from the one at the hub on. */
+static he_bounds arc_of(const he_vec3 corner[3], he_vec3 hub)
+{
+    int at = same(corner[0], hub) ? 0 : same(corner[1], hub) ? 1 : 2;
+    he_vec3 u, v;
+    he_vec3_normalise(he_vec3_sub(corner[(at + 1) % 3], hub), &u);
+    he_vec3_normalise(he_vec3_sub(corner[(at + 2) % 3], hub), &v);
+    return about_arc(u, v);
+}
+
+/* Directions from the middle of all, so that floats tell apart what is seen from far away. */
+static void center(sectors *s)
+{
+    he_bounds all = he_bounds_none();
+    for (uint32_t i = 0; i < s->count; i++) {
+        he_bounds_include(&all, &s->arcs[i]);
+    }
+    for (uint32_t i = 0; i < s->count; i++) {
+        for (int k = 0; k < 3; k++) {
+            double middle = 0.5 * (all.min[k] + all.max[k]);
+            s->arcs[i].min[k] -= middle;
+            s->arcs[i].max[k] -= middle;
+        }
+    }
+}
+
+static he_status load(sectors *s, he_error *err)
+{
+    const he_bvh *tree = s->search->tree;
+    const he_hubs *hubs = &tree->hubs;
+    he_vec3 place = he_vec3_scale(hubs->places[s->hub], tree->scale);
+    uint32_t first = hubs->first[s->hub], end = hubs->first[s->hub + 1];
+    s->spokes = he_mem_array(NULL, end - first, sizeof *s->spokes);
+    s->arcs = he_mem_array(NULL, end - first, sizeof *s->arcs);
+    if (s->spokes == NULL || s->arcs == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the %u triangles at a vertex",
+                             end - first);
+    }
+    he_status status = HE_OK;
+    for (uint32_t i = first; i < end && status == HE_OK; i++) {
+        he_vec3 corner[3];
+        he_bvh_corners(tree, s->search->m, hubs->spokes[i], corner);
+        if (he_triangle_has_area(corner)) {
+            s->spokes[s->count] = hubs->spokes[i];
+            s->arcs[s->count++] = arc_of(corner, place);
+        }
+        status = he_budget_take(s->search->budget, 1, err);
+    }
+    center(s);
+    return status;
+}
+
+static bool apart(const he_bounds *a, const he_bounds *b)
+{
+    for (int k = 0; k < 3; k++) {
+        if (a->min[k] > b->max[k] || b->min[k] > a->max[k]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static he_status try_leaves(void *context, const he_box_node *a, const he_box_node *b,
+                            he_error *err)
+{
+    const sectors *s = context;
+    he_pair_search *search = s->search;
+    he_status status = he_budget_take(search->budget, (uint64_t)a->count * b->count, err);
+    for (uint32_t i = 0; i < a->count; i++) {
+        for (uint32_t k = a == b ? i + 1 : 0; k < b->count && status == HE_OK; k++) {
+            uint32_t left = s->order[a->first + i], right = s->order[b->first + k];
+            if (apart(&s->arcs[left], &s->arcs[right]) ||
+                he_pair_hub(search, s->spokes[left], s->spokes[right]) != s->hub) {
+                continue;
+            }
+            he_vec3 p[3], q[3];
+            he_bvh_corners(search->tree, search->m, s->spokes[left], p);
+            he_bvh_corners(search->tree, search->m, s->spokes[right], q);
+            status = he_pair_try(search, s->spokes[left], s->spokes[right], p, q, err);
+        }
+    }
+    return status;
+}
+
+he_status he_pairs_at_hub(he_pair_search *search, uint32_t hub, he_error *err)
+{
+    static const he_boxes_visit visit = {NULL, try_leaves};
+    sectors s = {.search = search, .hub = hub};
+    he_boxes boxes = {.nodes = NULL};
+    he_status status = load(&s, err);
+    if (status == HE_OK && s.count > 1) {
+        status = he_boxes_make(s.arcs, s.count, NULL, 0, search->budget, &boxes, err);
+    }
+    if (status == HE_OK && s.count > 1) {
+        s.order = boxes.order;
+        status = he_boxes_visit_pairs(boxes.nodes, &visit, &s, search->budget, err);
+    }
+    he_boxes_clear(&boxes);
+    he_mem_free(s.spokes);
+    he_mem_free(s.arcs);
+    return status;
+}
