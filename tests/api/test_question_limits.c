@@ -173,7 +173,7 @@ static const refusal bad_questions[] = {
      "/of/vertices/1"},
     {NULL, "{\"relation\":\"faces\",\"of\":{\"vertices\":[1],\"faces\":[1]}}", 400,
      "unknown_member", "/of/faces"},
-    {NULL, "{\"find\":\"edge\",\"vertices\":[1,2]}", 400, "bad_value", "/find"},
+    {NULL, "{\"find\":\"loop\",\"vertices\":[1,2]}", 400, "bad_value", "/find"},
     {NULL, "{\"find\":\"halfedge\",\"vertices\":[1]}", 400, "bad_value", "/vertices"},
     {NULL, "{\"find\":\"halfedge\",\"vertices\":\"all\"}", 400, "wrong_type", "/vertices"},
     {NULL, "{\"find\":\"halfedge\",\"vertices\":[1,8]}", 422, "deleted_element", "/vertices/1"},
