@@ -198,7 +198,7 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
     uint64_t work = (whole ? grown * he_op_pace(call->op) : elements) +
                     listed * (whole ? 1 : he_op_pace(call->op)) + steps / API_STEPS_OF_WORK;
     e->work += work;
-    e->paid = PHASES + work / HE_WATCH_STRIDE;
+    e->paid = PHASES + 2 * (grown + listed) / HE_WATCH_STRIDE;
     e->look = (uint64_t)HE_WATCH_STRIDE * he_op_pace(call->op);
     e->exceeded = e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
     return !e->exceeded;

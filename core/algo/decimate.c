@@ -231,20 +231,23 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
     return status;
 }
 
-enum { TAKES_PER_LOOK = 256 };
+/* Looks at the watch: one at so many takes from the queue, or after so much work. */
+enum { TAKES_PER_LOOK = 256, WORK_PER_LOOK = 2 * HE_WATCH_STRIDE };
 
 he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
 {
     const he_mesh *m = d->mesh;
     uint32_t before = he_mesh_faces(m);
     he_status status = he_watch_phase(m->watch, "collapsing edges", 1, err);
+    uint64_t next = WORK_PER_LOOK;
     for (uint64_t step = 0; status == HE_OK && he_mesh_faces(m) > faces; step++) {
         uint32_t edges[HE_QUEUE_CHUNK], bucket;
         uint32_t count = he_queue_take(&d->queue, edges, &bucket);
-        if (count == 0) {
+        if (count == 0 && !he_decimation_catch_up(d)) {
             break;
         }
-        if (step % TAKES_PER_LOOK == 0) {
+        if (step % TAKES_PER_LOOK == 0 || d->work >= next) {
+            next = d->work + WORK_PER_LOOK;
             status = he_watch_step(m->watch, before - he_mesh_faces(m), before - faces, err);
         }
         if (status == HE_OK) {
@@ -300,6 +303,7 @@ void he_decimation_end(he_decimation *d)
     he_mem_free(d->flags);
     he_mem_free(d->places);
     he_queue_clear(&d->queue);
+    he_ids_clear(&d->late);
 }
 
 static he_status run(he_mesh *m, const he_decimate_options *options, he_progressive *log,

@@ -101,25 +101,64 @@ void he_decimation_put(he_decimation *d, he_edge e, he_edge_place place, const h
     d->flags[he_origin(d->mesh, he_edge_halfedge(e, 1)).i] |= flag;
 }
 
-/* Edges about a vertex that are aside go back, and dear ones too where it has taken another in. */
-static void bring_back(he_decimation *d, uint32_t vertex, bool grown)
+static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
 {
     const he_mesh *m = d->mesh;
-    uint8_t flags = grown ? HE_NODE_ASIDE | HE_NODE_DEAR : HE_NODE_ASIDE;
-    if ((d->flags[vertex] & flags) == 0 || he_node_is_hub(&d->nodes[vertex])) {
-        return;
-    }
+    uint8_t flags = HE_NODE_LATE | HE_NODE_GREW | HE_NODE_ASIDE;
     he_halfedge first = he_vertex_halfedge(m, (he_vertex){vertex}), h = first;
+    grown = grown || (d->flags[vertex] & HE_NODE_GREW) != 0;
+    flags |= grown ? HE_NODE_DEAR : 0;
     d->flags[vertex] &= (uint8_t)~flags;
+    d->nodes[vertex].changes = 0;
     do {
         he_edge e = he_edge_of(h);
         uint8_t place = d->places[e.i];
         if (place == HE_EDGE_ASIDE || (grown && place == HE_EDGE_DEAR)) {
             he_candidate what;
+            d->work++;
             he_decimation_put(d, e, he_decimation_judge(d, e, &what), &what);
         }
         h = he_turn_ccw(m, h);
     } while (h.i != first.i);
+}
+
+/* May the vertex wait? Where it cannot be remembered it may not. */
+static bool is_late(he_decimation *d, uint32_t vertex)
+{
+    he_node *node = &d->nodes[vertex];
+    if (node->degree <= HE_DECIMATE_PATIENT || ++node->changes >= node->degree / HE_DECIMATE_PART) {
+        return false;
+    }
+    return (d->flags[vertex] & HE_NODE_LATE) != 0 || he_ids_add(&d->late, vertex, NULL) == HE_OK;
+}
+
+/* Edges about a vertex that are aside go back, and dear ones too where it has taken another in. */
+static void bring_back(he_decimation *d, uint32_t vertex, bool grown)
+{
+    uint8_t flags = grown ? HE_NODE_ASIDE | HE_NODE_DEAR : HE_NODE_ASIDE;
+    if ((d->flags[vertex] & flags) == 0 || he_node_is_hub(&d->nodes[vertex])) {
+        return;
+    }
+    if (is_late(d, vertex)) {
+        d->flags[vertex] |= grown ? HE_NODE_LATE | HE_NODE_GREW : HE_NODE_LATE;
+        return;
+    }
+    bring_back_now(d, vertex, grown);
+}
+
+bool he_decimation_catch_up(he_decimation *d)
+{
+    bool any = false;
+    for (size_t i = 0; i < d->late.count; i++) {
+        uint32_t v = d->late.ids[i];
+        if ((d->flags[v] & HE_NODE_LATE) != 0 && he_vertex_is_live(d->mesh, (he_vertex){v}) &&
+            !he_node_is_hub(&d->nodes[v])) {
+            bring_back_now(d, v, false);
+            any = true;
+        }
+    }
+    d->late.count = 0;
+    return any;
 }
 
 /* Where between the ends the place is, of 1. */
@@ -249,6 +288,8 @@ static he_status collapse(const he_decimation *d, const he_spokes *about, double
     return status;
 }
 
+enum { SPOKES_OF_WORK = 8 };
+
 he_status he_decimation_collapse(he_decimation *d, const he_candidate *what)
 {
     he_mesh *m = d->mesh;
@@ -257,6 +298,7 @@ he_status he_decimation_collapse(he_decimation *d, const he_candidate *what)
     he_node *gone = &d->nodes[u], *kept = &d->nodes[v];
     he_spokes about[2];
     const he_spokes *about_u = &about[0], *about_v = &about[1];
+    d->work += 1 + (gone->degree + (what->moves ? kept->degree : 0)) / SPOKES_OF_WORK;
     if (!gather(m, h, what->moves ? 2 : 1, about) ||
         !stay_upright(d, about_u, gone->place, what->place) ||
         (what->moves && !stay_upright(d, about_v, kept->place, what->place))) {

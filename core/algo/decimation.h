@@ -31,8 +31,14 @@ enum {
     HE_NODE_LOCKED = 1, /* stays where it is */
     HE_NODE_HELD = 2,   /* an edge or face about it is locked: it stays, but may move */
     HE_NODE_ASIDE = 4,  /* some edge of it may be aside */
-    HE_NODE_DEAR = 8    /* some edge of it may be too dear */
+    HE_NODE_DEAR = 8,   /* some edge of it may be too dear */
+    HE_NODE_LATE = 16,  /* edges of it are to go back later, see HE_DECIMATE_PATIENT */
+    HE_NODE_GREW = 32   /* it has taken a vertex in meanwhile */
 };
+
+/* A vertex of more edges brings them back only after as many changes about it as half of them, and
+ * when the queue is empty: a change concerns few of them, and all would be tried for each. */
+enum { HE_DECIMATE_PATIENT = 32, HE_DECIMATE_PART = 2 };
 
 /* Where an edge is. */
 typedef enum he_edge_place { HE_EDGE_QUEUED, HE_EDGE_ASIDE, HE_EDGE_DEAR } he_edge_place;
@@ -44,6 +50,7 @@ typedef struct he_node {
     he_vec3 place;
     uint32_t degree;
     uint32_t features; /* feature edges at it; 3 stands for more */
+    uint32_t changes;  /* since its edges were brought back, if HE_NODE_LATE */
 } he_node;
 
 /* What became part of what, in pairs of the one gone and the one that stays. */
@@ -66,6 +73,10 @@ typedef struct he_decimation {
     int exponent;  /* inside = (outside - middle) / 2^exponent */
     double inward; /* 2^-exponent */
     double error;  /* the largest so far, inside */
+    /* What was done: edges judged, and every eighth half-edge looked at about their ends. Both take
+     * about as long, and there may be 256 of them for each collapse at a hub. */
+    uint64_t work;
+    he_ids late; /* vertices that were HE_NODE_LATE and perhaps are */
 } he_decimation;
 
 /* What to do with an edge. */
@@ -110,6 +121,8 @@ HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, cons
 he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what);
 /* Put one there that is not in the queue. */
 void he_decimation_put(he_decimation *d, he_edge e, he_edge_place place, const he_candidate *what);
+/* Bring back the edges of vertices that are late. False where there are none. */
+bool he_decimation_catch_up(he_decimation *d);
 /* Collapse it, keep nodes and queue right. Any refusal of he_edge_collapse, HE_LIMIT where a face
  * would turn over; HE_NO_MEMORY. */
 HE_NODISCARD he_status he_decimation_collapse(he_decimation *d, const he_candidate *what);

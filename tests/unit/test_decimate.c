@@ -316,6 +316,52 @@ static void a_hub_of_many_edges_is_no_work(void **state)
     }
 }
 
+/* Stars of 256 points, each with its own hub. */
+static he_mesh *stars(uint32_t count, double (*height)(double x, double y))
+{
+    enum { POINTS = 256 };
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    for (uint32_t s = 0; s < count; s++) {
+        uint32_t hub = dense_add_vertex(&soup, 4 * s, 0, height == NULL ? 0 : height(0, 0));
+        for (uint32_t i = 0; i < POINTS; i++) {
+            double angle = 6.283185307179586 * i / POINTS, radius = i % 2 == 0 ? 1 : 1.5;
+            double x = radius * cos(angle), y = radius * sin(angle);
+            (void)dense_add_vertex(&soup, 4 * s + x, y, height == NULL ? 0 : height(x, y));
+        }
+        for (uint32_t i = 0; i < POINTS; i++) {
+            dense_add_triangle(&soup, hub, hub + 1 + i, hub + 1 + (i + 1) % POINTS);
+        }
+    }
+    return dense_built(&soup);
+}
+
+/* Each collapse at the rim of a star changes faces about its hub, whose 256 edges may not all be
+ * tried again for that; but in the end they are. */
+static void edges_of_a_star_are_tried_again_but_not_each_time(void **state)
+{
+    (void)state;
+    double (*const heights[])(double x, double y) = {NULL, dense_waves};
+    for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
+        he_mesh *m = stars(40, heights[i]);
+        he_decimation d = {.mesh = m};
+        const he_decimate_options options = {0, INFINITY, 100};
+        uint32_t faces = he_mesh_faces(m);
+        assert_int_equal(he_decimation_begin(&d, &options, NULL), HE_OK);
+        assert_int_equal(he_decimation_go(&d, 0, NULL), HE_OK);
+        print_message("note: %.1f looks at edges a face of a star\n", (double)d.work / faces);
+        assert_true(d.work < 150 * (uint64_t)faces);
+        for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
+            he_candidate what;
+            if (he_mesh_is_live(m, HE_EDGE, e) && he_decimation_cost(&d, (he_edge){e}, &what)) {
+                assert_int_not_equal(he_decimation_collapse(&d, &what), HE_OK);
+            }
+        }
+        he_decimation_end(&d);
+        he_mesh_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -333,6 +379,7 @@ int main(void)
         cmocka_unit_test(size_and_place_do_not_matter),
         cmocka_unit_test(points_in_one_place_are_no_harm),
         cmocka_unit_test(a_hub_of_many_edges_is_no_work),
+        cmocka_unit_test(edges_of_a_star_are_tried_again_but_not_each_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
