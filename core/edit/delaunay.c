@@ -24,8 +24,9 @@ typedef struct flipper {
     size_t from, fold_at; /* records before this call, and how many are folded next */
 } flipper;
 
-/* Records for each edge before they are folded: about as many as it has words. */
-enum { RECORDS_OF_EDGE = 16 };
+/* Records for each edge before they are folded: fewer than it has words, since folding cannot be
+ * given up half-way. */
+enum { RECORDS_OF_EDGE = 4 };
 
 static void enqueue(flipper *q, he_edge e)
 {

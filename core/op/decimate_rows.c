@@ -70,7 +70,7 @@ const he_op he_decimate_rows[] = {
                             "it."}},
         .refusals = {HE_NOT_TRIANGLE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
-        .pace = 4,
+        .pace = 5,
         .run = run_decimate,
     },
     {.name = NULL},

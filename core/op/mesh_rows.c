@@ -186,7 +186,7 @@ const he_op he_mesh_rows[] = {
                      "What was flipped, in order; twice what was flipped twice."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_LIMIT},
         .change = {0, 0, 0},
-        .pace = 4,
+        .pace = 2,
         .run = run_delaunay,
     },
     {

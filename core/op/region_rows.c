@@ -77,7 +77,7 @@ const he_op he_region_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NO_RIM,
                      HE_RIM_MEETS_ITSELF, HE_NO_NORMAL, HE_NOT_FINITE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
-        .pace = 80,
+        .pace = 200,
         .run = run_face_extrude,
     },
     {
@@ -115,7 +115,7 @@ const he_op he_region_rows[] = {
                      HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_NO_NORMAL, HE_LIMIT, HE_NOT_FINITE,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
-        .pace = 120,
+        .pace = 200,
         .run = run_face_inset,
     },
     {

@@ -558,7 +558,7 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
                      API_WORK);
     api_text body = {0};
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[{\"op\":\"weld\",\"tolerance\":0}");
-    for (int i = 1; i < 50; i++) {
+    for (int i = 1; i < 20; i++) {
         api_text_add_string(&body, ",{\"op\":\"weld\",\"tolerance\":0}");
     }
     api_text_add(&body, "]}", sizeof "]}");

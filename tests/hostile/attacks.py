@@ -86,6 +86,9 @@ TABLES = [get('a page of vertices', '/vertices?limit=10000'), get('summary', '')
 POLYGON = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, RAY, CLOSEST, *MEASURES[3:5],
            edit('triangulate'), Ask('undo', 'POST', '/undo'),
            edit('dual', (200, 202, 422)), edit('face_poke', face=0)]
+# Of a mesh with large faces, which stays as it is.
+FACETS = [CHECK, STL, GLB, GEOMETRY, RAY, CLOSEST,
+          edit('triangulate', ENDS, dry_run=True), edit('dual', ENDS, dry_run=True)]
 SURFACE = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, PROGRESSIVE, RAYS, SIDEWAYS, CLOSEST, CROSS,
            CROSS_OFTEN, *MEASURES, *WALKS, *HUB, *TABLES]
 COPY = Ask('copy', 'POST', '/copy', statuses=(201, 202, 415), body=b'')
@@ -95,6 +98,42 @@ def zipped(make):
     kind, body = make()
     return kind, gzip.compress(body, 9)
 
+
+def listed(name, ops):
+    """A list of operations as long as a megabyte lets it be."""
+    room, kept = 990000, []
+    for op in ops:
+        room -= len(json.dumps(op)) + 2
+        if room < 0:
+            break
+        kept.append(op)
+    return Ask(name, 'POST', '/edits', {'dry_run': True, 'ops': kept}, ENDS)
+
+
+# Of a fan about vertex 0 whose triangle i is (0, i + 1, i + 2): edge 0 and the even ones are spokes.
+AT_HUB = [
+    listed('the hub split at each spoke', ({'op': 'vertex_split', 'vertex': 0, 'left': i,
+                                            'right': i + 1, 'to': [0, 0, 1]}
+                                           for i in range(1, 50000, 2))),
+    listed('the hub welded with each second of its rim', ({'op': 'vertex_weld', 'vertices': [0, i]}
+                                                          for i in range(1, 50000, 2))),
+    listed('neighbours of the rim welded', ({'op': 'vertex_weld', 'vertices': [i, i + 1]}
+                                            for i in range(1, 50000, 2))),
+    *[listed(f'{op} of each edge', ({'op': op, 'edge': i, **more} for i in range(150000)))
+      for op, more in (('edge_cut', {}), ('edge_split', {}), ('edge_collapse', {}),
+                       ('edge_bevel', {'width': 1}), ('face_join', {}))],
+    listed('edge_cut of each spoke', ({'op': 'edge_cut', 'edge': i} for i in (0, *range(2, 120000, 2)))),
+    listed('face_join of each spoke', ({'op': 'face_join', 'edge': i}
+                                       for i in (0, *range(2, 120000, 2)))),
+    *[listed(f'{op} again and again', [{'op': op, **more}] * 60000)
+      for op, more in (('weld', {'tolerance': 0}), ('weld', {'tolerance': 1e-9}),
+                       ('plane_cut', {'point': [0, 0, -9], 'normal': [0, 0, 1]}),
+                       ('delaunay', {}), ('reverse', {}), ('decimate', {'ratio': 0.99}))],
+]
+LISTED_FACES = [Ask(op + ' of a list of faces', 'POST', '/edits',
+                    {'op': op, 'faces': list(range(30000)), 'dry_run': True, **more}, ENDS)
+                for op, more in (('face_inset', {'factor': 0.5}), ('face_extrude', {'by': [0, 0, 1]}),
+                                 ('face_triangulate', {}), ('face_delete', {}))]
 
 ZIP = ('Content-Encoding: gzip',)
 REPAIRS = '&repair=weld,drop_degenerate,drop_duplicates,orient,split,fill'
@@ -132,6 +171,25 @@ ROWS = [
         [edit('delaunay', (200, 202, 413)), CHECK, CROSSINGS, PROGRESSIVE,
          edit('decimate', faces=10)]),
 
+    Row('flat fan of 60,000, lists of operations', lambda: meshes.fan(60000),
+        [*AT_HUB, *LISTED_FACES]),
+    Row('flat fan of 3,200, lists of operations', lambda: meshes.fan(3200), AT_HUB, quick=True),
+    Row('60,000 fans about one vertex', lambda: meshes.pinwheel(30000),
+        [*AT_HUB, *LISTED_FACES[:1], CHECK, PROGRESSIVE, edit('separate_bowties'),
+         Ask('undo', 'POST', '/undo')]),
+    Row('two hubs and 60,000 quads', lambda: meshes.lantern(60000),
+        [*LISTED_FACES, edit('triangulate', ENDS), Ask('undo', 'POST', '/undo', statuses=(200, 409)),
+         edit('dual', ENDS), *MEASURES]),
+    Row('pyramid of 50,000', lambda: meshes.pyramid(50000), [*FACETS, *MEASURES]),
+    Row('prism of 30,000', lambda: meshes.prism(30000), [*FACETS, *MEASURES]),
+    Row('230 stars of 256', lambda: meshes.stars(230, 256),
+        [PROGRESSIVE, edit('decimate', faces=1), Ask('undo', 'POST', '/undo'),
+         edit('decimate', faces=1, boundary_weight=0)]),
+    Row('500 stars of 256 in gzip', lambda: zipped(lambda: meshes.stars_of_text(500, 256)),
+        [edit('decimate', faces=1)], (201, 202), headers=ZIP),
+    *[Row(f'two rows of {count:,}', lambda count=count: meshes.rows_far_apart(count),
+          [edit('delaunay', ENDS)], quick=count == 1000) for count in (700, 1000, 10000, 30000)],
+
     # polygons: what has to be triangulated
     Row('4 combs of 15,000', lambda: meshes.combs(4, 15000), POLYGON),
     Row('40 combs of 1,500', lambda: meshes.combs(40, 1500), POLYGON, quick=True),
@@ -153,6 +211,9 @@ ROWS = [
         [CHECK, get('check with merge', '/check?merge=10', 200, 202),
          edit('weld', (200, 202, 413, 422), tolerance=0.1),
          edit('weld', (200, 202, 413, 422), tolerance=1e6)]),
+    Row('55,000 vertices as dense as can be', lambda: meshes.lattice(48),
+        [get(f'check with merge={merge}', f'/check?merge={merge}', 200, 202)
+         for merge in (0.001, 1.4, 1.42)] + [edit('weld', tolerance=1.4)]),
     Row('60,000 vertices in one place', lambda: meshes.one_place(60000),
         [CHECK, edit('weld', (200, 202, 413, 422), tolerance=0)]),
     Row('60,000 vertices in a row', lambda: meshes.almost_one_place(60000),

@@ -88,6 +88,66 @@ def parabola(count):
     return ply(rim, faces, 'double')
 
 
+def pinwheel(count):
+    """Triangles that share nothing but one vertex: as many fans about it."""
+    rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(2 * count)]
+    return ply([(0, 0, 0)] + rim, [(0, 1 + 2 * i, 2 + 2 * i) for i in range(count)], 'short')
+
+
+def lantern(count):
+    """Quads that all have the same two opposite corners."""
+    rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
+    return ply([(0, 0, 20000), (0, 0, -20000)] + rim,
+               [(0, 2 + i, 1, 2 + (i + 1) % count) for i in range(count)], 'short')
+
+
+def pyramid(count):
+    """A cone closed by one face below: each edge of the rim lies beside it."""
+    rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
+    return ply([(0, 0, 20000)] + rim, spokes(count) + [range(count, 0, -1)], 'short')
+
+
+def prism(count):
+    rims = [(round(32767 * x), round(32767 * y), z) for z in (0, 9000)
+            for x, y, _ in circle(count)]
+    sides = [(i, (i + 1) % count, count + (i + 1) % count, count + i) for i in range(count)]
+    return ply(rims, [range(count - 1, -1, -1), range(count, 2 * count), *sides], 'short')
+
+
+def stars(count, points, write=None):
+    """Stars that share nothing; hubs of as many edges as decimation still tries to collapse."""
+    vertices, faces = [], []
+    for s in range(count):
+        hub = len(vertices)
+        vertices.append((s % 100 * 300, s // 100 * 300, 0))
+        vertices += [(s % 100 * 300 + round((100 + 40 * (i % 2)) * x),
+                      s // 100 * 300 + round((100 + 40 * (i % 2)) * y), i * 7 % 11)
+                     for i, (x, y, _) in enumerate(circle(points))]
+        faces += [(hub, hub + 1 + i, hub + 1 + (i + 1) % points) for i in range(points)]
+    return ply(vertices, faces, 'short') if write is None else write(vertices, faces)
+
+
+def stars_of_text(count, points):
+    """More of them than 16 bits can number."""
+    return stars(count, points, obj)
+
+
+def rows_far_apart(count):
+    """Two rows of points, joined so that flips grow with the square of their number."""
+    points = [(i % count, i // count, 0) for i in range(2 * count)]
+    faces = [face for i in range(count - 1) for face in
+             ((i, i + 1, count), (count + i + 1, count + i, count - 1))]
+    return ply(points, faces, 'short')
+
+
+def lattice(side):
+    """Points packed as densely as can be, sqrt(2) apart."""
+    points = [(x, y, z) for x in range(side) for y in range(side) for z in range(side)
+              if (x + y + z) % 2 == 0]
+    return ply(points + [(0, 0, 999), (9, 0, 999), (0, 9, 999)],
+               [(len(points), len(points) + 1, len(points) + 2)], 'short')
+
+
 # --- polygons ---
 
 def comb_points(corners, z=0.0):
