@@ -57,11 +57,11 @@ static void add(total *t, double x)
 enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
 
 typedef struct sums {
-    total plain;       /* of terms that are far from the ends of a double */
-    total of[WINDOWS]; /* of the others, times 2^-(LEAST + WINDOW i) */
+    total of[WINDOWS]; /* times 2^-(LEAST + WINDOW i) */
 } sums;
 
-static void add_window(sums *s, double x, int exponent)
+/* x 2^exponent */
+static void add_scaled(sums *s, double x, int exponent)
 {
     int own;
     double part = frexp(x, &own);
@@ -73,24 +73,11 @@ static void add_window(sums *s, double x, int exponent)
     add(&s->of[window], ldexp(part, above - window * WINDOW));
 }
 
-/* x 2^exponent */
-static void add_scaled(sums *s, double x, int exponent)
-{
-    double size = fabs(x);
-    if (exponent == 0 && size > HE_LEAST_PRODUCT && size < HE_MOST_PRODUCT) {
-        add(&s->plain, x);
-    } else {
-        add_window(s, x, exponent);
-    }
-}
-
 /* The sum by `divisor`; what a double cannot hold is the largest that it can. */
-static double sum_of(sums *s, double divisor)
+static double sum_of(sums *s, const total *plain, double divisor)
 {
-    total plain = s->plain;
-    s->plain = (total){0, 0};
-    add_window(s, plain.sum, 0);
-    add_window(s, plain.error, 0);
+    add_scaled(s, plain->sum, 0);
+    add_scaled(s, plain->error, 0);
     int top = WINDOWS - 1;
     while (top > 0 && s->of[top].sum + s->of[top].error == 0) {
         top--;
@@ -109,13 +96,16 @@ static double sum_of(sums *s, double divisor)
 static he_vec3 find_base(const he_mesh *m)
 {
     double least = HUGE_VAL;
+    bool any = false;
     he_vec3 base = {0, 0, 0};
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         if (m->c.vertex_halfedge[v] < HE_DEAD) {
-            double extent = he_vec3_extent(m->c.position[v]);
-            if (extent < least) {
-                least = extent;
-                base = m->c.position[v];
+            he_vec3 p = m->c.position[v];
+            double square = he_vec3_dot(p, p); /* infinite where all that is near is nearer */
+            if (square < least || !any) {
+                least = square;
+                base = p;
+                any = true;
             }
         }
     }
@@ -127,11 +117,6 @@ static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector,
 {
     int halved = 0;
     he_vec3 way = he_vec3_sub(corner, base);
-    double extent = he_vec3_extent(way);
-    if (exponent == 0 && extent > 1e-100 && extent < 1e100) {
-        add_scaled(volume, he_vec3_dot(way, vector), 0);
-        return;
-    }
     if (!he_vec3_is_finite(way)) {
         way = he_vec3_sub(he_vec3_scale(corner, 0.5), he_vec3_scale(base, 0.5));
         halved = 1;
@@ -144,6 +129,7 @@ static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector,
 he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
 {
     sums area = {0}, volume = {0};
+    total plain_area = {0, 0}, plain_volume = {0, 0}; /* of terms far from the ends of a double */
     uint32_t budget = he_ring_budget(m);
     bool closed = m->c.boundary_halfedges == 0 && m->c.faces.live > 0;
     he_vec3 base = closed ? find_base(m) : (he_vec3){0, 0, 0};
@@ -164,15 +150,27 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
         if (r.degree == 0) {
             return he_ring_corrupt(f, err);
         }
-        add_scaled(&area, he_vec3_length(r.vector), 2 * exponent);
+        double twice = he_vec3_length(r.vector);
+        if (exponent == 0) {
+            add(&plain_area, twice);
+        } else {
+            add_scaled(&area, twice, 2 * exponent);
+        }
         /* The tetrahedra over a fan of triangles from p0 add up to p0 . A, whatever the other
          * corners: p0 . (p0 x q) is nothing. */
-        if (closed) {
-            add_cone(&volume, base, m->c.position[m->c.origin[first]], r.vector, exponent);
+        if (!closed) {
+            continue;
+        }
+        he_vec3 corner = m->c.position[m->c.origin[first]];
+        double six = he_vec3_dot(he_vec3_sub(corner, base), r.vector);
+        if (exponent == 0 && fabs(six) > HE_LEAST_PRODUCT && fabs(six) < HE_MOST_PRODUCT) {
+            add(&plain_volume, six);
+        } else {
+            add_cone(&volume, base, corner, r.vector, exponent);
         }
     }
-    out->area = sum_of(&area, 2);
+    out->area = sum_of(&area, &plain_area, 2);
     out->has_volume = closed;
-    out->volume = closed ? sum_of(&volume, 6) : 0;
+    out->volume = closed ? sum_of(&volume, &plain_volume, 6) : 0;
     return HE_OK;
 }
