@@ -99,15 +99,16 @@ STAMPS     := build/.stamps
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
 # `make test TESTS=tests/web/rows.test.mjs`.
-TESTS   ?= $(SUITES) fuzz web install soak
+TESTS   ?= $(SUITES) fuzz web install soak hostile
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web tests/web/%,$(TESTS))
 WITH_FUZZ = $(filter fuzz,$(TESTS))
 WITH_INSTALL = $(filter install,$(TESTS))
 WITH_SOAK = $(filter soak,$(TESTS))
+WITH_HOSTILE = $(filter hostile,$(TESTS))
 # What a narrower choice asks does not reach every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(filter web,$(TESTS)))
-WITH_DAEMON = $(filter e2e web install soak tests/e2e/% tests/web/%,$(TESTS))
+WITH_DAEMON = $(filter e2e web install soak hostile tests/e2e/% tests/web/%,$(TESTS))
 
 # --- what must be installed ----------------------------------------------------------------
 # The sets of .ci/deps that each target needs. A target asks for all of them in one call before
@@ -119,7 +120,7 @@ NEEDS.run          := build web
 NEEDS.page         := web
 NEEDS.programs     := build test
 NEEDS.test          = build test $(if $(WITH_WEB)$(WITH_INSTALL),web browser) \
-                      $(if $(WITH_SOAK),node)
+                      $(if $(WITH_SOAK),node) $(if $(WITH_HOSTILE),hostile)
 NEEDS.asan         := build test
 NEEDS.tsan         := build test
 NEEDS.coverage     := build test coverage
@@ -228,10 +229,10 @@ test: $(CHOSEN) $(TEST_NEEDS) | $(INSTALLED) ## all tests, with their counts
 	    sh .ci/run-tests $(BUILD)/logs $(if $(filter web,$(TESTS)),--web) \
 	    $(if $(WITH_TRAFFIC),--traffic) $(CHOSEN) $(filter tests/web/%,$(TESTS)) \
 	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh) \
-	    $(if $(WITH_SOAK),tests/soak.sh)
+	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh)
 
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
-	+$(MAKE) CONFIG=asan TESTS="$(filter-out web tests/web/% install soak,$(TESTS))" test
+	+$(MAKE) CONFIG=asan TESTS="$(filter-out web tests/web/% install soak hostile,$(TESTS))" test
 
 # The kernel has no threads, and most of tests/api does one thing after the other: only what begins
 # jobs or threads, and the daemon itself, is worth the time here.
@@ -242,7 +243,7 @@ tsan: ## the threaded tests with ThreadSanitizer
 
 coverage: | $(INSTALLED) ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web tests/web/% install soak,$(TESTS))" test
+	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web tests/web/% install soak hostile,$(TESTS))" test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
