@@ -137,6 +137,10 @@ he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat, const ui
                               uint32_t count, he_error *err)
 {
     he_corner_tree t = {.flat = flat, .count = count, .leaves = 1};
+    if (count == 0) {
+        *out = t;
+        return HE_OK;
+    }
     while (count > HE_CORNER_FEW && (uint64_t)t.leaves * HE_CORNER_LEAF < count) {
         t.leaves *= 2;
     }
@@ -169,6 +173,11 @@ static uint32_t leaf_of(const he_corner_tree *t, uint32_t place)
 
 void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 {
+    if (t->leaves == 1) {
+        put(t, t->place[corner], t->order[--t->count]);
+        t->place[corner] = HE_NONE;
+        return;
+    }
     uint32_t leaf = leaf_of(t, t->place[corner]), node = t->leaves + leaf;
     t->order[t->place[corner]] = HE_NONE;
     t->place[corner] = HE_NONE;
@@ -222,6 +231,17 @@ static triangle triangle_of(const he_flat *f, uint32_t a, uint32_t b, uint32_t c
     return t;
 }
 
+static double clamped(double x, double min, double max)
+{
+    return x < min ? min : x > max ? max : x;
+}
+
+/* Twice the area of the triangle that a side makes with a point; negative on its right. */
+static double left_of(const side *s, double x, double y)
+{
+    return s->along[0] * (y - s->at[1]) - s->along[1] * (x - s->at[0]);
+}
+
 /* False only where the box has no point of the triangle. */
 static bool touches(const triangle *t, const he_corner_box *box)
 {
@@ -231,9 +251,10 @@ static bool touches(const triangle *t, const he_corner_box *box)
     }
     for (int i = 0; i < 3; i++) {
         const side *s = &t->sides[i];
-        double x = fmin(fmax(s->high[0] ? box->max[0] : box->min[0], t->box.min[0]), t->box.max[0]);
-        double y = fmin(fmax(s->high[1] ? box->max[1] : box->min[1], t->box.min[1]), t->box.max[1]);
-        if (s->along[0] * (y - s->at[1]) - s->along[1] * (x - s->at[0]) < -t->slack) {
+        double x = s->high[0] ? box->max[0] : box->min[0];
+        double y = s->high[1] ? box->max[1] : box->min[1];
+        if (left_of(s, clamped(x, t->box.min[0], t->box.max[0]),
+                    clamped(y, t->box.min[1], t->box.max[1])) < -t->slack) {
             return false;
         }
     }
@@ -244,12 +265,20 @@ static bool touches(const triangle *t, const he_corner_box *box)
 static bool holds(const triangle *t, const he_flat *f, uint32_t p)
 {
     double x = f->x[p], y = f->y[p];
-    if (!touches(t, &(he_corner_box){{x, y}, {x, y}})) {
+    if (x < t->box.min[0] || x > t->box.max[0] || y < t->box.min[1] || y > t->box.max[1]) {
         return false;
+    }
+    double left[3];
+    for (int i = 0; i < 3; i++) {
+        left[i] = left_of(&t->sides[i], x, y);
+        if (left[i] < -t->slack) {
+            return false;
+        }
     }
     for (int i = 0; i < 3; i++) {
         if (p == t->corner[i] || (x == t->sides[i].at[0] && y == t->sides[i].at[1]) ||
-            he_flat_turns_left(f, t->corner[(i + 1) % 3], t->corner[i], p)) {
+            (left[i] < t->slack &&
+             he_flat_turns_left(f, t->corner[(i + 1) % 3], t->corner[i], p))) {
             return false;
         }
     }
@@ -272,6 +301,9 @@ static uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, const tr
 uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps)
 {
+    if (tree->count == 0) {
+        return HE_NONE;
+    }
     const triangle t = triangle_of(tree->flat, a, b, c);
     /* Of each level one node waits, and two of the last. */
     uint32_t stack[34], depth = 0;

@@ -42,7 +42,7 @@ void he_corner_tree_clear(he_corner_tree *tree);
 
 static inline bool he_corner_tree_has(const he_corner_tree *tree, uint32_t corner)
 {
-    return tree->place[corner] != HE_NONE;
+    return tree->count > 0 && tree->place[corner] != HE_NONE;
 }
 
 /* The corner must be in the tree. */

@@ -104,22 +104,20 @@ static void project(const he_mesh *m, he_flat *flat, const frame *unit, he_vec3 
 
 void he_flat_clear(he_flat *flat)
 {
-    he_mem_free(flat->halfedge);
-    he_mem_free(flat->x);
-    he_mem_free(flat->y);
+    he_mem_free(flat->memory);
     *flat = (he_flat){0};
 }
 
 he_status he_flat_init(he_flat *out, const he_mesh *m, he_halfedge first, he_error *err)
 {
     he_flat flat = {.n = he_loop_length(m, first)};
-    flat.halfedge = he_mem_array(NULL, flat.n, sizeof *flat.halfedge);
-    flat.x = he_mem_zero(flat.n, sizeof *flat.x);
-    flat.y = he_mem_zero(flat.n, sizeof *flat.y);
-    if (flat.halfedge == NULL || flat.x == NULL || flat.y == NULL) {
-        he_flat_clear(&flat);
+    flat.memory = he_mem_zero(flat.n, 2 * sizeof *flat.x + sizeof *flat.halfedge);
+    flat.x = flat.memory;
+    if (flat.x == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
     }
+    flat.y = flat.x + flat.n;
+    flat.halfedge = (uint32_t *)(flat.y + flat.n);
     he_halfedge h = first;
     for (uint32_t i = 0; i < flat.n; i++, h = he_next(m, h)) {
         flat.halfedge[i] = h.i;

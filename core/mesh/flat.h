@@ -15,6 +15,7 @@ typedef struct he_flat {
     uint32_t *halfedge; /* of corner i, which is its origin */
     double *x, *y;
     bool degenerate; /* no area, so no plane: all coordinates are zero */
+    void *memory;    /* of the arrays */
 } he_flat;
 
 /* HE_NO_MEMORY. he_flat_clear frees. */

@@ -269,7 +269,8 @@ static he_status take_kept(const he_mesh *m, he_halfedge first, unsigned flags,
     }
     size_t n = kept->n, bytes = 3 * (n - 2) * sizeof *plan->corners;
     plan->flat.n = kept->n;
-    plan->flat.halfedge = he_mem_array(NULL, n, sizeof *plan->flat.halfedge);
+    plan->flat.memory = he_mem_array(NULL, n, sizeof *plan->flat.halfedge);
+    plan->flat.halfedge = plan->flat.memory;
     plan->corners = he_mem_alloc(bytes);
     if (plan->flat.halfedge == NULL || plan->corners == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");

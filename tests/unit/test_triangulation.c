@@ -224,7 +224,8 @@ static void random_polygons_both_ways(void **state)
     he_mesh *m = mesh_of(&polygon_shapes[0], 64);
     unsigned made = 0, swept = 0;
     for (unsigned round = 0; round < POLYGONS; round++) {
-        he_flat f = {.n = 3 + (uint32_t)(random_bits(&seed) % (MOST - 2)), halfedges, x, y, false};
+        he_flat f = {
+            .n = 3 + (uint32_t)(random_bits(&seed) % (MOST - 2)), halfedges, x, y, false, NULL};
         uint32_t side = round % 2 == 0 ? 64 : 1u << 20;
         for (uint32_t i = 0; i < f.n; i++) {
             x[i] = (double)(random_bits(&seed) % side) / side;
