@@ -3,7 +3,7 @@
 
 #include "api/document_out.h"
 #include "format/format.h"
-#include "mesh/long_faces.h"
+#include "mesh/long_faces_keep.h"
 
 #include <stdio.h>
 #include <string.h>

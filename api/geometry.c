@@ -7,7 +7,7 @@
 #include "api/handlers.h"
 
 #include "api/geometry_rows.h"
-#include "mesh/long_faces.h"
+#include "mesh/long_faces_keep.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -10,7 +10,7 @@
 #ifndef HE_MESH_LONG_FACES_H
 #define HE_MESH_LONG_FACES_H
 
-#include "mesh/triangulation.h"
+#include "mesh/mesh.h"
 
 /* Lets the mesh keep triangulations. Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_long_faces_allow(he_mesh *mesh, he_error *err);
@@ -21,17 +21,26 @@ void he_long_faces_clear(he_mesh *mesh);
 /* Bytes that are kept. */
 size_t he_long_faces_bytes(const he_mesh *mesh);
 
-/* Triangulates the long faces, unless that is done, where the mesh may keep them. Any number of
- * threads may call this at the same time: the first result stays. The watch, which may be NULL, is
- * not the mesh's. Returns HE_NO_MEMORY or HE_CANCELLED, and nothing is kept then. */
-HE_NODISCARD he_status he_long_faces_keep(const he_mesh *mesh, he_watch *watch, he_error *err);
-
 /* A triangulation that is kept, with HE_ANY_DIAGONALS alone; borrowed. */
 typedef struct he_long_face {
     uint32_t face, n; /* corners */
     bool degenerate;
     uint32_t *corners; /* three a triangle, as in triangulation.h */
 } he_long_face;
+
+/* In the order of faces. Made by long_faces_keep.c. */
+typedef struct he_long_faces {
+    size_t count;
+    he_long_face face[];
+} he_long_faces;
+
+/* Accepts NULL. */
+void he_long_faces_free(he_long_faces *all);
+/* May the mesh keep them, and does not yet? */
+bool he_long_faces_are_wanted(const he_mesh *mesh);
+/* Keeps `all`, which is taken, for a mesh that may keep them; where another thread was first, its
+ * stay and `all` is freed. */
+void he_long_faces_put(const he_mesh *mesh, he_long_faces *all);
 
 /* NULL when the loop is not that of a face, from its stored half-edge, or none is kept. */
 const he_long_face *he_long_faces_find(const he_mesh *mesh, he_halfedge first);

@@ -1,6 +1,6 @@
 #include "query/bvh.h"
 
-#include "mesh/long_faces.h"
+#include "mesh/long_faces_keep.h"
 #include "mesh/walk.h"
 #include "query/bvh_disc.h"
 #include "query/drawing.h"

@@ -3,6 +3,7 @@
 
 #include "mesh/ears.h"
 #include "mesh/long_faces.h"
+#include "mesh/long_faces_keep.h"
 #include "mesh/orient.h"
 #include "mesh/replay.h"
 #include "mesh/sweep.h"
