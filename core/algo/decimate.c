@@ -136,10 +136,14 @@ static he_status weigh(he_decimation *d, he_error *err)
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
-        d->nodes[v].place = he_decimation_inside(d, m->c.position[v]);
+    /* The first write to fresh pages takes long. Vertices without an edge are not asked about. */
+    for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
+        status = he_watch_at(m->watch, v, UINT64_MAX, err);
+        if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
+            d->nodes[v] = (he_node){.place = he_decimation_inside(d, m->c.position[v])};
+        }
     }
-    for (uint32_t h = 0; h < 2 * m->c.edges.issued; h++) {
+    for (uint32_t h = 0; h < 2 * m->c.edges.issued && status == HE_OK; h++) {
         if (he_edge_is_live(m, (he_edge){h >> 1})) {
             d->nodes[m->c.origin[h]].degree++;
             count_feature(d, (he_edge){h >> 1}, m->c.origin[h]);
@@ -282,7 +286,7 @@ he_status he_decimation_begin(he_decimation *d, const he_decimate_options *optio
 {
     const he_mesh *m = d->mesh;
     d->boundary_weight = options->boundary_weight;
-    d->memory = he_mem_zero((size_t)m->c.vertices.issued + 1, sizeof *d->nodes);
+    d->memory = he_mem_array(NULL, (size_t)m->c.vertices.issued + 1, sizeof *d->nodes);
     d->nodes = align(d->memory);
     d->flags = he_mem_zero(m->c.vertices.issued, sizeof *d->flags);
     d->places = he_mem_zero(m->c.edges.issued, sizeof *d->places);

@@ -7,23 +7,36 @@
 #include "mesh/point_hash.h"
 
 #include <math.h>
+#include <string.h>
 
 #define CELL     4.0
 #define NEAR     0.2525
 #define FAR_CELL 0x1p43
 #define LONE     0x1p53
 
+/* Slots that are cleared before the watch is asked: fresh memory takes long to write to. */
+enum { STRETCH = 16 * HE_WATCH_STRIDE };
+
 he_status he_near_make(he_near *out, const he_vec3 *points, size_t most, double tolerance,
-                       uint64_t seed, he_error *err)
+                       uint64_t seed, he_watch *watch, he_error *err)
 {
     size_t slots = 16;
     while (slots < 2 * most) {
         slots *= 2;
     }
     he_near near = {.mask = slots - 1, .tolerance = tolerance, .points = points};
-    near.slots = he_mem_zero(slots, sizeof *near.slots);
+    near.slots = he_mem_array(NULL, slots, sizeof *near.slots);
     if (near.slots == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu positions", most);
+    }
+    for (size_t i = 0; i < slots; i += STRETCH) {
+        he_status status = he_watch_at(watch, i, UINT64_MAX, err);
+        if (status != HE_OK) {
+            he_near_clear(&near);
+            return status;
+        }
+        size_t rest = slots - i < STRETCH ? slots - i : STRETCH;
+        memset(near.slots + i, 0, rest * sizeof *near.slots);
     }
     near.seed = seed ^ (uint64_t)(uintptr_t)near.slots * 0x94D049BB133111EB;
     *out = near;

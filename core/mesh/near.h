@@ -30,9 +30,10 @@ typedef struct he_near {
 } he_near;
 
 /* Room for `most` kept points. No file can be made whose points all have one place in the table:
- * that depends on its address and `seed`. HE_NO_MEMORY. */
+ * that depends on its address and `seed`. `watch` may be NULL. HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_near_make(he_near *out, const he_vec3 *points, size_t most,
-                                    double tolerance, uint64_t seed, he_error *err);
+                                    double tolerance, uint64_t seed, he_watch *watch,
+                                    he_error *err);
 void he_near_clear(he_near *near);
 /* *home is for he_near_keep. */
 uint32_t he_near_find(const he_near *near, he_vec3 p, uint32_t *home);
