@@ -94,7 +94,7 @@ static void drop_splits(he_progressive *mesh, size_t first)
 /* Give back what room the lists have beyond their rows, which may fail. */
 static void fit(he_progressive *mesh)
 {
-    he_vertex_split *splits = he_mem_array(mesh->splits, mesh->count + 1, sizeof *splits);
+    he_progressive_split *splits = he_mem_array(mesh->splits, mesh->count + 1, sizeof *splits);
     if (splits != NULL) {
         mesh->splits = splits;
         mesh->capacity = mesh->count + 1;
@@ -146,12 +146,12 @@ void api_progressive_clear(api_progressive *p)
 
 /* --- the splits --- */
 
-static const he_vertex_split *split_at(const api_progressive *p, size_t i)
+static const he_progressive_split *split_at(const api_progressive *p, size_t i)
 {
     return &p->mesh.splits[p->mesh.count - 1 - i];
 }
 
-static size_t split_bytes(const he_vertex_split *split)
+static size_t split_bytes(const he_progressive_split *split)
 {
     return 96 + ((size_t)split->moved + 1) / 2 * 8;
 }
@@ -166,7 +166,7 @@ int64_t api_progressive_bytes(const api_progressive *p)
 }
 
 static unsigned char *put_split(unsigned char *at, const api_progressive *p,
-                                const he_vertex_split *split)
+                                const he_progressive_split *split)
 {
     const uint32_t words[] = {(uint32_t)split_bytes(split),
                               split->vertex,

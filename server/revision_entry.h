@@ -7,7 +7,7 @@
 
 #include <stdatomic.h>
 
-typedef enum srv_place { SRV_NOWHERE, SRV_ON_UNDO, SRV_ON_REDO } srv_place;
+typedef enum srv_stack { SRV_ON_NEITHER, SRV_ON_UNDO, SRV_ON_REDO } srv_stack;
 
 struct srv_step {
     he_delta *delta;
@@ -18,7 +18,7 @@ struct srv_step {
     srv_revision *kept;       /* that entry, when only the redo stack still needs it */
     uint32_t uses;            /* by entries and a stack */
     _Atomic uint32_t holders; /* the log, while it has uses, and srv_log_hold */
-    srv_place place;
+    srv_stack stack;
     srv_step *below, *above; /* on its stack */
 };
 

@@ -61,7 +61,7 @@ static bool reserve_places(srv_revision_log *log, size_t more)
 
 static void push_undo(srv_revision_log *log, srv_step *step)
 {
-    step->place = SRV_ON_UNDO;
+    step->stack = SRV_ON_UNDO;
     step->above = NULL;
     step->below = log->undo_top;
     if (log->undo_top != NULL) {
@@ -75,7 +75,7 @@ static void push_undo(srv_revision_log *log, srv_step *step)
 
 static void push_redo(srv_revision_log *log, srv_step *step)
 {
-    step->place = SRV_ON_REDO;
+    step->stack = SRV_ON_REDO;
     step->above = NULL;
     step->below = log->redo_top;
     log->redo_top = step;
@@ -92,7 +92,7 @@ static srv_step *pop_undo(srv_revision_log *log)
         log->undo_bottom = NULL;
     }
     log->undo_count--;
-    step->place = SRV_NOWHERE;
+    step->stack = SRV_ON_NEITHER;
     return step;
 }
 
@@ -101,7 +101,7 @@ static srv_step *pop_redo(srv_revision_log *log)
     srv_step *step = log->redo_top;
     log->redo_top = step->below;
     log->redo_count--;
-    step->place = SRV_NOWHERE;
+    step->stack = SRV_ON_NEITHER;
     if (step->kept != NULL) {
         log->bytes -= step->kept->size;
         he_mem_free(step->kept);
@@ -169,7 +169,7 @@ static void drop_undo_bottom(srv_revision_log *log)
         log->undo_top = NULL;
     }
     log->undo_count--;
-    step->place = SRV_NOWHERE;
+    step->stack = SRV_ON_NEITHER;
     release_step(log, step);
 }
 
@@ -180,8 +180,8 @@ static void drop_oldest(srv_revision_log *log)
     srv_revision *entry = srv_entry_at(log, 0);
     srv_step *step = entry->step;
     bool last = step != NULL && step->applied == entry->point.revision;
-    bool keeps = last && step->place == SRV_ON_REDO;
-    if (last && step->place == SRV_ON_UNDO) {
+    bool keeps = last && step->stack == SRV_ON_REDO;
+    if (last && step->stack == SRV_ON_UNDO) {
         assert(step == log->undo_bottom);
         drop_undo_bottom(log);
     }
@@ -481,7 +481,7 @@ bool srv_log_entry(const srv_revision_log *log, size_t i, api_entry *out)
         .revision = entry->point.revision,
         .inverts = entry->inverts,
         .action = entry->action,
-        .undoable = entry->step != NULL && entry->step->place == SRV_ON_UNDO &&
+        .undoable = entry->step != NULL && entry->step->stack == SRV_ON_UNDO &&
                     entry->step->applied == entry->point.revision,
         .bytes = entry->delta_bytes,
         .time = entry->point.time,

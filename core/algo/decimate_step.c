@@ -183,7 +183,7 @@ static he_status make_room(he_progressive *log)
 {
     if (log->count == log->capacity) {
         size_t capacity = 2 * log->capacity + 64;
-        he_vertex_split *splits = he_mem_array(log->splits, capacity, sizeof *splits);
+        he_progressive_split *splits = he_mem_array(log->splits, capacity, sizeof *splits);
         if (splits == NULL) {
             return HE_NO_MEMORY;
         }
@@ -199,19 +199,19 @@ static void remember(const he_decimation *d, const he_spokes *about)
     const he_mesh *m = d->mesh;
     he_progressive *log = d->log;
     he_halfedge h = {about->out[0]}, back = he_twin(h);
-    he_vertex_split *split = &log->splits[log->count];
-    *split = (he_vertex_split){.vertex = he_origin(m, h).i,
-                               .from = he_target(m, h).i,
-                               .left = HE_NONE,
-                               .right = HE_NONE,
-                               .halfedge = h.i,
-                               .left_halfedge = HE_NONE,
-                               .right_halfedge = HE_NONE,
-                               .left_face = he_face_of(m, h).i,
-                               .right_face = he_face_of(m, back).i,
-                               .first_moved = log->moved.count,
-                               .at = he_position(m, he_origin(m, h)),
-                               .from_at = he_position(m, he_target(m, h))};
+    he_progressive_split *split = &log->splits[log->count];
+    *split = (he_progressive_split){.vertex = he_origin(m, h).i,
+                                    .from = he_target(m, h).i,
+                                    .left = HE_NONE,
+                                    .right = HE_NONE,
+                                    .halfedge = h.i,
+                                    .left_halfedge = HE_NONE,
+                                    .right_halfedge = HE_NONE,
+                                    .left_face = he_face_of(m, h).i,
+                                    .right_face = he_face_of(m, back).i,
+                                    .first_moved = log->moved.count,
+                                    .at = he_position(m, he_origin(m, h)),
+                                    .from_at = he_position(m, he_target(m, h))};
     if (split->left_face != HE_NONE) {
         split->left_halfedge = he_twin(he_prev(m, h)).i;
         split->left = he_origin(m, he_prev(m, h)).i;

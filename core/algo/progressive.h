@@ -21,7 +21,7 @@
 #include "mesh/mesh.h"
 
 /* What makes one collapse undone. A side without a face has HE_NONE in all it says. */
-typedef struct he_vertex_split {
+typedef struct he_progressive_split {
     uint32_t vertex, from;   /* u comes back beside v */
     uint32_t left, right;    /* the third corners, c and d */
     uint32_t halfedge;       /* from u to v */
@@ -31,12 +31,12 @@ typedef struct he_vertex_split {
     uint32_t moved;      /* faces that go over to u: so many */
     size_t first_moved;  /* from this one on, in he_progressive.moved */
     he_vec3 at, from_at; /* where u and v are then */
-} he_vertex_split;
+} he_progressive_split;
 
 /* Open for reading; written by the decimation. {0} is empty. */
 typedef struct he_progressive {
     he_mesh *base;
-    he_vertex_split *splits; /* the first is the last to be done */
+    he_progressive_split *splits; /* the first is the last to be done */
     size_t count, capacity;
     he_ids moved;
 } he_progressive;

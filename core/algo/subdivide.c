@@ -230,7 +230,7 @@ static he_status require_unlocked(const he_mesh *m, const start *at, he_error *e
 
 /* --- a step --- */
 
-static void clear_step(he_step *s)
+static void clear_step(he_subdivide_step *s)
 {
     he_mem_free(s->edge_rank);
     he_mem_free(s->face_rank);
@@ -260,14 +260,14 @@ static uint32_t *rank(const he_rows *rows, const uint32_t *link, uint32_t stride
     return ranks;
 }
 
-static void note_sharp(he_step *s, uint32_t v)
+static void note_sharp(he_subdivide_step *s, uint32_t v)
 {
     if (s->sharp[v] < 3) {
         s->sharp[v]++;
     }
 }
 
-static void count_edges(he_step *s)
+static void count_edges(he_subdivide_step *s)
 {
     const he_content *c = s->from;
     for (uint32_t e = 0; e < c->edges.issued; e++) {
@@ -277,7 +277,7 @@ static void count_edges(he_step *s)
         }
         s->degree[a]++;
         s->degree[b]++;
-        if (s->sharp != NULL && he_step_is_sharp(s, e)) {
+        if (s->sharp != NULL && he_subdivide_is_sharp(s, e)) {
             note_sharp(s, a);
             note_sharp(s, b);
         }
@@ -289,7 +289,7 @@ static void count_edges(he_step *s)
     }
 }
 
-static he_status prepare(he_step *s, he_error *err)
+static he_status prepare(he_subdivide_step *s, he_error *err)
 {
     const he_content *c = s->from;
     bool failed = false;
@@ -333,8 +333,8 @@ static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
 }
 
 /* From `done` to `to` of the work. */
-static he_status run_step(he_step *s, he_mesh *fresh, const he_sizes *sizes, double done, double to,
-                          he_error *err)
+static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const he_sizes *sizes, double done,
+                          double to, he_error *err)
 {
     double share = s->from->column_count > 0 ? 0.3 : 0.6;
     he_status status = he_watch_phase(s->watch, "refining", done + share * (to - done), err);
@@ -345,22 +345,22 @@ static he_status run_step(he_step *s, he_mesh *fresh, const he_sizes *sizes, dou
         status = prepare(s, err);
     }
     if (status == HE_OK) {
-        status = he_step_reserve_parents(s, err);
+        status = he_subdivide_reserve_parents(s, err);
     }
     if (status == HE_OK) {
-        status = s->scheme == HE_SQRT3 ? he_step_sqrt3(s, err) : he_step_split(s, err);
+        status = s->scheme == HE_SQRT3 ? he_subdivide_sqrt3(s, err) : he_subdivide_split(s, err);
     }
     if (status == HE_OK) {
         status = he_watch_phase(s->watch, "placing vertices",
                                 s->from->column_count > 0 ? done + 0.5 * (to - done) : to, err);
     }
     if (status == HE_OK) {
-        status = he_step_place(s, s->from->position, s->to->position, err);
+        status = he_subdivide_place(s, s->from->position, s->to->position, err);
     }
     if (status == HE_OK && s->from->column_count > 0) {
         status = he_watch_phase(s->watch, "carrying attributes", to, err);
     }
-    return status == HE_OK ? he_step_carry(s, err) : status;
+    return status == HE_OK ? he_subdivide_carry(s, err) : status;
 }
 
 /* The finer mesh of `c`. The features become its own. */
@@ -369,15 +369,15 @@ static he_status step(const he_mesh *m, const he_content *c, he_scheme scheme, b
                       he_error *err)
 {
     he_mesh *fresh = he_mesh_new();
-    he_step s = {.from = c,
-                 .to = fresh == NULL ? NULL : &fresh->c,
-                 .watch = m->watch,
-                 .scheme = scheme,
-                 .thirds = thirds,
-                 .polygonal = at->sizes.polygons > 0,
-                 .feature = at->feature,
-                 .fixed = at->fixed,
-                 .fixed_count = m->c.vertices.issued};
+    he_subdivide_step s = {.from = c,
+                           .to = fresh == NULL ? NULL : &fresh->c,
+                           .watch = m->watch,
+                           .scheme = scheme,
+                           .thirds = thirds,
+                           .polygonal = at->sizes.polygons > 0,
+                           .feature = at->feature,
+                           .fixed = at->fixed,
+                           .fixed_count = m->c.vertices.issued};
     if (at->feature != NULL) {
         s.feature_next = he_bits_new(sizes->edges);
     }
@@ -425,7 +425,7 @@ static he_status run(he_mesh *m, he_scheme scheme, unsigned steps, start *at, co
     return status;
 }
 
-he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps, he_step_counts *counts,
+he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps, he_subdivide_counts *counts,
                        he_error *err)
 {
     assert(steps >= 1 && steps <= HE_SUBDIVIDE_STEPS);
@@ -442,8 +442,9 @@ he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps, he_step_cou
         status = run(m, scheme, steps, &at, sizes, err);
     }
     for (unsigned i = 0; i < steps && status == HE_OK && counts != NULL; i++) {
-        counts[i] = (he_step_counts){(uint32_t)sizes[i].live_vertices,
-                                     (uint32_t)sizes[i].live_edges, (uint32_t)sizes[i].live_faces};
+        counts[i] =
+            (he_subdivide_counts){(uint32_t)sizes[i].live_vertices, (uint32_t)sizes[i].live_edges,
+                                  (uint32_t)sizes[i].live_faces};
     }
     he_mem_free(at.feature);
     he_mem_free(at.fixed);

@@ -67,9 +67,9 @@ enum { HE_SUBDIVIDE_STEPS = 12 };
 #define HE_SUBDIVIDE_ROWS (UINT64_C(1) << 27)
 
 /* Live elements after each step. */
-typedef struct he_step_counts {
+typedef struct he_subdivide_counts {
     uint32_t vertices, edges, faces;
-} he_step_counts;
+} he_subdivide_counts;
 
 /* `steps` of a scheme, 1 to HE_SUBDIVIDE_STEPS, as one replace that keeps ids (write.h). `counts`
  * (which may be NULL) has room for `steps` of them.
@@ -79,7 +79,7 @@ typedef struct he_step_counts {
  * with the same three corners, by all but catmull_clark; HE_LOCKED_ELEMENT naming an edge that
  * sqrt3 would flip, or a face beside one. HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps,
-                                    he_step_counts *counts, he_error *err);
+                                    he_subdivide_counts *counts, he_error *err);
 
 /* HE_LIMIT where the counts of the mesh alone tell that he_subdivide will refuse so, in no time.
  * HE_OK is no promise: linear makes more of polygons, and sqrt3 of sharp edges. */

@@ -29,7 +29,7 @@ static bool reserve(const he_content *c, he_kind domain, uint32_t count, uint32_
     return *out != NULL;
 }
 
-he_status he_step_reserve_parents(he_step *s, he_error *err)
+he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from, *to = s->to;
     bool done =
@@ -109,7 +109,7 @@ static void put(he_column *column, size_t row, uint32_t component, double value)
 /* --- vertices --- */
 
 /* Three components at a time are as good as positions. */
-static he_status smooth_column(const he_step *s, const he_column *from, he_column *to,
+static he_status smooth_column(const he_subdivide_step *s, const he_column *from, he_column *to,
                                he_error *err)
 {
     uint32_t rows = s->from->vertices.issued, fine = s->to->vertices.issued;
@@ -125,7 +125,7 @@ static he_status smooth_column(const he_step *s, const he_column *from, he_colum
             before[v] = (he_vec3){get(from, v, k), left > 1 ? get(from, v, k + 1) : 0,
                                   left > 2 ? get(from, v, k + 2) : 0};
         }
-        status = he_step_place(s, before, after, err);
+        status = he_subdivide_place(s, before, after, err);
         for (uint32_t v = 0; v < fine && status == HE_OK; v++) {
             /* Dead rows have the default. */
             if (s->to->vertex_halfedge[v] == HE_DEAD) {
@@ -147,7 +147,8 @@ static he_status smooth_column(const he_step *s, const he_column *from, he_colum
 
 /* --- corners --- */
 
-static double mean_of_face(const he_step *s, const he_column *from, uint32_t first, uint32_t k)
+static double mean_of_face(const he_subdivide_step *s, const he_column *from, uint32_t first,
+                           uint32_t k)
 {
     double total = 0, n = 0;
     uint32_t h = first;
@@ -162,8 +163,8 @@ static double mean_of_face(const he_step *s, const he_column *from, uint32_t fir
     return total;
 }
 
-static double blended(const he_step *s, const he_column *from, const he_corner_source *source,
-                      uint32_t k)
+static double blended(const he_subdivide_step *s, const he_column *from,
+                      const he_corner_source *source, uint32_t k)
 {
     switch (source->how) {
     case HE_FROM_MIDDLE:
@@ -180,7 +181,8 @@ static double blended(const he_step *s, const he_column *from, const he_corner_s
     return get(from, source->a, k);
 }
 
-static void fill_corner(const he_step *s, const he_column *from, he_column *to, uint32_t h)
+static void fill_corner(const he_subdivide_step *s, const he_column *from, he_column *to,
+                        uint32_t h)
 {
     const he_corner_source *source = &s->corner_from[h];
     const unsigned char *value = from->fallback;
@@ -198,7 +200,7 @@ static void fill_corner(const he_step *s, const he_column *from, he_column *to, 
     memcpy(he_column_row(to, h), value, from->row_bytes);
 }
 
-static he_status carry_corners(const he_step *s, const he_column *from, he_column *to,
+static he_status carry_corners(const he_subdivide_step *s, const he_column *from, he_column *to,
                                he_error *err)
 {
     he_status status = HE_OK;
@@ -233,7 +235,8 @@ static void carry_rows(const he_column *from, he_column *to, size_t issued, cons
     }
 }
 
-static he_status fill(const he_step *s, const he_column *from, he_column *to, he_error *err)
+static he_status fill(const he_subdivide_step *s, const he_column *from, he_column *to,
+                      he_error *err)
 {
     switch (from->domain) {
     case HE_VERTEX:
@@ -262,7 +265,7 @@ static he_status fill(const he_step *s, const he_column *from, he_column *to, he
     return HE_OK;
 }
 
-static he_status carry_column(const he_step *s, const he_column *from, he_column **out,
+static he_status carry_column(const he_subdivide_step *s, const he_column *from, he_column **out,
                               he_error *err)
 {
     he_column *to;
@@ -279,7 +282,7 @@ static he_status carry_column(const he_step *s, const he_column *from, he_column
     return HE_OK;
 }
 
-he_status he_step_carry(const he_step *s, he_error *err)
+he_status he_subdivide_carry(const he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
     he_content *to = s->to;

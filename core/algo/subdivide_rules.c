@@ -46,16 +46,17 @@ static weights weights_of(he_scheme scheme, uint32_t degree)
     return (weights){1, 0};
 }
 
-static uint8_t sharpness(const he_step *s, uint32_t v)
+static uint8_t sharpness(const he_subdivide_step *s, uint32_t v)
 {
     return s->sharp == NULL ? 0 : s->sharp[v];
 }
 
 /* What edge e, from a to b, adds to the sums of its ends. */
-static inline void gather_ends(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+static inline void gather_ends(const he_subdivide_step *s, uint32_t e, const he_vec3 *from,
+                               he_vec3 *to)
 {
     uint32_t a = s->from->origin[2 * e], b = s->from->origin[2 * e + 1];
-    bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
+    bool sharp = s->sharp != NULL && he_subdivide_is_sharp(s, e);
     if (sharp || sharpness(s, a) <= SMOOTH_AT_MOST) {
         gather(&to[a], from[b]);
     }
@@ -76,19 +77,19 @@ static he_vec3 mean_of_face(const he_content *c, uint32_t first, const he_vec3 *
     return he_vec3_scale(total, 1 / (double)n);
 }
 
-static uint32_t middle(const he_step *s, uint32_t e)
+static uint32_t middle(const he_subdivide_step *s, uint32_t e)
 {
-    return s->from->vertices.issued + he_step_edge_rank(s, e);
+    return s->from->vertices.issued + he_subdivide_edge_rank(s, e);
 }
 
 /* --- edges, by scheme: the vertices on them, and what they add to the sums of both ends --- */
 
-static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+static void loop_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
     const he_content *c = s->from;
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
     he_vec3 ends = he_vec3_add(from[a], from[b]);
-    if (s->sharp != NULL && he_step_is_sharp(s, e)) {
+    if (s->sharp != NULL && he_subdivide_is_sharp(s, e)) {
         to[middle(s, e)] = he_vec3_scale(ends, 0.5);
         return;
     }
@@ -97,13 +98,13 @@ static void loop_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3
 }
 
 /* The mean of face f in `to`. */
-static he_vec3 face_point(const he_step *s, uint32_t f, const he_vec3 *to)
+static he_vec3 face_point(const he_subdivide_step *s, uint32_t f, const he_vec3 *to)
 {
-    return to[s->from->vertices.issued + s->from->edges.live + he_step_face_rank(s, f)];
+    return to[s->from->vertices.issued + s->from->edges.live + he_subdivide_face_rank(s, f)];
 }
 
 /* The means of the faces beside edge e; zero where there is none. */
-static void find_sides(const he_step *s, uint32_t e, const he_vec3 *to, he_vec3 sides[2])
+static void find_sides(const he_subdivide_step *s, uint32_t e, const he_vec3 *to, he_vec3 sides[2])
 {
     const he_content *c = s->from;
     for (uint32_t k = 0; k < 2; k++) {
@@ -112,17 +113,19 @@ static void find_sides(const he_step *s, uint32_t e, const he_vec3 *to, he_vec3 
     }
 }
 
-static void catmull_clark_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+static void catmull_clark_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *from,
+                               he_vec3 *to)
 {
     const he_content *c = s->from;
     he_vec3 sides[2], ends = he_vec3_add(from[c->origin[2 * e]], from[c->origin[2 * e + 1]]);
     find_sides(s, e, to, sides);
-    bool sharp = s->sharp != NULL && he_step_is_sharp(s, e);
+    bool sharp = s->sharp != NULL && he_subdivide_is_sharp(s, e);
     to[middle(s, e)] =
         sharp ? he_vec3_scale(ends, 0.5) : mix(0.25, ends, 0.25, he_vec3_add(sides[0], sides[1]));
 }
 
-static void catmull_clark_ends(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+static void catmull_clark_ends(const he_subdivide_step *s, uint32_t e, const he_vec3 *from,
+                               he_vec3 *to)
 {
     const he_content *c = s->from;
     uint32_t a = c->origin[2 * e], b = c->origin[2 * e + 1];
@@ -137,7 +140,7 @@ static void catmull_clark_ends(const he_step *s, uint32_t e, const he_vec3 *from
     }
 }
 
-static void linear_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
+static void linear_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
     he_vec3 a = from[s->from->origin[2 * e]], b = from[s->from->origin[2 * e + 1]];
     to[middle(s, e)] = mix(0.5, a, 0.5, b);
@@ -145,7 +148,7 @@ static void linear_edge(const he_step *s, uint32_t e, const he_vec3 *from, he_ve
 
 /* Once all sums are there: the point on a sharp edge at a third from a to b. At the end of a curve
  * the edge is taken to go on straight beyond a. */
-static he_vec3 third_from(const he_step *s, uint32_t a, uint32_t b, const he_vec3 *from,
+static he_vec3 third_from(const he_subdivide_step *s, uint32_t a, uint32_t b, const he_vec3 *from,
                           const he_vec3 *to)
 {
     if (sharpness(s, a) != CURVE) {
@@ -155,7 +158,7 @@ static he_vec3 third_from(const he_step *s, uint32_t a, uint32_t b, const he_vec
     return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), he_vec3_scale(to[a], 1.0 / 27));
 }
 
-static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
+static void cut_in_thirds(const he_subdivide_step *s, const he_vec3 *from, he_vec3 *to)
 {
     const he_content *c = s->from;
     for (uint32_t e = 0; e < c->edges.issued && s->thirds; e++) {
@@ -170,7 +173,7 @@ static void cut_in_thirds(const he_step *s, const he_vec3 *from, he_vec3 *to)
 
 /* What places new vertices by the old ones. */
 typedef struct placing {
-    const he_step *s;
+    const he_subdivide_step *s;
     const he_vec3 *from;
     he_vec3 *to;
 } placing;
@@ -181,7 +184,7 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
 {
     enum { TABLE = 32 };
     const placing *p = context;
-    const he_step *s = p->s;
+    const he_subdivide_step *s = p->s;
     weights table[TABLE];
     (void)part;
     (void)err;
@@ -209,7 +212,7 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
 static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
-    const he_step *s = p->s;
+    const he_subdivide_step *s = p->s;
     const he_content *c = s->from;
     (void)part;
     (void)err;
@@ -218,9 +221,9 @@ static he_status place_centres(void *context, uint32_t part, size_t from, size_t
         if (h == HE_DEAD) {
             continue;
         }
-        uint32_t at = s->scheme == HE_SQRT3
-                          ? s->centre[f]
-                          : c->vertices.issued + c->edges.live + he_step_face_rank(s, (uint32_t)f);
+        uint32_t at = s->scheme == HE_SQRT3 ? s->centre[f]
+                                            : c->vertices.issued + c->edges.live +
+                                                  he_subdivide_face_rank(s, (uint32_t)f);
         if (at != HE_NONE) {
             p->to[at] = mean_of_face(c, h, p->from);
         }
@@ -247,7 +250,7 @@ static he_status place_some_centres(const placing *p, he_error *err)
 static he_status place_middles(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
-    const he_step *s = p->s;
+    const he_subdivide_step *s = p->s;
     (void)part;
     (void)err;
     for (size_t e = from; e < to; e++) {
@@ -275,7 +278,7 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
 static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
-    const he_step *s = p->s;
+    const he_subdivide_step *s = p->s;
     (void)lane;
     (void)err;
     for (size_t e = from; e < to; e++) {
@@ -302,7 +305,7 @@ static he_status clear_sums(void *context, uint32_t part, size_t from, size_t to
     return HE_OK;
 }
 
-static he_status smooth(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+static he_status smooth(const he_subdivide_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
 {
     const he_content *c = s->from;
     placing p = {s, from, to};
@@ -340,7 +343,8 @@ static bool is_large(const he_vec3 *p, uint32_t count)
     return large;
 }
 
-he_status he_step_place(const he_step *s, const he_vec3 *from, he_vec3 *to, he_error *err)
+he_status he_subdivide_place(const he_subdivide_step *s, const he_vec3 *from, he_vec3 *to,
+                             he_error *err)
 {
     const double scale = 0x1p-64;
     uint32_t rows = s->from->vertices.issued;

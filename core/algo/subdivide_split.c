@@ -7,19 +7,19 @@
  *     half-edge h    o ----first(h)----> o ----second(h)----> o
  *                  origin              middle               target
  */
-static uint32_t middle(const he_step *s, uint32_t h)
+static uint32_t middle(const he_subdivide_step *s, uint32_t h)
 {
-    return s->from->vertices.issued + he_step_edge_rank(s, h >> 1);
+    return s->from->vertices.issued + he_subdivide_edge_rank(s, h >> 1);
 }
-static uint32_t other_half(const he_step *s, uint32_t h)
+static uint32_t other_half(const he_subdivide_step *s, uint32_t h)
 {
-    return 2 * (s->from->edges.issued + he_step_edge_rank(s, h >> 1)) | (h & 1);
+    return 2 * (s->from->edges.issued + he_subdivide_edge_rank(s, h >> 1)) | (h & 1);
 }
-static uint32_t first(const he_step *s, uint32_t h)
+static uint32_t first(const he_subdivide_step *s, uint32_t h)
 {
     return (h & 1) == 0 ? h : other_half(s, h);
 }
-static uint32_t second(const he_step *s, uint32_t h)
+static uint32_t second(const he_subdivide_step *s, uint32_t h)
 {
     return (h & 1) == 0 ? other_half(s, h) : h;
 }
@@ -29,7 +29,7 @@ typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
 
-static void note_faces(const he_step *s, uint32_t f, uint32_t first_face, uint32_t count)
+static void note_faces(const he_subdivide_step *s, uint32_t f, uint32_t first_face, uint32_t count)
 {
     for (uint32_t i = 0; s->face_from != NULL && i < count; i++) {
         s->face_from[first_face + i - s->from->faces.issued] = f;
@@ -37,13 +37,13 @@ static void note_faces(const he_step *s, uint32_t f, uint32_t first_face, uint32
 }
 
 /* The corner at the origin of h, the two at its middle and the ones inside. */
-static void note_corner(const he_step *s, uint32_t h, uint32_t next)
+static void note_corner(const he_subdivide_step *s, uint32_t h, uint32_t next)
 {
     s->corner_from[first(s, h)] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
     s->corner_from[second(s, h)] = (he_corner_source){h, next, HE_FROM_MIDDLE};
 }
 
-static void cut_triangle(const he_step *s, uint32_t f, const uint32_t h[3], fresh *at)
+static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t h[3], fresh *at)
 {
     const he_content *from = s->from;
     he_content *to = s->to;
@@ -57,10 +57,10 @@ static void cut_triangle(const he_step *s, uint32_t f, const uint32_t h[3], fres
     }
     for (unsigned i = 0; i < 3; i++) {
         unsigned p = i == 0 ? 2 : i - 1, n = i == 2 ? 0 : i + 1;
-        he_step_set(to, lo[i], in[i], hi[p], from->origin[h[i]], part[i]);
-        he_step_set(to, in[i], hi[p], lo[i], m[i], part[i]);
-        he_step_set(to, hi[p], lo[i], in[i], m[p], part[i]);
-        he_step_set(to, in[i] + 1, in[n] + 1, in[p] + 1, m[p], centre);
+        he_subdivide_set(to, lo[i], in[i], hi[p], from->origin[h[i]], part[i]);
+        he_subdivide_set(to, in[i], hi[p], lo[i], m[i], part[i]);
+        he_subdivide_set(to, hi[p], lo[i], in[i], m[p], part[i]);
+        he_subdivide_set(to, in[i] + 1, in[n] + 1, in[p] + 1, m[p], centre);
         to->face_halfedge[part[i]] = lo[i];
         if (s->corner_from != NULL) {
             note_corner(s, h[i], h[n]);
@@ -76,7 +76,7 @@ static void cut_triangle(const he_step *s, uint32_t f, const uint32_t h[3], fres
 
 /* Quads between the corners and a vertex inside, to which edge i runs from the middle of the i-th
  * half-edge. */
-static void cut_polygon(const he_step *s, uint32_t f, uint32_t first_halfedge, fresh *at)
+static void cut_polygon(const he_subdivide_step *s, uint32_t f, uint32_t first_halfedge, fresh *at)
 {
     const he_content *from = s->from;
     he_content *to = s->to;
@@ -90,10 +90,10 @@ static void cut_polygon(const he_step *s, uint32_t f, uint32_t first_halfedge, f
     for (uint32_t i = 0; i < count; i++) {
         uint32_t part = i == 0 ? f : at->face + i - 1, in = 2 * (at->edge + i);
         uint32_t lo = first(s, h), next_m = middle(s, h), next = from->next[h];
-        he_step_set(to, lo, in, hi, from->origin[h], part);
-        he_step_set(to, in, before + 1, lo, next_m, part);
-        he_step_set(to, before + 1, hi, in, at->vertex, part);
-        he_step_set(to, hi, lo, before + 1, m, part);
+        he_subdivide_set(to, lo, in, hi, from->origin[h], part);
+        he_subdivide_set(to, in, before + 1, lo, next_m, part);
+        he_subdivide_set(to, before + 1, hi, in, at->vertex, part);
+        he_subdivide_set(to, hi, lo, before + 1, m, part);
         to->face_halfedge[part] = lo;
         if (s->corner_from != NULL) {
             note_corner(s, h, next);
@@ -117,7 +117,7 @@ static void cut_polygon(const he_step *s, uint32_t f, uint32_t first_halfedge, f
     at->face += count - 1;
 }
 
-static he_status cut_face(const he_step *s, uint32_t f, fresh *at, he_error *err)
+static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_error *err)
 {
     const he_content *from = s->from;
     uint32_t h[3] = {from->face_halfedge[f]};
@@ -135,7 +135,7 @@ static he_status cut_face(const he_step *s, uint32_t f, fresh *at, he_error *err
         cut_polygon(s, f, h[0], at);
         return HE_OK;
     }
-    if (he_step_is_doubled(from, h[0] ^ 1, h[1])) {
+    if (he_subdivide_is_doubled(from, h[0] ^ 1, h[1])) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h[0] >> 1,
                        "the middles of edges %u and %u would be joined twice", h[0] >> 1,
                        h[1] >> 1);
@@ -145,7 +145,7 @@ static he_status cut_face(const he_step *s, uint32_t f, fresh *at, he_error *err
 }
 
 /* What face f, which lives, gets. */
-static void count_face(const he_step *s, uint32_t f, fresh *at)
+static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
 {
     const he_content *from = s->from;
     uint32_t h = from->face_halfedge[f], i = from->next[h], count = 3;
@@ -164,7 +164,7 @@ static void count_face(const he_step *s, uint32_t f, fresh *at)
 
 /* The faces in lanes, each of which must know what those before it make. */
 typedef struct cutting {
-    const he_step *s;
+    const he_subdivide_step *s;
     fresh at[HE_MOST_LANES];
 } cutting;
 
@@ -174,7 +174,7 @@ static he_status count_lane(void *context, uint32_t lane, size_t from, size_t to
     fresh at = c->at[lane];
     (void)err;
     for (size_t f = from; f < to; f++) {
-        if (he_step_is_live(c->s->from->face_halfedge, (uint32_t)f)) {
+        if (he_subdivide_is_live(c->s->from->face_halfedge, (uint32_t)f)) {
             count_face(c->s, (uint32_t)f, &at);
         }
     }
@@ -185,11 +185,11 @@ static he_status count_lane(void *context, uint32_t lane, size_t from, size_t to
 static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     cutting *c = context;
-    const he_step *s = c->s;
+    const he_subdivide_step *s = c->s;
     fresh at = c->at[lane]; /* not there: lanes would write one cache line */
     he_status status = HE_OK;
     for (size_t f = from; f < to && status == HE_OK; f++) {
-        if (!he_step_is_live(s->from->face_halfedge, (uint32_t)f)) {
+        if (!he_subdivide_is_live(s->from->face_halfedge, (uint32_t)f)) {
             s->to->face_halfedge[f] = HE_DEAD;
         } else {
             status = cut_face(s, (uint32_t)f, &at, err);
@@ -199,7 +199,7 @@ static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, 
     return status;
 }
 
-static he_status cut_faces(const he_step *s, uint32_t lanes, he_error *err)
+static he_status cut_faces(const he_subdivide_step *s, uint32_t lanes, he_error *err)
 {
     const he_content *from = s->from;
     fresh at = {.vertex = from->vertices.issued + from->edges.live,
@@ -224,21 +224,21 @@ static he_status cut_faces(const he_step *s, uint32_t lanes, he_error *err)
     return lanes > 1 && status != HE_OK && status != HE_CANCELLED ? cut_faces(s, 1, err) : status;
 }
 
-static void cut_boundary(const he_step *s, uint32_t h)
+static void cut_boundary(const he_subdivide_step *s, uint32_t h)
 {
     const he_content *from = s->from;
     uint32_t lo = first(s, h), hi = second(s, h);
-    he_step_set(s->to, lo, hi, second(s, from->prev[h]), from->origin[h], HE_NONE);
-    he_step_set(s->to, hi, first(s, from->next[h]), lo, middle(s, h), HE_NONE);
+    he_subdivide_set(s->to, lo, hi, second(s, from->prev[h]), from->origin[h], HE_NONE);
+    he_subdivide_set(s->to, hi, first(s, from->next[h]), lo, middle(s, h), HE_NONE);
     if (s->corner_from != NULL) {
         s->corner_from[lo] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
     }
 }
 
-static void cut_edge(const he_step *s, uint32_t e)
+static void cut_edge(const he_subdivide_step *s, uint32_t e)
 {
     const he_content *from = s->from;
-    uint32_t rank = he_step_edge_rank(s, e), boundary = HE_NONE;
+    uint32_t rank = he_subdivide_edge_rank(s, e), boundary = HE_NONE;
     for (uint32_t h = 2 * e; h <= 2 * e + 1; h++) {
         if (from->face[h] == HE_NONE) {
             boundary = h;
@@ -261,13 +261,13 @@ static void cut_edge(const he_step *s, uint32_t e)
 
 static he_status cut_edges(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
-    const he_step *s = context;
+    const he_subdivide_step *s = context;
     (void)part;
     (void)err;
     for (size_t e = from; e < to; e++) {
         if (s->from->next[2 * e] == HE_DEAD) {
-            he_step_set(s->to, (uint32_t)(2 * e), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
-            he_step_set(s->to, (uint32_t)(2 * e + 1), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+            he_subdivide_set(s->to, (uint32_t)(2 * e), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+            he_subdivide_set(s->to, (uint32_t)(2 * e + 1), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
         } else {
             cut_edge(s, (uint32_t)e);
         }
@@ -277,7 +277,7 @@ static he_status cut_edges(void *context, uint32_t part, size_t from, size_t to,
 
 static he_status keep_vertices(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
-    const he_step *s = context;
+    const he_subdivide_step *s = context;
     (void)part;
     (void)err;
     for (size_t v = from; v < to; v++) {
@@ -287,7 +287,7 @@ static he_status keep_vertices(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-he_status he_step_split(he_step *s, he_error *err)
+he_status he_subdivide_split(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
     he_status status = cut_faces(s, he_lanes(s->watch, from->faces.issued), err);

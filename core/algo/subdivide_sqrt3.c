@@ -26,7 +26,7 @@ typedef struct triangle {
 
 enum { NO_CUT = 3 };
 
-static triangle triangle_of(const he_step *s, uint32_t f)
+static triangle triangle_of(const he_subdivide_step *s, uint32_t f)
 {
     const he_content *from = s->from;
     triangle t = {.f = f, .h = {from->face_halfedge[f]}, .cut = NO_CUT};
@@ -46,19 +46,19 @@ static unsigned place_of(const triangle *t, uint32_t h)
 }
 
 /* The j-th of the three half-edges that h is cut into, and the vertex where it ends (j < 2). */
-static uint32_t segment(const he_step *s, uint32_t h, unsigned j)
+static uint32_t segment(const he_subdivide_step *s, uint32_t h, unsigned j)
 {
     uint32_t e = h >> 1, side = h & 1, more = s->from->edges.issued + 2 * s->third[e];
     unsigned along = side == 0 ? j : 2 - j;
     return 2 * (along == 0 ? e : more + along - 1) | side;
 }
-static uint32_t point(const he_step *s, uint32_t h, unsigned j)
+static uint32_t point(const he_subdivide_step *s, uint32_t h, unsigned j)
 {
     uint32_t first = s->from->vertices.issued + 2 * s->third[h >> 1];
     return first + ((h & 1) == 0 ? j : 1 - j);
 }
 
-static uint32_t apex(const he_step *s, uint32_t h)
+static uint32_t apex(const he_subdivide_step *s, uint32_t h)
 {
     triangle t = triangle_of(s, s->from->face[h]);
     if (t.cut == NO_CUT) {
@@ -67,7 +67,7 @@ static uint32_t apex(const he_step *s, uint32_t h)
     return point(s, t.h[t.cut], place_of(&t, h) == (t.cut + 1) % 3 ? 1 : 0);
 }
 
-static uint32_t out_leg(const he_step *s, uint32_t h)
+static uint32_t out_leg(const he_subdivide_step *s, uint32_t h)
 {
     triangle t = triangle_of(s, s->from->face[h]);
     unsigned i = place_of(&t, h);
@@ -77,7 +77,7 @@ static uint32_t out_leg(const he_step *s, uint32_t h)
     return i == (t.cut + 1) % 3 ? 2 * (s->spoke[t.f] + 1) + 1 : segment(s, t.h[t.cut], 0);
 }
 
-static uint32_t in_leg(const he_step *s, uint32_t h)
+static uint32_t in_leg(const he_subdivide_step *s, uint32_t h)
 {
     triangle t = triangle_of(s, s->from->face[h]);
     unsigned i = place_of(&t, h);
@@ -88,7 +88,7 @@ static uint32_t in_leg(const he_step *s, uint32_t h)
 }
 
 /* The values of a corner at the apex of h. */
-static he_corner_source at_apex(const he_step *s, uint32_t h)
+static he_corner_source at_apex(const he_subdivide_step *s, uint32_t h)
 {
     triangle t = triangle_of(s, s->from->face[h]);
     if (t.cut == NO_CUT) {
@@ -110,10 +110,10 @@ typedef struct corner {
     he_corner_source source;
 } corner;
 
-static void put(const he_step *s, uint32_t face, const corner c[3])
+static void put(const he_subdivide_step *s, uint32_t face, const corner c[3])
 {
     for (unsigned i = 0; i < 3; i++) {
-        he_step_set(s->to, c[i].h, c[(i + 1) % 3].h, c[(i + 2) % 3].h, c[i].origin, face);
+        he_subdivide_set(s->to, c[i].h, c[(i + 1) % 3].h, c[(i + 2) % 3].h, c[i].origin, face);
         if (s->corner_from != NULL) {
             s->corner_from[c[i].h] = c[i].source;
         }
@@ -122,7 +122,7 @@ static void put(const he_step *s, uint32_t face, const corner c[3])
 }
 
 /* The triangle of the i-th half-edge. */
-static void put_part(const he_step *s, const triangle *t, unsigned i, uint32_t face)
+static void put_part(const he_subdivide_step *s, const triangle *t, unsigned i, uint32_t face)
 {
     const he_content *from = s->from;
     uint32_t h = t->h[i], next = t->h[(i + 1) % 3], last = t->h[(i + 2) % 3];
@@ -133,7 +133,7 @@ static void put_part(const he_step *s, const triangle *t, unsigned i, uint32_t f
             {2 * s->spoke[t->f] + 1, from->origin[last], at_row(last)},
         };
         put(s, face, parts);
-    } else if (he_step_is_sharp(s, h >> 1)) {
+    } else if (he_subdivide_is_sharp(s, h >> 1)) {
         const corner parts[3] = {
             {h, from->origin[h], at_row(h)},
             {out_leg(s, h), from->origin[next], at_row(next)},
@@ -150,11 +150,11 @@ static void put_part(const he_step *s, const triangle *t, unsigned i, uint32_t f
     }
 }
 
-static void put_face(const he_step *s, uint32_t f)
+static void put_face(const he_subdivide_step *s, uint32_t f)
 {
     const he_content *from = s->from;
     triangle t = triangle_of(s, f);
-    uint32_t rank = he_step_face_rank(s, f), first = from->faces.issued + 2 * rank;
+    uint32_t rank = he_subdivide_face_rank(s, f), first = from->faces.issued + 2 * rank;
     for (unsigned i = 0; i < 3; i++) {
         put_part(s, &t, i, i == 0 ? f : first + i - 1);
     }
@@ -170,7 +170,7 @@ static void put_face(const he_step *s, uint32_t f)
 }
 
 /* What runs along a hole stays, or is cut. */
-static void put_boundary(const he_step *s, uint32_t h)
+static void put_boundary(const he_subdivide_step *s, uint32_t h)
 {
     const he_content *from = s->from;
     uint32_t next = from->next[h], prev = from->prev[h];
@@ -179,15 +179,15 @@ static void put_boundary(const he_step *s, uint32_t h)
         uint32_t at = cut ? segment(s, h, j) : h;
         uint32_t after = !cut ? next : j < 2 ? segment(s, h, j + 1) : segment(s, next, 0);
         uint32_t before = !cut ? prev : j > 0 ? segment(s, h, j - 1) : segment(s, prev, 2);
-        he_step_set(s->to, at, after, before, j == 0 ? from->origin[h] : point(s, h, j - 1),
-                    HE_NONE);
+        he_subdivide_set(s->to, at, after, before, j == 0 ? from->origin[h] : point(s, h, j - 1),
+                         HE_NONE);
         if (s->corner_from != NULL && j == 0) {
             s->corner_from[at] = at_row(h);
         }
     }
 }
 
-static void put_thirds(const he_step *s, uint32_t e, uint32_t along)
+static void put_thirds(const he_subdivide_step *s, uint32_t e, uint32_t along)
 {
     const he_content *from = s->from;
     for (unsigned j = 0; j < 2; j++) {
@@ -202,7 +202,7 @@ static void put_thirds(const he_step *s, uint32_t e, uint32_t along)
     }
 }
 
-static void put_edge(const he_step *s, uint32_t e)
+static void put_edge(const he_subdivide_step *s, uint32_t e)
 {
     const he_content *from = s->from;
     uint32_t along = 2 * e;
@@ -222,23 +222,23 @@ static void put_edge(const he_step *s, uint32_t e)
     }
 }
 
-static void put_vertex(const he_step *s, uint32_t v)
+static void put_vertex(const he_subdivide_step *s, uint32_t v)
 {
     uint32_t h = s->from->vertex_halfedge[v];
     if (h != HE_DEAD && h != HE_NONE) {
-        bool sharp = he_step_is_sharp(s, h >> 1);
+        bool sharp = he_subdivide_is_sharp(s, h >> 1);
         h = !sharp ? out_leg(s, h ^ 1) : s->thirds ? segment(s, h, 0) : h;
     }
     s->to->vertex_halfedge[v] = h;
 }
 
 /* Number what is new. */
-static he_status find_places(he_step *s, he_error *err)
+static he_status find_places(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
     uint32_t thirds = 0;
     for (uint32_t e = 0; e < from->edges.issued; e++) {
-        bool cut = s->thirds && from->next[2 * e] != HE_DEAD && he_step_is_sharp(s, e);
+        bool cut = s->thirds && from->next[2 * e] != HE_DEAD && he_subdivide_is_sharp(s, e);
         s->third[e] = cut ? thirds++ : HE_NONE;
     }
     uint32_t spoke = from->edges.issued + 2 * thirds;
@@ -255,7 +255,7 @@ static he_status find_places(he_step *s, he_error *err)
             return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
                            "face %u is no triangle, and sqrt3 is for triangles", f);
         }
-        if (he_step_is_doubled(from, h ^ 1, n)) {
+        if (he_subdivide_is_doubled(from, h ^ 1, n)) {
             return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h >> 1,
                            "faces %u and %u would be joined across edges %u and %u", f,
                            from->face[h ^ 1], h >> 1, n >> 1);
@@ -269,7 +269,7 @@ static he_status find_places(he_step *s, he_error *err)
     return HE_OK;
 }
 
-he_status he_step_sqrt3(he_step *s, he_error *err)
+he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
     s->centre = he_mem_array(NULL, from->faces.issued, sizeof *s->centre);
@@ -282,7 +282,7 @@ he_status he_step_sqrt3(he_step *s, he_error *err)
     he_status status = find_places(s, err);
     for (uint32_t f = 0; f < from->faces.issued && status == HE_OK; f++) {
         status = he_watch_at(s->watch, f, from->faces.issued, err);
-        if (status == HE_OK && he_step_is_live(from->face_halfedge, f)) {
+        if (status == HE_OK && he_subdivide_is_live(from->face_halfedge, f)) {
             put_face(s, f);
         }
     }
@@ -290,7 +290,7 @@ he_status he_step_sqrt3(he_step *s, he_error *err)
         status = he_watch_at(s->watch, e, from->edges.issued, err);
         if (from->next[2 * e] == HE_DEAD) {
             for (uint32_t h = 2 * e; h <= 2 * e + 1; h++) {
-                he_step_set(s->to, h, HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+                he_subdivide_set(s->to, h, HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
             }
         } else {
             put_edge(s, e);

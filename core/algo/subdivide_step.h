@@ -37,7 +37,7 @@ typedef struct he_corner_source {
     he_source_how how;
 } he_corner_source;
 
-typedef struct he_step {
+typedef struct he_subdivide_step {
     const he_content *from;
     he_content *to;
     he_watch *watch;
@@ -58,21 +58,21 @@ typedef struct he_step {
     /* Parents of new rows, by their distance from the old; where there are columns. */
     uint32_t *vertex_from, *edge_from, *face_from; /* an edge inside has HE_NONE */
     he_corner_source *corner_from;                 /* of every half-edge of `to` */
-} he_step;
+} he_subdivide_step;
 
-static inline bool he_step_is_live(const uint32_t *link, uint32_t row)
+static inline bool he_subdivide_is_live(const uint32_t *link, uint32_t row)
 {
     return link[row] != HE_DEAD;
 }
-static inline uint32_t he_step_edge_rank(const he_step *s, uint32_t e)
+static inline uint32_t he_subdivide_edge_rank(const he_subdivide_step *s, uint32_t e)
 {
     return s->edge_rank == NULL ? e : s->edge_rank[e];
 }
-static inline uint32_t he_step_face_rank(const he_step *s, uint32_t f)
+static inline uint32_t he_subdivide_face_rank(const he_subdivide_step *s, uint32_t f)
 {
     return s->face_rank == NULL ? f : s->face_rank[f];
 }
-static inline bool he_step_is_sharp(const he_step *s, uint32_t e)
+static inline bool he_subdivide_is_sharp(const he_subdivide_step *s, uint32_t e)
 {
     const uint32_t *face = s->from->face;
     return face[2 * e] == HE_NONE || face[2 * e + 1] == HE_NONE ||
@@ -81,13 +81,13 @@ static inline bool he_step_is_sharp(const he_step *s, uint32_t e)
 
 /* Is the face of h another triangle on the same three vertices as the one of its twin, whose next
  * half-edge is `after`? */
-static inline bool he_step_is_doubled(const he_content *from, uint32_t h, uint32_t after)
+static inline bool he_subdivide_is_doubled(const he_content *from, uint32_t h, uint32_t after)
 {
     uint32_t f = from->face[h];
     return f != HE_NONE && f == from->face[after ^ 1] && from->next[from->next[from->next[h]]] == h;
 }
-static inline void he_step_set(he_content *to, uint32_t h, uint32_t next, uint32_t prev,
-                               uint32_t origin, uint32_t face)
+static inline void he_subdivide_set(he_content *to, uint32_t h, uint32_t next, uint32_t prev,
+                                    uint32_t origin, uint32_t face)
 {
     to->next[h] = next;
     to->prev[h] = prev;
@@ -96,16 +96,16 @@ static inline void he_step_set(he_content *to, uint32_t h, uint32_t next, uint32
 }
 
 /* The links of `to`, its vertices' half-edges among them; features and parents too. */
-HE_NODISCARD he_status he_step_split(he_step *s, he_error *err);
-HE_NODISCARD he_status he_step_sqrt3(he_step *s, he_error *err);
+HE_NODISCARD he_status he_subdivide_split(he_subdivide_step *s, he_error *err);
+HE_NODISCARD he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err);
 
 /* Vectors of `to` from those of `from`, by the scheme's rules: positions, or three components of a
  * column. Finite where `from` is, however large. */
-HE_NODISCARD he_status he_step_place(const he_step *s, const he_vec3 *from, he_vec3 *to,
-                                     he_error *err);
+HE_NODISCARD he_status he_subdivide_place(const he_subdivide_step *s, const he_vec3 *from,
+                                          he_vec3 *to, he_error *err);
 
 /* Make the arrays of parents that the columns ask for. */
-HE_NODISCARD he_status he_step_reserve_parents(he_step *s, he_error *err);
-HE_NODISCARD he_status he_step_carry(const he_step *s, he_error *err);
+HE_NODISCARD he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err);
+HE_NODISCARD he_status he_subdivide_carry(const he_subdivide_step *s, he_error *err);
 
 #endif

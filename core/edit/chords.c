@@ -5,10 +5,10 @@
 #include <assert.h>
 
 /* A corner in the plane. */
-typedef struct he_crossing {
+typedef struct he_line_crossing {
     double along; /* the line */
     uint32_t at;  /* its place in the loop */
-} he_crossing;
+} he_line_crossing;
 
 /* What a part has corners of, and, times BESIDE, what it must have since a part beside it is on the
  * other side. */
@@ -21,14 +21,14 @@ static int side_at(const he_mesh *m, const he_sides *sides, const he_chords *c, 
 
 /* --- the corners in the plane, in their order along the line --- */
 
-static bool comes_before(const he_crossing *a, const he_crossing *b)
+static bool comes_before(const he_line_crossing *a, const he_line_crossing *b)
 {
     return a->along < b->along || (a->along <= b->along && a->at < b->at);
 }
 
-static void sift(he_crossing *heap, size_t count, size_t i)
+static void sift(he_line_crossing *heap, size_t count, size_t i)
 {
-    he_crossing moved = heap[i];
+    he_line_crossing moved = heap[i];
     for (size_t child = 2 * i + 1; child < count; child = 2 * i + 1) {
         if (child + 1 < count && comes_before(&heap[child], &heap[child + 1])) {
             child++;
@@ -43,13 +43,13 @@ static void sift(he_crossing *heap, size_t count, size_t i)
 }
 
 /* Heapsort (J. W. J. Williams, 1964): no memory, and no order of input that is slow. */
-static void sort(he_crossing *line, size_t count)
+static void sort(he_line_crossing *line, size_t count)
 {
     for (size_t i = count / 2; i-- > 0;) {
         sift(line, count, i);
     }
     for (size_t left = count; left-- > 1;) {
-        he_crossing last = line[left];
+        he_line_crossing last = line[left];
         line[left] = line[0];
         line[0] = last;
         sift(line, left, 0);
@@ -244,7 +244,7 @@ static he_status make_room(he_chords *c, uint32_t n, he_error *err)
     }
     if (status == HE_OK && c->line_capacity < n) {
         size_t capacity = he_mem_grown(c->line_capacity, n);
-        he_crossing *line = he_mem_array(c->line, capacity, sizeof *line);
+        he_line_crossing *line = he_mem_array(c->line, capacity, sizeof *line);
         if (line == NULL) {
             return he_fail_plain(err, HE_NO_MEMORY, "no memory to cut a face of %u corners", n);
         }
@@ -274,7 +274,7 @@ he_status he_chords_plan(const he_mesh *m, he_face f, const he_sides *sides, he_
         h = he_next(m, h);
         c->corner.ids[i] = h.i;
         if (he_side_of(sides, he_origin(m, h)) == 0) {
-            c->line[count++] = (he_crossing){0, i};
+            c->line[count++] = (he_line_crossing){0, i};
         }
     }
     order_along_line(m, sides, c, count);

@@ -36,7 +36,7 @@ typedef struct he_chords {
     /* what planning needs */
     he_ids partners; /* two for each corner */
     he_ids open;     /* chords begun and not ended, and what is in the part beside each */
-    struct he_crossing *line;
+    struct he_line_crossing *line;
     size_t line_capacity;
 } he_chords;
 

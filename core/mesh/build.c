@@ -148,7 +148,7 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
         status = build_vertices(soup, take, k, err);
     }
     if (status == HE_OK) {
-        status = he_link(corners, turns, k, err);
+        status = he_build_links(corners, turns, k, err);
     }
     return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }

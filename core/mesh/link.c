@@ -267,7 +267,7 @@ static he_status link_all(linking *l, size_t edges, he_error *err)
     return status;
 }
 
-he_status he_link(const he_corners *corners, he_turns *turns, he_content *c, he_error *err)
+he_status he_build_links(const he_corners *corners, he_turns *turns, he_content *c, he_error *err)
 {
     const he_soup *soup = corners->soup;
     linking l = {.soup = soup,

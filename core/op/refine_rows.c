@@ -6,7 +6,7 @@
 
 static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    he_step_counts counts[HE_SUBDIVIDE_STEPS];
+    he_subdivide_counts counts[HE_SUBDIVIDE_STEPS];
     unsigned steps = (unsigned)args[1].number;
     for (size_t i = 0; i < 3; i++) {
         he_status status = he_give_room(out, i, steps, err);

@@ -111,13 +111,13 @@ static he_status add_component(he_components *list, he_component component, he_e
 }
 
 /* The tree a face is in. */
-static uint32_t tree_of(const he_mesh *m, he_joined by, uint32_t *parent, uint32_t f)
+static uint32_t tree_of(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t f)
 {
     return root_of(parent, by == HE_JOINED_BY_EDGE ? f : m->c.origin[m->c.face_halfedge[f]]);
 }
 
 /* Number the trees by their lowest face in `label`, and count faces. */
-static he_status count_faces(const he_mesh *m, he_joined by, uint32_t *parent, uint32_t *label,
+static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t *label,
                              he_components *list, he_error *err)
 {
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
@@ -144,7 +144,7 @@ static he_status count_faces(const he_mesh *m, he_joined by, uint32_t *parent, u
 /* Count each vertex once in every component that has a face at it. By vertex, and at a single
  * closed fan, one look is enough; elsewhere `last`, which keeps for each component the vertex it
  * counted last, tells the fans of one component apart from those of another. */
-static he_status count_vertices(const he_mesh *m, he_joined by, uint32_t *parent,
+static he_status count_vertices(const he_mesh *m, he_connection by, uint32_t *parent,
                                 const uint32_t *label, uint32_t *last, he_components *list,
                                 he_error *err)
 {
@@ -194,7 +194,7 @@ static uint32_t *none_new(size_t count)
     return array;
 }
 
-he_status he_components_find(const he_mesh *m, he_joined by, he_components *out, he_error *err)
+he_status he_components_find(const he_mesh *m, he_connection by, he_components *out, he_error *err)
 {
     he_kind kind = by == HE_JOINED_BY_VERTEX ? HE_VERTEX : HE_FACE;
     uint32_t *parent = NULL, *label = NULL, *last = NULL, joins = 0;

@@ -54,7 +54,7 @@ HE_NODISCARD he_status he_boundaries_find(const he_mesh *m, he_boundaries *out, 
 void he_boundaries_clear(he_boundaries *boundaries);
 
 /* COMPONENTS. */
-typedef enum he_joined { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_joined;
+typedef enum he_connection { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_connection;
 
 typedef struct he_component {
     uint32_t faces;
@@ -67,7 +67,7 @@ typedef struct he_components {
     size_t count, capacity;
 } he_components;
 
-HE_NODISCARD he_status he_components_find(const he_mesh *m, he_joined by, he_components *out,
+HE_NODISCARD he_status he_components_find(const he_mesh *m, he_connection by, he_components *out,
                                           he_error *err);
 void he_components_clear(he_components *components);
 

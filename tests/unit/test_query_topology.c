@@ -21,7 +21,7 @@ static bool has_corner(const he_mesh *m, uint32_t f, uint32_t v)
 enum { SMALL = 64 };
 
 /* Give every face the lowest label among those it touches until nothing changes. */
-static void label_faces(const he_mesh *m, he_joined by, uint32_t *label)
+static void label_faces(const he_mesh *m, he_connection by, uint32_t *label)
 {
     uint32_t n = he_mesh_issued(m, HE_FACE);
     assert_true(n <= SMALL);
@@ -52,7 +52,7 @@ static void label_faces(const he_mesh *m, he_joined by, uint32_t *label)
     }
 }
 
-static uint32_t try_components(const he_mesh *m, he_joined by)
+static uint32_t try_components(const he_mesh *m, he_connection by)
 {
     uint32_t label[SMALL] = {0};
     label_faces(m, by, label);

@@ -177,7 +177,7 @@ static void the_corner_of_a_cube_comes_to_half_its_place(void **state)
 static void counts_follow_their_formulas(void **state)
 {
     (void)state;
-    he_step_counts c[4];
+    he_subdivide_counts c[4];
     he_mesh *m = script_mesh("021,013,032,123", NULL);
     assert_int_equal(he_subdivide(m, HE_LOOP, 4, c, NULL), HE_OK);
     for (unsigned i = 0, faces = 16; i < 4; i++, faces *= 4) {
