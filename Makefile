@@ -62,9 +62,9 @@ endif
 # --- what there is -------------------------------------------------------------------------
 
 object      = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
-CORE_C     := $(sort $(wildcard core/*/*.c))
-API_C      := $(sort $(wildcard api/*.c))
-SERVER_C   := $(sort $(filter-out server/main.c,$(wildcard server/*.c)))
+CORE_C     := $(sort $(shell find core -name '*.c'))
+API_C      := $(sort $(shell find api -name '*.c'))
+SERVER_C   := $(sort $(filter-out server/main.c,$(shell find server -name '*.c')))
 SUITES     := unit model api e2e
 PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
 SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
@@ -78,7 +78,7 @@ FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
                 $(wildcard tests/fuzz/*.c)))
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
-HEADERS    := $(sort $(wildcard core/*/*.h api/*.h server/*.h tests/*.h tests/*/*.h \
+HEADERS    := $(sort $(shell find core api server -name '*.h') $(wildcard tests/*.h tests/*/*.h \
                 tests/bench/side/*.h tests/bench/ours/*.h))
 ALL_C      := $(CORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
               $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C)

@@ -1,8 +1,8 @@
 /* analyzer.h - included first by .ci/lint-tidy, never by the compiler. The analyzer sees one source
  * at a time, so it cannot know that a refusal returns the status it was given, never HE_OK, and
  * api_in_fail false. */
-#include "api/json_in.h"
-#include "mesh/status.h"
+#include "api/json/json_in.h"
+#include "base/status.h"
 
 #define he_fail(err, status, ...)       ((void)(he_fail)(err, status, __VA_ARGS__), (status))
 #define he_fail_plain(err, status, ...) ((void)(he_fail_plain)(err, status, __VA_ARGS__), (status))

@@ -63,14 +63,14 @@ enum {
      * bytes. */
     API_MAX_EDITS_ELEMENTS = 1 << 26,
     API_MAX_EDITS_ROWS = 1 << 26,
-    API_HUB_USES = 256,        /* of a degree that was counted, see api/edit_cost.h */
+    API_HUB_USES = 256,        /* of a degree that was counted, see api/write/edit_cost.h */
     API_MAX_IDS = 1 << 24,     /* in one list of ids, what references stand for included */
     API_MAX_OTHERS = 16,       /* meshes that one request names beside its own */
     API_MAX_AS = 64,           /* characters of an "as" name */
     API_MAX_QUERIES = 10000,   /* questions of one query */
     API_MAX_PATH_STEPS = 4096, /* of a traversal's path */
     API_MAX_WALK = 10000000,   /* half-edges a walk may answer with, or a query look at */
-    API_HALFEDGE_STEPS = 8,    /* what looking at one of those is charged: mesh/budget.h */
+    API_HALFEDGE_STEPS = 8,    /* what looking at one of those is charged: base/budget.h */
     /* What all questions of a request may be charged; of larger meshes as much as one pass takes.
      * Up to a second of work: steps take 10 ns and less. */
     API_MAX_STEPS = API_HALFEDGE_STEPS * API_MAX_WALK,

@@ -1,7 +1,7 @@
 /* store.h - what api needs from above: meshes by id, locked, revised, and durable.
  *
- * The server fills this struct in (server/store.c). A handle is a counted reference to a stored
- * mesh; it stays valid after the mesh was removed from the store, reading `removed` true.
+ * The server fills this struct in (server/store/store.c). A handle is a counted reference to a
+ * stored mesh; it stays valid after the mesh was removed from the store, reading `removed` true.
  *
  * Locks are held for as long as it takes to compute, never while a client is waited for. */
 #ifndef HE_API_STORE_H

@@ -1,6 +1,6 @@
 #include "server/assets.h"
 
-#include "mesh/mem.h"
+#include "base/mem.h"
 
 #include <dirent.h>
 #include <errno.h>

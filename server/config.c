@@ -1,7 +1,7 @@
 #include "server/config.h"
 
-#include "mesh/mem.h"
-#include "server/address.h"
+#include "base/mem.h"
+#include "server/net/address.h"
 
 #include <inttypes.h>
 #include <stddef.h>

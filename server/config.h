@@ -5,7 +5,7 @@
 #ifndef HE_SERVER_CONFIG_H
 #define HE_SERVER_CONFIG_H
 
-#include "server/http_policy.h"
+#include "server/http/http_policy.h"
 
 #include <stdbool.h>
 #include <stdint.h>

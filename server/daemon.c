@@ -1,12 +1,12 @@
 #include "server/daemon.h"
 
 #include "server/assets.h"
-#include "server/hands.h"
-#include "server/http.h"
-#include "server/job_board.h"
-#include "server/memory.h"
-#include "server/memory_limit.h"
+#include "server/http/http.h"
+#include "server/job/job_board.h"
 #include "server/samples.h"
+#include "server/system/hands.h"
+#include "server/system/memory.h"
+#include "server/system/memory_limit.h"
 
 #include <inttypes.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 #include "server/config.h"
 #include "server/daemon.h"
-#include "server/healthcheck.h"
-#include "server/memory.h"
+#include "server/net/healthcheck.h"
+#include "server/system/memory.h"
 
 #include <stdlib.h>
 

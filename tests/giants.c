@@ -1,6 +1,6 @@
 #include "giants.h"
 
-#include "mesh/build.h"
+#include "build/build.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 #include "polygons.h"
 
-#include "mesh/build.h"
+#include "build/build.h"
 
 #include <math.h>
 #include <stdlib.h>

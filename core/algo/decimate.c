@@ -1,9 +1,9 @@
 #include "algo/decimate.h"
 
 #include "algo/decimation.h"
+#include "geometry/scale.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
-#include "query/scale.h"
 
 const char *const he_decimate_stop_names[HE_STOP_COUNT + 1] = {"faces", "max_error", "exhausted",
                                                                NULL};

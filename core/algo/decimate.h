@@ -1,6 +1,6 @@
 /* decimate.h - fewer triangles, and the shape as it was.
  *
- * Edges are collapsed (edit/collapse.h), one of the cheapest each time, by the quadrics of
+ * Edges are collapsed (edit/local/collapse.h), one of the cheapest each time, by the quadrics of
  * Garland and Heckbert, "Surface simplification using quadric error metrics", 1997. A vertex has a
  * quadric (quadric.h): the sum of the squared distances to the planes of the faces about it, each
  * weighed by the face's area. An edge costs the least value of the sum of its ends' quadrics; there

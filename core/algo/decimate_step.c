@@ -1,8 +1,8 @@
 /* One collapse of a decimation. */
 #include "algo/decimation.h"
 
-#include "edit/collapse.h"
-#include "edit/point.h"
+#include "edit/local/collapse.h"
+#include "edit/piece/point.h"
 
 /* A face may turn by so much: the square of the cosine of 60 degrees. */
 static const double TURN = 0.25;

@@ -11,7 +11,7 @@
 #ifndef HE_ALGO_QUADRIC_H
 #define HE_ALGO_QUADRIC_H
 
-#include "query/vec3.h"
+#include "geometry/vec3.h"
 
 typedef struct he_quadric {
     double xx, xy, xz, yy, yz, zz; /* A */

@@ -1,7 +1,7 @@
 #include "algo/shape.h"
 
 #include "algo/solid.h"
-#include "format/number.h"
+#include "format/text/number.h"
 
 #include <assert.h>
 #include <math.h>

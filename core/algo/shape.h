@@ -10,7 +10,7 @@
 #ifndef HE_ALGO_SHAPE_H
 #define HE_ALGO_SHAPE_H
 
-#include "mesh/build.h"
+#include "build/build.h"
 
 typedef enum he_shape_type {
     HE_SHAPE_NUMBER,  /* finite */

@@ -1,6 +1,6 @@
 #include "algo/solid.h"
 
-#include "query/vec3.h"
+#include "geometry/vec3.h"
 
 #include <assert.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef HE_ALGO_SOLID_H
 #define HE_ALGO_SOLID_H
 
-#include "mesh/build.h"
+#include "build/build.h"
 
 /* Tell the soup's watch how full it is; false when it has given up. For each row of a shape. */
 bool he_solid_goes_on(const he_soup *soup);

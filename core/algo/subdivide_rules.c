@@ -4,9 +4,9 @@
  * An old vertex gathers in `to` what its rule sums up, its neighbours (at catmull_clark its faces'
  * means too) or, on a curve, its two neighbours there, and is then moved. */
 #include "algo/subdivide_step.h"
-#include "mesh/exec.h"
+#include "base/exec.h"
 
-#include "query/scale.h"
+#include "geometry/scale.h"
 
 #include <math.h>
 

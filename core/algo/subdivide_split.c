@@ -1,6 +1,6 @@
 /* Links where every edge is cut in halves: loop, catmull_clark, linear. */
 #include "algo/subdivide_step.h"
-#include "mesh/exec.h"
+#include "base/exec.h"
 
 /* Everything about an edge and its halves is where these say:
  *

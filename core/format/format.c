@@ -1,10 +1,10 @@
-#include "format/format.h"
+#include "format/io/format.h"
 
-#include "format/gltf.h"
-#include "format/obj.h"
-#include "format/off.h"
-#include "format/ply.h"
-#include "format/stl.h"
+#include "format/gltf/gltf.h"
+#include "format/obj/obj.h"
+#include "format/off/off.h"
+#include "format/ply/ply.h"
+#include "format/stl/stl.h"
 
 #include <string.h>
 

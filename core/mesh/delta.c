@@ -1,7 +1,7 @@
 #include "mesh/delta.h"
 
+#include "base/word_hash.h"
 #include "mesh/content.h"
-#include "mesh/word_hash.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "mesh/column.h"
 
-#include "mesh/text_hash.h"
+#include "base/text_hash.h"
 
 #include <stdatomic.h>
 #include <string.h>

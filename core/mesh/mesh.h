@@ -50,9 +50,9 @@
 #ifndef HE_MESH_MESH_H
 #define HE_MESH_MESH_H
 
-#include "mesh/mem.h"
-#include "mesh/status.h"
-#include "mesh/watch.h"
+#include "base/mem.h"
+#include "base/status.h"
+#include "base/watch.h"
 
 #include <stdbool.h>
 #include <stddef.h>

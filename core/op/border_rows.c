@@ -1,8 +1,8 @@
 #include "op/rows.h"
 
-#include "edit/edge_extrude.h"
-#include "edit/erase.h"
-#include "edit/seam.h"
+#include "edit/border/edge_extrude.h"
+#include "edit/border/seam.h"
+#include "edit/local/erase.h"
 
 static he_status run_edge_delete(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {

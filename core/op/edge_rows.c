@@ -1,10 +1,10 @@
 #include "op/rows.h"
 
-#include "edit/bisect.h"
-#include "edit/collapse.h"
-#include "edit/edge_bevel.h"
-#include "edit/flip.h"
-#include "edit/split.h"
+#include "edit/bevel/edge_bevel.h"
+#include "edit/local/bisect.h"
+#include "edit/local/collapse.h"
+#include "edit/local/flip.h"
+#include "edit/local/split.h"
 
 static he_status run_edge_bisect(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {

@@ -1,11 +1,11 @@
 #include "op/rows.h"
 
-#include "edit/cut.h"
-#include "edit/erase.h"
-#include "edit/face_add.h"
-#include "edit/hole.h"
-#include "edit/poke.h"
-#include "edit/triangulate.h"
+#include "edit/border/hole.h"
+#include "edit/local/cut.h"
+#include "edit/local/erase.h"
+#include "edit/local/face_add.h"
+#include "edit/local/poke.h"
+#include "edit/whole/triangulate.h"
 
 static he_status run_face_add(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {

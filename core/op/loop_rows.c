@@ -1,8 +1,8 @@
 #include "op/rows.h"
 
-#include "edit/bridge.h"
-#include "edit/loop_join.h"
-#include "edit/loop_split.h"
+#include "edit/border/bridge.h"
+#include "edit/border/loop_join.h"
+#include "edit/border/loop_split.h"
 
 static he_status run_loop_bridge(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {

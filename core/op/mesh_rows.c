@@ -1,9 +1,9 @@
 #include "op/rows.h"
 
-#include "edit/delaunay.h"
-#include "edit/plane_cut.h"
-#include "edit/plane_split.h"
-#include "edit/transform.h"
+#include "edit/plane/plane_cut.h"
+#include "edit/plane/plane_split.h"
+#include "edit/whole/delaunay.h"
+#include "edit/whole/transform.h"
 #include "mesh/compact.h"
 
 static he_status run_transform(he_mesh *m, const he_arg *args, he_results *out, he_error *err)

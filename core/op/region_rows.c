@@ -1,8 +1,8 @@
 #include "op/rows.h"
 
-#include "edit/extrude.h"
-#include "edit/face_collapse.h"
-#include "edit/inset.h"
+#include "edit/local/face_collapse.h"
+#include "edit/region/extrude.h"
+#include "edit/region/inset.h"
 
 static void give_parts(he_results *out, he_region_parts *takes)
 {

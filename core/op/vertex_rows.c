@@ -1,11 +1,11 @@
 #include "op/rows.h"
 
-#include "edit/dissolve.h"
-#include "edit/erase.h"
-#include "edit/split_corners.h"
-#include "edit/vertex.h"
-#include "edit/vertex_bevel.h"
-#include "edit/vertex_split.h"
+#include "edit/bevel/vertex_bevel.h"
+#include "edit/local/dissolve.h"
+#include "edit/local/erase.h"
+#include "edit/local/split_corners.h"
+#include "edit/local/vertex.h"
+#include "edit/local/vertex_split.h"
 
 static he_status run_vertex_add(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {

@@ -1,8 +1,8 @@
 #include "op/rows.h"
 
-#include "edit/erase.h"
-#include "edit/separate.h"
-#include "edit/weld.h"
+#include "edit/local/erase.h"
+#include "edit/merge/weld.h"
+#include "edit/whole/separate.h"
 
 static const char *const positions[] = {"mean", "lowest", NULL};
 

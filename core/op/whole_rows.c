@@ -1,9 +1,9 @@
 #include "op/rows.h"
 
-#include "edit/append.h"
-#include "edit/dual.h"
-#include "edit/reverse.h"
-#include "edit/triangulate.h"
+#include "edit/whole/append.h"
+#include "edit/whole/dual.h"
+#include "edit/whole/reverse.h"
+#include "edit/whole/triangulate.h"
 
 static he_status run_triangulate(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {

@@ -1,6 +1,6 @@
 #include "query/boxes.h"
 
-#include "mesh/mem.h"
+#include "base/mem.h"
 
 #include <assert.h>
 #include <float.h>

@@ -14,7 +14,7 @@
 #ifndef HE_QUERY_BOXES_H
 #define HE_QUERY_BOXES_H
 
-#include "mesh/budget.h"
+#include "base/budget.h"
 #include "mesh/mesh.h"
 
 enum {

@@ -1,11 +1,11 @@
 #include "query/bvh.h"
 
-#include "mesh/long_faces_keep.h"
+#include "draw/drawing.h"
+#include "geometry/geometry.h"
+#include "geometry/long_faces_keep.h"
+#include "geometry/scale.h"
 #include "mesh/walk.h"
 #include "query/bvh_disc.h"
-#include "query/drawing.h"
-#include "query/geometry.h"
-#include "query/scale.h"
 
 #include <string.h>
 

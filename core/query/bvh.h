@@ -15,7 +15,7 @@
  * and a mesh that has changed gets another tree. Trees are never written to: any number of threads
  * may ask.
  *
- * BUDGETS (mesh/budget.h) are charged HE_BVH_LOOK for each box and triangle that a ray or a point
+ * BUDGETS (base/budget.h) are charged HE_BVH_LOOK for each box and triangle that a ray or a point
  * looks at, a step for each pair of boxes and HE_BVH_PAIR for each pair of triangles that is tried;
  * what runs out is HE_LIMIT. In ordinary meshes a ray or a nearest point takes some thousand steps,
  * but in one whose triangles all lie in the same place, as many as there are triangles. */

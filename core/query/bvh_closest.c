@@ -1,6 +1,6 @@
+#include "geometry/geometry.h"
 #include "query/bvh_disc.h"
 #include "query/bvh_walk.h"
-#include "query/geometry.h"
 
 static double square(he_vec3 a)
 {

@@ -1,7 +1,7 @@
 #include "query/bvh_pairs.h"
 
+#include "geometry/meet.h"
 #include "query/bvh_walk.h"
-#include "query/meet.h"
 
 #include <stdlib.h>
 

@@ -8,9 +8,9 @@
  *         '--v
  *
  * The boxes are rounded outward; what they do not tell apart is tried exactly, like all pairs. */
+#include "geometry/meet.h"
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"
-#include "query/meet.h"
 
 /* Coordinates of directions, and of what is made of them here, are not farther off than this. */
 static const double ROUNDING = 1e-14;

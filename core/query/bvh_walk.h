@@ -2,9 +2,9 @@
 #ifndef HE_QUERY_BVH_WALK_H
 #define HE_QUERY_BVH_WALK_H
 
+#include "geometry/scale.h"
 #include "mesh/walk.h"
 #include "query/bvh.h"
-#include "query/scale.h"
 
 /* Beyond this from the origin, in coordinates of the tree, products of coordinates might overflow.
  */

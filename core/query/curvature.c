@@ -1,9 +1,9 @@
 #include "query/curvature.h"
 
+#include "draw/drawing.h"
+#include "geometry/geometry.h"
+#include "geometry/scale.h"
 #include "mesh/walk.h"
-#include "query/drawing.h"
-#include "query/geometry.h"
-#include "query/scale.h"
 
 /* --- which elements --- */
 

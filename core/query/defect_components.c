@@ -1,9 +1,9 @@
 /* Components that are small, or closed and inside out. */
 #include "query/defects.h"
 
+#include "geometry/geometry.h"
+#include "geometry/ring.h"
 #include "mesh/walk.h"
-#include "query/geometry.h"
-#include "query/ring.h"
 #include "query/topology.h"
 
 #include <float.h>

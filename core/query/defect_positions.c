@@ -1,9 +1,9 @@
 /* Vertices in the same place. */
 #include "query/defects.h"
 
-#include "mesh/near.h"
+#include "geometry/near.h"
+#include "geometry/scale.h"
 #include "mesh/walk.h"
-#include "query/scale.h"
 
 static double distance(he_vec3 p, he_vec3 q)
 {

@@ -1,8 +1,8 @@
 #include "query/defects.h"
 
+#include "geometry/geometry.h"
+#include "geometry/ring.h"
 #include "mesh/walk.h"
-#include "query/geometry.h"
-#include "query/ring.h"
 
 static const struct {
     const char *name;

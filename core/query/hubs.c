@@ -1,7 +1,7 @@
 #include "query/hubs.h"
 
-#include "mesh/mem.h"
-#include "mesh/point_hash.h"
+#include "base/mem.h"
+#include "geometry/point_hash.h"
 #include "mesh/walk.h"
 
 #include <stdlib.h>

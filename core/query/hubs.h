@@ -9,7 +9,7 @@
 #ifndef HE_QUERY_HUBS_H
 #define HE_QUERY_HUBS_H
 
-#include "mesh/budget.h"
+#include "base/budget.h"
 #include "mesh/mesh.h"
 
 enum { HE_HUB_SPOKES = 32 };

@@ -1,6 +1,6 @@
 #include "query/idmap.h"
 
-#include "mesh/word_hash.h"
+#include "base/word_hash.h"
 
 enum { FIRST_LOG2 = 5 };
 

@@ -1,7 +1,7 @@
 #include "query/traverse.h"
 
+#include "geometry/geometry.h"
 #include "mesh/walk.h"
-#include "query/geometry.h"
 #include "query/idmap.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
 /* drop_degenerate and drop_duplicates: faces left out. */
-#include "mesh/pair.h"
+#include "build/pair.h"
 #include "repair/mend.h"
 
 static he_status no_memory(const he_soup *soup, he_error *err)

@@ -1,5 +1,5 @@
 /* fill: small holes of the mesh are closed, each by a polygon. */
-#include "edit/hole.h"
+#include "edit/border/hole.h"
 #include "mesh/walk.h"
 #include "repair/repair.h"
 

@@ -1,6 +1,6 @@
 /* orient: faces turned until neighbours agree. Breadth-first over the edges of two faces, one
  * component after another. */
-#include "mesh/pair.h"
+#include "build/pair.h"
 #include "repair/mend.h"
 
 typedef enum state { UNSEEN, KEPT, TURNED } state;

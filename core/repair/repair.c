@@ -1,6 +1,6 @@
 #include "repair/repair.h"
 
-#include "mesh/pair.h"
+#include "build/pair.h"
 #include "repair/mend.h"
 
 #include <string.h>

@@ -40,7 +40,7 @@
 #ifndef HE_REPAIR_REPAIR_H
 #define HE_REPAIR_REPAIR_H
 
-#include "mesh/build.h"
+#include "build/build.h"
 
 typedef enum he_repair {
     HE_REPAIR_WELD,

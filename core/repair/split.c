@@ -15,7 +15,7 @@
  * others so, more than two share the edge: they are no mates any longer, and the fans are found
  * again. The second time none are left, because all corners along such an edge are ends of fans,
  * and a fan has two. */
-#include "mesh/pair.h"
+#include "build/pair.h"
 #include "repair/mend.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* weld: vertices that are near one another become one. */
-#include "mesh/near.h"
+#include "geometry/near.h"
 #include "repair/mend.h"
 
 /* Kept vertices move down in the positions; into[v] says where v is then. */

@@ -1,7 +1,7 @@
 #include "tests/api/arrays.h"
 
+#include "draw/drawing.h"
 #include "mesh/walk.h"
-#include "query/drawing.h"
 
 #include <inttypes.h>
 #include <setjmp.h>

@@ -1,10 +1,10 @@
 #include "tests/api/request.h"
 
-#include "api/answer_headers.h"
+#include "api/request/answer_headers.h"
 
 #include "tests/traffic.h"
 
-#include "server/job_board.h"
+#include "server/job/job_board.h"
 
 #include <pthread.h>
 #include <setjmp.h>

@@ -2,8 +2,8 @@
 #ifndef TESTS_API_REQUEST_H
 #define TESTS_API_REQUEST_H
 
-#include "api/api.h"
-#include "server/store.h"
+#include "api/request/api.h"
+#include "server/store/store.h"
 
 #include <cjson/cJSON.h>
 

@@ -1,6 +1,6 @@
 #include "tests/api/stream.h"
 
-#include "api/events.h"
+#include "api/event/events.h"
 
 #include <inttypes.h>
 #include <setjmp.h>

@@ -1,8 +1,8 @@
 /* Another mesh named in an edit: found, taken as it was, refused where it cannot be had. */
 #include "tests/api/request.h"
 
+#include "api/json/text.h"
 #include "api/limits.h"
-#include "api/text.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

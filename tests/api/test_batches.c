@@ -2,8 +2,8 @@
  * and told beforehand by a dry run. */
 #include "tests/api/request.h"
 
+#include "api/json/text.h"
 #include "api/limits.h"
-#include "api/text.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

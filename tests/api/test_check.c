@@ -1,7 +1,7 @@
 /* GET .../check: what it says of defects, by which thresholds, and as a job. */
 #include "tests/api/request.h"
 
-#include "mesh/mem.h"
+#include "base/mem.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,13 +3,13 @@
 #include "tests/api/stream.h"
 #include "tests/random_edit.h"
 
-#include "api/events.h"
+#include "api/event/events.h"
 #include "api/limits.h"
+#include "base/mem.h"
 #include "mesh/column.h"
-#include "mesh/mem.h"
 #include "mesh/write.h"
 #include "op/op.h"
-#include "server/limits.h"
+#include "server/system/limits.h"
 #include "tests/seed.h"
 
 #include <inttypes.h>

@@ -1,8 +1,8 @@
 /* The examples of the OpenAPI document are what the server answers. */
 #include "tests/api/request.h"
 
-#include "api/examples.h"
-#include "api/routes.h"
+#include "api/describe/examples.h"
+#include "api/request/routes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

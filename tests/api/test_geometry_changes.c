@@ -3,10 +3,10 @@
  * EDITS (3000) and SEED (from the clock) come from the environment. */
 #include "tests/api/arrays.h"
 
+#include "draw/drawing.h"
 #include "mesh/walk.h"
 #include "model/random.h"
 #include "op/op.h"
-#include "query/drawing.h"
 #include "unit/fixture.h"
 
 #include <inttypes.h>

@@ -2,10 +2,10 @@
  * run when a test says so; there are no threads. */
 #include "tests/api/request.h"
 
+#include "api/header/prefer.h"
 #include "api/limits.h"
-#include "api/prefer.h"
-#include "mesh/mem.h"
-#include "server/job_board.h"
+#include "base/mem.h"
+#include "server/job/job_board.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,7 +2,7 @@
  * the history keeps. */
 #include "tests/api/stream.h"
 
-#include "api/jobs.h"
+#include "api/job/jobs.h"
 #include "tests/model/random.h"
 #include "tests/seed.h"
 

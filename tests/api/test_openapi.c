@@ -2,8 +2,8 @@
 #include "tests/api/request.h"
 
 #include "algo/shape.h"
-#include "api/answer_headers.h"
-#include "api/routes.h"
+#include "api/request/answer_headers.h"
+#include "api/request/routes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 
 #include "unit/fixture.h"
 
-#include "edit/cut.h"
+#include "edit/local/cut.h"
 
 #include <malloc.h>
 

@@ -1,7 +1,7 @@
 /* What questions refuse, what they cost, and what happens when memory is out. */
 #include "tests/api/request.h"
 
-#include "mesh/mem.h"
+#include "base/mem.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* Every row of the route table answers with every status it declares, and with no other. */
 #include "tests/api/request.h"
 
-#include "api/routes.h"
+#include "api/request/routes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

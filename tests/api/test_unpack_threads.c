@@ -1,6 +1,6 @@
 /* Decoders of many bodies on several threads: each body unfolds or gives way, and what they hold
  * stays below its ceiling. */
-#include "api/unpack.h"
+#include "api/header/unpack.h"
 
 #include <pthread.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 /* Walks and the mesh as a whole, against what searching the polygons finds. */
 #include "tests/api/specimens.h"
 
-#include "format/number.h"
+#include "format/text/number.h"
 
 /* --- walks --- */
 

@@ -2,8 +2,8 @@
  * answered by what became of them. */
 #include "tests/api/request.h"
 
+#include "api/json/text.h"
 #include "api/limits.h"
-#include "api/text.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -3,7 +3,7 @@
  *     build/tests/bench/polygons [CORNERS...]                                                   */
 #include "polygons.h"
 
-#include "mesh/triangulation.h"
+#include "geometry/triangulation.h"
 #include "mesh/walk.h"
 
 #include <math.h>

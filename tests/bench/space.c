@@ -3,11 +3,11 @@
  * where all triangles share a vertex.
  *
  *     build/tests/bench/space                                                                   */
-#include "mesh/build.h"
+#include "build/build.h"
+#include "geometry/vec3.h"
 #include "mesh/walk.h"
 #include "query/bvh.h"
 #include "query/curvature.h"
-#include "query/vec3.h"
 
 #include <math.h>
 #include <stdio.h>

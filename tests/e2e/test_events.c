@@ -8,7 +8,7 @@
 #include "tests/random_edit.h"
 
 #include "op/op.h"
-#include "server/clock.h"
+#include "server/system/clock.h"
 
 #include <dirent.h>
 #include <inttypes.h>

@@ -4,7 +4,7 @@
  * FUZZ_REQUIRE (or cmocka's asserts, which abort here too) what must hold of them. guard.c makes of
  * it the LLVMFuzzerTestOneInput that libFuzzer and AFL++ call, and sees that each call
  *
- *     holds at most FUZZ_MEMORY bytes of mesh/mem.h at once, and none when it returns,
+ *     holds at most FUZZ_MEMORY bytes of base/mem.h at once, and none when it returns,
  *     takes at most FUZZ_SECONDS of processor time, or on a slow machine FUZZ_PACES times what a
  *         fixed piece of work takes (tests/pace.h),
  *     depends on its bytes alone.

@@ -3,8 +3,8 @@
  * same mesh again. */
 #include "fuzz/fuzz.h"
 
-#include "api/document_in.h"
-#include "api/document_out.h"
+#include "api/document/document_in.h"
+#include "api/document/document_out.h"
 #include "mesh/column.h"
 #include "model/random.h"
 #include "unit/fixture.h"

@@ -3,9 +3,9 @@
  * libraries make of them in one go. And any bytes that are packed unfold to themselves. */
 #include "fuzz/fuzz.h"
 
+#include "api/header/pack.h"
+#include "api/header/unpack.h"
 #include "api/limits.h"
-#include "api/pack.h"
-#include "api/unpack.h"
 #include "model/random.h"
 #include "tests/codings.h"
 #include "unit/fixture.h"

@@ -1,6 +1,6 @@
 #include "fuzz/fuzz.h"
 
-#include "mesh/mem.h"
+#include "base/mem.h"
 #include "tests/pace.h"
 
 #include <inttypes.h>

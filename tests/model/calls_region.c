@@ -1,7 +1,7 @@
 #include "model/rows.h"
 
-#include "edit/erase.h"
-#include "edit/face_collapse.h"
+#include "edit/local/erase.h"
+#include "edit/local/face_collapse.h"
 #include "mesh/column.h"
 #include "mesh/walk.h"
 #include "mesh/write.h"

@@ -1,6 +1,6 @@
 #include "model/corpus.h"
 
-#include "format/format.h"
+#include "format/io/format.h"
 #include "mesh/walk.h"
 
 #include <assert.h>

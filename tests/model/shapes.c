@@ -1,6 +1,6 @@
 #include "model/shapes.h"
 
-#include "mesh/build.h"
+#include "build/build.h"
 #include "model/parts.h"
 
 #include <assert.h>

@@ -9,9 +9,9 @@
  * start but files and the far mesh, and every refusal that some row declares must have been given.
  *
  * EDITS (50000) and SEED (from the clock) come from the environment. */
+#include "base/mem.h"
 #include "mesh/check.h"
 #include "mesh/delta.h"
-#include "mesh/mem.h"
 #include "model/calls.h"
 #include "model/limits.h"
 #include "model/marks.h"

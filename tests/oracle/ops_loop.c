@@ -1,6 +1,6 @@
 #include "oracle/oracle.h"
 
-#include "edit/bridge.h"
+#include "edit/border/bridge.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,9 +1,9 @@
 #include "tests/unit/dense.h"
 
 #include "algo/shape.h"
-#include "edit/triangulate.h"
+#include "edit/whole/triangulate.h"
+#include "geometry/vec3.h"
 #include "query/bvh.h"
-#include "query/vec3.h"
 
 #include <math.h>
 

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "edit/point.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/piece/point.h"
 #include "mesh/check.h"
 #include "mesh/write.h"
 

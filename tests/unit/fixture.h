@@ -2,7 +2,7 @@
 #ifndef TESTS_UNIT_FIXTURE_H
 #define TESTS_UNIT_FIXTURE_H
 
-#include "mesh/build.h"
+#include "build/build.h"
 #include "mesh/check.h"
 #include "mesh/delta.h"
 #include "mesh/walk.h"

@@ -4,7 +4,7 @@
 
 #include "unit/fixture.h"
 
-#include "format/format.h"
+#include "format/io/format.h"
 
 /* The whole text in pieces of `piece` bytes, 0 for one piece. */
 static inline he_status read_pieces(const char *format, const void *text, size_t length,

@@ -4,7 +4,7 @@
 #ifndef TESTS_UNIT_MEET_ORACLE_H
 #define TESTS_UNIT_MEET_ORACLE_H
 
-#include "mesh/orient.h"
+#include "geometry/orient.h"
 
 #include <math.h>
 

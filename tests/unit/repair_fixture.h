@@ -5,7 +5,7 @@
 
 #include "unit/fixture.h"
 
-#include "mesh/pair.h"
+#include "build/pair.h"
 #include "repair/repair.h"
 
 enum { ALL = (1 << HE_REPAIR_COUNT) - 1 };

@@ -3,7 +3,7 @@
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
-#include "edit/attribute.h"
+#include "edit/whole/attribute.h"
 #include "mesh/delta.h"
 
 static he_column *column_of(const char *name, he_kind domain, uint32_t value)

@@ -1,9 +1,10 @@
-/* Bodies in gzip and zstd: packed by api/pack.h, unfolded by api/unpack.h, and what is refused. */
+/* Bodies in gzip and zstd: packed by api/header/pack.h, unfolded by api/header/unpack.h, and what
+ * is refused. */
 #include "tests/unit/fixture.h"
 
+#include "api/header/pack.h"
+#include "api/header/unpack.h"
 #include "api/limits.h"
-#include "api/pack.h"
-#include "api/unpack.h"
 
 #include <zstd.h>
 

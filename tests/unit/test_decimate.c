@@ -2,8 +2,8 @@
 #include "tests/unit/dense.h"
 
 #include "algo/decimation.h"
+#include "geometry/vec3.h"
 #include "mesh/write.h"
-#include "query/vec3.h"
 
 #include <float.h>
 #include <math.h>

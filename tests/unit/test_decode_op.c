@@ -1,6 +1,6 @@
 /* Operations from JSON, and the names of an edit list. */
-#include "api/decode_op.h"
-#include "api/names.h"
+#include "api/write/decode_op.h"
+#include "api/write/names.h"
 
 #include "fixture.h"
 

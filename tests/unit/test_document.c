@@ -1,6 +1,6 @@
 /* Mesh documents: read piece by piece, written back. */
-#include "api/document_in.h"
-#include "api/document_out.h"
+#include "api/document/document_in.h"
+#include "api/document/document_out.h"
 
 #include "api/limits.h"
 #include "fixture.h"

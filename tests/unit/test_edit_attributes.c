@@ -9,13 +9,13 @@
 
 #include <cmocka.h>
 
-#include "edit/bisect.h"
-#include "edit/collapse.h"
-#include "edit/poke.h"
-#include "edit/split.h"
-#include "edit/transform.h"
-#include "edit/vertex.h"
-#include "edit/vertex_split.h"
+#include "edit/local/bisect.h"
+#include "edit/local/collapse.h"
+#include "edit/local/poke.h"
+#include "edit/local/split.h"
+#include "edit/local/vertex.h"
+#include "edit/local/vertex_split.h"
+#include "edit/whole/transform.h"
 #include "mesh/write.h"
 
 /* A column of one double named "a": row i holds 10 * i, the default is -1. */

@@ -11,10 +11,10 @@
 
 #include <cmocka.h>
 
-#include "edit/edge_bevel.h"
-#include "edit/edge_extrude.h"
-#include "edit/seam.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/bevel/edge_bevel.h"
+#include "edit/border/edge_extrude.h"
+#include "edit/border/seam.h"
 #include "mesh/write.h"
 
 #define QCUBE   "0123,7654,1045,2156,3267,0374"

@@ -2,7 +2,7 @@
 #include "fixture.h"
 
 #include "algo/shape.h"
-#include "api/edit_cost.h"
+#include "api/write/edit_cost.h"
 
 enum { LONG = 5000 };
 

@@ -11,14 +11,14 @@
 
 #include <cmocka.h>
 
-#include "edit/delaunay.h"
-#include "edit/flip.h"
-#include "edit/poke.h"
-#include "edit/triangulate.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/local/flip.h"
+#include "edit/local/poke.h"
+#include "edit/whole/delaunay.h"
+#include "edit/whole/triangulate.h"
+#include "geometry/geometry.h"
 #include "mesh/write.h"
 #include "model/shapes.h"
-#include "query/geometry.h"
 
 static uint64_t number_from(const char *name, uint64_t fallback)
 {

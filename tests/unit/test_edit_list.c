@@ -2,7 +2,7 @@
  * and looking for it costs no memory that goes by the mesh. */
 #include "fixture.h"
 
-#include "edit/list.h"
+#include "edit/piece/list.h"
 
 enum { COUNT = 1000 };
 

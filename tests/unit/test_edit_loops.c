@@ -11,13 +11,13 @@
 
 #include <cmocka.h>
 
-#include "edit/bridge.h"
-#include "edit/erase.h"
-#include "edit/loop_join.h"
-#include "edit/loop_split.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/border/bridge.h"
+#include "edit/border/loop_join.h"
+#include "edit/border/loop_split.h"
+#include "edit/local/erase.h"
+#include "geometry/vec3.h"
 #include "mesh/write.h"
-#include "query/vec3.h"
 
 #define CF4       "023,321,031,647,675,745"
 #define BIPYRAMID "013,123,203,104,214,024"

@@ -11,12 +11,12 @@
 #include <cmocka.h>
 
 #include "algo/shape.h"
-#include "edit/plane_cut.h"
-#include "edit/triangulate.h"
+#include "edit/plane/plane_cut.h"
+#include "edit/whole/triangulate.h"
+#include "geometry/geometry.h"
+#include "geometry/vec3.h"
 #include "mesh/walk.h"
 #include "model/random.h"
-#include "query/geometry.h"
-#include "query/vec3.h"
 
 static const he_vec3 ORIGIN = {0, 0, 0}, UP = {0, 0, 1};
 

@@ -12,12 +12,12 @@
 #include <cmocka.h>
 
 #include "algo/shape.h"
-#include "edit/plane_split.h"
-#include "edit/triangulate.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/plane/plane_split.h"
+#include "edit/whole/triangulate.h"
+#include "geometry/geometry.h"
 #include "mesh/write.h"
 #include "model/shapes.h"
-#include "query/geometry.h"
 #include "query/topology.h"
 
 static const he_vec3 ORIGIN = {0, 0, 0}, UP = {0, 0, 1};

@@ -11,12 +11,12 @@
 
 #include <cmocka.h>
 
-#include "edit/append.h"
-#include "edit/dual.h"
-#include "edit/extrude.h"
-#include "edit/inset.h"
-#include "edit/reverse.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/region/extrude.h"
+#include "edit/region/inset.h"
+#include "edit/whole/append.h"
+#include "edit/whole/dual.h"
+#include "edit/whole/reverse.h"
 #include "mesh/write.h"
 
 #define QCUBE "0123,7654,1045,2156,3267,0374"

@@ -10,11 +10,11 @@
 
 #include <cmocka.h>
 
-#include "edit/hole.h"
-#include "edit/triangulate.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/border/hole.h"
+#include "edit/whole/triangulate.h"
+#include "geometry/triangulation.h"
 #include "mesh/check.h"
-#include "mesh/triangulation.h"
 #include "mesh/walk.h"
 
 typedef struct point {

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "edit/vertex_bevel.h"
-#include "edit/weld.h"
+#include "edit/bevel/vertex_bevel.h"
+#include "edit/merge/weld.h"
 #include "mesh/write.h"
 
 #define QCUBE   "0123,7654,1045,2156,3267,0374"

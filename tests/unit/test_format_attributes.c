@@ -2,10 +2,10 @@
  * rows of the dead are left out, and no value changes its element. */
 #include "unit/format_fixture.h"
 
-#include "edit/erase.h"
-#include "format/export.h"
-#include "mesh/write.h"
+#include "edit/local/erase.h"
+#include "format/io/export.h"
 #include "mesh/compact.h"
+#include "mesh/write.h"
 #include "model/random.h"
 #include "tests/seed.h"
 

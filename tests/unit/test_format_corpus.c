@@ -2,7 +2,7 @@
  * where CORPUS= says): what the manifest expects of each. */
 #include "unit/format_fixture.h"
 
-#include "format/export.h"
+#include "format/io/export.h"
 #include "query/defects.h"
 
 static const char *corpus;

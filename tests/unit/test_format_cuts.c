@@ -1,7 +1,7 @@
 /* Polygons cut for formats of triangles, where very many faces meet at two vertices. */
 #include "unit/fixture.h"
 
-#include "format/cuts.h"
+#include "format/io/cuts.h"
 
 /* Quads 0 a 1 b whose diagonals are both there: 0-1 of a triangle in the middle of them, a-b of one
  * each; and a vertex that joins every tenth a, so that three are of large degree. */

@@ -1,5 +1,5 @@
-/* The keyed hash of api/hash.h. */
-#include "api/hash.h"
+/* The keyed hash of api/header/hash.h. */
+#include "api/header/hash.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 /* Paths, media types, entity tags, cursors: the small grammars of a request. */
-#include "api/cursor.h"
-#include "api/etag.h"
-#include "api/media.h"
-#include "api/path.h"
+#include "api/header/cursor.h"
+#include "api/header/etag.h"
+#include "api/header/media.h"
+#include "api/header/path.h"
 
 #include "fixture.h"
 

@@ -1,4 +1,4 @@
-#include "api/json_in.h"
+#include "api/json/json_in.h"
 
 #include "api/limits.h"
 #include "fixture.h"

@@ -1,6 +1,6 @@
-#include "api/json_out.h"
+#include "api/json/json_out.h"
 
-#include "api/problem.h"
+#include "api/json/problem.h"
 #include "fixture.h"
 
 #include <math.h>

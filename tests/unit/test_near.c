@@ -2,7 +2,7 @@
  */
 #include "unit/fixture.h"
 
-#include "mesh/near.h"
+#include "geometry/near.h"
 
 #include <math.h>
 

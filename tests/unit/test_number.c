@@ -1,9 +1,9 @@
 /* Numbers as text, against the C library (which is exact in the "C" locale) and big integers.
  * SEED= repeats a run, ROUNDS= makes it longer. */
-#include "format/number.h"
+#include "format/text/number.h"
 
-#include "format/exact.h"
-#include "format/power.h"
+#include "format/text/exact.h"
+#include "format/text/power.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

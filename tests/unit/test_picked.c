@@ -2,9 +2,9 @@
  * work grows with their number all the same, as the hashes have seeds. */
 #include "unit/fixture.h"
 
-#include "edit/weld.h"
-#include "format/export.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "edit/merge/weld.h"
+#include "format/io/export.h"
 #include "mesh/delta.h"
 
 #include "tests/pace.h"

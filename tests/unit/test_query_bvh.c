@@ -2,12 +2,12 @@
  */
 #include "query_specimens.h"
 
-#include "edit/vertex.h"
+#include "edit/local/vertex.h"
+#include "geometry/meet.h"
+#include "geometry/orient.h"
 #include "query/bvh.h"
 #include "query/bvh_disc.h"
 #include "query/bvh_walk.h"
-#include "query/meet.h"
-#include "mesh/orient.h"
 
 #include <float.h>
 #include <limits.h>

@@ -1,8 +1,8 @@
 /* Corner normals, cotangents and curvature, against closed forms. */
 #include "query_specimens.h"
 
+#include "geometry/geometry.h"
 #include "query/curvature.h"
-#include "query/geometry.h"
 
 #include <float.h>
 #include <math.h>

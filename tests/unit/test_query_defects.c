@@ -1,8 +1,8 @@
 /* Defects of valid meshes, each from a mesh made by hand, and against searching all pairs. */
 #include "query_specimens.h"
 
+#include "geometry/geometry.h"
 #include "query/defects.h"
-#include "query/geometry.h"
 #include "query/topology.h"
 
 #include <float.h>

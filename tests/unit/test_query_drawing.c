@@ -1,9 +1,9 @@
 /* The arrays for drawing, against the polygons they are made from. */
 #include "query_specimens.h"
 
-#include "mesh/triangulation.h"
-#include "query/drawing.h"
-#include "query/geometry.h"
+#include "draw/drawing.h"
+#include "geometry/geometry.h"
+#include "geometry/triangulation.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 /* Lengths, areas, normals and angles, against closed forms and other formulas. */
 #include "query_specimens.h"
 
-#include "edit/vertex.h"
-#include "query/geometry.h"
+#include "edit/local/vertex.h"
+#include "geometry/geometry.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,10 +2,10 @@
  * steps that grow with the spokes and not with their pairs. */
 #include "query_specimens.h"
 
+#include "geometry/meet.h"
+#include "geometry/scale.h"
 #include "meet_oracle.h"
 #include "query/bvh.h"
-#include "query/meet.h"
-#include "query/scale.h"
 #include "tests/seed.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 /* Runs of slots for faces of all sizes, as they come and go. */
 #include "query_specimens.h"
 
-#include "edit/erase.h"
-#include "edit/face_add.h"
-#include "edit/vertex.h"
+#include "draw/slots.h"
+#include "edit/local/erase.h"
+#include "edit/local/face_add.h"
+#include "edit/local/vertex.h"
 #include "model/random.h"
-#include "query/slots.h"
 #include "tests/seed.h"
 
 #include <math.h>

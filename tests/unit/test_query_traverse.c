@@ -1,7 +1,7 @@
 /* Walks, against distances found another way (Floyd and Warshall) and by hand. */
 #include "query_specimens.h"
 
-#include "query/geometry.h"
+#include "geometry/geometry.h"
 #include "query/traverse.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
 /* Dispatch and the frame about every handler, with a store that holds one mesh, "m". */
-#include "api/exchange.h"
+#include "api/request/exchange.h"
 
 #include "fixture.h"
 

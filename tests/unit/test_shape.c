@@ -2,7 +2,7 @@
 #include "fixture.h"
 
 #include "algo/shape.h"
-#include "query/geometry.h"
+#include "geometry/geometry.h"
 #include "query/topology.h"
 
 #include <math.h>

@@ -2,12 +2,12 @@
  * when it is durable, and a stop ends everything. */
 #include "tests/unit/fixture.h"
 
-#include "server/clock.h"
-#include "server/held.h"
-#include "server/idempotency.h"
-#include "server/job_board.h"
-#include "server/thread_pool.h"
-#include "server/memory.h"
+#include "server/job/job_board.h"
+#include "server/store/held.h"
+#include "server/store/idempotency.h"
+#include "server/system/clock.h"
+#include "server/system/memory.h"
+#include "server/system/thread_pool.h"
 
 #include <pthread.h>
 

@@ -1,8 +1,8 @@
 /* Options: flag over environment over default, and every refusal in a sentence. */
 #include "tests/unit/fixture.h"
 
-#include "server/address.h"
 #include "server/config.h"
+#include "server/net/address.h"
 
 static const char *const *variables; /* name, value, ..., NULL */
 

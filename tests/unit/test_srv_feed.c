@@ -2,8 +2,8 @@
  * so and costs nothing. */
 #include "tests/unit/fixture.h"
 
-#include "mesh/mem.h"
-#include "server/feed.h"
+#include "base/mem.h"
+#include "server/store/feed.h"
 
 #include <pthread.h>
 #include <stdio.h>

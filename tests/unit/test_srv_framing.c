@@ -2,8 +2,8 @@
  * makes a request ambiguous or too large is found in its bytes: test_srv_syntax.c. */
 #include "tests/unit/fixture.h"
 
-#include "server/http_framing.h"
-#include "server/http_policy.h"
+#include "server/http/http_framing.h"
+#include "server/http/http_policy.h"
 
 static srv_head head_of(const char *target)
 {

@@ -2,10 +2,10 @@
 #include "tests/unit/fixture.h"
 
 #include "algo/subdivide.h"
-#include "mesh/exec.h"
+#include "base/exec.h"
+#include "geometry/geometry.h"
 #include "mesh/walk.h"
-#include "query/geometry.h"
-#include "server/hands.h"
+#include "server/system/hands.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -4,9 +4,9 @@
 #include "tests/unit/fixture.h"
 
 #include "mesh/write.h"
-#include "server/memory.h"
-#include "server/replay_walk.h"
-#include "server/store.h"
+#include "server/store/replay_walk.h"
+#include "server/store/store.h"
+#include "server/system/memory.h"
 #include "tests/model/random.h"
 #include "tests/seed.h"
 

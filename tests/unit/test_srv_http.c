@@ -2,8 +2,8 @@
  * purpose (D1), a full job queue and too many connections are 503, a stop ends everything. */
 #include "tests/unit/fixture.h"
 
-#include "server/http.h"
-#include "server/http_recv.h"
+#include "server/http/http.h"
+#include "server/http/http_recv.h"
 
 #include <arpa/inet.h>
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* Answers kept for an Idempotency-Key: given again, bounded, forgotten in time. */
-#include "server/idempotency.h"
+#include "server/store/idempotency.h"
 
-#include "mesh/mem.h"
+#include "base/mem.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

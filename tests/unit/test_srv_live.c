@@ -2,7 +2,7 @@
  * when; comments in silence; a stop ends all. */
 #include "tests/unit/fixture.h"
 
-#include "server/http_live.h"
+#include "server/http/http_live.h"
 
 #include <pthread.h>
 #include <string.h>

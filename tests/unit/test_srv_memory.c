@@ -1,8 +1,8 @@
 /* What the daemon holds: what is freed goes back to the system once the process rests. */
 #include "tests/unit/fixture.h"
 
-#include "mesh/mem.h"
-#include "server/memory.h"
+#include "base/mem.h"
+#include "server/system/memory.h"
 
 #include <stdio.h>
 #include <unistd.h>

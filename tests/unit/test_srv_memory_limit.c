@@ -4,7 +4,7 @@
 
 #include "tests/unit/fixture.h"
 
-#include "server/memory_limit.h"
+#include "server/system/memory_limit.h"
 
 #include <ftw.h>
 #include <limits.h>

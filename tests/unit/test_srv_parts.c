@@ -1,12 +1,12 @@
 /* The server's small parts: job pool, access log, the page's files, deadlines. */
 #include "tests/unit/fixture.h"
 
-#include "server/access_log.h"
 #include "server/assets.h"
-#include "server/clock.h"
-#include "server/http_deadline.h"
-#include "server/thread_pool.h"
-#include "server/random.h"
+#include "server/http/http_deadline.h"
+#include "server/net/access_log.h"
+#include "server/system/clock.h"
+#include "server/system/random.h"
+#include "server/system/thread_pool.h"
 
 #include <pthread.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 /* The thread pool: who begins when, and what keeps whom from a thread. */
-#include "server/thread_pool.h"
+#include "server/system/thread_pool.h"
 
 #include <pthread.h>
 #include <setjmp.h>

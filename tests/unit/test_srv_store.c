@@ -1,9 +1,9 @@
 /* The store: ids, revisions, undo and redo within a budget, snapshots, caches, threads. */
 #include "tests/unit/fixture.h"
 
-#include "edit/vertex.h"
-#include "server/memory.h"
-#include "server/store.h"
+#include "edit/local/vertex.h"
+#include "server/store/store.h"
+#include "server/system/memory.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -4,7 +4,7 @@
 #include "tests/unit/fixture.h"
 
 #include "framing_cases.h"
-#include "server/http_recv.h"
+#include "server/http/http_recv.h"
 
 #include <errno.h>
 #include <fcntl.h>

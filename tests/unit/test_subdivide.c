@@ -15,7 +15,7 @@
 
 #include "algo/shape.h"
 #include "algo/subdivide.h"
-#include "mesh/build.h"
+#include "build/build.h"
 #include "mesh/check.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"

@@ -1,13 +1,13 @@
 /* Long polygons, whatever their shape: valid triangles, none turned over, in bounded work. */
 #include "unit/fixture.h"
 
-#include "mesh/ears.h"
+#include "geometry/ears.h"
+#include "geometry/long_faces_keep.h"
+#include "geometry/orient.h"
+#include "geometry/sweep.h"
+#include "geometry/triangulation.h"
 #include "mesh/long_faces.h"
-#include "mesh/long_faces_keep.h"
-#include "mesh/orient.h"
 #include "mesh/replay.h"
-#include "mesh/sweep.h"
-#include "mesh/triangulation.h"
 #include "mesh/walk.h"
 #include "mesh/write.h"
 #include "polygons.h"

@@ -1,8 +1,8 @@
 /* JSON mesh documents in memory: a mesh made from one, and one made from a mesh. */
 #include "bench/ours/ours.h"
 
-#include "api/document_in.h"
-#include "api/document_out.h"
+#include "api/document/document_in.h"
+#include "api/document/document_out.h"
 
 #include <stdio.h>
 #include <stdlib.h>

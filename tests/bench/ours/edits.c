@@ -1,9 +1,9 @@
 /* Many small edits in random places of a copy of the mesh, and compacting it afterwards. */
 #include "bench/ours/ours.h"
-#include "edit/collapse.h"
-#include "edit/cut.h"
-#include "edit/flip.h"
-#include "edit/split.h"
+#include "edit/local/collapse.h"
+#include "edit/local/cut.h"
+#include "edit/local/flip.h"
+#include "edit/local/split.h"
 #include "mesh/compact.h"
 #include "mesh/delta.h"
 #include "mesh/walk.h"

@@ -2,9 +2,9 @@
  * either surface and the nearest ones of the other, as P. Cignoni, C. Rocchini and R. Scopigno,
  * "Metro: measuring error on simplified surfaces", 1998. */
 #include "bench/ours/ours.h"
+#include "geometry/vec3.h"
 #include "mesh/walk.h"
 #include "query/bvh.h"
-#include "query/vec3.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* What only the growth of cost is asked about: the checker, and what memory itself takes. */
 #include "bench/ours/ours.h"
 
+#include "base/mem.h"
 #include "mesh/check.h"
-#include "mesh/mem.h"
 
 #include <stdio.h>
 #include <stdlib.h>

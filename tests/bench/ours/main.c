@@ -1,7 +1,7 @@
 /* The kernel's side of the bench: side.h says how it is spoken to. */
 #include "bench/ours/ours.h"
 
-#include "server/memory.h"
+#include "server/system/memory.h"
 
 int main(int argc, char **argv)
 {

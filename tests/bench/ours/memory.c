@@ -2,9 +2,9 @@
  * files. The other rows of that part are those of the other tables. */
 #include "bench/ours/ours.h"
 
-#include "api/document_in.h"
-#include "api/document_out.h"
-#include "edit/split.h"
+#include "api/document/document_in.h"
+#include "api/document/document_out.h"
+#include "edit/local/split.h"
 #include "mesh/delta.h"
 
 #include <stdio.h>

@@ -4,8 +4,8 @@
 #define TESTS_BENCH_OURS_OURS_H
 
 #include "bench/side/side.h"
-#include "format/format.h"
-#include "mesh/build.h"
+#include "build/build.h"
+#include "format/io/format.h"
 
 extern const bench_row bench_build_rows[];
 extern const bench_row bench_walk_rows[];

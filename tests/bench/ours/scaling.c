@@ -3,9 +3,9 @@
 #include "bench/ours/ours.h"
 
 #include "algo/subdivide.h"
+#include "geometry/geometry.h"
 #include "mesh/walk.h"
-#include "query/geometry.h"
-#include "server/hands.h"
+#include "server/system/hands.h"
 
 #include <stdlib.h>
 #include <string.h>

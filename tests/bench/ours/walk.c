@@ -1,7 +1,7 @@
 /* Reading a whole mesh: neighbours, normals, loops, components. */
 #include "bench/ours/ours.h"
+#include "geometry/geometry.h"
 #include "mesh/walk.h"
-#include "query/geometry.h"
 #include "query/topology.h"
 
 #include <math.h>

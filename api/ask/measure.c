@@ -1,0 +1,508 @@
+/* Measures: {"measure":"dihedral","of":{"edge":3}}, of one element or of many.
+ *
+ * Values are numbers or vectors, and null where there is none, which is NaN in octets. */
+#include "api/ask/question.h"
+#include "api/read/elements.h"
+#include "geometry/geometry.h"
+#include "geometry/scale.h"
+#include "mesh/walk.h"
+#include "query/curvature.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What the measure of an element depends on beside it. */
+typedef struct options {
+    he_weight weight;
+    double crease;
+    he_watch *watch; /* of the exchange */
+} options;
+
+typedef struct measure {
+    he_kind of;
+    const char *name;
+    unsigned components;
+    enum { PLAIN, WEIGHTS, CREASE } option;
+    /* One element; NULL where `many` does those too. */
+    he_status (*one)(const he_mesh *m, uint32_t id, const options *o, double *out, he_error *err);
+    /* A list, or with `of` NULL all in the order of ids, at most those; NULL: one by one. `most`
+     * bounds the squared corners of faces beside a list. */
+    he_status (*many)(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
+                      uint64_t most, double *out, he_error *err);
+} measure;
+
+static void put(he_vec3 v, double *out)
+{
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
+/* Of an array with an entry for each issued row, those that live. */
+static void compress(const he_mesh *m, he_kind kind, const he_vec3 *rows, double *out)
+{
+    for (uint32_t id = 0; id < he_mesh_issued(m, kind); id++) {
+        if (he_mesh_is_live(m, kind, id)) {
+            put(rows[id], out);
+            out += 3;
+        }
+    }
+}
+
+/* --- vertices --- */
+
+static he_status vertex_normal(const he_mesh *m, uint32_t id, const options *o, double *out,
+                               he_error *err)
+{
+    (void)err;
+    he_vec3 normal;
+    he_vertex_normal(m, (he_vertex){id}, o->weight, &normal);
+    put(normal, out);
+    return HE_OK;
+}
+
+static he_vec3 *rows_new(const he_mesh *m, he_kind kind, he_error *err)
+{
+    he_vec3 *rows = he_mem_array(NULL, (size_t)he_mesh_issued(m, kind) + 1, sizeof *rows);
+    if (rows == NULL) {
+        (void)he_fail_plain(err, HE_NO_MEMORY, "no memory for the normals of a mesh");
+    }
+    return rows;
+}
+
+static he_status vertex_normals(const he_mesh *m, const uint32_t *of, size_t count,
+                                const options *o, uint64_t most, double *out, he_error *err)
+{
+    (void)of, (void)count, (void)most;
+    he_vec3 *rows = rows_new(m, HE_VERTEX, err);
+    if (rows == NULL) {
+        return HE_NO_MEMORY;
+    }
+    he_status status = he_vertex_normals(m, o->weight, rows, err);
+    if (status == HE_OK) {
+        compress(m, HE_VERTEX, rows, out);
+    }
+    he_mem_free(rows);
+    return status;
+}
+
+/* One member of the curvatures: `at` is its offset. */
+static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, uint64_t most,
+                           size_t at, double *out, he_error *err)
+{
+    he_curvature *all = he_mem_array(NULL, count + 1, sizeof *all);
+    if (all == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the curvature of %zu vertices",
+                             count);
+    }
+    he_status status = he_curvatures(m, of, count, most, all, err);
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        memcpy(&out[i], (const char *)&all[i] + at, sizeof out[i]);
+    }
+    he_mem_free(all);
+    return status;
+}
+
+#define CURVATURE(name, member)                                                                 \
+    static he_status name(const he_mesh *m, const uint32_t *of, size_t count, const options *o, \
+                          uint64_t most, double *out, he_error *err)                            \
+    {                                                                                           \
+        (void)o;                                                                                \
+        return curvature(m, of, count, most, offsetof(he_curvature, member), out, err);         \
+    }
+CURVATURE(vertex_areas, area)
+CURVATURE(angle_defects, angle_defect)
+CURVATURE(mean_curvatures, mean)
+CURVATURE(gaussian_curvatures, gaussian)
+#undef CURVATURE
+
+/* --- half-edges: corners --- */
+
+static he_status corner_angle(const he_mesh *m, uint32_t id, const options *o, double *out,
+                              he_error *err)
+{
+    (void)o, (void)err;
+    *out = he_corner_angle(m, (he_halfedge){id});
+    return HE_OK;
+}
+
+static he_status corner_normal(const he_mesh *m, uint32_t id, const options *o, double *out,
+                               he_error *err)
+{
+    he_vec3 normal = {0, 0, 0};
+    he_status status = he_corner_normal(m, (he_halfedge){id}, o->crease, &normal, err);
+    put(normal, out);
+    return status;
+}
+
+static he_status corner_normals(const he_mesh *m, const uint32_t *of, size_t count,
+                                const options *o, uint64_t most, double *out, he_error *err)
+{
+    (void)of, (void)count, (void)most;
+    he_vec3 *rows = rows_new(m, HE_HALFEDGE, err);
+    if (rows == NULL) {
+        return HE_NO_MEMORY;
+    }
+    he_status status = he_corner_normals(m, o->crease, o->watch, rows, err);
+    if (status == HE_OK) {
+        compress(m, HE_HALFEDGE, rows, out);
+    }
+    he_mem_free(rows);
+    return status;
+}
+
+/* --- edges --- */
+
+static he_status edge_length(const he_mesh *m, uint32_t id, const options *o, double *out,
+                             he_error *err)
+{
+    (void)o, (void)err;
+    *out = he_edge_length(m, (he_edge){id});
+    return HE_OK;
+}
+
+static he_status dihedral(const he_mesh *m, uint32_t id, const options *o, double *out,
+                          he_error *err)
+{
+    (void)o, (void)err;
+    if (!he_edge_dihedral(m, (he_edge){id}, out)) {
+        *out = NAN;
+    }
+    return HE_OK;
+}
+
+static he_status dihedrals(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
+                           uint64_t most, double *out, he_error *err)
+{
+    (void)of, (void)count, (void)most;
+    uint32_t issued = he_mesh_issued(m, HE_EDGE);
+    double *rows = he_mem_array(NULL, (size_t)issued + 1, sizeof *rows);
+    if (rows == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the dihedrals of a mesh");
+    }
+    he_status status = he_edge_dihedrals(m, o->watch, rows, err);
+    for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
+        if (he_mesh_is_live(m, HE_EDGE, e)) {
+            *out++ = rows[e];
+        }
+    }
+    he_mem_free(rows);
+    return status;
+}
+
+static he_status edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
+                                 const options *o, uint64_t most, double *out, he_error *err)
+{
+    (void)o;
+    return he_edge_cotangents(m, of, count, most, out, err);
+}
+
+/* --- faces --- */
+
+static he_status face_normal(const he_mesh *m, uint32_t id, const options *o, double *out,
+                             he_error *err)
+{
+    (void)o, (void)err;
+    he_vec3 normal;
+    he_face_normal(m, (he_face){id}, &normal);
+    put(normal, out);
+    return HE_OK;
+}
+
+static he_status face_area(const he_mesh *m, uint32_t id, const options *o, double *out,
+                           he_error *err)
+{
+    (void)o, (void)err;
+    *out = he_face_area(m, (he_face){id});
+    return HE_OK;
+}
+
+static he_status face_centroid(const he_mesh *m, uint32_t id, const options *o, double *out,
+                               he_error *err)
+{
+    (void)o, (void)err;
+    put(he_face_centroid(m, (he_face){id}), out);
+    return HE_OK;
+}
+
+static const measure measures[] = {
+    {HE_VERTEX, "normal", 3, WEIGHTS, vertex_normal, vertex_normals},
+    {HE_VERTEX, "area", 1, PLAIN, NULL, vertex_areas},
+    {HE_VERTEX, "angle_defect", 1, PLAIN, NULL, angle_defects},
+    {HE_VERTEX, "mean_curvature", 1, PLAIN, NULL, mean_curvatures},
+    {HE_VERTEX, "gaussian_curvature", 1, PLAIN, NULL, gaussian_curvatures},
+    {HE_HALFEDGE, "angle", 1, PLAIN, corner_angle, NULL},
+    {HE_HALFEDGE, "normal", 3, CREASE, corner_normal, corner_normals},
+    {HE_EDGE, "length", 1, PLAIN, edge_length, NULL},
+    {HE_EDGE, "dihedral", 1, PLAIN, dihedral, dihedrals},
+    {HE_EDGE, "cotangent", 1, PLAIN, NULL, edge_cotangents},
+    {HE_FACE, "normal", 3, PLAIN, face_normal, NULL},
+    {HE_FACE, "area", 1, PLAIN, face_area, NULL},
+    {HE_FACE, "centroid", 3, PLAIN, face_centroid, NULL},
+};
+enum { MEASURES = sizeof measures / sizeof measures[0] };
+
+/* --- questions --- */
+
+typedef struct asked {
+    api_target target;
+    const measure *measure;
+    options options;
+} asked;
+
+static bool read_name(const api_in *name, he_kind kind, const measure **out)
+{
+    const char *names[MEASURES + 1] = {NULL};
+    const measure *rows[MEASURES];
+    size_t count = 0;
+    int choice;
+    for (size_t i = 0; i < MEASURES; i++) {
+        if (measures[i].of == kind) {
+            names[count] = measures[i].name;
+            rows[count++] = &measures[i];
+        }
+    }
+    if (!api_in_choice(name, names, &choice)) {
+        return false;
+    }
+    *out = rows[choice];
+    return true;
+}
+
+static bool read_options(const api_in *question, asked *q)
+{
+    static const char *const weights[] = {[HE_WEIGHT_AREA] = "area",
+                                          [HE_WEIGHT_ANGLE] = "angle",
+                                          [HE_WEIGHT_UNIFORM] = "uniform",
+                                          NULL};
+    api_in in;
+    int choice = HE_WEIGHT_ANGLE;
+    if (api_in_find(question, "weights", &in)) {
+        if (q->measure->option != WEIGHTS) {
+            return api_in_fail(&in, API_UNKNOWN_MEMBER, "normals of vertices have \"weights\"");
+        }
+        if (!api_in_choice(&in, weights, &choice)) {
+            return false;
+        }
+    }
+    q->options.weight = (he_weight)choice;
+    if (q->measure->option == CREASE) {
+        return api_in_need(question, "crease", &in) &&
+               api_in_number_within(&in, 0, HE_PI, false, &q->options.crease);
+    }
+    if (api_in_find(question, "crease", &in)) {
+        return api_in_fail(&in, API_UNKNOWN_MEMBER, "normals of half-edges have a \"crease\"");
+    }
+    return true;
+}
+
+static bool read(api_asker *a, const api_in *question, asked *q)
+{
+    static const char *const members[] = {"measure", "of", "weights", "crease", NULL};
+    api_in name, of;
+    *q = (asked){.measure = NULL};
+    return api_in_only(question, members) && api_in_need(question, "measure", &name) &&
+           api_in_need(question, "of", &of) && api_asker_target(a, &of, &q->target) &&
+           read_name(&name, q->target.kind, &q->measure) && read_options(question, q);
+}
+
+/* --- what they cost --- */
+
+static uint64_t beside(const he_mesh *m, he_halfedge h)
+{
+    he_face f = he_face_of(m, h);
+    return f.i == HE_NONE ? 1 : he_face_degree(m, f);
+}
+
+static uint64_t about(const he_mesh *m, he_vertex v, uint64_t most)
+{
+    he_halfedge first = he_vertex_halfedge(m, v), h = first;
+    uint64_t cost = 1;
+    if (he_is_none(first.i)) {
+        return cost;
+    }
+    do {
+        cost += beside(m, h);
+        h = he_turn_ccw(m, h);
+    } while (h.i != first.i && cost <= most);
+    return cost;
+}
+
+/* Half-edges of the faces that one element's measure looks at. */
+static uint64_t cost_of(const he_mesh *m, const asked *q, uint32_t id, uint64_t most)
+{
+    switch (q->target.kind) {
+    case HE_VERTEX:
+        return about(m, (he_vertex){id}, most);
+    case HE_HALFEDGE:
+        return q->measure->option == CREASE ? about(m, he_origin(m, (he_halfedge){id}), most) : 1;
+    case HE_EDGE:
+        return beside(m, (he_halfedge){2u * id}) + beside(m, (he_halfedge){2u * id + 1u});
+    case HE_FACE:
+        return he_face_degree(m, (he_face){id});
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return 1;
+}
+
+/* Faces of many corners are cut into triangles, at up to the square of those. */
+static uint64_t cost_of_cutting(const he_mesh *m)
+{
+    uint64_t cost = 0;
+    for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+        if (he_mesh_is_live(m, HE_FACE, f)) {
+            uint64_t degree = he_face_degree(m, (he_face){f});
+            cost += degree > 4 ? degree * degree : 0;
+        }
+    }
+    return cost;
+}
+
+static bool pay(api_asker *a, const api_in *question, const asked *q, const uint32_t *of,
+                size_t count)
+{
+    if (of == NULL) {
+        uint64_t cost = he_mesh_count(a->mesh, HE_HALFEDGE) + (uint64_t)count;
+        cost += q->measure->one == NULL ? cost_of_cutting(a->mesh) : 0;
+        if (a->on_worker && cost >= api_asker_left(a)) {
+            return api_asker_exceed(a, question);
+        }
+        api_asker_pay(a, cost); /* one pass is granted */
+        return true;
+    }
+    uint64_t cost = 0;
+    for (size_t i = 0; i < count && cost <= api_asker_left(a); i++) {
+        cost += cost_of(a->mesh, q, of[i], api_asker_left(a));
+    }
+    if (cost > api_asker_left(a)) {
+        return api_asker_exceed(a, question);
+    }
+    api_asker_pay(a, cost);
+    return true;
+}
+
+/* --- answers --- */
+
+static he_status each(const he_mesh *m, const asked *q, const uint32_t *of, size_t count,
+                      double *out, he_error *err)
+{
+    const measure *what = q->measure;
+    he_status status = HE_OK;
+    for (size_t i = 0; of != NULL && i < count && status == HE_OK; i++) {
+        status = what->one(m, of[i], &q->options, out, err);
+        out += what->components;
+    }
+    uint32_t issued = of == NULL ? he_mesh_issued(m, q->target.kind) : 0;
+    for (uint32_t id = 0; id < issued && status == HE_OK; id++) {
+        if (he_mesh_is_live(m, q->target.kind, id)) {
+            status = what->one(m, id, &q->options, out, err);
+            out += what->components;
+        }
+    }
+    return status;
+}
+
+static bool find(api_asker *a, const api_in *question, const asked *q, const uint32_t *of,
+                 size_t count, double *out)
+{
+    he_error err = {0};
+    if (!pay(a, question, q, of, count)) {
+        return false;
+    }
+    uint64_t most = of == NULL ? UINT64_MAX : api_asker_left(a);
+    bool whole = q->measure->one == NULL || (of == NULL && q->measure->many != NULL);
+    options chosen = q->options;
+    chosen.watch = &a->x->watch;
+    he_status status = whole ? q->measure->many(a->mesh, of, count, &chosen, most, out, &err)
+                             : each(a->mesh, q, of, count, out, &err);
+    return status == HE_OK || api_asker_refuse(a, question, &err);
+}
+
+static void write_value(api_out *out, const measure *what, const double *value)
+{
+    if (what->components == 3) {
+        api_out_vec3(out, (he_vec3){value[0], value[1], value[2]});
+    } else {
+        api_out_number(out, *value);
+    }
+}
+
+static bool find_dense(api_asker *a, const api_in *question, const asked *q, double **out,
+                       size_t *count)
+{
+    *count = q->target.of != NULL ? q->target.count : he_mesh_count(a->mesh, q->target.kind);
+    double *values = he_mem_array(NULL, *count + 1, q->measure->components * sizeof *values);
+    if (values == NULL) {
+        return api_in_fail(question, HE_NO_MEMORY, "no memory for %zu values", *count);
+    }
+    if (!find(a, question, q, q->target.of, *count, values)) {
+        he_mem_free(values);
+        return false;
+    }
+    *out = values;
+    return true;
+}
+
+bool api_measure_is_dense(const api_in *question)
+{
+    api_in in;
+    return api_in_is_object(question) && api_in_find(question, "measure", &in) &&
+           api_in_find(question, "of", &in) && api_target_is_dense(&in);
+}
+
+bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count)
+{
+    asked q;
+    if (!read(a, question, &q) || !find_dense(a, question, &q, out, count)) {
+        return false;
+    }
+    *count *= q.measure->components;
+    return true;
+}
+
+static bool ask_many(api_asker *a, const api_in *question, const asked *q)
+{
+    double *values;
+    size_t count;
+    if (!find_dense(a, question, q, &values, &count)) {
+        return false;
+    }
+    api_out_object_begin(a->out);
+    api_out_key_string(a->out, "measure", q->measure->name);
+    api_out_key_u64(a->out, "components", q->measure->components);
+    api_out_key(a->out, "values");
+    api_out_array_begin(a->out);
+    for (size_t i = 0; i < count; i++) {
+        write_value(a->out, q->measure, values + i * q->measure->components);
+    }
+    api_out_array_end(a->out);
+    api_out_object_end(a->out);
+    he_mem_free(values);
+    return true;
+}
+
+bool api_measure_ask(api_asker *a, const api_in *question)
+{
+    asked q;
+    double value[3];
+    if (!read(a, question, &q)) {
+        return false;
+    }
+    if (q.target.dense) {
+        return ask_many(a, question, &q);
+    }
+    if (!find(a, question, &q, &q.target.id, 1, value)) {
+        return false;
+    }
+    api_out_object_begin(a->out);
+    api_out_key_u64(a->out, "revision", a->revision);
+    api_out_key(a->out, "of");
+    api_write_reference(a->out, q.target.kind, q.target.id);
+    api_out_key_string(a->out, "measure", q.measure->name);
+    api_out_key(a->out, "value");
+    write_value(a->out, q.measure, value);
+    api_out_object_end(a->out);
+    return true;
+}

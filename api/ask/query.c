@@ -1,0 +1,184 @@
+/* POST .../query: many questions of one revision. A failed one is its problem object, in its place;
+ * it stops no other. */
+#include "api/request/handlers.h"
+
+#include "api/ask/question.h"
+
+#include <string.h>
+
+static const char *const members[] = {"queries", NULL};
+static const char *const json_only[] = {"application/json", NULL};
+
+static bool write_problem(api_exchange *x, api_text *scratch)
+{
+    api_text_empty(scratch);
+    api_problem_write(&x->problem, NULL, scratch);
+    x->problem = (api_problem){0};
+    if (scratch->failed) {
+        return api_fail_memory(x);
+    }
+    api_out_raw(&x->out, scratch->bytes, scratch->length);
+    return true;
+}
+
+/* Is it about one question, and not about the request? */
+static bool is_of_question(const api_problem *problem)
+{
+    return problem->code != HE_NO_MEMORY && problem->code != HE_CANCELLED;
+}
+
+static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
+{
+    api_text scratch = {0};
+    api_in question;
+    bool good = true;
+    api_out_object_begin(&x->out);
+    api_out_key_u64(&x->out, "revision", a->revision);
+    api_out_key(&x->out, "results");
+    api_out_array_begin(&x->out);
+    for (bool more = api_in_first(queries, &question); more && good;
+         more = api_in_next(&question)) {
+        if (!api_question_ask(a, &question)) {
+            good = !a->spent && is_of_question(&x->problem) && write_problem(x, &scratch);
+        }
+    }
+    api_out_array_end(&x->out);
+    api_out_object_end(&x->out);
+    api_text_clear(&scratch);
+    return good;
+}
+
+/* --- octets --- */
+
+/* One block after another, all little-endian. */
+enum { BLOCKS = 2 };
+
+typedef struct octets {
+    he_dense dense;
+    double *values;
+    struct {
+        const void *bytes;
+        size_t length;
+    } blocks[BLOCKS];
+    size_t sent;
+} octets;
+
+static void free_octets(void *stream)
+{
+    octets *o = stream;
+    he_dense_clear(&o->dense);
+    he_mem_free(o->values);
+    he_mem_free(o);
+}
+
+static int64_t read_octets(void *stream, char *buffer, size_t size)
+{
+    octets *o = stream;
+    size_t at = o->sent, written = 0;
+    for (int i = 0; i < BLOCKS; i++) {
+        size_t length = o->blocks[i].length;
+        if (at >= length) {
+            at -= length;
+            continue;
+        }
+        size_t part = length - at < size - written ? length - at : size - written;
+        memcpy(buffer + written, (const char *)o->blocks[i].bytes + at, part);
+        written += part;
+        at = 0;
+    }
+    o->sent += written;
+    return (int64_t)written;
+}
+
+/* Nothing where the machine has this order already: compilers see that. */
+static void order_ids(octets *o, int block, he_ids *list)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        uint32_t id = list->ids[i];
+        const unsigned char bytes[4] = {(unsigned char)id, (unsigned char)(id >> 8),
+                                        (unsigned char)(id >> 16), (unsigned char)(id >> 24)};
+        memcpy(&list->ids[i], bytes, sizeof bytes);
+    }
+    o->blocks[block].bytes = list->ids;
+    o->blocks[block].length = list->count * sizeof *list->ids;
+}
+
+static void order_values(octets *o, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint64_t bits;
+        unsigned char bytes[8];
+        memcpy(&bits, &o->values[i], sizeof bits);
+        for (unsigned k = 0; k < 8; k++) {
+            bytes[k] = (unsigned char)(bits >> 8 * k);
+        }
+        memcpy(&o->values[i], bytes, sizeof bytes);
+    }
+    o->blocks[0].bytes = o->values;
+    o->blocks[0].length = count * sizeof *o->values;
+}
+
+static bool fill_octets(octets *o, api_asker *a, const api_in *question)
+{
+    size_t count;
+    if (api_measure_is_dense(question)) {
+        if (!api_measure_dense(a, question, &o->values, &count)) {
+            return false;
+        }
+        order_values(o, count);
+        return true;
+    }
+    if (!api_question_dense(a, question, &o->dense)) {
+        return false;
+    }
+    order_ids(o, 0, &o->dense.offsets);
+    order_ids(o, 1, &o->dense.ids);
+    return true;
+}
+
+static void answer_octets(api_exchange *x, api_asker *a, const api_in *question)
+{
+    octets *o = he_mem_zero(1, sizeof *o);
+    if (o == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    if (!fill_octets(o, a, question)) {
+        free_octets(o);
+        return;
+    }
+    int64_t length = (int64_t)(o->blocks[0].length + o->blocks[1].length);
+    api_answer_stream(x, 200, "application/octet-stream", length, read_octets, o, free_octets);
+}
+
+/* --- which --- */
+
+static void answer(api_exchange *x, api_asker *a)
+{
+    api_in queries, first;
+    if (!api_in_only(&x->root, members) || !api_in_need(&x->root, "queries", &queries) ||
+        !api_in_array(&queries, 0, API_MAX_QUERIES)) {
+        return;
+    }
+    if (strcmp(x->media_out, "application/octet-stream") == 0) {
+        bool dense = api_in_first(&queries, &first) && api_in_count(&queries) == 1 &&
+                     (api_question_is_dense(&first) || api_measure_is_dense(&first));
+        if (dense) {
+            answer_octets(x, a, &first);
+            return;
+        }
+        if (api_media_choose(api_header_of(x, "Accept"), json_only) < 0) {
+            api_fail(x, API_NOT_ACCEPTABLE, "octets answer one question about many elements");
+            x->problem.supported = json_only;
+            return;
+        }
+    }
+    if (answer_each(x, a, &queries)) {
+        api_answer_json(x, 200);
+    }
+}
+
+void api_query_post(api_exchange *x)
+{
+    api_asker_run(x, api_query_post, answer);
+}

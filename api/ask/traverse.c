@@ -1,0 +1,381 @@
+/* Walks: POST .../traverse, and those among the questions of POST .../query.
+ *
+ * An answer repeats the walk, so that it can be read alone, with the defaults filled in. All of a
+ * walk is found before anything is written. */
+#include "api/request/handlers.h"
+
+#include "api/ask/question.h"
+#include "api/read/elements.h"
+#include "mesh/walk.h"
+#include "query/traverse.h"
+
+#include <string.h>
+
+/* Half-edges looked at for each element that a flood meets, on average and roomily. */
+enum { FLOOD_COST = 8 };
+
+static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds,
+                     he_kind *kind, uint32_t *id)
+{
+    api_in in;
+    return api_in_need(walk, name, &in) && api_asker_element(a, &in, kinds, kind, id);
+}
+
+/* What every answer begins with. */
+static void begin_answer(api_asker *a, const char *walk, he_kind kind, uint32_t from)
+{
+    api_out_object_begin(a->out);
+    api_out_key_u64(a->out, "revision", a->revision);
+    api_out_key_string(a->out, "walk", walk);
+    api_out_key(a->out, "from");
+    api_write_reference(a->out, kind, from);
+}
+
+/* Longer than any walk may answer with. */
+static bool is_too_long(const he_ids *ids)
+{
+    return ids->count > API_MAX_WALK;
+}
+
+/* --- path --- */
+
+static const char *const step_names[] = {
+    [HE_STEP_NEXT] = "next", [HE_STEP_PREV] = "prev", [HE_STEP_TWIN] = "twin", NULL};
+static const char *const until_names[] = {"start", "boundary", NULL};
+static const he_until untils[] = {HE_UNTIL_START, HE_UNTIL_BOUNDARY};
+
+typedef struct path {
+    uint32_t from;
+    const he_step *steps;
+    size_t count;
+    bool has_repeat;
+    uint64_t repeat;
+    const char *until_name; /* NULL: only the count ends it */
+    he_until until;
+} path;
+
+static bool read_steps(api_asker *a, const api_in *walk, path *out)
+{
+    api_in list, child;
+    if (!api_in_need(walk, "path", &list) || !api_in_array(&list, 1, API_MAX_PATH_STEPS)) {
+        return false;
+    }
+    he_step *steps = api_arena_array(a->arena, api_in_count(&list), sizeof *steps);
+    if (steps == NULL) {
+        return api_in_fail(&list, HE_NO_MEMORY, "no memory for the path");
+    }
+    for (bool more = api_in_first(&list, &child); more; more = api_in_next(&child)) {
+        int step;
+        if (!api_in_choice(&child, step_names, &step)) {
+            return false;
+        }
+        steps[out->count++] = (he_step)step;
+    }
+    out->steps = steps;
+    return true;
+}
+
+static bool read_path(api_asker *a, const api_in *walk, path *out)
+{
+    static const char *const members[] = {"walk", "from", "path", "repeat", "until", NULL};
+    api_in in;
+    he_kind kind;
+    int choice;
+    *out = (path){.repeat = 1, .until = HE_UNTIL_COUNT};
+    if (!api_in_only(walk, members) ||
+        !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &kind, &out->from) ||
+        !read_steps(a, walk, out)) {
+        return false;
+    }
+    if (api_in_find(walk, "until", &in)) {
+        if (!api_in_choice(&in, until_names, &choice)) {
+            return false;
+        }
+        out->until = untils[choice];
+        out->until_name = until_names[choice];
+        out->repeat = UINT64_MAX;
+    }
+    out->has_repeat = api_in_find(walk, "repeat", &in);
+    return !out->has_repeat || api_in_u64(&in, 0, (uint64_t)1 << 53, &out->repeat);
+}
+
+static void write_path(api_asker *a, const path *p)
+{
+    begin_answer(a, "path", HE_HALFEDGE, p->from);
+    api_out_key(a->out, "path");
+    api_out_array_begin(a->out);
+    for (size_t i = 0; i < p->count; i++) {
+        api_out_string(a->out, step_names[p->steps[i]]);
+    }
+    api_out_array_end(a->out);
+    if (p->has_repeat || p->until_name == NULL) {
+        api_out_key_u64(a->out, "repeat", p->repeat);
+    }
+    if (p->until_name != NULL) {
+        api_out_key_string(a->out, "until", p->until_name);
+    }
+    api_out_key_ids(a->out, "halfedges", a->first.ids, a->first.count);
+    api_out_key_id(a->out, "end", a->first.ids[a->first.count - 1]);
+    api_out_object_end(a->out);
+}
+
+static bool ask_path(api_asker *a, const api_in *walk)
+{
+    path p;
+    he_error err = {0};
+    if (!read_path(a, walk, &p)) {
+        return false;
+    }
+    uint64_t limit = a->on_worker ? api_asker_left(a) : API_MAX_WALK;
+    if (limit == 0 || (p.until == HE_UNTIL_COUNT && p.repeat > limit / p.count)) {
+        return api_asker_exceed(a, walk);
+    }
+    if (he_traverse_path(a->mesh, (he_halfedge){p.from}, p.steps, p.count, p.repeat, p.until, limit,
+                         &a->x->watch, &a->first, &err) != HE_OK) {
+        return api_asker_refuse(a, walk, &err);
+    }
+    api_asker_pay(a, a->first.count);
+    write_path(a, &p);
+    return true;
+}
+
+/* --- loop --- */
+
+static bool ask_loop(api_asker *a, const api_in *walk)
+{
+    static const char *const members[] = {"walk", "from", NULL};
+    he_kind kind;
+    uint32_t from;
+    he_error err = {0};
+    if (!api_in_only(walk, members) ||
+        !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &kind, &from)) {
+        return false;
+    }
+    if (he_traverse_loop(a->mesh, (he_halfedge){from}, &a->first, &err) != HE_OK) {
+        return api_asker_refuse(a, walk, &err);
+    }
+    if (is_too_long(&a->first)) {
+        return api_asker_exceed(a, walk);
+    }
+    api_asker_pay(a, 2 * a->first.count);
+    begin_answer(a, "loop", kind, from);
+    api_out_key_ids(a->out, "halfedges", a->first.ids, a->first.count);
+    api_out_key(a->out, "vertices");
+    api_out_array_begin(a->out);
+    for (size_t i = 0; i < a->first.count; i++) {
+        api_out_id(a->out, he_origin(a->mesh, (he_halfedge){a->first.ids[i]}).i);
+    }
+    api_out_array_end(a->out);
+    api_out_key_id(a->out, "face", he_face_of(a->mesh, (he_halfedge){from}).i);
+    api_out_object_end(a->out);
+    return true;
+}
+
+/* --- rings, breadth first --- */
+
+/* Fills a->first with elements and a->second with depths. `limit` 0: all there are. */
+static bool flood(api_asker *a, const api_in *walk, he_kind kind, uint32_t from, uint32_t depth,
+                  size_t limit)
+{
+    he_error err = {0};
+    size_t most = 1 + (size_t)(a->on_worker ? api_asker_left(a) / FLOOD_COST : API_MAX_WALK);
+    bool bounded = limit != 0 && limit < most;
+    if (he_traverse_breadth_first(a->mesh, kind, from, depth, bounded ? limit : most, &a->first,
+                                  &a->second, &err) != HE_OK) {
+        return api_asker_refuse(a, walk, &err);
+    }
+    if (!bounded && a->first.count == most) {
+        return api_asker_exceed(a, walk);
+    }
+    api_asker_pay(a, FLOOD_COST * (uint64_t)a->first.count);
+    return true;
+}
+
+static bool ask_rings(api_asker *a, const api_in *walk)
+{
+    static const char *const members[] = {"walk", "from", "depth", NULL};
+    api_in in;
+    he_kind kind;
+    uint32_t from;
+    uint64_t depth;
+    if (!api_in_only(walk, members) ||
+        !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &kind, &from) ||
+        !api_in_need(walk, "depth", &in) || !api_in_u64(&in, 0, API_MAX_WALK, &depth) ||
+        !flood(a, walk, kind, from, (uint32_t)depth, 0)) {
+        return false;
+    }
+    begin_answer(a, "rings", kind, from);
+    api_out_key_u64(a->out, "depth", depth);
+    api_out_key(a->out, "rings");
+    api_out_array_begin(a->out);
+    for (size_t i = 0, end; i < a->first.count; i = end) {
+        for (end = i + 1; end < a->first.count && a->second.ids[end] == a->second.ids[i];) {
+            end++;
+        }
+        api_out_ids(a->out, a->first.ids + i, end - i);
+    }
+    api_out_array_end(a->out);
+    api_out_object_end(a->out);
+    return true;
+}
+
+static bool ask_breadth_first(api_asker *a, const api_in *walk)
+{
+    static const char *const members[] = {"walk", "from", "depth", "limit", NULL};
+    api_in in;
+    he_kind kind;
+    uint32_t from;
+    uint64_t depth = HE_NONE, limit = 0;
+    if (!api_in_only(walk, members) ||
+        !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX) | API_KIND_BIT(HE_FACE), &kind, &from)) {
+        return false;
+    }
+    if (api_in_find(walk, "depth", &in) && !api_in_u64(&in, 0, API_MAX_WALK, &depth)) {
+        return false;
+    }
+    if (api_in_find(walk, "limit", &in) && !api_in_u64(&in, 1, API_MAX_WALK, &limit)) {
+        return false;
+    }
+    if (!flood(a, walk, kind, from, (uint32_t)depth, (size_t)limit)) {
+        return false;
+    }
+    begin_answer(a, "breadth_first", kind, from);
+    if (depth != HE_NONE) {
+        api_out_key_u64(a->out, "depth", depth);
+    }
+    if (limit != 0) {
+        api_out_key_u64(a->out, "limit", limit);
+    }
+    api_out_key_ids(a->out, "ids", a->first.ids, a->first.count);
+    api_out_key_ids(a->out, "depths", a->second.ids, a->second.count);
+    api_out_object_end(a->out);
+    return true;
+}
+
+/* --- shortest path --- */
+
+static const char *const measure_names[] = {
+    [HE_BY_EDGES] = "edges", [HE_BY_LENGTH] = "length", NULL};
+
+static void write_shortest_path(api_asker *a, const he_path *found)
+{
+    if (!found->found) {
+        api_out_key_null(a->out, "vertices");
+        api_out_key_null(a->out, "edges");
+        api_out_key_null(a->out, "length");
+        return;
+    }
+    api_out_key_ids(a->out, "vertices", found->vertices.ids, found->vertices.count);
+    api_out_key_ids(a->out, "edges", found->edges.ids, found->edges.count);
+    api_out_key_number(a->out, "length", found->length);
+}
+
+static bool ask_shortest_path(api_asker *a, const api_in *walk)
+{
+    static const char *const members[] = {"walk", "from", "to", "by", NULL};
+    api_in in;
+    he_kind kind;
+    uint32_t from, to;
+    int by = HE_BY_LENGTH;
+    if (!api_in_only(walk, members) ||
+        !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &kind, &from) ||
+        !read_end(a, walk, "to", API_KIND_BIT(HE_VERTEX), &kind, &to)) {
+        return false;
+    }
+    if (api_in_find(walk, "by", &in) && !api_in_choice(&in, measure_names, &by)) {
+        return false;
+    }
+    if (a->on_worker && he_mesh_count(a->mesh, HE_HALFEDGE) > api_asker_left(a)) {
+        return api_asker_exceed(a, walk);
+    }
+    he_path found = {0};
+    he_error err = {0};
+    if (he_traverse_shortest_path(a->mesh, (he_vertex){from}, (he_vertex){to}, (he_measure)by,
+                                  &found, &err) != HE_OK) {
+        return api_asker_refuse(a, walk, &err);
+    }
+    bool short_enough = !is_too_long(&found.vertices) || api_asker_exceed(a, walk);
+    if (short_enough) {
+        api_asker_pay(a, found.visited);
+        begin_answer(a, "shortest_path", kind, from);
+        api_out_key(a->out, "to");
+        api_write_reference(a->out, kind, to);
+        api_out_key_string(a->out, "by", measure_names[by]);
+        write_shortest_path(a, &found);
+        api_out_object_end(a->out);
+    }
+    he_path_clear(&found);
+    return short_enough;
+}
+
+/* --- edge loop, edge ring --- */
+
+static bool ask_edges(api_asker *a, const api_in *walk, const char *name,
+                      he_status (*find)(const he_mesh *, he_edge, he_ids *, bool *, he_error *))
+{
+    static const char *const members[] = {"walk", "from", NULL};
+    he_kind kind;
+    uint32_t from;
+    bool closed;
+    he_error err = {0};
+    if (!api_in_only(walk, members) ||
+        !read_end(a, walk, "from", API_KIND_BIT(HE_EDGE), &kind, &from)) {
+        return false;
+    }
+    if (find(a->mesh, (he_edge){from}, &a->first, &closed, &err) != HE_OK) {
+        return api_asker_refuse(a, walk, &err);
+    }
+    if (is_too_long(&a->first)) {
+        return api_asker_exceed(a, walk);
+    }
+    api_asker_pay(a, 4 * (uint64_t)a->first.count);
+    begin_answer(a, name, kind, from);
+    api_out_key_ids(a->out, "edges", a->first.ids, a->first.count);
+    api_out_key_bool(a->out, "closed", closed);
+    api_out_object_end(a->out);
+    return true;
+}
+
+static bool ask_edge_loop(api_asker *a, const api_in *walk)
+{
+    return ask_edges(a, walk, "edge_loop", he_traverse_edge_loop);
+}
+
+static bool ask_edge_ring(api_asker *a, const api_in *walk)
+{
+    return ask_edges(a, walk, "edge_ring", he_traverse_edge_ring);
+}
+
+/* --- any --- */
+
+/* X(name) */
+#define WALK_MAP(X) \
+    X(path) X(loop) X(rings) X(breadth_first) X(shortest_path) X(edge_loop) X(edge_ring)
+
+#define WALK_NAME(name) #name,
+#define WALK_ASK(name)  ask_##name,
+static const char *const walk_names[] = {WALK_MAP(WALK_NAME) NULL};
+static bool (*const walks[])(api_asker *a, const api_in *walk) = {WALK_MAP(WALK_ASK)};
+#undef WALK_NAME
+#undef WALK_ASK
+
+bool api_walk_ask(api_asker *a, const api_in *walk)
+{
+    api_in name;
+    int choice;
+    a->first.count = a->second.count = 0;
+    return api_in_object(walk) && api_in_need(walk, "walk", &name) &&
+           api_in_choice(&name, walk_names, &choice) && walks[choice](a, walk);
+}
+
+static void answer(api_exchange *x, api_asker *a)
+{
+    if (api_walk_ask(a, &x->root)) {
+        api_answer_json(x, 200);
+    }
+}
+
+void api_traverse_post(api_exchange *x)
+{
+    api_asker_run(x, api_traverse_post, answer);
+}

@@ -1,0 +1,166 @@
+#include "api/ask/tree.h"
+
+#include <stdatomic.h>
+
+/* `bvh` and `abandoned` are written once, under the place; both unset, it is being made. */
+typedef struct api_tree {
+    _Atomic uint32_t uses; /* one while it is kept, one for each asker */
+    uint64_t revision;
+    he_bvh *bvh;
+    bool abandoned; /* it could not be made */
+} api_tree;
+
+void api_tree_release(api_tree *tree)
+{
+    if (tree != NULL && atomic_fetch_sub_explicit(&tree->uses, 1, memory_order_acq_rel) == 1) {
+        he_bvh_free(tree->bvh);
+        he_mem_free(tree);
+    }
+}
+
+static void destroy(void *value)
+{
+    api_tree_release(value);
+}
+
+static void hold(api_tree *tree)
+{
+    atomic_fetch_add_explicit(&tree->uses, 1, memory_order_relaxed);
+}
+
+/* One that is still to be made. */
+static api_tree *tree_new(const api_asker *a)
+{
+    api_tree *tree = he_mem_zero(1, sizeof *tree);
+    if (tree != NULL) {
+        atomic_init(&tree->uses, 1);
+        tree->revision = a->revision;
+    }
+    return tree;
+}
+
+static uint64_t cost_of(const api_asker *a)
+{
+    return he_mesh_count(a->mesh, HE_HALFEDGE);
+}
+
+static bool must_be_made(const api_tree *tree)
+{
+    return tree->bvh == NULL && !tree->abandoned;
+}
+
+/* Under the place. NULL when memory is out, or with a->spent. */
+static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tree **dropped,
+                      bool *made_here)
+{
+    api_tree *kept = place->value;
+    if (kept != NULL && kept->revision == a->revision) {
+        if (kept->bvh == NULL && a->on_worker) {
+            api_asker_exceed(a, in);
+            return NULL;
+        }
+        hold(kept);
+        return kept;
+    }
+    if (a->on_worker && cost_of(a) >= api_asker_left(a)) {
+        api_asker_exceed(a, in);
+        return NULL;
+    }
+    api_tree *tree = tree_new(a);
+    if (tree == NULL) {
+        he_error err = {0};
+        (void)he_fail_plain(&err, HE_NO_MEMORY, "no memory for a tree of boxes");
+        api_asker_refuse(a, in, &err);
+    } else if (kept == NULL || kept->revision < a->revision) {
+        hold(tree);
+        *dropped = kept;
+        *place = (api_derived){tree, destroy};
+    }
+    *made_here = tree != NULL;
+    return tree;
+}
+
+/* The one that is kept, if it is of this revision; else one that the asker has to make, which takes
+ * the place of one of an earlier revision. */
+static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
+{
+    const api_store *store = a->x->store;
+    api_tree *dropped = NULL;
+    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+    api_tree *tree = take(a, in, place, &dropped, made_here);
+    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+    api_tree_release(dropped);
+    return tree;
+}
+
+/* Somebody else makes it. HE_CANCELLED when the asker gives up first. */
+static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
+{
+    const api_store *store = a->x->store;
+    for (;;) {
+        store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+        bool waits = must_be_made(tree);
+        if (waits) {
+            store->derived_wait(store->self, a->x->mesh, API_DERIVED_TREE);
+            waits = must_be_made(tree);
+        }
+        store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+        he_status status = waits ? he_watch_step(&a->x->watch, 0, 1, err) : HE_OK;
+        if (!waits || status != HE_OK) {
+            return status;
+        }
+    }
+}
+
+/* Once made, or given up with NULL: whoever waits for it goes on. */
+static void finish(const api_asker *a, api_tree *tree, he_bvh *bvh)
+{
+    const api_store *store = a->x->store;
+    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+    bool forget = bvh == NULL && place->value == tree;
+    tree->bvh = bvh;
+    tree->abandoned = bvh == NULL;
+    if (forget) {
+        *place = (api_derived){NULL, NULL};
+    }
+    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+    if (forget) {
+        api_tree_release(tree);
+    }
+}
+
+static he_status make(const api_asker *a, api_tree *tree, he_error *err)
+{
+    he_bvh *bvh = NULL;
+    he_status status = he_bvh_new(a->mesh, &a->x->watch, &bvh, err);
+    finish(a, tree, bvh);
+    return status;
+}
+
+const he_bvh *api_asker_tree(api_asker *a, const api_in *in)
+{
+    while (a->tree == NULL) {
+        he_error err = {0};
+        bool made_here = false;
+        api_tree *tree = find(a, in, &made_here);
+        if (tree == NULL) {
+            return NULL;
+        }
+        if ((made_here ? make(a, tree, &err) : await(a, tree, &err)) != HE_OK) {
+            api_tree_release(tree);
+            api_asker_refuse(a, in, &err);
+            return NULL;
+        }
+        if (tree->bvh == NULL) {
+            api_tree_release(tree); /* who made it gave up: nothing that takes long is in it */
+            continue;
+        }
+        /* So that what is left for the questions depends on the mesh alone. A worker's answer is
+         * the same whatever is left, or given on the job pool. */
+        if (made_here || !a->on_worker) {
+            api_asker_pay(a, cost_of(a));
+        }
+        a->tree = tree;
+    }
+    return a->tree->bvh;
+}

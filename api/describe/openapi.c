@@ -1,0 +1,536 @@
+#include "api/describe/openapi.h"
+
+#include "api/describe/examples.h"
+#include "api/describe/operations.h"
+#include "api/describe/schemas.h"
+#include "api/document/shapes.h"
+#include "api/request/routes.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* --- paths --- */
+
+static void write_path_parameter(api_out *out, const char *name)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", name);
+    api_out_key_string(out, "in", "path");
+    api_out_key_bool(out, "required", true);
+    api_out_key(out, "schema");
+    if (strcmp(name, "id") == 0) {
+        api_schema_ref(out, "schemas", "id");
+    } else if (strcmp(name, "domain") == 0) {
+        api_schema_ref(out, "schemas", "domain");
+    } else if (strcmp(name, "name") == 0) {
+        api_schema_ref(out, "schemas", "attribute_name");
+    } else {
+        api_out_object_begin(out);
+        api_out_key_string(out, "type", "string");
+        if (strcmp(name, "mesh") == 0) {
+            api_out_key_string(out, "pattern", "^[A-Za-z0-9._-]{1,64}$");
+        } else if (strcmp(name, "kind") == 0) {
+            static const char *const kinds[] = {"vertices", "halfedges", "edges", "faces", NULL};
+            api_schema_choices(out, "enum", kinds);
+        } else if (strcmp(name, "relation") == 0) {
+            static const char *const relations[] = {"vertices", "outgoing",  "incoming",
+                                                    "edges",    "halfedges", "faces",
+                                                    "loop",     "ring",      NULL};
+            api_schema_choices(out, "enum", relations);
+        }
+        api_out_object_end(out);
+    }
+    api_out_object_end(out);
+}
+
+static void write_path_parameters(api_out *out, const char *path)
+{
+    api_out_key(out, "parameters");
+    api_out_array_begin(out);
+    for (const char *at = strchr(path, '{'); at != NULL; at = strchr(at + 1, '{')) {
+        char name[32];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at + 1, "}"), at + 1);
+        write_path_parameter(out, name);
+    }
+    api_out_array_end(out);
+}
+
+static void write_query_parameter(api_out *out, const api_parameter *parameter)
+{
+    static const char *const flags[] = {"true", "false", NULL};
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", parameter->name);
+    api_out_key_string(out, "in", "query");
+    api_out_key_string(out, "description", parameter->doc);
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    switch (parameter->type) {
+    case API_PARAM_TEXT:
+        api_out_key_string(out, "type", "string");
+        break;
+    case API_PARAM_FLAG:
+        api_out_key_string(out, "type", "string");
+        api_schema_choices(out, "enum", flags);
+        break;
+    case API_PARAM_U64:
+        api_out_key_string(out, "type", "integer");
+        api_out_key_number(out, "minimum", parameter->min);
+        api_out_key_number(out, "maximum", parameter->max);
+        break;
+    case API_PARAM_NUMBER:
+        api_out_key_string(out, "type", "number");
+        api_out_key_number(out, "minimum", parameter->min);
+        api_out_key_number(out, "maximum", parameter->max);
+        break;
+    case API_PARAM_CHOICE:
+        api_out_key_string(out, "type", "string");
+        api_schema_choices(out, "enum", parameter->choices);
+        break;
+    case API_PARAM_CHOICES:
+        api_out_key_string(out, "type", "array");
+        api_out_key(out, "items");
+        api_out_object_begin(out);
+        api_out_key_string(out, "type", "string");
+        api_schema_choices(out, "enum", parameter->choices);
+        api_out_object_end(out);
+        api_out_key_u64(out, "minItems", 1);
+        api_out_key_bool(out, "uniqueItems", true);
+        break;
+    }
+    api_out_object_end(out);
+    if (parameter->type == API_PARAM_CHOICES) {
+        api_out_key_string(out, "style", "form");
+        api_out_key_bool(out, "explode", false);
+    }
+    api_out_object_end(out);
+}
+
+/* Lines are of a component schema, but for the last. */
+static void write_line_schema(api_out *out, const char *line)
+{
+    static const char end[] =
+        "{\"type\":\"object\",\"properties\":{\"end\":{\"const\":true},"
+        "\"count\":{\"type\":\"integer\",\"minimum\":0,\"description\":\"Of the lines before.\"}},"
+        "\"required\":[\"end\",\"count\"]}";
+    api_out_key(out, "x-item-schema");
+    api_out_object_begin(out);
+    api_out_key(out, "oneOf");
+    api_out_array_begin(out);
+    api_schema_ref(out, "schemas", line);
+    api_out_raw(out, end, sizeof end - 1);
+    api_out_array_end(out);
+    api_out_object_end(out);
+}
+
+/* Media types with the schema of those that are the API's own JSON, which a model is not; that of a
+ * line is an extension, since OpenAPI has a word for it (itemSchema) only from 3.2 on. `example`
+ * gives a body of one for `route`. */
+static void write_content(api_out *out, const char *const *types, const char *schema,
+                          const char *line,
+                          const char *(*example)(const char *route, const char *media),
+                          const char *route)
+{
+    api_out_key(out, "content");
+    api_out_object_begin(out);
+    for (; *types != NULL; types++) {
+        api_out_key(out, *types);
+        api_out_object_begin(out);
+        size_t length = strlen(*types);
+        bool lines = strcmp(*types, "application/x-ndjson") == 0;
+        bool json = length >= 4 && strcmp(*types + length - 4, "json") == 0 && !lines;
+        if (json && schema != NULL && strncmp(*types, "application/", 12) == 0) {
+            api_schema_ref_key(out, "schema", schema);
+        } else if (lines && line != NULL) {
+            write_line_schema(out, line);
+        }
+        const char *body = example(route, *types);
+        if (body != NULL && json) {
+            api_out_key(out, "example");
+            api_out_raw(out, body, strlen(body));
+        } else if (body != NULL) {
+            api_out_key_string(out, "example", body);
+        }
+        api_out_object_end(out);
+    }
+    api_out_object_end(out);
+}
+
+static void write_header(api_out *out, const char *name, const char *doc, bool required)
+{
+    api_out_key(out, name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", doc);
+    if (required) {
+        api_out_key_bool(out, "required", true);
+    }
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+static bool is_stream(const api_route *route)
+{
+    return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
+}
+
+/* Of every answer with a body, events aside. */
+static void write_coding_headers(api_out *out)
+{
+    api_out_key(out, "Content-Encoding");
+    api_schema_ref(out, "headers", "Content-Encoding");
+    api_out_key(out, "Vary");
+    api_schema_ref(out, "headers", "Vary");
+}
+
+static bool answers(const api_route *route, int status)
+{
+    const int *at = route->statuses;
+    while (*at != 0 && *at != status) {
+        at++;
+    }
+    return *at == status;
+}
+
+static void write_success_headers(api_out *out, const api_route *route, int status)
+{
+    bool writes = (route->flags & API_WRITES) != 0;
+    bool tagged = answers(route, 304) || (writes && answers(route, status == 204 ? 200 : status));
+    tagged = tagged && status != 202;
+    bool coded = status != 204 && !is_stream(route);
+    if (!tagged && status != 202 && route->headers[0] == NULL && !coded) {
+        return;
+    }
+    api_out_key(out, "headers");
+    api_out_object_begin(out);
+    if (status == 202) {
+        write_header(out, "Location", "Where the job is.", (route->flags & API_LONG) != 0);
+        write_header(out, "Preference-Applied", "respond-async, where the client asked for it.",
+                     false);
+    }
+    if (tagged) {
+        /* A dry run made no state. Neither knows one what published, but could not say more. */
+        bool always = status != 204 && !(route->flags & API_REHEARSED);
+        write_header(out, "ETag", "Names the state that is shown.", always);
+    }
+    if (status == 201) {
+        write_header(out, "Location", "Where the new mesh is.", true);
+    }
+    if (route->flags & (API_KEYED | API_KEYED_NEW)) {
+        write_header(out, "Idempotency-Replayed",
+                     "true: the answer of the first request with this key.", false);
+    }
+    for (size_t i = 0; status == 200 && route->headers[i] != NULL; i++) {
+        write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
+    }
+    if (coded) {
+        write_coding_headers(out);
+    }
+    api_out_object_end(out);
+}
+
+static const char *const job_media[] = {"application/json", NULL};
+
+static void write_success(api_out *out, const api_route *route, int status)
+{
+    const char *what = status == 201
+                           ? "Created. Only where memory ran out right after, or where it "
+                             "is given again and was not kept, does it come without a "
+                             "body and tag."
+                       : status == 202 ? "Not ended yet: a job."
+                       : status == 204 ? "Done; nothing is returned."
+                       : status == 304 ? "The client's copy is the present one."
+                                       : "Success.";
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", what);
+    write_success_headers(out, route, status);
+    if (status == 202) {
+        write_content(out, job_media, "job", NULL, api_example_response, "job_delete");
+    }
+    if (status == 200 || status == 201) {
+        write_content(out, route->produces, route->response, route->line, api_example_response,
+                      route->name);
+    }
+    api_out_object_end(out);
+}
+
+/* Refusals with a header of their own; all others are a "problem". */
+static const struct {
+    int status;
+    const char *name, *header, *doc;
+    bool required;
+} headed_problems[] = {
+    {405, "not_allowed", "Allow", "The methods of the path.", true},
+    {409, "conflict", "Retry-After", "Seconds, where waiting helps.", false},
+    {415, "unsupported", "Accept-Encoding", "The codings that are taken, where it was that.",
+     false},
+    {503, "unavailable", "Retry-After", "Seconds.", true},
+};
+enum { HEADED_PROBLEMS = sizeof headed_problems / sizeof *headed_problems };
+
+static void write_refusal(api_out *out, int status)
+{
+    const char *name = "problem";
+    for (size_t i = 0; i < HEADED_PROBLEMS; i++) {
+        name = headed_problems[i].status == status ? headed_problems[i].name : name;
+    }
+    api_schema_ref(out, "responses", name);
+}
+
+static void write_responses(api_out *out, const api_route *route)
+{
+    char code[8];
+    api_out_key(out, "responses");
+    api_out_object_begin(out);
+    for (const int *status = route->statuses; *status != 0; status++) {
+        snprintf(code, sizeof code, "%d", *status);
+        api_out_key(out, code);
+        if (*status < 400) {
+            write_success(out, route, *status);
+        } else {
+            write_refusal(out, *status);
+        }
+    }
+    for (const int *status = api_route_common(); *status != 0; status++) {
+        snprintf(code, sizeof code, "%d", *status);
+        api_out_key(out, code);
+        write_refusal(out, *status);
+    }
+    api_out_object_end(out);
+}
+
+static void write_header_parameter(api_out *out, const char *name, const char *doc)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", name);
+    api_out_key_string(out, "in", "header");
+    api_out_key_string(out, "description", doc);
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+/* What the route reads beside Accept and Content-Type. */
+static void write_header_parameters(api_out *out, const api_route *route)
+{
+    if (answers(route, 304)) {
+        write_header_parameter(out, "If-None-Match", "ETag of the copy the client has.");
+    }
+    if (answers(route, 412)) {
+        write_header_parameter(out, "If-Match", "ETag of the state the request was made for.");
+        write_header_parameter(out, "If-None-Match", "ETag of a state it must not meet, or *.");
+    }
+    if (route->body_kind != API_BODY_NONE) {
+        write_header_parameter(
+            out, "Content-Encoding",
+            "gzip (with one member or several) or zstd (with one frame or several, and windows up "
+            "to 8 MiB): the body is unfolded as it arrives, and may not exceed the limit of a "
+            "plain "
+            "one nor, beyond the first MiB, 100 times what was sent. One coding, not several.");
+    }
+    if (is_stream(route)) {
+        write_header_parameter(out, "Last-Event-ID",
+                               "Id of the last event the client has seen; wins over `since`.");
+    }
+    bool minimal = answers(route, 204) && answers(route, 200);
+    if (route->flags & API_LONG) {
+        write_header_parameter(out, "Prefer",
+                               minimal ? "respond-async: a job and 202. wait=N: the answer itself, "
+                                         "if it will take N seconds at most. return=minimal: 204 "
+                                         "in place of the answer."
+                                       : "respond-async: a job and 202. wait=N: the answer itself, "
+                                         "if it will take N seconds at most.");
+    } else if (minimal) {
+        write_header_parameter(out, "Prefer", "return=minimal: 204 in place of the answer.");
+    }
+    if (route->flags & (API_KEYED | API_KEYED_NEW)) {
+        write_header_parameter(
+            out, "Idempotency-Key",
+            "1 to 255 visible characters of the client's choice. A request that took effect is "
+            "answered again for a day, with Idempotency-Replayed: true, and not done again; where "
+            "the first answer was too large to keep, with 204 or 201 and no body. The key with "
+            "another request is 422, while the first is under way 409. Refusals are not kept.");
+    }
+}
+
+/* Longer than any row's, with a sentence more. */
+enum { MOST_DOC = 2000 };
+
+static void write_doc(api_out *out, const api_route *route)
+{
+    static const char expensive[] = "Expensive: refused to pages of other sites.";
+    const char *doc = route->doc == NULL ? "" : route->doc;
+    char text[MOST_DOC];
+    bool is_expensive = (route->flags & API_EXPENSIVE) != 0;
+    snprintf(text, sizeof text, "%s%s%s", doc, doc[0] != '\0' && is_expensive ? " " : "",
+             is_expensive ? expensive : "");
+    if (text[0] != '\0') {
+        api_out_key_string(out, "description", text);
+    }
+}
+
+static void write_operation(api_out *out, const api_route *route)
+{
+    char method[16] = "";
+    for (size_t i = 0; i + 1 < sizeof method && route->method[i] != '\0'; i++) {
+        char c = route->method[i];
+        method[i] = c >= 'A' && c <= 'Z' ? (char)(c + 32) : c;
+    }
+    api_out_key(out, method);
+    api_out_object_begin(out);
+    api_out_key_string(out, "operationId", route->name);
+    api_out_key_string(out, "summary", route->summary);
+    write_doc(out, route);
+    api_out_key(out, "parameters");
+    api_out_array_begin(out);
+    for (const api_parameter *const *p = route->parameters; *p != NULL; p++) {
+        write_query_parameter(out, *p);
+    }
+    write_header_parameters(out, route);
+    api_out_array_end(out);
+    if (route->body_kind != API_BODY_NONE) {
+        api_out_key(out, "requestBody");
+        api_out_object_begin(out);
+        api_out_key_bool(out, "required", route->body_kind != API_BODY_OPTION);
+        write_content(out, route->consumes, route->request, NULL, api_example_request, route->name);
+        api_out_object_end(out);
+    }
+    write_responses(out, route);
+    api_out_object_end(out);
+}
+
+static bool is_first_of_path(size_t i)
+{
+    for (size_t j = 0; j < i; j++) {
+        if (strcmp(api_route_at(j)->path, api_route_at(i)->path) == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void write_paths(api_out *out)
+{
+    api_out_key(out, "paths");
+    api_out_object_begin(out);
+    for (size_t i = 0; i < api_route_count(); i++) {
+        if (!is_first_of_path(i)) {
+            continue;
+        }
+        const char *path = api_route_at(i)->path;
+        api_out_key(out, path);
+        api_out_object_begin(out);
+        write_path_parameters(out, path);
+        for (size_t j = i; j < api_route_count(); j++) {
+            if (strcmp(api_route_at(j)->path, path) == 0) {
+                write_operation(out, api_route_at(j));
+            }
+        }
+        api_out_object_end(out);
+    }
+    api_out_object_end(out);
+}
+
+static const char *example_problem(const char *route, const char *media)
+{
+    (void)route;
+    (void)media;
+    return api_example_problem();
+}
+
+static void write_problem(api_out *out, const char *name, const char *header, const char *doc,
+                          bool required)
+{
+    static const char *const problem[] = {"application/problem+json", NULL};
+    api_out_key(out, name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
+    api_out_key(out, "headers");
+    api_out_object_begin(out);
+    if (header != NULL) {
+        write_header(out, header, doc, required);
+    }
+    write_coding_headers(out);
+    api_out_object_end(out);
+    write_content(out, problem, "problem", NULL, example_problem, NULL);
+    api_out_object_end(out);
+}
+
+static void write_shared_headers(api_out *out)
+{
+    static const char *const codings[] = {"gzip", "zstd", NULL};
+    api_out_key(out, "headers");
+    api_out_object_begin(out);
+    api_out_key(out, "Content-Encoding");
+    api_out_object_begin(out);
+    api_out_key_string(out, "description",
+                       "The coding of the body, where Accept-Encoding asked for one.");
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    api_schema_choices(out, "enum", codings);
+    api_out_object_end(out);
+    api_out_object_end(out);
+    write_header(out, "Vary", "What of the request the answer depends on.", false);
+    api_out_object_end(out);
+}
+
+static void write_components(api_out *out)
+{
+    api_out_key(out, "components");
+    api_out_object_begin(out);
+    api_out_key(out, "schemas");
+    api_out_object_begin(out);
+    api_schemas_write(out);
+    api_operation_schemas_write(out);
+    api_shape_schema_write(out);
+    api_out_object_end(out);
+    write_shared_headers(out);
+    api_out_key(out, "responses");
+    api_out_object_begin(out);
+    write_problem(out, "problem", NULL, NULL, false);
+    for (size_t i = 0; i < HEADED_PROBLEMS; i++) {
+        write_problem(out, headed_problems[i].name, headed_problems[i].header,
+                      headed_problems[i].doc, headed_problems[i].required);
+    }
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+void api_openapi_write(api_out *out, const char *version, const char *url)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "openapi", "3.1.0");
+    api_out_key(out, "info");
+    api_out_object_begin(out);
+    api_out_key_string(out, "title", "hedge");
+    api_out_key_string(out, "version", version);
+    api_out_key_string(out, "description",
+                       "Half-edge meshes over HTTP. Every GET answers HEAD too. Every refusal is "
+                       "application/problem+json. Bodies of more than 1 KiB are sent in gzip or "
+                       "zstd where Accept-Encoding likes that best; their ETag is one of its own, "
+                       "and as good in If-Match. Pages of other sites may change nothing and "
+                       "are refused expensive reads, which say that they are: 403 where "
+                       "Sec-Fetch-Site is cross-site, unless --allow-origin names the Origin.");
+    api_out_key(out, "license");
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", "MIT");
+    api_out_key_string(out, "identifier", "MIT");
+    api_out_object_end(out);
+    api_out_object_end(out);
+    api_out_key(out, "servers");
+    api_out_array_begin(out);
+    api_out_object_begin(out);
+    api_out_key_string(out, "url", url != NULL ? url : "/");
+    api_out_object_end(out);
+    api_out_array_end(out);
+    api_out_key(out, "security"); /* none: nobody has to authenticate */
+    api_out_array_begin(out);
+    api_out_array_end(out);
+    write_paths(out);
+    write_components(out);
+    api_out_object_end(out);
+}

@@ -1,0 +1,91 @@
+#include "api/describe/openapi.h"
+#include "api/describe/operations.h"
+#include "api/request/handlers.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* A page of the viewer runs its own scripts and talks to its own server, and nothing else. */
+static const char viewer_policy[] =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
+    "require-trusted-types-for 'script'; trusted-types 'none'";
+static const char text_policy[] =
+    "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+void api_live_get(api_exchange *x)
+{
+    api_out_object_begin(&x->out);
+    api_out_key_string(&x->out, "status", "alive");
+    api_out_object_end(&x->out);
+    api_answer_json(x, 200);
+}
+
+void api_ready_get(api_exchange *x)
+{
+    const api_options *options = &x->service->options;
+    if (options->ready != NULL && !options->ready(options->ready_context)) {
+        api_fail(x, API_NOT_READY, "the server is starting or stopping");
+        return;
+    }
+    api_out_object_begin(&x->out);
+    api_out_key_string(&x->out, "status", "ready");
+    api_out_object_end(&x->out);
+    api_answer_json(x, 200);
+}
+
+void api_version_get(api_exchange *x)
+{
+    api_out_object_begin(&x->out);
+    api_out_key_string(&x->out, "name", "hedged");
+    api_out_key_string(&x->out, "version", x->service->options.version);
+    api_out_object_end(&x->out);
+    api_answer_json(x, 200);
+}
+
+void api_page_get(api_exchange *x)
+{
+    const api_options *options = &x->service->options;
+    const char *bytes, *type, *etag = NULL;
+    size_t length;
+    bool immutable = false;
+    /* The raw path: a name of an asset needs no escapes, and the lookup is in a table. */
+    if (options->asset == NULL || !options->asset(options->asset_context, x->request.path, &bytes,
+                                                  &length, &type, &etag, &immutable)) {
+        api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
+        return;
+    }
+    api_answer_header(x, "Cache-Control",
+                      immutable ? "public, max-age=31536000, immutable" : "no-cache");
+    if (strncmp(type, "text/html", 9) == 0) {
+        api_answer_header(x, "Content-Security-Policy", viewer_policy);
+        api_answer_header(x, "Referrer-Policy", "no-referrer");
+    }
+    if (etag == NULL || !api_not_modified_since(x, etag)) {
+        api_answer_bytes(x, 200, type, bytes, length);
+    }
+}
+
+void api_problem_get(api_exchange *x)
+{
+    int code = api_code_find(x->code);
+    if (code < 0) {
+        api_fail(x, API_NO_SUCH_ROUTE, "no problem has the code \"%.100s\"", x->code);
+        return;
+    }
+    api_problem_page(code, &x->text);
+    api_answer_header(x, "Content-Security-Policy", text_policy);
+    api_answer_text(x, 200, "text/html; charset=utf-8");
+}
+
+void api_operations_get(api_exchange *x)
+{
+    api_operations_write(&x->out);
+    api_answer_json(x, 200);
+}
+
+void api_openapi_get(api_exchange *x)
+{
+    api_openapi_write(&x->out, x->service->options.version, x->service->options.public_url);
+    api_answer_json(x, 200);
+}

@@ -1,0 +1,738 @@
+#include "api/request/routes.h"
+
+#include "algo/decimate.h"
+#include "api/json/attribute_value.h"
+#include "api/request/handlers.h"
+#include "repair/repair.h"
+
+#include <float.h>
+#include <string.h>
+
+/* --- media types --- */
+
+static const char *const json[] = {"application/json", NULL};
+static const char *const merge_patch[] = {"application/merge-patch+json", "application/json", NULL};
+static const char *const octets[] = {"application/octet-stream", NULL};
+static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
+static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
+static const char *const mesh_in[] = {
+    "application/json",         "model/obj", "model/x-off",       "model/ply",
+    "application/ply",          "model/stl", "model/gltf-binary", "model/gltf+json",
+    "application/octet-stream", NULL};
+static const char *const mesh_out[] = {
+    "application/json", "model/obj",         "model/x-off", "model/ply",
+    "model/stl",        "model/gltf-binary", NULL};
+static const char *const event_stream[] = {"text/event-stream", NULL};
+static const char *const html[] = {"text/html", NULL};
+static const char *const anything[] = {"text/html",
+                                       "text/javascript",
+                                       "text/css",
+                                       "image/svg+xml",
+                                       "image/png",
+                                       "application/json",
+                                       "text/plain",
+                                       "font/woff2",
+                                       "application/octet-stream",
+                                       NULL};
+
+/* --- query parameters --- */
+
+static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "gltf", "json", NULL};
+static const char *const encodings[] = {"ascii", "binary", "binary_big_endian", NULL};
+static const char *const connections[] = {"vertex", "edge", NULL};
+
+static const api_parameter limit = {
+    "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "How many items a page has at most."};
+static const api_parameter cursor = {
+    "cursor", API_PARAM_TEXT, 0, API_MAX_URI, NULL, "Where to go on: `next` of the page before."};
+static const api_parameter revision = {
+    "revision", API_PARAM_U64, 1,
+    0x1p53,     NULL,          "An earlier revision that the history still holds."};
+static const api_parameter since = {"since", API_PARAM_U64, 1,
+                                    0x1p53,  NULL,          "Only what came after this revision."};
+static const api_parameter drawn = {
+    "since", API_PARAM_U64,
+    1,       API_MAX_EXACT,
+    NULL,    "The revision of the arrays there are: send what changed. With `layout`."};
+static const api_parameter base_faces = {
+    "faces", API_PARAM_U64,
+    0,       HE_MAX_ROWS,
+    NULL,    "Faces of the base, or more where that few cannot be had; 0 when not given."};
+static const api_parameter most_error = {
+    "max_error", API_PARAM_NUMBER,
+    0,           DBL_MAX,
+    NULL,        "Of the base, as decimate means it; no limit if not said."};
+static const api_parameter boundary_weight = {"boundary_weight",
+                                              API_PARAM_NUMBER,
+                                              0,
+                                              HE_BOUNDARY_WEIGHT_MAX,
+                                              NULL,
+                                              "As decimate means it; its default if not said."};
+static const api_parameter most_splits = {
+    "splits", API_PARAM_U64, 0, HE_MAX_ROWS, NULL, "Send no more vertex splits than these."};
+static const api_parameter layout = {
+    "layout", API_PARAM_U64, 1, API_MAX_EXACT, NULL, "The layout of the arrays there are."};
+static const api_parameter turning = {
+    "cw", API_PARAM_FLAG, 0,
+    0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
+static const api_parameter last_seen = {
+    "since", API_PARAM_TEXT, 0, 64, NULL, "Go on after this: an event's id, or a revision."};
+static const api_parameter format = {
+    "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
+static const api_parameter encoding = {
+    "encoding", API_PARAM_CHOICE, 0,
+    0,          encodings,        "Text or binary, where a format has both; binary if not said."};
+static const api_parameter name = {
+    "name", API_PARAM_TEXT, 0, API_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
+static const api_parameter repair = {
+    "repair",
+    API_PARAM_CHOICES,
+    0,
+    0,
+    he_repair_names,
+    "What may be done to what the structure cannot hold: these repairs in this order, whatever the "
+    "order here. weld makes vertices within the tolerance one; drop_degenerate leaves out faces "
+    "without three different corners, drop_duplicates those with the corners of an earlier face; "
+    "orient turns faces so that neighbours agree; split gives every fan of faces a vertex of its "
+    "own; fill closes small holes."};
+static const api_parameter tolerance = {
+    "tolerance", API_PARAM_NUMBER,
+    0,           DBL_MAX,
+    NULL,        "How far apart the vertices may be that weld makes one; 0 if not said."};
+static const api_parameter hole_edges = {
+    "hole_edges",  API_PARAM_U64, 3,
+    API_MAX_EXACT, NULL,          "The most edges of a hole that fill closes; 16 if not said."};
+static const api_parameter identity = {
+    "id",        API_PARAM_TEXT, 0,
+    API_MAX_URI, NULL,           "Id of the mesh to be made; the server chooses without."};
+static const api_parameter by = {
+    "by", API_PARAM_CHOICE, 0,
+    0,    connections,      "Faces are connected across edges, or already by a shared vertex."};
+
+static const api_parameter ids = {"ids",       API_PARAM_TEXT, 1,
+                                  API_MAX_URI, NULL,           "Ids joined by commas."};
+static const api_parameter type = {
+    "type", API_PARAM_CHOICE, 0,
+    0,      api_type_names,   "Type of the numbers, where the body is octets."};
+static const api_parameter components = {
+    "components", API_PARAM_U64, 1,
+    16,           NULL,          "Numbers of one value, where the body is octets; 1 if not said."};
+static const api_parameter meets = {"self_intersections",
+                                    API_PARAM_FLAG,
+                                    0,
+                                    0,
+                                    NULL,
+                                    "Look for faces that meet where they should not, too."};
+static const api_parameter merge = {
+    "merge",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "Vertices no farther apart are in one place, edges no longer have no length, faces no wider "
+    "have no area; 1e-9 of the diagonal of the box around the edges if not said."};
+static const api_parameter flat = {
+    "flat",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "A corner farther from the plane of its face makes that nonplanar; 1e-4 of the diagonal of "
+    "the box around the edges if not said."};
+static const api_parameter small = {
+    "small",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "Components in boxes whose diagonal is no longer are small; 1e-2 of the diagonal of the "
+    "box around the edges if not said."};
+static const api_parameter dry_run = {
+    "dry_run", API_PARAM_FLAG, 0, 0, NULL, "Do nothing, and answer as if; members say it in JSON."};
+static const api_parameter rule = {
+    "rule", API_PARAM_CHOICE, 0,
+    0,      api_rule_names,   "What edits give to new elements, where the body is octets."};
+
+/* --- headers --- */
+
+static const api_told_header next_page = {"Link", "The next page, where there is one."};
+static const api_told_header warnings = {"Export-Warnings", "What the format could not carry."};
+
+/* --- the table --- */
+
+static const api_route routes[] = {
+    /* the collection */
+    {.method = "GET",
+     .path = "/v1/meshes",
+     .name = "meshes_list",
+     .run = api_meshes_list,
+     .produces = json,
+     .parameters = {&limit, &cursor},
+     .headers = {&next_page},
+     .statuses = {200},
+     .response = "mesh_page",
+     .summary = "List the meshes",
+     .doc = "A page of ids, names, revisions and counts, in the order of ids."},
+    {.method = "POST",
+     .path = "/v1/meshes",
+     .name = "meshes_create",
+     .begin = api_meshes_create_begin,
+     .body = api_meshes_create_body,
+     .run = api_meshes_create,
+     .flags = API_WRITES | API_COSTLY | API_LONG | API_KEYED_NEW,
+     .body_kind = API_BODY_UPLOAD,
+     .consumes = mesh_in,
+     .produces = json,
+     .parameters = {&format, &name, &identity, &repair, &tolerance, &hole_edges},
+     .statuses = {201, 202, 409, 413, 415, 422},
+     .request = "create",
+     .response = "created",
+     .summary = "Create a mesh",
+     .doc = "From a mesh document, a shape, or a file. What the structure cannot hold is refused "
+            "with each offending element, and with the repairs that would let it pass."},
+
+    /* one mesh */
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_get",
+     .run = api_mesh_get,
+     .flags = API_EXPENSIVE,
+     .produces = json,
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
+     .response = "summary",
+     .summary = "Summary of a mesh",
+     .doc = "Counts, topology and measures of the present revision, or of the one that is named."},
+    {.method = "PATCH",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_patch",
+     .run = api_mesh_patch,
+     .flags = API_WRITES | API_KEYED,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = merge_patch,
+     .produces = json,
+     .statuses = {200, 204, 409, 412, 413, 415, 422},
+     .request = "mesh_patch",
+     .response = "summary",
+     .summary = "Change the name",
+     .doc = "A JSON merge patch (RFC 7396) of the mesh's own members; the content and its revision "
+            "stay."},
+    {.method = "PUT",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_put",
+     .begin = api_mesh_put_begin,
+     .body = api_mesh_put_body,
+     .run = api_mesh_put,
+     .flags = API_WRITES | API_COSTLY | API_LONG | API_MAY_CREATE,
+     .body_kind = API_BODY_UPLOAD,
+     .consumes = mesh_in,
+     .produces = json,
+     .parameters = {&format, &name, &repair, &tolerance, &hole_edges},
+     .statuses = {200, 201, 202, 204, 409, 412, 413, 415, 422},
+     .request = "create",
+     .response = "created",
+     .summary = "Replace a mesh, or create it under this id",
+     .doc = "The body is that of a create. Replacing makes a new revision and ends the undo stack. "
+            "With If-None-Match: * an existing mesh is 412."},
+    {.method = "DELETE",
+     .path = "/v1/meshes/{mesh}",
+     .name = "mesh_delete",
+     .run = api_mesh_delete,
+     .flags = API_WRITES | API_INTERRUPTS,
+     .produces = json,
+     .statuses = {204, 412},
+     .summary = "Delete a mesh",
+     .doc = "Its id may be used again; entity tags and event ids do not repeat."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/content",
+     .name = "content_get",
+     .run = api_content_get,
+     .flags = API_EXPENSIVE | API_COSTLY | API_OWN_ACCEPT,
+     .produces = mesh_out,
+     .parameters = {&revision, &format, &encoding},
+     .headers = {&warnings},
+     .statuses = {200, 304, 410},
+     .response = "document",
+     .summary = "Export a mesh",
+     .doc = "In the format that `format` or Accept asks for. What the format cannot carry is named "
+            "in the header Export-Warnings."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/geometry",
+     .name = "geometry_get",
+     .run = api_geometry_get,
+     .flags = API_EXPENSIVE,
+     .produces = octets,
+     .parameters = {&drawn, &layout},
+     .statuses = {200, 304},
+     .summary = "Arrays to draw a mesh from",
+     .doc =
+         "Little-endian: a header of 96 bytes (\"HEDG\", u32 version 2, u64 revision, u64 base, "
+         "u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x 3 "
+         "origin, f64 scale, u64 layout, u32 rows of vertices and u32 of triangles in this "
+         "answer); then for each vertex id f32 x 4, (position - origin) * scale and 0 dead, 1 "
+         "used or 2 isolated; then for each slot u32 x 4, three vertices and the face's id with "
+         "bits 29 to 31 for the sides that are edges of the face, or four zeros where the slot "
+         "is free. With `since` and `layout` of an answer before, the rows that changed: of the "
+         "vertices, then of the triangles, u32 places, zeros up to a multiple of 16 bytes, and "
+         "the rows for them. The arrays are first grown with zeros to the vertices and triangles "
+         "of the header. A base of 0 says that all rows are there and the arrays begin afresh: "
+         "the server may answer so at any time, and does where the layout is another."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/progressive",
+     .name = "progressive_get",
+     .run = api_progressive_get,
+     .flags = API_EXPENSIVE | API_COSTLY,
+     .produces = octets,
+     .parameters = {&revision, &base_faces, &most_error, &boundary_weight, &most_splits},
+     .statuses = {200, 304, 410, 422},
+     .summary = "A mesh from coarse to fine",
+     .doc =
+         "The mesh decimated, and the vertex splits that lead back to it with all ids: any number "
+         "of them leaves a mesh. Of the revision before a decimate, and with the same faces, "
+         "max_error and boundary_weight, it is the record of that edit: the base is the mesh that "
+         "the edit made. Little-endian: \"HEDP\", u32 version 1, u64 revision, u32 "
+         "vertices, edges and faces of the base, splits here, splits there are, 0, ids issued of "
+         "vertices, edges and faces, 0, f64 x 3 least and largest coordinates; vertices (u32 id, "
+         "0, f64 x 3), edges (u32 id, origin, target, 0), faces (u32 id, three corners); then "
+         "splits: u32 bytes, new vertex u, the vertex v it leaves, left and right corner, "
+         "half-edges from u to those three, left face (u, v, left), right face (v, u, right), "
+         "number of faces in which u takes the place of v, 0, f64 x 3 places of u and of v, u32 "
+         "those faces, up to a multiple of 8 bytes. 2^32 - 1 is none."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/copy",
+     .name = "mesh_copy",
+     .run = api_mesh_copy,
+     .flags = API_WRITES | API_COSTLY | API_LONG | API_KEYED_NEW,
+     .body_kind = API_BODY_OPTION,
+     .consumes = json,
+     .produces = json,
+     .parameters = {&revision},
+     .statuses = {201, 202, 409, 410, 412, 413, 415, 422},
+     .request = "copy",
+     .response = "summary",
+     .summary = "Copy a mesh",
+     .doc = "An independent mesh with the same ids and attributes and a history of its own; of an "
+            "earlier revision where one is named."},
+
+    /* its elements */
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/{kind}",
+     .name = "elements_list",
+     .run = api_elements_list,
+     .flags = API_EXPENSIVE,
+     .produces = lines_too,
+     .parameters = {&revision, &limit, &cursor},
+     .headers = {&next_page},
+     .statuses = {200, 304, 410},
+     .response = "element_page",
+     .line = "element",
+     .summary = "List elements of a kind",
+     .doc = "A page in the order of ids, or all of them as lines of JSON that end in "
+            "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while the "
+            "history holds it."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/{kind}/{id}",
+     .name = "element_get",
+     .run = api_element_get,
+     .produces = json,
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
+     .response = "element",
+     .summary = "One element with all its links",
+     .doc = "A deleted element is 410, one that never was is 404."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/{kind}/{id}/{relation}",
+     .name = "relation_get",
+     .run = api_relation_get,
+     .produces = json,
+     .parameters = {&revision, &turning},
+     .statuses = {200, 304, 410},
+     .response = "adjacency",
+     .summary = "What is adjacent to an element",
+     .doc = "Counter-clockwise from the stored half-edge. Each element once."},
+
+    /* attributes */
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/attributes",
+     .name = "attributes_list",
+     .run = api_attributes_list,
+     .produces = json,
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
+     .response = "attribute_list",
+     .summary = "List the attributes",
+     .doc = "All of them, of every domain, without their values."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_get",
+     .run = api_attribute_get,
+     .flags = API_EXPENSIVE | API_COSTLY,
+     .produces = octets_too,
+     .parameters = {&revision, &limit, &cursor, &ids},
+     .headers = {&next_page},
+     .statuses = {200, 304, 410},
+     .response = "attribute_values",
+     .summary = "Values of an attribute",
+     .doc = "A page of live elements in the order of ids, or those that `ids` names. As octets: a "
+            "row for each id ever issued, dead ones hold the default; bool is one byte, the other "
+            "types are 4 or 8, little-endian, without gaps."},
+    {.method = "PUT",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_put",
+     .begin = api_attribute_put_begin,
+     .body = api_attribute_put_body,
+     .run = api_attribute_put,
+     .flags = API_WRITES | API_COSTLY | API_REHEARSED,
+     .body_kind = API_BODY_UPLOAD,
+     .consumes = octets_too,
+     .produces = json,
+     .parameters = {&type, &components, &rule, &dry_run},
+     .statuses = {200, 201, 204, 409, 412, 413, 415, 422},
+     .request = "attribute",
+     .response = "attribute_written",
+     .summary = "Create an attribute, or replace it",
+     .doc = "As a whole, with the values of all elements, one for all, or the default. As octets: "
+            "rows as GET gives them, described by the query; what they say of dead elements is not "
+            "looked at. One revision, which can be undone."},
+    {.method = "PATCH",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_patch",
+     .run = api_attribute_patch,
+     .flags = API_WRITES | API_COSTLY | API_KEYED | API_REHEARSED,
+     .body_kind = API_BODY_EDITS,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 204, 409, 412, 413, 415, 422},
+     .request = "attribute_patch",
+     .response = "attribute_written",
+     .summary = "Write values by ids",
+     .doc = "A value for each id, or one for all. One revision, which can be undone; none where "
+            "nothing changes."},
+    {.method = "DELETE",
+     .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
+     .name = "attribute_delete",
+     .run = api_attribute_delete,
+     .flags = API_WRITES | API_REHEARSED,
+     .produces = json,
+     .parameters = {&dry_run},
+     .statuses = {200, 204, 409, 412},
+     .response = "attribute_written",
+     .summary = "Delete an attribute",
+     .doc = "One revision, which can be undone."},
+
+    /* questions */
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/query",
+     .name = "query_post",
+     .run = api_query_post,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = json,
+     .produces = octets_too,
+     .parameters = {&revision},
+     .statuses = {200, 410, 413, 415, 422},
+     .request = "query",
+     .response = "query_results",
+     .summary = "Ask many questions at once",
+     .doc =
+         "Adjacency, walks, elements, half-edges between vertices, measures, rays, nearest points "
+         "and self-intersections, all of one revision. One question about many elements may be "
+         "answered as octets: of a relation n + 1 offsets and the ids as 32-bit integers, of a "
+         "measure doubles, NaN for null; all little-endian."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/traverse",
+     .name = "traverse_post",
+     .run = api_traverse_post,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = json,
+     .produces = json,
+     .parameters = {&revision},
+     .statuses = {200, 410, 413, 415, 422},
+     .request = "walk",
+     .response = "walked",
+     .summary = "Walk over a mesh",
+     .doc = "Paths of next, prev and twin, loops, rings, breadth-first and shortest paths."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/boundaries",
+     .name = "boundaries_get",
+     .run = api_boundaries_get,
+     .flags = API_EXPENSIVE | API_COSTLY,
+     .produces = json,
+     .parameters = {&revision},
+     .statuses = {200, 304, 410},
+     .response = "boundaries",
+     .summary = "Boundary loops",
+     .doc = "Each boundary half-edge is in one loop."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/components",
+     .name = "components_get",
+     .run = api_components_get,
+     .flags = API_EXPENSIVE | API_COSTLY,
+     .produces = json,
+     .parameters = {&revision, &by},
+     .statuses = {200, 304, 410},
+     .response = "components",
+     .summary = "Connected components",
+     .doc = "Isolated vertices are left out."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/check",
+     .name = "check_get",
+     .run = api_check_get,
+     .flags = API_EXPENSIVE | API_LONG,
+     .produces = json,
+     .parameters = {&revision, &meets, &merge, &flat, &small},
+     .statuses = {200, 202, 304, 410},
+     .response = "check",
+     .summary = "Check a mesh",
+     .doc =
+         "Every broken invariant by its number, and every defect a valid mesh may have: vertices "
+         "of several fans, without an edge or in one place with another, edges without length, "
+         "faces that have no area or are not flat, components that are small or inside out. A "
+         "component is inside out when it is closed and its volume negative: one that bounds a "
+         "hollow within another is listed too, though that is as it should be. Of each the first "
+         "are listed and all counted."},
+
+    /* edits */
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/edits",
+     .name = "edits_post",
+     .run = api_edits_post,
+     .flags = API_WRITES | API_LONG | API_KEYED | API_REHEARSED,
+     .body_kind = API_BODY_EDITS,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 202, 204, 409, 412, 413, 415, 422},
+     .request = "edit",
+     .response = "edited",
+     .summary = "Edit a mesh",
+     .doc = "One operation, or a list that is applied as a whole or not at all: one revision and "
+            "one undo step."},
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/edits",
+     .name = "edits_list",
+     .run = api_edits_list,
+     .produces = json,
+     .parameters = {&limit, &cursor, &since},
+     .headers = {&next_page},
+     .statuses = {200, 304, 410},
+     .response = "history",
+     .summary = "History of a mesh",
+     .doc =
+         "What each revision did, newest first. `oldest` can still be read and undone to; entries "
+         "before were dropped to keep within the undo budget, `dropped` of them. The steps to undo "
+         "that were taken first go with them; what was undone can be done again until the next "
+         "edit, however full the history is."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/undo",
+     .name = "undo_post",
+     .run = api_undo_post,
+     .flags = API_WRITES | API_KEYED,
+     .body_kind = API_BODY_OPTION,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 204, 409, 410, 412, 413, 415, 422},
+     .request = "step",
+     .response = "edited",
+     .summary = "Undo the last edit",
+     .doc =
+         "The last edit, the last `steps`, or all that were done since revision `to_revision`: at "
+         "once, each as a new revision, or not at all. The sets are what all of it comes to."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/redo",
+     .name = "redo_post",
+     .run = api_redo_post,
+     .flags = API_WRITES | API_KEYED,
+     .body_kind = API_BODY_OPTION,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 204, 409, 410, 412, 413, 415, 422},
+     .request = "step",
+     .response = "edited",
+     .summary = "Do again what was undone",
+     .doc =
+         "What was undone last, the last `steps`, or as far as revision `to_revision` was: each as "
+         "a new revision, with the ids it had."},
+
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/events",
+     .name = "events_get",
+     .run = api_events_get,
+     .produces = event_stream,
+     .parameters = {&last_seen},
+     .statuses = {200},
+     .summary = "Every change as it happens",
+     .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
+            "link for link; `metadata` a new name; `job` that one of this mesh has begun or ended; "
+            "`resync` says to fetch the mesh anew, `bye` that the stream ends. Last-Event-ID or "
+            "`since` goes on where a client was cut off, "
+            "or gives one `resync` where the history does not reach."},
+
+    /* jobs */
+    {.method = "GET",
+     .path = "/v1/jobs",
+     .name = "jobs_list",
+     .run = api_jobs_list,
+     .produces = json,
+     .parameters = {&limit, &cursor},
+     .headers = {&next_page},
+     .statuses = {200},
+     .response = "job_page",
+     .summary = "List the jobs",
+     .doc = "A page in the order of their submission, without results and problems."},
+    {.method = "GET",
+     .path = "/v1/jobs/{job}",
+     .name = "job_get",
+     .run = api_job_get,
+     .produces = json,
+     .statuses = {200},
+     .response = "job",
+     .summary = "How far a job is",
+     .doc = "With what the request would have been answered with, once it has ended: its result or "
+            "problem. A job that has ended is kept for an hour, if there is room."},
+    {.method = "GET",
+     .path = "/v1/jobs/{job}/events",
+     .name = "job_events",
+     .run = api_job_events,
+     .produces = event_stream,
+     .statuses = {200},
+     .summary = "How a job goes on",
+     .doc = "Server-Sent Events: `job` holds the job whenever it has come further, the last with "
+            "its result or problem where that is small; `bye` says that the stream ends."},
+    {.method = "DELETE",
+     .path = "/v1/jobs/{job}",
+     .name = "job_delete",
+     .run = api_job_delete,
+     .produces = json,
+     .statuses = {202, 204},
+     .response = "job",
+     .summary = "Cancel or forget a job",
+     .doc = "One that waits or runs is told to end (202): what it had changed is undone and its "
+            "memory given back. One that has ended is forgotten (204)."},
+
+    /* the tables */
+    {.method = "GET",
+     .path = "/v1/operations",
+     .name = "operations_get",
+     .run = api_operations_get,
+     .produces = json,
+     .statuses = {200},
+     .response = "operations",
+     .summary = "The operation table",
+     .doc = "Every operation with its parameters, results, refusals and its change in V, E and F."},
+    {.method = "GET",
+     .path = "/v1/openapi.json",
+     .name = "openapi_get",
+     .run = api_openapi_get,
+     .produces = json,
+     .statuses = {200},
+     .response = "description",
+     .summary = "This document",
+     .doc = "The API as OpenAPI 3.1."},
+
+    /* beside the API */
+    {.method = "GET",
+     .path = "/livez",
+     .name = "live_get",
+     .run = api_live_get,
+     .flags = API_FIXED,
+     .produces = json,
+     .statuses = {200},
+     .response = "health",
+     .summary = "Is the process alive?",
+     .doc = "It answers, whatever else is wrong."},
+    {.method = "GET",
+     .path = "/readyz",
+     .name = "ready_get",
+     .run = api_ready_get,
+     .flags = API_FIXED,
+     .produces = json,
+     .statuses = {200},
+     .response = "health",
+     .summary = "Does the server take requests?",
+     .doc = "503 while it starts and stops."},
+    {.method = "GET",
+     .path = "/version",
+     .name = "version_get",
+     .run = api_version_get,
+     .flags = API_FIXED,
+     .produces = json,
+     .statuses = {200},
+     .response = "version",
+     .summary = "Version of the server",
+     .doc = "Its name, and its version as in \"info\" of this document."},
+    {.method = "GET",
+     .path = "/problems/{code}",
+     .name = "problem_get",
+     .run = api_problem_get,
+     .flags = API_FIXED,
+     .produces = html,
+     .statuses = {200},
+     .summary = "What a problem means",
+     .doc = "Where `type` of a problem leads: a page about its code."},
+    {.method = "GET",
+     .path = "/",
+     .name = "page_get",
+     .run = api_page_get,
+     .flags = API_FIXED,
+     .produces = html,
+     .statuses = {200, 304},
+     .summary = "The viewer",
+     .doc = "A page to look at meshes, to edit them and to see what they are made of."},
+    {.method = "GET",
+     .path = "/docs",
+     .name = "docs_get",
+     .run = api_page_get,
+     .flags = API_FIXED,
+     .produces = html,
+     .statuses = {200, 304},
+     .summary = "The manual of the API",
+     .doc = "This document as a page."},
+    {.method = "GET",
+     .path = "/assets/{asset}",
+     .name = "asset_get",
+     .run = api_page_get,
+     .flags = API_FIXED | API_OWN_ACCEPT,
+     .produces = anything,
+     .statuses = {200, 304},
+     .summary = "Files of the viewer",
+     .doc = "Scripts and styles of the two pages."},
+};
+
+size_t api_route_count(void)
+{
+    return sizeof routes / sizeof routes[0];
+}
+const api_route *api_route_at(size_t i)
+{
+    return &routes[i];
+}
+
+const int *api_route_common(void)
+{
+    static const int common[] = {400, 403, 404, 405, 406, 408, 414, 421,
+                                 431, 500, 501, 503, 505, 507, 0};
+    return common;
+}
+
+const char *const *api_relations(he_kind kind)
+{
+    static const char *const of_vertex[] = {"vertices", "outgoing", "incoming",
+                                            "edges",    "faces",    NULL};
+    static const char *const of_halfedge[] = {"loop", "ring", NULL};
+    static const char *const of_edge[] = {"vertices", "halfedges", "faces", NULL};
+    static const char *const of_face[] = {"vertices", "halfedges", "edges", "faces", NULL};
+    static const char *const of_mesh[] = {NULL};
+    switch (kind) {
+    case HE_VERTEX:
+        return of_vertex;
+    case HE_HALFEDGE:
+        return of_halfedge;
+    case HE_EDGE:
+        return of_edge;
+    case HE_FACE:
+        return of_face;
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return of_mesh;
+}

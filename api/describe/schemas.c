@@ -1,0 +1,270 @@
+#include "api/describe/schemas.h"
+
+#include "api/describe/schema_rows.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Schemas that are not a list of members, as JSON Schema. */
+static const struct {
+    const char *name, *json;
+} others[] = {
+    {"id", "{\"type\":\"integer\",\"minimum\":0,\"maximum\":4294967293}"},
+    {"id_or_null", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/id\"},"
+                   "{\"type\":\"null\"}]}"},
+    {"reference",
+     "{\"type\":\"string\",\"pattern\":\"^\\\\$[A-Za-z_][A-Za-z0-9_]*\\\\.[a-z_]+(\\\\.[0-9]+)?$\","
+     "\"description\":\"A result of an earlier operation of the list.\"}"},
+    {"id_or_reference", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/id\"},"
+                        "{\"$ref\":\"#/components/schemas/reference\"}]}"},
+    {"point", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":3,"
+              "\"maxItems\":3}"},
+    {"points", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/point\"},{\"type\":\"array\","
+               "\"items\":{\"$ref\":\"#/components/schemas/point\"},\"minItems\":1}]}"},
+    {"mesh_id", "{\"type\":\"string\",\"pattern\":\"^[A-Za-z0-9._-]{1,64}$\"}"},
+    {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
+               "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},
+    {"value", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/plain\"},{\"type\":\"array\","
+              "\"items\":{\"$ref\":\"#/components/schemas/plain\"},\"minItems\":2,"
+              "\"maxItems\":16}]}"},
+    {"plain", "{\"type\":[\"number\",\"boolean\"]}"},
+    {"values_by_name", "{\"type\":\"object\",\"additionalProperties\":"
+                       "{\"$ref\":\"#/components/schemas/value\"},\"minProperties\":1}"},
+    {"domain", "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
+    {"attribute_name", "{\"type\":\"string\",\"minLength\":1,\"maxLength\":63,\"description\":"
+                       "\"At most 63 bytes of UTF-8; `position` is built in.\"}"},
+    {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
+    {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
+    {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
+    {"set", "{\"type\":\"object\",\"additionalProperties\":{\"const\":true},"
+            "\"minProperties\":1,\"maxProperties\":1,\"description\":\"The live elements "
+            "whose bool attribute of this name is true; none changes nothing.\"}"},
+    {"ids_or_set", "{\"oneOf\":[{\"type\":\"array\",\"items\":"
+                   "{\"$ref\":\"#/components/schemas/id\"},\"minItems\":1},"
+                   "{\"const\":\"all\"},{\"$ref\":\"#/components/schemas/set\"}]}"},
+    {"pair", "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id\"},\"minItems"
+             "\":2,\"maxItems\":2}"},
+    {"sides", "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id_or_null\"},\"m"
+              "inItems\":2,\"maxItems\":2}"},
+    {"triple", "{\"type\":\"array\",\"items\":{\"type\":\"integer\"},\"minItems\":3,\"maxItems\""
+               ":3}"},
+    {"scalar", "{\"type\":[\"number\",\"boolean\",\"string\"]}"},
+    {"degrees", "{\"type\":\"object\",\"propertyNames\":{\"pattern\":\"^[0-9]+$\"},\"additionalPr"
+                "operties\":{\"type\":\"integer\",\"minimum\":1}}"},
+    {"totals", "{\"type\":\"object\",\"properties\":{\"problems\":{\"type\":\"integer\",\"minimu"
+               "m\":0}},\"required\":[\"problems\"],\"additionalProperties\":{\"type\":\"integer"
+               "\",\"minimum\":0}}"},
+    {"element_kind", "{\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\",\"mesh\"]}"},
+    {"repair_name", "{\"enum\":[\"weld\",\"drop_degenerate\",\"drop_duplicates\",\"orient\","
+                    "\"split\",\"fill\"]}"},
+    {"op_size", "{\"enum\":[\"local\",\"whole\"]}"},
+    {"action", "{\"enum\":[\"edit\",\"undo\",\"redo\",\"replace\"]}"},
+    {"connection", "{\"enum\":[\"edge\",\"vertex\"]}"},
+    {"description",
+     "{\"type\":\"object\",\"required\":[\"openapi\",\"info\",\"servers\",\"security\""
+     ",\"paths\",\"components\"],\"properties\":{\"openapi\":{\"const\":\"3.1.0\"},\"i"
+     "nfo\":{\"$ref\":\"#/components/schemas/any_members\"},\"servers\":{\"type\":\"ar"
+     "ray\",\"items\":{\"$ref\":\"#/components/schemas/any_members\"},\"minItems\":1},"
+     "\"security\":{\"type\":\"array\",\"maxItems\":0},\"paths\":{\"$ref\":\"#/compone"
+     "nts/schemas/any_members\"},\"components\":{\"$ref\":\"#/components/schemas/any_m"
+     "embers\"}}}"},
+    {"any_members",
+     "{\"type\":\"object\",\"additionalProperties\":true,\"minProperties\":1,\"descrip"
+     "tion\":\"As OpenAPI 3.1 says.\"}"},
+    {"job_state", "{\"enum\":[\"queued\",\"running\",\"done\",\"failed\",\"cancelled\"]}"},
+    {"job_result", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/edited\"},"
+                   "{\"$ref\":\"#/components/schemas/created\"},"
+                   "{\"$ref\":\"#/components/schemas/check\"},"
+                   "{\"$ref\":\"#/components/schemas/summary\"}]}"},
+    {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
+    {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
+                "{\"$ref\":\"#/components/schemas/halfedge\"},"
+                "{\"$ref\":\"#/components/schemas/edge\"},"
+                "{\"$ref\":\"#/components/schemas/face\"}]}"},
+    {"created", "{\"allOf\":[{\"$ref\":\"#/components/schemas/summary\"},"
+                "{\"$ref\":\"#/components/schemas/imported\"}]}"},
+    {"create", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/document\"},"
+               "{\"$ref\":\"#/components/schemas/shape\"}]}"},
+    {"answer", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/adjacency\"},"
+               "{\"$ref\":\"#/components/schemas/dense\"},"
+               "{\"$ref\":\"#/components/schemas/walked\"},"
+               "{\"$ref\":\"#/components/schemas/found\"},"
+               "{\"$ref\":\"#/components/schemas/measured\"},"
+               "{\"$ref\":\"#/components/schemas/measured_many\"},"
+               "{\"$ref\":\"#/components/schemas/ray_hit\"},"
+               "{\"$ref\":\"#/components/schemas/nearest\"},"
+               "{\"$ref\":\"#/components/schemas/intersections\"},"
+               "{\"$ref\":\"#/components/schemas/element\"},"
+               "{\"$ref\":\"#/components/schemas/problem\"}]}"},
+    {"of", "{\"type\":\"object\",\"propertyNames\":"
+           "{\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\"]},"
+           "\"additionalProperties\":{\"$ref\":\"#/components/schemas/id\"},"
+           "\"minProperties\":1,\"maxProperties\":1}"},
+    {"of_many", "{\"type\":\"object\",\"propertyNames\":"
+                "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\"]},"
+                "\"additionalProperties\":{\"$ref\":\"#/components/schemas/ids_or_all\"},"
+                "\"minProperties\":1,\"maxProperties\":1}"},
+    {"ids_or_all", "{\"oneOf\":[{\"type\":\"array\",\"items\":"
+                   "{\"$ref\":\"#/components/schemas/id\"}},{\"const\":\"all\"}]}"},
+    {"of_any", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/of\"},"
+               "{\"$ref\":\"#/components/schemas/of_many\"}]}"},
+    {"question", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/relation_query\"},"
+                 "{\"$ref\":\"#/components/schemas/find_query\"},"
+                 "{\"$ref\":\"#/components/schemas/get_query\"},"
+                 "{\"$ref\":\"#/components/schemas/measure_query\"},"
+                 "{\"$ref\":\"#/components/schemas/ray_query\"},"
+                 "{\"$ref\":\"#/components/schemas/closest_query\"},"
+                 "{\"$ref\":\"#/components/schemas/intersections_query\"},"
+                 "{\"$ref\":\"#/components/schemas/walk\"}]}"},
+    {"measure_name",
+     "{\"enum\":[\"normal\",\"area\",\"angle_defect\",\"mean_curvature\",\"gaussian_curvature\","
+     "\"angle\",\"length\",\"dihedral\",\"cotangent\",\"centroid\"],\"description\":\"Of vertices "
+     "normal, area (the mixed one), angle_defect, mean_curvature, gaussian_curvature; of "
+     "half-edges "
+     "angle and normal, at the corner; of edges length, dihedral (convex above 0), cotangent (the "
+     "weight); of faces normal, area, centroid. Angles are in radians.\"}"},
+    {"measured_value",
+     "{\"oneOf\":[{\"type\":\"number\"},{\"$ref\":\"#/components/schemas/point\"},"
+     "{\"type\":\"null\"}]}"},
+    {"weights", "{\"enum\":[\"area\",\"angle\",\"uniform\"]}"},
+    {"find_name", "{\"enum\":[\"halfedge\",\"edge\",\"faces\"]}"},
+    {"walk_name", "{\"enum\":[\"path\",\"loop\",\"rings\",\"breadth_first\",\"shortest_path\","
+                  "\"edge_loop\",\"edge_ring\"]}"},
+    {"step_name", "{\"enum\":[\"next\",\"prev\",\"twin\"]}"},
+    {"edit", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/edit_one\"},"
+             "{\"$ref\":\"#/components/schemas/edit_list\"}]}"},
+};
+
+void api_schema_choices(api_out *out, const char *key, const char *const *choices)
+{
+    api_out_key(out, key);
+    api_out_array_begin(out);
+    for (; *choices != NULL; choices++) {
+        api_out_string(out, *choices);
+    }
+    api_out_array_end(out);
+}
+
+void api_schema_ref(api_out *out, const char *group, const char *name)
+{
+    char reference[128];
+    snprintf(reference, sizeof reference, "#/components/%s/%s", group, name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "$ref", reference);
+    api_out_object_end(out);
+}
+
+void api_schema_ref_key(api_out *out, const char *key, const char *name)
+{
+    api_out_key(out, key);
+    api_schema_ref(out, "schemas", name);
+}
+
+static void write_base(api_out *out, const char *type, size_t length)
+{
+    static const struct {
+        const char *name, *json; /* the members of the schema object */
+    } bases[] = {
+        {"id", "\"$ref\":\"#/components/schemas/id\""},
+        {"point", "\"$ref\":\"#/components/schemas/point\""},
+        {"index", "\"type\":\"integer\",\"minimum\":0"},
+        {"count", "\"type\":\"integer\",\"minimum\":0"},
+        {"integer", "\"type\":\"integer\""},
+        {"number", "\"type\":\"number\""},
+        {"flag", "\"type\":\"boolean\""},
+        {"text", "\"type\":\"string\""},
+        {"time", "\"type\":\"string\",\"format\":\"date-time\""},
+    };
+    for (size_t i = 0; i < sizeof bases / sizeof bases[0]; i++) {
+        if (strlen(bases[i].name) == length && memcmp(bases[i].name, type, length) == 0) {
+            char json[96];
+            int size = snprintf(json, sizeof json, "{%s}", bases[i].json);
+            api_out_raw(out, json, (size_t)size);
+            return;
+        }
+    }
+    if (type[0] == '#') {
+        char name[64];
+        snprintf(name, sizeof name, "%.*s", (int)length - 1, type + 1);
+        api_schema_ref(out, "schemas", name);
+        return;
+    }
+    assert(!"a type of the table");
+}
+
+static void write_type(api_out *out, const char *type, size_t length, const char *doc)
+{
+    bool nullable = length > 0 && type[length - 1] == '?';
+    if (nullable || doc != NULL) {
+        api_out_object_begin(out);
+        if (doc != NULL) {
+            api_out_key_string(out, "description", doc);
+        }
+        api_out_key(out, nullable ? "anyOf" : "allOf");
+        api_out_array_begin(out);
+        write_type(out, type, nullable ? length - 1 : length, NULL);
+        if (nullable) {
+            api_out_raw(out, "{\"type\":\"null\"}", 15);
+        }
+        api_out_array_end(out);
+        api_out_object_end(out);
+    } else if (type[0] == '*' || type[0] == '+') {
+        api_out_object_begin(out);
+        api_out_key_string(out, "type", "array");
+        if (type[0] == '+') {
+            api_out_key_u64(out, "minItems", 1);
+        }
+        api_out_key(out, "items");
+        write_type(out, type + 1, length - 1, NULL);
+        api_out_object_end(out);
+    } else {
+        write_base(out, type, length);
+    }
+}
+
+/* The schema whose rows begin at `rows`; returns how many those are. */
+static size_t write_schema(api_out *out, const api_member *rows, bool closed)
+{
+    size_t count = 0;
+    while (rows[count].schema != NULL && strcmp(rows[count].schema, rows[0].schema) == 0) {
+        count++;
+    }
+    api_out_key(out, rows[0].schema);
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "object");
+    api_out_key(out, "properties");
+    api_out_object_begin(out);
+    for (size_t i = 0; i < count; i++) {
+        api_out_key(out, rows[i].name);
+        write_type(out, rows[i].type, strlen(rows[i].type), rows[i].doc);
+    }
+    api_out_object_end(out);
+    api_out_key(out, "required");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < count; i++) {
+        if (rows[i].required) {
+            api_out_string(out, rows[i].name);
+        }
+    }
+    api_out_array_end(out);
+    if (closed) {
+        api_out_key_bool(out, "additionalProperties", false);
+    }
+    api_out_object_end(out);
+    return count;
+}
+
+void api_schemas_write(api_out *out)
+{
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        api_out_key(out, others[i].name);
+        api_out_raw(out, others[i].json, strlen(others[i].json));
+    }
+    for (const api_member *row = api_answer_members; row->schema != NULL;) {
+        row += write_schema(out, row, false);
+    }
+    for (const api_member *row = api_request_members; row->schema != NULL;) {
+        row += write_schema(out, row, true);
+    }
+}

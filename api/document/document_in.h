@@ -1,0 +1,50 @@
+/* document_in.h - reading a mesh document piece by piece.
+ *
+ *     {"name":"cube","vertices":[[x,y,z],...],"faces":[[i,j,k,...],...],"attributes":[...]}
+ *
+ * Pieces may be cut anywhere, members come in any order. Vertices and faces go straight into a soup
+ * (build/build.h); numbers are read exactly. Attributes are attributes_in.h's. All other members
+ * ("name", "shape", what is not known) are gathered, at most API_MAX_CONTROL bytes, into a control
+ * document that the caller reads through json_in.h at the end, so that {"shape":"cube","size":2}
+ * comes through the same door.
+ *
+ * Refused here, with pointers such as /vertices/17/2: whatever is not JSON; a second "vertices",
+ * "faces" or "attributes"; a vertex that is not three finite numbers; a corner that is not a whole
+ * number >= 0 (one beyond any id is bad_index, 422); more than the limits (413). Faces of too few
+ * corners and corners beyond the vertices are he_build's to refuse.
+ *
+ * Memory: the soup, the gathered members, and a number's text across a cut. */
+#ifndef HE_API_DOCUMENT_DOCUMENT_IN_H
+#define HE_API_DOCUMENT_DOCUMENT_IN_H
+
+#include "api/json/json_in.h"
+#include "build/build.h"
+#include "repair/repair.h"
+
+typedef struct api_document_in api_document_in;
+
+/* NULL when memory is out. `limits` may be NULL. */
+api_document_in *api_document_in_new(const he_limits *limits);
+void api_document_in_free(api_document_in *in);
+
+/* The next piece. After false the reader only waits to be freed. */
+bool api_document_in_feed(api_document_in *in, const char *bytes, size_t length,
+                          api_problem *problem);
+/* The body has ended: was it whole, and are the gathered members well formed? */
+bool api_document_in_end(api_document_in *in, api_problem *problem);
+
+/* After a good end. The soup is the reader's; he_build may take from it. */
+he_soup *api_document_in_soup(api_document_in *in);
+bool api_document_in_has_vertices(const api_document_in *in);
+bool api_document_in_has_faces(const api_document_in *in);
+/* Add the attributes to the mesh the document made. Where its soup was repaired first, it had so
+ * many vertices and faces before. */
+bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, const he_repaired *done,
+                                size_t vertices, size_t faces, api_problem *problem);
+/* Are there attributes that no repaired document can keep? */
+bool api_document_in_has_edges(const api_document_in *in);
+/* The other members as one object; valid until the reader is freed. Their refusals go to the
+ * problem that was given to api_document_in_end. */
+const api_in *api_document_in_rest(const api_document_in *in);
+
+#endif

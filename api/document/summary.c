@@ -1,0 +1,213 @@
+#include "api/document/summary.h"
+
+#include <stdio.h>
+#include <string.h>
+
+bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
+{
+    he_error err = {0};
+    /* Padding too, since the store compares nothing but keeps every byte. */
+    memset(out, 0, sizeof *out);
+    he_topology topology;
+    if (he_topology_find(mesh, &topology, &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    out->degree_count =
+        topology.degree_count < API_SUMMARY_DEGREES ? topology.degree_count : API_SUMMARY_DEGREES;
+    if (out->degree_count > 0) {
+        memcpy(out->degrees, topology.degrees, out->degree_count * sizeof *out->degrees);
+    }
+    out->topology = topology;
+    out->topology.degrees = NULL;
+    he_topology_clear(&topology);
+    out->has_box = he_mesh_box(mesh, &out->box);
+    out->memory_bytes = he_mesh_bytes(mesh);
+    if (he_mesh_measure(mesh, &out->measures, &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    return true;
+}
+
+static void write_counts(api_out *out, const he_topology *t)
+{
+    api_out_key(out, "counts");
+    api_out_object_begin(out);
+    api_out_key_u64(out, "vertices", t->vertices);
+    api_out_key_u64(out, "halfedges", 2 * (uint64_t)t->edges);
+    api_out_key_u64(out, "edges", t->edges);
+    api_out_key_u64(out, "faces", t->faces);
+    api_out_key_u64(out, "boundary_loops", t->boundary_loops);
+    api_out_key_u64(out, "isolated_vertices", t->isolated_vertices);
+    api_out_key_u64(out, "components", t->components);
+    api_out_key_u64(out, "components_by_edge", t->components_by_edge);
+    api_out_object_end(out);
+}
+
+static void write_degrees(api_out *out, const api_summary *summary)
+{
+    api_out_key(out, "degrees");
+    api_out_object_begin(out);
+    for (size_t i = 0; i < summary->degree_count; i++) {
+        char key[16];
+        snprintf(key, sizeof key, "%u", summary->degrees[i].degree);
+        api_out_key_u64(out, key, summary->degrees[i].faces);
+    }
+    api_out_object_end(out);
+}
+
+static void write_box(api_out *out, const api_summary *summary)
+{
+    api_out_key(out, "bbox");
+    if (!summary->has_box) {
+        api_out_null(out);
+        return;
+    }
+    api_out_object_begin(out);
+    api_out_key_vec3(out, "min", summary->box.min);
+    api_out_key_vec3(out, "max", summary->box.max);
+    api_out_object_end(out);
+}
+
+static void write_identity(api_out *out, const api_mesh_info *info)
+{
+    api_out_key_string(out, "id", info->id);
+    api_out_key_string(out, "name", info->name);
+    api_out_key_u64(out, "revision", info->revision);
+}
+
+void api_write_brief(api_out *out, const api_mesh_info *info, const he_mesh *mesh)
+{
+    write_identity(out, info);
+    api_out_key(out, "counts");
+    api_out_object_begin(out);
+    api_out_key_u64(out, "vertices", he_mesh_vertices(mesh));
+    api_out_key_u64(out, "halfedges", he_mesh_count(mesh, HE_HALFEDGE));
+    api_out_key_u64(out, "edges", he_mesh_edges(mesh));
+    api_out_key_u64(out, "faces", he_mesh_faces(mesh));
+    api_out_object_end(out);
+}
+
+void api_write_summary(api_out *out, const api_mesh_info *info, const api_summary *summary)
+{
+    const he_topology *t = &summary->topology;
+    write_identity(out, info);
+    write_counts(out, t);
+    api_out_key(out, "euler");
+    api_out_i64(out, t->euler);
+    api_out_key(out, "genus");
+    if (t->has_genus) {
+        api_out_i64(out, t->genus);
+    } else {
+        api_out_null(out);
+    }
+    api_out_key_bool(out, "closed", t->closed);
+    api_out_key_bool(out, "manifold", t->manifold);
+    write_degrees(out, summary);
+    write_box(out, summary);
+    api_out_key_number(out, "area", summary->measures.area);
+    api_out_key(out, "volume");
+    if (summary->measures.has_volume) {
+        api_out_number(out, summary->measures.volume);
+    } else {
+        api_out_null(out);
+    }
+    api_out_key_u64(out, "memory_bytes", summary->memory_bytes);
+    api_out_key_time(out, "created", info->created);
+    api_out_key_time(out, "modified", info->modified);
+}
+
+static void write_answer(api_exchange *x, const api_summary *summary, int status,
+                         void (*extra)(api_exchange *x))
+{
+    api_out_object_begin(&x->out);
+    api_write_summary(&x->out, &x->info, summary);
+    if (extra != NULL) {
+        extra(x);
+    }
+    api_out_object_end(&x->out);
+    api_answer_json(x, status);
+}
+
+/* Keep what was computed, unless the mesh has moved on meanwhile. */
+static void keep(api_exchange *x, const api_summary *summary)
+{
+    api_mesh_info now;
+    if (x->store->read_begin(x->store->self, x->mesh, &now) != NULL) {
+        if (now.revision == x->info.revision && now.incarnation == x->info.incarnation) {
+            x->store->cache_put(x->store->self, x->mesh, summary, sizeof *summary);
+        }
+        x->store->read_end(x->store->self, x->mesh);
+    }
+}
+
+void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
+                       void (*extra)(api_exchange *x))
+{
+    keep(x, summary);
+    api_answer_etag(x, "summary");
+    write_answer(x, summary, status, extra);
+}
+
+void api_answer_created(api_exchange *x, const api_summary *summary, void (*extra)(api_exchange *x))
+{
+    /* Its facts are read even where somebody has deleted it by now: it was made. */
+    x->store->read_begin(x->store->self, x->mesh, &x->info);
+    x->store->read_end(x->store->self, x->mesh);
+    x->has_info = true;
+    api_publish(x, 201);
+    api_answer_header(x, "Location", x->location);
+    api_answer_stored(x, 201, summary, extra);
+}
+
+/* The summary of a large mesh, whose lock is not held meanwhile. */
+static void answer_from_snapshot(api_exchange *x)
+{
+    const he_mesh *mesh;
+    api_snapshot *snapshot = api_snapshot_of(x, &mesh);
+    if (snapshot == NULL) {
+        return;
+    }
+    api_summary summary;
+    bool found = api_summary_find(x, mesh, &summary);
+    x->store->snapshot_release(x->store->self, snapshot);
+    if (found) {
+        api_answer_stored(x, 200, &summary, NULL);
+    }
+}
+
+/* The answer to a write is never "not modified". */
+static bool is_known(api_exchange *x)
+{
+    if (!(x->route->flags & API_WRITES)) {
+        return api_not_modified(x, "summary");
+    }
+    api_answer_etag(x, "summary");
+    return false;
+}
+
+void api_answer_summary(api_exchange *x)
+{
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    if (is_known(x)) {
+        api_read_end(x);
+        return;
+    }
+    api_summary summary;
+    bool past = x->past != NULL;
+    bool cached = !past && x->store->cache_get(x->store->self, x->mesh, &summary, sizeof summary);
+    if (!cached && api_is_large(x, mesh)) {
+        api_read_end(x);
+        api_defer(x, answer_from_snapshot);
+        return;
+    }
+    if (cached || api_summary_find(x, mesh, &summary)) {
+        if (!cached && !past) {
+            x->store->cache_put(x->store->self, x->mesh, &summary, sizeof summary);
+        }
+        write_answer(x, &summary, 200, NULL);
+    }
+    api_read_end(x);
+}

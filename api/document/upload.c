@@ -1,0 +1,574 @@
+#include "api/document/upload.h"
+
+#include "algo/shape.h"
+#include "api/document/document_in.h"
+#include "api/document/repairs.h"
+#include "format/io/format.h"
+#include "mesh/walk.h"
+#include "query/topology.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Enough to tell any format by. */
+enum { SNIFF_BYTES = 512 };
+
+/* Bytes of a file that is read at its end, for each vertex or corner: a guess, of the time alone.
+ */
+enum { ELEMENT_BYTES = 5 };
+
+/* Of the making of a mesh; what is left is its summary's. */
+static const double READ_SHARE = 0.2, SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7,
+                    FILL_SHARE = 0.75;
+
+typedef struct attribute {
+    he_kind domain;
+    char name[HE_COLUMN_NAME];
+} attribute;
+
+typedef struct upload {
+    he_limits limits;
+    /* exactly one of these reads; neither while the first bytes are gathered */
+    api_document_in *document;
+    he_reader *reader;
+    const he_format *format; /* of the reader */
+    char head[SNIFF_BYTES];  /* the first bytes of the body */
+    size_t head_length;
+
+    bool has_import;
+    he_import import;
+    const he_shape *shape;
+    double args[HE_SHAPE_PARAMS];
+    const char *name;
+
+    he_report report;
+    he_repair_plan plan;
+    he_repaired repaired;
+    size_t vertices, faces; /* as read */
+    attribute *attributes;
+    size_t attribute_count;
+    he_ids bowties;
+    uint64_t isolated;   /* vertices */
+    he_ids isolated_ids; /* the first */
+} upload;
+
+static void free_upload(void *state)
+{
+    upload *u = state;
+    api_document_in_free(u->document);
+    he_reader_free(u->reader);
+    if (u->has_import) {
+        he_import_clear(&u->import);
+    }
+    he_repaired_clear(&u->repaired);
+    he_ids_clear(&u->bowties);
+    he_ids_clear(&u->isolated_ids);
+    he_mem_free(u->attributes);
+    he_mem_free(u);
+}
+
+static bool open_document(api_exchange *x, upload *u)
+{
+    u->document = api_document_in_new(&u->limits);
+    return u->document != NULL || api_fail_memory(x);
+}
+
+static bool open_reader(api_exchange *x, upload *u, const he_format *format)
+{
+    he_error err = {0};
+    u->format = format;
+    return he_reader_new(format, &u->limits, &u->reader, &err) == HE_OK || api_fail_core(x, &err);
+}
+
+bool api_upload_begin(api_exchange *x)
+{
+    upload *u = he_mem_zero(1, sizeof *u);
+    if (u == NULL) {
+        return api_fail_memory(x);
+    }
+    x->state = u;
+    x->free_state = free_upload;
+    u->limits.bytes = 4 * x->service->options.max_upload;
+    if (!api_repairs_read(x, &u->plan)) {
+        return false;
+    }
+    const char *name = api_param_text(x, "format");
+    if (name == NULL && strcmp(x->media_in, "application/octet-stream") == 0) {
+        return true; /* the first bytes will tell */
+    }
+    if (strcmp(name != NULL ? name : x->media_in, name != NULL ? "json" : "application/json") ==
+        0) {
+        return open_document(x, u);
+    }
+    const he_format *format =
+        name != NULL ? he_format_find(name) : he_format_of_media_type(x->media_in);
+    if (format == NULL || format->reading == NULL) {
+        return api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s is not a format this server reads",
+                        name != NULL ? name : x->media_in);
+    }
+    return open_reader(x, u, format);
+}
+
+/* What was said to be of one format may be of another. */
+static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
+{
+    const he_format *looks = he_format_sniff(u->head, u->head_length);
+    size_t length = strlen(err->text);
+    if (looks != NULL && looks != u->format) {
+        snprintf(err->text + length, sizeof err->text - length,
+                 "; the body begins as one of the format %s does", looks->name);
+    }
+    return api_fail_core(x, err);
+}
+
+static bool feed(api_exchange *x, upload *u, const char *bytes, size_t length)
+{
+    if (u->document != NULL) {
+        return api_document_in_feed(u->document, bytes, length, &x->problem);
+    }
+    he_error err = {0};
+    return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || fail_reading(x, u, &err);
+}
+
+/* Choose a reader by what has arrived, and let it read that. */
+static bool choose(api_exchange *x, upload *u)
+{
+    size_t blank = 0;
+    while (blank < u->head_length && strchr(" \t\r\n", u->head[blank]) != NULL) {
+        blank++;
+    }
+    /* glTF is JSON too, with a member that our document has not */
+    const he_format *gltf = he_format_find("gltf");
+    bool json =
+        blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
+    const he_format *format = json ? NULL : he_format_sniff(u->head, u->head_length);
+    if (!json && (format == NULL || format->reading == NULL)) {
+        bool wide = u->head_length >= 2 &&
+                    (memcmp(u->head, "\xFF\xFE", 2) == 0 || memcmp(u->head, "\xFE\xFF", 2) == 0);
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s",
+                 wide ? "the body is UTF-16: send it as UTF-8"
+                      : "the first bytes are of no format this server reads: say ?format=");
+        x->problem.supported = x->route->consumes;
+        return false;
+    }
+    return (json ? open_document(x, u) : open_reader(x, u, format)) &&
+           feed(x, u, u->head, u->head_length);
+}
+
+static bool is_open(const upload *u)
+{
+    return u->document != NULL || u->reader != NULL;
+}
+
+bool api_upload_feed(api_exchange *x, const char *bytes, size_t length)
+{
+    upload *u = x->state;
+    size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
+    memcpy(u->head + u->head_length, bytes, take);
+    u->head_length += take;
+    if (!is_open(u)) {
+        if (u->head_length < sizeof u->head) {
+            return true;
+        }
+        if (!choose(x, u)) {
+            return false;
+        }
+        bytes += take;
+        length -= take;
+    }
+    return length == 0 || feed(x, u, bytes, length);
+}
+
+/* {"shape":"cube","size":2,"name":"..."}: the members are the shape's parameters. */
+static bool read_shape(upload *u, const api_in *rest, const api_in *shape)
+{
+    const char *name, *names[HE_SHAPE_PARAMS + 3] = {"shape", "name"};
+    if (!api_in_string(shape, API_MAX_KEY, &name)) {
+        return false;
+    }
+    u->shape = he_shape_find(name, strlen(name));
+    if (u->shape == NULL) {
+        return api_in_fail(shape, HE_BAD_VALUE, "there is no shape \"%s\"", name);
+    }
+    size_t count = he_shape_params(u->shape);
+    for (size_t i = 0; i < count; i++) {
+        names[2 + i] = u->shape->params[i].name;
+    }
+    if (!api_in_only(rest, names)) {
+        return false;
+    }
+    he_shape_defaults(u->shape, u->args);
+    for (size_t i = 0; i < count; i++) {
+        const he_shape_param *param = &u->shape->params[i];
+        api_in member;
+        bool flag;
+        if (!api_in_find(rest, param->name, &member)) {
+            continue;
+        }
+        if (param->type == HE_SHAPE_FLAG) {
+            if (!api_in_bool(&member, &flag)) {
+                return false;
+            }
+            u->args[i] = flag;
+        } else if (!api_in_number(&member, &u->args[i])) {
+            return false;
+        }
+    }
+    he_error err = {0};
+    size_t at = 0;
+    if (he_shape_check(u->shape, u->args, &at, &err) != HE_OK) {
+        api_in member;
+        if (api_in_find(rest, u->shape->params[at].name, &member)) {
+            return api_in_fail(&member, err.status, "%s", err.text);
+        }
+        return api_in_fail(rest, err.status, "%s", err.text);
+    }
+    return true;
+}
+
+static bool end_document(upload *u)
+{
+    const api_in *rest = api_document_in_rest(u->document);
+    api_in member;
+    if (api_in_find(rest, "name", &member) && !api_in_is_null(&member) &&
+        !api_in_string(&member, API_MESH_NAME, &u->name)) {
+        return false;
+    }
+    if (!api_in_find(rest, "shape", &member)) {
+        return api_in_only(rest, (const char *const[]){"name", NULL});
+    }
+    if (api_document_in_has_vertices(u->document) || api_document_in_has_faces(u->document)) {
+        return api_in_fail(&member, API_CONFLICTING_MEMBERS,
+                           "a shape makes its own vertices and faces: give either");
+    }
+    return read_shape(u, rest, &member);
+}
+
+static bool finish_reading(api_exchange *x, upload *u)
+{
+    he_error err = {0};
+    if (he_reader_finish(u->reader, &u->import, &err) != HE_OK) {
+        return fail_reading(x, u, &err);
+    }
+    u->has_import = true;
+    return true;
+}
+
+/* Is the whole file still to be read? */
+static bool is_unread(const upload *u)
+{
+    return u->reader != NULL && !u->has_import;
+}
+
+bool api_upload_end(api_exchange *x)
+{
+    upload *u = x->state;
+    u->name = api_param_text(x, "name");
+    if (!is_open(u) && !choose(x, u)) {
+        return false;
+    }
+    if (u->document != NULL) {
+        return api_document_in_end(u->document, &x->problem) && end_document(u);
+    }
+    return he_reader_reads_at_end(u->reader) || finish_reading(x, u);
+}
+
+static he_soup *soup_of(upload *u)
+{
+    return u->document != NULL ? api_document_in_soup(u->document) : &u->import.soup;
+}
+
+uint64_t api_upload_elements(const api_exchange *x)
+{
+    upload *u = x->state;
+    if (u->shape != NULL) {
+        he_shape_size size = u->shape->size(u->args);
+        return size.vertices + size.corners;
+    }
+    const he_soup *soup = soup_of(u);
+    uint64_t elements =
+        is_unread(u) ? x->received / ELEMENT_BYTES : soup->vertex_count + soup->corner_count;
+    return u->plan.which == 0 ? elements : 2 * elements; /* repairs read it as often as building */
+}
+
+bool api_upload_is_guessed(const api_exchange *x)
+{
+    return is_unread(x->state);
+}
+
+const char *api_upload_name(const api_exchange *x)
+{
+    const upload *u = x->state;
+    return u->name;
+}
+
+/* Which repairs would let the body pass. That none is found for want of memory leaves the refusal
+ * what it is; HE_CANCELLED. */
+static he_status advise(upload *u, unsigned *which, he_error *err)
+{
+    *which = 0;
+    if (u->document != NULL && api_document_in_has_edges(u->document)) {
+        return HE_OK;
+    }
+    he_status status = he_repair_advise(soup_of(u), u->plan.which, which, err);
+    *which = status == HE_OK ? *which : 0;
+    return status == HE_CANCELLED ? status : HE_OK;
+}
+
+/* Everything is named as in the body, whatever was repaired before it was refused. */
+static void name_defects(api_exchange *x, upload *u)
+{
+    x->problem.report = &u->report;
+    x->problem.report_pointers = u->document != NULL;
+    if (u->document != NULL) {
+        char pointer[API_DEFECT_POINTER];
+        api_defect_pointer(&u->report.defects[0], pointer);
+        api_problem_set_pointer(&x->problem, "%s", pointer);
+    }
+}
+
+/* The report is the reason only where the work came to its end: what gave it up, or was short of
+ * memory, may have found some defects before. */
+static bool refuse(api_exchange *x, upload *u, he_error *err)
+{
+    bool reported = u->report.total > 0 && err->status == u->report.defects[0].reason;
+    unsigned which = 0;
+    he_error given_up = {0};
+    if ((reported || err->status == HE_NOT_ORIENTABLE) &&
+        advise(u, &which, &given_up) == HE_CANCELLED) {
+        return api_fail_core(x, &given_up);
+    }
+    if (reported) {
+        he_repaired_report(&u->repaired, &u->report);
+        he_report_fail(&u->report, err);
+    }
+    if (u->document == NULL && u->shape == NULL) {
+        he_import_locate(&u->import, err);
+    }
+    api_fail_core(x, err);
+    if (reported) {
+        name_defects(x, u);
+    }
+    if (which != 0) {
+        api_problem_set_repairs(&x->problem, which);
+    }
+    return false;
+}
+
+/* Vertices without a face, the first of them with their ids. */
+static he_status find_isolated(upload *u, const he_mesh *mesh, he_error *err)
+{
+    he_status status = HE_OK;
+    uint32_t count = he_mesh_issued(mesh, HE_VERTEX);
+    for (uint32_t v = 0; v < count && status == HE_OK; v++) {
+        if (he_vertex_halfedge(mesh, (he_vertex){v}).i != HE_NONE) {
+            continue;
+        }
+        if (u->isolated++ < API_PROBLEM_ELEMENTS) {
+            status = he_ids_add(&u->isolated_ids, v, err);
+        }
+    }
+    return status;
+}
+
+static he_status name_attributes(upload *u, const he_mesh *mesh, he_error *err)
+{
+    size_t count = he_mesh_columns(mesh);
+    u->attributes = he_mem_zero(count + 1, sizeof *u->attributes);
+    if (u->attributes == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to name %zu attributes", count);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const he_column *column = he_mesh_column(mesh, i);
+        if (column != NULL) {
+            attribute *a = &u->attributes[u->attribute_count++];
+            a->domain = column->domain;
+            memcpy(a->name, column->name, sizeof a->name);
+        }
+    }
+    return HE_OK;
+}
+
+/* That an OFF file gives another number of edges than it has is only known now. */
+static void note_edges(upload *u, const he_mesh *mesh)
+{
+    const he_import *import = &u->import;
+    if (u->has_import && u->plan.which == 0 && import->edges_line != 0 && import->edges != 0 &&
+        import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
+        he_notes_add(&u->import.notes, "edge_count", "ignored: the number of edges, which is wrong",
+                     NULL, 0, HE_PLACE_LINE, import->edges_line);
+    }
+}
+
+/* From the repaired soup on. */
+static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
+{
+    he_error err = {0};
+    if (u->document != NULL && !api_document_in_attributes(u->document, mesh, &u->repaired,
+                                                           u->vertices, u->faces, &x->problem)) {
+        return false;
+    }
+    he_mesh_watch(mesh, &x->watch);
+    he_watch_span(&x->watch, FILL_SHARE);
+    he_status status = he_repair_mesh(mesh, &u->plan, &u->repaired, &err);
+    if (status == HE_OK) {
+        status = he_bowties_find(mesh, &u->bowties, &err);
+    }
+    if (status == HE_OK) {
+        status = find_isolated(u, mesh, &err);
+    }
+    if (status == HE_OK) {
+        status = name_attributes(u, mesh, &err);
+    }
+    note_edges(u, mesh);
+    he_mesh_watch(mesh, NULL);
+    return status == HE_OK || api_fail_core(x, &err);
+}
+
+bool api_upload_build(api_exchange *x, he_mesh **out)
+{
+    upload *u = x->state;
+    he_soup made, *soup = soup_of(u);
+    he_error err = {0};
+    he_mesh *mesh = NULL;
+    u->limits.watch = &x->watch;
+    if (is_unread(u)) {
+        he_watch_span(&x->watch, READ_SHARE);
+        he_reader_watch(u->reader, &x->watch);
+        if (!finish_reading(x, u)) {
+            return false;
+        }
+    }
+    if (u->shape != NULL) {
+        he_watch_span(&x->watch, SHAPE_SHARE);
+        if (he_shape_make(u->shape, u->args, &u->limits, &made, &err) != HE_OK) {
+            return api_fail_core(x, &err);
+        }
+        soup = &made;
+    }
+    soup->limits.watch = &x->watch;
+    u->vertices = soup->vertex_count;
+    u->faces = soup->face_count;
+    he_status status = HE_OK;
+    if (u->plan.which != 0) {
+        he_watch_span(&x->watch, REPAIR_SHARE);
+        status = he_repair_soup(soup, &u->plan, &u->repaired, &err);
+    }
+    if (status == HE_OK) {
+        he_watch_span(&x->watch, BUILD_SHARE);
+        status = he_build(soup, HE_BUILD_TAKE, &mesh, &u->report, &err);
+    }
+    if (soup == &made) {
+        he_soup_clear(&made);
+    }
+    if (status != HE_OK) {
+        return refuse(x, u, &err);
+    }
+    if (!finish(x, u, mesh)) {
+        he_mesh_free(mesh);
+        return false;
+    }
+    *out = mesh;
+    return true;
+}
+
+/* "lines":[7,12], or "bytes", of the first things it counts. */
+static void write_spots(api_out *out, const he_notes *notes, size_t i)
+{
+    if (notes->items[i].place == HE_PLACE_NONE || notes->items[i].count == 1) {
+        return;
+    }
+    api_out_key(out, notes->items[i].place == HE_PLACE_LINE ? "lines" : "bytes");
+    api_out_array_begin(out);
+    for (size_t k = 0; k < notes->spot_count; k++) {
+        if (notes->spots[k].note == i) {
+            api_out_u64(out, notes->spots[k].at);
+        }
+    }
+    api_out_array_end(out);
+}
+
+static void write_note(api_out *out, const he_notes *notes, size_t i)
+{
+    char text[HE_ERROR_TEXT];
+    const he_note *note = &notes->items[i];
+    he_note_text(note, text, sizeof text);
+    api_out_object_begin(out);
+    api_out_key_string(out, "code", note->code);
+    api_out_key_string(out, "detail", text);
+    api_out_key_u64(out, "count", note->count);
+    if (note->place != HE_PLACE_NONE) {
+        api_out_key_u64(out, note->place == HE_PLACE_LINE ? "line" : "byte", note->at);
+    }
+    write_spots(out, notes, i);
+    api_out_object_end(out);
+}
+
+/* What is unusual about vertices of the mesh; the first has its place, where it came from one. */
+static void write_vertices(api_out *out, const upload *u, const char *code, const char *detail,
+                           uint64_t count, const he_ids *ids)
+{
+    size_t named = ids->count < API_PROBLEM_ELEMENTS ? ids->count : (size_t)API_PROBLEM_ELEMENTS;
+    const he_places *places = u->has_import ? &u->import.vertices : NULL;
+    if (count == 0) {
+        return;
+    }
+    api_out_object_begin(out);
+    api_out_key_string(out, "code", code);
+    api_out_key_string(out, "detail", detail);
+    api_out_key_u64(out, "count", count);
+    if (places != NULL && places->unit != HE_PLACE_NONE && places->count > 0) {
+        uint32_t v = ids->ids[0];
+        v = u->repaired.vertex_from == NULL ? v : u->repaired.vertex_from[v];
+        api_out_key_u64(out, places->unit == HE_PLACE_LINE ? "line" : "byte",
+                        he_places_find(places, v));
+    }
+    api_out_key_ids(out, "vertices", ids->ids, named);
+    api_out_object_end(out);
+}
+
+static void write_attributes(api_out *out, const upload *u)
+{
+    if (u->attribute_count == 0) {
+        return;
+    }
+    api_out_key(out, "attributes");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < u->attribute_count; i++) {
+        api_out_object_begin(out);
+        api_out_key_string(out, "domain", he_kind_plural(u->attributes[i].domain));
+        api_out_key_string(out, "name", u->attributes[i].name);
+        api_out_object_end(out);
+    }
+    api_out_array_end(out);
+}
+
+void api_upload_write_report(api_exchange *x)
+{
+    const upload *u = x->state;
+    api_out *out = &x->out;
+    api_out_key(out, "import");
+    api_out_object_begin(out);
+    api_out_key_string(out, "format",
+                       u->format != NULL  ? u->format->name
+                       : u->shape != NULL ? "shape"
+                                          : "json");
+    api_out_key_u64(out, "vertices", u->vertices);
+    api_out_key_u64(out, "faces", u->faces);
+    write_attributes(out, u);
+    api_repairs_write(out, &u->plan, &u->repaired, u->has_import ? &u->import : NULL);
+    api_out_key(out, "warnings");
+    api_out_array_begin(out);
+    for (size_t i = 0; u->has_import && i < u->import.notes.count; i++) {
+        write_note(out, &u->import.notes, i);
+    }
+    write_vertices(out, u, "bowtie", "fans of faces meet at a vertex without sharing an edge",
+                   u->bowties.count, &u->bowties);
+    write_vertices(out, u, "isolated_vertices", "no face has these vertices", u->isolated,
+                   &u->isolated_ids);
+    api_out_array_end(out);
+    if (u->has_import && u->import.notes.more > 0) {
+        api_out_key_u64(out, "more_warnings", u->import.notes.more);
+    }
+    api_out_object_end(out);
+}

@@ -1,0 +1,194 @@
+#include "api/event/events.h"
+
+#include "api/event/changes.h"
+#include "api/event/event_values.h"
+#include "api/limits.h"
+#include "api/request/job_out.h"
+#include "format/text/number.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { RETRY_MILLIS = 3000 };
+
+static void add_id(api_text *text, uint64_t incarnation, uint64_t revision)
+{
+    api_text_add_format(text, "id: %016" PRIx64 ".%" PRIu64 "\n", incarnation, revision);
+}
+
+static void add_event(api_text *text, const char *name, const api_text *data)
+{
+    api_text_add_format(text, "event: %s\ndata: ", name);
+    api_text_add(text, data->bytes, data->length);
+    api_text_add_string(text, "\n\n");
+    text->failed |= data->failed;
+}
+
+void api_event_begin(api_text *text, const api_mesh_info *info, bool place)
+{
+    api_text_add_format(text, "retry: %d\n", RETRY_MILLIS);
+    if (place) {
+        add_id(text, info->incarnation, info->revision);
+    }
+    api_text_add_string(text, "\n");
+}
+
+void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason)
+{
+    api_text data = {0};
+    api_out out;
+    api_out_init(&out, &data);
+    api_out_object_begin(&out);
+    api_out_key_u64(&out, "revision", revision);
+    api_out_key_string(&out, "reason", reason);
+    api_out_object_end(&out);
+    add_id(text, incarnation, revision);
+    add_event(text, "resync", &data);
+    api_text_clear(&data);
+}
+
+void api_event_metadata(api_text *text, const api_mesh_info *info)
+{
+    api_text data = {0};
+    api_out out;
+    api_out_init(&out, &data);
+    api_out_object_begin(&out);
+    api_out_key_string(&out, "name", info->name);
+    api_out_object_end(&out);
+    add_event(text, "metadata", &data);
+    api_text_clear(&data);
+}
+
+void api_event_job(api_text *text, const api_text *data)
+{
+    add_event(text, "job", data);
+}
+
+void api_event_job_state(api_text *text, const api_job *job)
+{
+    api_text data = {0};
+    api_out out;
+    api_out_init(&out, &data);
+    api_out_object_begin(&out);
+    api_write_job_state(&out, job);
+    api_out_object_end(&out);
+    add_event(text, "job", &data);
+    api_text_clear(&data);
+}
+
+void api_event_bye(api_text *text, const char *reason)
+{
+    api_text data = {0};
+    api_out out;
+    api_out_init(&out, &data);
+    api_out_object_begin(&out);
+    api_out_key_string(&out, "reason", reason);
+    api_out_object_end(&out);
+    add_event(text, "bye", &data);
+    api_text_clear(&data);
+}
+
+static void begin_edit(api_out *out, const api_mesh_info *info)
+{
+    api_out_object_begin(out);
+    api_out_key_u64(out, "base", info->revision - 1);
+    api_out_key_u64(out, "revision", info->revision);
+}
+
+/* False when it cannot be said: it would be too long, or memory is out. */
+static bool write_edit(api_text *data, const api_mesh_info *info, api_action action,
+                       const he_mesh *content, const he_delta *delta, const he_changes *changes,
+                       bool undone)
+{
+    api_out out;
+    api_out_init(&out, data);
+    begin_edit(&out, info);
+    api_out_key_string(&out, "action", api_action_name(action));
+    api_write_changes(&out, changes);
+    if (api_write_values(&out, content, delta, undone, NULL) != HE_OK) {
+        return false;
+    }
+    api_out_object_end(&out);
+    return !data->failed;
+}
+
+static void write_stale(api_text *data, const api_mesh_info *info)
+{
+    api_out out;
+    api_text_empty(data);
+    api_out_init(&out, data);
+    begin_edit(&out, info);
+    api_out_key_bool(&out, "stale", true);
+    api_out_object_end(&out);
+}
+
+static void add_edit(api_text *text, const api_mesh_info *info, const api_text *data)
+{
+    add_id(text, info->incarnation, info->revision);
+    add_event(text, "edit", data);
+}
+
+void api_event_stale(api_text *text, const api_mesh_info *info)
+{
+    api_text data = {0};
+    write_stale(&data, info);
+    add_edit(text, info, &data);
+    api_text_clear(&data);
+}
+
+void api_event_edit(api_text *text, const api_mesh_info *info, api_action action,
+                    const he_mesh *content, const he_delta *delta, bool undone)
+{
+    api_text data = {.maximum = API_MAX_EVENT};
+    he_changes changes = {0};
+    bool found = delta->count <= API_MAX_EVENT_ROWS &&
+                 he_changes_find(content, delta, 0, delta->count, undone, &changes, NULL) == HE_OK;
+    if (found && changes.replaced) {
+        api_event_resync(text, info->incarnation, info->revision, "replaced");
+    } else {
+        if (!found || !write_edit(&data, info, action, content, delta, &changes, undone)) {
+            write_stale(&data, info);
+        }
+        add_edit(text, info, &data);
+    }
+    he_changes_clear(&changes);
+    api_text_clear(&data);
+}
+
+/* --- ids --- */
+
+static bool read_hexadecimal(const char *text, size_t length, uint64_t *out)
+{
+    uint64_t value = 0;
+    for (size_t i = 0; i < length; i++) {
+        char c = text[i];
+        bool digit = c >= '0' && c <= '9';
+        if (!digit && (c < 'a' || c > 'f')) {
+            return false;
+        }
+        value = value << 4 | (uint64_t)(digit ? c - '0' : c - 'a' + 10);
+    }
+    *out = value;
+    return true;
+}
+
+bool api_since_read(const char *text, api_since *out)
+{
+    enum { INCARNATION = 16 };
+    api_since since = {.given = true};
+    const char *dot = strchr(text, '.');
+    const char *number = dot == NULL ? text : dot + 1, *end = number + strlen(number);
+    size_t used = 0;
+    if (dot != NULL) {
+        since.has_incarnation =
+            dot - text == INCARNATION && read_hexadecimal(text, INCARNATION, &since.incarnation);
+        if (!since.has_incarnation) {
+            return false;
+        }
+    }
+    if (he_u64_parse(number, end, &since.revision, &used) != HE_OK || number + used != end) {
+        return false;
+    }
+    *out = since;
+    return true;
+}

@@ -1,0 +1,82 @@
+#include "api/header/cursor.h"
+
+#include "format/text/number.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* "vertices.INCARNATION.REVISION.POSITION", the incarnation in hexadecimal digits. */
+void api_cursor_write(const char *collection, const api_mesh_info *info, uint64_t position,
+                      char out[API_CURSOR])
+{
+    snprintf(out, API_CURSOR, "%s.%016" PRIx64 ".%" PRIu64 ".%" PRIu64, collection,
+             info->incarnation, info->revision, position);
+}
+
+/* One number up to a '.' or the end; the text must be what we would have written. */
+static bool read_number(const char **at, uint64_t *out)
+{
+    const char *end = *at + strcspn(*at, ".");
+    size_t used;
+    if (he_u64_parse(*at, end, out, &used) != HE_OK || *at + used != end ||
+        (**at == '0' && used > 1)) {
+        return false;
+    }
+    *at = *end == '.' ? end + 1 : end;
+    return true;
+}
+
+typedef struct parts {
+    size_t collection;       /* characters of its name */
+    const char *incarnation; /* 16 digits */
+    uint64_t revision, position;
+} parts;
+
+enum { DIGITS = 16 };
+
+static bool split(const char *text, parts *out)
+{
+    *out = (parts){.collection = strcspn(text, ".")};
+    const char *at = text + out->collection;
+    if (*at != '.' || strspn(at + 1, "0123456789abcdef") != DIGITS || at[1 + DIGITS] != '.') {
+        return false;
+    }
+    out->incarnation = at + 1;
+    at += 1 + DIGITS + 1;
+    return read_number(&at, &out->revision) && at[-1] == '.' && read_number(&at, &out->position) &&
+           *at == '\0' && at[-1] != '.';
+}
+
+static bool is_of(const parts *cursor, const api_mesh_info *info)
+{
+    char incarnation[DIGITS + 4];
+    snprintf(incarnation, sizeof incarnation, "%016" PRIx64, info->incarnation);
+    return memcmp(incarnation, cursor->incarnation, DIGITS) == 0;
+}
+
+bool api_cursor_pins(const char *text, const api_mesh_info *info, uint64_t *revision)
+{
+    parts cursor;
+    if (!split(text, &cursor) || !is_of(&cursor, info)) {
+        return false;
+    }
+    *revision = cursor.revision;
+    return true;
+}
+
+bool api_cursor_read(const char *text, const char *collection, const api_mesh_info *info,
+                     uint64_t *position, api_problem *problem)
+{
+    parts cursor;
+    if (!split(text, &cursor) || strlen(collection) != cursor.collection ||
+        memcmp(text, collection, cursor.collection) != 0) {
+        return api_problem_set(problem, API_BAD_CURSOR, "the cursor is not one of %s", collection);
+    }
+    if (!is_of(&cursor, info)) {
+        return api_problem_set(problem, API_REVISION_GONE,
+                               "the cursor is of another mesh, or of one that had this id before");
+    }
+    *position = cursor.position;
+    return true;
+}

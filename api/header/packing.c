@@ -1,0 +1,80 @@
+#include "api/header/packing.h"
+
+#include "base/mem.h"
+
+#include <stdint.h>
+
+/* Before each block, so that giving it back knows its size. */
+typedef union head {
+    size_t size;
+    max_align_t align;
+} head;
+
+static void give_back(void *context, void *block)
+{
+    api_packing_memory *memory = context;
+    if (block != NULL) {
+        head *h = (head *)block - 1;
+        if (memory != NULL) {
+            atomic_fetch_sub_explicit(memory->lent, h->size, memory_order_relaxed);
+        }
+        he_mem_free(h);
+    }
+}
+
+/* Counting first and taking back on failure keeps two threads from passing the ceiling together. */
+static bool fits(api_packing_memory *memory, size_t size)
+{
+    size_t before = atomic_fetch_add_explicit(memory->lent, size, memory_order_relaxed);
+    if (size <= memory->most && before <= memory->most - size) {
+        return true;
+    }
+    atomic_fetch_sub_explicit(memory->lent, size, memory_order_relaxed);
+    return false;
+}
+
+static bool lend(api_packing_memory *memory, size_t size)
+{
+    bool lent = fits(memory, size);
+    while (!lent && size <= memory->most && memory->make_room(memory->context)) {
+        lent = fits(memory, size);
+    }
+    memory->refused = memory->refused || !lent;
+    return lent;
+}
+
+static void *take(void *context, size_t size)
+{
+    api_packing_memory *memory = context;
+    if (size > SIZE_MAX - sizeof(head)) {
+        return NULL;
+    }
+    size += sizeof(head);
+    if (memory != NULL && !lend(memory, size)) {
+        return NULL;
+    }
+    head *h = he_mem_alloc(size);
+    if (h == NULL) {
+        if (memory != NULL) {
+            atomic_fetch_sub_explicit(memory->lent, size, memory_order_relaxed);
+        }
+        return NULL;
+    }
+    h->size = size;
+    return h + 1;
+}
+
+static void *zlib_take(void *context, unsigned count, unsigned size)
+{
+    return take(context, (size_t)count * size); /* of 32 bits each */
+}
+
+void api_packing_zlib(z_stream *stream, api_packing_memory *memory)
+{
+    *stream = (z_stream){.zalloc = zlib_take, .zfree = give_back, .opaque = memory};
+}
+
+ZSTD_customMem api_packing_zstd(api_packing_memory *memory)
+{
+    return (ZSTD_customMem){take, give_back, memory};
+}

@@ -1,0 +1,404 @@
+#include "api/header/unpack.h"
+
+#include "api/header/packing.h"
+#include "base/mem.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* What a frame of zstd begins with. */
+enum { MAGIC = 4 };
+static const uint32_t ZSTD_FRAME = 0xFD2FB528, ZSTD_SKIPPABLE = 0x184D2A50,
+                      ZSTD_ANY_SKIPPABLE = 0xFFFFFFF0;
+
+struct api_unpack {
+    api_coding coding;
+    bool (*take)(void *context, const char *bytes, size_t length);
+    void *context;
+    uint64_t at;       /* of the coded body: read so far */
+    uint64_t beyond;   /* bytes that members or frames unfolded to beyond the ratio, but for this */
+    uint64_t from, to; /* bytes of this one: compressed data, and what it unfolded to */
+    size_t turn;       /* bytes unfolded by this feed */
+    bool inside;       /* of a member or frame */
+    api_unpack_room *room;
+    api_unpack_place *place; /* NULL: it does not give way */
+    api_packing_memory memory;
+    z_stream zlib;
+    bool has_zlib;
+    bool deflated; /* the member's header is behind */
+    ZSTD_DCtx *zstd;
+    size_t wanted;                                /* bytes to the end of zstd's next part */
+    bool skipped;                                 /* the frame is one that is skipped */
+    unsigned char head[ZSTD_FRAMEHEADERSIZE_MAX]; /* of a frame, its first bytes */
+    size_t head_length;
+    char piece[API_UNPACK_PIECE];
+};
+
+static bool fail_memory(const api_unpack *u, api_problem *problem)
+{
+    return u->memory.refused
+               ? api_problem_set(problem, API_TOO_MANY_CODED,
+                                 "the decoders of all bodies would take more than %zu bytes",
+                                 u->memory.most)
+               : api_problem_set(problem, HE_NO_MEMORY, "no memory to unfold the body");
+}
+
+/* --- giving way --- */
+
+enum { EMPTY, BUSY, WAITING, TAKING, GONE };
+
+/* Decoders of gzip are small. Without a place left this one does not give way. */
+static void find_place(api_unpack *u)
+{
+    for (size_t i = 0; u->place == NULL && i < API_UNPACK_PLACES; i++) {
+        api_unpack_place *place = &u->room->places[i];
+        int empty = EMPTY;
+        if (atomic_compare_exchange_strong(&place->state, &empty, BUSY)) {
+            u->place = place;
+            atomic_store(&place->owner, u);
+            atomic_store(&place->bytes, 0);
+        }
+    }
+}
+
+/* Take the decoder from WAITING. False when it gave way. */
+static bool enter(api_unpack *u)
+{
+    int state = WAITING;
+    if (u->place == NULL) {
+        return true;
+    }
+    while (!atomic_compare_exchange_weak(&u->place->state, &state, BUSY)) {
+        if (state == GONE || state == BUSY) {
+            return state == BUSY;
+        }
+        state = WAITING; /* while it is TAKING, which is as long as a block takes to be freed */
+    }
+    return true;
+}
+
+static void leave(api_unpack *u, size_t bytes)
+{
+    uint64_t before = atomic_fetch_add(&u->room->arrived, bytes);
+    if (u->place != NULL) {
+        if (atomic_load(&u->place->bytes) == 0) {
+            atomic_store(&u->place->began, before);
+        }
+        atomic_fetch_add(&u->place->bytes, bytes);
+        atomic_store(&u->place->state, WAITING);
+    }
+}
+
+/* What part of all that arrived since it began came for it. */
+static double part_of(const api_unpack_room *room, const api_unpack_place *place)
+{
+    uint64_t all = atomic_load(&room->arrived) - atomic_load(&place->began);
+    return all == 0 ? 1 : (double)atomic_load(&place->bytes) / (double)all;
+}
+
+/* False when no decoder waits. */
+static bool take_slowest(void *context)
+{
+    api_unpack_room *room = context;
+    for (;;) {
+        api_unpack_place *slowest = NULL;
+        double part = 0;
+        for (size_t i = 0; i < API_UNPACK_PLACES; i++) {
+            api_unpack_place *place = &room->places[i];
+            double its = part_of(room, place);
+            if (atomic_load(&place->state) == WAITING && (slowest == NULL || its < part)) {
+                slowest = place;
+                part = its;
+            }
+        }
+        int waiting = WAITING;
+        if (slowest == NULL) {
+            return false;
+        }
+        if (atomic_compare_exchange_strong(&slowest->state, &waiting, TAKING)) {
+            api_unpack *u = atomic_load(&slowest->owner);
+            ZSTD_freeDCtx(u->zstd);
+            u->zstd = NULL;
+            atomic_store(&slowest->state, GONE);
+            return true;
+        }
+    }
+}
+
+api_unpack *api_unpack_new(api_coding coding, api_unpack_room *room,
+                           bool (*take)(void *context, const char *bytes, size_t length),
+                           void *context, api_problem *problem)
+{
+    api_unpack *u = he_mem_alloc(sizeof *u);
+    if (u == NULL) {
+        api_problem_set(problem, HE_NO_MEMORY, "no memory to unfold the body");
+        return NULL;
+    }
+    memset(u, 0, offsetof(api_unpack, piece));
+    u->coding = coding;
+    u->take = take;
+    u->context = context;
+    u->room = room;
+    u->memory = (api_packing_memory){
+        .lent = &room->lent, .most = API_MAX_UNPACKING, .make_room = take_slowest, .context = room};
+    if (coding == API_GZIP) {
+        api_packing_zlib(&u->zlib, &u->memory);
+        u->has_zlib = inflateInit2(&u->zlib, MAX_WBITS + 16) == Z_OK; /* gzip's framing alone */
+    } else {
+        u->zstd = ZSTD_createDCtx_advanced(api_packing_zstd(&u->memory));
+        if (u->zstd != NULL) {
+            ZSTD_DCtx_setParameter(u->zstd, ZSTD_d_windowLogMax, API_UNPACK_WINDOW);
+            find_place(u);
+        }
+    }
+    if (!u->has_zlib && u->zstd == NULL) {
+        fail_memory(u, problem);
+        he_mem_free(u);
+        return NULL;
+    }
+    return u;
+}
+
+void api_unpack_free(api_unpack *u)
+{
+    if (u != NULL) {
+        (void)enter(u);
+        if (u->has_zlib) {
+            inflateEnd(&u->zlib);
+        }
+        ZSTD_freeDCtx(u->zstd);
+        if (u->place != NULL) {
+            atomic_store(&u->place->state, EMPTY);
+        }
+        he_mem_free(u);
+    }
+}
+
+static bool refuse(const api_unpack *u, api_problem *problem, const char *why)
+{
+    return api_problem_set(problem, API_BAD_ENCODING, "byte %llu of the %s body: %s",
+                           (unsigned long long)u->at, api_coding_name(u->coding), why);
+}
+
+/* What this member or frame unfolded to beyond the ratio. */
+static uint64_t beyond(const api_unpack *u)
+{
+    uint64_t earned = u->from * API_UNPACK_RATIO;
+    return u->to > earned ? u->to - earned : 0;
+}
+
+/* Hand on `length` bytes of u->piece, if the body may unfold so far. */
+static bool give(api_unpack *u, size_t length, api_problem *problem)
+{
+    u->to += length;
+    u->turn += length;
+    if (u->beyond + beyond(u) > API_UNPACK_FREE) {
+        return api_problem_set(problem, API_BODY_TOO_LARGE,
+                               "byte %llu of the %s body: what was compressed unfolds to more than "
+                               "%d times as many bytes, by more than %llu",
+                               (unsigned long long)u->at, api_coding_name(u->coding),
+                               API_UNPACK_RATIO, (unsigned long long)API_UNPACK_FREE);
+    }
+    return length == 0 || u->take(u->context, u->piece, length);
+}
+
+/* A member or frame has ended. */
+static void end_part(api_unpack *u)
+{
+    u->beyond += beyond(u);
+    u->from = u->to = 0;
+    u->inside = false;
+}
+
+/* --- gzip --- */
+
+static bool refuse_gzip(api_unpack *u, int status, api_problem *problem)
+{
+    const z_stream *z = &u->zlib;
+    if (status == Z_MEM_ERROR) {
+        return fail_memory(u, problem);
+    }
+    if (status == Z_DATA_ERROR && z->total_in <= 2) {
+        u->at -= z->total_in;
+        return refuse(u, problem, "no member begins here");
+    }
+    return refuse(u, problem,
+                  status == Z_NEED_DICT ? "a dictionary is wanted"
+                  : z->msg == NULL      ? "not of the coding"
+                                        : z->msg);
+}
+
+static bool feed_gzip(api_unpack *u, const unsigned char *bytes, size_t length, size_t *used,
+                      api_problem *problem)
+{
+    z_stream *z = &u->zlib;
+    const unsigned char *end = bytes + length;
+    z->next_in = (z_const Bytef *)bytes;
+    /* Once all is read, as long as a whole piece comes out there may be more. */
+    bool full = false;
+    while (z->next_in < end ? u->turn < API_UNPACK_TURN : full) {
+        if (!u->inside) {
+            inflateReset(z);
+            u->inside = true;
+            u->deflated = false;
+        }
+        const unsigned char *before = z->next_in;
+        z->avail_in = (unsigned)(end - before);
+        z->next_out = (unsigned char *)u->piece;
+        z->avail_out = sizeof u->piece;
+        /* It stops behind the header, which may be as long as one likes. */
+        int status = inflate(z, u->deflated ? Z_NO_FLUSH : Z_BLOCK);
+        u->at += (uint64_t)(z->next_in - before);
+        u->from += u->deflated ? (uint64_t)(z->next_in - before) : 0;
+        u->deflated = u->deflated || (z->data_type & 128) != 0;
+        full = z->avail_out == 0;
+        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
+            return refuse_gzip(u, status, problem);
+        }
+        if (!give(u, sizeof u->piece - z->avail_out, problem)) {
+            return false;
+        }
+        if (status == Z_STREAM_END) {
+            end_part(u);
+            full = false;
+        }
+    }
+    *used = (size_t)(z->next_in - bytes);
+    return true;
+}
+
+/* --- zstd --- */
+
+static bool refuse_zstd(const api_unpack *u, size_t code, api_problem *problem)
+{
+    ZSTD_ErrorCode error = ZSTD_getErrorCode(code);
+    if (error == ZSTD_error_memory_allocation) {
+        return fail_memory(u, problem);
+    }
+    if (error == ZSTD_error_frameParameter_windowTooLarge) {
+        return api_problem_set(problem, API_BODY_TOO_LARGE,
+                               "byte %llu of the zstd body: the frame wants a window of more than "
+                               "%lu bytes",
+                               (unsigned long long)u->at, 1UL << API_UNPACK_WINDOW);
+    }
+    return refuse(u, problem, ZSTD_getErrorName(code));
+}
+
+/* The library does not compare the lengths where the last block is empty. */
+static bool end_frame(api_unpack *u, api_problem *problem)
+{
+    unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);
+    if (!u->skipped && said != ZSTD_CONTENTSIZE_UNKNOWN && said != u->to) {
+        return refuse(u, problem, "the frame has another length than its header says");
+    }
+    u->head_length = 0;
+    end_part(u);
+    return true;
+}
+
+/* Let zstd have these bytes, up to the end of the frame; `taken` of them it read. */
+static bool decode(api_unpack *u, const unsigned char *bytes, size_t length, size_t *taken,
+                   api_problem *problem)
+{
+    ZSTD_inBuffer in = {bytes, length, 0};
+    bool full = false, ended = false;
+    while (!ended && (in.pos < in.size || full)) {
+        ZSTD_outBuffer out = {u->piece, sizeof u->piece, 0};
+        size_t before = in.pos, left = ZSTD_decompressStream(u->zstd, &out, &in);
+        if (ZSTD_isError(left)) {
+            return refuse_zstd(u, left, problem);
+        }
+        u->from += u->skipped ? 0 : in.pos - before;
+        if (!give(u, out.pos, problem)) {
+            return false;
+        }
+        full = out.pos == out.size;
+        u->wanted = left;
+        ended = left == 0;
+    }
+    u->at += in.pos;
+    *taken = in.pos;
+    return !ended || end_frame(u, problem);
+}
+
+/* A frame begins: older formats, which the library may know, are not the coding. */
+static bool begin_frame(api_unpack *u, api_problem *problem)
+{
+    uint32_t magic = 0;
+    for (size_t i = MAGIC; i > 0; i--) {
+        magic = magic << 8 | u->head[i - 1];
+    }
+    u->at -= MAGIC;
+    u->skipped = (magic & ZSTD_ANY_SKIPPABLE) == ZSTD_SKIPPABLE;
+    if (magic != ZSTD_FRAME && !u->skipped) {
+        return refuse(u, problem, "no frame begins here");
+    }
+    size_t taken;
+    u->inside = true;
+    return decode(u, u->head, MAGIC, &taken, problem);
+}
+
+static void keep_head(api_unpack *u, const unsigned char *bytes, size_t length)
+{
+    size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
+    memcpy(u->head + u->head_length, bytes, take);
+    u->head_length += take;
+}
+
+static bool feed_zstd(api_unpack *u, const unsigned char *bytes, size_t length, size_t *used,
+                      api_problem *problem)
+{
+    size_t at = 0;
+    while (at < length && u->turn < API_UNPACK_TURN) {
+        size_t taken = 1;
+        if (!u->inside) {
+            keep_head(u, bytes + at, 1);
+            u->at++;
+            if (u->head_length == MAGIC && !begin_frame(u, problem)) {
+                return false;
+            }
+        } else {
+            /* No further than to the end of a header or block, so that a refusal names it. */
+            size_t left = length - at, most = u->wanted < left ? u->wanted : left;
+            keep_head(u, bytes + at, most);
+            if (!decode(u, bytes + at, most, &taken, problem)) {
+                return false;
+            }
+        }
+        at += taken;
+    }
+    *used = at;
+    return true;
+}
+
+static bool refuse_gone(const api_unpack *u, api_problem *problem)
+{
+    return api_problem_set(problem, API_TOO_MANY_CODED,
+                           "this body came the slowest, and gave way to another: the decoders of "
+                           "all bodies have %zu bytes",
+                           u->memory.most);
+}
+
+bool api_unpack_feed(api_unpack *u, const char *bytes, size_t length, size_t *used,
+                     api_problem *problem)
+{
+    const unsigned char *from = (const unsigned char *)bytes;
+    u->turn = 0;
+    *used = length;
+    if (!enter(u)) {
+        return refuse_gone(u, problem);
+    }
+    bool good = u->coding == API_GZIP ? feed_gzip(u, from, length, used, problem)
+                                      : feed_zstd(u, from, length, used, problem);
+    leave(u, *used);
+    return good;
+}
+
+bool api_unpack_end(api_unpack *u, api_problem *problem)
+{
+    if (!u->inside && u->head_length == 0) {
+        return true;
+    }
+    return enter(u) ? refuse(u, problem, "the body ends before the coding does")
+                    : refuse_gone(u, problem);
+}

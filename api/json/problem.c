@@ -1,0 +1,336 @@
+#include "api/json/problem.h"
+
+#include "api/json/json_out.h"
+#include "api/limits.h"
+#include "repair/repair.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct code_row {
+    const char *slug;
+    int http;
+    const char *title, *explanation;
+} code_row;
+
+static const code_row rows[API_CODE_COUNT - HE_STATUS_COUNT] = {
+#define CODE_ROW(constant, slug, status, title, text) \
+    [API_##constant - HE_STATUS_COUNT] = {slug, status, title, text},
+    API_CODE_MAP(CODE_ROW)
+#undef CODE_ROW
+};
+
+/* What core's outcomes mean over HTTP. Those that are not here are refusals of topology: 422, and
+ * their title says the rule. */
+static const struct {
+    int http;
+    const char *explanation;
+} core_rows[HE_STATUS_COUNT] = {
+    [HE_OK] = {200, ""},
+    [HE_NO_MEMORY] = {507, "The server had no memory for the request. Nothing was changed."},
+    [HE_IDS_EXHAUSTED] = {507, "Ids have 32 bits and are not reused. `compact` numbers the mesh "
+                               "anew."},
+    [HE_LIMIT] = {413, "The request holds more than a configured limit allows; the detail names "
+                       "it."},
+    [HE_CANCELLED] = {503, "The work was given up before it ended. Nothing was changed."},
+    [HE_SYNTAX] = {400, "The file does not follow its format at the place that is named."},
+    [HE_BAD_VALUE] = {400, "A number, string or count is not one this place takes; the detail "
+                           "gives the value and the range."},
+    [HE_NOT_FINITE] = {400, "Numbers must fit a double: NaN and infinity are refused, and so is "
+                            "what would become them."},
+    [HE_BAD_INDEX] = {422, "A face names a vertex the document does not have. Indices count from "
+                           "0."},
+    [HE_UNSUPPORTED] = {422, "The file is well formed but uses a part of its format that is not "
+                             "read; the detail names it."},
+    [HE_CORRUPT] = {500, "A mesh in the server breaks its own invariants. GET .../check lists "
+                         "them."},
+    [HE_NO_SUCH_ELEMENT] = {422, "The id was never issued in this mesh. In a path this is 404, in "
+                                 "a body 422."},
+    [HE_DELETED_ELEMENT] = {422, "The element was deleted; ids are not reused. In a path this is "
+                                 "410, in a body 422."},
+    [HE_REPEATED_ELEMENT] = {422, "A list names the same element twice."},
+    [HE_TOO_FEW_CORNERS] = {422, "Faces are polygons of three corners or more."},
+    [HE_REPEATED_CORNER] = {422, "The corners of a face are at different vertices."},
+    [HE_NONMANIFOLD_EDGE] = {422, "An edge has at most two faces, one on each side."},
+    [HE_ORIENTATION] = {422, "Faces that share an edge run along it in opposite directions, so "
+                             "that all wind the same way."},
+    [HE_NOT_ORIENTABLE] = {422, "Around a strip of faces the sides change over, as on a Moebius "
+                                "band: however its faces are turned, two of them clash. With "
+                                "repair=orient,split it is cut there."},
+    [HE_DOUBLED_EDGE] = {422, "Two vertices are joined by at most one edge."},
+    [HE_CLOSED_FAN] = {422, "The faces about a vertex form one closed fan, or any number of open "
+                            "ones: a closed fan shares its vertex with no other."},
+    [HE_FEATURE_EDGE] = {422,
+                         "Edges whose bool attribute `feature` is true are lines that keep their "
+                         "shape: such an edge is not flipped, and a collapse may only shorten a "
+                         "line along itself or draw onto it what is beside it."},
+    [HE_LOCKED_ELEMENT] = {422,
+                           "An element whose bool attribute `locked` is true is not taken away; a "
+                           "vertex keeps its place, an edge its ends and a face its corners. "
+                           "Cutting it is allowed. Write false to unlock it."},
+    [HE_ISOLATED_VERTEX] = {422, "A vertex without a face has no dual: give it one, or delete it."},
+    [HE_NO_RIM] = {422, "Faces are drawn off what is about them along their rim, and a whole "
+                        "closed component has none. Leave a face out."},
+    [HE_RIM_MEETS_ITSELF] = {422,
+                             "The rim of a region may pass each vertex once. Add the faces that "
+                             "lie between, or take the parts one after another."},
+    [HE_NO_NORMAL] = {422, "The direction of a face comes from its area, and that of a region "
+                           "from the sum of its faces'. Give a vector, or a factor."},
+    [HE_NOT_TRIANGLE] = {422, "Every face has to be a triangle for this: `triangulate` first."},
+    [HE_ATTRIBUTE_CLASH] = {422,
+                            "Attributes of one name on one kind of element must agree in type, "
+                            "in the number of components and in whether they have labels. Rename "
+                            "or delete one of them."},
+    [HE_LINK_CONDITION] = {422,
+                           "Collapsing the edge would make an edge with three faces, a doubled "
+                           "edge or a face without area: the common neighbours of its ends "
+                           "must be exactly the corners opposite to it."},
+};
+
+static bool is_core(int code)
+{
+    return code < HE_STATUS_COUNT;
+}
+
+const char *api_code_slug(int code)
+{
+    return is_core(code) ? he_status_slug((he_status)code) : rows[code - HE_STATUS_COUNT].slug;
+}
+
+const char *api_code_title(int code)
+{
+    return is_core(code) ? he_status_title((he_status)code) : rows[code - HE_STATUS_COUNT].title;
+}
+
+const char *api_code_explanation(int code)
+{
+    if (!is_core(code)) {
+        return rows[code - HE_STATUS_COUNT].explanation;
+    }
+    return core_rows[code].explanation != NULL
+               ? core_rows[code].explanation
+               : "The request is well formed, but the mesh at this place does not allow it: the "
+                 "title states the rule, the problem names the element. Nothing was changed.";
+}
+
+int api_code_http(int code)
+{
+    if (!is_core(code)) {
+        return rows[code - HE_STATUS_COUNT].http;
+    }
+    return core_rows[code].http != 0 ? core_rows[code].http : 422;
+}
+
+int api_code_find(const char *slug)
+{
+    for (int code = HE_OK + 1; code < API_CODE_COUNT; code++) {
+        if (strcmp(api_code_slug(code), slug) == 0) {
+            return code;
+        }
+    }
+    return -1;
+}
+
+/* Cut at the end of a character where the text did not fit. */
+static void end_whole(char *text, size_t size, int wanted)
+{
+    if (wanted < 0) {
+        text[0] = '\0';
+    } else if ((size_t)wanted >= size) {
+        size_t end = size - 1;
+        while (end > 0 && ((unsigned char)text[end - 1] & 0xC0) == 0x80) {
+            end--;
+        }
+        if (end > 0 && (unsigned char)text[end - 1] >= 0xC0) {
+            end--;
+        }
+        text[end] = '\0';
+    }
+}
+
+bool api_problem_set(api_problem *problem, int code, const char *format, ...)
+{
+    if (problem->code != HE_OK) {
+        return false;
+    }
+    *problem = (api_problem){.code = code, .kind = HE_KIND_COUNT};
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(problem->detail, sizeof problem->detail, format, arguments);
+    va_end(arguments);
+    end_whole(problem->detail, sizeof problem->detail, length);
+    return false;
+}
+
+void api_problem_set_pointer(api_problem *problem, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(problem->pointer, sizeof problem->pointer, format, arguments);
+    va_end(arguments);
+    end_whole(problem->pointer, sizeof problem->pointer, length);
+    problem->has_pointer = true;
+}
+
+void api_problem_set_repairs(api_problem *problem, unsigned repairs)
+{
+    size_t used = strlen(problem->detail);
+    problem->repairs = repairs;
+    for (unsigned r = 0, named = 0; r < HE_REPAIR_COUNT; r++) {
+        if ((repairs >> r & 1) != 0) {
+            int length =
+                snprintf(problem->detail + used, sizeof problem->detail - used, "%s%s",
+                         named++ == 0 ? "; it passes with repair=" : ",", he_repair_names[r]);
+            used += length > 0 ? (size_t)length : 0;
+            used = used < sizeof problem->detail ? used : sizeof problem->detail - 1;
+        }
+    }
+}
+
+bool api_problem_set_core(api_problem *problem, const he_error *err)
+{
+    if (problem->code != HE_OK) {
+        return false;
+    }
+    switch (err->place) {
+    case HE_PLACE_NONE:
+        api_problem_set(problem, (int)err->status, "%s", err->text);
+        break;
+    case HE_PLACE_LINE:
+        api_problem_set(problem, (int)err->status, "line %llu: %s", (unsigned long long)err->at,
+                        err->text);
+        break;
+    case HE_PLACE_BYTE:
+        api_problem_set(problem, (int)err->status, "byte %llu: %s", (unsigned long long)err->at,
+                        err->text);
+        break;
+    }
+    problem->has_element = err->kind < HE_MESH_KIND;
+    problem->kind = err->kind;
+    problem->id = err->id;
+    return false;
+}
+
+bool api_problem_set_path(api_problem *problem, const he_error *err)
+{
+    bool first = problem->code == HE_OK;
+    api_problem_set_core(problem, err);
+    if (first && err->status == HE_NO_SUCH_ELEMENT) {
+        problem->status = 404;
+    } else if (first && err->status == HE_DELETED_ELEMENT) {
+        problem->status = 410;
+    }
+    return false;
+}
+
+int api_problem_http(const api_problem *problem)
+{
+    return problem->status != 0 ? problem->status : api_code_http(problem->code);
+}
+
+void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER])
+{
+    const char *list = defect->kind == HE_FACE ? "faces" : "vertices";
+    if (defect->corner != HE_NONE && defect->kind == HE_FACE) {
+        snprintf(out, API_DEFECT_POINTER, "/%s/%u/%u", list, defect->id, defect->corner);
+    } else {
+        snprintf(out, API_DEFECT_POINTER, "/%s/%u", list, defect->id);
+    }
+}
+
+static void write_element(api_out *out, he_kind kind, uint32_t id)
+{
+    api_out_key_string(out, "kind", he_kind_name(kind));
+    api_out_key_id(out, "id", id);
+}
+
+static void write_report(const api_problem *problem, api_out *out)
+{
+    const he_report *report = problem->report;
+    api_out_key(out, "elements");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < report->total && i < API_PROBLEM_ELEMENTS && i < HE_REPORT_DEFECTS;
+         i++) {
+        const he_defect *defect = &report->defects[i];
+        char text[HE_ERROR_TEXT];
+        he_defect_text(defect, text, sizeof text);
+        api_out_object_begin(out);
+        write_element(out, defect->kind, defect->id);
+        api_out_key_string(out, "code", he_status_slug(defect->reason));
+        api_out_key_string(out, "detail", text);
+        if (problem->report_pointers) {
+            char pointer[API_DEFECT_POINTER];
+            api_defect_pointer(defect, pointer);
+            api_out_key_string(out, "pointer", pointer);
+        }
+        api_out_object_end(out);
+    }
+    api_out_array_end(out);
+    api_out_key_u64(out, "total", report->total);
+}
+
+void api_problem_write(const api_problem *problem, const char *request_id, api_text *text)
+{
+    api_out out;
+    api_out_init(&out, text);
+    const char *slug = api_code_slug(problem->code);
+    char type[64];
+    snprintf(type, sizeof type, "/problems/%s", slug);
+    api_out_object_begin(&out);
+    api_out_key_string(&out, "type", type);
+    api_out_key_string(&out, "title", api_code_title(problem->code));
+    api_out_key_i64(&out, "status", api_problem_http(problem));
+    api_out_key_string(&out, "detail", problem->detail);
+    api_out_key_string(&out, "code", slug);
+    if (problem->has_pointer) {
+        api_out_key_string(&out, "pointer", problem->pointer);
+    }
+    if (problem->has_element) {
+        api_out_key(&out, "element");
+        api_out_object_begin(&out);
+        write_element(&out, problem->kind, problem->id);
+        api_out_object_end(&out);
+    }
+    if (problem->report != NULL) {
+        write_report(problem, &out);
+    }
+    if (problem->repairs != 0) {
+        api_out_key(&out, "repair");
+        api_out_array_begin(&out);
+        for (unsigned r = 0; r < HE_REPAIR_COUNT; r++) {
+            if ((problem->repairs >> r & 1) != 0) {
+                api_out_string(&out, he_repair_names[r]);
+            }
+        }
+        api_out_array_end(&out);
+    }
+    if (problem->has_revision) {
+        api_out_key_u64(&out, "revision", problem->revision);
+    }
+    if (problem->supported != NULL) {
+        api_out_key(&out, "supported");
+        api_out_array_begin(&out);
+        for (const char *const *type_name = problem->supported; *type_name != NULL; type_name++) {
+            api_out_string(&out, *type_name);
+        }
+        api_out_array_end(&out);
+    }
+    if (request_id != NULL) {
+        api_out_key_string(&out, "request_id", request_id);
+    }
+    api_out_object_end(&out);
+}
+
+void api_problem_page(int code, api_text *text)
+{
+    api_text_add_string(text, "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+                              "<meta name=\"viewport\" content=\"width=device-width\">\n<title>");
+    api_text_add_html(text, api_code_title(code));
+    api_text_add_string(text, "</title>\n<h1>");
+    api_text_add_html(text, api_code_title(code));
+    api_text_add_format(text, "</h1>\n<p><code>%s</code>, HTTP status %d</p>\n<p>",
+                        api_code_slug(code), api_code_http(code));
+    api_text_add_html(text, api_code_explanation(code));
+    api_text_add_string(text, "</p>\n</html>\n");
+}

@@ -1,0 +1,230 @@
+/* problem.h - every refusal a client can see, as RFC 9457 problem+json.
+ *
+ * A code is either a refusal of core (an he_status, same number and slug) or one of API_CODE_MAP.
+ * Its row says the HTTP status, the title, and the paragraph served at /problems/{slug}, which is
+ * the problem's `type`. Whoever detects an error, the server included, fills an api_problem and
+ * has it written here. */
+#ifndef HE_API_JSON_PROBLEM_H
+#define HE_API_JSON_PROBLEM_H
+
+#include "api/json/text.h"
+#include "build/build.h"
+
+/* X(constant, slug, HTTP status, title, explanation) */
+#define API_CODE_MAP(X)                                                                            \
+    /* the body */                                                                                 \
+    X(MALFORMED_JSON, "malformed_json", 400, "The body is not the JSON it should be",              \
+      "The body must be one JSON value in UTF-8, as RFC 8259 defines it: no trailing commas, "     \
+      "comments, leading zeros, raw control characters, lone surrogates, null characters or "      \
+      "byte order mark, nothing after the value, and no deeper than 32 levels.")                   \
+    X(UNKNOWN_MEMBER, "unknown_member", 400, "A member is not known here",                         \
+      "Objects take the members that are documented and no others, so that a misspelt one is "     \
+      "never ignored. The pointer names the member.")                                              \
+    X(DUPLICATE_MEMBER, "duplicate_member", 400, "A member is given twice",                        \
+      "An object may hold each member once. The pointer names the one that is repeated.")          \
+    X(MISSING_MEMBER, "missing_member", 400, "A member is missing",                                \
+      "The object at the pointer lacks a member it must have.")                                    \
+    X(WRONG_TYPE, "wrong_type", 400, "A value has the wrong type",                                 \
+      "The value at the pointer is of another JSON type than this place takes.")                   \
+    X(UNEXPECTED_BODY, "unexpected_body", 400, "This request takes no body",                       \
+      "The route reads no body, so one that comes with the request is refused rather than "        \
+      "ignored.")                                                                                  \
+    X(MISSING_BODY, "missing_body", 400, "A body is missing",                                      \
+      "The route needs a body and the request has none.")                                          \
+    X(UNKNOWN_OPERATION, "unknown_operation", 400, "No such operation",                            \
+      "GET /v1/operations lists the operations by name.")                                          \
+    X(CONFLICTING_MEMBERS, "conflicting_members", 400, "Members exclude each other",               \
+      "The object gives two members that are alternatives of one another, such as an element "     \
+      "and its list.")                                                                             \
+    X(BAD_REFERENCE, "bad_reference", 400, "A reference names nothing earlier",                    \
+      "A string such as \"$a.vertex\" stands for a result of an earlier operation of the same "    \
+      "list: that operation carries \"as\":\"a\" and has a result of this name and a fitting "     \
+      "kind.")                                                                                     \
+    X(REPEATED_NAME, "repeated_name", 400, "A name is given twice in one list",                    \
+      "Each \"as\" name may be used for one operation of a list.")                                 \
+    /* the request line and headers */                                                             \
+    X(BAD_PATH, "bad_path", 400, "The path is not well formed",                                    \
+      "Percent escapes must be two hexadecimal digits and decode to UTF-8 without a null "         \
+      "character or a slash.")                                                                     \
+    X(BAD_QUERY, "bad_query", 400, "The query is not well formed",                                 \
+      "The query is name=value pairs joined by '&', percent-encoded UTF-8.")                       \
+    X(UNKNOWN_PARAMETER, "unknown_parameter", 400, "A query parameter is not known here",          \
+      "The route takes the parameters that are documented and no others.")                         \
+    X(REPEATED_PARAMETER, "repeated_parameter", 400, "A query parameter is given twice",           \
+      "Each query parameter may be given once.")                                                   \
+    X(BAD_PARAMETER, "bad_parameter", 400, "A query parameter has a bad value",                    \
+      "The value is not of the parameter's type or outside its range.")                            \
+    X(BAD_CURSOR, "bad_cursor", 400, "The cursor is not one of this collection",                   \
+      "A cursor is taken as it was given in `next` and used with the same collection.")            \
+    X(BAD_HEADER, "bad_header", 400, "A header is not well formed",                                \
+      "The value of a request header does not follow its syntax.")                                 \
+    X(BAD_ID, "bad_id", 400, "The id cannot name a mesh",                                          \
+      "A mesh id is 1 to 64 of the characters A-Z a-z 0-9 . _ - and neither \".\" nor \"..\".")    \
+    X(RESERVED_NAME, "reserved_name", 400, "The name is not free for attributes",                  \
+      "Positions are built in: they are changed by the operations vertex_move and transform, and " \
+      "read with the vertices.")                                                                   \
+    X(BAD_FRAMING, "bad_framing", 400, "The request is ambiguous",                                 \
+      "A byte of the message is not where RFC 9112 has it, or its headers leave open where its "   \
+      "body ends or which host it is for. The connection is closed, since another server might "   \
+      "read the rest of it differently.")                                                          \
+    X(BAD_ENCODING, "bad_encoding", 400, "The body is not what Content-Encoding says",             \
+      "The bytes do not follow the coding, a checksum or length in them does not hold, something " \
+      "else follows, or the body ends too early. The detail names the byte, counted from 0 in "    \
+      "the body as it was sent.")                                                                  \
+    X(UNAUTHORIZED, "unauthorized", 401, "A token is needed",                                      \
+      "The request carries no token, or one that is not known.")                                   \
+    X(FORBIDDEN, "forbidden", 403, "This is not allowed",                                          \
+      "The token does not allow this request.")                                                    \
+    X(FOREIGN_ORIGIN, "foreign_origin", 403, "The request comes from another site",                \
+      "Writes that a browser sends on behalf of a page of another origin are refused.")            \
+    X(NO_SUCH_ROUTE, "no_such_route", 404, "There is nothing at this path",                        \
+      "GET /v1/openapi.json lists every path.")                                                    \
+    X(NO_SUCH_MESH, "no_such_mesh", 404, "No such mesh",                                           \
+      "No mesh has this id, or it was deleted. In a body the status is 422.")                      \
+    X(NO_SUCH_ATTRIBUTE, "no_such_attribute", 404, "No such attribute",                            \
+      "The mesh has no attribute of this name in this domain; GET .../attributes lists those it "  \
+      "has. Where a body names one, the status is 422.")                                           \
+    X(NO_SUCH_JOB, "no_such_job", 404, "No such job",                                              \
+      "No job has this id, or it ended so long ago that it was forgotten.")                        \
+    X(NO_SUCH_REVISION, "no_such_revision", 404, "The mesh has no such revision yet",              \
+      "The revision that is named is beyond the present one, which every answer about the mesh "   \
+      "shows.")                                                                                    \
+    X(METHOD_NOT_ALLOWED, "method_not_allowed", 405, "The path does not take this method",         \
+      "The Allow header lists the methods it takes.")                                              \
+    X(NOT_ACCEPTABLE, "not_acceptable", 406, "No acceptable representation",                       \
+      "None of the media types this route answers with is allowed by the Accept header, or no "    \
+      "content coding by Accept-Encoding. `supported` lists them.")                                \
+    X(TIMEOUT, "timeout", 408, "The request took too long to arrive",                              \
+      "The request was not complete within the server's deadline.")                                \
+    X(MESH_EXISTS, "mesh_exists", 409, "The id is taken", "Another mesh has this id.")             \
+    X(NOTHING_TO_UNDO, "nothing_to_undo", 409, "There is nothing to undo",                         \
+      "The undo stack of the mesh is empty.")                                                      \
+    X(NOTHING_TO_REDO, "nothing_to_redo", 409, "There is nothing to do again",                     \
+      "The redo stack of the mesh is empty: nothing was undone, or an edit followed.")             \
+    X(UNREACHABLE_REVISION, "unreachable_revision", 409, "The stack does not lead there",          \
+      "Undo leads to revisions whose edits are all still done, redo to those that were undone "    \
+      "last. What was undone and then edited over is on neither stack: it can be read with "       \
+      "?revision= while the history holds it.")                                                    \
+    X(MESH_BUSY, "mesh_busy", 409, "The mesh is being changed by a long operation",                \
+      "Writes are taken again when it has ended; reads go on meanwhile.")                          \
+    X(IDEMPOTENCY_BUSY, "idempotency_in_progress", 409, "The same request is under way",           \
+      "A request with this Idempotency-Key is being answered. Ask again after Retry-After "        \
+      "seconds: its answer is given then.")                                                        \
+    X(REVISION_GONE, "revision_gone", 410, "The revision is not available any more",               \
+      "A cursor or parameter names a revision the server no longer holds. Start again without "    \
+      "it.")                                                                                       \
+    X(STALE, "stale_revision", 412, "The mesh is at another revision",                             \
+      "If-Match or expected_revision names another revision than the present one, which is in "    \
+      "`revision`. Read the mesh again and decide anew.")                                          \
+    X(PRECONDITION, "precondition_failed", 412, "The precondition does not hold",                  \
+      "If-None-Match: * asks that the mesh does not exist, and it does; or If-Match asks that it " \
+      "does, and it does not.")                                                                    \
+    X(BODY_TOO_LARGE, "body_too_large", 413, "The body is too large",                              \
+      "The body exceeds the limit of its route. A coded one may also unfold to too many times "    \
+      "what was sent, or want too large a window: sent plain, or with less effort, it may do.")    \
+    X(URI_TOO_LONG, "uri_too_long", 414, "The path and query are too long",                        \
+      "Path and query together may have 8192 characters.")                                         \
+    X(UNSUPPORTED_MEDIA_TYPE, "unsupported_media_type", 415, "The media type is not supported",    \
+      "The Content-Type is none of those the route reads; `supported` lists them.")                \
+    X(UNSUPPORTED_ENCODING, "unsupported_encoding", 415, "The content coding is not supported",    \
+      "Content-Encoding may be gzip, zstd or identity, and one of them only. Accept-Encoding and " \
+      "`supported` list them.")                                                                    \
+    X(WRONG_HOST, "wrong_host", 421, "The Host is not one this server answers for",                \
+      "Host must name localhost, a loopback address or a configured name, so that a web page "     \
+      "cannot reach a local server through a name of its own.")                                    \
+    X(HEADERS_TOO_LARGE, "headers_too_large", 431, "The headers are too large",                    \
+      "A request may have 100 headers and 16384 bytes of them, fewer with a long target.")         \
+    X(IDEMPOTENCY_MISMATCH, "idempotency_mismatch", 422, "The key is of another request",          \
+      "A request that carries the Idempotency-Key of one that was answered within a day must be "  \
+      "the same in method, path, query, Content-Type and body.")                                   \
+    X(RATE_LIMIT, "rate_limit", 429, "Too many requests", "Try again after Retry-After seconds.")  \
+    X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
+      "The request may be fine; the server broke one of its own rules answering it.")              \
+    X(NOT_IMPLEMENTED, "not_implemented", 501, "The server does not implement this",               \
+      "The method is longer than any there is, or the body has a transfer coding other than "      \
+      "chunked. The connection is closed.")                                                        \
+    X(NOT_READY, "not_ready", 503, "The server is not ready",                                      \
+      "It is starting or stopping. Try again later.")                                              \
+    X(OVERLOADED, "overloaded", 503, "Too many connections",                                       \
+      "The server is at its limit of connections. Try again after Retry-After seconds.")           \
+    X(TOO_MANY_CODED, "too_many_coded_bodies", 503, "Too many coded bodies are arriving",          \
+      "What it takes to unfold the gzip and zstd bodies that are arriving has a common limit. "    \
+      "Try again after Retry-After seconds, or send the body plain.")                              \
+    X(READ_TIMEOUT, "read_timeout", 503, "What was asked takes too long to find",                  \
+      "A client may wait only so long for a check, a walk, questions or an export, because "       \
+      "others "                                                                                    \
+      "wait for the thread. Ask for less at once or, where the route takes it, for a job with "    \
+      "the "                                                                                       \
+      "header Prefer: respond-async: a job has the time it needs.")                                \
+    X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
+      "The queue of jobs is full. Try again after Retry-After seconds.")                           \
+    X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \
+      "HTTP/1.1 and HTTP/1.0 are. The connection is closed.")                                      \
+    X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
+      "What the request would store does not fit the configured budget. Delete a mesh and try "    \
+      "again.")                                                                                    \
+    X(TOO_MANY_MESHES, "too_many_meshes", 507, "There are too many meshes",                        \
+      "The configured number of meshes is reached. Delete one and try again.")
+
+/* The numbers of he_status, then API_CODE_MAP. HE_OK is "no problem". */
+typedef enum api_code {
+    API_CODE_BASE = HE_STATUS_COUNT - 1,
+#define API_CODE_ENUM(constant, slug, status, title, text) API_##constant,
+    API_CODE_MAP(API_CODE_ENUM)
+#undef API_CODE_ENUM
+        API_CODE_COUNT
+} api_code;
+
+enum { API_PROBLEM_DETAIL = 320, API_PROBLEM_POINTER = 256 };
+
+/* Cleared by {0}. */
+typedef struct api_problem {
+    int code;                        /* api_code or he_status; HE_OK: none */
+    int status;                      /* HTTP; 0 takes the code's */
+    char detail[API_PROBLEM_DETAIL]; /* one sentence, UTF-8 */
+    bool has_pointer;                /* "" points at the whole body */
+    char pointer[API_PROBLEM_POINTER];
+    bool has_element;
+    he_kind kind;
+    uint32_t id;
+    bool has_revision; /* the present one, with 412 */
+    uint64_t revision;
+    const he_report *report;      /* `elements` and `total`, borrowed; NULL: none */
+    unsigned repairs;             /* the set that lets the body pass (repair.h); 0: none */
+    bool report_pointers;         /* add "/faces/3/1" to each: the body is a mesh document */
+    const char *const *supported; /* with 406 and 415, ends in NULL, borrowed */
+} api_problem;
+
+/* Of a code; never NULL. */
+const char *api_code_slug(int code);
+const char *api_code_title(int code);
+const char *api_code_explanation(int code);
+int api_code_http(int code);
+/* The code of a slug, -1 when there is none. */
+int api_code_find(const char *slug);
+
+/* Fill `problem` from scratch; NULL is allowed nowhere. Return false, so that a refusal is one
+ * statement. The first problem wins: one that is filled already stays. */
+bool api_problem_set(api_problem *problem, int code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* From a refusal of core about a body: elements that do not live are 422. */
+bool api_problem_set_core(api_problem *problem, const he_error *err);
+/* The same about the path: elements that do not live are 404 and 410. */
+bool api_problem_set_path(api_problem *problem, const he_error *err);
+void api_problem_set_pointer(api_problem *problem, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Name the repairs that would let the body pass, in `detail` too. */
+void api_problem_set_repairs(api_problem *problem, unsigned repairs);
+
+/* Where in a mesh document a defect is: "/faces/3/1". */
+enum { API_DEFECT_POINTER = 40 };
+void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
+
+int api_problem_http(const api_problem *problem);
+/* The JSON object onto `text`; `request_id` may be NULL. */
+void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
+/* The page at /problems/{code}. */
+void api_problem_page(int code, api_text *text);
+
+#endif

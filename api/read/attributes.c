@@ -1,0 +1,287 @@
+/* GET .../attributes, and the values of one: a page, some by their ids, or all rows as octets. */
+#include "api/request/handlers.h"
+
+#include "api/document/attribute_path.h"
+#include "api/json/attribute_value.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void api_attributes_list(api_exchange *x)
+{
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    if (!api_not_modified(x, "attributes")) {
+        api_out *out = &x->out;
+        api_out_object_begin(out);
+        api_out_key_u64(out, "revision", x->info.revision);
+        api_out_key(out, "attributes");
+        api_out_array_begin(out);
+        for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
+            const he_column *column = he_mesh_column(mesh, i);
+            if (column != NULL) {
+                api_out_object_begin(out);
+                api_write_column(out, mesh, column);
+                api_write_labels(out, column);
+                api_out_object_end(out);
+            }
+        }
+        api_out_array_end(out);
+        api_out_object_end(out);
+        api_answer_json(x, 200);
+    }
+    api_read_end(x);
+}
+
+const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
+{
+    const he_column *column = he_mesh_find_column(mesh, x->kind, x->attribute);
+    if (column == NULL) {
+        bool position = x->kind == HE_VERTEX && strcmp(x->attribute, API_POSITION) == 0;
+        api_fail(x, API_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.100s\"%s",
+                 he_kind_plural(x->kind), x->attribute,
+                 position ? ": positions are members of the vertices" : "");
+    }
+    return column;
+}
+
+/* Everything but letters, digits and a few marks is escaped. */
+static void write_segment(const char *name, char *out)
+{
+    static const char digits[] = "0123456789ABCDEF";
+    for (; *name != '\0'; name++) {
+        unsigned char c = (unsigned char)*name;
+        bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                     c == '-' || c == '_' || c == '.' || c == '~';
+        if (plain) {
+            *out++ = (char)c;
+        } else {
+            *out++ = '%';
+            *out++ = digits[c >> 4];
+            *out++ = digits[c & 15];
+        }
+    }
+    *out = '\0';
+}
+
+void api_attribute_path(const api_exchange *x, char out[API_LOCATION])
+{
+    char segment[3 * HE_COLUMN_NAME + 1];
+    write_segment(x->attribute, segment);
+    snprintf(out, API_LOCATION, "/v1/meshes/%s/attributes/%s/%s", x->mesh_id,
+             he_kind_plural(x->kind), segment);
+}
+
+/* --- as JSON --- */
+
+static void begin_values(api_exchange *x, const he_mesh *mesh, const he_column *column)
+{
+    api_out_object_begin(&x->out);
+    api_out_key_u64(&x->out, "revision", x->info.revision);
+    api_write_column(&x->out, mesh, column);
+}
+
+static void write_rows(api_out *out, const he_column *column, const uint32_t *ids, size_t count)
+{
+    api_out_key_ids(out, "ids", ids, count);
+    api_out_key(out, "values");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < count; i++) {
+        api_write_value(out, column, he_column_value(column, ids[i]));
+    }
+    api_out_array_end(out);
+}
+
+static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
+{
+    api_out_key(&x->out, "next");
+    if (id == HE_NONE) {
+        api_out_null(&x->out);
+        return;
+    }
+    char cursor[API_CURSOR], path[API_LOCATION];
+    api_cursor_write("attribute", &x->info, id, cursor);
+    api_out_string(&x->out, cursor);
+    api_attribute_path(x, path);
+    api_answer_header_format(x, "Link", "<%s?limit=%llu&cursor=%s>; rel=\"next\"", path,
+                             (unsigned long long)limit, cursor);
+}
+
+static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *column)
+{
+    const char *cursor = api_param_text(x, "cursor");
+    uint64_t limit = api_param_u64(x, "limit", API_DEFAULT_PAGE), from = 0;
+    if (cursor != NULL && !api_cursor_read(cursor, "attribute", &x->info, &from, &x->problem)) {
+        return;
+    }
+    if (api_not_modified(x, "values")) {
+        return;
+    }
+    uint32_t *ids = api_arena_array(&x->arena, limit, sizeof *ids);
+    if (ids == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    size_t count = 0;
+    uint32_t id = he_mesh_next_live(mesh, x->kind, from);
+    for (; count < limit && id != HE_NONE;
+         id = he_mesh_next_live(mesh, x->kind, (uint64_t)id + 1)) {
+        ids[count++] = id;
+    }
+    begin_values(x, mesh, column);
+    write_rows(&x->out, column, ids, count);
+    write_next(x, id, limit);
+    api_out_object_end(&x->out);
+    api_answer_json(x, 200);
+}
+
+/* "1,2,3": at most one id in two bytes of the parameter. */
+static bool read_ids(api_exchange *x, const char *text, uint32_t **out, size_t *count)
+{
+    uint32_t *ids = api_arena_array(&x->arena, strlen(text) / 2 + 1, sizeof *ids);
+    if (ids == NULL) {
+        return api_fail_memory(x);
+    }
+    for (size_t n = 0;; n++) {
+        char id[16];
+        size_t length = strcspn(text, ",");
+        bool good = length < sizeof id;
+        if (good) {
+            memcpy(id, text, length);
+            id[length] = '\0';
+            good = api_path_id(id, &ids[n]);
+        }
+        if (!good) {
+            return api_fail(x, API_BAD_PARAMETER, "\"ids\" is ids joined by commas, not \"%.40s\"",
+                            text);
+        }
+        text += length;
+        if (*text++ == '\0') {
+            *out = ids;
+            *count = n + 1;
+            return true;
+        }
+    }
+}
+
+static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *column)
+{
+    uint32_t *ids = NULL;
+    size_t count = 0;
+    he_error err = {0};
+    if (api_param_text(x, "cursor") != NULL || api_param_text(x, "limit") != NULL) {
+        api_fail(x, API_BAD_PARAMETER, "\"ids\" are no page: give neither cursor nor limit");
+        return;
+    }
+    if (!read_ids(x, api_param_text(x, "ids"), &ids, &count)) {
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (he_mesh_require(mesh, x->kind, ids[i], &err) != HE_OK) {
+            api_fail_path(x, &err);
+            return;
+        }
+    }
+    if (api_not_modified(x, "values")) {
+        return;
+    }
+    begin_values(x, mesh, column);
+    write_rows(&x->out, column, ids, count);
+    api_out_key_null(&x->out, "next");
+    api_out_object_end(&x->out);
+    api_answer_json(x, 200);
+}
+
+/* --- as octets --- */
+
+typedef struct rows {
+    const api_store *store;
+    api_snapshot *snapshot;
+    const he_column *column;
+    uint64_t next, end; /* bytes */
+} rows;
+
+static void free_rows(void *stream)
+{
+    rows *r = stream;
+    r->store->snapshot_release(r->store->self, r->snapshot);
+    he_mem_free(r);
+}
+
+/* Stored rows as they are; those beyond are the default. */
+static int64_t read_rows(void *stream, char *buffer, size_t size)
+{
+    rows *r = stream;
+    const he_column *column = r->column;
+    uint64_t stored = (uint64_t)column->rows * column->row_bytes, left = r->end - r->next;
+    size_t length = left < size ? (size_t)left : size;
+    if (r->next < stored) {
+        length = stored - r->next < length ? (size_t)(stored - r->next) : length;
+        memcpy(buffer, column->data + r->next, length);
+    } else {
+        for (size_t i = 0; i < length; i++) {
+            buffer[i] = (char)column->fallback[(r->next + i) % column->row_bytes];
+        }
+    }
+    r->next += length;
+    return (int64_t)length;
+}
+
+static void answer_octets(api_exchange *x)
+{
+    const he_mesh *mesh;
+    for (size_t i = 0; i < x->query.count; i++) {
+        if (strcmp(x->query.pairs[i].name, "revision") != 0) {
+            api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: octets are all there is",
+                     x->query.pairs[i].name);
+            return;
+        }
+    }
+    mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    bool done = api_attribute_find(x, mesh) == NULL || api_not_modified(x, "octets");
+    api_read_end(x);
+    if (done) {
+        return;
+    }
+    api_snapshot *snapshot = api_snapshot_of(x, &mesh);
+    if (snapshot == NULL) {
+        return;
+    }
+    const he_column *column = api_attribute_find(x, mesh);
+    rows *r = NULL;
+    if (column == NULL || api_not_modified(x, "octets") ||
+        (r = he_mem_zero(1, sizeof *r)) == NULL) {
+        x->store->snapshot_release(x->store->self, snapshot);
+        if (column != NULL && !x->answered) {
+            api_fail_memory(x);
+        }
+        return;
+    }
+    *r = (rows){.store = x->store, .snapshot = snapshot, .column = column};
+    r->end = (uint64_t)he_mesh_issued(mesh, x->kind) * column->row_bytes;
+    api_answer_stream(x, 200, "application/octet-stream", (int64_t)r->end, read_rows, r, free_rows);
+}
+
+void api_attribute_get(api_exchange *x)
+{
+    if (strcmp(x->media_out, "application/octet-stream") == 0) {
+        answer_octets(x);
+        return;
+    }
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    const he_column *column = api_attribute_find(x, mesh);
+    if (column != NULL && api_param_text(x, "ids") != NULL) {
+        answer_some(x, mesh, column);
+    } else if (column != NULL) {
+        answer_page(x, mesh, column);
+    }
+    api_read_end(x);
+}

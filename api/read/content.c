@@ -1,0 +1,156 @@
+/* GET .../content: a mesh as a file or document, made as it is pulled from a snapshot. */
+#include "api/request/handlers.h"
+
+#include "api/document/document_out.h"
+#include "format/io/format.h"
+#include "geometry/long_faces_keep.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* A snapshot with what writes it; freed with the exchange. */
+typedef struct content {
+    const api_store *store;
+    api_snapshot *snapshot;
+    he_writer *writer;
+    api_document_out *document;
+} content;
+
+static void free_content(void *stream)
+{
+    content *c = stream;
+    he_writer_free(c->writer);
+    api_document_out_free(c->document);
+    if (c->snapshot != NULL) {
+        c->store->snapshot_release(c->store->self, c->snapshot);
+    }
+    he_mem_free(c);
+}
+
+static int64_t read_content(void *stream, char *buffer, size_t size)
+{
+    content *c = stream;
+    return c->document != NULL ? api_document_out_read(c->document, buffer, size)
+                               : (int64_t)he_writer_read(c->writer, buffer, size);
+}
+
+/* The number of the encoding that is wanted. */
+static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
+{
+    const char *name = api_param_text(x, "encoding");
+    *encoding = 0;
+    if (name == NULL) {
+        return true;
+    }
+    int found = format == NULL ? -1 : he_format_encoding(format, name);
+    if (found < 0) {
+        return api_fail(x, API_BAD_PARAMETER, "%s has no encoding \"%s\"",
+                        format == NULL ? "json" : format->name, name);
+    }
+    *encoding = (size_t)found;
+    return true;
+}
+
+/* What is wanted: NULL is the JSON document. False when nothing fits. */
+static bool choose(api_exchange *x, const he_format **format)
+{
+    const char *name = api_param_text(x, "format");
+    if (name == NULL) {
+        int offer = api_media_choose(api_header_of(x, "Accept"), x->route->produces);
+        if (offer < 0) {
+            return api_fail_accept(x);
+        }
+        name = x->route->produces[offer];
+        *format = he_format_of_media_type(name);
+        return true;
+    }
+    *format = he_format_find(name);
+    if (strcmp(name, "json") != 0 && (*format == NULL || (*format)->writing == NULL)) {
+        return api_fail(x, API_BAD_PARAMETER, "\"%s\" is not a format this server writes", name);
+    }
+    return true;
+}
+
+/* What the file cannot carry, so that nobody finds out by losing it. */
+static void answer_losses(api_exchange *x, const he_notes *notes)
+{
+    char text[HE_ERROR_TEXT];
+    api_text losses = {.maximum = 1000};
+    for (size_t i = 0; i < notes->count && !losses.failed; i++) {
+        he_note_text(&notes->items[i], text, sizeof text);
+        api_text_add_string(&losses, i > 0 ? "; " : "");
+        api_text_add_string(&losses, text);
+    }
+    if (notes->count > 0) {
+        api_answer_header_format(x, "Export-Warnings", "%.*s", (int)losses.length, losses.bytes);
+    }
+    api_text_clear(&losses);
+}
+
+enum { REPRESENTATION = 40 };
+
+static void name_representation(const he_format *format, size_t encoding, char out[REPRESENTATION])
+{
+    snprintf(out, REPRESENTATION, "%s%s%s", format == NULL ? "json" : format->name,
+             encoding > 0 ? "_" : "", encoding > 0 ? format->encodings[encoding] : "");
+}
+
+static void answer(api_exchange *x, const he_format *format, size_t encoding, content *c,
+                   const he_mesh *mesh)
+{
+    char representation[REPRESENTATION];
+    const char *type = format == NULL ? "application/json" : format->media_types[0];
+    name_representation(format, encoding, representation);
+    if (api_not_modified(x, representation)) {
+        free_content(c);
+        return;
+    }
+    he_error err = {0};
+    if (format == NULL) {
+        c->document = api_document_out_new(mesh, x->info.name);
+        if (c->document == NULL) {
+            api_fail_memory(x);
+        }
+    } else if ((format->writing != NULL && format->writing->cuts &&
+                he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
+               he_writer_new(format, mesh, encoding, &c->writer, &err) != HE_OK) {
+        api_fail_core(x, &err);
+    }
+    if (x->problem.code != HE_OK) {
+        free_content(c);
+        return;
+    }
+    if (format != NULL) {
+        answer_losses(x, he_writer_notes(c->writer));
+    }
+    api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s.%s\"", x->info.id,
+                             format == NULL ? "json" : format->extensions[0]);
+    api_answer_stream(x, 200, type, -1, read_content, c, free_content);
+}
+
+void api_content_get(api_exchange *x)
+{
+    const he_format *format = NULL;
+    const he_mesh *mesh;
+    size_t encoding;
+    if (!choose(x, &format) || !choose_encoding(x, format, &encoding)) {
+        return;
+    }
+    char representation[REPRESENTATION];
+    name_representation(format, encoding, representation);
+    if (api_not_modified_yet(x, representation)) {
+        return;
+    }
+    content *c = he_mem_zero(1, sizeof *c);
+    if (c == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    c->store = x->store;
+    c->snapshot = api_snapshot_of(x, &mesh);
+    if (c->snapshot == NULL) {
+        free_content(c);
+        return;
+    }
+    answer(x, format, encoding, c, mesh);
+}

@@ -1,0 +1,39 @@
+/* GET .../events: the changes of a mesh as they happen. */
+#include "api/request/handlers.h"
+
+#include "api/event/events.h"
+
+/* A browser that was cut off repeats its request with what it saw last, which is newer than the
+ * `since` of the URL. An id that is none of ours is answered as one of another incarnation: a
+ * refusal would end an EventSource for good. */
+static bool read_since(api_exchange *x, api_since *since)
+{
+    const char *last = api_header_of(x, "Last-Event-ID");
+    const char *text = api_param_text(x, "since");
+    if (last != NULL && last[0] != '\0') {
+        if (!api_since_read(last, since)) {
+            *since = (api_since){.given = true, .has_incarnation = true};
+        }
+        return true;
+    }
+    return text == NULL || api_since_read(text, since) ||
+           api_fail(x, API_BAD_PARAMETER, "since is an event's id or a revision, not \"%.100s\"",
+                    text);
+}
+
+void api_events_get(api_exchange *x)
+{
+    api_since since = {0};
+    api_source source;
+    if (!read_since(x, &since)) {
+        return;
+    }
+    api_store_status status = x->store->follow(x->store->self, x->mesh, &since, &x->info, &source);
+    if (status != API_STORE_OK) {
+        api_fail_store(x, status);
+        return;
+    }
+    x->has_info = true;
+    api_answer_live(x, 200, "text/event-stream", &source, API_EVENT_IDLE);
+    api_answer_header(x, "X-Accel-Buffering", "no");
+}

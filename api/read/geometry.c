@@ -1,0 +1,322 @@
+/* GET .../geometry: the arrays from which a renderer draws a mesh, or what changed in them; see
+ * geometry_rows.h for their bytes.
+ *
+ * The slots of a mesh's triangles are derived from it when they are first asked for, kept with it,
+ * and brought forward by whoever asks next. What few rows an edit changed are drawn under the read
+ * lock; all of them, and many, from a snapshot. */
+#include "api/request/handlers.h"
+
+#include "api/read/geometry_rows.h"
+#include "geometry/long_faces_keep.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+/* Two who ask first at the same time both make slots, and one of them asks again; more can only
+ * come of the content being replaced meanwhile. */
+enum { ATTEMPTS = 3 };
+
+typedef struct geometry {
+    api_exchange *x;
+    const api_store *store;
+    api_snapshot *snapshot;
+    api_rows rows;
+} geometry;
+
+/* What became of the slots that are kept. */
+typedef enum geometry_step {
+    TAKEN,   /* g->rows is known */
+    MISSING, /* there are none */
+    LATER,   /* too much for a worker */
+    ANSWERED /* or refused */
+} geometry_step;
+
+static void free_geometry(void *stream)
+{
+    geometry *g = stream;
+    api_rows_clear(&g->rows);
+    if (g->snapshot != NULL) {
+        g->store->snapshot_release(g->store->self, g->snapshot);
+    }
+    he_mem_free(g);
+}
+
+static void free_slots(void *value)
+{
+    he_slots_free(value);
+}
+
+static bool is_working(const api_exchange *x)
+{
+    return x->phase == API_PHASE_WORK;
+}
+
+/* --- the slots --- */
+
+/* HE_LIMIT on a worker, where it is left to another thread. There the way forward may take a while,
+ * but less than making the slots anew, which costs the rows. */
+static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_mesh *mesh,
+                               he_error *err)
+{
+    uint64_t most = API_COSTLY_ELEMENTS;
+    most += is_working(x) ? ((uint64_t)slots->vertices + slots->count) / 4 : 0;
+    he_touched touched = {0};
+    uint64_t records = 0;
+    he_status status = HE_OK;
+    for (uint64_t r = slots->revision + 1; r <= x->info.revision && status == HE_OK; r++) {
+        const he_delta *delta = x->store->revision_delta(x->store->self, x->mesh, r);
+        records += delta == NULL ? 0 : delta->count + 1;
+        if (delta == NULL) {
+            status = he_fail_plain(err, HE_UNSUPPORTED, "the history does not reach back");
+        } else if (records > most) {
+            status = he_fail_plain(err, HE_LIMIT, "the way forward is too long");
+        } else {
+            status = he_touched_add(&touched, mesh, delta, err);
+        }
+    }
+    if (status == HE_OK && slots->revision != x->info.revision) {
+        status = he_slots_advance(slots, mesh, &touched, x->info.revision, most, err);
+    }
+    he_touched_clear(&touched);
+    return status == HE_LIMIT && is_working(x) ? HE_UNSUPPORTED : status;
+}
+
+static bool is_not_modified(api_exchange *x, const he_slots *slots, uint64_t base)
+{
+    char representation[64];
+    int used = snprintf(representation, sizeof representation, "geometry-%" PRIx64, slots->layout);
+    if (base != 0) {
+        snprintf(representation + used, sizeof representation - (size_t)used, "-%" PRIu64, base);
+    }
+    return api_not_modified(x, representation);
+}
+
+static geometry_step fail(api_exchange *x, const he_error *err)
+{
+    api_fail_core(x, err);
+    return ANSWERED;
+}
+
+static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_slots *slots)
+{
+    he_error err = {0};
+    if (is_not_modified(g->x, slots, 0)) {
+        return ANSWERED;
+    }
+    if (api_is_large(g->x, mesh)) {
+        return LATER;
+    }
+    return api_rows_take_all(&g->rows, slots, &err) == HE_OK ? TAKEN : fail(g->x, &err);
+}
+
+/* From slots at the present revision. */
+static geometry_step take(geometry *g, const he_mesh *mesh, const he_slots *slots)
+{
+    api_exchange *x = g->x;
+    uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);
+    he_error err = {0};
+    if (since == 0 || layout != slots->layout) {
+        return take_all(g, mesh, slots);
+    }
+    if (since > slots->revision) {
+        api_fail(x, API_BAD_PARAMETER, "`since` is %" PRIu64 ", the mesh is at revision %" PRIu64,
+                 since, slots->revision);
+        return ANSWERED;
+    }
+    uint64_t most = is_working(x) ? UINT64_MAX : API_COSTLY_ELEMENTS;
+    he_status status = api_rows_take_changes(&g->rows, slots, since, most, &err);
+    if (status == HE_UNSUPPORTED) {
+        return take_all(g, mesh, slots);
+    }
+    if (status == HE_LIMIT) {
+        return LATER;
+    }
+    if (status != HE_OK) {
+        return fail(x, &err);
+    }
+    return is_not_modified(x, slots, since) ? ANSWERED : TAKEN;
+}
+
+/* Under the read lock. Slots that cannot be brought forward are dropped. */
+static geometry_step take_kept(geometry *g, const he_mesh *mesh)
+{
+    api_exchange *x = g->x;
+    he_error err = {0};
+    geometry_step outcome = MISSING;
+    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    if (kept->value != NULL) {
+        he_status status = bring_forward(x, kept->value, mesh, &err);
+        if (status == HE_OK) {
+            outcome = take(g, mesh, kept->value);
+        } else if (status == HE_LIMIT) {
+            outcome = LATER;
+        } else if (status == HE_UNSUPPORTED) {
+            he_slots_free(kept->value);
+            kept->value = NULL;
+        } else {
+            outcome = fail(x, &err);
+        }
+    }
+    x->store->derived_end(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    return outcome;
+}
+
+/* Keep them, unless somebody was faster: then they are freed. */
+static bool keep(api_exchange *x, he_slots *slots)
+{
+    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    bool first = kept->value == NULL;
+    if (first) {
+        *kept = (api_derived){slots, free_slots};
+    }
+    x->store->derived_end(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    if (!first) {
+        he_slots_free(slots);
+    }
+    return first;
+}
+
+/* --- answers --- */
+
+static int64_t read_rows(void *stream, char *buffer, size_t size)
+{
+    geometry *g = stream;
+    return (int64_t)api_rows_read(&g->rows, buffer, size);
+}
+
+static void answer_stream(api_exchange *x, geometry *g)
+{
+    he_error err = {0};
+    const he_mesh *mesh = x->store->snapshot_content(g->snapshot, NULL);
+    if ((g->rows.base == 0 && he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
+        api_rows_draw(&g->rows, mesh, UINT64_MAX, &err) != HE_OK) {
+        free_geometry(g);
+        api_fail_core(x, &err);
+        return;
+    }
+    api_answer_stream(x, 200, "application/octet-stream", api_rows_bytes(&g->rows), read_rows, g,
+                      free_geometry);
+}
+
+/* Changed rows, drawn under the read lock while they are few. */
+static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
+{
+    api_exchange *x = g->x;
+    he_error err = {0};
+    if (api_rows_count(&g->rows) > API_COSTLY_ELEMENTS) {
+        return LATER;
+    }
+    he_status status = api_rows_draw(&g->rows, mesh, API_COSTLY_ELEMENTS, &err);
+    if (status != HE_OK) {
+        return status == HE_LIMIT ? LATER : fail(x, &err);
+    }
+    size_t length = (size_t)api_rows_bytes(&g->rows);
+    char *bytes = api_text_room(&x->text, length);
+    if (bytes == NULL) {
+        api_fail_memory(x);
+        return ANSWERED;
+    }
+    for (size_t n; (n = api_rows_read(&g->rows, bytes, length)) > 0; length -= n) {
+        bytes += n;
+        x->text.length += n;
+    }
+    api_answer_text(x, 200, "application/octet-stream");
+    return ANSWERED;
+}
+
+/* Under the read lock, which is given back. */
+static bool take_snapshot(geometry *g)
+{
+    api_exchange *x = g->x;
+    api_store_status status = x->store->snapshot_held(x->store->self, x->mesh, &g->snapshot);
+    api_read_end(x);
+    return status == API_STORE_OK || api_fail_store(x, status);
+}
+
+/* With a snapshot: slots of its revision. False when somebody else's are kept by now. */
+static bool make_slots(geometry *g, geometry_step *outcome)
+{
+    api_exchange *x = g->x;
+    const he_mesh *mesh = x->store->snapshot_content(g->snapshot, NULL);
+    he_error err = {0};
+    he_slots *slots = NULL;
+    /* A number that JSON's readers can hold. */
+    uint64_t layout = x->store->random(x->store->self) >> 11 | 1;
+    if (he_slots_new(mesh, layout, x->info.revision, &slots, &err) != HE_OK) {
+        *outcome = fail(x, &err);
+        return true;
+    }
+    *outcome = take_all(g, mesh, slots);
+    return keep(x, slots);
+}
+
+/* With nothing known yet. LATER and ANSWERED leave that so; on false it is done once more. */
+static bool attempt(geometry *g, geometry_step *outcome)
+{
+    api_exchange *x = g->x;
+    const he_mesh *mesh = api_read_begin(x);
+    *outcome = ANSWERED;
+    if (mesh == NULL) {
+        return true;
+    }
+    *outcome = take_kept(g, mesh);
+    bool missing = *outcome == MISSING;
+    if (missing && api_is_large(x, mesh)) {
+        *outcome = LATER;
+    } else if (*outcome == TAKEN && g->rows.base != 0) {
+        *outcome = answer_changes(g, mesh);
+        if (*outcome == LATER && is_working(x)) {
+            *outcome = TAKEN;
+        }
+    }
+    if (*outcome == LATER || *outcome == ANSWERED) {
+        api_read_end(x);
+        return true;
+    }
+    if (!take_snapshot(g)) {
+        *outcome = ANSWERED;
+        return true;
+    }
+    return !missing || make_slots(g, outcome);
+}
+
+static geometry *geometry_new(api_exchange *x)
+{
+    geometry *g = he_mem_zero(1, sizeof *g);
+    if (g == NULL) {
+        api_fail_memory(x);
+        return NULL;
+    }
+    g->x = x;
+    g->store = x->store;
+    return g;
+}
+
+void api_geometry_get(api_exchange *x)
+{
+    if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
+        api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
+        return;
+    }
+    geometry_step outcome = MISSING;
+    geometry *g = NULL;
+    bool done = false;
+    for (int i = 0; i < ATTEMPTS && !done; i++) {
+        if (g != NULL) {
+            free_geometry(g);
+        }
+        g = geometry_new(x);
+        if (g == NULL) {
+            return;
+        }
+        done = attempt(g, &outcome) || outcome == ANSWERED;
+    }
+    if (outcome == TAKEN) {
+        answer_stream(x, g);
+        return;
+    }
+    free_geometry(g);
+    if (outcome == LATER) {
+        api_defer(x, api_geometry_get);
+    }
+}

@@ -1,0 +1,146 @@
+/* GET .../edits: what each revision did. */
+#include "api/request/handlers.h"
+
+#include "api/event/changes.h"
+
+#include <string.h>
+
+/* "a,b,..." as ["a","b","..."]. */
+static void write_names(api_out *out, const char *names)
+{
+    api_out_array_begin(out);
+    while (*names != '\0') {
+        size_t length = strcspn(names, ",");
+        api_out_string_length(out, names, length);
+        names += length + (names[length] == ',');
+    }
+    api_out_array_end(out);
+}
+
+static void write_tally(api_out *out, const char *key, const uint32_t counts[3])
+{
+    api_out_key(out, key);
+    api_out_object_begin(out);
+    api_out_key_u64(out, he_kind_plural(HE_VERTEX), counts[0]);
+    api_out_key_u64(out, he_kind_plural(HE_EDGE), counts[1]);
+    api_out_key_u64(out, he_kind_plural(HE_FACE), counts[2]);
+    api_out_object_end(out);
+}
+
+static void write_entry(api_out *out, const api_entry *entry)
+{
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", entry->revision);
+    api_out_key_string(out, "action", api_action_name(entry->action));
+    if (entry->inverts != 0) {
+        api_out_key_u64(out, "inverts", entry->inverts);
+    }
+    api_out_key(out, "ops");
+    write_names(out, entry->ops);
+    if (entry->tally.known) {
+        write_tally(out, "created", entry->tally.created);
+        write_tally(out, "deleted", entry->tally.deleted);
+        write_tally(out, "modified", entry->tally.modified);
+    }
+    api_out_key_bool(out, "undoable", entry->undoable);
+    api_out_key_u64(out, "bytes", entry->bytes);
+    api_out_key_time(out, "time", entry->time);
+    api_out_object_end(out);
+}
+
+/* A page: entries from revision `first` down to the one after `last`. */
+typedef struct page {
+    uint64_t first, last, limit;
+} page;
+
+/* The entry of a revision, unless it is after the page's last. */
+static bool find_entry(const api_exchange *x, const page *p, uint64_t revision, api_entry *out)
+{
+    return revision > p->last &&
+           x->store->history(x->store->self, x->mesh, (size_t)(x->info.revision - revision), out);
+}
+
+/* What is after the page's entries goes to `*next`, 0 at the end. */
+static void write_entries(api_exchange *x, const page *p, uint64_t *next)
+{
+    api_entry entry;
+    uint64_t revision = p->first;
+    bool more = find_entry(x, p, revision, &entry);
+    api_out_key(&x->out, "entries");
+    api_out_array_begin(&x->out);
+    for (uint64_t i = 0; more && i < p->limit; i++) {
+        write_entry(&x->out, &entry);
+        more = find_entry(x, p, --revision, &entry);
+    }
+    api_out_array_end(&x->out);
+    *next = more ? revision : 0;
+}
+
+/* The cursor is the revision that comes next, which edits made meanwhile do not change. */
+static void write_next(api_exchange *x, const page *p, uint64_t next)
+{
+    char cursor[API_CURSOR];
+    api_out_key(&x->out, "next");
+    if (next == 0) {
+        api_out_null(&x->out);
+        return;
+    }
+    api_cursor_write("edits", &x->info, next, cursor);
+    api_out_string(&x->out, cursor);
+    api_answer_header_format(
+        x, "Link", "</v1/meshes/%s/edits?limit=%llu&since=%llu&cursor=%s>; rel=\"next\"",
+        x->mesh_id, (unsigned long long)p->limit, (unsigned long long)p->last, cursor);
+}
+
+static void write_history(api_exchange *x, const page *p)
+{
+    api_out *out = &x->out;
+    uint64_t next;
+    api_history history;
+    x->store->history_facts(x->store->self, x->mesh, &history);
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", x->info.revision);
+    write_entries(x, p, &next);
+    api_out_key_u64(out, "undo", x->info.undo);
+    api_out_key_u64(out, "redo", x->info.redo);
+    api_out_key_u64(out, "oldest", history.oldest);
+    api_out_key_u64(out, "dropped", history.dropped);
+    api_out_key_u64(out, "bytes", history.bytes);
+    api_out_key_u64(out, "budget", history.budget);
+    write_next(x, p, next);
+    api_out_object_end(out);
+}
+
+/* False when the cursor leads nowhere. */
+static bool read_cursor(api_exchange *x, const char *cursor, page *p)
+{
+    api_entry entry;
+    p->first = x->info.revision;
+    if (cursor == NULL) {
+        return true;
+    }
+    if (!api_cursor_read(cursor, "edits", &x->info, &p->first, &x->problem)) {
+        return false;
+    }
+    if (p->first > x->info.revision) {
+        return api_fail(x, API_BAD_CURSOR, "the cursor is not one of edits");
+    }
+    return p->first <= p->last || find_entry(x, p, p->first, &entry) ||
+           api_fail(x, API_REVISION_GONE, "the history does not reach back to revision %llu",
+                    (unsigned long long)p->first);
+}
+
+void api_edits_list(api_exchange *x)
+{
+    page p = {.limit = api_param_u64(x, "limit", API_DEFAULT_PAGE),
+              .last = api_param_u64(x, "since", 1)};
+    const char *cursor = api_param_text(x, "cursor");
+    if (api_read_begin(x) == NULL) {
+        return;
+    }
+    if (read_cursor(x, cursor, &p) && !api_not_modified(x, "history")) {
+        write_history(x, &p);
+        api_answer_json(x, 200);
+    }
+    api_read_end(x);
+}

@@ -1,0 +1,133 @@
+/* GET and DELETE /v1/jobs: what has become of work that was answered 202. */
+#include "api/job/jobs.h"
+
+#include "api/event/events.h"
+#include "api/request/handlers.h"
+#include "api/request/job_out.h"
+#include "format/text/number.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void fail_absent(api_exchange *x)
+{
+    api_fail(x, API_NO_SUCH_JOB, "no job has the id \"%.60s\"", x->job_id);
+}
+
+static void show_whole(void *context, const api_job *job)
+{
+    api_exchange *x = context;
+    api_write_job(&x->out, job, true);
+}
+
+void api_job_get(api_exchange *x)
+{
+    const api_jobs *jobs = x->service->options.jobs;
+    if (jobs == NULL || !jobs->find(jobs->self, x->job_id, show_whole, x)) {
+        fail_absent(x);
+        return;
+    }
+    api_answer_json(x, 200);
+}
+
+void api_job_delete(api_exchange *x)
+{
+    const api_jobs *jobs = x->service->options.jobs;
+    bool forgotten = false;
+    if (jobs == NULL || !jobs->remove(jobs->self, x->job_id, &forgotten, show_whole, x)) {
+        fail_absent(x);
+    } else if (forgotten) {
+        api_answer_empty(x, 204);
+    } else {
+        api_answer_json(x, 202);
+    }
+}
+
+/* The result comes along where an event may be as large; it is always at the job itself. */
+static void write_event(const api_job *job, bool bye, api_text *text)
+{
+    api_text data = {0};
+    api_out out;
+    if (bye) {
+        api_event_bye(text, job->state >= API_JOB_DONE ? "ended" : "stopping");
+        return;
+    }
+    api_out_init(&out, &data);
+    api_write_job(&out, job, job->length <= API_MAX_EVENT);
+    api_event_job(text, &data);
+    api_text_clear(&data);
+}
+
+void api_job_events(api_exchange *x)
+{
+    const api_jobs *jobs = x->service->options.jobs;
+    api_source source;
+    api_store_status status =
+        jobs == NULL ? API_STORE_ABSENT : jobs->follow(jobs->self, x->job_id, write_event, &source);
+    if (status == API_STORE_ABSENT) {
+        fail_absent(x);
+    } else if (status != API_STORE_OK) {
+        api_fail_store(x, status);
+    } else {
+        api_answer_live(x, 200, "text/event-stream", &source, API_EVENT_IDLE);
+        api_answer_header(x, "X-Accel-Buffering", "no");
+    }
+}
+
+/* A page of the list while it is written. */
+typedef struct page {
+    api_out *out;
+    uint64_t last; /* number */
+} page;
+
+static void show_brief(void *context, const api_job *job)
+{
+    page *p = context;
+    api_write_job(p->out, job, false);
+    p->last = job->number;
+}
+
+/* A page is continued by the number it ended with, behind a letter that keeps it opaque. */
+static bool read_cursor(api_exchange *x, uint64_t *after)
+{
+    const char *cursor = api_param_text(x, "cursor");
+    size_t used = 0;
+    *after = 0;
+    if (cursor == NULL) {
+        return true;
+    }
+    if (cursor[0] != 'j' ||
+        he_u64_parse(cursor + 1, cursor + strlen(cursor), after, &used) != HE_OK ||
+        used != strlen(cursor) - 1) {
+        return api_fail(x, API_BAD_CURSOR, "\"%.60s\" is not a cursor of this list", cursor);
+    }
+    return true;
+}
+
+void api_jobs_list(api_exchange *x)
+{
+    const api_jobs *jobs = x->service->options.jobs;
+    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_JOBS);
+    page p = {.out = &x->out};
+    uint64_t after;
+    if (!read_cursor(x, &after)) {
+        return;
+    }
+    api_out_object_begin(&x->out);
+    api_out_key(&x->out, "items");
+    api_out_array_begin(&x->out);
+    bool more = jobs != NULL && jobs->list(jobs->self, after, limit, show_brief, &p);
+    api_out_array_end(&x->out);
+    api_out_key(&x->out, "next");
+    if (more) {
+        char cursor[32];
+        snprintf(cursor, sizeof cursor, "j%llu", (unsigned long long)p.last);
+        api_out_string(&x->out, cursor);
+        api_answer_header_format(x, "Link", "</v1/jobs?limit=%zu&cursor=%s>; rel=\"next\"", limit,
+                                 cursor);
+    } else {
+        api_out_null(&x->out);
+    }
+    api_out_object_end(&x->out);
+    api_answer_json(x, 200);
+}

@@ -1,0 +1,234 @@
+/* The collection and its members, but for what makes their content: list, summary, name, removal,
+ * copy. */
+#include "api/request/handlers.h"
+
+#include "api/document/summary.h"
+
+#include <string.h>
+
+/* A page is continued by the id it ended with, behind a letter that keeps it opaque. */
+static bool read_list_cursor(api_exchange *x, const char **after)
+{
+    const char *cursor = api_param_text(x, "cursor");
+    *after = "";
+    if (cursor == NULL) {
+        return true;
+    }
+    if (cursor[0] != 'm' || !api_path_is_mesh_id(cursor + 1)) {
+        return api_fail(x, API_BAD_CURSOR, "\"%s\" is not a cursor of this list", cursor);
+    }
+    *after = cursor + 1;
+    return true;
+}
+
+/* One item, with what is known of the mesh in `info`. */
+static void write_item(api_exchange *x, api_mesh *mesh, api_mesh_info *info)
+{
+    const he_mesh *content = x->store->read_begin(x->store->self, mesh, info);
+    if (!info->removed) {
+        api_out_object_begin(&x->out);
+        api_write_brief(&x->out, info, content);
+        api_out_object_end(&x->out);
+    }
+    x->store->read_end(x->store->self, mesh);
+}
+
+/* Of the whole server: it is here that a client sees what to delete. */
+static void write_server(api_exchange *x)
+{
+    uint64_t used, budget;
+    api_out_key_u64(&x->out, "listeners", x->store->listeners(x->store->self));
+    if (x->service->options.memory != NULL) {
+        x->service->options.memory(&used, &budget);
+        api_out_key_u64(&x->out, "memory_bytes", used);
+        api_out_key_u64(&x->out, "memory_budget", budget);
+    }
+}
+
+void api_meshes_list(api_exchange *x)
+{
+    const char *after;
+    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE);
+    if (!read_list_cursor(x, &after)) {
+        return;
+    }
+    api_mesh **meshes = api_arena_array(&x->arena, limit + 1, sizeof(api_mesh *));
+    if (meshes == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    /* One more than asked tells whether there is a next page. */
+    size_t count = x->store->list(x->store->self, after, meshes, limit + 1);
+    api_mesh_info info = {.id = ""};
+    api_out *out = &x->out;
+    api_out_object_begin(out);
+    api_out_key(out, "items");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < count; i++) {
+        if (i < limit) {
+            write_item(x, meshes[i], &info);
+        }
+        x->store->release(x->store->self, meshes[i]);
+    }
+    api_out_array_end(out);
+    api_out_key(out, "next");
+    if (count > limit) {
+        char cursor[API_MESH_ID + 2] = "m";
+        memcpy(cursor + 1, info.id, sizeof info.id);
+        api_out_string(out, cursor);
+        api_answer_header_format(x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"", limit,
+                                 cursor);
+    } else {
+        api_out_null(out);
+    }
+    write_server(x);
+    api_out_object_end(out);
+    api_answer_json(x, 200);
+}
+
+void api_mesh_get(api_exchange *x)
+{
+    api_answer_summary(x);
+}
+
+static const char *const patch_members[] = {"name", NULL};
+
+/* RFC 7396: a member that is null is removed, which for a name is the empty one. */
+void api_mesh_patch(api_exchange *x)
+{
+    const char *name = NULL;
+    api_in member;
+    if (!api_in_only(&x->root, patch_members)) {
+        return;
+    }
+    if (api_in_find(&x->root, "name", &member)) {
+        name = "";
+        if (!api_in_is_null(&member) && !api_in_string(&member, API_MESH_NAME, &name)) {
+            return;
+        }
+    }
+    he_delta *delta;
+    if (api_write_begin(x, NULL, &delta) == NULL) {
+        return;
+    }
+    if (name != NULL && strcmp(name, x->info.name) != 0) {
+        x->store->rename(x->store->self, x->mesh, name, &x->info);
+    }
+    x->store->write_end(x->store->self, x->mesh);
+    api_publish(x, 204);
+    api_answer_etag(x, "summary");
+    if (!api_answer_minimal(x)) {
+        api_answer_summary(x);
+    }
+}
+
+void api_mesh_delete(api_exchange *x)
+{
+    /* The preconditions are those of any write. */
+    he_delta *delta;
+    if (api_write_begin(x, NULL, &delta) == NULL) {
+        return;
+    }
+    api_store_status status = x->store->remove(x->store->self, x->mesh, &x->info);
+    x->store->write_end(x->store->self, x->mesh);
+    if (status == API_STORE_OK) {
+        api_answer_empty(x, 204);
+    } else {
+        api_fail_store(x, status);
+    }
+}
+
+static const char *const copy_members[] = {"id", "name", NULL};
+
+/* What the copy will be called; NULL: it is chosen. */
+typedef struct copy_request {
+    const char *id, *name;
+} copy_request;
+
+static bool read_copy(api_exchange *x, copy_request *r)
+{
+    api_in member;
+    if (!x->has_root) {
+        return true;
+    }
+    if (!api_in_only(&x->root, copy_members)) {
+        return false;
+    }
+    if (api_in_find(&x->root, "id", &member)) {
+        if (!api_in_string(&member, API_MESH_ID, &r->id)) {
+            return false;
+        }
+        if (!api_path_is_mesh_id(r->id)) {
+            return api_in_fail(&member, API_BAD_ID, "\"%s\" cannot name a mesh", r->id);
+        }
+    }
+    return !api_in_find(&x->root, "name", &member) ||
+           api_in_string(&member, API_MESH_NAME, &r->name);
+}
+
+/* Of making the copy; what is left is its summary's. */
+static const double COPY_SHARE = 0.4;
+
+static void copy(api_exchange *x)
+{
+    const copy_request *r = x->state;
+    const he_mesh *content;
+    api_snapshot *snapshot = api_snapshot_of(x, &content);
+    if (snapshot == NULL) {
+        return;
+    }
+    he_mesh *fresh = NULL;
+    api_mesh *made = NULL;
+    api_summary summary;
+    he_error err = {0};
+    he_watch_span(&x->watch, COPY_SHARE);
+    if (api_preconditions_hold(x, NULL) &&
+        he_mesh_copy_watched(content, &x->watch, &fresh, &err) != HE_OK) {
+        api_fail_core(x, &err);
+    }
+    x->store->snapshot_release(x->store->self, snapshot);
+    if (fresh == NULL) {
+        return;
+    }
+    he_watch_span(&x->watch, 1);
+    if (!api_summary_find(x, fresh, &summary)) {
+        he_mesh_free(fresh);
+        return;
+    }
+    he_mesh_watch(fresh, NULL);
+    api_store_status stored = x->store->create(
+        x->store->self, r->id, r->name != NULL ? r->name : x->info.name, fresh, x->claim, &made);
+    if (stored != API_STORE_OK) {
+        he_mesh_free(fresh);
+        api_fail_store(x, stored);
+        return;
+    }
+    x->store->release(x->store->self, x->mesh);
+    x->mesh = made;
+    api_answer_created(x, &summary, NULL);
+}
+
+void api_mesh_copy(api_exchange *x)
+{
+    copy_request *r = api_arena_array(&x->arena, 1, sizeof *r);
+    if (r == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    *r = (copy_request){NULL, NULL};
+    x->state = r;
+    if (!read_copy(x, r)) {
+        return;
+    }
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    uint64_t elements = api_elements_of(mesh);
+    bool good = api_preconditions_hold(x, NULL);
+    api_read_end(x);
+    if (good) {
+        api_run_long(x, copy, elements > API_COSTLY_ELEMENTS,
+                     (double)elements / API_COPY_PER_SECOND);
+    }
+}

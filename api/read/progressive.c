@@ -1,0 +1,99 @@
+/* GET .../progressive: a coarse mesh and the way back, made from a snapshot; see progressive_rows.h
+ * for its bytes. It is made anew for each answer, and the same each time: what decimate did to a
+ * mesh is kept by the history, as the revision before. While it is made, by as many threads as
+ * there are for long work, it takes about three times the mesh; while it is sent, what is still to
+ * be sent. */
+#include "api/request/handlers.h"
+
+#include "api/header/hash.h"
+#include "api/read/progressive_rows.h"
+#include "geometry/geometry.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+static void free_progressive(void *stream)
+{
+    api_progressive_clear(stream);
+    he_mem_free(stream);
+}
+
+static int64_t read_progressive(void *stream, char *buffer, size_t size)
+{
+    return (int64_t)api_progressive_read(stream, buffer, size);
+}
+
+static he_decimate_options options_of(const api_exchange *x)
+{
+    return (he_decimate_options){.faces = (uint32_t)api_param_u64(x, "faces", 0),
+                                 .max_error = api_param_number(x, "max_error", INFINITY),
+                                 .boundary_weight =
+                                     api_param_number(x, "boundary_weight", HE_BOUNDARY_WEIGHT)};
+}
+
+/* All parameters make another representation; a tag has room for their hash. */
+enum { REPRESENTATION = 32 };
+
+static void name_representation(api_exchange *x, char out[REPRESENTATION])
+{
+    static const uint64_t key[2] = {0, 0};
+    const he_decimate_options options = options_of(x);
+    const uint64_t splits = api_param_u64(x, "splits", HE_MAX_ROWS);
+    uint64_t sum[2];
+    api_hash hash;
+    api_hash_begin(&hash, key);
+    api_hash_add(&hash, &options.faces, sizeof options.faces);
+    api_hash_add(&hash, &options.max_error, sizeof options.max_error);
+    api_hash_add(&hash, &options.boundary_weight, sizeof options.boundary_weight);
+    api_hash_add(&hash, &splits, sizeof splits);
+    api_hash_end(&hash, sum);
+    snprintf(out, REPRESENTATION, "progressive-%016" PRIx64, sum[0]);
+}
+
+static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
+{
+    he_error err = {0};
+    he_box box = {0};
+    const he_decimate_options options = options_of(x);
+    if (he_progressive_new(mesh, &options, &x->watch, &p->mesh, &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    if (he_mesh_box(mesh, &box)) {
+        p->low = box.min;
+        p->high = box.max;
+    }
+    for (he_kind kind = HE_VERTEX; kind < HE_KIND_COUNT; kind++) {
+        p->issued[kind] = he_mesh_issued(mesh, kind);
+    }
+    uint64_t most = api_param_u64(x, "splits", HE_MAX_ROWS);
+    p->revision = x->info.revision;
+    p->wanted = p->mesh.count < most ? p->mesh.count : (size_t)most;
+    return api_progressive_write(p, &x->watch, &err) == HE_OK || api_fail_core(x, &err);
+}
+
+void api_progressive_get(api_exchange *x)
+{
+    char representation[REPRESENTATION];
+    const he_mesh *mesh;
+    name_representation(x, representation);
+    if (api_not_modified_yet(x, representation)) {
+        return;
+    }
+    api_snapshot *snapshot = api_snapshot_of(x, &mesh);
+    if (snapshot == NULL) {
+        return;
+    }
+    if (!api_not_modified(x, representation)) {
+        api_progressive *p = he_mem_zero(1, sizeof *p);
+        if (p == NULL) {
+            api_fail_memory(x);
+        } else if (make(x, mesh, p)) {
+            api_answer_stream(x, 200, "application/octet-stream", api_progressive_bytes(p),
+                              read_progressive, p, free_progressive);
+        } else {
+            free_progressive(p);
+        }
+    }
+    x->store->snapshot_release(x->store->self, snapshot);
+}

@@ -1,0 +1,103 @@
+/* The mesh as a whole: GET .../boundaries, .../components. */
+#include "api/request/handlers.h"
+
+#include "api/request/view.h"
+#include "mesh/walk.h"
+#include "query/topology.h"
+#include "query/traverse.h"
+
+/* Answer 200 with what `write` puts into an object that begins with the revision. */
+static void answer_view(api_exchange *x, const char *representation,
+                        bool (*write)(api_exchange *x, const he_mesh *mesh))
+{
+    api_view view;
+    if (api_not_modified_yet(x, representation) || !api_view_begin(x, &view)) {
+        return;
+    }
+    if (!api_not_modified(x, representation)) {
+        api_out_object_begin(&x->out);
+        api_out_key_u64(&x->out, "revision", x->info.revision);
+        if (write(x, view.mesh)) {
+            api_out_object_end(&x->out);
+            api_answer_json(x, 200);
+        }
+    }
+    api_view_end(x, &view);
+}
+
+/* --- boundaries --- */
+
+static void write_loop(api_out *out, const he_mesh *mesh, const he_boundary *loop,
+                       const he_ids *halfedges)
+{
+    api_out_object_begin(out);
+    api_out_key_id(out, "halfedge", loop->halfedge);
+    api_out_key_u64(out, "length", loop->length);
+    api_out_key_ids(out, "halfedges", halfedges->ids, halfedges->count);
+    api_out_key(out, "vertices");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < halfedges->count; i++) {
+        api_out_id(out, he_origin(mesh, (he_halfedge){halfedges->ids[i]}).i);
+    }
+    api_out_array_end(out);
+    api_out_object_end(out);
+}
+
+static bool write_boundaries(api_exchange *x, const he_mesh *mesh)
+{
+    he_boundaries boundaries = {0};
+    he_ids halfedges = {0};
+    he_error err = {0};
+    he_status status = he_boundaries_find(mesh, &boundaries, &err);
+    api_out_key(&x->out, "loops");
+    api_out_array_begin(&x->out);
+    for (size_t i = 0; i < boundaries.count && status == HE_OK; i++) {
+        const he_boundary *loop = &boundaries.loops[i];
+        halfedges.count = 0;
+        status = he_traverse_loop(mesh, (he_halfedge){loop->halfedge}, &halfedges, &err);
+        if (status == HE_OK) {
+            write_loop(&x->out, mesh, loop, &halfedges);
+        }
+    }
+    api_out_array_end(&x->out);
+    he_ids_clear(&halfedges);
+    he_boundaries_clear(&boundaries);
+    return status == HE_OK || api_fail_core(x, &err);
+}
+
+void api_boundaries_get(api_exchange *x)
+{
+    answer_view(x, "boundaries", write_boundaries);
+}
+
+/* --- components --- */
+
+static bool write_components(api_exchange *x, const he_mesh *mesh)
+{
+    bool by_vertex = api_param_has_choice(x, "by", "vertex");
+    he_components found = {0};
+    he_error err = {0};
+    if (he_components_find(mesh, by_vertex ? HE_JOINED_BY_VERTEX : HE_JOINED_BY_EDGE, &found,
+                           &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    api_out_key_string(&x->out, "by", by_vertex ? "vertex" : "edge");
+    api_out_key(&x->out, "components");
+    api_out_array_begin(&x->out);
+    for (size_t i = 0; i < found.count; i++) {
+        const he_component *component = &found.components[i];
+        api_out_object_begin(&x->out);
+        api_out_key_u64(&x->out, "faces", component->faces);
+        api_out_key_u64(&x->out, "vertices", component->vertices);
+        api_out_key_id(&x->out, "face", component->face);
+        api_out_object_end(&x->out);
+    }
+    api_out_array_end(&x->out);
+    he_components_clear(&found);
+    return true;
+}
+
+void api_components_get(api_exchange *x)
+{
+    answer_view(x, "components", write_components);
+}

@@ -1,0 +1,275 @@
+#include "api/request/admit.h"
+
+#include "api/request/coded.h"
+#include "format/text/number.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool refuse_parameter(api_exchange *x, const api_parameter *parameter, const char *value)
+{
+    char taken[128] = "true, false";
+    if (parameter->type == API_PARAM_U64) {
+        snprintf(taken, sizeof taken, "a whole number from %.0f to %.0f", parameter->min,
+                 parameter->max);
+    } else if (parameter->type == API_PARAM_TEXT) {
+        snprintf(taken, sizeof taken, "at most %.0f bytes", parameter->max);
+    } else if (parameter->type == API_PARAM_NUMBER) {
+        char least[HE_NUMBER_TEXT], most[HE_NUMBER_TEXT];
+        int least_bytes = (int)he_double_print(parameter->min, least);
+        int most_bytes = (int)he_double_print(parameter->max, most);
+        snprintf(taken, sizeof taken, "a number from %.*s to %.*s", least_bytes, least, most_bytes,
+                 most);
+    } else if (parameter->choices != NULL) {
+        bool many = parameter->type == API_PARAM_CHOICES;
+        size_t used = (size_t)snprintf(taken, sizeof taken, "%s", many ? "some of " : "");
+        size_t begin = used;
+        for (const char *const *c = parameter->choices; *c != NULL && used < sizeof taken; c++) {
+            used += (size_t)snprintf(taken + used, sizeof taken - used, "%s%s",
+                                     used > begin ? ", " : "", *c);
+        }
+    }
+    return api_fail(x, API_BAD_PARAMETER, "\"%s\" cannot be \"%.100s\": %s", parameter->name, value,
+                    taken);
+}
+
+static bool check_parameter(api_exchange *x, const api_parameter *parameter, const char *value)
+{
+    const char *end = value + strlen(value);
+    size_t used = 0;
+    bool good = false;
+    switch (parameter->type) {
+    case API_PARAM_TEXT:
+        good = strlen(value) <= (size_t)parameter->max;
+        break;
+    case API_PARAM_FLAG:
+        good = strcmp(value, "true") == 0 || strcmp(value, "false") == 0;
+        break;
+    case API_PARAM_U64: {
+        uint64_t number;
+        good = he_u64_parse(value, end, &number, &used) == HE_OK && value + used == end &&
+               (double)number >= parameter->min && (double)number <= parameter->max;
+        break;
+    }
+    case API_PARAM_NUMBER: {
+        double number;
+        good = he_double_parse(value, end, HE_JSON_NUMBER, &number, &used) == HE_OK &&
+               value + used == end && number >= parameter->min && number <= parameter->max;
+        break;
+    }
+    case API_PARAM_CHOICES: {
+        unsigned set;
+        good = api_choices_parse(parameter->choices, value, &set);
+        break;
+    }
+    case API_PARAM_CHOICE:
+        good = api_param_choice(x, parameter->name) >= 0;
+        break;
+    }
+    return good || refuse_parameter(x, parameter, value);
+}
+
+static bool check_query(api_exchange *x)
+{
+    if (!api_query_split(x->request.query, &x->arena, &x->query, &x->problem)) {
+        return false;
+    }
+    for (size_t i = 0; i < x->query.count; i++) {
+        const api_pair *pair = &x->query.pairs[i];
+        const api_parameter *const *parameter = x->route->parameters;
+        while (*parameter != NULL && strcmp((*parameter)->name, pair->name) != 0) {
+            parameter++;
+        }
+        if (*parameter == NULL) {
+            return api_fail(x, API_UNKNOWN_PARAMETER, "\"%.100s\" is not a parameter of this route",
+                            pair->name);
+        }
+        for (size_t j = 0; j < i; j++) {
+            if (strcmp(x->query.pairs[j].name, pair->name) == 0) {
+                return api_fail(x, API_REPEATED_PARAMETER, "\"%s\" is given twice", pair->name);
+            }
+        }
+        if (!check_parameter(x, *parameter, pair->value)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check_variables(api_exchange *x, const api_variables *variables)
+{
+    if (variables->mesh != NULL) {
+        if (!api_path_is_mesh_id(variables->mesh)) {
+            bool creates = (x->route->flags & API_MAY_CREATE) != 0;
+            return api_fail(x, creates ? API_BAD_ID : API_NO_SUCH_MESH,
+                            "\"%.100s\" cannot be the id of a mesh", variables->mesh);
+        }
+        x->mesh_id = variables->mesh;
+    }
+    x->kind = variables->has_kind ? variables->kind : HE_KIND_COUNT;
+    if (variables->id != NULL && !api_path_id(variables->id, &x->id)) {
+        api_fail(x, HE_NO_SUCH_ELEMENT, "\"%.100s\" is not the id of an element", variables->id);
+        x->problem.status = 404;
+        return false;
+    }
+    if (variables->relation != NULL) {
+        const char *const *relation = api_relations(x->kind);
+        while (*relation != NULL && strcmp(*relation, variables->relation) != 0) {
+            relation++;
+        }
+        if (*relation == NULL) {
+            return api_fail(x, API_NO_SUCH_ROUTE, "\"%.100s\" is not a relation of %s",
+                            variables->relation, he_kind_plural(x->kind));
+        }
+        x->relation = *relation;
+    }
+    x->code = variables->code;
+    x->attribute = variables->name;
+    x->job_id = variables->job;
+    return true;
+}
+
+/* An image or a link of any page sends such a request. Browsers keep the answer from the page, but
+ * it would have been worked out. */
+static bool is_of_other_site(const api_exchange *x)
+{
+    const char *site = api_header_of(x, "Sec-Fetch-Site");
+    return site != NULL && !x->request.has_consent && api_equal_nocase(site, "cross-site");
+}
+
+static bool find_route(api_exchange *x)
+{
+    api_path path;
+    api_variables variables;
+    if (strlen(x->request.path) + strlen(x->request.query) > API_MAX_URI) {
+        return api_fail(x, API_URI_TOO_LONG, "path and query are longer than %d characters",
+                        API_MAX_URI);
+    }
+    if (!api_path_split(x->request.path, &x->arena, &path, &x->problem)) {
+        return false;
+    }
+    x->route = api_route_find(x->request.method, &path, &variables, x->allow);
+    if (x->route == NULL && x->allow[0] == '\0' && path.has_slash) {
+        return api_fail(x, API_BAD_PATH,
+                        "an escaped slash is taken only in the name of an attribute");
+    }
+    if (x->route == NULL && x->allow[0] == '\0') {
+        return api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
+    }
+    if (x->route == NULL && strcmp(x->request.method, "OPTIONS") == 0) {
+        api_answer_empty(x, 204);
+        api_answer_header(x, "Allow", x->allow);
+        return false;
+    }
+    if (x->route == NULL) {
+        return api_fail(x, API_METHOD_NOT_ALLOWED, "the path does not take %.20s, only %s",
+                        x->request.method, x->allow);
+    }
+    x->answer.route = x->route->path;
+    x->head = strcmp(x->request.method, "HEAD") == 0;
+    if ((x->route->flags & API_EXPENSIVE) && is_of_other_site(x)) {
+        return api_fail(x, API_FOREIGN_ORIGIN,
+                        "Sec-Fetch-Site says that another site asks for what is expensive to find");
+    }
+    return check_variables(x, &variables) && check_query(x);
+}
+
+static bool find_mesh(api_exchange *x)
+{
+    if (x->mesh_id == NULL) {
+        return true;
+    }
+    api_store_status status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
+    if (status == API_STORE_OK) {
+        return true;
+    }
+    x->mesh = NULL;
+    return (status == API_STORE_ABSENT && (x->route->flags & API_MAY_CREATE)) ||
+           api_fail_store(x, status);
+}
+
+uint64_t api_body_cap(const api_exchange *x)
+{
+    switch (x->route->body_kind) {
+    case API_BODY_NONE:
+        return 0;
+    case API_BODY_OPTION:
+    case API_BODY_CONTROL:
+        return API_MAX_CONTROL;
+    case API_BODY_EDITS:
+        return API_MAX_EDITS;
+    case API_BODY_UPLOAD:
+        return x->service->options.max_upload;
+    }
+    return 0;
+}
+
+bool api_refuse_size(api_exchange *x)
+{
+    if (x->route->body_kind == API_BODY_NONE) {
+        return api_fail(x, API_UNEXPECTED_BODY, "%s takes no body here", x->request.method);
+    }
+    return api_fail(x, API_BODY_TOO_LARGE, "the body %s %llu bytes",
+                    x->unpack == NULL ? "exceeds" : "unfolds to more than",
+                    (unsigned long long)api_body_cap(x));
+}
+
+static bool check_content_type(api_exchange *x)
+{
+    const char *type = api_header_of(x, "Content-Type");
+    for (const char *const *known = x->route->consumes; type != NULL && *known != NULL; known++) {
+        if (api_media_is(type, *known)) {
+            x->media_in = *known;
+            return true;
+        }
+    }
+    if (type == NULL) {
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "the body has no Content-Type");
+    } else {
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "\"%.100s\" is not read here", type);
+    }
+    x->problem.supported = x->route->consumes;
+    return false;
+}
+
+static bool check_body(api_exchange *x)
+{
+    const api_request *r = &x->request;
+    bool empty = !r->has_body || (r->has_length && r->length == 0);
+    if (empty) {
+        bool optional =
+            x->route->body_kind == API_BODY_NONE || x->route->body_kind == API_BODY_OPTION;
+        /* A form may send an empty body of a type of its own: no body is not a type of body. */
+        bool typed = x->route->body_kind == API_BODY_OPTION &&
+                     api_header_of(x, "Content-Type") != NULL && !check_content_type(x);
+        return (optional && !typed) ||
+               (!typed && api_fail(x, API_MISSING_BODY, "%s needs a body here", r->method));
+    }
+    if (r->has_length && r->length > api_body_cap(x)) {
+        return api_refuse_size(x);
+    }
+    /* A body without a length may yet be empty: then it is like none. */
+    return x->route->body_kind == API_BODY_NONE || (api_coded_body(x) && check_content_type(x));
+}
+
+static bool check_accept(api_exchange *x)
+{
+    const char *accept = api_header_of(x, "Accept");
+    if (accept != NULL && accept[strspn(accept, " \t")] == '\0') {
+        accept = NULL;
+    }
+    if (x->route->flags & API_OWN_ACCEPT) {
+        return true;
+    }
+    int choice = api_media_choose(accept, x->route->produces);
+    if (choice < 0) {
+        return api_fail_accept(x);
+    }
+    x->media_out = x->route->produces[choice];
+    return true;
+}
+
+bool api_admit(api_exchange *x)
+{
+    return find_route(x) && find_mesh(x) && check_body(x) && check_accept(x) && api_coded_accept(x);
+}

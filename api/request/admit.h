@@ -1,0 +1,16 @@
+/* admit.h - what is looked at before a request reaches its handler: the route and what its path and
+ * query say, the mesh, the headers of the body, Accept. service.c drives the rest. */
+#ifndef HE_API_REQUEST_ADMIT_H
+#define HE_API_REQUEST_ADMIT_H
+
+#include "api/request/exchange.h"
+
+/* Fill the request's part of `x`. False: it is refused, or answered (OPTIONS). */
+bool api_admit(api_exchange *x);
+
+/* Bytes the route's body may have. */
+uint64_t api_body_cap(const api_exchange *x);
+/* The body is longer, or there should be none. Always false. */
+bool api_refuse_size(api_exchange *x);
+
+#endif

@@ -1,0 +1,38 @@
+/* answer_headers.h - THE list of the headers that answers have.
+ *
+ * A page of another origin reads only the headers that Access-Control-Expose-Headers names, and
+ * those few that browsers always show. That header is made from this list, and no header can be
+ * sent that is not on it: the server asserts it. */
+#ifndef HE_API_REQUEST_ANSWER_HEADERS_H
+#define HE_API_REQUEST_ANSWER_HEADERS_H
+
+#include <stdbool.h>
+
+/* X(name, separator): every header that must be named for a page to read it, in order. */
+#define API_EXPOSED_HEADERS(X)         \
+    X("Accept-Encoding", ", ")         \
+    X("Allow", ", ")                   \
+    X("Content-Disposition", ", ")     \
+    X("Content-Encoding", ", ")        \
+    X("Content-Security-Policy", ", ") \
+    X("ETag", ", ")                    \
+    X("Export-Warnings", ", ")         \
+    X("Idempotency-Replayed", ", ")    \
+    X("Link", ", ")                    \
+    X("Location", ", ")                \
+    X("Preference-Applied", ", ")      \
+    X("Referrer-Policy", ", ")         \
+    X("Retry-After", ", ")             \
+    X("Vary", ", ")                    \
+    X("X-Accel-Buffering", ", ")       \
+    X("X-Content-Type-Options", ", ")  \
+    X("X-Request-Id", "")
+
+/* "Accept-Encoding, Allow, ..." */
+extern const char api_exposed_headers[];
+
+/* Is it one of these, one that browsers always show (Cache-Control, Content-Type), or one of those
+ * that let a page read at all (Access-Control-...)? */
+bool api_header_is_listed(const char *name);
+
+#endif

@@ -1,0 +1,148 @@
+/* api.h - requests in, answers out, no sockets.
+ *
+ * The server hands over a request in pieces and sends what comes back. An exchange is one request
+ * with its answer, used by one thread at a time:
+ *
+ *       api_begin --- reads line and headers; may answer at once (404, 413, 415, 412 ...)
+ *           |
+ *       api_body *    for each piece of the body, none after API_READY
+ *           |
+ *       api_end  ---- API_READY: the answer is there
+ *           |         API_WORK:  long; call api_work on a thread that may block, not on a worker
+ *           |         API_JOB:   too long to wait for; call api_detach
+ *       api_work, which gives API_READY or API_JOB
+ *           |
+ *       api_detach: the exchange is a job's from now on (jobs.h), the client is answered by another
+ *           |
+ *       api_answer -- status, headers, and a body as bytes, as a reader to pull from, or as a
+ *           |         source that may have to be waited for (live.h)
+ *           |
+ *       api_free
+ *
+ * The server must not send the answer before api_answer's `mesh` is durable up to `record`.
+ * api_handle does all of it at once on bytes in memory: tests live on that. */
+#ifndef HE_API_REQUEST_API_H
+#define HE_API_REQUEST_API_H
+
+#include "api/job/jobs.h"
+#include "api/live.h"
+#include "api/store.h"
+#include "base/exec.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct api_exchange api_exchange;
+typedef struct api_service api_service;
+
+/* A request as it came: nothing is decoded. */
+typedef struct api_request {
+    const char *method;
+    const char *path;       /* raw, percent-encoded, begins with '/' */
+    const char *query;      /* raw, without '?', "" when absent */
+    const char *request_id; /* echoed; the server made one where the client sent none */
+    /* The value of a header, NULL when absent. Names are compared without case. Valid until
+     * api_free. */
+    const char *(*header)(void *context, const char *name);
+    void *context;
+    bool has_length; /* Content-Length was given */
+    uint64_t length;
+    bool has_body;    /* a body will follow, of known length or chunked */
+    bool has_consent; /* its Origin is one that was configured: such pages may do anything */
+} api_request;
+
+typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
+
+/* What api_work or a job is about to do, so that its host can choose when. */
+typedef struct api_load {
+    bool reads;             /* it changes nothing */
+    double seconds;         /* about how long it takes; far too little for some */
+    const char *mesh;       /* id of the mesh it is about, "" where there is none */
+    struct api_mesh *about; /* that mesh, held by the exchange; NULL while there is none */
+    bool claims;            /* the exchange has claimed it: see api_store.claim */
+} api_load;
+
+enum { API_ANSWER_HEADERS = 16 };
+
+typedef struct api_header {
+    const char *name, *value;
+} api_header;
+
+typedef struct api_answer {
+    int status;
+    api_header headers[API_ANSWER_HEADERS];
+    size_t header_count;
+    /* Either bytes, or read: fill up to `size` bytes, 0 at the end, -1 on failure (the
+     * connection is then cut, so that the client notices). Never blocks on a lock for long. */
+    const char *bytes;
+    int64_t length; /* -1: unknown, only with read */
+    bool slow;      /* with read: it computes for milliseconds, not on a thread others wait for */
+    int64_t (*read)(void *context, char *buffer, size_t size);
+    void *context;
+    /* Instead of both: an answer that goes on, and what to send now and then when it has nothing.
+     * NULL: it is none. */
+    const api_source *live;
+    const char *idle;
+    bool close; /* the connection must not be used again */
+    /* Hold the answer until this mesh is durable up to this record (api_mesh_info); mesh NULL: do
+     * not. */
+    api_mesh *mesh;
+    uint64_t record;
+    const char *route; /* template for logs and metrics, "-" when none matched */
+} api_answer;
+
+/* Limits a server sets; 0 takes the default of limits.h. */
+typedef struct api_options {
+    uint64_t max_upload; /* bytes of a mesh document or file */
+    const char *version; /* "0.1.0" */
+    const char *public_url;
+    /* The page: content of a path ("/", "/assets/...") or false. Bytes live as long as the
+     * service. `type` and `etag` are set; `immutable` for names that carry a hash. */
+    bool (*asset)(void *context, const char *path, const char **bytes, size_t *length,
+                  const char **type, const char **etag, bool *immutable);
+    void *asset_context;
+    bool (*ready)(void *context); /* for /readyz; NULL: always */
+    void *ready_context;
+    /* Bytes the process holds by its own count, and how many it may hold, 0 for as many as there
+     * are; NULL: not told. */
+    void (*memory)(uint64_t *used, uint64_t *budget);
+    const api_jobs *jobs; /* NULL: nothing becomes a job, and no route shows any */
+    bool plain_answers;   /* never coded, whatever a client accepts */
+    const he_exec *exec;  /* threads for parts of large work; NULL: none */
+} api_options;
+
+/* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */
+api_service *api_service_new(const api_store *store, const api_options *options);
+void api_service_free(api_service *service);
+
+/* NULL when memory is out. `request` is copied, but for its header callback. */
+api_exchange *api_begin(api_service *service, const api_request *request, api_step *step);
+/* `used` may be less than `length`, with API_MORE: enough was done for once. The rest is to be
+ * given again, when others that wait for the thread have had their turn. */
+api_step api_body(api_exchange *exchange, const char *bytes, size_t length, size_t *used);
+api_step api_end(api_exchange *exchange);
+api_step api_work(api_exchange *exchange);
+/* The exchange to answer the client with, 202 or 503; `exchange` is not the caller's any more.
+ * NULL when memory is out: then it still is. */
+api_exchange *api_detach(api_exchange *exchange);
+/* Before api_work: `tell` is called as watch.h says, by its thread. */
+void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
+               void *context);
+/* Before api_end: `tell` is called as watch.h says while api_end works on a read. What it gives up
+ * begins anew: api_end returns API_WORK. */
+void api_watch_worker(api_exchange *exchange,
+                      bool (*tell)(void *context, const char *phase, double done), void *context);
+/* For `tell`, before it returns false: what the client is answered with in place of HE_CANCELLED.
+ */
+void api_give_up(api_exchange *exchange, int code, const char *text);
+/* After API_WORK and API_JOB, before the work has begun. */
+api_load api_load_of(const api_exchange *exchange);
+const api_answer *api_answer_of(const api_exchange *exchange);
+void api_free(api_exchange *exchange);
+
+/* All of it at once, the whole body given; NULL when memory is out. The caller frees. */
+api_exchange *api_handle(api_service *service, const api_request *request, const char *body,
+                         size_t length);
+
+#endif

@@ -1,0 +1,151 @@
+#include "api/request/coded.h"
+
+#include <string.h>
+
+bool api_coded_body(api_exchange *x)
+{
+    const char *coding = api_header_of(x, "Content-Encoding");
+    if (!api_coding_of_body(coding, &x->coding_in)) {
+        api_fail(x, API_UNSUPPORTED_ENCODING, "\"%.60s\" is not taken, only one of %s and identity",
+                 coding, api_codings_list);
+        x->problem.supported = api_codings_taken;
+        return false;
+    }
+    return true;
+}
+
+static const api_codings only_identity = {.allowed = {[API_IDENTITY] = true}, .best = API_IDENTITY};
+
+/* Events are small, and are to leave at once. */
+static bool is_stream(const api_route *route)
+{
+    return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
+}
+
+bool api_coded_accept(api_exchange *x)
+{
+    static const char *const identity[] = {"identity", NULL};
+    const char *accept = api_header_of(x, "Accept-Encoding");
+    bool plain = x->service->options.plain_answers || is_stream(x->route);
+    bool good = api_coding_choose(accept, &x->codings);
+    if (plain) {
+        good = x->codings.allowed[API_IDENTITY];
+        x->codings = only_identity;
+    }
+    if (!good) {
+        api_fail(x, API_NOT_ACCEPTABLE,
+                 "\"%.100s\" allows no content coding this route answers with", accept);
+        x->problem.supported = plain ? identity : api_codings_taken;
+    }
+    return good;
+}
+
+bool api_coded_varies(const api_exchange *x)
+{
+    return !x->service->options.plain_answers && x->answer.live == NULL && x->answer.status != 204;
+}
+
+/* --- the answer --- */
+
+static api_header *find_header(api_exchange *x, const char *name)
+{
+    for (size_t i = 0; i < x->answer.header_count; i++) {
+        if (strcmp(x->answer.headers[i].name, name) == 0) {
+            return &x->answer.headers[i];
+        }
+    }
+    return NULL;
+}
+
+/* Types whose bytes are packed by themselves. */
+static bool is_packed(api_exchange *x)
+{
+    static const char *const types[] = {"image/png", "image/jpeg", "image/webp", "font/woff2"};
+    const api_header *type = find_header(x, "Content-Type");
+    for (size_t i = 0; type != NULL && i < sizeof types / sizeof *types; i++) {
+        if (strcmp(type->value, types[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_worth_it(api_exchange *x)
+{
+    const api_answer *a = &x->answer;
+    if (!api_coded_varies(x) || x->codings.best == API_IDENTITY || a->status == 304 ||
+        (a->read == NULL && a->length == 0)) {
+        return false;
+    }
+    bool small = a->length >= 0 && a->length <= API_PACK_FROM;
+    return !x->codings.allowed[API_IDENTITY] || (!small && !is_packed(x));
+}
+
+/* Name the coding, in a header and in the tag. False, and nothing is named, without memory. */
+static bool name_coding(api_exchange *x)
+{
+    api_header *tag = find_header(x, "ETag");
+    if (tag != NULL) {
+        char coded[API_ETAG];
+        api_etag_code(tag->value, x->codings.best, coded);
+        const char *copy = api_arena_copy(&x->arena, coded, strlen(coded));
+        if (copy == NULL) {
+            return false;
+        }
+        tag->value = copy;
+    }
+    x->answer.headers[x->answer.header_count++] =
+        (api_header){"Content-Encoding", api_coding_name(x->codings.best)};
+    return true;
+}
+
+/* All of it now, so that its length is known. */
+static void code_whole(api_exchange *x, size_t length)
+{
+    size_t room = length + length / 4 + 512; /* more than either library asks for */
+    x->coded = he_mem_alloc(room);
+    if (x->coded == NULL || !api_pack_begin(x->pack)) {
+        return;
+    }
+    int64_t coded = api_pack_read(x->pack, x->coded, room);
+    bool shorter = coded >= 0 && ((size_t)coded < length || !x->codings.allowed[API_IDENTITY]);
+    if (shorter && name_coding(x)) {
+        x->answer.bytes = x->coded;
+        x->answer.length = coded;
+    }
+}
+
+void api_coded_answer(api_exchange *x)
+{
+    api_answer *a = &x->answer;
+    const char *bytes;
+    size_t length;
+    if (!is_worth_it(x) || a->header_count == API_ANSWER_HEADERS) {
+        return;
+    }
+    api_plain plain = {.bytes = a->bytes, .read = a->read, .context = a->context};
+    plain.length = plain.bytes == NULL ? 0 : (size_t)a->length;
+    x->pack = api_pack_new(x->codings.best, &plain);
+    if (x->pack == NULL) {
+        return;
+    }
+    if (api_pack_whole(x->pack, &bytes, &length)) {
+        a->read = NULL;
+        a->bytes = bytes;
+        a->length = (int64_t)length;
+        if (length > API_PACK_FROM || !x->codings.allowed[API_IDENTITY]) {
+            code_whole(x, length);
+        }
+        return;
+    }
+    /* Some of it was read: what cannot be coded is passed on. */
+    a->read = api_pack_read;
+    a->context = x->pack;
+    a->bytes = NULL;
+    if (api_pack_begin(x->pack) && name_coding(x)) {
+        a->length = -1;
+        a->slow = true;
+    } else {
+        api_pack_give_up(x->pack);
+    }
+}

@@ -1,0 +1,515 @@
+#include "api/request/exchange.h"
+
+#include "api/request/past.h"
+
+#include "format/text/number.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- query parameters --- */
+
+static const char *find_value(const api_exchange *x, const char *name)
+{
+    for (size_t i = 0; i < x->query.count; i++) {
+        if (strcmp(x->query.pairs[i].name, name) == 0) {
+            return x->query.pairs[i].value;
+        }
+    }
+    return NULL;
+}
+
+const char *api_param_text(const api_exchange *x, const char *name)
+{
+    return find_value(x, name);
+}
+
+bool api_param_flag(const api_exchange *x, const char *name)
+{
+    const char *value = find_value(x, name);
+    return value != NULL && strcmp(value, "true") == 0;
+}
+
+uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback)
+{
+    const char *value = find_value(x, name);
+    uint64_t number = fallback;
+    size_t used;
+    if (value != NULL && he_u64_parse(value, value + strlen(value), &number, &used) != HE_OK) {
+        assert(!"checked against the route");
+    }
+    return number;
+}
+
+double api_param_number(const api_exchange *x, const char *name, double fallback)
+{
+    const char *value = find_value(x, name);
+    double number = fallback;
+    size_t used;
+    if (value != NULL &&
+        he_double_parse(value, value + strlen(value), HE_JSON_NUMBER, &number, &used) != HE_OK) {
+        assert(!"checked against the route");
+    }
+    return number;
+}
+
+static const api_parameter *find_parameter(const api_exchange *x, const char *name)
+{
+    for (const api_parameter *const *p = x->route->parameters; *p != NULL; p++) {
+        if (strcmp((*p)->name, name) == 0) {
+            return *p;
+        }
+    }
+    return NULL;
+}
+
+int api_param_choice(const api_exchange *x, const char *name)
+{
+    const char *value = find_value(x, name);
+    const api_parameter *parameter = find_parameter(x, name);
+    for (int i = 0; value != NULL && parameter != NULL && parameter->choices[i] != NULL; i++) {
+        if (strcmp(parameter->choices[i], value) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+unsigned api_param_choices(const api_exchange *x, const char *name)
+{
+    const char *value = find_value(x, name);
+    const api_parameter *parameter = find_parameter(x, name);
+    unsigned out = 0;
+    if (value != NULL && !api_choices_parse(parameter->choices, value, &out)) {
+        assert(!"checked against the route");
+    }
+    return out;
+}
+
+bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice)
+{
+    const char *value = find_value(x, name);
+    return value != NULL && strcmp(value, choice) == 0;
+}
+
+const char *api_header_of(const api_exchange *x, const char *name)
+{
+    return x->request.header == NULL ? NULL : x->request.header(x->request.context, name);
+}
+
+/* --- refusals --- */
+
+bool api_fail(api_exchange *x, int code, const char *format, ...)
+{
+    char text[API_PROBLEM_DETAIL];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return api_problem_set(&x->problem, code, "%s", text);
+}
+
+bool api_fail_core(api_exchange *x, const he_error *err)
+{
+    return api_problem_set_core(&x->problem, err);
+}
+
+bool api_fail_path(api_exchange *x, const he_error *err)
+{
+    return api_problem_set_path(&x->problem, err);
+}
+
+bool api_fail_store(api_exchange *x, api_store_status status)
+{
+    switch (status) {
+    case API_STORE_OK:
+        break;
+    case API_STORE_ABSENT:
+        return api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"",
+                        x->mesh_id == NULL ? "" : x->mesh_id);
+    case API_STORE_TAKEN:
+        return api_fail(x, API_MESH_EXISTS, "the id is that of another mesh");
+    case API_STORE_NO_MEMORY:
+        return api_fail_memory(x);
+    case API_STORE_BUDGET:
+        return api_fail(x, API_MEMORY_BUDGET, "the mesh does not fit the memory budget");
+    case API_STORE_TOO_MANY:
+        return api_fail(x, API_TOO_MANY_MESHES, "the server holds as many meshes as it may");
+    case API_STORE_BUSY:
+        return x->info.job[0] == '\0'
+                   ? api_fail(x, API_MESH_BUSY, "a long operation changes the mesh")
+                   : api_fail(x, API_MESH_BUSY, "job %s changes the mesh: see /v1/jobs/%s",
+                              x->info.job, x->info.job);
+    case API_STORE_NOTHING:
+        return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
+    case API_STORE_LISTENERS:
+        return api_fail(x, API_OVERLOADED, "as many clients listen as may");
+    case API_STORE_AHEAD:
+        return api_fail(x, API_NO_SUCH_REVISION, "the revision is still to come");
+    case API_STORE_GONE:
+        return api_fail(x, API_REVISION_GONE, "the history does not reach back to the revision");
+    case API_STORE_ELSEWHERE:
+        return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
+    }
+    return api_fail(x, API_INTERNAL, "the store refused without a reason");
+}
+
+bool api_fail_memory(api_exchange *x)
+{
+    return api_fail(x, HE_NO_MEMORY, "no memory for the request");
+}
+
+bool api_fail_accept(api_exchange *x)
+{
+    api_fail(x, API_NOT_ACCEPTABLE, "\"%.100s\" allows nothing this route answers with",
+             api_header_of(x, "Accept"));
+    x->problem.supported = x->route->produces;
+    return false;
+}
+
+/* --- locks --- */
+
+const he_mesh *api_read_begin(api_exchange *x)
+{
+    uint64_t revision;
+    if (x->past != NULL) {
+        return x->store->snapshot_content(x->past, &x->info);
+    }
+    const he_mesh *mesh = x->store->read_begin(x->store->self, x->mesh, &x->info);
+    if (x->info.removed) {
+        x->store->read_end(x->store->self, x->mesh);
+        api_fail_store(x, API_STORE_ABSENT);
+        return NULL;
+    }
+    if (api_past_wanted(x, &revision)) {
+        x->store->read_end(x->store->self, x->mesh);
+        return api_past_begin(x, revision) ? api_read_begin(x) : NULL;
+    }
+    x->has_info = true;
+    return mesh;
+}
+
+void api_read_end(api_exchange *x)
+{
+    if (x->past == NULL) {
+        x->store->read_end(x->store->self, x->mesh);
+    }
+}
+
+static bool refuse_stale(api_exchange *x, const char *what)
+{
+    api_fail(x, API_STALE, "%s, it is at revision %llu", what,
+             (unsigned long long)x->info.revision);
+    x->problem.has_revision = true;
+    x->problem.revision = x->info.revision;
+    return false;
+}
+
+bool api_preconditions_hold(api_exchange *x, const uint64_t *expected)
+{
+    const char *match = api_header_of(x, "If-Match");
+    const char *none = api_header_of(x, "If-None-Match");
+    if (match != NULL && !api_etag_is_present(match, &x->info)) {
+        return refuse_stale(x, "If-Match names no present state of the mesh");
+    }
+    if (none != NULL && api_etag_is_present(none, &x->info)) {
+        return api_fail(x, API_PRECONDITION, "the mesh exists in a state If-None-Match names");
+    }
+    if (expected != NULL && *expected != x->info.revision) {
+        char what[64];
+        snprintf(what, sizeof what, "the mesh is not at revision %llu",
+                 (unsigned long long)*expected);
+        return refuse_stale(x, what);
+    }
+    return true;
+}
+
+he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **delta)
+{
+    uint64_t revision = 0;
+    if (expected != NULL && !api_in_u64(expected, 1, (uint64_t)1 << 53, &revision)) {
+        return NULL;
+    }
+    he_mesh *mesh = x->store->write_begin(x->store->self, x->mesh, &x->info, delta);
+    if (mesh == NULL) {
+        api_fail_memory(x);
+        return NULL;
+    }
+    /* A refusal, too, shows the state it was found in. */
+    x->has_info = !x->info.removed;
+    bool good = x->has_info || api_fail_store(x, API_STORE_ABSENT);
+    if (good && x->info.busy && !(x->route->flags & API_INTERRUPTS)) {
+        good = api_fail_store(x, API_STORE_BUSY);
+    }
+    if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
+        if (x->claim != NULL) {
+            x->store->write_keyed(x->store->self, x->mesh, x->claim);
+        }
+        return mesh;
+    }
+    x->store->write_end(x->store->self, x->mesh);
+    return NULL;
+}
+
+/* Of the present, with x->info; NULL with the problem filled. */
+static api_snapshot *present_snapshot(api_exchange *x)
+{
+    api_snapshot *snapshot = NULL;
+    api_store_status status = x->store->snapshot(x->store->self, x->mesh, &snapshot);
+    if (status != API_STORE_OK) {
+        api_fail_store(x, status);
+        return NULL;
+    }
+    x->store->snapshot_content(snapshot, &x->info);
+    if (x->info.removed) {
+        x->store->snapshot_release(x->store->self, snapshot);
+        api_fail_store(x, API_STORE_ABSENT);
+        return NULL;
+    }
+    return snapshot;
+}
+
+/* A reader of the present looks whether it is the present it is asked about, before it copies. */
+static bool is_past(api_exchange *x)
+{
+    if (x->past == NULL && api_param_text(x, "revision") == NULL) {
+        return false;
+    }
+    if (api_read_begin(x) != NULL) {
+        api_read_end(x);
+    }
+    return x->past != NULL;
+}
+
+api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
+{
+    api_snapshot *snapshot = NULL;
+    uint64_t revision;
+    if (!is_past(x)) {
+        if (x->problem.code != HE_OK || x->deferred != NULL) {
+            return NULL;
+        }
+        snapshot = present_snapshot(x);
+        if (snapshot == NULL) {
+            return NULL;
+        }
+        /* It may have moved on in between. */
+        if (api_past_wanted(x, &revision)) {
+            x->store->snapshot_release(x->store->self, snapshot);
+            snapshot = NULL;
+            if (!api_past_begin(x, revision)) {
+                return NULL;
+            }
+        }
+    }
+    if (snapshot == NULL) {
+        snapshot = x->past;
+        x->past = NULL;
+    }
+    x->has_info = true;
+    *content = x->store->snapshot_content(snapshot, &x->info);
+    return snapshot;
+}
+
+bool api_precondition_absent(api_exchange *x)
+{
+    return api_header_of(x, "If-Match") == NULL ||
+           api_fail(x, API_PRECONDITION, "If-Match asks for a mesh that does not exist");
+}
+
+/* --- work --- */
+
+void api_defer(api_exchange *x, void (*handler)(api_exchange *x))
+{
+    if (x->phase == API_PHASE_BODY) {
+        x->deferred = handler;
+    } else {
+        handler(x);
+    }
+}
+
+static bool wants_job(const api_exchange *x, double seconds)
+{
+    if (x->service->options.jobs == NULL || x->phase == API_PHASE_JOB) {
+        return false;
+    }
+    if (x->prefer.wait >= 0) {
+        return seconds > x->prefer.wait;
+    }
+    return x->prefer.respond_async || seconds > API_PATIENCE;
+}
+
+void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds)
+{
+    assert(x->route->flags & API_LONG);
+    x->is_job = wants_job(x, seconds);
+    x->seconds = seconds;
+    if (x->is_job || (costly && x->phase == API_PHASE_BODY)) {
+        x->deferred = handler;
+    } else {
+        handler(x);
+    }
+}
+
+bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold)
+{
+    return x->phase == API_PHASE_BODY && amount > threshold;
+}
+
+uint64_t api_elements_of(const he_mesh *mesh)
+{
+    return (uint64_t)he_mesh_issued(mesh, HE_VERTEX) + he_mesh_issued(mesh, HE_HALFEDGE) +
+           he_mesh_issued(mesh, HE_FACE);
+}
+
+bool api_is_large(const api_exchange *x, const he_mesh *mesh)
+{
+    return api_is_costly(x, api_elements_of(mesh), API_COSTLY_ELEMENTS);
+}
+
+/* --- answers --- */
+
+void api_publish(api_exchange *x, int status)
+{
+    x->published = status;
+    if (status == 201) {
+        snprintf(x->location, sizeof x->location, "/v1/meshes/%s", x->info.id);
+    }
+}
+
+void api_answer_header(api_exchange *x, const char *name, const char *value)
+{
+    const char *copy = api_arena_copy(&x->arena, value, strlen(value));
+    if (copy == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    size_t i = 0;
+    while (i < x->answer.header_count && strcmp(x->answer.headers[i].name, name) != 0) {
+        i++;
+    }
+    assert(i < API_ANSWER_HEADERS);
+    x->answer.headers[i] = (api_header){name, copy};
+    x->answer.header_count += i == x->answer.header_count;
+}
+
+void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
+{
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    assert(length >= 0 && (size_t)length < sizeof text);
+    (void)length;
+    api_answer_header(x, name, text);
+}
+
+void api_answer_bytes(api_exchange *x, int status, const char *type, const char *bytes,
+                      size_t length)
+{
+    assert(!x->answered);
+    x->answered = true;
+    x->answer.status = status;
+    x->answer.bytes = bytes;
+    x->answer.length = (int64_t)length;
+    if (type != NULL) {
+        api_answer_header(x, "Content-Type", type);
+    }
+}
+
+void api_answer_text(api_exchange *x, int status, const char *type)
+{
+    if (x->text.failed) {
+        api_fail_memory(x);
+    } else {
+        api_answer_bytes(x, status, type, x->text.bytes, x->text.length);
+    }
+}
+
+void api_answer_json(api_exchange *x, int status)
+{
+    api_answer_text(x, status, "application/json");
+}
+
+void api_answer_empty(api_exchange *x, int status)
+{
+    api_answer_bytes(x, status, NULL, "", 0);
+}
+
+bool api_answer_minimal(api_exchange *x)
+{
+    if (x->prefer.minimal) {
+        api_answer_header(x, "Preference-Applied", "return=minimal");
+        api_answer_empty(x, 204);
+    }
+    return x->prefer.minimal;
+}
+
+void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
+                       int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
+                       void (*free_stream)(void *stream))
+{
+    api_answer_bytes(x, status, type, NULL, 0);
+    x->answer.length = length;
+    x->answer.read = read;
+    x->answer.context = stream;
+    x->stream = stream;
+    x->free_stream = free_stream;
+}
+
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
+                     const char *idle)
+{
+    api_answer_bytes(x, status, type, NULL, 0);
+    x->live = *source;
+    x->answer.length = -1;
+    x->answer.live = &x->live;
+    x->answer.idle = idle;
+    x->stream = source->self;
+    x->free_stream = source->free;
+}
+
+void api_answer_etag(api_exchange *x, const char *representation)
+{
+    char etag[API_ETAG];
+    api_etag_write(&x->info, representation, etag);
+    api_answer_header(x, "ETag", etag);
+}
+
+bool api_not_modified_since(api_exchange *x, const char *etag)
+{
+    char coded[API_ETAG];
+    api_coding coding;
+    const char *none = api_header_of(x, "If-None-Match");
+    if (none == NULL || !api_etag_listed(none, etag, &x->codings, &coding)) {
+        api_answer_header(x, "ETag", etag);
+        return false;
+    }
+    api_etag_code(etag, coding, coded);
+    api_answer_header(x, "ETag", coded);
+    api_answer_empty(x, 304);
+    return true;
+}
+
+bool api_not_modified(api_exchange *x, const char *representation)
+{
+    char etag[API_ETAG];
+    api_etag_write(&x->info, representation, etag);
+    return api_not_modified_since(x, etag);
+}
+
+bool api_not_modified_yet(api_exchange *x, const char *representation)
+{
+    if (api_header_of(x, "If-None-Match") == NULL) {
+        return false;
+    }
+    if (api_read_begin(x) == NULL) {
+        return true;
+    }
+    bool known = api_not_modified(x, representation);
+    api_read_end(x);
+    return known;
+}

@@ -1,0 +1,68 @@
+/* handlers.h - what the rows of routes.c call. Each runs under the contract of exchange.h. */
+#ifndef HE_API_REQUEST_HANDLERS_H
+#define HE_API_REQUEST_HANDLERS_H
+
+#include "api/request/exchange.h"
+
+/* pages.c: what is not a mesh. */
+void api_live_get(api_exchange *x);
+void api_ready_get(api_exchange *x);
+void api_version_get(api_exchange *x);
+void api_page_get(api_exchange *x); /* "/" and "/assets/..." */
+void api_problem_get(api_exchange *x);
+void api_operations_get(api_exchange *x);
+void api_openapi_get(api_exchange *x);
+
+/* Jobs: x->job_id. */
+void api_jobs_list(api_exchange *x);
+void api_job_get(api_exchange *x);
+void api_job_delete(api_exchange *x);
+void api_job_events(api_exchange *x);
+
+/* The collection. */
+void api_meshes_list(api_exchange *x);
+void api_meshes_create_begin(api_exchange *x);
+void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length);
+void api_meshes_create(api_exchange *x);
+
+/* One mesh. */
+void api_mesh_get(api_exchange *x);
+void api_mesh_patch(api_exchange *x);
+void api_mesh_put_begin(api_exchange *x);
+void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length);
+void api_mesh_put(api_exchange *x);
+void api_mesh_delete(api_exchange *x);
+void api_content_get(api_exchange *x);
+void api_geometry_get(api_exchange *x);
+void api_progressive_get(api_exchange *x);
+void api_mesh_copy(api_exchange *x);
+
+/* Its elements: x->kind, x->id, x->relation. */
+void api_elements_list(api_exchange *x);
+void api_element_get(api_exchange *x);
+void api_relation_get(api_exchange *x);
+
+/* Its attributes: x->kind, x->attribute. */
+void api_attributes_list(api_exchange *x);
+void api_attribute_get(api_exchange *x);
+void api_attribute_put_begin(api_exchange *x);
+void api_attribute_put_body(api_exchange *x, const char *bytes, size_t length);
+void api_attribute_put(api_exchange *x);
+void api_attribute_patch(api_exchange *x);
+void api_attribute_delete(api_exchange *x);
+
+/* Questions. */
+void api_query_post(api_exchange *x);
+void api_traverse_post(api_exchange *x);
+void api_boundaries_get(api_exchange *x);
+void api_components_get(api_exchange *x);
+void api_check_get(api_exchange *x);
+
+/* Edits and history. */
+void api_edits_post(api_exchange *x);
+void api_edits_list(api_exchange *x);
+void api_undo_post(api_exchange *x);
+void api_redo_post(api_exchange *x);
+void api_events_get(api_exchange *x);
+
+#endif

@@ -1,0 +1,146 @@
+#include "api/request/keyed.h"
+
+#include <string.h>
+
+/* With the 0 at its end, so that texts do not run together. */
+static void add_text(api_hash *hash, const char *text)
+{
+    api_hash_add(hash, text == NULL ? "" : text, (text == NULL ? 0 : strlen(text)) + 1);
+}
+
+bool api_keyed_begin(api_exchange *x)
+{
+    const char *key = api_header_of(x, "Idempotency-Key");
+    if (key == NULL || !(x->route->flags & (API_KEYED | API_KEYED_NEW))) {
+        return true;
+    }
+    size_t length = strlen(key);
+    for (size_t i = 0; i < length; i++) {
+        if (key[i] < '!' || key[i] > '~') {
+            return api_fail(x, API_BAD_HEADER, "byte %zu of Idempotency-Key is not visible ASCII",
+                            i);
+        }
+    }
+    if (length == 0 || length > API_MAX_KEY_LENGTH) {
+        return api_fail(x, API_BAD_HEADER, "Idempotency-Key has %zu characters, 1 to %d are taken",
+                        length, API_MAX_KEY_LENGTH);
+    }
+    x->key = api_arena_copy(&x->arena, key, length); /* outlives the connection, in a job */
+    if (x->key == NULL) {
+        return api_fail_memory(x);
+    }
+    api_hash_begin(&x->hash, x->store->secret);
+    add_text(&x->hash, x->request.method);
+    add_text(&x->hash, x->request.path);
+    add_text(&x->hash, x->request.query);
+    add_text(&x->hash, x->media_in);
+    return true;
+}
+
+void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
+{
+    if (x->key != NULL) {
+        api_hash_add(&x->hash, bytes, length);
+    }
+}
+
+/* Hold the answer until what it shows is durable. A mesh that is gone shows nothing. */
+static void find_shown(api_exchange *x, const api_kept *kept)
+{
+    api_mesh_info info = {.incarnation = 0};
+    if (x->mesh != NULL && !(x->route->flags & API_KEYED_NEW)) {
+        x->info.record = kept->record;
+        x->has_info = true;
+        return;
+    }
+    if (x->mesh != NULL) {
+        x->store->release(x->store->self, x->mesh);
+        x->mesh = NULL;
+    }
+    if (x->store->find(x->store->self, kept->id, &x->mesh) != API_STORE_OK) {
+        x->mesh = NULL;
+        return;
+    }
+    x->store->read_begin(x->store->self, x->mesh, &info);
+    x->store->read_end(x->store->self, x->mesh);
+    x->has_info = info.incarnation == kept->incarnation;
+    x->info.record = kept->record;
+}
+
+static void replay(api_exchange *x)
+{
+    const api_kept *kept = x->store->kept(x->claim);
+    find_shown(x, kept);
+    api_answer_header(x, "Idempotency-Replayed", "true");
+    if (kept->etag[0] != '\0') {
+        api_answer_header(x, "ETag", kept->etag);
+    }
+    if (kept->status == 201) {
+        api_answer_header_format(x, "Location", "/v1/meshes/%s", kept->id);
+    }
+    if (kept->body != NULL) {
+        api_answer_bytes(x, kept->status, "application/json", kept->body, kept->length);
+    } else {
+        api_answer_empty(x, kept->status == 200 ? 204 : kept->status);
+    }
+}
+
+bool api_keyed_claim(api_exchange *x)
+{
+    if (x->key == NULL) {
+        return true;
+    }
+    api_key key = {.text = x->key};
+    api_hash_end(&x->hash, key.digest);
+    api_mesh *mesh = x->route->flags & API_KEYED_NEW ? NULL : x->mesh;
+    switch (x->store->claim_key(x->store->self, mesh, &key, &x->claim)) {
+    case API_CLAIM_NEW:
+        return true;
+    case API_CLAIM_KEPT:
+        replay(x);
+        return false;
+    case API_CLAIM_BUSY:
+        return api_fail(x, API_IDEMPOTENCY_BUSY, "the request with the key \"%.100s\" is under way",
+                        x->key);
+    case API_CLAIM_OTHER:
+        return api_fail(x, API_IDEMPOTENCY_MISMATCH, "the key \"%.100s\" is of another request",
+                        x->key);
+    case API_CLAIM_NO_MEMORY:
+        break;
+    }
+    return api_fail_memory(x);
+}
+
+static const char *header_of_answer(const api_exchange *x, const char *name)
+{
+    for (size_t i = 0; i < x->answer.header_count; i++) {
+        if (strcmp(x->answer.headers[i].name, name) == 0) {
+            return x->answer.headers[i].value;
+        }
+    }
+    return "";
+}
+
+void api_keyed_settle(api_exchange *x)
+{
+    const api_answer *answer = &x->answer;
+    if (x->claim == NULL || x->store->kept(x->claim)->status != 0) {
+        return; /* without a key, or a replay, whose answer is lent until the end */
+    }
+    if (answer->status < 300) {
+        api_kept kept = {.status = answer->status,
+                         .changed = x->published != 0,
+                         .incarnation = x->info.incarnation,
+                         .record = x->info.record,
+                         .body = answer->bytes,
+                         .length = (size_t)answer->length};
+        const char *etag = header_of_answer(x, "ETag");
+        if (strlen(etag) < sizeof kept.etag) {
+            memcpy(kept.etag, etag, strlen(etag) + 1);
+        }
+        memcpy(kept.id, x->info.id, sizeof kept.id);
+        x->store->keep(x->store->self, x->claim, &kept);
+    }
+    x->store->claim_end(x->store->self, x->claim);
+    x->claim = NULL;
+}

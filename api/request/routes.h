@@ -1,0 +1,112 @@
+/* routes.h - THE route table: one row a method and path, and all there is to know about it.
+ *
+ * From the rows come dispatch, 404, 405 with Allow, HEAD and OPTIONS, the check of query
+ * parameters, Content-Type and Accept, the caps of bodies, the OpenAPI document, labels of metrics,
+ * and the tests' duty to hit every status a row declares.
+ *
+ * A template is literal segments and variables. {kind} matches vertices, halfedges, edges, faces
+ * and nothing else; {domain} these or mesh; {id} an element id; {name} that of an attribute; {mesh}
+ * a mesh id; {relation} one of the kind's relations; {code} and {job} any segment; {asset} the rest
+ * of the path. */
+#ifndef HE_API_REQUEST_ROUTES_H
+#define HE_API_REQUEST_ROUTES_H
+
+#include "api/header/path.h"
+#include "api/request/api.h"
+
+/* What a request's body is, and so its cap and what happens to it before the handler. */
+typedef enum api_body_kind {
+    API_BODY_NONE,    /* refused when there is one */
+    API_BODY_OPTION,  /* a control document or nothing */
+    API_BODY_CONTROL, /* a control document, parsed into x->root */
+    API_BODY_EDITS,   /* the same with the cap of an edit list, whose `ops` are left in x->ops */
+    API_BODY_UPLOAD   /* handed piece by piece to the row's `body` */
+} api_body_kind;
+
+typedef enum api_param_type {
+    API_PARAM_TEXT,   /* of at most `max` bytes */
+    API_PARAM_FLAG,   /* true or false */
+    API_PARAM_U64,    /* a whole number within min and max */
+    API_PARAM_NUMBER, /* a finite number within min and max */
+    API_PARAM_CHOICE, /* one of `choices` */
+    API_PARAM_CHOICES /* some of them, joined by commas, each once */
+} api_param_type;
+
+typedef struct api_parameter {
+    const char *name;
+    api_param_type type;
+    double min, max;
+    const char *const *choices; /* ends in NULL */
+    const char *doc;
+} api_parameter;
+
+enum {
+    API_WRITES = 1,       /* changes something; If-Match is read */
+    API_COSTLY = 2,       /* costs the mesh or the upload: large ones go to the job pool */
+    API_MAY_CREATE = 4,   /* the mesh need not exist */
+    API_OWN_ACCEPT = 8,   /* the handler reads Accept itself (?format= comes first) */
+    API_FIXED = 16,       /* not under /v1: the same whatever the version */
+    API_KEYED = 32,       /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
+    API_KEYED_NEW = 64,   /* the same of what makes a mesh: kept with the store */
+    API_LONG = 128,       /* may become a job: Prefer is read, and 202 may be the answer */
+    API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
+    API_REHEARSED = 512,  /* takes `dry_run`: an answer may be about nothing that is */
+    API_EXPENSIVE = 1024  /* a read that costs the mesh: refused to pages of other sites, which need
+                             not be able to read the answer to make us work */
+};
+
+/* A header that only some of a route's answers with 200 have. */
+typedef struct api_told_header {
+    const char *name, *doc;
+} api_told_header;
+
+enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_HEADERS = 3, API_ROUTE_STATUSES = 20 };
+
+typedef struct api_route {
+    const char *method; /* GET rows answer HEAD too */
+    const char *path;   /* the template */
+    const char *name;   /* operationId: mesh_get is api_mesh_get() */
+    /* Before the body, of uploads only: choose a reader by x->media_in. NULL: nothing to do. */
+    void (*begin)(api_exchange *x);
+    void (*body)(api_exchange *x, const char *bytes, size_t length);
+    void (*run)(api_exchange *x); /* in api_end, or in api_work */
+    unsigned flags;
+    api_body_kind body_kind;
+    const char *const *consumes; /* media types of the body, NULL for none */
+    const char *const *produces; /* of a success, the first is the default */
+    const api_parameter *parameters[API_ROUTE_PARAMETERS]; /* ends in NULL */
+    const api_told_header *headers[API_ROUTE_HEADERS];     /* likewise; beside ETag and Location */
+    int statuses[API_ROUTE_STATUSES]; /* all it answers, besides those of api_route_common; 0 ends
+                                       */
+    const char *request, *response;   /* component schemas of OpenAPI, NULL: not JSON or nothing */
+    const char *line;    /* the same of a line, where application/x-ndjson is produced */
+    const char *summary; /* a few words */
+    const char *doc;     /* a sentence or two */
+} api_route;
+
+size_t api_route_count(void);
+const api_route *api_route_at(size_t i);
+/* The set of `choices` that a list of them joined by commas names, a bit each; false where it names
+ * another, one twice, or none. */
+bool api_choices_parse(const char *const *choices, const char *list, unsigned *out);
+/* Statuses any route may answer, those included that the server finds reasons for; ends in 0. */
+const int *api_route_common(void);
+
+/* What the segments of a path gave to the variables of its template. */
+typedef struct api_variables {
+    const char *mesh; /* as decoded, not yet checked; NULL where the template has none */
+    bool has_kind;
+    he_kind kind;                                  /* of {kind} or {domain} */
+    const char *id, *relation, *code, *name, *job; /* likewise */
+} api_variables;
+
+/* The row for a method and path. NULL when there is none: then `allow`, which has room for
+ * API_ALLOW bytes, lists the methods of the path, and is "" where the path matches no template. */
+enum { API_ALLOW = 64 };
+const api_route *api_route_find(const char *method, const api_path *path, api_variables *out,
+                                char allow[API_ALLOW]);
+
+/* The relations of a kind, ends in NULL. */
+const char *const *api_relations(he_kind kind);
+
+#endif

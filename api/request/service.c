@@ -1,0 +1,575 @@
+#include "api/request/api.h"
+
+#include "api/request/admit.h"
+#include "api/request/coded.h"
+#include "api/request/job_out.h"
+#include "api/request/keyed.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+api_service *api_service_new(const api_store *store, const api_options *options)
+{
+    api_in_setup();
+    api_service *service = he_mem_zero(1, sizeof *service);
+    if (service != NULL) {
+        service->store = store;
+        service->options = *options;
+        if (service->options.max_upload == 0) {
+            service->options.max_upload = API_DEFAULT_UPLOAD;
+        }
+        if (service->options.version == NULL) {
+            service->options.version = "0";
+        }
+    }
+    return service;
+}
+
+void api_service_free(api_service *service)
+{
+    he_mem_free(service);
+}
+
+/* --- the end of an exchange --- */
+
+static bool has_header(const api_exchange *x, const char *name)
+{
+    for (size_t i = 0; i < x->answer.header_count; i++) {
+        if (strcmp(x->answer.headers[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Headers that every answer has. Their values live with the exchange or for ever, so that this
+ * works when memory is out. */
+static void put_header(api_exchange *x, const char *name, const char *value)
+{
+    if (x->answer.header_count < API_ANSWER_HEADERS && !has_header(x, name)) {
+        x->answer.headers[x->answer.header_count++] = (api_header){name, value};
+    }
+}
+
+static void drop_answer(api_exchange *x)
+{
+    if (x->free_stream != NULL) {
+        x->free_stream(x->stream);
+        x->free_stream = NULL;
+    }
+    x->answer = (api_answer){.route = x->answer.route, .close = x->answer.close};
+    x->answered = false;
+}
+
+static void answer_problem(api_exchange *x)
+{
+    static const char no_memory[] =
+        "{\"type\":\"/problems/no_memory\",\"title\":\"Out of memory\",\"status\":507,"
+        "\"detail\":\"no memory for the request\",\"code\":\"no_memory\"}";
+    drop_answer(x);
+    api_text_empty(&x->text);
+    api_problem_write(&x->problem, x->request.request_id, &x->text);
+    x->answered = true;
+    if (x->text.failed) {
+        x->answer.status = 507;
+        x->answer.bytes = no_memory;
+        x->answer.length = sizeof no_memory - 1;
+    } else {
+        x->answer.status = api_problem_http(&x->problem);
+        x->answer.bytes = x->text.bytes;
+        x->answer.length = (int64_t)x->text.length;
+    }
+    put_header(x, "Content-Type", "application/problem+json");
+    if (x->problem.code == API_METHOD_NOT_ALLOWED) {
+        put_header(x, "Allow", x->allow);
+    }
+    if (x->problem.code == API_UNSUPPORTED_ENCODING) {
+        put_header(x, "Accept-Encoding", api_codings_list);
+    }
+    if (x->answer.status == 503 || x->problem.code == API_MESH_BUSY ||
+        x->problem.code == API_IDEMPOTENCY_BUSY) {
+        put_header(x, "Retry-After", "1");
+    }
+}
+
+/* What is left of the answer to a write that took effect. */
+static void answer_published(api_exchange *x)
+{
+    x->problem = (api_problem){0};
+    drop_answer(x);
+    x->answered = true;
+    x->answer.status = x->published;
+    x->answer.bytes = "";
+    if (x->published == 201) {
+        put_header(x, "Location", x->location);
+    }
+}
+
+/* Several representations at one URL: caches must look at Accept. */
+static bool varies(const api_route *route)
+{
+    return route != NULL && route->produces[0] != NULL && route->produces[1] != NULL &&
+           !(route->flags & API_FIXED);
+}
+
+/* Whoever has the answer in hand may write at once. */
+static void end_claim(api_exchange *x)
+{
+    if (x->claimed) {
+        x->store->unclaim(x->store->self, x->mesh);
+        x->claimed = false;
+    }
+}
+
+/* However the work noticed that it was given up, that is what happened. */
+static void end_given_up(api_exchange *x)
+{
+    if (x->watch.cancelled && x->problem.code != HE_OK) {
+        x->problem = x->given_up;
+        if (x->problem.code == HE_OK) {
+            api_fail(x, HE_CANCELLED, "given up while %s", x->watch.phase);
+        }
+    }
+}
+
+static api_step finish(api_exchange *x)
+{
+    end_claim(x);
+    end_given_up(x);
+    if (x->problem.code == HE_OK && !x->answered) {
+        api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
+                 x->route == NULL ? "-" : x->route->name);
+    }
+    if (x->problem.code != HE_OK && x->published != 0) {
+        answer_published(x);
+    } else if (x->problem.code != HE_OK) {
+        answer_problem(x);
+    }
+    put_header(x, "X-Request-Id", x->request.request_id);
+    put_header(x, "X-Content-Type-Options", "nosniff");
+    /* A tag is worth keeping: the client asks again with it. Nothing else is. */
+    put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
+    if (api_coded_varies(x)) {
+        put_header(x, "Vary", varies(x->route) ? "Accept, Accept-Encoding" : "Accept-Encoding");
+    } else if (varies(x->route)) {
+        put_header(x, "Vary", "Accept");
+    }
+    if (x->has_info && x->mesh != NULL) {
+        x->answer.mesh = x->mesh;
+        x->answer.record = x->info.record;
+    }
+    api_keyed_settle(x);
+    if (x->phase != API_PHASE_JOB) {
+        api_coded_answer(x); /* what is kept of the answer, here or of a job, is plain */
+    }
+    x->phase = API_PHASE_DONE;
+    return API_READY;
+}
+
+/* Answer before the body was read: what of it is still on its way must not be taken for the next
+ * request. */
+static api_step finish_early(api_exchange *x)
+{
+    x->answer.close =
+        x->request.has_body && (!x->request.has_length || x->arrived < x->request.length);
+    return finish(x);
+}
+
+/* --- begin --- */
+
+static bool copy_request(api_exchange *x, const api_request *request)
+{
+    const char *id = request->request_id == NULL ? "" : request->request_id;
+    x->request = *request;
+    x->request.method = api_arena_copy(&x->arena, request->method, strlen(request->method));
+    x->request.path = api_arena_copy(&x->arena, request->path, strlen(request->path));
+    x->request.query = api_arena_copy(&x->arena, request->query, strlen(request->query));
+    size_t length = strlen(id);
+    length = length > API_MAX_REQUEST_ID ? API_MAX_REQUEST_ID : length;
+    x->request.request_id = api_arena_copy(&x->arena, id, length);
+    return x->request.method != NULL && x->request.path != NULL && x->request.query != NULL &&
+           x->request.request_id != NULL;
+}
+
+/* --- detaching --- */
+
+static const char *const kept_names[API_KEPT_HEADERS] = {"If-Match", "If-None-Match"};
+
+static const char *kept_header(void *context, const char *name)
+{
+    const api_exchange *x = context;
+    for (size_t i = 0; i < API_KEPT_HEADERS; i++) {
+        if (api_equal_nocase(name, kept_names[i])) {
+            return x->kept[i];
+        }
+    }
+    return NULL;
+}
+
+/* Preconditions are asked again when the work is published, and the connection is gone by then. */
+static bool keep_headers(api_exchange *x)
+{
+    for (size_t i = 0; i < API_KEPT_HEADERS; i++) {
+        const char *value = api_header_of(x, kept_names[i]);
+        if (value != NULL) {
+            x->kept[i] = api_arena_copy(&x->arena, value, strlen(value));
+            if (x->kept[i] == NULL) {
+                return false;
+            }
+        }
+    }
+    x->request.header = kept_header;
+    x->request.context = x;
+    return true;
+}
+
+void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
+               void *context)
+{
+    he_watch_init(&x->watch, tell, context);
+    x->watch.exec = x->service->options.exec;
+    x->out.watch = &x->watch;
+}
+
+void api_watch_worker(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
+                      void *context)
+{
+    if (x->route != NULL && !(x->route->flags & API_WRITES)) {
+        api_watch(x, tell, context);
+    }
+}
+
+void api_give_up(api_exchange *x, int code, const char *text)
+{
+    x->given_up = (api_problem){0};
+    api_problem_set(&x->given_up, code, "%s", text);
+}
+
+api_load api_load_of(const api_exchange *x)
+{
+    const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
+    uint64_t amount = x->received;
+    if (x->mesh != NULL) {
+        api_mesh_info info;
+        amount += api_elements_of(x->store->read_begin(x->store->self, x->mesh, &info));
+        x->store->read_end(x->store->self, x->mesh);
+    }
+    double seconds = (double)amount / API_EDIT_PER_SECOND;
+    return (api_load){.reads = !(x->route->flags & API_WRITES),
+                      .seconds = x->seconds > seconds ? x->seconds : seconds,
+                      .mesh = mesh == NULL ? "" : mesh,
+                      .about = x->mesh,
+                      .claims = x->claimed};
+}
+
+static api_exchange *exchange_new(api_service *service, const api_request *request)
+{
+    api_exchange *x = he_mem_zero(1, sizeof *x);
+    if (x == NULL) {
+        return NULL;
+    }
+    x->service = service;
+    x->store = service->store;
+    x->kind = HE_KIND_COUNT;
+    x->answer.route = "-";
+    x->coding_in = API_IDENTITY;
+    x->codings = (api_codings){.allowed = {[API_IDENTITY] = true}, .best = API_IDENTITY};
+    api_out_init(&x->out, &x->text);
+    api_watch(x, NULL, NULL);
+    if (!copy_request(x, request)) {
+        api_arena_clear(&x->arena);
+        he_mem_free(x);
+        return NULL;
+    }
+    return x;
+}
+
+api_exchange *api_detach(api_exchange *x)
+{
+    const api_jobs *jobs = x->service->options.jobs;
+    assert(x->phase == API_PHASE_JOB);
+    api_exchange *answer = exchange_new(x->service, &x->request);
+    if (answer == NULL || !keep_headers(x)) {
+        api_free(answer);
+        return NULL;
+    }
+    answer->request.header = NULL;
+    answer->route = x->route;
+    answer->answer.route = x->answer.route;
+    answer->prefer = x->prefer;
+    answer->codings = x->codings;
+    api_job job;
+    const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
+    api_store_status status =
+        jobs->submit(jobs->self, x, x->route->name, mesh == NULL ? "" : mesh, &job);
+    if (status == API_STORE_OK) {
+        api_answer_job(answer, &job);
+    } else {
+        api_free(x);
+    }
+    if (status == API_STORE_TOO_MANY) {
+        api_fail(answer, API_TOO_MANY_JOBS, "as many jobs wait as may");
+    } else if (status != API_STORE_OK) {
+        api_fail_store(answer, status);
+    }
+    finish(answer);
+    return answer;
+}
+
+/* Some of the body, unfolded. */
+static bool take_body(void *context, const char *bytes, size_t length)
+{
+    api_exchange *x = context;
+    x->received += length;
+    api_keyed_body(x, bytes, length);
+    if (x->received > api_body_cap(x)) {
+        api_refuse_size(x);
+    } else if (x->route->body_kind == API_BODY_UPLOAD) {
+        x->route->body(x, bytes, length);
+    } else {
+        api_text_add(&x->body, bytes, length);
+        if (x->body.failed) {
+            api_fail_memory(x);
+        }
+    }
+    return x->problem.code == HE_OK && !x->answered;
+}
+
+static bool begin(api_exchange *x)
+{
+    if (!api_admit(x) || !api_keyed_begin(x)) {
+        return false;
+    }
+    x->prefer = api_prefer_read(api_header_of(x, "Prefer"));
+    x->body.maximum = (size_t)api_body_cap(x);
+    if (x->coding_in != API_IDENTITY) {
+        x->unpack = api_unpack_new(x->coding_in, &x->service->unpacking, take_body, x, &x->problem);
+        if (x->unpack == NULL) {
+            return false;
+        }
+    }
+    if (x->route->begin != NULL) {
+        x->route->begin(x);
+    }
+    return x->problem.code == HE_OK && !x->answered;
+}
+
+api_exchange *api_begin(api_service *service, const api_request *request, api_step *step)
+{
+    api_exchange *x = exchange_new(service, request);
+    if (x == NULL) {
+        return NULL;
+    }
+    *step = begin(x) ? API_MORE : finish_early(x);
+    return x;
+}
+
+/* --- the body --- */
+
+api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *used)
+{
+    *used = length;
+    if (x->phase != API_PHASE_BODY) {
+        return API_READY;
+    }
+    if (length == 0) {
+        return API_MORE;
+    }
+    bool good;
+    if (x->arrived + length > api_body_cap(x)) {
+        good = api_refuse_size(x);
+    } else if (x->unpack != NULL) {
+        good = api_unpack_feed(x->unpack, bytes, length, used, &x->problem);
+    } else {
+        good = take_body(x, bytes, length);
+    }
+    x->arrived += *used;
+    return good ? API_MORE : finish_early(x);
+}
+
+/* With its memory, which may be megabytes. */
+static bool end_coding(api_exchange *x)
+{
+    bool good = x->unpack == NULL || api_unpack_end(x->unpack, &x->problem);
+    api_unpack_free(x->unpack);
+    x->unpack = NULL;
+    return good;
+}
+
+static bool parse_body(api_exchange *x)
+{
+    api_body_kind kind = x->route->body_kind;
+    if (kind == API_BODY_NONE || kind == API_BODY_UPLOAD) {
+        return kind == API_BODY_NONE || x->received > 0 ||
+               api_fail(x, API_MISSING_BODY, "%s needs a body here", x->request.method);
+    }
+    if (x->received == 0) {
+        return kind == API_BODY_OPTION ||
+               api_fail(x, API_MISSING_BODY, "%s needs a body here", x->request.method);
+    }
+    api_in_limits limits = {.values = kind == API_BODY_EDITS ? API_MAX_EDITS_VALUES
+                                                             : API_MAX_CONTROL_VALUES};
+    if (kind == API_BODY_EDITS) {
+        x->ops.name = "ops";
+        x->has_root = api_document_parse_but(x->body.bytes, x->body.length, &limits, &x->ops,
+                                             &x->document, &x->root, &x->problem);
+    } else {
+        x->has_root = api_document_parse(x->body.bytes, x->body.length, &limits, &x->document,
+                                         &x->root, &x->problem);
+    }
+    if (x->ops.at == NULL) {
+        api_text_clear(&x->body);
+    }
+    return x->has_root;
+}
+
+/* Is this too much for a thread that others wait for? */
+static bool is_costly(api_exchange *x)
+{
+    if (!(x->route->flags & API_COSTLY)) {
+        return false;
+    }
+    if (api_is_costly(x, x->received, API_COSTLY_UPLOAD)) {
+        return true;
+    }
+    if (x->mesh == NULL) {
+        return false;
+    }
+    api_mesh_info info;
+    const he_mesh *mesh = x->store->read_begin(x->store->self, x->mesh, &info);
+    bool large = api_is_large(x, mesh);
+    x->store->read_end(x->store->self, x->mesh);
+    return large;
+}
+
+/* A read that took too long for the worker, and has changed nothing. */
+static void begin_anew(api_exchange *x)
+{
+    drop_answer(x);
+    x->problem = (api_problem){0};
+    api_text_empty(&x->text);
+    api_out_init(&x->out, &x->text);
+    api_watch(x, NULL, NULL);
+    x->deferred = x->route->run;
+}
+
+static api_step finish_or_go_on(api_exchange *x)
+{
+    if (x->phase == API_PHASE_BODY && x->watch.cancelled && x->problem.code != HE_OK) {
+        begin_anew(x);
+    }
+    if (x->deferred == NULL || x->answered || x->problem.code != HE_OK) {
+        return finish(x);
+    }
+    x->phase = x->is_job ? API_PHASE_JOB : API_PHASE_WORK;
+    return x->is_job ? API_JOB : API_WORK;
+}
+
+static void parse_and_run(api_exchange *x)
+{
+    if (parse_body(x)) {
+        x->route->run(x);
+    }
+}
+
+api_step api_end(api_exchange *x)
+{
+    if (x->phase != API_PHASE_BODY) {
+        return API_READY;
+    }
+    if (!end_coding(x) || !api_keyed_claim(x)) {
+        return finish(x);
+    }
+    /* Reading a large document takes its time too. */
+    if (x->body.length > API_COSTLY_UPLOAD) {
+        x->deferred = parse_and_run;
+    } else if (parse_body(x)) {
+        if (is_costly(x)) {
+            x->deferred = x->route->run;
+        } else {
+            x->route->run(x);
+        }
+    }
+    return finish_or_go_on(x);
+}
+
+api_step api_work(api_exchange *x)
+{
+    if (x->phase != API_PHASE_WORK && x->phase != API_PHASE_JOB) {
+        return API_READY;
+    }
+    void (*handler)(api_exchange * x) = x->deferred;
+    he_error err = {0};
+    x->deferred = NULL;
+    /* It may have waited for long, and the client may have left. */
+    if (he_watch_step(&x->watch, 0, 1, &err) != HE_OK) {
+        api_fail_core(x, &err);
+    } else {
+        handler(x);
+    }
+    return finish_or_go_on(x);
+}
+
+const api_answer *api_answer_of(const api_exchange *x)
+{
+    return &x->answer;
+}
+
+void api_free(api_exchange *x)
+{
+    if (x == NULL) {
+        return;
+    }
+    if (x->free_stream != NULL) {
+        x->free_stream(x->stream);
+    }
+    if (x->free_state != NULL) {
+        x->free_state(x->state);
+    }
+    api_unpack_free(x->unpack);
+    api_pack_free(x->pack);
+    he_mem_free(x->coded);
+    api_document_clear(&x->document);
+    api_text_clear(&x->body);
+    api_text_clear(&x->text);
+    end_claim(x);
+    if (x->past != NULL) {
+        x->store->snapshot_release(x->store->self, x->past);
+    }
+    if (x->claim != NULL) {
+        x->store->claim_end(x->store->self, x->claim);
+    }
+    if (x->mesh != NULL) {
+        x->store->release(x->store->self, x->mesh);
+    }
+    api_arena_clear(&x->arena);
+    he_mem_free(x);
+}
+
+api_exchange *api_handle(api_service *service, const api_request *request, const char *body,
+                         size_t length)
+{
+    api_step step;
+    api_exchange *x = api_begin(service, request, &step);
+    if (x == NULL) {
+        return NULL;
+    }
+    for (size_t at = 0, used; step == API_MORE && at < length; at += used) {
+        step = api_body(x, body + at, length - at, &used);
+    }
+    if (step == API_MORE) {
+        step = api_end(x);
+    }
+    if (step == API_WORK) {
+        step = api_work(x);
+    }
+    if (step == API_JOB) {
+        api_exchange *answer = api_detach(x);
+        if (answer == NULL) {
+            api_free(x);
+        }
+        x = answer;
+    }
+    return x;
+}

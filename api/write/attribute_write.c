@@ -1,0 +1,455 @@
+/* PUT, PATCH and DELETE .../attributes/{domain}/{name}: edits like any other. */
+#include "api/request/handlers.h"
+
+#include "api/document/attribute_path.h"
+#include "api/event/changes.h"
+#include "api/json/attribute_value.h"
+#include "api/write/element_set.h"
+#include "edit/whole/attribute.h"
+
+#include <string.h>
+
+/* A request between decoding and answer. */
+typedef struct writing {
+    api_text body; /* of a PUT */
+    api_document document;
+    api_in root, expected;
+    bool has_expected, dry_run, octets;
+    he_column *column;     /* what PUT makes, until it is the mesh's */
+    unsigned char *values; /* packed rows */
+    size_t count;
+    bool same; /* one value for all */
+    api_in at; /* where a refusal about the values points */
+    bool has_at;
+} writing;
+
+static void free_writing(void *state)
+{
+    writing *w = state;
+    api_text_clear(&w->body);
+    api_document_clear(&w->document);
+    he_column_free(w->column);
+    he_mem_free(w->values);
+    he_mem_free(w);
+}
+
+static writing *begin(api_exchange *x)
+{
+    writing *w = he_mem_zero(1, sizeof *w);
+    if (w == NULL) {
+        api_fail_memory(x);
+    } else {
+        w->dry_run = api_param_flag(x, "dry_run");
+        x->state = w;
+        x->free_state = free_writing;
+    }
+    return w;
+}
+
+/* --- publishing --- */
+
+/* The whole answer is written before anything is published, so that no failure follows it. */
+static bool write_answer(api_exchange *x, const writing *w, const he_mesh *mesh,
+                         const he_changes *changes, uint64_t revision, bool undoable)
+{
+    const he_column *column = he_mesh_find_column(mesh, x->kind, x->attribute);
+    api_out *out = &x->out;
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", revision);
+    if (w->dry_run) {
+        api_out_key_bool(out, "dry_run", true);
+    }
+    if (column != NULL) {
+        api_out_key(out, "attribute");
+        api_out_object_begin(out);
+        api_write_column(out, mesh, column);
+        api_out_object_end(out);
+    }
+    api_write_changes(out, changes);
+    if (!undoable) {
+        api_out_key_bool(out, "undoable", false);
+    }
+    api_out_object_end(out);
+    return !x->text.failed || api_fail_memory(x);
+}
+
+/* End what api_write_begin began, after `good` work. */
+static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, const he_delta *delta,
+                    const char *op, int status, bool good)
+{
+    he_changes changes = {0};
+    he_error err = {0};
+    if (good && he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
+        good = api_fail_core(x, &err);
+    }
+    bool effect = good && !he_changes_none(&changes);
+    bool undoable = !effect || x->store->undoable(x->store->self, x->mesh);
+    good =
+        good && write_answer(x, w, mesh, &changes, x->info.revision + (effect ? 1 : 0), undoable);
+    if (good && effect && !w->dry_run) {
+        api_tally tally = api_changes_tally(&changes);
+        x->store->tally(x->store->self, x->mesh, &tally);
+        x->store->write_commit(x->store->self, x->mesh, op, false, &x->info);
+        api_publish(x, status == 201 ? 201 : 204);
+        api_attribute_path(x, x->location);
+    } else {
+        x->store->write_abort(x->store->self, x->mesh);
+    }
+    he_changes_clear(&changes);
+    if (!good) {
+        return;
+    }
+    if (!w->dry_run) {
+        api_answer_etag(x, "attribute");
+        if (status == 201) {
+            api_answer_header(x, "Location", x->location);
+        }
+    }
+    if (!api_answer_minimal(x)) {
+        api_answer_json(x, w->dry_run ? 200 : status);
+    }
+}
+
+static he_mesh *write_begin(api_exchange *x, writing *w, he_delta **delta)
+{
+    return api_write_begin(x, w->has_expected ? &w->expected : NULL, delta);
+}
+
+/* A refusal about the values: 422, since it takes this mesh to see it. */
+static bool refuse_values(api_exchange *x, const writing *w, const he_error *err)
+{
+    api_fail_core(x, err);
+    if (err->status == HE_BAD_VALUE) {
+        x->problem.status = 422;
+    }
+    if (w->has_at) {
+        api_in_point(&w->at);
+    }
+    return false;
+}
+
+/* --- members that PUT and PATCH share --- */
+
+static bool read_common(writing *w, const api_in *root)
+{
+    api_in dry;
+    w->has_expected = api_in_find(root, "expected_revision", &w->expected);
+    return !api_in_find(root, "dry_run", &dry) || api_in_bool(&dry, &w->dry_run);
+}
+
+/* "values" or "value"; neither is told by a NULL w->values. */
+static bool read_values(writing *w, const api_in *root, const he_column *column)
+{
+    api_in one;
+    w->has_at = api_in_find(root, "values", &w->at);
+    w->same = api_in_find(root, "value", &one);
+    if (w->same && w->has_at) {
+        return api_in_fail(&one, API_CONFLICTING_MEMBERS, "give either \"values\" or \"value\"");
+    }
+    if (w->has_at) {
+        return api_read_values(&w->at, column, &w->values, &w->count);
+    }
+    if (!w->same) {
+        return true;
+    }
+    w->values = he_mem_alloc(column->row_bytes);
+    w->count = 1;
+    return w->values == NULL ? api_in_fail(&one, HE_NO_MEMORY, "no memory for a value")
+                             : api_read_value(&one, column, w->values);
+}
+
+/* --- PUT --- */
+
+static uint64_t body_cap(const writing *w)
+{
+    return w->octets ? API_MAX_ATTRIBUTE_BYTES : (uint64_t)API_MAX_EDITS;
+}
+
+static bool refuse_body(api_exchange *x, const writing *w)
+{
+    return api_fail(x, API_BODY_TOO_LARGE, "the body exceeds %llu bytes%s",
+                    (unsigned long long)body_cap(w), w->octets ? "" : ": octets may have more");
+}
+
+/* The most octets a good body can have are known before it comes: they bound what is kept. */
+static bool set_maximum(api_exchange *x, writing *w)
+{
+    uint64_t most = body_cap(w);
+    if (w->octets) {
+        const he_mesh *mesh = api_read_begin(x);
+        if (mesh == NULL) {
+            return false;
+        }
+        uint64_t rows = he_mesh_issued(mesh, x->kind);
+        api_read_end(x);
+        most = rows * w->column->row_bytes < most ? rows * w->column->row_bytes : most;
+    }
+    w->body.maximum = (size_t)most + 1;
+    return true;
+}
+
+static bool describe_by_query(api_exchange *x, writing *w)
+{
+    int type = api_param_choice(x, "type"), rule = api_param_choice(x, "rule");
+    he_error err = {0};
+    if (type < 0) {
+        return api_fail(x, API_BAD_PARAMETER, "octets need \"type\" in the query");
+    }
+    rule = rule < 0 ? (int)api_default_rule((he_type)type) : rule;
+    return he_column_new(x->attribute, x->kind, (he_type)type,
+                         (uint32_t)api_param_u64(x, "components", 1), (he_rule)rule, &w->column,
+                         &err) == HE_OK ||
+           api_fail_core(x, &err);
+}
+
+void api_attribute_put_begin(api_exchange *x)
+{
+    writing *w = begin(x);
+    if (w == NULL) {
+        return;
+    }
+    size_t length = strlen(x->attribute);
+    if (strcmp(x->attribute, API_POSITION) == 0) {
+        api_fail(x, API_RESERVED_NAME, "\"%s\" is built in", API_POSITION);
+        return;
+    }
+    if (length >= HE_COLUMN_NAME) {
+        api_fail(x, HE_BAD_VALUE, "an attribute's name has 1 to %d bytes, not %zu",
+                 HE_COLUMN_NAME - 1, length);
+        return;
+    }
+    w->octets = x->media_in != NULL && strcmp(x->media_in, "application/octet-stream") == 0;
+    if (!w->octets && x->query.count > 0) {
+        api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to octets: say it in the body",
+                 x->query.pairs[0].name);
+        return;
+    }
+    if (x->request.has_length && x->request.length > body_cap(w)) {
+        refuse_body(x, w);
+        return;
+    }
+    if (!w->octets || describe_by_query(x, w)) {
+        set_maximum(x, w);
+    }
+}
+
+void api_attribute_put_body(api_exchange *x, const char *bytes, size_t length)
+{
+    writing *w = x->state;
+    if (length > w->body.maximum - w->body.length) {
+        if (w->octets && w->body.maximum <= API_MAX_ATTRIBUTE_BYTES) {
+            api_fail(x, HE_BAD_VALUE, "the body exceeds the %zu bytes of all %s",
+                     w->body.maximum - 1, he_kind_plural(x->kind));
+            x->problem.status = 422;
+        } else {
+            refuse_body(x, w);
+        }
+        return;
+    }
+    api_text_add(&w->body, bytes, length);
+    if (w->body.failed) {
+        api_fail_memory(x);
+    }
+}
+
+static bool decode_json(api_exchange *x, writing *w)
+{
+    static const char *const members[] = {
+        "type",   "components", "rule",    "default",           "labels",
+        "values", "value",      "dry_run", "expected_revision", NULL};
+    api_in_limits limits = {.values = API_MAX_EDITS_VALUES};
+    bool good = api_document_parse(w->body.bytes, w->body.length, &limits, &w->document, &w->root,
+                                   &x->problem);
+    api_text_clear(&w->body);
+    return good && api_in_only(&w->root, members) && read_common(w, &w->root) &&
+           api_read_column(&w->root, x->kind, x->attribute, &w->column) &&
+           read_values(w, &w->root, w->column);
+}
+
+static bool decode_octets(api_exchange *x, writing *w)
+{
+    size_t row = w->column->row_bytes, at = 0;
+    he_error err = {0};
+    if (w->body.length % row != 0) {
+        return api_fail(x, HE_BAD_VALUE, "%zu bytes are not rows of %zu", w->body.length, row);
+    }
+    w->count = w->body.length / row;
+    if (he_attribute_check(w->column, w->body.bytes, w->count, &at, &err) != HE_OK) {
+        return api_fail(x, (int)err.status, "byte %zu: %s", at * he_type_bytes(w->column->type),
+                        err.text);
+    }
+    return true;
+}
+
+/* One value for each live element, one for all of them, all rows as octets, or the default. */
+static bool fill(api_exchange *x, writing *w, const he_mesh *mesh)
+{
+    he_column *column = w->column;
+    uint32_t issued = he_mesh_issued(mesh, x->kind);
+    he_error err = {0};
+    if ((uint64_t)issued * column->row_bytes > API_MAX_ATTRIBUTE_BYTES) {
+        return api_fail(x, HE_LIMIT, "the attribute would have more than %llu bytes",
+                        (unsigned long long)API_MAX_ATTRIBUTE_BYTES);
+    }
+    if (w->octets && w->count != issued) {
+        he_fail_plain(&err, HE_BAD_VALUE, "there are %zu rows, but %u ids of %s were issued",
+                      w->count, issued, he_kind_plural(x->kind));
+        return refuse_values(x, w, &err);
+    }
+    if (w->has_at) {
+        return he_attribute_fill(mesh, column, w->values, w->count, &err) == HE_OK ||
+               refuse_values(x, w, &err);
+    }
+    if (he_column_extend(column, issued, &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    for (uint32_t id = 0; id < issued && (w->octets || w->same); id++) {
+        const unsigned char *from =
+            w->octets ? (const unsigned char *)w->body.bytes + (size_t)id * column->row_bytes
+                      : w->values;
+        memcpy(he_column_row(column, id), from, column->row_bytes);
+    }
+    he_attribute_settle(mesh, column);
+    return true;
+}
+
+static size_t count_columns(const he_mesh *mesh)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
+        count += he_mesh_column(mesh, i) != NULL;
+    }
+    return count;
+}
+
+void api_attribute_put(api_exchange *x)
+{
+    writing *w = x->state;
+    he_delta *delta = NULL;
+    if (!(w->octets ? decode_octets(x, w) : decode_json(x, w))) {
+        return;
+    }
+    he_mesh *mesh = write_begin(x, w, &delta);
+    if (mesh == NULL) {
+        return;
+    }
+    he_error err = {0};
+    bool is_new = he_mesh_find_column(mesh, x->kind, x->attribute) == NULL;
+    bool good = !is_new || count_columns(mesh) < API_MAX_ATTRIBUTES ||
+                api_fail(x, HE_LIMIT, "the mesh has %zu attributes, no more are taken",
+                         count_columns(mesh));
+    good = good && fill(x, w, mesh);
+    if (good && he_attribute_put(mesh, w->column, &err) != HE_OK) {
+        good = api_fail_core(x, &err);
+    }
+    if (good) {
+        w->column = NULL;
+    }
+    publish(x, w, mesh, delta, is_new ? "attribute_create" : "attribute_replace",
+            is_new ? 201 : 200, good);
+}
+
+/* --- PATCH --- */
+
+/* The ids a request names; NULL for all. */
+static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uint32_t **ids,
+                     size_t *count)
+{
+    static const char *const all[] = {"all", NULL};
+    const char *name;
+    int choice;
+    if (api_in_is_string(in)) {
+        *ids = NULL;
+        *count = he_mesh_count(mesh, x->kind);
+        return api_in_choice(in, all, &choice);
+    }
+    if (api_in_is_object(in)) {
+        return api_in_set(in, &name) &&
+               api_find_set(in, name, mesh, x->kind, &x->arena, ids, count);
+    }
+    return api_in_ids(in, 1, &x->arena, ids, count);
+}
+
+/* The pointer of a refused element is the last place that names it. */
+static void point_at_id(const api_exchange *x, const api_in *ids)
+{
+    api_in child, found;
+    uint32_t id;
+    bool any = false;
+    if (!x->problem.has_element || !api_in_is_array(ids)) {
+        return;
+    }
+    for (bool more = api_in_first(ids, &child); more; more = api_in_next(&child)) {
+        if (api_in_id(&child, &id) && id == x->problem.id) {
+            found = child;
+            any = true;
+        }
+    }
+    if (any) {
+        api_in_point(&found);
+    }
+}
+
+static bool patch(api_exchange *x, writing *w, he_mesh *mesh)
+{
+    const he_column *column = api_attribute_find(x, mesh);
+    api_in ids_in;
+    uint32_t *ids = NULL;
+    size_t count = 0;
+    he_error err = {0};
+    if (column == NULL || !api_in_need(&x->root, "ids", &ids_in) ||
+        !read_ids(x, &ids_in, mesh, &ids, &count) || !read_values(w, &x->root, column)) {
+        return false;
+    }
+    if (w->values == NULL) {
+        return api_in_fail(&x->root, API_MISSING_MEMBER, "\"values\" or \"value\" is missing");
+    }
+    if (!w->same && w->count != count) {
+        he_fail_plain(&err, HE_BAD_VALUE, "there are %zu values for %zu ids", w->count, count);
+        return refuse_values(x, w, &err);
+    }
+    if (count > API_MAX_EDITS_ROWS / (column->row_bytes / 4 + 1)) {
+        return api_in_fail(&ids_in, HE_LIMIT,
+                           "%zu values are too many to record one by one: PUT the whole attribute",
+                           count);
+    }
+    if (he_attribute_write(mesh, column, ids, count, w->values, w->same, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        point_at_id(x, &ids_in);
+        return false;
+    }
+    return true;
+}
+
+void api_attribute_patch(api_exchange *x)
+{
+    static const char *const members[] = {"ids", "values", "value", "dry_run", "expected_revision",
+                                          NULL};
+    writing *w = begin(x);
+    he_delta *delta = NULL;
+    if (w == NULL || !api_in_only(&x->root, members) || !read_common(w, &x->root)) {
+        return;
+    }
+    he_mesh *mesh = write_begin(x, w, &delta);
+    if (mesh != NULL) {
+        bool good = patch(x, w, mesh);
+        publish(x, w, mesh, delta, "attribute_write", 200, good);
+    }
+}
+
+/* --- DELETE --- */
+
+void api_attribute_delete(api_exchange *x)
+{
+    writing *w = begin(x);
+    he_delta *delta = NULL;
+    he_mesh *mesh = w == NULL ? NULL : write_begin(x, w, &delta);
+    if (mesh == NULL) {
+        return;
+    }
+    he_error err = {0};
+    const he_column *column = api_attribute_find(x, mesh);
+    bool good = column != NULL &&
+                (he_attribute_drop(mesh, column, &err) == HE_OK || api_fail_core(x, &err));
+    publish(x, w, mesh, delta, "attribute_delete", 200, good);
+}

@@ -1,0 +1,192 @@
+/* POST /v1/meshes and PUT /v1/meshes/{mesh}: making and replacing the content of a mesh. */
+#include "api/request/handlers.h"
+
+#include "api/document/summary.h"
+#include "api/document/upload.h"
+
+/* Both routes read alike; what differs is where the mesh goes. */
+static void begin(api_exchange *x)
+{
+    api_upload_begin(x);
+}
+
+static void body(api_exchange *x, const char *bytes, size_t length)
+{
+    if (x->problem.code == HE_OK) {
+        api_upload_feed(x, bytes, length);
+    }
+}
+
+void api_meshes_create_begin(api_exchange *x)
+{
+    begin(x);
+}
+
+void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length)
+{
+    body(x, bytes, length);
+}
+
+/* A PUT is as good where the mesh was removed while it came: go on as if it had never been. */
+static bool forget_removed(api_exchange *x)
+{
+    if (x->problem.code != API_NO_SUCH_MESH) {
+        return false;
+    }
+    x->problem = (api_problem){0};
+    x->store->release(x->store->self, x->mesh);
+    x->mesh = NULL;
+    return true;
+}
+
+/* Preconditions that fail already spare the client its body. */
+void api_mesh_put_begin(api_exchange *x)
+{
+    bool good = false;
+    if (x->mesh != NULL && api_read_begin(x) != NULL) {
+        good =
+            (!x->info.busy || api_fail_store(x, API_STORE_BUSY)) && api_preconditions_hold(x, NULL);
+        api_read_end(x);
+    } else if (x->mesh == NULL || forget_removed(x)) {
+        good = api_precondition_absent(x);
+    }
+    if (good) {
+        begin(x);
+    }
+}
+
+void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length)
+{
+    body(x, bytes, length);
+}
+
+/* A mesh on its way into the store, and what is known of it before others can change it. */
+typedef struct made {
+    he_mesh *mesh;
+    api_summary summary;
+} made;
+
+static bool build(api_exchange *x, made *out)
+{
+    if (!api_upload_build(x, &out->mesh)) {
+        return false;
+    }
+    he_mesh_watch(out->mesh, &x->watch);
+    he_watch_span(&x->watch, 1);
+    if (!api_summary_find(x, out->mesh, &out->summary)) {
+        he_mesh_free(out->mesh);
+        return false;
+    }
+    he_mesh_watch(out->mesh, NULL);
+    return true;
+}
+
+/* Takes `mesh` on success. `id` NULL lets the store choose. */
+static api_store_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
+{
+    const char *name = api_upload_name(x);
+    return x->store->create(x->store->self, id, name == NULL ? "" : name, mesh, x->claim, &x->mesh);
+}
+
+static void create(api_exchange *x)
+{
+    const char *id = api_param_text(x, "id");
+    made m;
+    if (!build(x, &m)) {
+        return;
+    }
+    api_store_status status = store_new(x, id, m.mesh);
+    if (status == API_STORE_OK) {
+        api_answer_created(x, &m.summary, api_upload_write_report);
+    } else {
+        he_mesh_free(m.mesh);
+        api_fail_store(x, status);
+    }
+}
+
+/* False, with nothing done, where the mesh was removed meanwhile. */
+static bool replace(api_exchange *x, const made *m)
+{
+    he_delta *delta;
+    if (api_write_begin(x, NULL, &delta) == NULL) {
+        bool removed = x->problem.code == API_NO_SUCH_MESH;
+        if (!removed) {
+            he_mesh_free(m->mesh);
+        }
+        return !removed;
+    }
+    const char *name = api_upload_name(x);
+    x->store->replace(x->store->self, x->mesh, m->mesh, &x->info);
+    if (name != NULL) {
+        x->store->rename(x->store->self, x->mesh, name, &x->info);
+    }
+    x->store->write_end(x->store->self, x->mesh);
+    api_publish(x, 204);
+    api_answer_etag(x, "summary");
+    if (!api_answer_minimal(x)) {
+        api_answer_stored(x, 200, &m->summary, api_upload_write_report);
+    }
+    return true;
+}
+
+/* Make the mesh under the id of the path. False, with nothing done, where it exists by now: then
+ * x->mesh is it. */
+static bool create_named(api_exchange *x, const made *m)
+{
+    if (!api_precondition_absent(x)) {
+        he_mesh_free(m->mesh);
+        return true;
+    }
+    api_store_status status = store_new(x, x->mesh_id, m->mesh);
+    if (status == API_STORE_OK) {
+        api_answer_created(x, &m->summary, api_upload_write_report);
+        return true;
+    }
+    if (status == API_STORE_TAKEN) {
+        status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
+        if (status == API_STORE_OK || status == API_STORE_ABSENT) {
+            return false;
+        }
+    }
+    he_mesh_free(m->mesh);
+    api_fail_store(x, status);
+    return true;
+}
+
+/* The mesh may come and go while the body does: replace it or make it, whichever holds when it is
+ * tried. */
+static void put(api_exchange *x)
+{
+    made m;
+    if ((x->mesh == NULL && !api_precondition_absent(x)) || !build(x, &m)) {
+        return;
+    }
+    while (x->mesh == NULL ? !create_named(x, &m) : !replace(x, &m)) {
+        forget_removed(x);
+    }
+}
+
+static void finish(api_exchange *x, void (*make)(api_exchange *x))
+{
+    if (!api_upload_end(x)) {
+        return;
+    }
+    uint64_t elements = api_upload_elements(x);
+    bool costly = elements > API_COSTLY_ELEMENTS || api_upload_is_guessed(x);
+    api_run_long(x, make, costly, (double)elements / API_IMPORT_PER_SECOND);
+}
+
+void api_meshes_create(api_exchange *x)
+{
+    const char *id = api_param_text(x, "id");
+    if (id != NULL && !api_path_is_mesh_id(id)) {
+        api_fail(x, API_BAD_ID, "\"%.100s\" cannot name a mesh", id);
+        return;
+    }
+    finish(x, create);
+}
+
+void api_mesh_put(api_exchange *x)
+{
+    finish(x, put);
+}

@@ -1,0 +1,388 @@
+#include "api/write/decode_op.h"
+
+#include "api/limits.h"
+
+#include <string.h>
+
+/* What one decoding carries along. */
+typedef struct decoder {
+    const api_in *object;
+    const api_references *references;
+    const he_mesh *mesh; /* NULL while sets are not looked up */
+    const api_meshes *meshes;
+    api_arena *arena;
+    const he_op *op;
+    api_call *call;
+} decoder;
+
+/* An id, or what a reference stands for: `found` is either. */
+static bool decode_ids(const decoder *d, const api_in *in, he_kind kind, uint32_t *one,
+                       api_found *found)
+{
+    if (!api_in_is_string(in) || d->references == NULL) {
+        *found = (api_found){.ids = one, .count = 1};
+        return api_in_id(in, one);
+    }
+    const char *text;
+    if (!api_in_string(in, SIZE_MAX, &text)) {
+        return false;
+    }
+    if (text[0] != '$') {
+        return api_in_fail(in, API_WRONG_TYPE,
+                           "a string in the place of an id is a reference such as "
+                           "\"$name.result\"");
+    }
+    return d->references->find(d->references->context, in, text, kind, found);
+}
+
+static bool decode_element(const decoder *d, const he_param *param, const api_in *in, uint32_t *id)
+{
+    if ((param->flags & HE_NULLABLE) && api_in_is_null(in)) {
+        *id = HE_NONE;
+        return true;
+    }
+    uint32_t one;
+    api_found found;
+    if (!decode_ids(d, in, param->kind, &one, &found)) {
+        return false;
+    }
+    if (found.list) {
+        return api_in_fail(in, API_BAD_REFERENCE,
+                           "the result is a list and one id is expected: add \".0\" for its first");
+    }
+    *id = found.ids[0];
+    return true;
+}
+
+/* Two passes: the lists that references put in make the length known only after looking. */
+static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in *in, he_arg *arg)
+{
+    if (!api_in_array(in, min, SIZE_MAX)) {
+        return false;
+    }
+    size_t capacity = api_in_count(in), count = 0;
+    uint32_t *ids = api_arena_array(d->arena, capacity, sizeof *ids);
+    api_in child;
+    for (bool more = api_in_first(in, &child); more && ids != NULL; more = api_in_next(&child)) {
+        uint32_t one;
+        api_found found;
+        if (!decode_ids(d, &child, kind, &one, &found)) {
+            return false;
+        }
+        if (found.count > API_MAX_IDS - count) {
+            return api_in_fail(&child, HE_LIMIT, "the list stands for more than %d ids",
+                               (int)API_MAX_IDS);
+        }
+        if (found.count > capacity - count) {
+            size_t grown = he_mem_grown(capacity, count + found.count);
+            uint32_t *larger = api_arena_array(d->arena, grown, sizeof *ids);
+            if (larger != NULL) {
+                memcpy(larger, ids, count * sizeof *ids);
+            }
+            ids = larger;
+            capacity = grown;
+        }
+        if (ids != NULL && found.count > 0) {
+            memcpy(ids + count, found.ids, found.count * sizeof *ids);
+            count += found.count;
+        }
+    }
+    if (ids == NULL) {
+        return api_in_fail(in, HE_NO_MEMORY, "no memory for a list of ids");
+    }
+    if (count < min) {
+        return api_in_fail(in, HE_NO_SUCH_ELEMENT, "the references in the list stand for nothing");
+    }
+    arg->ids = ids;
+    arg->count = count;
+    arg->list = true;
+    return true;
+}
+
+static bool decode_set(const decoder *d, he_kind kind, const api_in *in, he_arg *arg)
+{
+    static const uint32_t none[1] = {HE_NONE};
+    const char *name;
+    uint32_t *ids;
+    d->call->has_set = true;
+    arg->list = true;
+    arg->ids = none;
+    if (!api_in_set(in, &name)) {
+        return false;
+    }
+    if (d->mesh == NULL) {
+        return true;
+    }
+    if (!api_find_set(in, name, d->mesh, kind, d->arena, &ids, &arg->count)) {
+        return false;
+    }
+    arg->ids = ids;
+    return true;
+}
+
+static bool decode_points(const decoder *d, const he_param *param, const api_in *in, he_arg *arg)
+{
+    if (!api_in_array(in, 1, SIZE_MAX)) {
+        return false;
+    }
+    api_in first;
+    api_in_first(in, &first);
+    bool list = param->type == HE_PARAM_POINTS && api_in_is_array(&first);
+    size_t count = list ? api_in_count(in) : 1, i = 0;
+    he_vec3 *points = api_arena_array(d->arena, count, sizeof *points);
+    if (points == NULL) {
+        return api_in_fail(in, HE_NO_MEMORY, "no memory for %zu points", count);
+    }
+    if (!list) {
+        if (!api_in_vec3(in, points)) {
+            return false;
+        }
+    } else {
+        api_in child;
+        for (bool more = api_in_first(in, &child); more; more = api_in_next(&child)) {
+            if (!api_in_vec3(&child, &points[i++])) {
+                return false;
+            }
+        }
+    }
+    arg->points = points;
+    arg->count = count;
+    arg->list = list;
+    return true;
+}
+
+static bool decode_matrix(const api_in *in, he_arg *arg)
+{
+    static const double last[4] = {0, 0, 0, 1};
+    if (!api_in_array(in, 16, 16)) {
+        return false;
+    }
+    size_t i = 0;
+    api_in child;
+    for (bool more = api_in_first(in, &child); more; more = api_in_next(&child)) {
+        if (!api_in_number(&child, &arg->matrix[i])) {
+            return false;
+        }
+        if (i >= 12 && (arg->matrix[i] < last[i - 12] || arg->matrix[i] > last[i - 12])) {
+            return api_in_fail(&child, HE_BAD_VALUE, "the last row of the matrix is 0 0 0 1");
+        }
+        i++;
+    }
+    return true;
+}
+
+static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
+{
+    const char *id;
+    return api_in_string(in, API_MESH_ID, &id) &&
+           (d->meshes == NULL || d->meshes->find(d->meshes->context, in, id, &arg->mesh));
+}
+
+static bool decode_number(const he_param *param, const api_in *in, he_arg *arg)
+{
+    uint64_t whole = 0;
+    if (param->flags & HE_WHOLE) {
+        bool read = api_in_u64(in, (uint64_t)param->min, (uint64_t)param->max, &whole);
+        arg->number = (double)whole;
+        return read;
+    }
+    if (param->flags & HE_RANGE) {
+        return api_in_number_within(in, param->min, param->max, (param->flags & HE_EXCLUSIVE) != 0,
+                                    &arg->number);
+    }
+    return api_in_number(in, &arg->number);
+}
+
+static bool decode_value(const decoder *d, const he_param *param, const api_in *in, bool plural,
+                         he_arg *arg)
+{
+    switch (param->type) {
+    case HE_PARAM_ELEMENT:
+        return decode_element(d, param, in, &arg->id);
+    case HE_PARAM_ELEMENTS: {
+        if (plural && api_in_is_object(in)) {
+            return decode_set(d, param->kind, in, arg);
+        }
+        if (plural) {
+            return decode_list(d, param->kind, 1, in, arg);
+        }
+        uint32_t *one = api_arena_array(d->arena, 1, sizeof *one);
+        if (one == NULL) {
+            return api_in_fail(in, HE_NO_MEMORY, "no memory for an id");
+        }
+        arg->ids = one;
+        arg->count = 1;
+        return decode_element(d, param, in, one);
+    }
+    case HE_PARAM_NUMBER:
+        return decode_number(param, in, arg);
+    case HE_PARAM_POINT:
+    case HE_PARAM_POINTS:
+        return decode_points(d, param, in, arg);
+    case HE_PARAM_FLAG:
+        return api_in_bool(in, &arg->flag);
+    case HE_PARAM_CHOICE:
+        return api_in_choice(in, param->choices, &arg->choice);
+    case HE_PARAM_MATRIX:
+        return decode_matrix(in, arg);
+    case HE_PARAM_CYCLE:
+        /* Too few corners is a refusal of the operation, not of the document. */
+        return decode_list(d, param->kind, 0, in, arg);
+    case HE_PARAM_MESH:
+        return decode_mesh(d, in, arg);
+    }
+    return api_in_fail(in, API_INTERNAL, "a parameter has no type");
+}
+
+/* The parameter a member names; `*plural` says by which of its names. -1 when none. */
+static int find_param(const he_op *op, const char *name, bool *plural)
+{
+    for (size_t i = 0; i < he_op_params(op); i++) {
+        const he_param *param = &op->params[i];
+        *plural = param->plural != NULL && strcmp(param->plural, name) == 0;
+        if (*plural || strcmp(param->name, name) == 0) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+static bool decode_as(const decoder *d, const api_in *in)
+{
+    const char *as;
+    if (!api_in_string(in, API_MAX_AS, &as)) {
+        return false;
+    }
+    for (const char *c = as; *c != '\0'; c++) {
+        bool letter = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || *c == '_';
+        if (!letter && (c == as || *c < '0' || *c > '9')) {
+            as = "";
+            break;
+        }
+    }
+    if (as[0] == '\0') {
+        return api_in_fail(in, HE_BAD_VALUE,
+                           "a name is letters, digits and '_', and does not begin with a digit");
+    }
+    d->call->as = as;
+    return true;
+}
+
+static bool is_listed(const char *const *names, const char *name)
+{
+    for (; names != NULL && *names != NULL; names++) {
+        if (strcmp(*names, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool decode_member(const decoder *d, const char *const *also, const api_in *in)
+{
+    const char *name = api_in_name(in);
+    if (strcmp(name, "op") == 0 || is_listed(also, name)) {
+        return true;
+    }
+    if (d->references != NULL && strcmp(name, "as") == 0) {
+        return decode_as(d, in);
+    }
+    bool plural;
+    int i = find_param(d->op, name, &plural);
+    if (i < 0) {
+        return api_in_fail(in, API_UNKNOWN_MEMBER, "\"%.100s\" is not a parameter of %s", name,
+                           d->op->name);
+    }
+    he_arg *arg = &d->call->args[i];
+    if (arg->given) {
+        return api_in_fail(in, API_CONFLICTING_MEMBERS, "\"%s\" and \"%s\" exclude each other",
+                           d->op->params[i].name, d->op->params[i].plural);
+    }
+    arg->given = true;
+    return decode_value(d, &d->op->params[i], in, plural, arg);
+}
+
+/* Is every required parameter there, and of each group of alternatives at most one? */
+static bool check_given(const decoder *d)
+{
+    for (size_t i = 0; i < he_op_params(d->op); i++) {
+        const he_param *param = &d->op->params[i];
+        bool given = d->call->args[i].given, needed = (param->flags & HE_REQUIRED) != 0;
+        char names[160] = "";
+        strncat(names, param->name, sizeof names - strlen(names) - 1);
+        for (size_t j = 0; param->group != 0 && j < he_op_params(d->op); j++) {
+            const he_param *other = &d->op->params[j];
+            if (j == i || other->group != param->group) {
+                continue;
+            }
+            if (d->call->args[i].given && d->call->args[j].given) {
+                api_in at;
+                const he_param *late = j > i ? other : param;
+                if (!api_in_find(d->object, late->name, &at) &&
+                    !(late->plural != NULL && api_in_find(d->object, late->plural, &at))) {
+                    at = *d->object;
+                }
+                return api_in_fail(&at, API_CONFLICTING_MEMBERS,
+                                   "\"%s\" and \"%s\" exclude each other", param->name,
+                                   other->name);
+            }
+            given = given || d->call->args[j].given;
+            needed = needed || (other->flags & HE_REQUIRED) != 0;
+            strncat(names, "\" or \"", sizeof names - strlen(names) - 1);
+            strncat(names, other->name, sizeof names - strlen(names) - 1);
+        }
+        if (needed && !given) {
+            return api_in_fail(d->object, API_MISSING_MEMBER, "\"%s\" is missing", names);
+        }
+    }
+    return true;
+}
+
+/* A list of points goes with a list of elements, one for each. */
+static bool check_points(const decoder *d)
+{
+    size_t elements = 0;
+    bool has_elements = false;
+    if (d->call->has_set && d->mesh == NULL) {
+        return true;
+    }
+    for (size_t i = 0; i < he_op_params(d->op); i++) {
+        if (d->op->params[i].type == HE_PARAM_ELEMENTS && d->call->args[i].given) {
+            elements = d->call->args[i].count;
+            has_elements = true;
+        }
+    }
+    for (size_t i = 0; has_elements && i < he_op_params(d->op); i++) {
+        const he_arg *arg = &d->call->args[i];
+        api_in at;
+        if (d->op->params[i].type == HE_PARAM_POINTS && arg->given && arg->list &&
+            arg->count != elements && api_in_find(d->object, d->op->params[i].name, &at)) {
+            return api_in_fail(&at, HE_BAD_VALUE, "there are %zu points for %zu elements",
+                               arg->count, elements);
+        }
+    }
+    return true;
+}
+
+bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
+                   const he_mesh *mesh, const api_meshes *meshes, api_arena *arena, api_call *out)
+{
+    api_in name, member;
+    const char *text;
+    if (!api_in_object(object) || !api_in_need(object, "op", &name) ||
+        !api_in_string(&name, SIZE_MAX, &text)) {
+        return false;
+    }
+    *out = (api_call){.op = he_op_find(text, strlen(text))};
+    if (out->op == NULL) {
+        return api_in_fail(&name, API_UNKNOWN_OPERATION, "there is no operation \"%.100s\"", text);
+    }
+    he_op_defaults(out->op, out->args);
+    decoder d = {object, references, mesh, meshes, arena, out->op, out};
+    for (bool more = api_in_first(object, &member); more; more = api_in_next(&member)) {
+        if (!decode_member(&d, also, &member)) {
+            return false;
+        }
+    }
+    return check_given(&d) && check_points(&d);
+}

@@ -1,0 +1,572 @@
+/* POST .../edits: one operation, or a list that is applied whole or not at all. */
+#include "api/request/handlers.h"
+
+#include "api/event/changes.h"
+#include "api/write/decode_op.h"
+#include "api/write/edit_cost.h"
+#include "api/write/names.h"
+#include "api/write/others.h"
+
+#include <string.h>
+
+/* A request between decoding and answer. */
+typedef struct edits {
+    api_in list; /* the array of operations; unused when there is one */
+    api_item op; /* of it, the one at hand */
+    bool is_list;
+    size_t count;
+    api_in expected;
+    bool has_expected;
+    bool dry_run;
+    size_t whole;    /* operations that cost the mesh */
+    uint64_t passes; /* over the mesh that they take as long as */
+    double growth;   /* by how many times they make it larger, all in all */
+    api_edit_cost cost;
+    uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
+    uint64_t steps;     /* about hubs, by the operations so far */
+    uint64_t work;      /* of both, in the unit of API_POOL_EDITS */
+    uint64_t most_work; /* more belongs elsewhere */
+    bool exceeded;      /* it would be more */
+    uint64_t paid;      /* looks at its watch that the operation at hand was charged for */
+    uint64_t look;      /* what another one costs */
+    bool unlimited;     /* there is no better place than this thread */
+    he_watch told;      /* x->watch, which x->watch passes on to meanwhile */
+    api_hubs hubs;
+    api_names names;
+    api_others others;
+    api_arena scratch; /* arguments of the operation at hand */
+    api_text results;  /* objects of `results`, comma-separated */
+    api_out out;       /* writes them */
+    char ops[API_ENTRY_OPS];
+    /* of a claim */
+    const he_mesh *content;
+    he_delta *delta;
+} edits;
+
+/* Of a long edit: the copy, then the operations, then what they changed; and the answer. */
+static const double COPY_SHARE = 0.2, OPS_SHARE = 0.7, CHANGES_SHARE = 0.95;
+
+static const char *const list_members[] = {"expected_revision", "dry_run", "ops", NULL};
+static const char *const beside_op[] = {"expected_revision", "dry_run", NULL};
+
+static void free_edits(void *state)
+{
+    edits *e = state;
+    api_names_clear(&e->names);
+    api_others_clear(&e->others);
+    api_edit_cost_clear(&e->cost);
+    api_arena_clear(&e->scratch);
+    api_item_clear(&e->op);
+    api_text_clear(&e->results);
+    he_mem_free(e);
+}
+
+/* Append an operation's name to the text of the history, or dots where no more fit. */
+static void note_name(edits *e, const char *name)
+{
+    static const char more[] = ",...";
+    size_t used = strlen(e->ops), length = strlen(name);
+    if (used >= sizeof more - 1 && strcmp(e->ops + used - (sizeof more - 1), more) == 0) {
+        return;
+    }
+    if (used + 1 + length + sizeof more > sizeof e->ops) {
+        memcpy(e->ops + used, more, sizeof more);
+        return;
+    }
+    if (used > 0) {
+        e->ops[used++] = ',';
+    }
+    memcpy(e->ops + used, name, length + 1);
+}
+
+static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *call)
+{
+    api_arena_empty(&e->scratch);
+    return api_decode_op(in, e->is_list ? NULL : beside_op,
+                         e->is_list ? &e->names.references : NULL, mesh, &e->others.meshes,
+                         &e->scratch, call);
+}
+
+static bool note(edits *e, const api_in *in, const api_call *call)
+{
+    he_error err = {0};
+    if (he_op_is_whole(call->op, call->args)) {
+        e->whole++;
+        e->passes += he_op_pace(call->op);
+    } else if (call->has_set) {
+        e->whole++;
+        e->passes++;
+    }
+    e->growth *= he_op_growth(call->op, call->args);
+    note_name(e, call->op->name);
+    return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
+           api_problem_set_core(in->problem, &err);
+}
+
+/* All that is wrong with the document itself is found before the first operation runs. */
+static bool check_ops(const api_exchange *x, edits *e)
+{
+    api_call call;
+    if (!e->is_list) {
+        return decode(e, &x->root, NULL, &call) && note(e, &x->root, &call);
+    }
+    const api_in *op = &e->op.in;
+    for (size_t i = 0; i < e->count; i++) {
+        if (!api_item_read(&x->ops, i, &e->list, &e->op) || !decode(e, op, NULL, &call) ||
+            !api_names_add(&e->names, op, &call) || !note(e, op, &call)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check_count(const api_in *list, size_t count)
+{
+    if (count == 0) {
+        return api_in_fail(list, HE_BAD_VALUE, "the list has no operation");
+    }
+    return count <= API_MAX_OPS ||
+           api_in_fail(list, HE_LIMIT, "the list has %zu operations, at most %d are taken", count,
+                       (int)API_MAX_OPS);
+}
+
+static bool read_request(api_exchange *x, edits *e)
+{
+    const api_in *root = &x->root;
+    api_in dry;
+    if (!api_in_object(root)) {
+        return false;
+    }
+    e->is_list = api_in_find(root, "ops", &e->list);
+    /* The array is empty here: its items were left in the text. */
+    e->count = e->is_list ? x->ops.count : 1;
+    if (e->is_list && (!api_in_only(root, list_members) || !api_in_array(&e->list, 0, 0) ||
+                       !check_count(&e->list, e->count))) {
+        return false;
+    }
+    e->has_expected = api_in_find(root, "expected_revision", &e->expected);
+    if (api_in_find(root, "dry_run", &dry) && !api_in_bool(&dry, &e->dry_run)) {
+        return false;
+    }
+    return check_ops(x, e);
+}
+
+/* Elements in number beyond which it does not matter how many more there are. */
+static const double MANY = 1e12;
+
+static uint64_t issued(const he_mesh *mesh)
+{
+    return (uint64_t)he_mesh_issued(mesh, HE_VERTEX) + he_mesh_issued(mesh, HE_EDGE) +
+           he_mesh_issued(mesh, HE_FACE);
+}
+
+/* A list of few bytes may ask for the whole mesh as often as it has operations, and for one hub. */
+static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
+{
+    if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
+        return api_in_fail(in, HE_LIMIT, "the operations before look at %llu elements, over %d",
+                           (unsigned long long)e->looked_at, (int)API_MAX_EDITS_ELEMENTS);
+    }
+    if (e->steps > API_MAX_EDITS_STEPS) {
+        return api_in_fail(in, HE_LIMIT, "the operations before take %llu steps, over %llu",
+                           (unsigned long long)e->steps, (unsigned long long)API_MAX_EDITS_STEPS);
+    }
+    if (delta->count > API_MAX_EDITS_ROWS) {
+        return api_in_fail(in, HE_LIMIT, "the operations before change %zu rows, over %d",
+                           delta->count, (int)API_MAX_EDITS_ROWS);
+    }
+    return true;
+}
+
+/* Looks that an operation takes at its watch however small it is. */
+enum { PHASES = 24 };
+
+/* Charge one operation. False where it and those before it belong on another thread. */
+static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
+{
+    bool whole = he_op_is_whole(call->op, call->args);
+    uint64_t elements = whole || call->has_set ? issued(mesh) : 0, listed = 0;
+    for (size_t i = 0; i < he_op_params(call->op); i++) {
+        listed += call->args[i].list ? call->args[i].count : 0;
+        elements += call->args[i].mesh != NULL ? issued(call->args[i].mesh) : 0;
+    }
+    double many = he_op_growth(call->op, call->args) * (double)elements;
+    uint64_t grown = many < MANY ? (uint64_t)many : (uint64_t)MANY;
+    uint64_t steps = e->is_list ? api_edit_cost_steps(call, mesh, UINT64_MAX / 2, &e->hubs) : 0;
+    e->looked_at += elements + listed;
+    e->steps += steps;
+    uint64_t work = (whole ? grown * he_op_pace(call->op) : elements) +
+                    listed * (whole ? 1 : he_op_pace(call->op)) + steps / API_STEPS_OF_WORK;
+    e->work += work;
+    e->paid = PHASES + 2 * (grown + listed) / HE_WATCH_STRIDE;
+    e->look = (uint64_t)HE_WATCH_STRIDE * he_op_pace(call->op);
+    e->exceeded = e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
+    return !e->exceeded;
+}
+
+static size_t count_columns(const he_mesh *mesh, const he_mesh *unless)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
+        const he_column *column = he_mesh_column(mesh, i);
+        count += column != NULL && (unless == NULL || he_mesh_find_column(unless, column->domain,
+                                                                          column->name) == NULL);
+    }
+    return count;
+}
+
+/* What another mesh brings along counts like what requests add. */
+static bool within_attributes(const he_mesh *mesh, const api_in *in, const api_call *call)
+{
+    for (size_t i = 0; i < he_op_params(call->op); i++) {
+        const he_mesh *other = call->args[i].mesh;
+        size_t more = other != NULL ? count_columns(other, mesh) : 0;
+        if (more > 0 && count_columns(mesh, NULL) + more > API_MAX_ATTRIBUTES) {
+            return api_in_fail(in, HE_LIMIT, "the mesh would have %zu attributes, over %d",
+                               count_columns(mesh, NULL) + more, (int)API_MAX_ATTRIBUTES);
+        }
+    }
+    return true;
+}
+
+/* Run one operation and write its results. The pointer of a refusal is the operation. */
+static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta,
+                   const api_in *in)
+{
+    api_call call;
+    he_results results = {0};
+    he_error err = {0};
+    if (!decode(e, in, mesh, &call) || !within_limits(e, delta, in) ||
+        !within_attributes(mesh, in, &call) || !charge(e, mesh, delta, &call)) {
+        return false;
+    }
+    if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        if (e->is_list) {
+            api_in_point(in);
+        }
+        return false;
+    }
+    api_write_results(&e->out, call.op, &results);
+    api_names_bind(&e->names, &call, &results);
+    he_results_clear(&results);
+    return true;
+}
+
+/* Operations of a list that are not told to whoever may end it. */
+enum { OPS_PER_LOOK = 16 };
+
+static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
+{
+    if (!e->is_list) {
+        he_watch_span(&x->watch, OPS_SHARE);
+        return run_op(x, e, mesh, delta, &x->root);
+    }
+    for (size_t i = 0; i < e->count; i++) {
+        he_error err = {0};
+        he_watch_span(&x->watch,
+                      COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) / (double)e->count);
+        e->paid = PHASES;
+        if (i % OPS_PER_LOOK == 0 && he_watch_phase(&x->watch, "editing", 0, &err) != HE_OK) {
+            return api_fail_core(x, &err);
+        }
+        if (!api_item_read(&x->ops, i, &e->list, &e->op) || !run_op(x, e, mesh, delta, &e->op.in)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The whole answer is written before anything is published, so that no failure follows it. */
+static void write_answer(api_exchange *x, const edits *e, const he_changes *changes,
+                         uint64_t revision, bool undoable)
+{
+    api_out *out = &x->out;
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", revision);
+    if (e->dry_run) {
+        api_out_key_bool(out, "dry_run", true);
+    }
+    api_out_key(out, "results");
+    api_out_raw(out, e->results.bytes, e->results.length);
+    api_write_changes(out, changes);
+    if (!undoable) {
+        api_out_key_bool(out, "undoable", false);
+    }
+    api_out_object_end(out);
+}
+
+static void answer(api_exchange *x, const edits *e)
+{
+    if (!e->dry_run) {
+        api_answer_etag(x, "edits");
+    }
+    if (!api_answer_minimal(x)) {
+        api_answer_json(x, 200);
+    }
+}
+
+/* What the operations make of the mesh. True when that is to be published, with the answer written;
+ * `*barrier` says whether it ends the undo stack. */
+static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta, bool *barrier)
+{
+    he_changes changes = {0};
+    he_error err = {0};
+    uint64_t ids = issued(mesh);
+    bool publish = false;
+    api_out_array_begin(&e->out);
+    if (!run_ops(x, e, mesh, delta)) {
+        return false;
+    }
+    api_out_array_end(&e->out);
+    if (e->results.failed) {
+        return api_fail_memory(x);
+    }
+    e->paid = UINT64_MAX; /* what follows depends on the rows of the delta, which were counted */
+    he_watch_span(&x->watch, CHANGES_SHARE);
+    if (he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    /* An edit without effect makes no revision, unless it used up ids that its answer names. */
+    bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
+    bool undoable = !changes.renumbered && x->store->undoable(x->store->self, x->mesh);
+    write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0), undoable || !effect);
+    if (x->text.failed) {
+        api_fail_memory(x);
+    } else {
+        publish = effect && !e->dry_run;
+    }
+    if (publish) {
+        api_tally tally = api_changes_tally(&changes);
+        x->store->tally(x->store->self, x->mesh, &tally);
+    }
+    *barrier = changes.renumbered;
+    he_changes_clear(&changes);
+    return publish;
+}
+
+/* --- work that turns out to be long --- */
+
+/* What an operation will take is not always known before: flips spread. It looks at its watch every
+ * HE_WATCH_STRIDE elements, and looks beyond those that it was charged for are charged. */
+static bool tell_and_charge(void *context, const char *phase, double done)
+{
+    edits *e = context;
+    if (e->paid > 0) {
+        e->paid--;
+    } else {
+        e->work += e->look;
+        e->exceeded = e->exceeded || e->work > e->most_work;
+    }
+    return !e->exceeded && (e->told.tell == NULL || e->told.tell(e->told.context, phase, done));
+}
+
+/* Until unlimit_work no more is done than this thread has time for. */
+static void limit_work(api_exchange *x, edits *e)
+{
+    e->most_work = e->unlimited                 ? UINT64_MAX
+                   : x->phase == API_PHASE_BODY ? API_WORKER_EDITS
+                                                : API_POOL_EDITS;
+    e->paid = PHASES;
+    e->told = x->watch;
+    x->watch.tell = tell_and_charge;
+    x->watch.context = e;
+}
+
+static void unlimit_work(api_exchange *x, const edits *e)
+{
+    x->watch.tell = e->told.tell;
+    x->watch.context = e->told.context;
+    x->watch.cancelled = x->watch.cancelled && !e->exceeded;
+}
+
+/* A list that was rolled back, as if it had not begun. */
+static void start_over(edits *e)
+{
+    e->looked_at = e->steps = e->work = 0;
+    e->exceeded = false;
+    e->hubs = (api_hubs){.slots = {{0}}};
+    api_names_unbind(&e->names);
+    api_text_empty(&e->results);
+    api_out_init(&e->out, &e->results);
+}
+
+static void run(api_exchange *x);
+static void run_claimed(api_exchange *x);
+static void go_on_elsewhere(api_exchange *x, edits *e);
+
+/* --- long edits --- */
+
+/* What the first operation is bound to be refused for: nothing changes the mesh before it. */
+static bool foresee(api_exchange *x, edits *e)
+{
+    const api_in *in = e->is_list ? &e->op.in : &x->root;
+    he_error err = {0};
+    api_call call;
+    if ((e->is_list && !api_item_read(&x->ops, 0, &e->list, &e->op)) ||
+        !decode(e, in, NULL, &call)) {
+        return false;
+    }
+    if (he_op_foresee(call.op, e->content, call.args, &err) == HE_OK) {
+        return true;
+    }
+    api_fail_core(x, &err);
+    if (e->is_list) {
+        api_in_point(in);
+    }
+    return false;
+}
+
+/* Before the client is answered, so that it knows whether the mesh is its own. */
+static bool claim(api_exchange *x, edits *e)
+{
+    uint64_t expected = 0;
+    if (e->has_expected && !api_in_u64(&e->expected, 1, (uint64_t)1 << 53, &expected)) {
+        return false;
+    }
+    api_store_status status =
+        x->store->claim(x->store->self, x->mesh, &e->content, &e->delta, &x->info);
+    x->has_info = status != API_STORE_ABSENT;
+    if (status != API_STORE_OK) {
+        return api_fail_store(x, status);
+    }
+    x->claimed = true;
+    /* They hold until the claim ends: nobody else can change the mesh. */
+    return api_preconditions_hold(x, e->has_expected ? &expected : NULL) && foresee(x, e);
+}
+
+static bool publish_copy(api_exchange *x, const edits *e, he_mesh *copy, bool barrier)
+{
+    api_store_status status =
+        x->store->publish(x->store->self, x->mesh, copy, e->ops, barrier, x->claim, &x->info);
+    x->claimed = false;
+    if (status != API_STORE_OK) {
+        x->has_info = false;
+        return api_fail_store(x, status);
+    }
+    api_publish(x, 204);
+    return true;
+}
+
+static void run_claimed(api_exchange *x)
+{
+    edits *e = x->state;
+    he_mesh *copy = NULL;
+    he_error err = {0};
+    bool barrier = false;
+    /* There is no better place than a job, and none where the client would rather wait. */
+    e->unlimited = e->unlimited || x->phase == API_PHASE_JOB || x->prefer.wait >= 0;
+    he_watch_span(&x->watch, COPY_SHARE);
+    if (!api_others_take(x, &e->others)) {
+        return;
+    }
+    if (he_mesh_copy_watched(e->content, &x->watch, &copy, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        return;
+    }
+    he_mesh_record(copy, e->delta);
+    limit_work(x, e);
+    bool publish = edit(x, e, copy, e->delta, &barrier);
+    unlimit_work(x, e);
+    he_mesh_watch(copy, NULL);
+    if (!publish || !publish_copy(x, e, copy, barrier)) {
+        he_mesh_free(copy);
+    }
+    api_others_release(&e->others);
+    if (e->exceeded && !publish) {
+        go_on_elsewhere(x, e);
+    } else if (x->problem.code == HE_OK) {
+        answer(x, e);
+    }
+}
+
+/* From a worker to the pool, from there to a job. */
+static void go_on_elsewhere(api_exchange *x, edits *e)
+{
+    bool on_worker = x->phase == API_PHASE_BODY;
+    x->problem = (api_problem){.code = HE_OK}; /* of what was ended, if any */
+    start_over(e);
+    if (on_worker) {
+        api_run_long(x, run, true, 0);
+    } else if (x->claimed || claim(x, e)) {
+        he_delta_empty(e->delta); /* of what was recorded in a copy that is gone */
+        e->unlimited = true;
+        api_run_long(x, run_claimed, true, 2 * API_PATIENCE);
+    }
+}
+
+static void run(api_exchange *x)
+{
+    edits *e = x->state;
+    he_delta *delta = NULL;
+    bool barrier = false;
+    if (!api_others_take(x, &e->others)) {
+        return;
+    }
+    he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
+    if (mesh == NULL) {
+        return;
+    }
+    limit_work(x, e);
+    he_mesh_watch(mesh, &x->watch);
+    bool publish = edit(x, e, mesh, delta, &barrier);
+    he_mesh_watch(mesh, NULL);
+    unlimit_work(x, e);
+    if (publish) {
+        x->store->write_commit(x->store->self, x->mesh, e->ops, barrier, &x->info);
+        api_publish(x, 204);
+    } else {
+        x->store->write_abort(x->store->self, x->mesh);
+    }
+    api_others_release(&e->others);
+    if (e->exceeded && !publish) {
+        go_on_elsewhere(x, e);
+    } else if (x->problem.code == HE_OK) {
+        answer(x, e);
+    }
+}
+
+/* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a
+ * thread that may block; what costs a really large mesh must not keep it locked. */
+static void choose(api_exchange *x, edits *e)
+{
+    uint64_t elements = api_others_elements(&e->others);
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    elements += api_elements_of(mesh);
+    elements = e->growth * (double)elements < MANY ? (uint64_t)(e->growth * (double)elements)
+                                                   : (uint64_t)MANY;
+    bool costly = e->count > API_COSTLY_EDITS || e->passes * elements > API_WORKER_EDITS ||
+                  (elements > API_COSTLY_ELEMENTS &&
+                   (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
+    api_read_end(x);
+    double seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;
+    if (e->whole > 0 && (elements > API_CLAIM_ELEMENTS || seconds > API_PATIENCE)) {
+        if (claim(x, e)) {
+            api_run_long(x, run_claimed, true, seconds);
+        }
+    } else {
+        api_run_long(x, run, costly, 0);
+    }
+}
+
+void api_edits_post(api_exchange *x)
+{
+    edits *e = he_mem_zero(1, sizeof *e);
+    if (e == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    x->state = e;
+    x->free_state = free_edits;
+    e->growth = 1;
+    api_names_init(&e->names, x->store->secret);
+    api_others_init(&e->others, x->store);
+    api_out_init(&e->out, &e->results);
+    if (!read_request(x, e)) {
+        return;
+    }
+    choose(x, e);
+}

@@ -1,0 +1,199 @@
+#include "api/write/names.h"
+
+#include "api/header/hash.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* The slot where the name is, or where it would be put. The table is never full. The key is not
+ * known outside, so that nobody can choose names that meet. */
+static size_t find_slot(const api_names *names, const char *text, size_t length)
+{
+    size_t slot = (size_t)api_hash_of(names->secret, text, length) & (names->table_size - 1);
+    while (names->table[slot] != 0) {
+        const char *name = names->names[names->table[slot] - 1].name;
+        if (strncmp(name, text, length) == 0 && name[length] == '\0') {
+            break;
+        }
+        slot = (slot + 1) & (names->table_size - 1);
+    }
+    return slot;
+}
+
+static api_name *find_name(const api_names *names, const char *text, size_t length)
+{
+    if (names->table_size == 0) {
+        return NULL;
+    }
+    uint32_t entry = names->table[find_slot(names, text, length)];
+    return entry == 0 ? NULL : &names->names[entry - 1];
+}
+
+/* "0", "17", without signs or leading zeros; -1 where it is none. */
+static int64_t read_index(const char *text)
+{
+    int64_t value = 0;
+    if (text[0] == '\0' || (text[0] == '0' && text[1] != '\0') || strlen(text) > 10) {
+        return -1;
+    }
+    for (; *text != '\0'; text++) {
+        if (*text < '0' || *text > '9') {
+            return -1;
+        }
+        value = value * 10 + (*text - '0');
+    }
+    return value;
+}
+
+static const uint32_t unbound = HE_NONE;
+
+static bool find_value(const api_in *at, const char *text, const api_name *name, size_t row,
+                       int64_t index, api_found *out)
+{
+    bool list = name->op->results[row].type == HE_RESULT_ELEMENTS;
+    *out = (api_found){.ids = &unbound, .count = 1, .list = list && index < 0};
+    if (!name->bound) {
+        return true;
+    }
+    const he_results *results = &name->results;
+    const he_ids *ids = &results->list[row];
+    if (list && index < 0) {
+        out->ids = ids->ids;
+        out->count = ids->count;
+        return true;
+    }
+    if (list && (uint64_t)index >= ids->count) {
+        return api_in_fail(at, HE_NO_SUCH_ELEMENT, "\"%.100s\" is beyond the %zu of the result",
+                           text, ids->count);
+    }
+    out->ids = list ? &ids->ids[index] : &results->id[row];
+    if (!results->present[row] || *out->ids == HE_NONE) {
+        return api_in_fail(at, HE_NO_SUCH_ELEMENT, "\"%.100s\" has no value here", text);
+    }
+    return true;
+}
+
+static bool find_reference(void *context, const api_in *at, const char *text, he_kind kind,
+                           api_found *out)
+{
+    const api_names *names = context;
+    const char *dot = strchr(text, '.');
+    if (dot == NULL) {
+        return api_in_fail(at, API_BAD_REFERENCE,
+                           "\"%.100s\" names no result: \"$name.result\" is expected", text);
+    }
+    const api_name *name = find_name(names, text + 1, (size_t)(dot - text - 1));
+    if (name == NULL) {
+        return api_in_fail(at, API_BAD_REFERENCE,
+                           "no earlier operation carries the name of \"%.100s\"", text);
+    }
+    const char *result = dot + 1, *second = strchr(result, '.');
+    size_t length = second == NULL ? strlen(result) : (size_t)(second - result);
+    int64_t index = second == NULL ? -1 : read_index(second + 1);
+    for (size_t row = 0; row < he_op_results(name->op); row++) {
+        const he_result_row *r = &name->op->results[row];
+        if (strlen(r->name) != length || memcmp(r->name, result, length) != 0) {
+            continue;
+        }
+        bool ids = r->type == HE_RESULT_ELEMENT || r->type == HE_RESULT_ELEMENTS;
+        if (!ids || r->kind != kind) {
+            return api_in_fail(at, API_BAD_REFERENCE, "\"%.100s\" is not %s %s", text,
+                               kind == HE_EDGE ? "an" : "a", he_kind_name(kind));
+        }
+        if (second != NULL && (index < 0 || r->type != HE_RESULT_ELEMENTS)) {
+            break;
+        }
+        return find_value(at, text, name, row, index, out);
+    }
+    return api_in_fail(at, API_BAD_REFERENCE, "%s has no result of the name in \"%.100s\"",
+                       name->op->name, text);
+}
+
+void api_names_init(api_names *names, const uint64_t secret[2])
+{
+    *names = (api_names){.secret = {secret[0], secret[1]}};
+    names->references = (api_references){.find = find_reference, .context = names};
+}
+
+void api_names_clear(api_names *names)
+{
+    for (size_t i = 0; i < names->count; i++) {
+        he_results_clear(&names->names[i].results);
+    }
+    he_mem_free(names->names);
+    he_mem_free(names->table);
+    api_arena_clear(&names->texts);
+    api_names_init(names, names->secret);
+}
+
+/* Keep the table at most half full. */
+static bool grow(api_names *names)
+{
+    if (names->count == names->capacity) {
+        size_t capacity = he_mem_grown(names->capacity, names->count + 1);
+        api_name *grown = he_mem_array(names->names, capacity, sizeof *grown);
+        if (grown == NULL) {
+            return false;
+        }
+        names->names = grown;
+        names->capacity = capacity;
+    }
+    if ((names->count + 1) * 2 <= names->table_size) {
+        return true;
+    }
+    size_t size = names->table_size == 0 ? 16 : names->table_size * 2;
+    uint32_t *table = he_mem_zero(size, sizeof *table);
+    if (table == NULL) {
+        return false;
+    }
+    he_mem_free(names->table);
+    names->table = table;
+    names->table_size = size;
+    assert(names->names != NULL);
+    for (size_t i = 0; i < names->count; i++) {
+        const char *name = names->names[i].name;
+        names->table[find_slot(names, name, strlen(name))] = (uint32_t)i + 1;
+    }
+    return true;
+}
+
+bool api_names_add(api_names *names, const api_in *at, const api_call *call)
+{
+    if (call->as == NULL) {
+        return true;
+    }
+    api_in as = *at;
+    api_in_find(at, "as", &as);
+    size_t length = strlen(call->as);
+    if (find_name(names, call->as, length) != NULL) {
+        return api_in_fail(&as, API_REPEATED_NAME, "\"%s\" names an earlier operation", call->as);
+    }
+    const char *name = grow(names) ? api_arena_copy(&names->texts, call->as, length) : NULL;
+    if (name == NULL) {
+        return api_in_fail(&as, HE_NO_MEMORY, "no memory for a name");
+    }
+    assert(names->names != NULL && names->table != NULL);
+    size_t slot = find_slot(names, call->as, length);
+    names->names[names->count] = (api_name){.name = name, .op = call->op};
+    names->table[slot] = (uint32_t)++names->count;
+    return true;
+}
+
+void api_names_bind(api_names *names, const api_call *call, he_results *results)
+{
+    api_name *name = call->as == NULL ? NULL : find_name(names, call->as, strlen(call->as));
+    if (name != NULL) {
+        he_results_clear(&name->results);
+        name->results = *results;
+        name->bound = true;
+        *results = (he_results){0};
+    }
+}
+
+void api_names_unbind(api_names *names)
+{
+    for (size_t i = 0; i < names->count; i++) {
+        he_results_clear(&names->names[i].results);
+        names->names[i].bound = false;
+    }
+}

@@ -1,0 +1,95 @@
+#include "api/write/others.h"
+
+#include "api/header/path.h"
+
+#include <string.h>
+
+static bool refuse_absent(const api_in *at, const char *id)
+{
+    api_in_fail(at, API_NO_SUCH_MESH, "no mesh has the id \"%.64s\"", id);
+    at->problem->status = 422;
+    return false;
+}
+
+static bool find(void *context, const api_in *at, const char *id, const he_mesh **out)
+{
+    api_others *o = context;
+    for (size_t i = 0; i < o->count; i++) {
+        if (strcmp(o->other[i].id, id) == 0) {
+            *out = o->other[i].content;
+            return true;
+        }
+    }
+    if (o->count == API_MAX_OTHERS) {
+        return api_in_fail(at, HE_LIMIT, "a request names at most %d other meshes",
+                           (int)API_MAX_OTHERS);
+    }
+    api_other *other = &o->other[o->count];
+    if (!api_path_is_mesh_id(id) || o->store->find(o->store->self, id, &other->mesh) != 0) {
+        return refuse_absent(at, id);
+    }
+    memcpy(other->id, id, strlen(id) + 1);
+    other->snapshot = NULL;
+    other->content = NULL;
+    o->count++;
+    *out = NULL;
+    return true;
+}
+
+void api_others_init(api_others *o, const api_store *store)
+{
+    o->meshes = (api_meshes){find, o};
+    o->store = store;
+    o->count = 0;
+}
+
+uint64_t api_others_elements(const api_others *o)
+{
+    uint64_t elements = 0;
+    for (size_t i = 0; i < o->count; i++) {
+        api_mesh_info info;
+        elements += api_elements_of(o->store->read_begin(o->store->self, o->other[i].mesh, &info));
+        o->store->read_end(o->store->self, o->other[i].mesh);
+    }
+    return elements;
+}
+
+bool api_others_take(api_exchange *x, api_others *o)
+{
+    for (size_t i = 0; i < o->count; i++) {
+        api_other *other = &o->other[i];
+        api_mesh_info info;
+        api_store_status status = o->store->snapshot(o->store->self, other->mesh, &other->snapshot);
+        if (status != API_STORE_OK) {
+            other->snapshot = NULL;
+            return api_fail_store(x, status);
+        }
+        other->content = o->store->snapshot_content(other->snapshot, &info);
+        if (info.removed) {
+            api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"", other->id);
+            x->problem.status = 422;
+            return false;
+        }
+    }
+    return true;
+}
+
+void api_others_release(api_others *o)
+{
+    for (size_t i = 0; i < o->count; i++) {
+        if (o->other[i].snapshot != NULL) {
+            o->store->snapshot_release(o->store->self, o->other[i].snapshot);
+            o->other[i].snapshot = NULL;
+            o->other[i].content = NULL;
+        }
+    }
+}
+
+void api_others_clear(api_others *o)
+{
+    api_others_release(o);
+    for (size_t i = 0; i < o->count; i++) {
+        o->store->release(o->store->self, o->other[i].mesh);
+    }
+    o->count = 0;
+}

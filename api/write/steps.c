@@ -1,0 +1,199 @@
+/* Undo and redo: POST .../undo and .../redo. */
+#include "api/request/handlers.h"
+
+#include "api/event/changes.h"
+
+/* A request between decoding and answer. */
+typedef struct steps {
+    api_action which;
+    api_in expected, to;
+    bool has_expected;
+    uint64_t revision; /* to that of `to`; 0: by count */
+    uint32_t count;
+} steps;
+
+static const char *const members[] = {"expected_revision", "steps", "to_revision", NULL};
+
+static bool read_request(api_exchange *x, steps *s)
+{
+    api_in count;
+    uint64_t number = 1;
+    s->count = 1;
+    if (!x->has_root) {
+        return true;
+    }
+    if (!api_in_only(&x->root, members)) {
+        return false;
+    }
+    s->has_expected = api_in_find(&x->root, "expected_revision", &s->expected);
+    bool has_count = api_in_find(&x->root, "steps", &count);
+    if (has_count && !api_in_u64(&count, 1, UINT32_MAX, &number)) {
+        return false;
+    }
+    s->count = (uint32_t)number;
+    if (!api_in_find(&x->root, "to_revision", &s->to)) {
+        return true;
+    }
+    return api_in_u64(&s->to, 1, (uint64_t)1 << 53, &s->revision) &&
+           (!has_count || api_in_fail(&s->to, API_CONFLICTING_MEMBERS,
+                                      "\"steps\" and \"to_revision\" exclude each other"));
+}
+
+static const char *name_of(const steps *s)
+{
+    return s->which == API_UNDO ? "undo" : "do again";
+}
+
+static void refuse(api_exchange *x, const steps *s, api_store_status status)
+{
+    unsigned long long to = s->revision, present = x->info.revision;
+    uint32_t left = s->which == API_UNDO ? x->info.undo : x->info.redo;
+    switch (status) {
+    case API_STORE_NOTHING:
+        api_fail(x, s->which == API_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
+                 left == 0 ? "no edit is left to %s at revision %llu"
+                           : "fewer edits are left to %s at revision %llu than are asked for",
+                 name_of(s), present);
+        return;
+    case API_STORE_AHEAD:
+        api_in_fail(&s->to, API_NO_SUCH_REVISION, "the mesh is at revision %llu, before %llu",
+                    present, to);
+        x->problem.status = 422;
+        return;
+    case API_STORE_GONE:
+        api_in_fail(&s->to, API_REVISION_GONE, "the history does not reach back to revision %llu",
+                    to);
+        return;
+    case API_STORE_ELSEWHERE:
+        api_in_fail(&s->to, API_UNREACHABLE_REVISION,
+                    "no number of steps to %s leads to revision %llu", name_of(s), to);
+        return;
+    case API_STORE_OK:
+    case API_STORE_ABSENT:
+    case API_STORE_TAKEN:
+    case API_STORE_NO_MEMORY:
+    case API_STORE_BUDGET:
+    case API_STORE_BUSY:
+    case API_STORE_TOO_MANY:
+    case API_STORE_LISTENERS:
+        break;
+    }
+    api_fail_store(x, status);
+}
+
+/* What all steps come to; none when there are none. */
+static void write_answer(api_exchange *x, const he_changes *changes)
+{
+    api_out *out = &x->out;
+    api_out_object_begin(out);
+    api_out_key_u64(out, "revision", x->info.revision);
+    api_out_key(out, "results");
+    api_out_array_begin(out);
+    api_out_array_end(out);
+    api_write_changes(out, changes);
+    api_out_key_u64(out, "undo", x->info.undo);
+    api_out_key_u64(out, "redo", x->info.redo);
+    api_out_object_end(out);
+}
+
+/* Take `count` steps and write the answer. */
+static void take(api_exchange *x, const steps *s, const he_mesh *mesh, uint32_t count)
+{
+    const he_delta **deltas = api_arena_array(&x->arena, count + 1u, sizeof *deltas);
+    he_change_part *parts = api_arena_array(&x->arena, count + 1u, sizeof *parts);
+    he_changes changes = {0};
+    he_error err = {0};
+    if (deltas == NULL || parts == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    if (count > 0) {
+        api_store_status status =
+            x->store->step(x->store->self, x->mesh, s->which, count, deltas, &x->info);
+        if (status != API_STORE_OK) {
+            refuse(x, s, status);
+            return;
+        }
+        api_publish(x, 204);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        parts[i] = (he_change_part){deltas[i], 0, deltas[i]->count, s->which == API_UNDO};
+    }
+    if (he_changes_sum(mesh, parts, count, &changes, &err) == HE_OK) {
+        write_answer(x, &changes);
+        he_changes_clear(&changes);
+    } else {
+        api_fail_core(x, &err);
+    }
+}
+
+static void run(api_exchange *x)
+{
+    const steps *s = x->state;
+    const api_store *store = x->store;
+    he_delta *recording;
+    he_mesh *mesh = api_write_begin(x, s->has_expected ? &s->expected : NULL, &recording);
+    if (mesh == NULL) {
+        return;
+    }
+    uint32_t count = s->count;
+    uint64_t bytes;
+    api_store_status status =
+        store->steps_to(store->self, x->mesh, s->which, s->revision, &count, &bytes);
+    if (status == API_STORE_OK) {
+        take(x, s, mesh, count);
+    } else {
+        refuse(x, s, status);
+    }
+    store->write_end(store->self, x->mesh);
+    if (x->problem.code != HE_OK) {
+        return;
+    }
+    api_answer_etag(x, "edits");
+    if (!api_answer_minimal(x)) {
+        api_answer_json(x, 200);
+    }
+}
+
+/* Deltas of many rows belong on a thread that may block. */
+static bool is_long(api_exchange *x, const steps *s)
+{
+    uint32_t count = s->count;
+    uint64_t bytes = 0;
+    if (api_read_begin(x) == NULL) {
+        return false;
+    }
+    api_store_status status =
+        x->store->steps_to(x->store->self, x->mesh, s->which, s->revision, &count, &bytes);
+    api_read_end(x);
+    return status == API_STORE_OK && api_is_costly(x, bytes, API_COSTLY_STEPS);
+}
+
+static void begin(api_exchange *x, api_action which)
+{
+    steps *s = api_arena_array(&x->arena, 1, sizeof *s);
+    if (s == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    *s = (steps){.which = which};
+    x->state = s;
+    if (!read_request(x, s)) {
+        return;
+    }
+    if (is_long(x, s)) {
+        api_defer(x, run);
+    } else if (x->problem.code == HE_OK) {
+        run(x);
+    }
+}
+
+void api_undo_post(api_exchange *x)
+{
+    begin(x, API_UNDO);
+}
+
+void api_redo_post(api_exchange *x)
+{
+    begin(x, API_REDO);
+}

@@ -1,0 +1,13 @@
+#include "base/budget.h"
+
+he_status he_budget_exhausted(he_budget *budget, he_error *err)
+{
+    budget->left = 0;
+    return he_fail_plain(err, HE_LIMIT, "this takes more steps than are left");
+}
+
+he_status he_budget_ask(he_budget *budget, he_error *err)
+{
+    budget->unheard = 0;
+    return he_watch_step(budget->watch, 0, 1, err);
+}

@@ -1,0 +1,22 @@
+/* text_hash.h - the hash of a string, for the tables of strings (labels.c,
+ * format/text/json_parse.c). */
+#ifndef HE_BASE_TEXT_HASH_H
+#define HE_BASE_TEXT_HASH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* By FNV-1a, stirred more. Files choose the strings: who does not know the seed cannot choose many
+ * of hashes that lie together, in which a search would be long. The address of the table will do.
+ */
+static inline uint64_t he_text_hash(uint64_t seed, const char *text, size_t length)
+{
+    uint64_t h = seed * 0x9E3779B97F4A7C15;
+    for (size_t i = 0; i < length; i++) {
+        h = (h ^ (unsigned char)text[i]) * 0x100000001B3;
+        h ^= h >> 29;
+    }
+    return h * 0xBF58476D1CE4E5B9 >> 20;
+}
+
+#endif

@@ -1,0 +1,12 @@
+/* utf8.h - is this UTF-8? RFC 3629: no overlong forms, no surrogates, nothing beyond U+10FFFF. */
+#ifndef HE_BASE_UTF8_H
+#define HE_BASE_UTF8_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Bytes of the character that begins at `bytes`, 0 where there is none. `length` > 0. */
+size_t he_utf8_character(const char *bytes, size_t length);
+bool he_is_utf8(const char *bytes, size_t length);
+
+#endif

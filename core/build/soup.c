@@ -1,0 +1,171 @@
+/* Filling a polygon soup, within its limits: he_soup of build.h. */
+#include "build/build.h"
+
+#include <math.h>
+#include <string.h>
+
+void he_soup_init(he_soup *soup, const he_limits *limits)
+{
+    *soup = (he_soup){0};
+    if (limits != NULL) {
+        soup->limits = *limits;
+    }
+}
+
+void he_soup_clear(he_soup *soup)
+{
+    he_mem_free(soup->positions);
+    he_mem_free(soup->corners);
+    he_mem_free(soup->starts);
+    for (size_t i = 0; i < soup->column_count; i++) {
+        he_column_free(soup->columns[i]);
+    }
+    he_mem_free(soup->columns);
+    he_limits limits = soup->limits;
+    he_soup_init(soup, &limits);
+}
+
+static size_t bytes_of(const he_soup *soup)
+{
+    return soup->vertex_capacity * sizeof *soup->positions +
+           (soup->corner_capacity + soup->face_capacity) * sizeof(uint32_t);
+}
+
+/* Make room for one more row of an array; `most` is what the limits allow. */
+static he_status grow(he_soup *soup, void *array, size_t size, size_t *capacity, size_t count,
+                      uint64_t limit, uint64_t most, const char *what, he_error *err)
+{
+    uint64_t allowed = limit != 0 && limit < most ? limit : most;
+    if (count >= allowed) {
+        return he_fail_plain(err, HE_LIMIT, "more than %llu %s", (unsigned long long)allowed, what);
+    }
+    if (count < *capacity) {
+        return HE_OK;
+    }
+    size_t wanted = he_mem_grown(*capacity, count + 1);
+    if (soup->limits.bytes != 0 &&
+        bytes_of(soup) + (wanted - *capacity) * size > soup->limits.bytes) {
+        return he_fail_plain(err, HE_LIMIT, "the mesh needs more than %llu bytes of memory",
+                             (unsigned long long)soup->limits.bytes);
+    }
+    void *block;
+    memcpy(&block, array, sizeof block);
+    block = he_mem_array(block, wanted, size);
+    if (block == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu %s", wanted, what);
+    }
+    memcpy(array, &block, sizeof block);
+    *capacity = wanted;
+    return HE_OK;
+}
+
+he_status he_soup_add_vertex(he_soup *soup, he_vec3 position, he_error *err)
+{
+    if (!isfinite(position.x) || !isfinite(position.y) || !isfinite(position.z)) {
+        return he_fail_plain(err, HE_NOT_FINITE, "vertex %zu has a coordinate that is not finite",
+                             soup->vertex_count);
+    }
+    if (soup->vertex_count == soup->vertex_capacity ||
+        (soup->limits.vertices != 0 && soup->vertex_count >= soup->limits.vertices)) {
+        he_status status =
+            grow(soup, &soup->positions, sizeof *soup->positions, &soup->vertex_capacity,
+                 soup->vertex_count, soup->limits.vertices, HE_MAX_ROWS, "vertices", err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    soup->positions[soup->vertex_count++] = position;
+    return HE_OK;
+}
+
+he_status he_soup_begin_face(he_soup *soup, he_error *err)
+{
+    if (soup->face_count == soup->face_capacity ||
+        (soup->limits.faces != 0 && soup->face_count >= soup->limits.faces)) {
+        he_status status = grow(soup, &soup->starts, sizeof *soup->starts, &soup->face_capacity,
+                                soup->face_count, soup->limits.faces, HE_MAX_ROWS, "faces", err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    soup->starts[soup->face_count++] = (uint32_t)soup->corner_count;
+    return HE_OK;
+}
+
+he_status he_soup_add_corner(he_soup *soup, uint32_t vertex, he_error *err)
+{
+    if (soup->corner_count == soup->corner_capacity ||
+        (soup->limits.corners != 0 && soup->corner_count >= soup->limits.corners)) {
+        he_status status =
+            grow(soup, &soup->corners, sizeof *soup->corners, &soup->corner_capacity,
+                 soup->corner_count, soup->limits.corners, UINT32_MAX - 1, "corners", err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    soup->corners[soup->corner_count++] = vertex;
+    return HE_OK;
+}
+
+he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices, size_t count, he_error *err)
+{
+    size_t corners = soup->corner_count;
+    he_status status = he_soup_begin_face(soup, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        status = he_soup_add_corner(soup, vertices[i], err);
+    }
+    if (status != HE_OK) {
+        soup->face_count--;
+        soup->corner_count = corners;
+    }
+    return status;
+}
+
+uint32_t he_soup_face_of(const he_soup *soup, size_t corner)
+{
+    size_t low = 0, high = soup->face_count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (soup->starts[middle] <= corner) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return (uint32_t)low;
+}
+
+he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
+                         uint32_t components, he_rule rule, he_column **out, he_error *err)
+{
+    for (size_t i = 0; i < soup->column_count; i++) {
+        he_column *column = soup->columns[i];
+        if (column->domain == domain && strcmp(column->name, name) == 0) {
+            if (column->type != type || column->components != components) {
+                return he_fail_plain(err, HE_BAD_VALUE, "attribute %s is given as %s and as %s",
+                                     name, he_type_name(column->type), he_type_name(type));
+            }
+            *out = column;
+            return HE_OK;
+        }
+    }
+    if (soup->column_count == soup->column_capacity) {
+        size_t capacity = he_mem_grown(soup->column_capacity, soup->column_count + 1);
+        he_column **columns = he_mem_array(soup->columns, capacity, sizeof(he_column *));
+        if (columns == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for another attribute");
+        }
+        soup->columns = columns;
+        soup->column_capacity = capacity;
+    }
+    he_column *column;
+    he_status status = he_column_new(name, domain, type, components, rule, &column, err);
+    if (status == HE_OK) {
+        soup->columns[soup->column_count++] = column;
+        *out = column;
+    }
+    return status;
+}

@@ -1,0 +1,452 @@
+#include "build/turn.h"
+
+#include "base/exec.h"
+#include "build/pair.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* What a part found that is to be told. */
+enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
+
+enum { SMALL_VERTEX = 24 };
+
+typedef struct turning {
+    const he_soup *soup;
+    const he_corners *corners;
+    uint32_t lanes;
+    /* A row of all vertices for each lane: first how many corners, then where the next one goes. */
+    uint32_t *places;
+    uint32_t *filed; /* corners, vertex by vertex */
+    uint32_t *turn, *first;
+    unsigned char *found; /* by each part: the flags above */
+    size_t *matched;      /* by each part: corners with a turn */
+    unsigned all;         /* found by any */
+} turning;
+
+/* --- faces ------------------------------------------------------------------------------------ */
+
+/* `count` is a constant where this is inlined for the usual ones. */
+static inline unsigned check_small(const uint32_t *corners, uint32_t count, size_t vertices)
+{
+    unsigned bad = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        bad |= corners[i] >= vertices;
+        for (uint32_t k = 0; k < i; k++) {
+            bad |= corners[i] == corners[k];
+        }
+    }
+    return BAD_FACE * bad;
+}
+
+/* The corners of large faces are left to he_soup_check_faces, their indices are not. */
+static unsigned check_face(const uint32_t *corners, uint32_t count, size_t vertices)
+{
+    unsigned bad = 0;
+    if (count <= HE_SMALL_FACE) {
+        return check_small(corners, count, vertices);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        bad |= corners[i] >= vertices;
+    }
+    return bad != 0 ? BAD_FACE : LARGE_FACE;
+}
+
+/* Whether faces are proper, and how many corners each vertex has. */
+static he_status count_corners(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
+{
+    turning *t = context;
+    const he_soup *soup = t->soup;
+    uint32_t *counts = t->places + lane * soup->vertex_count;
+    unsigned found = 0;
+    (void)err;
+    for (size_t f = from; f < to; f++) {
+        const uint32_t first = soup->starts[f], count = he_soup_end(soup, f) - first;
+        if (count < 3) { /* of faces without corners alone there is no array either */
+            found |= BAD_FACE;
+            break;
+        }
+        const uint32_t *corners = soup->corners + first;
+        found |= count == 3   ? check_small(corners, 3, soup->vertex_count)
+                 : count == 4 ? check_small(corners, 4, soup->vertex_count)
+                              : check_face(corners, count, soup->vertex_count);
+        if ((found & BAD_FACE) != 0) {
+            break;
+        }
+        for (uint32_t i = 0; i < count; i++) {
+            counts[corners[i]]++;
+        }
+    }
+    t->found[lane] |= (unsigned char)found;
+    return HE_OK;
+}
+
+/* Counts become places: vertex by vertex, and at one vertex lane by lane, which is the order of the
+ * soup. */
+static void place_corners(turning *t)
+{
+    const size_t vertices = t->soup->vertex_count;
+    uint32_t at = 0;
+    for (size_t v = 0; v < vertices; v++) {
+        for (uint32_t lane = 0; lane < t->lanes; lane++) {
+            uint32_t *place = &t->places[lane * vertices + v], count = *place;
+            *place = at;
+            at += count;
+        }
+    }
+}
+
+static he_status file_corners(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
+{
+    turning *t = context;
+    const he_soup *soup = t->soup;
+    uint32_t *place = t->places + lane * soup->vertex_count;
+    (void)err;
+    for (uint32_t c = soup->starts[from], end = he_soup_end(soup, to - 1); c < end; c++) {
+        t->filed[place[soup->corners[c]]++] = c;
+    }
+    return HE_OK;
+}
+
+/* --- vertices --------------------------------------------------------------------------------- */
+
+/* Filing has moved each place on to where the next lane's, or the next vertex', begin. */
+static uint32_t begin_of(const turning *t, size_t v)
+{
+    return v == 0 ? 0 : t->places[(t->lanes - 1) * t->soup->vertex_count + v - 1];
+}
+
+static uint32_t end_of(const turning *t, size_t v)
+{
+    return t->places[(t->lanes - 1) * t->soup->vertex_count + v];
+}
+
+/* `follow` leads from each of a vertex' corners to the one beside it, `count` where there is none:
+ * do the open fans take up all corners? */
+static bool all_open(const uint32_t *follow, uint32_t count)
+{
+    uint32_t entered = 0, met = 0; /* bits; corners */
+    for (uint32_t i = 0; i < count; i++) {
+        entered |= follow[i] < count ? 1u << follow[i] : 0;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t k = i; (entered >> i & 1) == 0 && k < count && met <= count; k = follow[k]) {
+            met++;
+        }
+    }
+    return met == count;
+}
+
+static bool leads_twice(const uint32_t *to, uint32_t count)
+{
+    unsigned twice = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t k = 0; k < i; k++) {
+            twice |= to[i] == to[k];
+        }
+    }
+    return twice != 0;
+}
+
+/* Four words in a vector register, which compilers of this dialect have for every machine. */
+typedef uint32_t four __attribute__((vector_size(16)));
+
+/* follow[i] = the last k for which to[k] is from[i], or `count`. Arrays of SMALL_VERTEX words. */
+static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint32_t *follow)
+{
+    for (uint32_t begin = 0; begin < count; begin += 8) {
+        four low, high, none = {count, count, count, count}, found[2] = {none, none};
+        memcpy(&low, from + begin, sizeof low);
+        memcpy(&high, from + begin + 4, sizeof high);
+        for (uint32_t k = 0; k < count; k++) {
+            four one = {to[k], to[k], to[k], to[k]}, to_k = {k, k, k, k};
+            found[0] ^= (found[0] ^ to_k) & (four)(low == one);
+            found[1] ^= (found[1] ^ to_k) & (four)(high == one);
+        }
+        memcpy(follow + begin, found, sizeof found);
+    }
+}
+
+/* The turns about a vertex of few corners. That they form one ring shows that all is well; only
+ * where they do not is it asked why. No branch depends on the ids, which may have no pattern. Two
+ * faces that run along an edge in one direction leave one vertex towards the same other. */
+static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count,
+                         const uint32_t *from, const uint32_t *to, size_t *matched)
+{
+    uint32_t follow[SMALL_VERTEX], open = 0;
+    assert(count > 0);
+    match(from, to, count, follow);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t k = follow[i];
+        open += k == count;
+        t->turn[filed[i]] = k == count ? HE_NONE : filed[k];
+    }
+    *matched += count - open;
+    if (open == 0) {
+        uint32_t met = 1;
+        for (uint32_t k = follow[0]; k != 0 && met <= count; k = follow[k]) {
+            met++;
+        }
+        if (met == count) {
+            return 0;
+        }
+    }
+    return leads_twice(to, count) ? BAD_EDGE : all_open(follow, count) ? 0 : CLOSED_FAN;
+}
+
+static inline void find_beside(const turning *t, const uint32_t *filed, uint32_t count,
+                               uint32_t degree, uint32_t *from, uint32_t *to)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        he_corner at = he_corner_find(t->corners, filed[i], degree);
+        from[i] = t->soup->corners[at.prev];
+        to[i] = t->soup->corners[at.next];
+    }
+}
+
+/* The hub of a fan. `leads` remembers, for every vertex, which entry leaves towards it, `follows`
+ * which entry is beside an entry; `entered` has a bit an entry. Values left by other vertices do
+ * not point among these, so they need no clearing. */
+typedef struct hub_turns {
+    uint32_t *leads, *follows;
+    uint64_t *entered;
+} hub_turns;
+
+/* Corners of the fan from entry `from` on, but no more than `most`, since a fan that is not proper
+ * may lead round beside its beginning. */
+static uint32_t fan_length(const hub_turns *hub, uint32_t from, uint32_t end, uint32_t most)
+{
+    uint32_t k = from, met = 0;
+    do {
+        met++;
+        k = hub->follows[k];
+    } while (k < end && k != from && met <= most);
+    return met;
+}
+
+static uint32_t vertex_before(const turning *t, uint32_t i)
+{
+    return t->soup->corners[he_corner_find(t->corners, t->filed[i], t->corners->degree).prev];
+}
+
+static uint32_t vertex_behind(const turning *t, uint32_t i)
+{
+    return t->soup->corners[he_corner_find(t->corners, t->filed[i], t->corners->degree).next];
+}
+
+static unsigned turn_many(turning *t, uint32_t begin, uint32_t end, const hub_turns *hub,
+                          size_t *matched)
+{
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t to = vertex_behind(t, i), k = hub->leads[to];
+        if (k >= begin && k < i && vertex_behind(t, k) == to) {
+            return BAD_EDGE;
+        }
+        hub->leads[to] = i;
+    }
+    uint32_t open = 0, met = 0;
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t from = vertex_before(t, i), k = hub->leads[from];
+        bool found = k >= begin && k < end && vertex_behind(t, k) == from;
+        hub->follows[i] = found ? k : end;
+        t->turn[t->filed[i]] = found ? t->filed[k] : HE_NONE;
+        open += !found;
+        if (found) {
+            he_bits_set(hub->entered, k);
+        }
+    }
+    *matched += end - begin - open;
+    for (uint32_t i = begin; i < end; i++) {
+        if (open == 0 ? i == begin : !he_bits_get(hub->entered, i)) {
+            met += fan_length(hub, i, end, end - begin - met);
+        }
+    }
+    return met == end - begin ? 0 : CLOSED_FAN;
+}
+
+static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to, uint32_t degree)
+{
+    enum { AHEAD = 32 };
+    const uint32_t *filed = t->filed, *corners = t->soup->corners;
+    const uint32_t last = end_of(t, t->soup->vertex_count - 1);
+    uint32_t before[SMALL_VERTEX] = {0}, behind[SMALL_VERTEX];
+    unsigned found = 0;
+    size_t matched = 0;
+    uint32_t begin = begin_of(t, from), end;
+    for (size_t v = from; v < to; v++, begin = end) {
+        end = end_of(t, v);
+        /* Where ids are in no order what is read and written lies far apart: ask for it in time. */
+        for (uint32_t i = begin; i < end && last - i > AHEAD; i++) {
+            __builtin_prefetch(&corners[filed[i + AHEAD]]);
+            __builtin_prefetch(&t->turn[filed[i + AHEAD]], 1);
+        }
+        t->first[v] = begin == end ? HE_NONE : filed[begin];
+        if (end - begin > SMALL_VERTEX) {
+            found |= LARGE_VERTEX;
+        } else if (end > begin) {
+            find_beside(t, filed + begin, end - begin, degree, before, behind);
+            found |= turn_few(t, filed + begin, end - begin, before, behind, &matched);
+        }
+    }
+    t->found[part] |= (unsigned char)found;
+    t->matched[part] = matched;
+}
+
+static he_status turn_vertices(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    turning *t = context;
+    (void)err;
+    switch (t->corners->degree) {
+    case 3:
+        turn_range(t, part, from, to, 3);
+        break;
+    case 4:
+        turn_range(t, part, from, to, 4);
+        break;
+    default:
+        turn_range(t, part, from, to, 0);
+        break;
+    }
+    return HE_OK;
+}
+
+/* --- all together ----------------------------------------------------------------------------- */
+
+static he_status no_memory(const he_soup *soup, he_error *err)
+{
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
+}
+
+/* Once more vertex by vertex: those of many corners, which share what remembers, and with `report`
+ * all of them to say which have a closed fan beside another. */
+static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *total, he_error *err)
+{
+    const he_soup *soup = t->soup;
+    he_status status = HE_OK;
+    size_t matched = 0;
+    uint32_t before[SMALL_VERTEX] = {0}, behind[SMALL_VERTEX];
+    hub_turns hub = {.leads = he_mem_zero(soup->vertex_count, sizeof(uint32_t)),
+                     .follows = he_mem_array(NULL, soup->corner_count, sizeof(uint32_t)),
+                     .entered = he_bits_new(soup->corner_count)};
+    if (hub.leads == NULL || hub.follows == NULL || hub.entered == NULL) {
+        status = no_memory(soup, err);
+    }
+    for (size_t v = 0; v < soup->vertex_count && status == HE_OK; v++) {
+        uint32_t begin = begin_of(t, v), end = end_of(t, v);
+        unsigned found = 0;
+        status = he_watch_at(soup->limits.watch, v, soup->vertex_count, err);
+        if (end - begin > SMALL_VERTEX) {
+            found = turn_many(t, begin, end, &hub, &matched);
+        } else if (all && end > begin) {
+            find_beside(t, t->filed + begin, end - begin, t->corners->degree, before, behind);
+            found = turn_few(t, t->filed + begin, end - begin, before, behind, &matched);
+        }
+        t->all |= found;
+        if (all && (found & CLOSED_FAN) != 0) {
+            he_report_add(
+                report, total,
+                (he_defect){HE_CLOSED_FAN, HE_VERTEX, (uint32_t)v, HE_NONE, HE_NONE, HE_NONE});
+        }
+    }
+    t->matched[0] += all ? 0 : matched;
+    he_mem_free(hub.leads);
+    he_mem_free(hub.follows);
+    he_mem_free(hub.entered);
+    return status;
+}
+
+/* What parts have found. */
+static void gather(turning *t, size_t parts)
+{
+    for (size_t i = 0; i < parts; i++) {
+        t->all |= t->found[i];
+    }
+}
+
+static he_status file_all(turning *t, he_report *report, uint64_t *total, he_error *err)
+{
+    const he_soup *soup = t->soup;
+    he_watch *watch = soup->limits.watch;
+    he_status status = he_watch_phase(watch, "checking", 0.1, err);
+    if (status == HE_OK) {
+        status = he_run_lanes(watch, t->lanes, soup->face_count, count_corners, t, err);
+    }
+    gather(t, t->lanes);
+    if (status == HE_OK && (t->all & (BAD_FACE | LARGE_FACE)) != 0) {
+        status = he_soup_check_faces(soup, report, total, err);
+    }
+    if (status != HE_OK || *total > 0) {
+        return status;
+    }
+    place_corners(t);
+    status = he_watch_phase(watch, "filing", 0.3, err);
+    return status == HE_OK ? he_run_lanes(watch, t->lanes, soup->face_count, file_corners, t, err)
+                           : status;
+}
+
+static he_status turn_all(turning *t, he_report *report, uint64_t *total, he_error *err)
+{
+    const he_soup *soup = t->soup;
+    he_watch *watch = soup->limits.watch;
+    he_status status = he_watch_phase(watch, "pairing", 0.55, err);
+    if (status == HE_OK) {
+        status = he_run_ranges(watch, soup->vertex_count, turn_vertices, t, err);
+    }
+    gather(t, he_ranges(soup->vertex_count));
+    if (status == HE_OK && (t->all & LARGE_VERTEX) != 0) {
+        status = he_watch_phase(watch, "pairing", 0.6, err);
+        if (status == HE_OK) {
+            status = turn_again(t, false, NULL, NULL, err);
+        }
+    }
+    if (status == HE_OK && (t->all & BAD_EDGE) != 0) {
+        return he_soup_check_edges(soup, report, total, err);
+    }
+    return status == HE_OK && (t->all & CLOSED_FAN) != 0 ? turn_again(t, true, report, total, err)
+                                                         : status;
+}
+
+static bool allocate(turning *t)
+{
+    const he_soup *soup = t->soup;
+    size_t parts = he_ranges(soup->vertex_count) + HE_MOST_LANES;
+    t->found = he_mem_zero(parts, sizeof *t->found);
+    t->matched = he_mem_zero(parts, sizeof *t->matched);
+    t->places = he_mem_zero(soup->vertex_count, t->lanes * sizeof *t->places);
+    t->first = he_mem_array(NULL, soup->vertex_count, sizeof *t->first);
+    t->turn = he_mem_array(NULL, soup->corner_count, sizeof *t->turn);
+    t->filed = he_mem_array(NULL, soup->corner_count, sizeof *t->filed);
+    return t->found != NULL && t->matched != NULL && t->places != NULL && t->first != NULL &&
+           t->turn != NULL && t->filed != NULL;
+}
+
+he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report, uint64_t *total,
+                       he_error *err)
+{
+    const he_soup *soup = corners->soup;
+    turning t = {
+        .soup = soup, .corners = corners, .lanes = he_lanes(soup->limits.watch, soup->face_count)};
+    he_status status = allocate(&t) ? HE_OK : no_memory(soup, err);
+    if (status == HE_OK) {
+        status = file_all(&t, report, total, err);
+    }
+    if (status == HE_OK && *total == 0) {
+        status = turn_all(&t, report, total, err);
+    }
+    if (status == HE_OK && *total == 0) {
+        size_t matched = 0;
+        for (size_t i = 0; i < he_ranges(soup->vertex_count); i++) {
+            matched += t.matched[i];
+        }
+        /* An edge with two faces was matched at both its ends. */
+        *out = (he_turns){t.turn, t.first, t.filed, soup->corner_count - matched / 2};
+        t.turn = t.first = t.filed = NULL;
+    }
+    he_mem_free(t.found);
+    he_mem_free(t.matched);
+    he_mem_free(t.places);
+    he_mem_free(t.first);
+    he_mem_free(t.turn);
+    he_mem_free(t.filed);
+    return status;
+}

@@ -1,0 +1,50 @@
+/* edge_bevel.h - an edge flattened into a face. */
+#ifndef HE_EDIT_BEVEL_EDGE_BEVEL_H
+#define HE_EDIT_BEVEL_EDGE_BEVEL_H
+
+#include "mesh/mesh.h"
+
+typedef struct he_bevel {
+    he_face face;
+    he_ids vertices, edges; /* in the order of the face */
+} he_bevel;
+
+/* edge_bevel, for ends with d1 and d2 edges: V + d1 + d2 - 4, E + d1 + d2 - 3, F + 1, and V + 1, E
+ * + 1 more for each end on the boundary. Every other edge at the two ends is cut at `width` from
+ * its end, and a new face joins the cuts; edge and interior ends go.
+ *
+ *        o           o             o           o
+ *         \    f    /               \    f    /          the face f left of half-edge 2e, u -> v,
+ *          \       /                 1-------6           has 1 and 6 in place of u and v; the faces
+ *      o----u--->-v----o   --->  o--2|  new  |5--o       between two edges of an end have a side
+ *          /       \                 3-------4           more
+ *         /    g    \               /    g    \
+ *        o           o             o           o
+ *
+ *      u on the boundary:            1---          An end on the boundary has two boundary edges
+ *          \   f                      \            in its fan. It stays where it is, between the
+ *           u--->-v        --->        u  new      cuts of these: u is a corner of the new face
+ *          /   g                      /            and the stubs from it to the cuts are sides.
+ *                                    2---
+ *
+ * Other fans of such an end stay with it; d counts the edges of the fan with the edge only.
+ *
+ * No cut is farther along its edge than 0.99 of the length, so that none passes the other end; an
+ * edge without length is cut half-way (bevel.h).
+ *
+ * The new vertices come in the order of the new face, from the one after the edge counter-clockwise
+ * about the origin of half-edge 2e on: 1 to 6 above. They descend from their end, and have values
+ * between it and the other end of their edge. The new edges come in the same order. The old edges
+ * keep their ids at their other ends. The two long sides descend from the edge, the stubs from
+ * theirs, and the face from the one left of half-edge 2e. Half-edge 2e of a new edge runs along the
+ * new face, whose stored half-edge leaves the first vertex.
+ *
+ * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_BAD_VALUE unless width > 0;
+ * HE_LOW_DEGREE for an interior end with two edges; HE_LOCKED_ELEMENT for what goes, or gets
+ * another end or corner (marks.h). HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else
+ * he_bevel_clear frees it. Costs the fans of both ends. */
+HE_NODISCARD he_status he_edge_bevel(he_mesh *m, he_edge e, double width, he_bevel *out,
+                                     he_error *err);
+void he_bevel_clear(he_bevel *bevel);
+
+#endif

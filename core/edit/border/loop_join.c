@@ -1,0 +1,342 @@
+#include "edit/border/loop_join.h"
+
+#include "edit/piece/point.h"
+#include "edit/piece/ring.h"
+#include "mesh/marks.h"
+#include "query/idmap.h"
+
+/* a[i] is sewn to b[i]: the first loop runs forwards, the second backwards. Vertex i of the first
+ * is the origin of a[i], of the second the target of b[i]. */
+typedef struct plan {
+    he_mesh *m;
+    he_ids a, b;
+    uint32_t n;
+    he_idmap vertices; /* the n of the second loop, then the n of the first */
+} plan;
+
+static void clear(plan *p)
+{
+    he_ids_clear(&p->a);
+    he_ids_clear(&p->b);
+    he_idmap_clear(&p->vertices);
+}
+
+static he_halfedge side_of_a(const plan *p, uint32_t i)
+{
+    return (he_halfedge){p->a.ids[i]};
+}
+
+static he_halfedge side_of_b(const plan *p, uint32_t i)
+{
+    return (he_halfedge){p->b.ids[i]};
+}
+
+static he_vertex stays(const plan *p, uint32_t i)
+{
+    return (he_vertex){p->vertices.ids.ids[p->n + i]};
+}
+
+static he_vertex goes(const plan *p, uint32_t i)
+{
+    return (he_vertex){p->vertices.ids.ids[i]};
+}
+
+/* What vertex v will be. */
+static he_vertex becomes(const plan *p, he_vertex v)
+{
+    uint32_t i = he_idmap_find(&p->vertices, v.i);
+    return i < p->n ? stays(p, i) : v;
+}
+
+static he_vec3 place(const plan *p, uint32_t i)
+{
+    return he_point_between(he_position(p->m, stays(p, i)), he_position(p->m, goes(p, i)), 0.5);
+}
+
+/* --- the loops --- */
+
+static he_status find_loops(plan *p, he_halfedge a, he_halfedge b, he_error *err)
+{
+    he_status status = HE_OK;
+    he_halfedge h = a;
+    do {
+        if (h.i == b.i) {
+            return he_fail(err, HE_SAME_LOOP, HE_HALFEDGE, b.i,
+                           "half-edges %u and %u are of one loop", a.i, b.i);
+        }
+        status = he_ids_add(&p->a, h.i, err);
+        h = he_next(p->m, h);
+    } while (status == HE_OK && h.i != a.i);
+    h = b;
+    do {
+        status = status == HE_OK ? he_ids_add(&p->b, h.i, err) : status;
+        h = he_prev(p->m, h);
+    } while (status == HE_OK && h.i != b.i);
+    if (status == HE_OK && p->a.count != p->b.count) {
+        return he_fail(err, HE_LOOP_LENGTH, HE_HALFEDGE, b.i,
+                       "the loop of half-edge %u has %zu edges, that of half-edge %u has %zu", a.i,
+                       p->a.count, b.i, p->b.count);
+    }
+    p->n = (uint32_t)p->a.count;
+    return status;
+}
+
+static he_status find_vertices(plan *p, he_error *err)
+{
+    uint32_t index = 0;
+    bool added = true;
+    he_status status = HE_OK;
+    for (uint32_t i = 0; status == HE_OK && i < 2 * p->n; i++) {
+        he_vertex v =
+            i < p->n ? he_target(p->m, side_of_b(p, i)) : he_origin(p->m, side_of_a(p, i - p->n));
+        status = he_idmap_add(&p->vertices, v.i, &index, &added, err);
+        if (status == HE_OK && !added) {
+            return i >= p->n && index < p->n
+                       ? he_fail(err, HE_SHARED_VERTEX, HE_VERTEX, v.i, "both loops pass vertex %u",
+                                 v.i)
+                       : he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, v.i,
+                                 "one of the loops passes vertex %u twice", v.i);
+        }
+    }
+    return status;
+}
+
+static he_status check_sides(const plan *p, he_error *err)
+{
+    for (uint32_t i = 0; i < p->n; i++) {
+        uint32_t e = he_edge_of(side_of_a(p, i)).i, f = he_edge_of(side_of_b(p, i)).i;
+        if (he_is_boundary_halfedge(p->m, he_twin(side_of_a(p, i))) &&
+            he_is_boundary_halfedge(p->m, he_twin(side_of_b(p, i)))) {
+            return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e,
+                           "edges %u and %u would be one without a face", e, f);
+        }
+    }
+    return HE_OK;
+}
+
+/* --- what would become one --- */
+
+/* Add the faces about a vertex, but for that of the loop's half-edge `own`; `again` refuses one
+ * that is there. */
+static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first, bool again,
+                              he_idmap *seen, he_error *err)
+{
+    he_halfedge h = first;
+    uint32_t loop = he_face_of(p->m, own).i;
+    do {
+        uint32_t index, f = he_face_of(p->m, h).i;
+        bool added = true;
+        if (f != HE_NONE && f != loop) {
+            he_status status = he_idmap_add(seen, f, &index, &added, err);
+            if (status != HE_OK) {
+                return status;
+            }
+        }
+        if (again && !added) {
+            return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f,
+                           "face %u has two of the vertices that would become one", f);
+        }
+        h = he_turn_ccw(p->m, h);
+    } while (h.i != first.i);
+    return HE_OK;
+}
+
+static he_status check_faces(const plan *p, uint32_t i, he_error *err)
+{
+    he_idmap seen = {.log2 = 0};
+    he_halfedge a = side_of_a(p, i), b = he_twin(side_of_b(p, i));
+    he_status status = gather_faces(p, a, a, false, &seen, err);
+    if (status == HE_OK) {
+        status = gather_faces(p, he_twin(b), b, true, &seen, err);
+    }
+    he_idmap_clear(&seen);
+    return status;
+}
+
+/* Add what the neighbours of a vertex will be. */
+static he_status gather_neighbours(const plan *p, he_halfedge first, const he_halfedge skip[2],
+                                   he_idmap *seen, he_error *err)
+{
+    he_halfedge h = first;
+    do {
+        uint32_t index;
+        bool added = true;
+        if (h.i != skip[0].i && h.i != skip[1].i) {
+            he_status status =
+                he_idmap_add(seen, becomes(p, he_target(p->m, h)).i, &index, &added, err);
+            if (status != HE_OK) {
+                return status;
+            }
+        }
+        if (!added) {
+            uint32_t e = he_edge_of(h).i;
+            return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, e,
+                           "edge %u and another would join the same two vertices", e);
+        }
+        h = he_turn_ccw(p->m, h);
+    } while (h.i != first.i);
+    return HE_OK;
+}
+
+/* The edges of the second loop become one with those of the first, so they do not count. */
+static he_status check_neighbours(const plan *p, uint32_t i, he_error *err)
+{
+    he_idmap seen = {.log2 = 0};
+    const he_halfedge none[2] = {{HE_NONE}, {HE_NONE}};
+    he_halfedge b = he_twin(side_of_b(p, i));
+    const he_halfedge own[2] = {b, side_of_b(p, i == 0 ? p->n - 1 : i - 1)};
+    he_status status = gather_neighbours(p, side_of_a(p, i), none, &seen, err);
+    if (status == HE_OK) {
+        status = gather_neighbours(p, b, own, &seen, err);
+    }
+    he_idmap_clear(&seen);
+    return status;
+}
+
+/* --- marks --- */
+
+static he_status check_vertex_locks(const plan *p, const he_marks *marks, uint32_t i, he_error *err)
+{
+    const he_mesh *m = p->m;
+    he_vec3 from = he_position(m, stays(p, i)), to = place(p, i);
+    he_status status = he_require_unlocked(marks, HE_VERTEX, goes(p, i).i, err);
+    if (status == HE_OK && (from.x != to.x || from.y != to.y || from.z != to.z)) {
+        status = he_require_unlocked(marks, HE_VERTEX, stays(p, i).i, err);
+    }
+    return status == HE_OK ? he_require_unlocked_about(m, marks, he_twin(side_of_b(p, i)), err)
+                           : status;
+}
+
+static he_status check_marks(const plan *p, he_error *err)
+{
+    he_marks marks;
+    if (!he_marks_find(p->m, &marks)) {
+        return HE_OK;
+    }
+    he_status status =
+        he_require_unlocked(&marks, HE_FACE, he_face_of(p->m, side_of_a(p, 0)).i, err);
+    for (uint32_t i = 0; status == HE_OK && i < p->n; i++) {
+        status = check_vertex_locks(p, &marks, i, err);
+    }
+    return status;
+}
+
+/* --- writing --- */
+
+static he_status reserve(const plan *p, he_error *err)
+{
+    size_t n = p->n;
+    he_need need = {.deleted_vertices = n, .deleted_edges = n, .deleted_faces = 2};
+    need.links = n * (6 + HE_SETTLE_LINKS);
+    for (uint32_t i = 0; i < p->n; i++) {
+        need.links += he_vertex_degree(p->m, goes(p, i));
+    }
+    need.positions = n;
+    need.attributes = 3 * n;
+    need.lineage = 2 * n;
+    return he_reserve(p->m, need, err);
+}
+
+static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
+{
+    he_halfedge h = first;
+    do {
+        /* Turning asks for links only, which stay as they are here. */
+        he_set_origin(m, h, to);
+        h = he_turn_ccw(m, h);
+    } while (h.i != first.i);
+}
+
+/* a[i] takes the place of the twin of b[i]. Where that follows, or is followed by, the twin of a
+ * neighbour of b[i], its place is taken too. */
+static void sew_side(const plan *p, uint32_t i)
+{
+    he_mesh *m = p->m;
+    uint32_t before = i == 0 ? p->n - 1 : i - 1, after = i + 1 == p->n ? 0 : i + 1;
+    he_halfedge a = side_of_a(p, i), outer = he_twin(side_of_b(p, i));
+    he_halfedge prev = he_prev(m, outer), next = he_next(m, outer);
+    he_face f = he_face_of(m, outer);
+    if (prev.i == he_twin(side_of_b(p, before)).i) {
+        prev = side_of_a(p, before);
+    }
+    if (next.i == he_twin(side_of_b(p, after)).i) {
+        next = side_of_a(p, after);
+    }
+    he_link(m, prev, a);
+    he_link(m, a, next);
+    he_set_face(m, a, f);
+    if (f.i != HE_NONE && he_face_halfedge(m, f).i == outer.i) {
+        he_set_face_halfedge(m, f, a);
+    }
+    he_carry_move(m, HE_HALFEDGE, a.i, outer.i);
+}
+
+static void commit(const plan *p)
+{
+    he_mesh *m = p->m;
+    const he_face faces[2] = {he_face_of(m, side_of_a(p, 0)), he_face_of(m, side_of_b(p, 0))};
+    for (uint32_t i = 0; i < p->n; i++) {
+        move_ring(m, he_twin(side_of_b(p, i)), stays(p, i));
+    }
+    for (uint32_t i = 0; i < p->n; i++) {
+        sew_side(p, i);
+    }
+    for (uint32_t i = 0; i < p->n; i++) {
+        he_vertex into = stays(p, i), gone = goes(p, i);
+        he_edge kept = he_edge_of(side_of_a(p, i)), dropped = he_edge_of(side_of_b(p, i));
+        he_set_position(m, into, place(p, i));
+        he_carry_merge(m, HE_VERTEX, into.i, gone.i, 0.5);
+        he_carry_merge(m, HE_EDGE, kept.i, dropped.i, 0.5);
+        he_note_merged(m, HE_VERTEX, gone.i, into.i);
+        he_note_merged(m, HE_EDGE, dropped.i, kept.i);
+        he_delete_vertex(m, gone);
+        he_delete_edge(m, dropped);
+    }
+    for (unsigned k = 0; k < 2; k++) {
+        if (faces[k].i != HE_NONE) {
+            he_delete_face(m, faces[k]);
+        }
+    }
+    for (uint32_t i = 0; i < p->n; i++) {
+        he_ring_settle(m, stays(p, i), side_of_a(p, i));
+    }
+}
+
+static he_status check(plan *p, he_halfedge a, he_halfedge b, he_error *err)
+{
+    he_status status = he_mesh_require(p->m, HE_HALFEDGE, a.i, err);
+    if (status == HE_OK) {
+        status = he_mesh_require(p->m, HE_HALFEDGE, b.i, err);
+    }
+    if (status == HE_OK) {
+        status = find_loops(p, a, b, err);
+    }
+    if (status == HE_OK) {
+        status = find_vertices(p, err);
+    }
+    if (status == HE_OK) {
+        status = check_sides(p, err);
+    }
+    for (uint32_t i = 0; status == HE_OK && i < p->n; i++) {
+        status = check_faces(p, i, err);
+    }
+    for (uint32_t i = 0; status == HE_OK && i < p->n; i++) {
+        status = check_neighbours(p, i, err);
+    }
+    return status == HE_OK ? check_marks(p, err) : status;
+}
+
+he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, he_error *err)
+{
+    plan p = {.m = m};
+    he_status status = check(&p, a, b, err);
+    if (status == HE_OK) {
+        status = reserve(&p, err);
+    }
+    if (status == HE_OK) {
+        /* Nothing below can fail. */
+        commit(&p);
+    }
+    clear(&p);
+    return status;
+}

@@ -1,0 +1,384 @@
+#include "edit/local/collapse.h"
+
+#include "edit/local/cut.h"
+#include "edit/piece/point.h"
+#include "edit/piece/ring.h"
+#include "mesh/marks.h"
+
+static he_status refuse(he_error *err, he_halfedge h, const char *rule, const char *kind,
+                        uint32_t id)
+{
+    return he_fail(err, HE_LINK_CONDITION, HE_EDGE, he_edge_of(h).i, "edge %u: %s (%s %u)",
+                   he_edge_of(h).i, rule, kind, id);
+}
+
+/* The corner opposite h in a triangle on its left, HE_NONE without one. */
+static he_vertex opposite(const he_mesh *m, he_halfedge h)
+{
+    return he_is_triangle(m, h) ? he_origin(m, he_prev(m, h)) : (he_vertex){HE_NONE};
+}
+
+enum { SMALL_RING = 24, BLOCK = 8 };
+
+/* The half-edges that leave a vertex, and their targets, filled up to whole blocks by HE_NONE. */
+typedef struct ring {
+    uint32_t count, out[SMALL_RING], target[SMALL_RING];
+} ring;
+
+/* Where two hands are that go about a vertex from one half-edge on, and what is not seen yet. */
+typedef struct hands {
+    he_halfedge up, down;
+    uint32_t ups, downs; /* filled from the front of the ring, and from the back */
+    bool open;
+} hands;
+
+static void put(const he_mesh *m, ring *r, uint32_t place, he_halfedge h)
+{
+    r->out[place] = h.i;
+    r->target[place] = he_target(m, h).i;
+}
+
+/* One turn of either hand. False where the ring is not small. */
+static bool turn(const he_mesh *m, hands *at, ring *r)
+{
+    if (at->ups + at->downs + 2 > SMALL_RING) {
+        return false;
+    }
+    put(m, r, at->ups++, at->up);
+    if (at->up.i != at->down.i) {
+        put(m, r, SMALL_RING - ++at->downs, at->down);
+    }
+    he_halfedge up = he_turn_ccw(m, at->up);
+    at->open = at->up.i != at->down.i && up.i != at->down.i;
+    at->up = up;
+    at->down = at->open ? he_turn_cw(m, at->down) : at->down;
+    return true;
+}
+
+/* In the order of turning counter-clockwise from h. */
+static void close_ring(const hands *at, ring *r)
+{
+    r->count = at->ups;
+    for (uint32_t i = SMALL_RING - at->downs; i < SMALL_RING; i++) {
+        r->out[r->count] = r->out[i];
+        r->target[r->count++] = r->target[i];
+    }
+    for (uint32_t i = r->count; i % BLOCK != 0; i++) {
+        r->target[i] = HE_NONE;
+    }
+}
+
+/* Both ends' rings, from h and its twin on. Each turn waits for memory: they are turned about in
+ * step, and both ways at once. False where one is not small. */
+static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
+{
+    ring *const rings[2] = {of_u, of_v};
+    hands at[2];
+    for (unsigned i = 0; i < 2; i++) {
+        he_halfedge from = i == 0 ? h : he_twin(h);
+        at[i] = (hands){.up = from, .down = he_turn_cw(m, from), .open = true};
+    }
+    while (at[0].open || at[1].open) {
+        for (unsigned i = 0; i < 2; i++) {
+            if (at[i].open && !turn(m, &at[i], rings[i])) {
+                return false;
+            }
+        }
+    }
+    close_ring(&at[0], of_u);
+    close_ring(&at[1], of_v);
+    return true;
+}
+
+static bool is_in(const ring *r, uint32_t vertex)
+{
+    unsigned found = 0;
+    for (uint32_t i = 0; i < r->count && !found; i += BLOCK) {
+        for (uint32_t k = i; k < i + BLOCK; k++) {
+            found |= r->target[k] == vertex;
+        }
+    }
+    return found;
+}
+
+/* L1, and L4 by the way: both turn about u. Without `of_v` its ring is searched for each. */
+static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k, const ring *of_v,
+                                 he_vertex c, he_vertex d, he_error *err)
+{
+    he_vertex v = he_target(m, h), w = he_target(m, k);
+    if (w.i != c.i && w.i != d.i &&
+        (of_v != NULL ? is_in(of_v, w.i) : he_find_halfedge(m, w, v).i != HE_NONE)) {
+        return refuse(err, h, "its ends have another neighbour in common", "vertex", w.i);
+    }
+    /* All corners of a triangle about u are neighbours of u. */
+    if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
+        return HE_OK;
+    }
+    he_face f = he_face_of(m, h), g = he_face_of(m, he_twin(h)), x = he_face_of(m, k);
+    if (x.i != HE_NONE && x.i != f.i && x.i != g.i && he_face_corner(m, x, v).i != HE_NONE) {
+        return refuse(err, h, "another face has both ends as corners", "face", x.i);
+    }
+    return HE_OK;
+}
+
+static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
+{
+    he_vertex c = opposite(m, h), d = opposite(m, he_twin(h));
+    if (c.i != HE_NONE && c.i == d.i) {
+        return refuse(err, h, "both triangles have the same opposite corner", "vertex", c.i);
+    }
+    ring of_u, of_v;
+    he_status status = HE_OK;
+    if (gather(m, h, &of_u, &of_v)) {
+        for (uint32_t i = 1; i < of_u.count && status == HE_OK; i++) {
+            status = check_neighbour(m, h, (he_halfedge){of_u.out[i]}, &of_v, c, d, err);
+        }
+        return status;
+    }
+    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i && status == HE_OK; k = he_turn_ccw(m, k)) {
+        status = check_neighbour(m, h, k, NULL, c, d, err);
+    }
+    return status;
+}
+
+/* L3 for the triangle left of h. */
+static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
+{
+    if (he_is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
+        he_is_boundary_halfedge(m, he_twin(he_prev(m, h)))) {
+        return refuse(err, h, "both other sides of a triangle are on the boundary", "face",
+                      he_face_of(m, h).i);
+    }
+    return HE_OK;
+}
+
+/* Is h's origin interior with three triangles about it? */
+static bool is_apex(const he_mesh *m, he_halfedge h)
+{
+    he_halfedge second = he_turn_ccw(m, h), third = he_turn_ccw(m, second);
+    return he_turn_ccw(m, third).i == h.i && he_is_triangle(m, h) && he_is_triangle(m, second) &&
+           he_is_triangle(m, third);
+}
+
+static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
+{
+    he_prefetch_links(m, h);
+    if (!he_edge_is_live(m, he_edge_of(h))) {
+        return he_mesh_require(m, HE_HALFEDGE, h.i, err);
+    }
+    he_prefetch_about(m, he_edge_of(h));
+    he_prefetch_ends(m, he_edge_of(h));
+    he_halfedge t = he_twin(h);
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    if (he_is_boundary_vertex(m, u) && he_is_boundary_vertex(m, v) &&
+        !he_is_boundary_edge(m, he_edge_of(h))) {
+        return refuse(err, h, "it is interior but both ends are on the boundary", "vertex", u.i);
+    }
+    he_status status = check_sides(m, h, err);
+    if (status == HE_OK) {
+        status = check_sides(m, t, err);
+    }
+    if (status == HE_OK) {
+        status = check_ring(m, h, err);
+    }
+    if (status == HE_OK && is_apex(m, h) && is_apex(m, t)) {
+        return refuse(err, h, "it is part of a tetrahedron", "vertex", u.i);
+    }
+    return status;
+}
+
+/* Everything about u goes or comes to v. */
+static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
+                             he_error *err)
+{
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    he_status status = he_require_unlocked(marks, HE_VERTEX, u.i, err);
+    if (status == HE_OK && moves) {
+        status = he_require_unlocked(marks, HE_VERTEX, v.i, err);
+    }
+    return status == HE_OK ? he_require_unlocked_about(m, marks, h, err) : status;
+}
+
+/* How many feature edges has the origin of h? One of them, other than that of h where it can be,
+ * goes to *which. */
+static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfedge h,
+                               he_edge *which)
+{
+    uint32_t count = 0;
+    he_halfedge k = h;
+    do {
+        if (he_is_feature(marks, he_edge_of(k))) {
+            *which = he_edge_of(k);
+            count++;
+        }
+        k = he_turn_ccw(m, k);
+    } while (k.i != h.i);
+    return count;
+}
+
+/* F1 to F4 of marks.h. */
+static he_status check_features(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
+                                he_error *err)
+{
+    if (marks->feature == NULL) {
+        return HE_OK;
+    }
+    he_halfedge back = he_twin(h);
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    he_edge e = he_edge_of(h), other = e;
+    bool along = he_is_feature(marks, e);
+    uint32_t count = count_features(m, marks, h, &other);
+    if (!along && count > 0) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
+                       "vertex %u would go, but is on feature edge %u", u.i, other.i);
+    }
+    if (along && count != 2) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, e.i,
+                       "vertex %u would go, but %u feature edges meet there", u.i, count);
+    }
+    he_edge left = he_edge_of(he_prev(m, h)), right = he_edge_of(he_next(m, back));
+    if ((he_is_triangle(m, h) && he_is_feature(marks, left)) ||
+        (he_is_triangle(m, back) && he_is_feature(marks, right))) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
+                       "feature edge %u would merge into another", other.i);
+    }
+    count = moves ? count_features(m, marks, back, &other) : 0;
+    if (count > 0 && !(along && count == 2)) {
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
+                       "vertex %u would move, but is on feature edge %u", v.i, other.i);
+    }
+    return HE_OK;
+}
+
+static he_status check_marks(const he_mesh *m, he_halfedge h, he_vec3 place, he_error *err)
+{
+    he_marks marks;
+    if (!he_marks_find(m, &marks)) {
+        return HE_OK;
+    }
+    he_vec3 p = he_position(m, he_target(m, h));
+    bool moves = place.x != p.x || place.y != p.y || place.z != p.z;
+    he_status status = check_locks(m, &marks, h, moves, err);
+    return status != HE_OK ? status : check_features(m, &marks, h, moves, err);
+}
+
+/* The triangle left of h is now a face of the two half-edges kept and gone, of which `gone` goes:
+ * `kept` takes the place of its twin, `outer`. */
+static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
+{
+    he_halfedge outer = he_twin(gone);
+    he_face f = he_face_of(m, kept), x = he_face_of(m, outer);
+    he_vertex c = he_origin(m, outer);
+    if (he_vertex_halfedge(m, c).i == outer.i) {
+        he_set_vertex_halfedge(m, c, kept);
+    }
+    c = he_origin(m, gone);
+    if (he_vertex_halfedge(m, c).i == gone.i) {
+        he_set_vertex_halfedge(m, c, he_twin(kept));
+    }
+    he_link(m, kept, he_next(m, outer));
+    he_link(m, he_prev(m, outer), kept);
+    he_set_face(m, kept, x);
+    if (x.i != HE_NONE && he_face_halfedge(m, x).i == outer.i) {
+        he_set_face_halfedge(m, x, kept);
+    }
+    he_carry_move(m, HE_HALFEDGE, kept.i, outer.i);
+    he_carry_merge(m, HE_EDGE, he_edge_of(kept).i, he_edge_of(gone).i, 0.5);
+    he_note_merged(m, HE_EDGE, he_edge_of(gone).i, he_edge_of(kept).i);
+    he_delete_edge(m, he_edge_of(gone));
+    he_delete_face(m, f);
+}
+
+/* Take h out of the loop on its left. */
+static void unlink_side(he_mesh *m, he_halfedge h)
+{
+    he_face f = he_face_of(m, h);
+    if (f.i != HE_NONE && he_face_halfedge(m, f).i == h.i) {
+        he_set_face_halfedge(m, f, he_next(m, h));
+    }
+    he_link(m, he_prev(m, h), he_next(m, h));
+}
+
+static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
+{
+    he_halfedge back = he_twin(h);
+    he_halfedge after = he_next(m, h), before = he_prev(m, h);
+    he_halfedge back_after = he_next(m, back), back_before = he_prev(m, back);
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    bool left = he_is_triangle(m, h), right = he_is_triangle(m, back);
+    bool interior = !he_is_boundary_vertex(m, u) && !he_is_boundary_vertex(m, v);
+    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i;) {
+        he_halfedge next = he_turn_ccw(m, k);
+        he_set_origin(m, k, v);
+        k = next;
+    }
+    unlink_side(m, h);
+    unlink_side(m, back);
+    if (left) {
+        close_sides(m, after, before);
+    }
+    if (right) {
+        close_sides(m, back_before, back_after);
+    }
+    he_set_position(m, v, position);
+    he_carry_merge(m, HE_VERTEX, v.i, u.i, t);
+    he_note_merged(m, HE_VERTEX, u.i, v.i);
+    he_delete_edge(m, he_edge_of(h));
+    he_delete_vertex(m, u);
+    if (!interior) {
+        he_ring_settle(m, v, after);
+    } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
+        /* There is no boundary to turn about v for, which may have very many edges. */
+        he_set_vertex_halfedge(m, v, after);
+    }
+}
+
+static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to, double mix,
+                          he_error *err)
+{
+    he_status status = check(m, h, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (!(t >= 0 && t <= 1)) {
+        return he_fail(err, HE_BAD_VALUE, HE_HALFEDGE, h.i, "t must be 0 to 1, not %g", t);
+    }
+    if (to != NULL && !he_point_is_finite(*to)) {
+        return he_fail(err, HE_NOT_FINITE, HE_HALFEDGE, h.i, "the position must be finite");
+    }
+    he_vertex u = he_origin(m, h), v = he_target(m, h);
+    he_vec3 place = to != NULL ? *to : he_point_between(he_position(m, u), he_position(m, v), t);
+    status = check_marks(m, h, place, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_need need = {.deleted_vertices = 1, .deleted_edges = 3, .deleted_faces = 2};
+    need.links = (size_t)he_vertex_degree(m, u) + 24 + HE_SETTLE_LINKS;
+    need.positions = 1;
+    need.attributes = 5;
+    need.lineage = 3;
+    status = he_reserve(m, need, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    /* Nothing below can fail. */
+    commit(m, h, place, mix);
+    return HE_OK;
+}
+
+he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
+                           he_vertex *vertex, he_error *err)
+{
+    bool live = h.i < 2 * m->c.edges.issued;
+    he_vertex v = live ? he_target(m, h) : (he_vertex){HE_NONE};
+    he_status status = collapse(m, h, t, to, to != NULL ? 0.5 : t, err);
+    if (status == HE_OK && vertex != NULL) {
+        *vertex = v;
+    }
+    return status;
+}
+
+he_status he_edge_collapse_at(he_mesh *m, he_halfedge h, double t, he_vec3 to, he_error *err)
+{
+    return collapse(m, h, t, &to, t, err);
+}

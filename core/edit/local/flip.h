@@ -1,0 +1,31 @@
+/* flip.h - an edge turned inside the two faces beside it. */
+#ifndef HE_EDIT_LOCAL_FLIP_H
+#define HE_EDIT_LOCAL_FLIP_H
+
+#include "mesh/mesh.h"
+
+/* edge_flip: V + 0, E + 0, F + 0. The edge turns counter-clockwise: each end moves to the next
+ * corner of its face. Ids of edge and faces stay; half-edge 2e runs d -> c and keeps its face.
+ *
+ *          c       b                   c       b             2e: a -> b   --->   d -> c
+ *          o<------o                   o<------o
+ *          |  f   ^|                   |^   g  |             f: a b c ..  --->   d c .. a
+ *          |     / |        --->       | \     |             g: b a d ..  --->   c d .. b
+ *          |   /   |                   |   \   |
+ *          | /  g  |                   | f   \ |             (in polygons c and d are the
+ *          o------>o                   o------>o              corners after b and a)
+ *          a       d                   a       d
+ *
+ * The corner values of f's new corner d are those it had in g, and the reverse for c.
+ *
+ * A fan loses or gains an edge between two of its faces, so none closes or opens.
+ *
+ * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_SAME_ENDS when c = d;
+ * HE_LOW_DEGREE when an interior end has degree 3 or less (on the boundary an end of an interior
+ * edge has at least 3 and keeps 2); HE_DOUBLED_EDGE when an edge joins c and d; HE_REPEATED_CORNER
+ * when d is on f already, or c on g; HE_FEATURE_EDGE; HE_LOCKED_ELEMENT for the edge or one of the
+ * faces (marks.h). HE_NO_MEMORY. Costs the corners of both faces and the lesser degree of c and d.
+ */
+HE_NODISCARD he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err);
+
+#endif

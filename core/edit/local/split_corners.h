@@ -1,0 +1,33 @@
+/* split_corners.h - a vertex drawn apart between two of its corners. */
+#ifndef HE_EDIT_LOCAL_SPLIT_CORNERS_H
+#define HE_EDIT_LOCAL_SPLIT_CORNERS_H
+
+#include "mesh/mesh.h"
+
+/* vertex_split_corners: V + 1, E + 1, F + 0. a and b are different half-edges that leave v.
+ *
+ *          g                             g
+ *      o       o b                   o       o b
+ *        \   /                         \   /
+ *          v--------o      --->          v--------o        b, and what follows it up to a, stays
+ *        / | \                           |                 with v; a, and what follows it up to
+ *      o   |   o                         u                 b, counter-clockwise, goes to u.
+ *        a o                           / | \
+ *          f                         o   |   o
+ *                                      a o
+ *
+ * The new edge lies between the two corners that part them: that of the face of twin(a), which is
+ * clockwise before a, and that of twin(b). Either may be a hole's, and each face has one corner
+ * more. u lies where v does; half-edge 2e runs from u to v, so that edge_collapse of it is the
+ * inverse. At a bow-tie whole fans may go along: in the order in which turning about v meets them.
+ *
+ * u and the edge descend from v and nothing; u and the new corners have the values of v and of the
+ * corner that each was part of. Outputs may be NULL.
+ *
+ * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_SAME_CORNER when a is b;
+ * HE_DIFFERENT_ORIGINS; HE_NO_FACE when both corners are a hole's. HE_NO_MEMORY,
+ * HE_IDS_EXHAUSTED. */
+HE_NODISCARD he_status he_vertex_split_corners(he_mesh *m, he_halfedge a, he_halfedge b,
+                                               he_vertex *vertex, he_edge *edge, he_error *err);
+
+#endif

@@ -1,0 +1,48 @@
+/* plane_split.h - faces split along a plane, as paper is by a fold line. */
+#ifndef HE_EDIT_PLANE_PLANE_SPLIT_H
+#define HE_EDIT_PLANE_PLANE_SPLIT_H
+
+#include "mesh/mesh.h"
+
+typedef struct he_plane_parts {
+    he_ids vertices;      /* new, one for each edge that was split */
+    he_ids edges;         /* the diagonals */
+    he_ids faces;         /* new, one for each diagonal */
+    uint32_t faces_split; /* those that were there */
+} he_plane_parts;
+
+/* plane_split: V + k, E + k + d, F + d for k edges that the plane crosses and d diagonals, one in a
+ * convex face. Each edge whose ends are on different sides gets a vertex where it meets the plane
+ * (see edge_bisect), then each face with corners on both sides is cut along it (see face_split; by
+ * several diagonals where it is concave, see chords.h). Nothing is removed and nothing moves.
+ *
+ *        o-------o-------o              o---w---o-------o
+ *        |   .   |       |              |  /|   |       |
+ *        |  .    |       |              | / |   |       |         a vertex within the tolerance of
+ *        | .  f  |   g   |    --->      |/  |  ..                 the plane is used as it is; an
+ *        |.      |       |              .                         edge in the plane is left alone
+ *       .o-------o-------o
+ *
+ * With a list only its faces are cut. An edge between a face of the list and another still gets its
+ * vertex, so that the other face has a corner more.
+ *
+ * Afterwards no face (of the list) has corners on both sides, and splitting again along the same
+ * plane changes nothing. Touching a face at corners or along sides is not crossing it.
+ *
+ * Edges are split in the order of their ids, as are faces after them; the diagonals of a face come
+ * innermost first, seen from its stored half-edge. An edge keeps its id at the end with the origin
+ * of half-edge 2e. A face keeps its id on the part with the stored half-edge's origin and the side
+ * that leaves it; the other parts descend from it. Diagonals and vertices have no parents.
+ *
+ * `tolerance` is a distance, or NULL for the default of plane.h. A NULL list stands for all faces.
+ *
+ * Refused, all or nothing: as he_sides_find; HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT,
+ * HE_REPEATED_ELEMENT for the list; HE_DOUBLED_EDGE when a diagonal would join two vertices that
+ * an edge joins elsewhere, or that another diagonal does. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may
+ * be NULL, else he_plane_parts_clear frees it. */
+HE_NODISCARD he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal,
+                                      const double *tolerance, const uint32_t *faces, size_t count,
+                                      he_plane_parts *out, he_error *err);
+void he_plane_parts_clear(he_plane_parts *parts);
+
+#endif

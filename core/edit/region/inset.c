@@ -1,0 +1,340 @@
+#include "edit/region/inset.h"
+
+#include "edit/piece/point.h"
+#include "geometry/geometry.h"
+
+typedef struct inward {
+    double factor, distance;
+} inward;
+
+/* How each rim corner moves, and the corners of one face while it is looked at. */
+typedef struct motion {
+    he_vec3 *path;   /* at time 1 */
+    he_vec3 *at;     /* corners of the face */
+    he_vec3 *moves;  /* theirs */
+    he_vec3 *of;     /* one for each face: its mean, or its normal */
+    double end;      /* the first time at which something happens */
+    uint64_t budget; /* steps that are left */
+} motion;
+
+static void motion_clear(motion *p)
+{
+    he_mem_free(p->path);
+    he_mem_free(p->at);
+    he_mem_free(p->moves);
+    he_mem_free(p->of);
+}
+
+static he_status motion_init(const he_mesh *m, const he_region *r, motion *out, he_error *err)
+{
+    uint32_t most = 0;
+    for (size_t i = 0; i < r->faces.ids.count; i++) {
+        uint32_t degree = he_face_degree(m, (he_face){r->faces.ids.ids[i]});
+        most = degree > most ? degree : most;
+    }
+    *out = (motion){.end = INFINITY, .budget = HE_INSET_STEPS};
+    out->path = he_mem_zero(r->rim.count, sizeof *out->path);
+    out->at = he_mem_array(NULL, most, sizeof *out->at);
+    out->moves = he_mem_array(NULL, most, sizeof *out->moves);
+    out->of = he_mem_array(NULL, r->faces.ids.count, sizeof *out->of);
+    if (out->path == NULL || out->at == NULL || out->moves == NULL || out->of == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to make a rim smaller");
+    }
+    return HE_OK;
+}
+
+static uint32_t index_of(const he_mesh *m, const he_region *r, uint32_t h)
+{
+    return he_idmap_find(&r->faces, he_face_of(m, (he_halfedge){h}).i);
+}
+
+/* --- where corners go --- */
+
+/* Each towards the mean of the means of its faces. */
+static void aim_at_means(const he_mesh *m, const he_region *r, double factor, motion *p)
+{
+    for (size_t i = 0; i < r->faces.ids.count; i++) {
+        p->of[i] = he_loop_mean(m, he_face_halfedge(m, (he_face){r->faces.ids.ids[i]}));
+    }
+    size_t k = 0;
+    for (size_t i = 0; i < r->rim.count; i++) {
+        he_vec3 from = he_position(m, (he_vertex){r->corners.ids.ids[i]});
+        he_vec3 mean = p->of[index_of(m, r, r->rim.ids[i])];
+        double seen = 1;
+        for (; k < r->inner.count && r->inner_at.ids[k] == i; k++) {
+            seen++;
+            mean = he_point_between(mean, p->of[index_of(m, r, r->inner.ids[k])], 1 / seen);
+        }
+        p->path[i] = he_vec3_scale(he_vec3_sub(mean, from), factor);
+    }
+}
+
+/* The way a corner goes while both sides move inwards by 1. */
+static he_vec3 miter(he_vec3 a, he_vec3 b)
+{
+    const double sharpest = 0.125;
+    he_vec3 sum = he_vec3_add(a, b);
+    if (he_vec3_extent(a) <= 0 || he_vec3_extent(b) <= 0) {
+        return sum;
+    }
+    return he_vec3_scale(sum, 1 / fmax(0.5 * he_vec3_dot(sum, sum), sharpest));
+}
+
+/* Into its face, at a right angle to a rim half-edge; zero where that has no length. */
+static he_vec3 inwards(const he_mesh *m, const he_region *r, const motion *p, uint32_t rim)
+{
+    he_halfedge h = {rim};
+    he_vec3 along =
+        he_direction(he_position(m, he_origin(m, h)), he_position(m, he_target(m, h)), NULL);
+    he_vec3 across = he_vec3_cross(p->of[index_of(m, r, rim)], along);
+    double length = he_vec3_length(across);
+    return length > 0 ? he_vec3_scale(across, 1 / length) : across;
+}
+
+static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *p, he_error *err)
+{
+    for (size_t i = 0; i < r->faces.ids.count; i++) {
+        (void)he_face_normal(m, (he_face){r->faces.ids.ids[i]}, &p->of[i]);
+    }
+    for (size_t i = 0; i < r->rim.count; i++) {
+        uint32_t index = index_of(m, r, r->rim.ids[i]);
+        if (he_vec3_extent(p->of[index]) <= 0) {
+            return he_fail(err, HE_NO_NORMAL, HE_FACE, r->faces.ids.ids[index],
+                           "face %u has no area: give a factor", r->faces.ids.ids[index]);
+        }
+    }
+    /* The half-edge that comes to a corner is that which leaves the one before it. */
+    for (size_t i = 0; i < r->rim.count; i++) {
+        he_halfedge h = {r->rim.ids[i]};
+        uint32_t after = he_idmap_find(&r->corners, he_target(m, h).i);
+        p->path[after] = miter(inwards(m, r, p, h.i), inwards(m, r, p, r->rim.ids[after]));
+    }
+    return HE_OK;
+}
+
+/* --- how long they may --- */
+
+static void happens(motion *p, double time)
+{
+    if (time > 0 && time < p->end) {
+        p->end = time;
+    }
+}
+
+/* The smallest positive root of c0 + c1 t + c2 t^2 with c0 > 0, infinite without one. A root that
+ * is a double one but for rounding counts. */
+static double first_root(double c0, double c1, double c2)
+{
+    const double noise = 1e-9;
+    double square = c1 * c1 - 4 * c0 * c2;
+    if (!(square >= -noise * c1 * c1)) {
+        return INFINITY;
+    }
+    double q = -0.5 * (c1 + copysign(sqrt(fmax(square, 0)), c1));
+    double one = q / c2, other = c0 / q;
+    one = one > 0 ? one : INFINITY;
+    other = other > 0 ? other : INFINITY;
+    return fmin(one, other);
+}
+
+typedef struct corner {
+    he_vec3 at, moves;
+} corner;
+
+static corner corner_of(const motion *p, size_t i)
+{
+    return (corner){p->at[i], p->moves[i]};
+}
+
+/* Twice the area of a, b, c as it looks along the normal, at time 0, and by its change. */
+static double turn(corner a, corner b, corner c, he_vec3 normal, double *c1, double *c2)
+{
+    he_vec3 x = he_vec3_sub(b.at, a.at), y = he_vec3_sub(c.at, b.at);
+    he_vec3 dx = he_vec3_sub(b.moves, a.moves), dy = he_vec3_sub(c.moves, b.moves);
+    *c1 = he_vec3_dot(he_vec3_add(he_vec3_cross(x, dy), he_vec3_cross(dx, y)), normal);
+    *c2 = he_vec3_dot(he_vec3_cross(dx, dy), normal);
+    return he_vec3_dot(he_vec3_cross(x, y), normal);
+}
+
+static void watch_side(motion *p, corner a, corner b)
+{
+    double length;
+    he_vec3 along = he_direction(a.at, b.at, &length);
+    happens(p, length / he_vec3_dot(he_vec3_sub(a.moves, b.moves), along));
+}
+
+/* When does corner c come upon the side a-b from inside, between its ends? */
+static void watch_hit(motion *p, corner a, corner b, corner c, he_vec3 normal)
+{
+    double c1, c2, c0 = turn(a, b, c, normal, &c1, &c2);
+    double time = c0 > 0 ? first_root(c0, c1, c2) : INFINITY;
+    if (!(time < p->end)) {
+        return;
+    }
+    he_vec3 from = he_vec3_add(a.at, he_vec3_scale(a.moves, time));
+    he_vec3 to = he_vec3_add(b.at, he_vec3_scale(b.moves, time));
+    he_vec3 hit = he_vec3_add(c.at, he_vec3_scale(c.moves, time));
+    he_vec3 side = he_vec3_sub(to, from);
+    double along = he_vec3_dot(he_vec3_sub(hit, from), side);
+    if (along >= 0 && along <= he_vec3_dot(side, side)) {
+        happens(p, time);
+    }
+}
+
+static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, motion *p,
+                            he_error *err)
+{
+    size_t n = 0;
+    bool any = false;
+    he_halfedge first = he_face_halfedge(m, f), h = first;
+    do {
+        uint32_t i = he_idmap_find(&r->corners, he_origin(m, h).i);
+        p->at[n] = he_position(m, he_origin(m, h));
+        p->moves[n++] = i != HE_NONE ? p->path[i] : (he_vec3){0, 0, 0};
+        any |= i != HE_NONE;
+        h = he_next(m, h);
+    } while (h.i != first.i);
+    he_vec3 normal;
+    if (!any || !he_face_normal(m, f, &normal)) {
+        return HE_OK;
+    }
+    for (size_t i = 0; i < n; i++) {
+        corner a = corner_of(p, i), b = corner_of(p, (i + 1) % n), c = corner_of(p, (i + 2) % n);
+        double c1, c2, c0 = turn(a, b, c, normal, &c1, &c2);
+        watch_side(p, a, b);
+        if (c0 > 0) {
+            happens(p, first_root(c0, c1, c2));
+            continue;
+        }
+        /* b is reflex: against every side it is not an end of. */
+        if (p->budget < n) {
+            return he_fail(err, HE_LIMIT, HE_FACE, f.i,
+                           "face %u has too many reflex corners and sides to be inset", f.i);
+        }
+        p->budget -= n;
+        for (size_t k = i + 2; k < i + n; k++) {
+            watch_hit(p, corner_of(p, k % n), corner_of(p, (k + 1) % n), b, normal);
+        }
+    }
+    return HE_OK;
+}
+
+static he_status place(const he_mesh *m, const he_region *r, void *context, he_vec3 *to,
+                       he_vec3 *shift, bool *shifts, he_error *err)
+{
+    const inward *in = context;
+    motion p;
+    double time = in->factor > 0 ? 1 : in->distance;
+    (void)shift;
+    (void)shifts;
+    he_status status = motion_init(m, r, &p, err);
+    if (status == HE_OK && in->factor > 0) {
+        aim_at_means(m, r, in->factor, &p);
+    } else if (status == HE_OK) {
+        status = aim_at_parallels(m, r, &p, err);
+    }
+    for (size_t i = 0; status == HE_OK && i < r->faces.ids.count; i++) {
+        status = watch_face(m, r, (he_face){r->faces.ids.ids[i]}, &p, err);
+    }
+    if (status == HE_OK) {
+        time = time < p.end ? time : 0.99 * p.end;
+        for (size_t i = 0; i < r->rim.count; i++) {
+            he_vec3 from = he_position(m, (he_vertex){r->corners.ids.ids[i]});
+            to[i] = he_vec3_add(from, he_vec3_scale(p.path[i], time));
+        }
+    }
+    motion_clear(&p);
+    return status;
+}
+
+/* --- what is interpolated there --- */
+
+/* How far along `a` and `b`, from the corner between them, the point of the triangle lies that is
+ * nearest to `way`, but for rounding; *x and *y are 0 or more, and 1 at most together. Returns the
+ * square of what is missing. */
+static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, double *y)
+{
+    double aa = he_vec3_dot(a, a), ab = he_vec3_dot(a, b), bb = he_vec3_dot(b, b);
+    double wa = he_vec3_dot(way, a), wb = he_vec3_dot(way, b), square = aa * bb - ab * ab;
+    *x = square > 0 ? (wa * bb - wb * ab) / square : 0;
+    *y = square > 0 ? (wb * aa - wa * ab) / square : 0;
+    if (!(square > 0) || *y < 0) {
+        *x = aa > 0 ? wa / aa : 0;
+        *y = 0;
+    } else if (*x < 0) {
+        *x = 0;
+        *y = wb / bb;
+    }
+    *x = fmin(fmax(*x, 0), 1);
+    *y = fmin(fmax(*y, 0), 1);
+    if (*x + *y > 1) {
+        he_vec3 side = he_vec3_sub(b, a);
+        double along = he_vec3_dot(he_vec3_sub(way, a), side) / he_vec3_dot(side, side);
+        *y = fmin(fmax(along, 0), 1);
+        *x = 1 - *y;
+    }
+    he_vec3 missing = he_vec3_sub(way, he_vec3_add(he_vec3_scale(a, *x), he_vec3_scale(b, *y)));
+    return he_vec3_dot(missing, missing);
+}
+
+/* Try the two triangles at the origin of h in its face. */
+static void mix_in_face(const he_mesh *m, he_halfedge h, he_vec3 mean, he_vec3 to,
+                        he_region_mix *out, double *least)
+{
+    const he_vertex sides[2] = {he_target(m, h), he_origin(m, he_prev(m, h))};
+    he_vec3 from = he_position(m, he_origin(m, h)), middle = he_vec3_sub(mean, from);
+    he_vec3 way = he_vec3_sub(to, from);
+    for (unsigned i = 0; i < 2; i++) {
+        he_vec3 side = he_vec3_sub(he_position(m, sides[i]), from);
+        double scale = 1 / fmax(he_vec3_extent(middle), he_vec3_extent(side)), x, y;
+        if (!isfinite(scale)) {
+            continue;
+        }
+        double missing = find_in_triangle(he_vec3_scale(way, scale), he_vec3_scale(middle, scale),
+                                          he_vec3_scale(side, scale), &x, &y) /
+                         scale / scale;
+        if (missing < *least) {
+            *least = missing;
+            *out = (he_region_mix){h, sides[i], x, y};
+        }
+    }
+}
+
+static he_status mix(const he_mesh *m, const he_region *r, const he_vec3 *to, he_region_mix *out,
+                     he_error *err)
+{
+    he_vec3 *means = he_mem_array(NULL, r->faces.ids.count, sizeof *means);
+    if (means == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the means of faces");
+    }
+    for (size_t i = 0; i < r->faces.ids.count; i++) {
+        means[i] = he_loop_mean(m, he_face_halfedge(m, (he_face){r->faces.ids.ids[i]}));
+    }
+    size_t k = 0;
+    for (size_t i = 0; i < r->rim.count; i++) {
+        double least = INFINITY;
+        he_halfedge h = {r->rim.ids[i]};
+        out[i] = (he_region_mix){h, he_target(m, h), 0, 0};
+        mix_in_face(m, h, means[index_of(m, r, h.i)], to[i], &out[i], &least);
+        for (; k < r->inner.count && r->inner_at.ids[k] == i; k++) {
+            h.i = r->inner.ids[k];
+            mix_in_face(m, h, means[index_of(m, r, h.i)], to[i], &out[i], &least);
+        }
+    }
+    he_mem_free(means);
+    return HE_OK;
+}
+
+he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool region, double factor,
+                        double distance, he_region_parts *out, he_error *err)
+{
+    inward in = {factor, distance};
+    bool by_factor = factor < 0 || factor > 0;
+    if (by_factor ? !(factor > 0 && factor < 1) : !(distance > 0)) {
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             by_factor ? "the factor must be above 0 and below 1, not %g"
+                                       : "the distance must be above 0, not %g",
+                             by_factor ? factor : distance);
+    }
+    return he_region_draw(m, faces, count, region, (he_region_place){place, &in, mix}, out, err);
+}

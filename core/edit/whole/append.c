@@ -1,0 +1,324 @@
+#include "edit/whole/append.h"
+
+#include "edit/whole/attribute.h"
+#include "mesh/write.h"
+
+/* Where a column of the other mesh goes. */
+typedef struct target {
+    size_t slot;
+    uint32_t *label; /* the index of each of its labels here; NULL: as they are */
+} target;
+
+void he_appended_clear(he_appended *appended)
+{
+    he_ids_clear(&appended->vertices);
+    he_ids_clear(&appended->edges);
+    he_ids_clear(&appended->faces);
+}
+
+static he_status check_clash(const he_column *own, const he_column *theirs, he_error *err)
+{
+    if (own->type == theirs->type && own->components == theirs->components &&
+        (own->labels == NULL) == (theirs->labels == NULL)) {
+        return HE_OK;
+    }
+    const char *labelled[2] = {own->labels != NULL ? " with labels" : "",
+                               theirs->labels != NULL ? " with labels" : ""};
+    return he_fail_plain(err, HE_ATTRIBUTE_CLASH,
+                         "attribute %.60s of %s is %u %s%s here and %u %s%s in the other mesh",
+                         own->name, he_kind_plural(own->domain), own->components,
+                         he_type_name(own->type), labelled[0], theirs->components,
+                         he_type_name(theirs->type), labelled[1]);
+}
+
+static he_status check_columns(const he_mesh *m, const he_mesh *other, he_error *err)
+{
+    for (size_t i = 0; i < other->c.column_count; i++) {
+        const he_column *theirs = other->c.columns[i];
+        const he_column *own =
+            theirs == NULL ? NULL : he_mesh_find_column(m, theirs->domain, theirs->name);
+        if (own != NULL && own->domain != HE_MESH_KIND) {
+            he_status status = check_clash(own, theirs, err);
+            if (status != HE_OK) {
+                return status;
+            }
+        }
+    }
+    return HE_OK;
+}
+
+static he_status no_memory(const he_column *column, he_error *err)
+{
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory for attribute %s", column->name);
+}
+
+/* --- labels --- */
+
+static he_status add_labels(he_labels *to, const he_labels *from, uint32_t *at, he_error *err)
+{
+    for (size_t i = 0; i < he_labels_count(from); i++) {
+        const char *text = he_labels_get(from, i);
+        uint32_t index;
+        he_status status = he_labels_add(to, text, strlen(text), &index, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        if (at != NULL) {
+            at[i] = index;
+        }
+    }
+    return HE_OK;
+}
+
+/* A column in the place of `own` that has the labels of both, when those of `own` do not do. */
+static he_status join_labels(he_mesh *m, const he_column *own, const he_column *theirs, target *out,
+                             he_error *err)
+{
+    he_column *copy = NULL;
+    he_labels *both = he_labels_new();
+    out->label = he_mem_array(NULL, he_labels_count(theirs->labels) + 1, sizeof *out->label);
+    he_status status = both == NULL || out->label == NULL ? no_memory(own, err) : HE_OK;
+    if (status == HE_OK) {
+        status = add_labels(both, own->labels, NULL, err);
+    }
+    if (status == HE_OK) {
+        status = add_labels(both, theirs->labels, out->label, err);
+    }
+    if (status == HE_OK && he_labels_count(both) > he_labels_count(own->labels)) {
+        status = he_column_copy(own, &copy, err);
+        if (status == HE_OK) {
+            he_labels_release(copy->labels);
+            copy->labels = he_labels_retain(both);
+            status = he_attribute_put(m, copy, err);
+        }
+        if (status == HE_OK) {
+            out->slot = he_mesh_column_slot(m, copy);
+        } else {
+            he_column_free(copy);
+        }
+    }
+    he_labels_release(both);
+    return status;
+}
+
+/* --- columns --- */
+
+/* One like it, at its default everywhere; values of the mesh come along. */
+static he_status add_column(he_mesh *m, const he_column *theirs, target *out, he_error *err)
+{
+    he_column *column = NULL;
+    he_status status = he_column_copy(theirs, &column, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (theirs->domain != HE_MESH_KIND) {
+        column->rows = 0;
+        status = he_column_extend(column, he_mesh_issued(m, theirs->domain), err);
+    }
+    if (status == HE_OK) {
+        status = he_mesh_add_column(m, column, err);
+    }
+    if (status == HE_OK) {
+        out->slot = he_mesh_column_slot(m, column);
+    } else {
+        he_column_free(column);
+    }
+    return status;
+}
+
+static he_status match_column(he_mesh *m, const he_column *theirs, target *out, he_error *err)
+{
+    const he_column *own = he_mesh_find_column(m, theirs->domain, theirs->name);
+    if (own == NULL) {
+        return add_column(m, theirs, out, err);
+    }
+    if (theirs->domain == HE_MESH_KIND) {
+        return HE_OK;
+    }
+    out->slot = he_mesh_column_slot(m, own);
+    return theirs->labels == NULL || theirs->labels == own->labels
+               ? HE_OK
+               : join_labels(m, own, theirs, out, err);
+}
+
+static void carry_row(he_mesh *m, const he_column *theirs, const target *to, uint32_t from,
+                      uint32_t row)
+{
+    unsigned char value[HE_COLUMN_ROW_BYTES];
+    memcpy(value, he_column_value(theirs, from), theirs->row_bytes);
+    for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {
+        uint32_t index;
+        memcpy(&index, value + k * sizeof index, sizeof index);
+        /* What lies beyond the labels, as -1 for none, stands for itself. */
+        if (index < he_labels_count(theirs->labels)) {
+            index = to->label[index];
+        }
+        memcpy(value + k * sizeof index, &index, sizeof index);
+    }
+    he_set_attribute(m, to->slot, row, value);
+}
+
+/* --- COMMIT --- */
+
+/* New ids of old ones. */
+typedef struct maps {
+    uint32_t *vertex, *edge, *face;
+} maps;
+
+static uint32_t *map_of(const maps *at, he_kind kind)
+{
+    return kind == HE_VERTEX ? at->vertex : kind == HE_FACE ? at->face : at->edge;
+}
+
+static void make_rows(he_mesh *m, const he_mesh *other, const maps *at, he_appended *out)
+{
+    for (uint32_t i = 0; i < other->c.vertices.issued; i++) {
+        if (he_vertex_is_live(other, (he_vertex){i})) {
+            he_vertex v = he_new_vertex(m);
+            he_set_position(m, v, he_position(other, (he_vertex){i}));
+            at->vertex[i] = out->vertices.ids[out->vertices.count++] = v.i;
+        }
+    }
+    for (uint32_t i = 0; i < other->c.edges.issued; i++) {
+        if (he_edge_is_live(other, (he_edge){i})) {
+            at->edge[i] = out->edges.ids[out->edges.count++] = he_new_edge(m).i;
+        }
+    }
+    for (uint32_t i = 0; i < other->c.faces.issued; i++) {
+        if (he_face_is_live(other, (he_face){i})) {
+            at->face[i] = out->faces.ids[out->faces.count++] = he_new_face(m).i;
+        }
+    }
+}
+
+static he_halfedge moved(const maps *at, he_halfedge h)
+{
+    return h.i == HE_NONE ? h : (he_halfedge){2 * at->edge[h.i >> 1] + (h.i & 1)};
+}
+
+static void link_rows(he_mesh *m, const he_mesh *other, const maps *at)
+{
+    for (uint32_t i = 0; i < other->c.vertices.issued; i++) {
+        if (he_vertex_is_live(other, (he_vertex){i})) {
+            he_set_vertex_halfedge(m, (he_vertex){at->vertex[i]},
+                                   moved(at, he_vertex_halfedge(other, (he_vertex){i})));
+        }
+    }
+    for (uint32_t i = 0; i < 2 * other->c.edges.issued; i++) {
+        he_halfedge h = {i}, to;
+        if (!he_edge_is_live(other, he_edge_of(h))) {
+            continue;
+        }
+        he_face f = he_face_of(other, h);
+        to = moved(at, h);
+        he_set_next(m, to, moved(at, he_next(other, h)));
+        he_set_prev(m, to, moved(at, he_prev(other, h)));
+        he_set_origin(m, to, (he_vertex){at->vertex[he_origin(other, h).i]});
+        he_set_face(m, to, f.i == HE_NONE ? f : (he_face){at->face[f.i]});
+    }
+    for (uint32_t i = 0; i < other->c.faces.issued; i++) {
+        if (he_face_is_live(other, (he_face){i})) {
+            he_set_face_halfedge(m, (he_face){at->face[i]},
+                                 moved(at, he_face_halfedge(other, (he_face){i})));
+        }
+    }
+}
+
+static void carry_column(he_mesh *m, const he_mesh *other, const he_column *theirs,
+                         const target *to, const maps *at)
+{
+    he_kind kind = theirs->domain;
+    const uint32_t *map = map_of(at, kind);
+    uint32_t issued = he_mesh_issued(other, kind);
+    for (uint32_t i = 0; i < issued; i++) {
+        if (he_mesh_is_live(other, kind, i)) {
+            uint32_t row = kind == HE_HALFEDGE ? 2 * map[i >> 1] + (i & 1) : map[i];
+            carry_row(m, theirs, to, i, row);
+        }
+    }
+}
+
+static he_status append_in_bracket(he_mesh *m, const he_mesh *other, target *targets,
+                                   const maps *at, he_appended *out, he_error *err)
+{
+    he_status status = he_watch_phase(m->watch, "matching attributes", 0.2, err);
+    for (size_t i = 0; status == HE_OK && i < other->c.column_count; i++) {
+        if (other->c.columns[i] != NULL) {
+            status = match_column(m, other->c.columns[i], &targets[i], err);
+        }
+    }
+    const he_need need = {.vertices = other->c.vertices.live,
+                          .edges = other->c.edges.live,
+                          .faces = other->c.faces.live};
+    if (status == HE_OK) {
+        status = he_reserve(m, need, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "appending", 1, err);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    /* Nothing below can fail. */
+    make_rows(m, other, at, out);
+    link_rows(m, other, at);
+    for (size_t i = 0; i < other->c.column_count; i++) {
+        const he_column *theirs = other->c.columns[i];
+        if (theirs != NULL && theirs->domain != HE_MESH_KIND) {
+            carry_column(m, other, theirs, &targets[i], at);
+        }
+        he_watch_note(m->watch, i, other->c.column_count);
+    }
+    return HE_OK;
+}
+
+static he_status make_room(const he_mesh *other, maps *at, target **targets, he_appended *out,
+                           he_error *err)
+{
+    size_t columns = other->c.column_count;
+    at->vertex = he_mem_array(NULL, other->c.vertices.issued + 1u, sizeof *at->vertex);
+    at->edge = he_mem_array(NULL, other->c.edges.issued + 1u, sizeof *at->edge);
+    at->face = he_mem_array(NULL, other->c.faces.issued + 1u, sizeof *at->face);
+    *targets = he_mem_zero(columns + 1, sizeof **targets);
+    if (at->vertex == NULL || at->edge == NULL || at->face == NULL || *targets == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to bring in another mesh");
+    }
+    he_status status = he_ids_reserve(&out->vertices, other->c.vertices.live, err);
+    if (status == HE_OK) {
+        status = he_ids_reserve(&out->edges, other->c.edges.live, err);
+    }
+    return status == HE_OK ? he_ids_reserve(&out->faces, other->c.faces.live, err) : status;
+}
+
+he_status he_append(he_mesh *m, const he_mesh *other, he_appended *out, he_error *err)
+{
+    assert(m != other);
+    maps at = {NULL, NULL, NULL};
+    target *targets = NULL;
+    he_appended made = {.vertices = {0}};
+    he_bracket bracket;
+    he_status status = check_columns(m, other, err);
+    if (status == HE_OK) {
+        status = make_room(other, &at, &targets, &made, err);
+    }
+    if (status == HE_OK) {
+        status = he_edit_begin(m, &bracket, err);
+        if (status == HE_OK) {
+            status = append_in_bracket(m, other, targets, &at, &made, err);
+            status = he_edit_end(m, &bracket, status);
+        }
+    }
+    if (status == HE_OK && out != NULL) {
+        *out = made;
+        made = (he_appended){.vertices = {0}};
+    }
+    he_appended_clear(&made);
+    for (size_t i = 0; targets != NULL && i < other->c.column_count; i++) {
+        he_mem_free(targets[i].label);
+    }
+    he_mem_free(targets);
+    he_mem_free(at.vertex);
+    he_mem_free(at.edge);
+    he_mem_free(at.face);
+    return status;
+}

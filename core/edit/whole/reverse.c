@@ -1,0 +1,248 @@
+#include "edit/whole/reverse.h"
+
+#include "edit/piece/list.h"
+#include "mesh/write.h"
+
+/* What is turned over. */
+typedef struct part {
+    he_ids vertices, edges, faces;
+} part;
+
+static void part_clear(part *p)
+{
+    he_ids_clear(&p->vertices);
+    he_ids_clear(&p->edges);
+    he_ids_clear(&p->faces);
+}
+
+/* Ids of all live elements with a face: isolated vertices have nothing to turn. */
+static he_status take_all(const he_mesh *m, part *out, he_error *err)
+{
+    he_status status = HE_OK;
+    for (uint32_t v = 0; status == HE_OK && v < m->c.vertices.issued; v++) {
+        if (he_vertex_is_live(m, (he_vertex){v}) && !he_is_isolated(m, (he_vertex){v})) {
+            status = he_ids_add(&out->vertices, v, err);
+        }
+    }
+    for (uint32_t e = 0; status == HE_OK && e < m->c.edges.issued; e++) {
+        status = he_watch_at(m->watch, e, m->c.edges.issued, err);
+        if (status == HE_OK && he_edge_is_live(m, (he_edge){e})) {
+            status = he_ids_add(&out->edges, e, err);
+        }
+    }
+    for (uint32_t f = 0; status == HE_OK && f < m->c.faces.issued; f++) {
+        if (he_face_is_live(m, (he_face){f})) {
+            status = he_ids_add(&out->faces, f, err);
+        }
+    }
+    return status;
+}
+
+/* The faces with their corners and sides, each once. */
+static he_status take_listed(const he_mesh *m, const uint32_t *faces, size_t count, part *out,
+                             he_error *err)
+{
+    he_status status = he_ids_reserve(&out->faces, count, err);
+    for (size_t i = 0; status == HE_OK && i < count; i++) {
+        out->faces.ids[out->faces.count++] = faces[i];
+        he_halfedge first = he_face_halfedge(m, (he_face){faces[i]}), h = first;
+        do {
+            status = he_ids_add(&out->vertices, he_origin(m, h).i, err);
+            if (status == HE_OK) {
+                status = he_ids_add(&out->edges, he_edge_of(h).i, err);
+            }
+            h = he_next(m, h);
+        } while (status == HE_OK && h.i != first.i);
+    }
+    if (status == HE_OK) {
+        status = he_ids_sort(&out->vertices, err);
+    }
+    return status == HE_OK ? he_ids_sort(&out->edges, err) : status;
+}
+
+static he_status check_edges(const he_mesh *m, const part *p, const uint64_t *chosen, he_error *err)
+{
+    for (size_t i = 0; i < p->edges.count; i++) {
+        for (unsigned side = 0; side < 2; side++) {
+            he_face f = he_face_of(m, he_edge_halfedge((he_edge){p->edges.ids[i]}, side));
+            if (f.i != HE_NONE && !he_bits_get(chosen, f.i)) {
+                return he_fail(err, HE_ORIENTATION, HE_EDGE, p->edges.ids[i],
+                               "face %u shares edge %u with a face to be reversed, and is not to "
+                               "be",
+                               f.i, p->edges.ids[i]);
+            }
+        }
+    }
+    return HE_OK;
+}
+
+static he_status check_vertices(const he_mesh *m, const part *p, const uint64_t *chosen,
+                                he_error *err)
+{
+    for (size_t i = 0; i < p->vertices.count; i++) {
+        he_halfedge first = he_vertex_halfedge(m, (he_vertex){p->vertices.ids[i]}), h = first;
+        do {
+            he_face f = he_face_of(m, h);
+            if (f.i != HE_NONE && !he_bits_get(chosen, f.i)) {
+                return he_fail(err, HE_BOWTIE, HE_VERTEX, p->vertices.ids[i],
+                               "face %u shares vertex %u with a face to be reversed, and is not to "
+                               "be",
+                               f.i, p->vertices.ids[i]);
+            }
+            h = he_turn_ccw(m, h);
+        } while (h.i != first.i);
+    }
+    return HE_OK;
+}
+
+static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
+{
+    uint64_t *chosen = he_bits_new(m->c.faces.issued);
+    if (chosen == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to look for the rest of components");
+    }
+    for (size_t i = 0; i < p->faces.count; i++) {
+        he_bits_set(chosen, p->faces.ids[i]);
+    }
+    he_status status = check_edges(m, p, chosen, err);
+    if (status == HE_OK) {
+        status = check_vertices(m, p, chosen, err);
+    }
+    he_mem_free(chosen);
+    return status;
+}
+
+/* The corner left by h in face(h) is left by turn_ccw(h) afterwards: values about a vertex shift by
+ * one place. Holes take part, so that doing it again leads back. */
+static void shift_corners(he_mesh *m, size_t slot, he_vertex v)
+{
+    const he_column *column = m->c.columns[slot];
+    he_halfedge first = he_vertex_halfedge(m, v), to = first;
+    unsigned char last[HE_COLUMN_ROW_BYTES], value[HE_COLUMN_ROW_BYTES];
+    memcpy(last, he_column_value(column, first.i), column->row_bytes);
+    for (;;) {
+        he_halfedge from = he_next(m, he_twin(to));
+        if (from.i == first.i) {
+            break;
+        }
+        memcpy(value, he_column_value(column, from.i), column->row_bytes);
+        he_set_attribute(m, slot, to.i, value);
+        to = from;
+    }
+    he_set_attribute(m, slot, to.i, last);
+}
+
+static void negate(he_mesh *m, size_t slot, uint32_t row)
+{
+    const he_column *column = m->c.columns[slot];
+    unsigned char value[HE_COLUMN_ROW_BYTES];
+    size_t size = he_type_bytes(column->type);
+    memcpy(value, he_column_value(column, row), column->row_bytes);
+    /* The sign is the top bit of the last byte. */
+    for (size_t k = 1; k <= 3; k++) {
+        value[k * size - 1] ^= 0x80;
+    }
+    he_set_attribute(m, slot, row, value);
+}
+
+static bool holds_normals(const he_column *column)
+{
+    return strcmp(column->name, "normal") == 0 && column->components == 3 &&
+           (column->type == HE_FLOAT || column->type == HE_DOUBLE);
+}
+
+static void turn_values(he_mesh *m, const part *p)
+{
+    for (size_t slot = 0; slot < m->c.column_count; slot++) {
+        const he_column *column = m->c.columns[slot];
+        if (column == NULL) {
+            continue;
+        }
+        bool normals = holds_normals(column);
+        for (size_t i = 0; column->domain == HE_HALFEDGE && i < p->vertices.count; i++) {
+            shift_corners(m, slot, (he_vertex){p->vertices.ids[i]});
+        }
+        for (size_t i = 0; column->domain == HE_HALFEDGE && normals && i < p->edges.count; i++) {
+            negate(m, slot, 2 * p->edges.ids[i]);
+            negate(m, slot, 2 * p->edges.ids[i] + 1);
+        }
+        for (size_t i = 0; column->domain == HE_VERTEX && normals && i < p->vertices.count; i++) {
+            negate(m, slot, p->vertices.ids[i]);
+        }
+        for (size_t i = 0; column->domain == HE_FACE && normals && i < p->faces.count; i++) {
+            negate(m, slot, p->faces.ids[i]);
+        }
+    }
+}
+
+/* The half-edges of an edge change places: each takes over the face and, backwards, the neighbours
+ * of the other. What it writes depends on this edge alone. */
+static void turn_edge(he_mesh *m, he_edge e)
+{
+    he_halfedge next[2], prev[2];
+    he_face face[2];
+    for (unsigned side = 0; side < 2; side++) {
+        he_halfedge t = he_edge_halfedge(e, 1 - side);
+        next[side] = he_twin(he_prev(m, t));
+        prev[side] = he_twin(he_next(m, t));
+        face[side] = he_face_of(m, t);
+    }
+    for (unsigned side = 0; side < 2; side++) {
+        he_halfedge h = he_edge_halfedge(e, side);
+        he_set_next(m, h, next[side]);
+        he_set_prev(m, h, prev[side]);
+        he_set_face(m, h, face[side]);
+    }
+}
+
+static void commit(he_mesh *m, const part *p)
+{
+    turn_values(m, p);
+    for (size_t i = 0; i < p->vertices.count; i++) {
+        he_vertex v = {p->vertices.ids[i]};
+        if (he_is_boundary_vertex(m, v)) {
+            he_set_vertex_halfedge(m, v, he_turn_ccw(m, he_vertex_halfedge(m, v)));
+        }
+    }
+    for (size_t i = 0; i < p->faces.count; i++) {
+        he_face f = {p->faces.ids[i]};
+        he_set_face_halfedge(m, f, he_turn_ccw(m, he_face_halfedge(m, f)));
+    }
+    for (size_t i = 0; i < p->edges.count; i++) {
+        turn_edge(m, (he_edge){p->edges.ids[i]});
+        he_watch_note(m->watch, i, p->edges.count);
+    }
+}
+
+he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *err)
+{
+    part p = {.vertices = {0}};
+    he_status status = he_watch_phase(m->watch, "gathering", 0.4, err);
+    if (status == HE_OK && faces == NULL) {
+        status = take_all(m, &p, err);
+    } else if (status == HE_OK) {
+        status = he_list_require(m, HE_FACE, faces, count, HE_REPEATED_ELEMENT, err);
+        if (status == HE_OK) {
+            status = take_listed(m, faces, count, &p, err);
+        }
+        if (status == HE_OK) {
+            status = check_whole(m, &p, err);
+        }
+    }
+    he_need need = {.links = 6 * p.edges.count + p.vertices.count + p.faces.count};
+    if (m->c.column_count > 0) {
+        need.attributes = 4 * p.edges.count + p.vertices.count + p.faces.count;
+    }
+    if (status == HE_OK) {
+        status = he_reserve(m, need, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(m->watch, "turning over", 1, err);
+    }
+    if (status == HE_OK) {
+        /* Nothing below can fail. */
+        commit(m, &p);
+    }
+    part_clear(&p);
+    return status;
+}

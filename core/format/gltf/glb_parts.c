@@ -1,0 +1,312 @@
+#include "format/gltf/glb_parts.h"
+
+#include "format/gltf/gltf_attribute.h"
+#include "format/io/export.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* The largest index of 16 bits begins a strip anew. */
+enum { SHORT_VERTICES = UINT16_MAX };
+/* Of attributes under one semantic. */
+enum { MOST_NUMBERS = 8 };
+
+uint64_t he_glb_part_bytes(const he_glb_part *part)
+{
+    return part->count * part->stride;
+}
+
+void he_glb_parts_clear(he_glb_parts *parts)
+{
+    he_cuts_clear(&parts->cuts);
+    he_mem_free(parts->parts);
+    he_mem_free(parts->json);
+    *parts = (he_glb_parts){0};
+}
+
+static void add(he_glb_parts *g, he_glb_part part)
+{
+    part.offset = g->bytes;
+    g->bytes += (he_glb_part_bytes(&part) + 3) / 4 * 4;
+    g->parts[g->count++] = part;
+}
+
+static uint64_t corner_count(const he_mesh *m)
+{
+    return 2 * (uint64_t)m->c.edges.live - m->c.boundary_halfedges;
+}
+
+/* --- attributes that glTF has a place for --- */
+
+static bool all_below(const he_column *column, double end)
+{
+    for (size_t row = 0; row <= column->rows; row++) { /* the last one is the default */
+        for (uint32_t i = 0; i < column->components; i++) {
+            if (he_export_number(column, row, i) >= end) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Is the column the attribute of this number of a semantic, 0 without a digit? */
+static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsigned number)
+{
+    char name[HE_COLUMN_NAME];
+    snprintf(name, sizeof name, number == 0 ? "%s" : "%s%u", s->attribute, number);
+    return strcmp(column->name, name) == 0 && column->components >= s->least &&
+           column->components <= s->most;
+}
+
+/* The type of a column under a semantic, or 0. */
+static unsigned type_of(const he_column *column, const he_gltf_semantic *s)
+{
+    if (strcmp(s->attribute, "joints") == 0) {
+        return column->type == HE_UINT32 && all_below(column, 65536) ? HE_GLTF_UINT16 : 0;
+    }
+    if (strcmp(s->attribute, "color") == 0 && column->type == HE_UINT32) {
+        return all_below(column, 256) ? HE_GLTF_UINT8 : 0;
+    }
+    return column->type == HE_FLOAT || column->type == HE_DOUBLE ? HE_GLTF_FLOAT : 0;
+}
+
+/* The type as the attribute of this number, or 0. */
+static unsigned type_as(const he_column *column, const he_gltf_semantic *s, unsigned number)
+{
+    return column->labels == NULL && is_numbered(column, s, number) ? type_of(column, s) : 0;
+}
+
+static bool has_number(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
+{
+    for (size_t i = 0; i < he_mesh_columns(m); i++) {
+        const he_column *column = he_mesh_column(m, i);
+        if (column != NULL && column->domain == HE_VERTEX && type_as(column, s, number) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* How many numbers of a semantic can be written: without a gap, and with their partners. */
+static unsigned count_numbers(const he_mesh *m, const he_gltf_semantic *s)
+{
+    const he_gltf_semantic *partner = &he_gltf_semantics[s->partner];
+    unsigned most = s->numbered ? MOST_NUMBERS : 1, count = 0;
+    while (count < most && has_number(m, s, count) &&
+           (partner == s || has_number(m, partner, count))) {
+        count++;
+    }
+    return count;
+}
+
+static bool is_printable(const char *name)
+{
+    for (const char *p = name; *p != '\0'; p++) {
+        if ((unsigned char)*p < 0x20 || *p == 0x7F) {
+            return false;
+        }
+    }
+    return strcmp(name, "position") != 0;
+}
+
+/* What is beyond the numbers of its semantic has a name of its own, as _uv1, and so the same name
+ * when it is read back; joints, which are whole, are in extras. */
+static bool find_semantic(const unsigned counts[HE_GLTF_SEMANTICS], const he_column *column,
+                          he_glb_part *part)
+{
+    for (size_t i = 0; i < HE_GLTF_SEMANTICS; i++) {
+        const he_gltf_semantic *s = &he_gltf_semantics[i];
+        unsigned n = 0;
+        while (n < MOST_NUMBERS && type_as(column, s, n) == 0) {
+            n++;
+        }
+        if (n == MOST_NUMBERS || n >= counts[i]) {
+            continue;
+        }
+        part->type = type_of(column, s);
+        part->normalized = part->type == HE_GLTF_UINT8;
+        snprintf(part->semantic, sizeof part->semantic, s->numbered ? "%s%u" : "%s", s->semantic,
+                 n);
+        return true;
+    }
+    bool fraction = column->type == HE_FLOAT || column->type == HE_DOUBLE;
+    if (!fraction || column->components > 4 || !is_printable(column->name)) {
+        return false;
+    }
+    part->type = HE_GLTF_FLOAT;
+    snprintf(part->semantic, sizeof part->semantic, "_%s", column->name);
+    return true;
+}
+
+/* Does the reader make the same column of it? */
+static bool is_exact(const he_glb_part *part)
+{
+    const he_column *column = part->column;
+    if (part->type == HE_GLTF_UINT16) {
+        return column->rule == HE_COPY;
+    }
+    return column->type != HE_DOUBLE && column->rule == HE_INTERPOLATE;
+}
+
+/* --- choosing --- */
+
+static uint64_t rows_of(const he_mesh *m, he_kind domain)
+{
+    switch (domain) {
+    case HE_VERTEX:
+        return m->c.vertices.live;
+    case HE_FACE:
+        return m->c.faces.live;
+    case HE_HALFEDGE:
+        return corner_count(m);
+    case HE_EDGE:
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return 0;
+}
+
+static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
+{
+    uint32_t words = column->components * (column->type == HE_DOUBLE ? 2 : 1);
+    char subject[HE_COLUMN_NAME + 16];
+    int length =
+        snprintf(subject, sizeof subject, "%s %s", he_kind_name(column->domain), column->name);
+    add(g, (he_glb_part){.content = HE_GLB_WORDS,
+                         .column = column,
+                         .type = HE_GLTF_UINT32,
+                         .components = 1,
+                         .count = rows_of(g->mesh, column->domain) * words,
+                         .stride = 4});
+    he_notes_add(notes, "in_extras", "kept where only hedge looks: attribute", subject,
+                 (size_t)length, HE_PLACE_NONE, 0);
+}
+
+/* What is seen by all, then, behind the triangles, the rest. */
+static void add_values(he_glb_parts *g, const he_column **used, he_notes *notes)
+{
+    const he_mesh *m = g->mesh;
+    unsigned counts[HE_GLTF_SEMANTICS];
+    for (size_t i = 0; i < HE_GLTF_SEMANTICS; i++) {
+        counts[i] = count_numbers(m, &he_gltf_semantics[i]);
+    }
+    for (size_t i = 0; i < he_mesh_columns(m); i++) {
+        const he_column *column = he_mesh_column(m, i);
+        he_glb_part part = {.content = HE_GLB_VALUES, .column = column};
+        if (column == NULL || column->domain != HE_VERTEX ||
+            he_export_find(m, HE_VERTEX, column->name, 1, HE_COLUMN_COMPONENTS, notes) == NULL ||
+            !find_semantic(counts, column, &part)) {
+            continue;
+        }
+        part.components = column->components;
+        part.count = m->c.vertices.live;
+        part.stride = part.type == HE_GLTF_UINT8    ? 4
+                      : part.type == HE_GLTF_UINT16 ? 8
+                                                    : 4 * column->components;
+        used[i] = is_exact(&part) ? column : NULL;
+        add(g, part);
+    }
+}
+
+static void add_rest(he_glb_parts *g, const he_column **used, he_notes *notes)
+{
+    const he_mesh *m = g->mesh;
+    for (size_t i = 0; i < he_mesh_columns(m); i++) {
+        const he_column *column = he_mesh_column(m, i);
+        if (column != NULL && used[i] == NULL && rows_of(m, column->domain) > 0) {
+            add_words(g, column, notes);
+            used[i] = column;
+        }
+    }
+}
+
+static void add_parts(he_glb_parts *g, const he_column **used, he_notes *notes)
+{
+    const he_mesh *m = g->mesh;
+    uint64_t vertices = m->c.vertices.live, faces = m->c.faces.live;
+    bool few = vertices <= SHORT_VERTICES;
+    add(g, (he_glb_part){.content = HE_GLB_POSITIONS,
+                         .semantic = "POSITION",
+                         .type = HE_GLTF_FLOAT,
+                         .components = 3,
+                         .count = vertices,
+                         .stride = 12});
+    add_values(g, used, notes);
+    if (faces > 0) {
+        add(g, (he_glb_part){.content = HE_GLB_TRIANGLES,
+                             .type = few ? HE_GLTF_UINT16 : HE_GLTF_UINT32,
+                             .components = 1,
+                             .count = 3 * he_cuts_count(&g->cuts),
+                             .stride = few ? 2 : 4});
+    }
+    he_glb_part words = {.type = HE_GLTF_UINT32, .components = 1, .stride = 4};
+    if (g->cuts.polygons > 0) {
+        words.content = HE_GLB_DEGREES;
+        words.count = faces;
+        add(g, words);
+        words.content = HE_GLB_CORNERS;
+        words.count = corner_count(m);
+        add(g, words);
+    }
+    add_rest(g, used, notes);
+}
+
+static void note_geometry(const he_glb_parts *g, he_notes *notes)
+{
+    const he_mesh *m = g->mesh;
+    uint64_t rounded = 0;
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        he_vec3 p = m->c.position[v];
+        rounded += he_vertex_is_live(m, (he_vertex){v}) &&
+                   !(he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z));
+    }
+    he_notes_add_count(notes, "rounded", "rounded to floats: a position", rounded);
+    he_notes_add_count(notes, "triangulated",
+                       "cut into triangles for other programs, and kept for hedge: a face",
+                       g->cuts.polygons);
+    he_notes_add_count(notes, "turned_triangles",
+                       "cut into triangles some of which have no area or are turned over: a face",
+                       g->cuts.turned);
+}
+
+static he_status make(he_glb_parts *g, he_notes *notes, he_error *err)
+{
+    size_t columns = he_mesh_columns(g->mesh);
+    he_status status = he_cuts_make(g->mesh, &g->cuts, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    g->capacity = 4 + 2 * columns;
+    g->parts = he_mem_array(NULL, g->capacity, sizeof *g->parts);
+    const he_column **used = he_mem_zero(columns + 1, sizeof *used);
+    if (g->parts == NULL || used == NULL) {
+        he_mem_free(used);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu attributes", columns);
+    }
+    if (g->mesh->c.vertices.live > 0) {
+        add_parts(g, used, notes);
+    }
+    note_geometry(g, notes);
+    he_export_note_lost(g->mesh, used, columns, notes);
+    he_mem_free(used);
+    status = he_glb_describe(g, err);
+    if (status == HE_OK && g->bytes + g->json_length > UINT32_MAX - 64) {
+        return he_fail_plain(err, HE_LIMIT, "a GLB file has less than 4 GiB, not %llu bytes",
+                             (unsigned long long)(g->bytes + g->json_length));
+    }
+    return status;
+}
+
+he_status he_glb_parts_make(const he_mesh *mesh, he_notes *notes, he_glb_parts *out, he_error *err)
+{
+    he_glb_parts made = {.mesh = mesh};
+    he_status status = make(&made, notes, err);
+    if (status != HE_OK) {
+        he_glb_parts_clear(&made);
+        return status;
+    }
+    *out = made;
+    return HE_OK;
+}

@@ -1,0 +1,51 @@
+/* glb_parts.h - what a GLB of a mesh consists of, known before its first byte: the parts of its one
+ * buffer, each a buffer view and an accessor of the same number, and the JSON that names them. */
+#ifndef HE_FORMAT_GLTF_GLB_PARTS_H
+#define HE_FORMAT_GLTF_GLB_PARTS_H
+
+#include "format/io/cuts.h"
+#include "format/io/format.h"
+
+typedef enum he_glb_content {
+    HE_GLB_POSITIONS, /* three floats a vertex */
+    HE_GLB_VALUES,    /* an attribute of vertices in a type of glTF */
+    HE_GLB_TRIANGLES,
+    HE_GLB_DEGREES, /* of faces */
+    HE_GLB_CORNERS, /* vertices of faces */
+    HE_GLB_WORDS    /* an attribute as it is in memory, a bool as a word */
+} he_glb_content;
+
+typedef struct he_glb_part {
+    he_glb_content content;
+    const he_column *column;           /* of values and words */
+    char semantic[HE_COLUMN_NAME + 2]; /* of positions and values */
+    unsigned type;                     /* the componentType */
+    uint32_t components;               /* of an element of the accessor */
+    bool normalized;
+    uint64_t count;  /* elements of the accessor */
+    uint32_t stride; /* bytes from one to the next */
+    uint64_t offset; /* in the buffer, a multiple of 4 */
+} he_glb_part;
+
+/* {0} is empty. */
+typedef struct he_glb_parts {
+    const he_mesh *mesh;
+    he_cuts cuts;
+    he_glb_part *parts;
+    size_t count, capacity;
+    uint64_t bytes; /* of the buffer, a multiple of 4 */
+    char *json;
+    size_t json_length; /* a multiple of 4 */
+} he_glb_parts;
+
+/* HE_NO_MEMORY; HE_LIMIT where the file would have more than its 32 bits can count. */
+HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, he_notes *notes, he_glb_parts *out,
+                                         he_error *err);
+void he_glb_parts_clear(he_glb_parts *parts);
+/* Bytes of a part without what fills it up to a multiple of 4. */
+uint64_t he_glb_part_bytes(const he_glb_part *part);
+
+/* For glb_parts.c: write the JSON of parts that are complete. HE_NO_MEMORY. */
+HE_NODISCARD he_status he_glb_describe(he_glb_parts *parts, he_error *err);
+
+#endif

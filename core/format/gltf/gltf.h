@@ -1,0 +1,45 @@
+/* gltf.h - glTF 2.0, as GLB (the binary container) and as JSON: the rows' parts for format.c.
+ *
+ *     "glTF" 2 length            twelve bytes
+ *     length "JSON" ...          a chunk: the asset
+ *     length "BIN\0" ...         a chunk that may be missing: its buffer 0
+ *
+ * READING. Everything comes from the bytes themselves: a buffer is the BIN chunk or a data: URI in
+ * base64. Any other uri of a buffer is refused, images are noted; nothing is ever opened.
+ *
+ * Each node of the scene that has a mesh adds it, moved by the product of the matrices above it, so
+ * a mesh of several nodes comes several times. Each primitive adds all its vertices, in the order
+ * of the file, then its triangles, strip or fan; one without indices takes the vertices as they
+ * come. Vertices that share a position stay apart. Where a node mirrors, triangles are turned over,
+ * so that they face out as before, with a note. Points and lines are noted and left out, as are
+ * skins, animations and morph targets: a mesh is as its node places it.
+ *
+ * Attributes of vertices are those of gltf_attribute.h; of faces, "object" is the name of the node,
+ * else of the mesh, and "material" that of the material, material_N where it has none. Polygons
+ * and all that glTF has no place for are in the extras of files that were written here
+ * (gltf_private.h).
+ *
+ * Refused: other versions; extensions that are required and change geometry (KHR_mesh_quantization
+ * is read); what refers beyond its list, view or buffer; numbers outside their range; directions
+ * that are no floats, without that extension; nodes that are reached twice or are inside
+ * themselves; and scenes that make more than gltf_asset.h allows. The errors have the byte, and the
+ * path in the JSON.
+ *
+ * WRITING. One mesh of one primitive: all vertices, in the order of ids, as floats, and triangles.
+ * normal, tangent, uv, color, joints and weights of vertices and other attributes of floats are
+ * glTF attributes as they are read; they and all others, those of faces and corners too, are also
+ * in extras unless that is the same. So are polygons. Numbers have no gaps and joints come with
+ * weights; what cannot has a name of its own, as _uv1 where there is no uv. Other programs ignore
+ * extras, so this program reads back all but the positions' last digits, attributes of edges and of
+ * the mesh. */
+#ifndef HE_FORMAT_GLTF_GLTF_H
+#define HE_FORMAT_GLTF_GLTF_H
+
+#include "format/io/format.h"
+
+bool he_glb_sniff(const char *bytes, size_t n);
+bool he_gltf_sniff(const char *bytes, size_t n);
+extern const he_reading he_glb_reading, he_gltf_reading;
+extern const he_writing he_glb_writing;
+
+#endif

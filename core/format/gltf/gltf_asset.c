@@ -1,0 +1,369 @@
+#include "format/gltf/gltf_asset.h"
+
+#include "format/text/base64.h"
+
+#include <string.h>
+
+static void note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
+                 uint32_t place)
+{
+    char name[HE_NOTE_SUBJECT];
+    size_t length =
+        subject == HE_NONE ? 0 : he_json_string(&asset->json, subject, name, sizeof name);
+    he_notes_add(&asset->into->notes, code, text, name, length, HE_PLACE_BYTE,
+                 he_json_place(&asset->json, place));
+}
+
+/* How much there is to do is not known before; few files have less than a step for 16 bytes. */
+he_status he_gltf_tell(he_gltf *asset, he_error *err)
+{
+    asset->told = asset->steps;
+    return he_watch_step(asset->into->soup.limits.watch, asset->steps,
+                         asset->steps + asset->size / 16, err);
+}
+
+he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err)
+{
+    if (bytes > asset->room) {
+        return he_json_fail(
+            &asset->json, value, err, HE_LIMIT,
+            "the scene makes more than %llu MiB and %llu times the file of geometry",
+            (unsigned long long)(HE_GLTF_ROOM >> 20), (unsigned long long)HE_GLTF_FACTOR);
+    }
+    asset->room -= bytes;
+    return HE_OK;
+}
+
+he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value, const char *what,
+                       uint32_t *item, he_error *err)
+{
+    uint64_t index = 0;
+    he_status status = he_json_whole(&asset->json, value, 0, HE_JSON_WHOLE, &index, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (index >= list->count) {
+        return he_json_fail(&asset->json, value, err, HE_BAD_INDEX, "there is no %s %llu of %zu",
+                            what, (unsigned long long)index, list->count);
+    }
+    *item = list->ids[index];
+    /* who names it looks at all its members */
+    return he_gltf_spend(asset, value, 8 * he_json_span(&asset->json, *item), err);
+}
+
+he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name, uint64_t least,
+                       uint64_t most, uint64_t *out, he_error *err)
+{
+    uint32_t value = he_json_find(&asset->json, object, name);
+    if (value == HE_NONE) {
+        return he_json_fail(&asset->json, object, err, HE_BAD_VALUE, "'%s' is missing", name);
+    }
+    return he_json_whole(&asset->json, value, least, most, out, err);
+}
+
+he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name, uint64_t most,
+                      uint64_t *out, he_error *err)
+{
+    uint32_t value = he_json_find(&asset->json, object, name);
+    *out = 0;
+    return value == HE_NONE ? HE_OK : he_json_whole(&asset->json, value, 0, most, out, err);
+}
+
+he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name, uint32_t *out,
+                        he_error *err)
+{
+    *out = he_json_find(&asset->json, object, name);
+    if (*out != HE_NONE && he_json_type(&asset->json, *out) != '[') {
+        return he_json_fail(&asset->json, *out, err, HE_BAD_VALUE, "this is not an array");
+    }
+    return HE_OK;
+}
+
+/* --- the whole --- */
+
+static he_status list_items(he_gltf *asset, const char *name, he_ids *list, he_error *err)
+{
+    const he_json *json = &asset->json;
+    uint32_t array = HE_NONE;
+    he_status status = he_gltf_array(asset, 0, name, &array, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    for (uint32_t i = he_json_first(json, array); i != HE_NONE && status == HE_OK;
+         i = he_json_after(json, array, i)) {
+        if (he_json_type(json, i) != '{') {
+            return he_json_fail(json, i, err, HE_BAD_VALUE, "this is not an object");
+        }
+        status = he_ids_add(list, i, err);
+    }
+    return status;
+}
+
+static he_status check_version(const he_gltf *asset, he_error *err)
+{
+    const he_json *json = &asset->json;
+    uint32_t object = he_json_find(json, 0, "asset");
+    uint32_t version = he_json_find(json, object, "version");
+    uint32_t least = he_json_find(json, object, "minVersion");
+    char text[24];
+    if (he_json_type(json, 0) != '{' || he_json_type(json, version) != '"') {
+        return he_json_fail(json, object, err, HE_SYNTAX,
+                            "not a glTF asset: 'asset' has no 'version'");
+    }
+    he_json_string(json, version, text, sizeof text);
+    if (text[0] != '2' || (text[1] != '.' && text[1] != '\0')) {
+        return he_json_fail(json, version, err, HE_UNSUPPORTED, "glTF of a version other than 2");
+    }
+    if (least != HE_NONE && !he_json_is(json, least, "2.0")) {
+        return he_json_fail(json, least, err, HE_UNSUPPORTED,
+                            "a reader of more than 2.0 is needed");
+    }
+    return HE_OK;
+}
+
+static bool begins_with_any(const he_json *json, uint32_t name, const char *const *list)
+{
+    for (; *list != NULL; list++) {
+        if (he_json_begins(json, name, *list)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static he_status check_extensions(he_gltf *asset, he_error *err)
+{
+    /* what changes how a surface looks, not where it is */
+    static const char *const looks[] = {"KHR_materials_",
+                                        "KHR_texture_",
+                                        "EXT_texture_",
+                                        "MSFT_texture_",
+                                        "KHR_lights_",
+                                        "EXT_lights_",
+                                        "KHR_xmp",
+                                        "KHR_animation",
+                                        "KHR_techniques_webgl",
+                                        "AGI_articulations",
+                                        NULL};
+    const he_json *json = &asset->json;
+    uint32_t list = he_json_find(json, 0, "extensionsRequired");
+    for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
+        char name[HE_NOTE_SUBJECT], quoted[HE_NOTE_SUBJECT];
+        size_t length = he_json_string(json, i, name, sizeof name);
+        bool quantized = he_json_is(json, i, "KHR_mesh_quantization");
+        asset->quantized |= quantized;
+        if (!quantized && !begins_with_any(json, i, looks)) {
+            he_quote(name, name + length, quoted, sizeof quoted);
+            return he_json_fail(json, i, err, HE_UNSUPPORTED,
+                                "the file needs the extension %s, which is not read", quoted);
+        }
+    }
+    list = he_json_find(json, 0, "extensionsUsed");
+    for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
+        if (he_json_is(json, i, "KHR_mesh_quantization")) {
+            asset->quantized = true;
+        } else {
+            note(asset, "ignored_extension", "ignored: extension", i, i);
+        }
+    }
+    return HE_OK;
+}
+
+/* Characters of base64 between two looks at the watch; a multiple of four. */
+enum { PIECE = 1 << 16 };
+
+/* `to` has room for the bytes of `length` characters. */
+static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
+                        he_gltf_buffer *to, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t at = 0, n; at < length && status == HE_OK; at += n) {
+        size_t decoded;
+        n = length - at < PIECE ? length - at : PIECE;
+        if (!he_base64_decode(text + at, n, to->own + to->length, &decoded) ||
+            (at + n < length && decoded != PIECE / 4 * 3)) {
+            return he_json_fail(&asset->json, uri, err, HE_SYNTAX, "the data: URI is not base64");
+        }
+        to->length += decoded;
+        asset->steps += n;
+        status = he_gltf_tell(asset, err);
+    }
+    return status;
+}
+
+/* The characters of a string whose escapes are undone, if it has any: then `own` is to be freed. */
+static he_status plain_text(const he_json *json, uint32_t value, const char **text, size_t *length,
+                            char **own, he_error *err)
+{
+    *text = he_json_raw(json, value, length);
+    if (memchr(*text, '\\', *length) == NULL) {
+        return HE_OK;
+    }
+    *own = he_mem_alloc(*length + 1);
+    if (*own == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a string of %zu bytes", *length);
+    }
+    *length = he_json_string(json, value, *own, *length + 1);
+    *text = *own;
+    return HE_OK;
+}
+
+static he_status decode_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, he_error *err)
+{
+    const he_json *json = &asset->json;
+    if (!he_json_begins(json, uri, "data:")) {
+        return he_json_fail(json, uri, err, HE_UNSUPPORTED,
+                            "a buffer outside the file: no uri but data: is read");
+    }
+    size_t length;
+    const char *text;
+    char *own = NULL;
+    he_status status = plain_text(json, uri, &text, &length, &own, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    const char *comma = memchr(text, ',', length);
+    static const char coding[] = ";base64";
+    size_t head = comma == NULL ? 0 : (size_t)(comma - text), size = sizeof coding - 1;
+    if (head < size || memcmp(comma - size, coding, size) != 0) {
+        status = he_json_fail(json, uri, err, HE_UNSUPPORTED, "a data: URI that is not in base64");
+        goto out;
+    }
+    length -= head + 1;
+    *buffer =
+        (he_gltf_buffer){.own = he_mem_alloc(he_base64_room(length)), .place = HE_GLTF_NOWHERE};
+    if (buffer->own == NULL) {
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory for a buffer of %zu characters", length);
+        goto out;
+    }
+    buffer->bytes = buffer->own;
+    status = decode(asset, uri, comma + 1, length, buffer, err);
+out:
+    he_mem_free(own);
+    return status;
+}
+
+static he_status open_buffer(he_gltf *asset, size_t i, uint32_t value, const he_gltf_bin *bin,
+                             he_error *err)
+{
+    const he_json *json = &asset->json;
+    he_gltf_buffer *buffer = &asset->buffers[i];
+    uint64_t length = 0;
+    uint32_t uri = he_json_find(json, value, "uri");
+    he_status status = he_gltf_need(asset, value, "byteLength", 1, HE_JSON_WHOLE, &length, err);
+    if (status == HE_OK && uri != HE_NONE) {
+        status = decode_uri(asset, buffer, uri, err);
+    } else if (status == HE_OK && i == 0 && bin->bytes != NULL) {
+        *buffer = (he_gltf_buffer){bin->bytes, NULL, bin->length, bin->place};
+        if (bin->length > length && bin->length - length > 3) {
+            note(asset, "bin_longer", "ignored: bytes of the BIN chunk behind its buffer", HE_NONE,
+                 value);
+        }
+    } else if (status == HE_OK) {
+        bool packed = he_json_find(json, he_json_find(json, value, "extensions"),
+                                   "EXT_meshopt_compression") != HE_NONE;
+        return he_json_fail(json, value, err, packed ? HE_UNSUPPORTED : HE_BAD_VALUE,
+                            packed ? "the buffer is there in EXT_meshopt_compression only"
+                                   : "the buffer has no bytes in the file");
+    }
+    if (status == HE_OK && buffer->length < length) {
+        return he_json_fail(json, value, err, HE_BAD_VALUE,
+                            "a buffer of %llu bytes of which %llu are there",
+                            (unsigned long long)length, (unsigned long long)buffer->length);
+    }
+    buffer->length = length;
+    return status;
+}
+
+static he_status open_buffers(he_gltf *asset, const he_gltf_bin *bin, he_error *err)
+{
+    he_ids list = {0};
+    he_status status = list_items(asset, "buffers", &list, err);
+    if (status == HE_OK && list.count > 0) {
+        asset->buffers = he_mem_zero(list.count, sizeof *asset->buffers);
+        asset->buffer_count = list.count;
+        if (asset->buffers == NULL) {
+            asset->buffer_count = 0;
+            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu buffers", list.count);
+        }
+    }
+    for (size_t i = 0; i < list.count && status == HE_OK; i++) {
+        status = open_buffer(asset, i, list.ids[i], bin, err);
+    }
+    he_ids_clear(&list);
+    return status;
+}
+
+/* What has no place in a mesh. */
+static void note_rest(he_gltf *asset)
+{
+    static const struct {
+        const char *name, *code, *text;
+    } parts[] = {
+        {"images", "ignored_images", "ignored: images, which are never opened"},
+        {"animations", "ignored_animations", "ignored: animations"},
+        {"skins", "ignored_skins", "ignored: skins; meshes are as their nodes place them"}};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        uint32_t list = he_json_find(&asset->json, 0, parts[i].name);
+        if (he_json_first(&asset->json, list) != HE_NONE) {
+            note(asset, parts[i].code, parts[i].text, HE_NONE, list);
+        }
+    }
+}
+
+he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text, size_t length,
+                       uint64_t offset, const he_gltf_bin *bin, he_error *err)
+{
+    *asset = (he_gltf){.into = into, .size = (uint64_t)length + bin->length};
+    asset->room = HE_GLTF_ROOM + HE_GLTF_FACTOR * asset->size;
+    he_watch *watch = into->soup.limits.watch;
+    he_status status = he_watch_phase(watch, "parsing", 0.4, err);
+    if (status == HE_OK) {
+        status = he_json_parse(&asset->json, text, length, offset, watch, err);
+    }
+    if (status == HE_OK) {
+        status = he_watch_phase(watch, "reading", 1, err);
+    }
+    if (status == HE_OK) {
+        status = check_version(asset, err);
+    }
+    if (status == HE_OK) {
+        status = check_extensions(asset, err);
+    }
+    struct {
+        const char *name;
+        he_ids *list;
+    } lists[] = {{"accessors", &asset->accessors},
+                 {"bufferViews", &asset->views},
+                 {"nodes", &asset->nodes},
+                 {"meshes", &asset->meshes},
+                 {"materials", &asset->materials}};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists && status == HE_OK; i++) {
+        status = list_items(asset, lists[i].name, lists[i].list, err);
+    }
+    if (status == HE_OK) {
+        status = open_buffers(asset, bin, err);
+    }
+    if (status != HE_OK) {
+        he_gltf_close(asset);
+        return status;
+    }
+    note_rest(asset);
+    return HE_OK;
+}
+
+void he_gltf_close(he_gltf *asset)
+{
+    for (size_t i = 0; i < asset->buffer_count; i++) {
+        he_mem_free(asset->buffers[i].own);
+    }
+    he_mem_free(asset->buffers);
+    he_ids_clear(&asset->accessors);
+    he_ids_clear(&asset->views);
+    he_ids_clear(&asset->nodes);
+    he_ids_clear(&asset->meshes);
+    he_ids_clear(&asset->materials);
+    he_json_clear(&asset->json);
+    *asset = (he_gltf){0};
+}

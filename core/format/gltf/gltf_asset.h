@@ -1,0 +1,118 @@
+/* gltf_asset.h - the parts of a glTF asset that geometry is read from: its JSON, the buffers behind
+ * it, and accessors, each checked when it is used.
+ *
+ * What an asset may make is bounded by its size, since nodes share meshes and primitives share
+ * accessors: HE_GLTF_ROOM bytes and HE_GLTF_FACTOR times its own, counted as they are in the soup,
+ * before anything is made. So a list of instances that grows without bytes is refused early. */
+#ifndef HE_FORMAT_GLTF_GLTF_ASSET_H
+#define HE_FORMAT_GLTF_GLTF_ASSET_H
+
+#include "format/io/format.h"
+#include "format/text/json.h"
+
+#define HE_GLTF_ROOM    ((uint64_t)32 << 20)
+#define HE_GLTF_FACTOR  ((uint64_t)8)
+#define HE_GLTF_NOWHERE UINT64_MAX
+enum { HE_GLTF_ELEMENT = 64 }; /* bytes of the largest element, sixteen floats */
+
+typedef struct he_gltf_buffer {
+    const unsigned char *bytes;
+    unsigned char *own; /* to be freed: what a data: URI held */
+    uint64_t length;
+    uint64_t place; /* of its first byte in the input, or HE_GLTF_NOWHERE */
+} he_gltf_buffer;
+
+typedef struct he_gltf {
+    he_import *into;
+    he_json json;
+    he_ids accessors, views, nodes, meshes, materials; /* their values in the JSON */
+    he_gltf_buffer *buffers;
+    size_t buffer_count;
+    bool quantized;       /* KHR_mesh_quantization is used */
+    uint64_t room;        /* bytes that may still be made */
+    uint64_t size;        /* bytes of the input */
+    uint64_t steps, told; /* of work; when the watch was last told */
+} he_gltf;
+
+/* Where the BIN chunk of a GLB lies; bytes NULL: there is none. */
+typedef struct he_gltf_bin {
+    const unsigned char *bytes;
+    uint64_t length, place;
+} he_gltf_bin;
+
+/* Parse and check what concerns the whole: version, extensions, buffers. `text` and `bin` must
+ * outlive the asset. HE_SYNTAX, HE_BAD_VALUE, HE_UNSUPPORTED, HE_LIMIT, HE_NO_MEMORY,
+ * HE_CANCELLED. */
+HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text,
+                                    size_t length, uint64_t offset, const he_gltf_bin *bin,
+                                    he_error *err);
+void he_gltf_close(he_gltf *asset);
+
+/* HE_CANCELLED. */
+HE_NODISCARD he_status he_gltf_tell(he_gltf *asset, he_error *err);
+/* For each element that is looked at: the soup's watch hears of some of them. */
+HE_NODISCARD static inline he_status he_gltf_poll(he_gltf *asset, he_error *err)
+{
+    return ++asset->steps - asset->told < HE_WATCH_STRIDE ? HE_OK : he_gltf_tell(asset, err);
+}
+/* HE_LIMIT, naming `value`, where `bytes` more are more than the asset may make. */
+HE_NODISCARD he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err);
+/* The item of `list` that the number at `value` names: HE_BAD_INDEX. `what` is one of them. */
+HE_NODISCARD he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value,
+                                    const char *what, uint32_t *item, he_error *err);
+/* The whole number at a member that must be there, */
+HE_NODISCARD he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name,
+                                    uint64_t least, uint64_t most, uint64_t *out, he_error *err);
+/* or 0, where it need not. */
+HE_NODISCARD he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name,
+                                   uint64_t most, uint64_t *out, he_error *err);
+/* The array that a member is, HE_NONE where there is no such member. HE_BAD_VALUE. */
+HE_NODISCARD he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name,
+                                     uint32_t *out, he_error *err);
+
+typedef enum he_gltf_type {
+    HE_GLTF_INT8 = 5120,
+    HE_GLTF_UINT8,
+    HE_GLTF_INT16,
+    HE_GLTF_UINT16,
+    HE_GLTF_UINT32 = 5125,
+    HE_GLTF_FLOAT
+} he_gltf_type;
+
+size_t he_gltf_type_bytes(he_gltf_type type);
+
+/* Elements of numbers, checked to lie within their buffers. */
+typedef struct he_gltf_accessor {
+    uint32_t value; /* in the JSON */
+    he_gltf_type type;
+    bool normalized;
+    bool matrix;
+    uint32_t components;
+    uint64_t count;
+    const unsigned char *bytes; /* NULL: zeros */
+    size_t stride;
+    uint64_t place;   /* of the first element in the input, or HE_GLTF_NOWHERE */
+    uint64_t changed; /* elements that differ from `bytes` */
+    const unsigned char *changed_index, *changed_value;
+    he_gltf_type changed_type; /* of the indices, which rise */
+} he_gltf_accessor;
+
+/* The accessor that the number at `value` names. HE_BAD_INDEX, HE_BAD_VALUE, HE_UNSUPPORTED. */
+HE_NODISCARD he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor *out,
+                                            he_error *err);
+
+/* A walk over the elements. */
+typedef struct he_gltf_walk {
+    const he_gltf_accessor *accessor;
+    uint64_t next, changed;
+} he_gltf_walk;
+
+/* The bytes of the next element. */
+const unsigned char *he_gltf_next(he_gltf_walk *walk);
+/* A component, as the number it stands for: -1 to 1 or 0 to 1 where it is normalized. */
+double he_gltf_number(const he_gltf_accessor *accessor, const unsigned char *element,
+                      uint32_t component);
+/* A whole number of a type without a sign. */
+uint32_t he_gltf_whole(he_gltf_type type, const unsigned char *at);
+
+#endif

@@ -1,0 +1,313 @@
+#include "format/gltf/gltf_attribute.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS] = {
+    {"NORMAL", "normal", 3, 3, false, 0}, {"TANGENT", "tangent", 4, 4, false, 1},
+    {"TEXCOORD_", "uv", 2, 2, true, 2},   {"COLOR_", "color", 3, 4, true, 3},
+    {"JOINTS_", "joints", 4, 4, true, 5}, {"WEIGHTS_", "weights", 4, 4, true, 4},
+};
+
+he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name)
+{
+    for (size_t i = 0; i < soup->column_count; i++) {
+        if (soup->columns[i]->domain == domain && strcmp(soup->columns[i]->name, name) == 0) {
+            return soup->columns[i];
+        }
+    }
+    return NULL;
+}
+
+he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column, size_t end,
+                         he_error *err)
+{
+    if (end <= column->rows) {
+        return HE_OK;
+    }
+    size_t rows = end - column->rows;
+    he_status status =
+        he_gltf_spend(surface->asset, value, (uint64_t)rows * column->row_bytes, err);
+    return status == HE_OK ? he_column_extend(column, rows, err) : status;
+}
+
+/* A run of at most three digits that does not begin with 0 unless it is 0, to its end. */
+static bool read_number(const char *p, unsigned *number)
+{
+    unsigned value = 0;
+    const char *begin = p;
+    for (; *p >= '0' && *p <= '9' && p - begin < 3; p++) {
+        value = value * 10 + (unsigned)(*p - '0');
+    }
+    *number = value;
+    return p > begin && *p == '\0' && (*begin != '0' || p == begin + 1);
+}
+
+/* The attribute's name for a semantic; false where it has none. */
+static bool name_attribute(const char *semantic, char name[HE_COLUMN_NAME],
+                           const he_gltf_semantic **known)
+{
+    *known = NULL;
+    for (size_t i = 0; i < HE_GLTF_SEMANTICS; i++) {
+        const he_gltf_semantic *s = &he_gltf_semantics[i];
+        size_t length = strlen(s->semantic);
+        unsigned number = 0;
+        if (strncmp(semantic, s->semantic, length) != 0 ||
+            !(s->numbered ? read_number(semantic + length, &number) : semantic[length] == '\0')) {
+            continue;
+        }
+        *known = s;
+        snprintf(name, HE_COLUMN_NAME, number == 0 ? "%s" : "%s%u", s->attribute, number);
+        return true;
+    }
+    size_t length = strlen(semantic);
+    if (semantic[0] != '_' || length < 2 || length > HE_COLUMN_NAME ||
+        strcmp(semantic, "_position") == 0) {
+        return false;
+    }
+    for (size_t i = 1; i < length; i++) {
+        if ((unsigned char)semantic[i] < 0x20 || semantic[i] == 0x7F) {
+            return false;
+        }
+    }
+    memcpy(name, semantic + 1, length);
+    return true;
+}
+
+static bool is_bytes(const he_gltf_accessor *a, const he_gltf_semantic *known)
+{
+    return known != NULL && strcmp(known->attribute, "color") == 0 && a->type == HE_GLTF_UINT8 &&
+           a->normalized;
+}
+
+static he_type column_type(const he_gltf_accessor *a, const he_gltf_semantic *known)
+{
+    if (is_bytes(a, known)) {
+        return HE_UINT32;
+    }
+    if (a->normalized || a->type == HE_GLTF_FLOAT) {
+        return HE_FLOAT;
+    }
+    return a->type == HE_GLTF_INT8 || a->type == HE_GLTF_INT16 ? HE_INT32 : HE_UINT32;
+}
+
+/* --- directions --- */
+
+/* Normals turn with the cofactors of the frame, which are its inverse transposed but for a factor;
+ * tangents with the frame. */
+static void turn(const he_gltf_primitive *p, bool normal, double *v)
+{
+    const double(*m)[4] = p->frame->row;
+    double out[3], length = 0;
+    for (int i = 0; i < 3; i++) {
+        int a = (i + 1) % 3, b = (i + 2) % 3;
+        out[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            int c = (k + 1) % 3, d = (k + 2) % 3;
+            double cofactor = m[a][c] * m[b][d] - m[a][d] * m[b][c];
+            out[i] += (normal ? (p->mirror ? -cofactor : cofactor) : m[i][k]) * v[k];
+        }
+        length += out[i] * out[i];
+    }
+    length = sqrt(length);
+    for (int i = 0; i < 3 && length > 0 && isfinite(length); i++) {
+        v[i] = out[i] / length;
+    }
+}
+
+/* --- rows --- */
+
+static void put_row(he_gltf_surface *s, const he_column *column, const double *values, size_t row,
+                    uint64_t place)
+{
+    unsigned char *at = he_column_row(column, row);
+    for (uint32_t i = 0; i < column->components; i++, at += 4) {
+        double value = values[i];
+        if (!(fabs(value) <= (double)FLT_MAX) && column->type == HE_FLOAT) {
+            he_notes_add(&s->asset->into->notes, "not_finite",
+                         "set to 0: values that are not finite of", column->name,
+                         strlen(column->name), HE_PLACE_BYTE, place);
+            value = 0;
+        }
+        if (column->type == HE_FLOAT) {
+            float number = (float)value;
+            memcpy(at, &number, sizeof number);
+        } else if (column->type == HE_INT32) {
+            int32_t number = (int32_t)value;
+            memcpy(at, &number, sizeof number);
+        } else {
+            uint32_t number = (uint32_t)value;
+            memcpy(at, &number, sizeof number);
+        }
+    }
+}
+
+static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gltf_accessor *a,
+                          const he_gltf_semantic *known, const he_column *column, he_error *err)
+{
+    bool normal = known != NULL && strcmp(known->attribute, "normal") == 0;
+    bool tangent = known != NULL && strcmp(known->attribute, "tangent") == 0;
+    double factor = is_bytes(a, known) ? 255 : 1;
+    uint64_t place =
+        a->place == HE_GLTF_NOWHERE ? he_json_place(&s->asset->json, a->value) : a->place;
+    he_gltf_walk walk = {.accessor = a};
+    he_status status = HE_OK;
+    for (uint64_t i = 0; i < a->count && status == HE_OK; i++) {
+        const unsigned char *at = he_gltf_next(&walk);
+        double values[HE_COLUMN_COMPONENTS] = {0};
+        for (uint32_t k = 0; k < a->components; k++) {
+            values[k] = he_gltf_number(a, at, k);
+            values[k] = factor == 1 ? values[k] : nearbyint(values[k] * factor);
+        }
+        if ((normal || tangent) && !p->still) {
+            turn(p, normal, values);
+            if (tangent && p->mirror) {
+                values[3] = -values[3];
+            }
+        }
+        put_row(s, column, values, p->first_vertex + i, place);
+        status = he_gltf_poll(s->asset, err);
+    }
+    return status;
+}
+
+static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
+                         const char *semantic, uint32_t value)
+{
+    he_notes_add(&s->asset->into->notes, code, text, semantic, strlen(semantic), HE_PLACE_BYTE,
+                 he_json_place(&s->asset->json, value));
+}
+
+static bool is_direction(const he_gltf_semantic *known)
+{
+    return known != NULL &&
+           (strcmp(known->attribute, "normal") == 0 || strcmp(known->attribute, "tangent") == 0);
+}
+
+/* Directions are floats, or what the extension has for them. */
+static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
+                            const he_gltf_semantic *known, he_error *err)
+{
+    bool small = a->normalized && (a->type == HE_GLTF_INT8 || a->type == HE_GLTF_INT16);
+    if (!is_direction(known) || a->type == HE_GLTF_FLOAT || (asset->quantized && small)) {
+        return HE_OK;
+    }
+    return he_json_fail(&asset->json, a->value, err, HE_BAD_VALUE,
+                        "%s has componentType 5126%s, not %d", known->semantic,
+                        asset->quantized ? ", or 5120 or 5122 and is normalized" : "",
+                        (int)a->type);
+}
+
+/* The column for the rows, NULL where there can be none. */
+static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, const char *semantic,
+                             const he_gltf_accessor *a, const he_gltf_semantic **known,
+                             he_column **out, he_error *err)
+{
+    he_soup *soup = &s->asset->into->soup;
+    char name[HE_COLUMN_NAME];
+    uint32_t value = a->value;
+    *out = NULL;
+    if (!name_attribute(semantic, name, known) || (a->matrix && a->type != HE_GLTF_FLOAT) ||
+        (*known != NULL &&
+         (a->components < (*known)->least || a->components > (*known)->most || a->matrix))) {
+        note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
+        return HE_OK;
+    }
+    he_status status = check_type(s->asset, a, *known, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_type type = column_type(a, *known);
+    he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
+    if (column != NULL && column->rows > p->first_vertex) {
+        if (!p->exact) {
+            note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
+        }
+        return HE_OK;
+    }
+    if (column != NULL && (column->type != type || column->components != a->components)) {
+        note_ignored(s, "attribute_types", "ignored, being of another type than before: attribute",
+                     semantic, value);
+        return HE_OK;
+    }
+    if (column == NULL && soup->column_count == HE_GLTF_ATTRIBUTES) {
+        return he_json_fail(&s->asset->json, value, err, HE_LIMIT, "more than %d attributes",
+                            (int)HE_GLTF_ATTRIBUTES);
+    }
+    bool color = *known != NULL && strcmp((*known)->attribute, "color") == 0;
+    he_rule rule = type == HE_FLOAT || color ? HE_INTERPOLATE : HE_COPY;
+    return he_soup_column(soup, name, HE_VERTEX, type, a->components, rule, out, err);
+}
+
+static size_t number_of(const he_soup *soup, const he_column *column)
+{
+    size_t i = 0;
+    while (soup->columns[i] != column) {
+        i++;
+    }
+    return i;
+}
+
+static he_status add_attribute(he_gltf_surface *s, const he_gltf_primitive *p, uint32_t name,
+                               he_error *err)
+{
+    const he_json *json = &s->asset->json;
+    uint32_t value = he_json_of(name);
+    he_gltf_accessor a;
+    const he_gltf_semantic *known = NULL;
+    he_column *column = NULL;
+    char semantic[HE_COLUMN_NAME + 2];
+    he_json_string(json, name, semantic, sizeof semantic);
+    he_status status = he_gltf_accessor_get(s->asset, value, &a, err);
+    if (status == HE_OK && a.count != p->positions.count) {
+        return he_json_fail(json, value, err, HE_BAD_VALUE, "%llu values for %llu vertices",
+                            (unsigned long long)a.count, (unsigned long long)p->positions.count);
+    }
+    if (status == HE_OK) {
+        status = open_column(s, p, semantic, &a, &known, &column, err);
+    }
+    size_t end = p->first_vertex + (size_t)p->positions.count;
+    if (status != HE_OK || column == NULL) {
+        return status;
+    }
+    status = he_gltf_extend(s, value, column, end, err);
+    if (status == HE_OK) {
+        s->given[number_of(&s->asset->into->soup, column)] += a.count;
+        status = put_rows(s, p, &a, known, column, err);
+    }
+    return status;
+}
+
+he_status he_gltf_add_attributes(he_gltf_surface *surface, const he_gltf_primitive *p,
+                                 he_error *err)
+{
+    const he_json *json = &surface->asset->json;
+    he_status status = HE_OK;
+    for (uint32_t i = he_json_first(json, p->attributes); i != HE_NONE && status == HE_OK;
+         i = he_json_after(json, p->attributes, i)) {
+        if (!he_json_is(json, i, "POSITION")) {
+            status = add_attribute(surface, p, i, err);
+        }
+    }
+    return status;
+}
+
+void he_gltf_note_attributes(he_gltf_surface *surface)
+{
+    he_import *into = surface->asset->into;
+    for (size_t i = 0; i < into->soup.column_count; i++) {
+        const he_column *column = into->soup.columns[i];
+        uint64_t given = surface->given[i], all = into->soup.vertex_count;
+        if (given == 0 || given == all || column->domain != HE_VERTEX) {
+            continue;
+        }
+        size_t before = into->notes.count;
+        he_notes_add(&into->notes, "vertices_without", "set to 0 where it was not given: attribute",
+                     column->name, strlen(column->name), HE_PLACE_NONE, 0);
+        if (into->notes.count > before) {
+            into->notes.items[before].count = all - given;
+        }
+    }
+}

@@ -1,0 +1,55 @@
+/* gltf_attribute.h - the attributes of a primitive as those of vertices.
+ *
+ *     NORMAL, TANGENT      normal, tangent, turned as their node turns them
+ *     TEXCOORD_0, _1 ...   uv, uv1 ...
+ *     COLOR_0, _1 ...      color, color1 ...: bytes as uint32 from 0 to 255, others as fractions
+ *     JOINTS_0, _1 ...     joints, joints1 ...
+ *     WEIGHTS_0, _1 ...    weights, weights1 ...
+ *     _ANY                 ANY
+ *
+ * Floats stay float, normalized integers become it, others are int32 or uint32. */
+#ifndef HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
+#define HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
+
+#include "format/gltf/gltf_surface.h"
+
+/* A primitive that is being added. */
+typedef struct he_gltf_primitive {
+    uint32_t value, attributes; /* in the JSON */
+    const he_gltf_frame *frame;
+    bool still;  /* the frame leaves all as it is */
+    bool mirror; /* it turns surfaces inside out */
+    bool indexed;
+    uint64_t mode;
+    he_gltf_accessor positions, indices;
+    uint64_t faces; /* triangles */
+    bool exact;     /* what was read from extras comes before attributes */
+    bool polygons;  /* and its polygons before the triangles */
+    uint32_t first_vertex, first_face, first_corner; /* in the soup */
+} he_gltf_primitive;
+
+/* Place of element i in the input; where its bytes are not in the file, that of `value`. */
+uint64_t he_gltf_element_place(const he_gltf *asset, const he_gltf_accessor *a, uint32_t value,
+                               uint64_t i);
+HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he_gltf_primitive *p,
+                                              he_error *err);
+/* Say which vertices were given no value where others were. */
+void he_gltf_note_attributes(he_gltf_surface *surface);
+
+he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name);
+/* Rows up to `end` of a column whose first row to be written is `begin`: room for them, and
+ * defaults before. HE_LIMIT, HE_NO_MEMORY. */
+HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,
+                                      size_t end, he_error *err);
+
+/* What the writer calls an attribute, and the reader takes for it. */
+typedef struct he_gltf_semantic {
+    const char *semantic, *attribute;
+    uint32_t least, most; /* components */
+    bool numbered;        /* TEXCOORD_1 is uv1 */
+    unsigned partner;     /* the one without which it may not be, itself where there is none */
+} he_gltf_semantic;
+extern const he_gltf_semantic he_gltf_semantics[];
+enum { HE_GLTF_SEMANTICS = 6 };
+
+#endif

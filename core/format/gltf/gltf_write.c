@@ -1,0 +1,267 @@
+#include "format/gltf/gltf.h"
+
+#include "format/gltf/glb_parts.h"
+#include "format/gltf/gltf_asset.h"
+#include "format/io/export.h"
+
+#include <string.h>
+
+/* What is written, in this order. */
+typedef enum stage { HEADER, JSON, BIN_HEADER, PARTS, END } stage;
+
+/* Room for one element of any part: sixteen doubles. */
+enum { ELEMENT_ROOM = 128 };
+
+typedef struct glb_writer {
+    he_glb_parts g;
+    uint32_t *numbers; /* of vertices */
+    stage stage;
+    size_t json;       /* next byte */
+    size_t part;       /* that is being written */
+    uint32_t row;      /* next vertex or face */
+    uint32_t halfedge; /* next corner of the face, or HE_NONE */
+    he_cut_walk walk;
+    uint64_t written; /* bytes of the part */
+} glb_writer;
+
+static void glb_close(void *state)
+{
+    glb_writer *w = state;
+    he_glb_parts_clear(&w->g);
+    he_mem_free(w->numbers);
+    he_mem_free(w);
+}
+
+static he_status glb_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
+                          he_error *err)
+{
+    (void)encoding;
+    glb_writer *w = he_mem_zero(1, sizeof *w);
+    if (w == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+    }
+    w->halfedge = HE_NONE;
+    he_status status = he_export_numbers(mesh, &w->numbers, err);
+    if (status == HE_OK) {
+        status = he_glb_parts_make(mesh, notes, &w->g, err);
+    }
+    if (status != HE_OK) {
+        glb_close(w);
+        return status;
+    }
+    *state = w;
+    return HE_OK;
+}
+
+/* --- elements --- */
+
+static char *put_word(uint32_t value, size_t bytes, char *p)
+{
+    for (size_t i = 0; i < bytes; i++, value >>= 8) {
+        *p++ = (char)(unsigned char)value;
+    }
+    return p;
+}
+
+static char *put_float(double value, char *p)
+{
+    float number = he_narrow(value);
+    uint32_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    return put_word(bits, 4, p);
+}
+
+static char *put_value(const he_glb_part *part, uint32_t id, char *p)
+{
+    char *end = p + part->stride;
+    for (uint32_t i = 0; i < part->components; i++) {
+        double value = he_export_number(part->column, id, i);
+        p = part->type == HE_GLTF_FLOAT
+                ? put_float(value, p)
+                : put_word((uint32_t)value, he_gltf_type_bytes((he_gltf_type)part->type), p);
+    }
+    while (p < end) {
+        *p++ = 0;
+    }
+    return p;
+}
+
+static char *put_words(const he_column *column, uint32_t id, char *p)
+{
+    const unsigned char *at = he_column_value(column, id);
+    for (uint32_t i = 0; i < column->components; i++) {
+        uint64_t bits = 0;
+        size_t bytes = he_type_bytes(column->type);
+        if (column->type == HE_FLOAT || column->type == HE_DOUBLE) {
+            double value = he_export_number(column, id, i);
+            float narrow = (float)value;
+            memcpy(&bits, column->type == HE_FLOAT ? (void *)&narrow : &value, bytes);
+        } else {
+            memcpy(&bits, at, bytes);
+        }
+        at += bytes;
+        p = put_word((uint32_t)bits, 4, p);
+        p = bytes == 8 ? put_word((uint32_t)(bits >> 32), 4, p) : p;
+    }
+    return p;
+}
+
+static uint32_t number_of(const glb_writer *w, uint32_t vertex)
+{
+    return w->numbers != NULL ? w->numbers[vertex] : vertex;
+}
+
+/* --- walks over the elements of a part; HE_NONE after the last --- */
+
+static uint32_t next_vertex(glb_writer *w)
+{
+    uint32_t issued = w->g.mesh->c.vertices.issued;
+    while (w->row < issued && !he_vertex_is_live(w->g.mesh, (he_vertex){w->row})) {
+        w->row++;
+    }
+    return w->row == issued ? HE_NONE : w->row++;
+}
+
+static uint32_t next_face(glb_writer *w)
+{
+    uint32_t issued = w->g.mesh->c.faces.issued;
+    while (w->row < issued && !he_face_is_live(w->g.mesh, (he_face){w->row})) {
+        w->row++;
+    }
+    return w->row == issued ? HE_NONE : w->row++;
+}
+
+static uint32_t next_corner(glb_writer *w)
+{
+    const he_content *c = &w->g.mesh->c;
+    if (w->halfedge == HE_NONE) {
+        uint32_t face = next_face(w);
+        if (face == HE_NONE) {
+            return HE_NONE;
+        }
+        w->halfedge = c->face_halfedge[face];
+    }
+    uint32_t h = w->halfedge;
+    w->halfedge = c->next[h] == c->face_halfedge[c->face[h]] ? HE_NONE : c->next[h];
+    return h;
+}
+
+static uint32_t next_row(glb_writer *w, he_kind domain)
+{
+    return domain == HE_VERTEX ? next_vertex(w) : domain == HE_FACE ? next_face(w) : next_corner(w);
+}
+
+static char *put_triangle(glb_writer *w, const he_glb_part *part, char *p)
+{
+    uint32_t v[3];
+    if (he_cuts_next(&w->g.cuts, &w->walk, v)) {
+        for (size_t i = 0; i < 3; i++) {
+            p = put_word(number_of(w, v[i]), part->stride, p);
+        }
+    }
+    return p;
+}
+
+/* The next of a part; nothing after the last. */
+static char *put_element(glb_writer *w, const he_glb_part *part, char *p)
+{
+    const he_mesh *m = w->g.mesh;
+    uint32_t id;
+    switch (part->content) {
+    case HE_GLB_TRIANGLES:
+        return put_triangle(w, part, p);
+    case HE_GLB_POSITIONS:
+        id = next_vertex(w);
+        for (size_t i = 0; i < 3 && id != HE_NONE; i++) {
+            p = put_float((&m->c.position[id].x)[i], p);
+        }
+        return p;
+    case HE_GLB_VALUES:
+        id = next_vertex(w);
+        return id == HE_NONE ? p : put_value(part, id, p);
+    case HE_GLB_DEGREES:
+        id = next_face(w);
+        return id == HE_NONE ? p : put_word(he_face_degree(m, (he_face){id}), 4, p);
+    case HE_GLB_CORNERS:
+        id = next_corner(w);
+        return id == HE_NONE ? p : put_word(number_of(w, m->c.origin[id]), 4, p);
+    case HE_GLB_WORDS:
+        break;
+    }
+    id = next_row(w, part->column->domain);
+    return id == HE_NONE ? p : put_words(part->column, id, p);
+}
+
+/* --- the file --- */
+
+static char *write_header(const glb_writer *w, char *p)
+{
+    uint64_t length = 12 + 8 + w->g.json_length + (w->g.count > 0 ? 8 + w->g.bytes : 0);
+    p = he_export_text("glTF", p);
+    p = put_word(2, 4, p);
+    p = put_word((uint32_t)length, 4, p);
+    p = put_word((uint32_t)w->g.json_length, 4, p);
+    return he_export_text("JSON", p);
+}
+
+static char *write_json(glb_writer *w, char *p, const char *end)
+{
+    size_t left = w->g.json_length - w->json, room = (size_t)(end - p);
+    size_t n = left < room ? left : room;
+    memcpy(p, w->g.json + w->json, n);
+    w->json += n;
+    if (w->json == w->g.json_length) {
+        w->stage = w->g.count > 0 ? BIN_HEADER : END;
+    }
+    return p + n;
+}
+
+static char *write_parts(glb_writer *w, char *p, const char *end)
+{
+    while (end - p >= ELEMENT_ROOM) {
+        const he_glb_part *part = &w->g.parts[w->part];
+        char *after = put_element(w, part, p);
+        w->written += (uint64_t)(after - p);
+        if (after == p) {
+            for (; w->written % 4 != 0; w->written++) {
+                *after++ = 0;
+            }
+            w->part++;
+            w->row = 0;
+            w->written = 0;
+            if (w->part == w->g.count) {
+                w->stage = END;
+                return after;
+            }
+        }
+        p = after;
+    }
+    return p;
+}
+
+static bool glb_step(void *state, char **p, const char *end)
+{
+    glb_writer *w = state;
+    switch (w->stage) {
+    case HEADER:
+        *p = write_header(w, *p);
+        w->stage = JSON;
+        break;
+    case JSON:
+        *p = write_json(w, *p, end);
+        break;
+    case BIN_HEADER:
+        *p = put_word((uint32_t)w->g.bytes, 4, *p);
+        *p = put_word(0x004E4942, 4, *p);
+        w->stage = PARTS;
+        break;
+    case PARTS:
+        *p = write_parts(w, *p, end);
+        break;
+    case END:
+        break;
+    }
+    return w->stage != END;
+}
+
+const he_writing he_glb_writing = {glb_open, glb_step, glb_close, true};

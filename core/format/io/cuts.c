@@ -1,0 +1,86 @@
+#include "format/io/cuts.h"
+
+void he_cuts_clear(he_cuts *cuts)
+{
+    he_ids_clear(&cuts->corners);
+}
+
+uint64_t he_cuts_count(const he_cuts *cuts)
+{
+    const he_content *c = &cuts->mesh->c;
+    return 2 * (uint64_t)c->edges.live - c->boundary_halfedges - 2 * (uint64_t)c->faces.live;
+}
+
+static he_status cut_face(he_cuts *cuts, he_halfedge first, he_triangulation_work *work,
+                          he_error *err)
+{
+    he_triangulation cut;
+    const he_mesh *m = cuts->mesh;
+    he_ids *ids = &cuts->corners;
+    size_t corners = 3 * ((size_t)he_loop_length(m, first) - 2);
+    he_status status = he_ids_reserve(ids, corners, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    status = he_triangulation_make(m, first, HE_ANY_DIAGONALS | HE_AVOID_EDGES, work, &cut, err);
+    if (status == HE_DOUBLED_EDGE) {
+        status = he_triangulation_make(m, first, HE_ANY_DIAGONALS, work, &cut, err);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < corners; i++) {
+        he_halfedge h = {cut.flat.halfedge[cut.corners[i]]};
+        ids->ids[ids->count++] = he_origin(m, h).i;
+    }
+    cuts->turned += cut.degenerate;
+    he_triangulation_clear(&cut);
+    return HE_OK;
+}
+
+he_status he_cuts_make(const he_mesh *mesh, he_cuts *out, he_error *err)
+{
+    he_cuts made = {.mesh = mesh};
+    he_triangulation_work work = {0};
+    he_error reason = {0};
+    he_status status = HE_OK;
+    for (uint32_t f = 0; f < mesh->c.faces.issued && status == HE_OK; f++) {
+        if (he_face_is_live(mesh, (he_face){f}) && he_face_degree(mesh, (he_face){f}) != 3) {
+            made.polygons++;
+            status = cut_face(&made, he_face_halfedge(mesh, (he_face){f}), &work, &reason);
+        }
+    }
+    made.steps = work.steps;
+    he_triangulation_work_clear(&work);
+    if (status != HE_OK) {
+        he_cuts_clear(&made);
+        if (err != NULL) {
+            *err = reason;
+        }
+        return status;
+    }
+    *out = made;
+    return HE_OK;
+}
+
+bool he_cuts_next(const he_cuts *cuts, he_cut_walk *walk, uint32_t vertices[3])
+{
+    const he_mesh *m = cuts->mesh;
+    while (walk->face < m->c.faces.issued && !he_face_is_live(m, (he_face){walk->face})) {
+        walk->face++;
+    }
+    if (walk->face == m->c.faces.issued) {
+        return false;
+    }
+    he_halfedge h = he_face_halfedge(m, (he_face){walk->face});
+    if (walk->left == 0) {
+        walk->left = he_loop_length(m, h) - 2;
+        walk->is_cut = walk->left > 1;
+    }
+    for (unsigned i = 0; i < 3; i++, h = he_next(m, h)) {
+        vertices[i] = walk->is_cut ? cuts->corners.ids[walk->corner++] : he_origin(m, h).i;
+    }
+    walk->left--;
+    walk->face += walk->left == 0;
+    return true;
+}

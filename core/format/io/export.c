@@ -1,0 +1,237 @@
+#include "format/io/export.h"
+
+#include "format/text/number.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he_error *err)
+{
+    uint32_t issued = mesh->c.vertices.issued, next = 0;
+    if (mesh->c.vertices.live == issued) {
+        *out = NULL;
+        return HE_OK;
+    }
+    uint32_t *numbers = he_mem_array(NULL, issued, sizeof *numbers);
+    if (numbers == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to number %u vertices", issued);
+    }
+    for (uint32_t v = 0; v < issued; v++) {
+        numbers[v] = next;
+        next += he_vertex_is_live(mesh, (he_vertex){v});
+    }
+    *out = numbers;
+    return HE_OK;
+}
+
+static double component_of(const he_column *column, size_t row, uint32_t component)
+{
+    const unsigned char *at =
+        he_column_value(column, row) + component * he_type_bytes(column->type);
+    switch (column->type) {
+    case HE_BOOL:
+        return *at != 0;
+    case HE_INT32: {
+        int32_t value;
+        memcpy(&value, at, sizeof value);
+        return value;
+    }
+    case HE_UINT32: {
+        uint32_t value;
+        memcpy(&value, at, sizeof value);
+        return value;
+    }
+    case HE_FLOAT: {
+        float value;
+        memcpy(&value, at, sizeof value);
+        return (double)value;
+    }
+    case HE_DOUBLE: {
+        double value;
+        memcpy(&value, at, sizeof value);
+        return value;
+    }
+    case HE_TYPE_COUNT:
+        break;
+    }
+    return 0;
+}
+
+const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char *name,
+                                uint32_t least, uint32_t most, he_notes *notes)
+{
+    const he_column *column = he_mesh_find_column(mesh, domain, name);
+    if (column == NULL || column->components < least || column->components > most ||
+        column->labels != NULL) {
+        return NULL;
+    }
+    if (column->type != HE_FLOAT && column->type != HE_DOUBLE) {
+        return column;
+    }
+    for (size_t row = 0; row < column->rows; row++) {
+        for (uint32_t i = 0; i < column->components; i++) {
+            if (!isfinite(component_of(column, row, i))) {
+                he_notes_add(notes, "not_finite", "written as 0: values that are not finite of",
+                             name, strlen(name), HE_PLACE_NONE, 0);
+            }
+        }
+    }
+    return column;
+}
+
+void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size_t count,
+                         he_notes *notes)
+{
+    for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
+        const he_column *column = he_mesh_column(mesh, i);
+        size_t k = 0;
+        while (k < count && used[k] != column) {
+            k++;
+        }
+        if (column != NULL && k == count) {
+            char subject[HE_COLUMN_NAME + 16];
+            int length = snprintf(subject, sizeof subject, "%s %s", he_kind_name(column->domain),
+                                  column->name);
+            he_notes_add(notes, "attribute_lost", "not carried: attribute", subject, (size_t)length,
+                         HE_PLACE_NONE, 0);
+        }
+    }
+}
+
+char *he_export_text(const char *text, char *to)
+{
+    while (*text != '\0') {
+        *to++ = *text++;
+    }
+    return to;
+}
+
+double he_export_number(const he_column *column, size_t row, uint32_t component)
+{
+    double value = component_of(column, row, component);
+    return isfinite(value) ? value : 0;
+}
+
+char *he_export_value(const he_column *column, size_t row, uint32_t component, char *to)
+{
+    double value = he_export_number(column, row, component);
+    return to + (column->type == HE_FLOAT ? he_float_print((float)value, to)
+                                          : he_double_print(value, to));
+}
+
+char *he_export_row(const he_column *column, size_t row, char *to)
+{
+    for (uint32_t i = 0; i < column->components; i++) {
+        *to++ = ' ';
+        to = he_export_value(column, row, i, to);
+    }
+    return to;
+}
+
+/* Nobody who does not know the seed can choose many values of hashes that lie together. */
+static size_t hash(uint64_t seed, const unsigned char *row, size_t bytes)
+{
+    uint64_t h = seed * 0x94D049BB133111EB;
+    while (bytes > 0) {
+        uint64_t word = 0;
+        size_t n = bytes < sizeof word ? bytes : sizeof word;
+        memcpy(&word, row, n);
+        h = (h ^ word) * 0x9E3779B97F4A7C15;
+        h ^= h >> 32;
+        row += n;
+        bytes -= n;
+    }
+    return (size_t)(h * 0xBF58476D1CE4E5B9 >> 16);
+}
+
+typedef struct table {
+    const he_column *column;
+    uint32_t *slots; /* a number + 1, or 0 */
+    size_t mask;
+} table;
+
+/* The slot of the value of half-edge h, or the free one where it belongs. */
+static size_t slot_of(const table *t, const he_ids *first, uint32_t h)
+{
+    const unsigned char *row = he_column_value(t->column, h);
+    size_t bytes = t->column->row_bytes;
+    size_t slot = hash((uintptr_t)t->slots, row, bytes) & t->mask;
+    while (t->slots[slot] != 0 &&
+           memcmp(he_column_value(t->column, first->ids[t->slots[slot] - 1]), row, bytes) != 0) {
+        slot = (slot + 1) & t->mask;
+    }
+    return slot;
+}
+
+static he_status widen(table *t, const he_ids *first, he_error *err)
+{
+    size_t count = t->slots == NULL ? 1024 : 2 * (t->mask + 1);
+    uint32_t *slots = he_mem_zero(count, sizeof *slots);
+    if (slots == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu corner values", count);
+    }
+    he_mem_free(t->slots);
+    t->slots = slots;
+    t->mask = count - 1;
+    for (size_t i = 0; i < first->count; i++) {
+        slots[slot_of(t, first, first->ids[i])] = (uint32_t)i + 1;
+    }
+    return HE_OK;
+}
+
+he_status he_distinct_make(const he_mesh *mesh, const he_column *column, he_distinct *out,
+                           he_error *err)
+{
+    he_distinct made = {0};
+    table t = {.column = column};
+    he_status status = HE_OK;
+    made.number = he_mem_array(NULL, 2 * (size_t)mesh->c.edges.issued, sizeof *made.number);
+    if (made.number == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to number corner values");
+    }
+    status = he_ids_reserve(&made.first, 1024, err);
+    if (status == HE_OK) {
+        status = widen(&t, &made.first, err);
+    }
+    if (status != HE_OK) {
+        goto out;
+    }
+    for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
+        if (!he_face_is_live(mesh, (he_face){f})) {
+            continue;
+        }
+        uint32_t start = mesh->c.face_halfedge[f], h = start;
+        do {
+            if (made.first.count * 2 >= t.mask) {
+                status = widen(&t, &made.first, err);
+                if (status != HE_OK) {
+                    goto out;
+                }
+            }
+            size_t slot = slot_of(&t, &made.first, h);
+            if (t.slots[slot] == 0) {
+                status = he_ids_add(&made.first, h, err);
+                if (status != HE_OK) {
+                    goto out;
+                }
+                t.slots[slot] = (uint32_t)made.first.count;
+            }
+            made.number[h] = t.slots[slot] - 1;
+            h = mesh->c.next[h];
+        } while (h != start);
+    }
+    *out = made;
+    made = (he_distinct){0};
+out:
+    he_mem_free(t.slots);
+    he_distinct_clear(&made);
+    return status;
+}
+
+void he_distinct_clear(he_distinct *distinct)
+{
+    he_mem_free(distinct->number);
+    he_ids_clear(&distinct->first);
+    distinct->number = NULL;
+}

@@ -1,0 +1,34 @@
+/* obj.h - Wavefront OBJ, the row's parts for format.c.
+ *
+ * Read                      as
+ *   v x y z                   a vertex
+ *   v x y z w                 the same; a weight w other than 1 is noted and left out
+ *   v x y z r g b [a]         with the vertex attribute "color", numbers as written
+ *   vt u [v [w]]              half-edge attribute "uv": two doubles, or three if a corner has a w
+ *                             other than 0
+ *   vn x y z                  half-edge attribute "normal"
+ *   f, fo                     a face; corners v, v/vt, v//vn, v/vt/vn, also mixed and with a slash
+ *                             at the end; negative indices count back from the last element so
+ *                             far, positive ones may name later elements
+ *   o, g, usemtl              face attributes "object", "group", "material": the rest of the line
+ *   s n | on | off            face attribute "smoothing"
+ *   mtllib                    noted, never opened
+ *   l, p, curves, others      noted and left out; a line that does not begin with a word is
+ *                             HE_SYNTAX
+ *
+ * HE_BAD_INDEX: an index that is 0, or names nothing when the file has ended. Corners without a
+ * texture coordinate or normal, where others have one, get zeros and a note. A file in which no
+ * line was understood is HE_SYNTAX, a file of comments an empty mesh.
+ *
+ * Written: v, vt, vn (bit-equal values of corners once), then faces, with o, g, usemtl and s
+ * where they change. */
+#ifndef HE_FORMAT_OBJ_OBJ_H
+#define HE_FORMAT_OBJ_OBJ_H
+
+#include "format/io/format.h"
+
+bool he_obj_sniff(const char *bytes, size_t n);
+extern const he_reading he_obj_reading;
+extern const he_writing he_obj_writing;
+
+#endif

@@ -1,0 +1,504 @@
+#include "format/obj/obj.h"
+
+#include "format/io/colors.h"
+#include "format/io/pool.h"
+#include "format/io/spans.h"
+#include "format/text/lines.h"
+#include "format/text/number.h"
+
+#include <string.h>
+
+typedef struct obj {
+    he_import *into;
+    he_lines lines;
+    he_pool uv, normal;
+    he_colors colors;
+    he_spans object, group, material, smoothing;
+    uint32_t highest;    /* vertex named by a corner */
+    uint64_t last_line;  /* that was read */
+    uint64_t understood; /* lines with a keyword of the format */
+    uint64_t unknown;    /* the first line with another, 0 for none */
+} obj;
+
+static void note(obj *o, const char *code, const char *text, const char *subject, size_t length,
+                 const he_line *line)
+{
+    he_notes_add(&o->into->notes, code, text, subject, length, HE_PLACE_LINE, line->number);
+}
+
+/* The numbers of a line; the first `most` are kept, the first `finite` of them must be finite. */
+static he_status read_numbers(obj *o, const he_line *line, const char *p, double *values,
+                              size_t most, size_t finite, size_t *count, he_error *err)
+{
+    size_t n = 0;
+    for (p = he_skip_blanks(p, line->end); !he_at_end(p, line->end);
+         p = he_skip_blanks(p, line->end)) {
+        double value;
+        bool is_finite = true;
+        he_status status = n < finite ? he_token_number(line, &p, &value, err)
+                                      : he_token_any_number(line, &p, &value, &is_finite, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        if (!is_finite) {
+            note(o, "not_finite", "set to 0: a value that is not finite", NULL, 0, line);
+        }
+        if (n < most) {
+            values[n] = value;
+        }
+        n++;
+    }
+    *count = n;
+    return HE_OK;
+}
+
+static void note_extra(obj *o, const he_line *line)
+{
+    note(o, "extra_numbers", "ignored: more numbers than a line of its kind has", NULL, 0, line);
+}
+
+static he_status read_vertex(obj *o, const he_line *line, const char *p, he_error *err)
+{
+    double n[7];
+    size_t count = 0;
+    he_soup *soup = &o->into->soup;
+    he_status status = read_numbers(o, line, p, n, 7, 3, &count, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (count < 3) {
+        return he_line_fail(err, HE_SYNTAX, line, line->begin,
+                            "a vertex has 3, 4, 6 or 7 numbers, not %zu", count);
+    }
+    if (count == 5 || count > 7) {
+        note_extra(o, line);
+        count = 3; /* nobody knows what they are */
+    }
+    size_t vertex = soup->vertex_count;
+    status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
+    if (status == HE_OK) {
+        status = he_places_add(&o->into->vertices, (uint32_t)vertex, line->number, err);
+    }
+    if (status == HE_OK && count >= 6) {
+        status = he_colors_add(&o->colors, vertex, n + 3, count - 3, err);
+    }
+    if (count == 4 && n[3] != 1) {
+        note(o, "vertex_weight", "ignored: the weight of a vertex", NULL, 0, line);
+    }
+    return he_line_locate(status, line, err);
+}
+
+static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, const char *p,
+                                 size_t least, he_error *err)
+{
+    double n[3] = {0, 0, 0};
+    size_t count = 0;
+    uint64_t limit = o->into->soup.limits.bytes;
+    he_status status = read_numbers(o, line, p, n, 3, 0, &count, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (count < least) {
+        return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers, and %zu are needed",
+                            count, least);
+    }
+    if (count > 3) {
+        note_extra(o, line);
+    }
+    return he_line_locate(he_pool_add(pool, n, limit, err), line, err);
+}
+
+/* An index as the file has it, to one that counts from 0. `count` elements came so far; whether a
+ * positive index is too large is only known at the end. HE_BAD_INDEX leaves `*p` behind it. */
+static he_status read_index(const he_line *line, const char **p, const char *what, size_t count,
+                            uint32_t *index, he_error *err)
+{
+    const char *begin = *p;
+    bool negative = begin < line->end && *begin == '-';
+    bool sign = negative || (begin < line->end && *begin == '+');
+    uint64_t value = 0;
+    size_t used = 0;
+    he_status status = he_u64_parse(begin + sign, line->end, &value, &used);
+    if (status == HE_SYNTAX) {
+        return he_token_fail(err, HE_SYNTAX, line, begin, "is not a corner of a face");
+    }
+    *p = begin + sign + used;
+    if (status == HE_OK && value != 0) {
+        if (!negative && value <= HE_MAX_ROWS) {
+            *index = (uint32_t)value - 1;
+            return HE_OK;
+        }
+        if (negative && value <= count) {
+            *index = (uint32_t)(count - value);
+            return HE_OK;
+        }
+    }
+    char text[40];
+    he_quote(begin, *p, text, sizeof text);
+    return he_line_fail(err, HE_BAD_INDEX, line, begin, "there is no %s %s; %zu came so far", what,
+                        text, count);
+}
+
+/* Such values are no part of the shape, so that a wrong number costs the corner no more than its
+ * value. 0 is no number at all. */
+static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
+{
+    he_notes_add(&o->into->notes, pool == &o->uv ? "no_such_uv" : "no_such_normal",
+                 pool == &o->uv ? "set to 0: a corner names a texture coordinate there is not"
+                                : "set to 0: a corner names a normal there is not",
+                 NULL, 0, HE_PLACE_LINE, at);
+}
+
+static he_status read_value(obj *o, const he_line *line, const char **p, he_pool *pool,
+                            size_t corner, he_error *err)
+{
+    const char *begin = *p;
+    const char *what = pool == &o->uv ? "texture coordinate" : "normal";
+    uint32_t index = 0;
+    he_error failure = {0};
+    he_status status = read_index(line, p, what, pool->count, &index, &failure);
+    if (status == HE_OK) {
+        return he_pool_name(pool, corner, index, err);
+    }
+    double value = 0;
+    size_t used = 0;
+    bool is_zero = he_double_parse(begin, *p, HE_FILE_NUMBER, &value, &used) == HE_OK && value == 0;
+    if (status == HE_BAD_INDEX && !is_zero) {
+        note_no_value(o, pool, he_line_number(line, begin));
+        return HE_OK;
+    }
+    *err = failure;
+    return status;
+}
+
+/* v, v/vt, v//vn, v/vt/vn; a slash with nothing behind it is passed over. */
+static he_status read_corner(obj *o, const he_line *line, const char **p, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    const char *begin = *p, *end = line->end;
+    size_t corner = soup->corner_count;
+    uint32_t index = 0;
+    he_status status = read_index(line, p, "vertex", soup->vertex_count, &index, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    o->highest = index > o->highest ? index : o->highest;
+    status = he_soup_add_corner(soup, index, err);
+    he_pool *pools[2] = {&o->uv, &o->normal};
+    for (size_t i = 0; i < 2 && status == HE_OK && *p < end && **p == '/'; i++) {
+        ++*p;
+        if (he_token_ends(*p, end) || **p == '/') {
+            continue;
+        }
+        status = read_value(o, line, p, pools[i], corner, err);
+    }
+    if (status == HE_OK && !he_token_ends(*p, end)) {
+        return he_token_fail(err, HE_SYNTAX, line, begin, "is not a corner of a face");
+    }
+    return he_line_locate(status, line, err);
+}
+
+static he_status read_face(obj *o, const he_line *line, const char *p, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    p = he_skip_blanks(p, line->end);
+    if (he_at_end(p, line->end)) {
+        return he_line_fail(err, HE_TOO_FEW_CORNERS, line, p, "a face without corners");
+    }
+    he_status status = he_soup_begin_face(soup, err);
+    if (status == HE_OK) {
+        uint32_t face = (uint32_t)soup->face_count - 1;
+        status = he_places_add(&o->into->faces, face, line->number, err);
+    }
+    while (status == HE_OK && !he_at_end(p, line->end)) {
+        status = read_corner(o, line, &p, err);
+        p = he_skip_blanks(p, line->end);
+    }
+    return he_line_locate(status, line, err);
+}
+
+static he_status read_smoothing(obj *o, const he_line *line, const char *p, he_error *err)
+{
+    p = he_skip_blanks(p, line->end);
+    const char *end = he_token_end(p, line->end);
+    size_t length = (size_t)(end - p), used = 0;
+    uint64_t value = 0;
+    if (length == 2 && memcmp(p, "on", 2) == 0) {
+        value = 1;
+    } else if (length != 0 && !(length == 3 && memcmp(p, "off", 3) == 0)) {
+        he_status status = he_u64_parse(p, end, &value, &used);
+        if (status != HE_OK || used != length || value > UINT32_MAX) {
+            return he_token_fail(err, HE_SYNTAX, line, p, "is not a smoothing group");
+        }
+    }
+    return he_spans_set(&o->smoothing, o->into->soup.face_count, (uint32_t)value, err);
+}
+
+static bool is_word(const char *p, const char *end)
+{
+    if (p == end || !((*p | 0x20) >= 'a' && (*p | 0x20) <= 'z')) {
+        return false;
+    }
+    while (p < end) {
+        char c = *p++;
+        bool letter = (c | 0x20) >= 'a' && (c | 0x20) <= 'z';
+        if (!letter && !(c >= '0' && c <= '9') && c != '_' && c != '-' && c != '.') {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* What the format has beyond polygons, and the tags of OpenSubdiv. */
+static const char *const passed_over[] = {
+    "l",      "p",        "vp",    "deg",   "bmat",   "step",     "cstype",     "curv",
+    "curv2",  "surf",     "parm",  "trim",  "hole",   "scrv",     "sp",         "end",
+    "con",    "mg",       "bevel", "lod",   "bsp",    "bzp",      "cdc",        "cdp",
+    "res",    "c_interp", "ctech", "stech", "usemap", "d_interp", "shadow_obj", "trace_obj",
+    "maplib", "mtllib",   "call",  "csh",   "t",
+};
+
+static he_status read_other(obj *o, const he_line *line, const char *p, const char *end,
+                            he_error *err)
+{
+    he_notes *notes = &o->into->notes;
+    size_t faces = o->into->soup.face_count, length = (size_t)(end - p);
+    o->understood++;
+    switch (length) {
+    case 1:
+        if (*p == 'g') {
+            return he_spans_set_name(&o->group, faces, line, end, notes, err);
+        }
+        if (*p == 'o') {
+            return he_spans_set_name(&o->object, faces, line, end, notes, err);
+        }
+        if (*p == 's') {
+            return read_smoothing(o, line, end, err);
+        }
+        break;
+    case 2:
+        if (memcmp(p, "fo", 2) == 0) {
+            return read_face(o, line, end, err);
+        }
+        break;
+    case 6:
+        if (memcmp(p, "usemtl", 6) == 0) {
+            return he_spans_set_name(&o->material, faces, line, end, notes, err);
+        }
+        break;
+    }
+    if (!is_word(p, end)) {
+        return he_token_fail(err, HE_SYNTAX, line, p, "does not begin a line of an OBJ file");
+    }
+    for (size_t i = 0; i < sizeof passed_over / sizeof *passed_over; i++) {
+        if (*passed_over[i] == *p && strlen(passed_over[i]) == length &&
+            memcmp(p, passed_over[i], length) == 0) {
+            note(o, "ignored_keyword", "ignored: lines that begin with", p, length, line);
+            return HE_OK;
+        }
+    }
+    o->understood--;
+    o->unknown = o->unknown == 0 ? line->number : o->unknown;
+    note(o, "unknown_keyword", "ignored: unknown keyword", p, length, line);
+    return HE_OK;
+}
+
+static he_status read_line(void *context, const he_line *line, he_error *err)
+{
+    obj *o = context;
+    const char *end = line->end;
+    const char *p = he_skip_blanks(line->begin, end);
+    o->last_line = line->number;
+    if (he_at_end(p, end)) {
+        return HE_OK;
+    }
+    if (*p == 'v' && he_token_ends(p + 1, end)) {
+        return read_vertex(o, line, p + 1, err);
+    }
+    if (*p == 'f' && he_token_ends(p + 1, end)) {
+        return read_face(o, line, p + 1, err);
+    }
+    if (*p == 'v' && p[1] == 't' && he_token_ends(p + 2, end)) {
+        return read_pool_value(o, &o->uv, line, p + 2, 1, err);
+    }
+    if (*p == 'v' && p[1] == 'n' && he_token_ends(p + 2, end)) {
+        return read_pool_value(o, &o->normal, line, p + 2, 3, err);
+    }
+    return read_other(o, line, p, he_token_end(p, end), err);
+}
+
+static void obj_close(void *state)
+{
+    obj *o = state;
+    he_lines_clear(&o->lines);
+    he_pool_clear(&o->uv);
+    he_pool_clear(&o->normal);
+    he_colors_clear(&o->colors);
+    he_spans_clear(&o->object);
+    he_spans_clear(&o->group);
+    he_spans_clear(&o->material);
+    he_spans_clear(&o->smoothing);
+    he_mem_free(o);
+}
+
+static he_status obj_open(he_import *into, void **state, he_error *err)
+{
+    obj *o = he_mem_zero(1, sizeof *o);
+    if (o == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+    }
+    o->into = into;
+    he_lines_init(&o->lines, read_line, o);
+    o->lines.joins = true;
+    o->lines.limit = into->soup.limits.bytes;
+    o->colors.fractions = true;
+    he_places_init(&into->vertices, HE_PLACE_LINE, 1);
+    he_places_init(&into->faces, HE_PLACE_LINE, 1);
+    *state = o;
+    return HE_OK;
+}
+
+static he_status obj_feed(void *state, const void *bytes, size_t n, he_error *err)
+{
+    obj *o = state;
+    return he_lines_feed(&o->lines, bytes, n, err);
+}
+
+static uint64_t line_of(const obj *o, size_t corner)
+{
+    return he_places_find(&o->into->faces, he_soup_face_of(&o->into->soup, corner));
+}
+
+/* Take numbers of values from corners that did not come. */
+static void check_values(obj *o, he_pool *pool)
+{
+    for (size_t c = he_pool_next_bad(pool, 0); c != SIZE_MAX; c = he_pool_next_bad(pool, c + 1)) {
+        note_no_value(o, pool, line_of(o, c));
+        he_pool_forget(pool, c);
+    }
+}
+
+/* Indices are checked when all elements have come. */
+static he_status check_indices(obj *o, he_error *err)
+{
+    const he_soup *soup = &o->into->soup;
+    if (soup->corner_count > 0 && o->highest >= soup->vertex_count) {
+        size_t c = 0;
+        while (soup->corners[c] < soup->vertex_count) {
+            c++;
+        }
+        return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line_of(o, c),
+                          "there is no vertex %u, only %zu", soup->corners[c] + 1,
+                          soup->vertex_count);
+    }
+    check_values(o, &o->uv);
+    check_values(o, &o->normal);
+    return HE_OK;
+}
+
+static he_status note_unused(obj *o, he_error *err)
+{
+    size_t uvs = 0, normals = 0;
+    he_status status = he_pool_unused(&o->uv, &uvs, err);
+    if (status == HE_OK) {
+        status = he_pool_unused(&o->normal, &normals, err);
+    }
+    if (status == HE_OK) {
+        he_notes_add_count(&o->into->notes, "unused_uv",
+                           "ignored: texture coordinates that no corner has", uvs);
+        he_notes_add_count(&o->into->notes, "unused_normal", "ignored: normals that no corner has",
+                           normals);
+    }
+    return status;
+}
+
+static void note_partial(obj *o, size_t with, size_t all, const char *code, const char *text)
+{
+    if (with > 0) {
+        he_notes_add_count(&o->into->notes, code, text, all - with);
+    }
+}
+
+static he_status obj_finish(void *state, he_error *err)
+{
+    obj *o = state;
+    he_soup *soup = &o->into->soup;
+    he_status status = he_lines_finish(&o->lines, err);
+    if (status == HE_OK) {
+        status = check_indices(o, err);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    bool nothing = soup->vertex_count == 0 && o->understood == 0;
+    if (nothing && (o->unknown != 0 || o->last_line == 0)) {
+        uint64_t line = o->unknown != 0 ? o->unknown : 1;
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, line,
+                          "not an OBJ file: it has no vertices");
+    }
+    note_partial(o, o->uv.named, soup->corner_count, "corners_without_uv",
+                 "set to 0: corners without a texture coordinate");
+    note_partial(o, o->normal.named, soup->corner_count, "corners_without_normal",
+                 "set to 0: corners without a normal");
+    note_partial(o, o->colors.given, soup->vertex_count, "vertices_without_color",
+                 "set to 0: vertices without a colour");
+    status = note_unused(o, err);
+    if (status == HE_OK) {
+        status = he_pool_finish(&o->uv, soup, "uv", 2, err);
+    }
+    if (status == HE_OK) {
+        status = he_pool_finish(&o->normal, soup, "normal", 3, err);
+    }
+    if (status == HE_OK) {
+        status = he_colors_finish(&o->colors, soup, HE_VERTEX, soup->vertex_count, err);
+    }
+    if (status == HE_OK) {
+        status = he_spans_finish(&o->object, soup, "object", err);
+    }
+    if (status == HE_OK) {
+        status = he_spans_finish(&o->group, soup, "group", err);
+    }
+    if (status == HE_OK) {
+        status = he_spans_finish(&o->material, soup, "material", err);
+    }
+    if (status == HE_OK) {
+        status = he_spans_finish(&o->smoothing, soup, "smoothing", err);
+    }
+    return status;
+}
+
+const he_reading he_obj_reading = {obj_open, obj_feed, obj_finish, obj_close, false};
+
+/* The first line that is neither blank nor a comment begins with a keyword. */
+bool he_obj_sniff(const char *bytes, size_t n)
+{
+    static const char *const keywords[] = {"v", "vt", "vn", "f",  "g",      "o",
+                                           "s", "l",  "p",  "vp", "mtllib", "usemtl"};
+    const char *p = bytes, *end = bytes + n;
+    if (n >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0) {
+        p += 3;
+    }
+    while (p < end) {
+        const char *stop = p;
+        while (stop < end && *stop != '\n' && *stop != '\r') {
+            stop++;
+        }
+        while (p < stop && (*p == ' ' || *p == '\t' || *p == '\r')) {
+            p++;
+        }
+        if (p < stop && *p != '#') {
+            size_t length = 0;
+            while (p + length < stop && is_word(p + length, p + length + 1)) {
+                length++;
+            }
+            for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++) {
+                if (strlen(keywords[i]) == length && memcmp(p, keywords[i], length) == 0) {
+                    return p + length < stop && (p[length] == ' ' || p[length] == '\t');
+                }
+            }
+            return false;
+        }
+        p = stop < end ? stop + 1 : end;
+    }
+    return false;
+}

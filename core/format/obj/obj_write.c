@@ -1,0 +1,330 @@
+#include "format/obj/obj.h"
+
+#include "format/io/export.h"
+#include "format/text/number.h"
+
+#include <string.h>
+
+/* What is written, in this order. */
+typedef enum part { HEADER, VERTICES, UVS, NORMALS, FACES, END } part;
+
+/* The lines that say something about the faces after them. */
+enum { OBJECT, GROUP, MATERIAL, SMOOTHING, SPANS };
+
+static const struct {
+    const char *attribute, *keyword;
+} spans[SPANS] = {{"object", "o"}, {"group", "g"}, {"material", "usemtl"}, {"smoothing", "s"}};
+
+/* Texture coordinates or normals: of corners, or of vertices, or none. */
+typedef struct values {
+    const he_column *column;
+    const char *keyword;
+    bool of_corners;
+    he_distinct distinct; /* of corners */
+} values;
+
+typedef struct obj_writer {
+    const he_mesh *mesh;
+    uint32_t *numbers; /* of vertices */
+    const he_column *color;
+    values uv, normal;
+    const he_column *spans[SPANS];
+    uint32_t said[SPANS]; /* what the last line of each kind said; HE_NONE: no name yet */
+    part part;
+    uint32_t row;      /* next vertex, value or face */
+    uint32_t halfedge; /* next corner of the face that is being written, or HE_NONE */
+    const char *name;  /* rest of the name that is being written, or NULL */
+    bool name_begun;
+} obj_writer;
+
+static const char *label_of(const he_column *column, uint32_t value)
+{
+    return value < he_labels_count(column->labels) ? he_labels_get(column->labels, value) : "";
+}
+
+/* What would end the line, join the next one, or not read back: each such byte is written as '_'.
+ * `first` is the name's first byte. */
+static char printable(const char *p, bool first)
+{
+    bool last = p[1] == '\0';
+    bool blank = *p == ' ' || *p == '\t';
+    if ((unsigned char)*p < 0x20 && *p != '\t') {
+        return '_';
+    }
+    return (blank && (first || last)) || (*p == '\\' && last) ? '_' : *p;
+}
+
+static void note_changed_names(const he_column *column, he_notes *notes)
+{
+    for (size_t i = 0; i < he_labels_count(column->labels); i++) {
+        const char *name = he_labels_get(column->labels, i);
+        for (const char *p = name; *p != '\0'; p++) {
+            if (printable(p, p == name) != *p) {
+                he_notes_add(notes, "names_changed", "changed to fit a line: a name", name,
+                             strlen(name), HE_PLACE_NONE, 0);
+                break;
+            }
+        }
+    }
+}
+
+static he_status find_values(values *v, const he_mesh *mesh, const char *name, const char *keyword,
+                             uint32_t least, he_notes *notes, he_error *err)
+{
+    v->keyword = keyword;
+    v->column = he_export_find(mesh, HE_HALFEDGE, name, least, 3, notes);
+    if (v->column != NULL) {
+        v->of_corners = true;
+        return he_distinct_make(mesh, v->column, &v->distinct, err);
+    }
+    v->column = he_export_find(mesh, HE_VERTEX, name, least, 3, notes);
+    return HE_OK;
+}
+
+static void obj_close(void *state)
+{
+    obj_writer *w = state;
+    he_mem_free(w->numbers);
+    he_distinct_clear(&w->uv.distinct);
+    he_distinct_clear(&w->normal.distinct);
+    he_mem_free(w);
+}
+
+static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
+                          he_error *err)
+{
+    (void)encoding;
+    obj_writer *w = he_mem_zero(1, sizeof *w);
+    if (w == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+    }
+    w->mesh = mesh;
+    w->halfedge = HE_NONE;
+    w->said[OBJECT] = w->said[GROUP] = w->said[MATERIAL] = HE_NONE;
+    he_status status = he_export_numbers(mesh, &w->numbers, err);
+    if (status == HE_OK) {
+        status = find_values(&w->uv, mesh, "uv", "vt", 2, notes, err);
+    }
+    if (status == HE_OK) {
+        status = find_values(&w->normal, mesh, "normal", "vn", 3, notes, err);
+    }
+    if (status != HE_OK) {
+        obj_close(w);
+        return status;
+    }
+    w->color = he_export_find(mesh, HE_VERTEX, "color", 3, 4, notes);
+    const he_column *used[SPANS + 3] = {w->color, w->uv.column, w->normal.column};
+    for (size_t i = 0; i < SPANS; i++) {
+        const he_column *column = he_mesh_find_column(mesh, HE_FACE, spans[i].attribute);
+        bool named = i != SMOOTHING;
+        if (column != NULL && column->type == HE_UINT32 && column->components == 1 &&
+            (column->labels != NULL) == named) {
+            w->spans[i] = used[3 + i] = column;
+            if (named) {
+                note_changed_names(column, notes);
+            }
+        }
+    }
+    he_export_note_lost(mesh, used, SPANS + 3, notes);
+    *state = w;
+    return HE_OK;
+}
+
+static char *write_header(const obj_writer *w, char *p)
+{
+    p = he_export_text("# ", p);
+    p += he_u32_print(he_mesh_vertices(w->mesh), p);
+    p = he_export_text(" vertices, ", p);
+    p += he_u32_print(he_mesh_faces(w->mesh), p);
+    return he_export_text(" faces\n", p);
+}
+
+static char *write_vertex(const obj_writer *w, uint32_t v, char *p)
+{
+    const double *position = &w->mesh->c.position[v].x;
+    *p++ = 'v';
+    for (size_t i = 0; i < 3; i++) {
+        *p++ = ' ';
+        p += he_double_print(position[i], p);
+    }
+    if (w->color != NULL) {
+        p = he_export_row(w->color, v, p);
+    }
+    *p++ = '\n';
+    return p;
+}
+
+static char *write_value(const values *v, uint32_t row, char *p)
+{
+    p = he_export_row(v->column, v->of_corners ? v->distinct.first.ids[row] : row,
+                      he_export_text(v->keyword, p));
+    *p++ = '\n';
+    return p;
+}
+
+/* Does a part with one line for each vertex, or each corner value, have anything at `row`? */
+static bool has_row(const obj_writer *w, const values *v, uint32_t row)
+{
+    return (v != NULL && v->of_corners) || he_vertex_is_live(w->mesh, (he_vertex){row});
+}
+
+static uint32_t row_count(const obj_writer *w, const values *v)
+{
+    if (v == NULL) {
+        return w->mesh->c.vertices.issued;
+    }
+    if (v->column == NULL) {
+        return 0;
+    }
+    return v->of_corners ? (uint32_t)v->distinct.first.count : w->mesh->c.vertices.issued;
+}
+
+/* Write the lines of a part; `v` is NULL for vertices. */
+static char *write_rows(obj_writer *w, const values *v, char *p, const char *end)
+{
+    uint32_t count = row_count(w, v);
+    while (w->row < count && end - p >= HE_WRITE_ROOM) {
+        uint32_t row = w->row++;
+        if (has_row(w, v, row)) {
+            p = v == NULL ? write_vertex(w, row, p) : write_value(v, row, p);
+        }
+    }
+    if (w->row == count) {
+        w->row = 0;
+        w->part++;
+    }
+    return p;
+}
+
+/* Names have any length. */
+static char *write_name(obj_writer *w, char *p, const char *end)
+{
+    while (*w->name != '\0') {
+        if (end - p < 2) {
+            return p;
+        }
+        *p++ = printable(w->name, !w->name_begun);
+        w->name_begun = true;
+        w->name++;
+    }
+    *p++ = '\n';
+    w->name = NULL;
+    return p;
+}
+
+/* The line for the first attribute in which the face differs from what was said last. */
+static char *write_span(obj_writer *w, uint32_t face, char *p)
+{
+    for (size_t i = 0; i < SPANS; i++) {
+        uint32_t value;
+        if (w->spans[i] == NULL) {
+            continue;
+        }
+        memcpy(&value, he_column_value(w->spans[i], face), sizeof value);
+        if (value == w->said[i]) {
+            continue;
+        }
+        bool first = w->said[i] == HE_NONE;
+        w->said[i] = value;
+        if (first && i != SMOOTHING && *label_of(w->spans[i], value) == '\0') {
+            continue;
+        }
+        p = he_export_text(spans[i].keyword, p);
+        if (i == SMOOTHING) {
+            *p++ = ' ';
+            p += he_u32_print(value, p);
+            *p++ = '\n';
+        } else {
+            w->name = label_of(w->spans[i], value);
+            w->name_begun = false;
+            if (*w->name != '\0') {
+                *p++ = ' ';
+            }
+        }
+        break;
+    }
+    return p;
+}
+
+static uint32_t value_number(const values *v, uint32_t h, uint32_t vertex)
+{
+    return v->of_corners ? v->distinct.number[h] : vertex;
+}
+
+static char *write_corner(const obj_writer *w, uint32_t h, char *p)
+{
+    uint32_t id = w->mesh->c.origin[h];
+    uint32_t vertex = w->numbers != NULL ? w->numbers[id] : id;
+    *p++ = ' ';
+    p += he_u32_print(vertex + 1, p);
+    if (w->uv.column != NULL || w->normal.column != NULL) {
+        *p++ = '/';
+        if (w->uv.column != NULL) {
+            p += he_u32_print(value_number(&w->uv, h, vertex) + 1, p);
+        }
+        if (w->normal.column != NULL) {
+            *p++ = '/';
+            p += he_u32_print(value_number(&w->normal, h, vertex) + 1, p);
+        }
+    }
+    return p;
+}
+
+static char *write_faces(obj_writer *w, char *p, const char *end)
+{
+    const he_content *c = &w->mesh->c;
+    while (end - p >= HE_WRITE_ROOM) {
+        if (w->name != NULL) {
+            p = write_name(w, p, end);
+        } else if (w->halfedge != HE_NONE) {
+            p = write_corner(w, w->halfedge, p);
+            w->halfedge = c->next[w->halfedge];
+            if (w->halfedge == c->face_halfedge[w->row]) {
+                *p++ = '\n';
+                w->halfedge = HE_NONE;
+                w->row++;
+            }
+        } else if (w->row == c->faces.issued) {
+            w->part = END;
+            break;
+        } else if (c->face_halfedge[w->row] == HE_DEAD) {
+            w->row++;
+        } else {
+            char *before = p;
+            p = write_span(w, w->row, p);
+            if (p == before) {
+                *p++ = 'f';
+                w->halfedge = c->face_halfedge[w->row];
+            }
+        }
+    }
+    return p;
+}
+
+static bool obj_step(void *state, char **p, const char *end)
+{
+    obj_writer *w = state;
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        w->part = VERTICES;
+        break;
+    case VERTICES:
+        *p = write_rows(w, NULL, *p, end);
+        break;
+    case UVS:
+        *p = write_rows(w, &w->uv, *p, end);
+        break;
+    case NORMALS:
+        *p = write_rows(w, &w->normal, *p, end);
+        break;
+    case FACES:
+        *p = write_faces(w, *p, end);
+        break;
+    case END:
+        break;
+    }
+    return w->part != END;
+}
+
+const he_writing he_obj_writing = {obj_open, obj_step, obj_close, false};

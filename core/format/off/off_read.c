@@ -1,0 +1,612 @@
+#include "format/off/off.h"
+
+#include "format/io/colors.h"
+#include "format/text/lines.h"
+#include "format/text/number.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What the next token is. read_line goes from one to the next. */
+typedef enum section {
+    HEADER,
+    VERTEX_COUNT,
+    FACE_COUNT,
+    EDGE_COUNT,
+    VERTICES,
+    FACES,
+    DONE
+} section;
+
+enum { HAS_NORMALS = 1, HAS_COLORS = 2, HAS_UV = 4 };
+
+/* More numbers than a vertex can have: 3 + 3 + 4 + 2. */
+enum { VERTEX_NUMBERS = 16 };
+
+typedef struct off {
+    he_import *into;
+    he_lines lines;
+    section section;
+    unsigned has;
+    uint64_t vertices, faces;       /* announced */
+    double numbers[VERTEX_NUMBERS]; /* of the vertex, or of the face's colour, being read */
+    size_t number_count;            /* may exceed those kept */
+    uint64_t number_line;           /* of the first of them */
+    bool spread;                    /* some vertex goes on on the next line */
+    uint64_t lacking;  /* the line of the first that ends before its last number, or 0 */
+    uint32_t integers; /* bit i: the i-th was written as an integer */
+    bool open;         /* the last face still lacks `missing` corners */
+    uint64_t missing;
+    he_colors vertex_colors, face_colors;
+    he_column *normal, *uv; /* the soup's */
+} off;
+
+static void note(off *o, const char *code, const char *text, const he_line *line)
+{
+    he_notes_add(&o->into->notes, code, text, NULL, 0, HE_PLACE_LINE, line->number);
+}
+
+/* The flags of a header like STCNOFF; -1 when it is none, -2 for the kinds with other dimensions.
+ */
+static int header_flags(const char *p, const char *end)
+{
+    if (end - p == 3 && memcmp(p, "off", 3) == 0) {
+        return 0;
+    }
+    int flags = 0;
+    bool other = false;
+    while (end - p > 3) {
+        int flag = 0;
+        if (*p == 'S' && p[1] == 'T') {
+            flag = HAS_UV;
+            p++;
+        } else if (*p == 'C') {
+            flag = HAS_COLORS;
+        } else if (*p == 'N') {
+            flag = HAS_NORMALS;
+        } else if (*p == '4' || *p == 'n') {
+            other = true;
+        } else {
+            return -1;
+        }
+        if ((flags & flag) != 0) {
+            return -1;
+        }
+        flags |= flag;
+        p++;
+    }
+    if (end - p != 3 || memcmp(p, "OFF", 3) != 0) {
+        return -1;
+    }
+    return other ? -2 : flags;
+}
+
+static he_status read_header(off *o, const he_line *line, const char **p, he_error *err)
+{
+    const char *end = he_token_end(*p, line->end);
+    int flags = header_flags(*p, end);
+    o->section = VERTEX_COUNT;
+    if (flags == -1) {
+        if (**p >= '0' && **p <= '9') {
+            return HE_OK; /* no header: this is the number of vertices */
+        }
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not the header of an OFF file");
+    }
+    const char *rest = he_skip_blanks(end, line->end);
+    if (flags == -2) {
+        return he_token_fail(err, HE_UNSUPPORTED, line, *p,
+                             "is not supported: the points are not in three dimensions");
+    }
+    if (line->end - rest >= 6 && memcmp(rest, "BINARY", 6) == 0) {
+        return he_line_fail(err, HE_UNSUPPORTED, line, rest, "binary OFF is not supported");
+    }
+    o->has = (unsigned)flags;
+    *p = rest;
+    return HE_OK;
+}
+
+static he_status read_count(const he_line *line, const char **p, const char *what, uint64_t limit,
+                            uint64_t *count, he_error *err)
+{
+    uint64_t value = 0;
+    size_t used = 0;
+    bool sign = **p == '+';
+    he_status status = he_u64_parse(*p + sign, line->end, &value, &used);
+    used += sign;
+    if (status == HE_SYNTAX || !he_token_ends(*p + used, line->end)) {
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a count");
+    }
+    char text[40];
+    he_quote(*p, *p + used, text, sizeof text);
+    if (status != HE_OK || value > HE_MAX_ROWS) {
+        return he_line_fail(err, HE_BAD_VALUE, line, *p, "%s %s are more than a mesh can have",
+                            text, what);
+    }
+    if (limit != 0 && value > limit) {
+        return he_line_fail(err, HE_LIMIT, line, *p, "%s %s are more than the limit of %llu", text,
+                            what, (unsigned long long)limit);
+    }
+    *count = value;
+    *p += used;
+    return HE_OK;
+}
+
+static void begin_faces(off *o)
+{
+    o->section = o->faces > 0 ? FACES : DONE;
+}
+
+static void begin_vertices(off *o)
+{
+    o->section = VERTICES;
+    if (o->vertices == 0) {
+        begin_faces(o);
+    }
+}
+
+static bool is_last_token(const he_line *line, const char *p)
+{
+    return he_at_end(he_skip_blanks(he_token_end(p, line->end), line->end), line->end);
+}
+
+/* The number of edges is often wrong, and nothing depends on it. It may be missing: then the line
+ * after the counts is that of a vertex, which has more than one number. */
+static he_status read_edge_count(off *o, const he_line *line, const char **p, bool same_line,
+                                 he_error *err)
+{
+    begin_vertices(o);
+    if (!same_line && !is_last_token(line, *p)) {
+        return HE_OK;
+    }
+    bool finite;
+    he_import *into = o->into;
+    he_status status = he_token_any_number(line, p, &into->edges, &finite, err);
+    into->edges_line = line->number;
+    if (status == HE_OK && !he_at_end(he_skip_blanks(*p, line->end), line->end)) {
+        return he_token_fail(err, HE_SYNTAX, line, he_skip_blanks(*p, line->end),
+                             "follows the three counts");
+    }
+    return status;
+}
+
+/* Colours tell 1 from 1.0, so the text is looked at. */
+static bool is_integer(const char *begin, const char *end, double value)
+{
+    for (const char *p = begin; p < end; p++) {
+        if (*p < '0' || *p > '9') {
+            return false;
+        }
+    }
+    return value <= UINT32_MAX;
+}
+
+/* The colour that is the numbers [first, first + count). */
+static he_status add_color(off *o, he_colors *colors, size_t element, size_t first, size_t count,
+                           he_error *err)
+{
+    uint32_t mask = ((UINT32_C(1) << count) - 1) << first;
+    colors->fractions = colors->fractions || (o->integers & mask) != mask;
+    return he_colors_add(colors, element, o->numbers + first, count, err);
+}
+
+static void forget_numbers(off *o)
+{
+    o->number_count = 0;
+    o->integers = 0;
+}
+
+/* The row of the last vertex of an attribute that is made when the first one has it. */
+static he_status add_row(off *o, he_column **column, const char *name, uint32_t components,
+                         const double *values, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    he_status status = HE_OK;
+    if (*column == NULL) {
+        status = he_soup_column(soup, name, HE_VERTEX, HE_DOUBLE, components, HE_INTERPOLATE,
+                                column, err);
+    }
+    if (status == HE_OK) {
+        status = he_column_extend(*column, soup->vertex_count - (*column)->rows, err);
+    }
+    if (status == HE_OK) {
+        memcpy(he_column_row(*column, (*column)->rows - 1), values, (*column)->row_bytes);
+    }
+    return status;
+}
+
+/* What the numbers of a vertex are, besides its position: how many of each, behind each other. */
+typedef struct parts {
+    size_t normal, color, uv;
+} parts;
+
+/* As the header says, or without the last of what it says. */
+static bool divide(const off *o, size_t count, parts *out)
+{
+    parts p = {(o->has & HAS_NORMALS) != 0 ? 3 : 0, 0, (o->has & HAS_UV) != 0 ? 2 : 0};
+    size_t known = 3 + p.normal + p.uv;
+    if ((o->has & HAS_COLORS) != 0) {
+        p.color = count > known ? count - known : 0;
+    }
+    bool color = p.color == 1 || p.color == 3 || p.color == 4;
+    if (count >= known + p.color && ((o->has & HAS_COLORS) == 0 || color)) {
+        *out = p;
+        return true;
+    }
+    *out = (parts){.normal = p.normal};
+    if (count == 3 + p.normal) {
+        return true;
+    }
+    *out = (parts){0};
+    return count == 3;
+}
+
+static he_status end_vertex(off *o, const he_line *line, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    const double *n = o->numbers;
+    size_t vertex = soup->vertex_count, count = o->number_count;
+    parts p;
+    bool spread = o->number_line != line->number, fits = divide(o, count, &p);
+    size_t color_at = 3 + p.normal, end = color_at + p.color + p.uv;
+    bool lacking = fits && (((o->has & HAS_NORMALS) != 0 && p.normal == 0) ||
+                            ((o->has & HAS_COLORS) != 0 && p.color == 0) ||
+                            ((o->has & HAS_UV) != 0 && p.uv == 0));
+    o->spread |= spread;
+    o->lacking = o->lacking == 0 && lacking ? line->number : o->lacking;
+    /* On several lines, what is too much is the next vertex; and where some go on on the next line
+     * none may end before its last number, or nothing would tell the two apart. */
+    if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
+        return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers do not fit the header",
+                            count);
+    }
+    he_status status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
+    if (status == HE_OK && p.normal > 0) {
+        status = add_row(o, &o->normal, "normal", 3, n + 3, err);
+    }
+    if (status == HE_OK && p.color >= 3) {
+        status = add_color(o, &o->vertex_colors, vertex, color_at, p.color, err);
+    }
+    if (status == HE_OK && p.uv > 0) {
+        status = add_row(o, &o->uv, "uv", 2, n + color_at + p.color, err);
+    }
+    if (p.color == 1) {
+        note(o, "color_index", "ignored: an index into a colour map", line);
+    }
+    if (lacking) {
+        note(o, "missing_numbers", "read without what the header announces: a vertex", line);
+    }
+    if (count > end) {
+        note(o, "extra_numbers", "ignored: numbers the header does not announce", line);
+    }
+    forget_numbers(o);
+    if (soup->vertex_count == o->vertices) {
+        begin_faces(o);
+    }
+    return he_line_locate(status, line, err);
+}
+
+/* Numbers up to the end of the line; the first `finite` of the vertex must be finite. */
+static he_status read_numbers(off *o, const he_line *line, const char **p, size_t finite,
+                              bool colors, he_error *err)
+{
+    const char *q = *p;
+    while (!he_at_end(q, line->end)) {
+        const char *begin = q;
+        double value;
+        bool is_finite = true;
+        he_status status = o->number_count < finite
+                               ? he_token_number(line, &q, &value, err)
+                               : he_token_any_number(line, &q, &value, &is_finite, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        if (!is_finite) {
+            note(o, "not_finite", "set to 0: a value that is not finite", line);
+        }
+        if (o->number_count < VERTEX_NUMBERS) {
+            o->numbers[o->number_count] = value;
+            if (colors && is_integer(begin, q, value)) {
+                o->integers |= UINT32_C(1) << o->number_count;
+            }
+        }
+        o->number_count++;
+        q = he_skip_blanks(q, line->end);
+    }
+    *p = q;
+    return HE_OK;
+}
+
+static he_status read_vertex(off *o, const he_line *line, const char **p, he_error *err)
+{
+    size_t needed = 3;
+    needed += (o->has & HAS_NORMALS) != 0 ? 3 : 0;
+    needed += (o->has & HAS_COLORS) != 0 ? 1 : 0;
+    needed += (o->has & HAS_UV) != 0 ? 2 : 0;
+    if (o->number_count == 0) {
+        o->number_line = line->number;
+        he_status status = he_places_add(&o->into->vertices, (uint32_t)o->into->soup.vertex_count,
+                                         line->number, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    he_status status = read_numbers(o, line, p, 3, (o->has & HAS_COLORS) != 0, err);
+    size_t enough = o->number_line == line->number ? 3 : needed;
+    if (status != HE_OK || o->number_count < enough) {
+        return status; /* the vertex goes on on the next line */
+    }
+    return end_vertex(o, line, err);
+}
+
+/* What follows the corners, up to the end of the line. */
+static he_status read_face_color(off *o, const he_line *line, const char **p, he_error *err)
+{
+    he_status status = read_numbers(o, line, p, 0, true, err);
+    size_t count = o->number_count;
+    if (status == HE_OK && (count == 3 || count == 4)) {
+        status = add_color(o, &o->face_colors, o->into->soup.face_count - 1, 0, count, err);
+    } else if (count == 1) {
+        note(o, "color_index", "ignored: an index into a colour map", line);
+    } else if (count > 0) {
+        note(o, "extra_numbers", "ignored: numbers after a face that are not a colour", line);
+    }
+    forget_numbers(o);
+    return status;
+}
+
+static he_status read_corner(off *o, const he_line *line, const char **p, he_error *err)
+{
+    uint64_t value = 0;
+    size_t used = 0;
+    bool negative = **p == '-', sign = negative || **p == '+';
+    he_status status = he_u64_parse(*p + sign, line->end, &value, &used);
+    if (status == HE_SYNTAX || !he_token_ends(*p + sign + used, line->end)) {
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a corner of a face");
+    }
+    if (status != HE_OK || value >= o->vertices || negative) {
+        char text[40];
+        he_quote(*p, *p + sign + used, text, sizeof text);
+        return he_line_fail(err, HE_BAD_INDEX, line, *p, "there is no vertex %s, only 0 to %lld",
+                            text, (long long)o->vertices - 1);
+    }
+    *p += sign + used;
+    o->missing--;
+    return he_soup_add_corner(&o->into->soup, (uint32_t)value, err);
+}
+
+/* The numbers of a line as most are, whole and with one blank between them; 0 where any are not, or
+ * more than `room`. */
+static size_t plain_numbers(const char *p, const char *end, uint32_t *numbers, size_t room)
+{
+    size_t count = 0;
+    while (p < end) {
+        uint64_t value = 0;
+        size_t used = 0;
+        if (count == room || he_u64_parse(p, end, &value, &used) != HE_OK || value > UINT32_MAX) {
+            return 0;
+        }
+        p += used;
+        if (p < end && *p++ != ' ') {
+            return 0;
+        }
+        numbers[count++] = (uint32_t)value;
+    }
+    return count;
+}
+
+/* A face that is a plain line of its own. False, and nothing done, where there is more to say of
+ * it: then it is read number by number. */
+static bool read_plain_face(off *o, const he_line *line, const char **p, he_status *status,
+                            he_error *err)
+{
+    enum { ROOM = 16 };
+    he_soup *soup = &o->into->soup;
+    uint32_t numbers[ROOM];
+    size_t count = plain_numbers(*p, line->end, numbers, ROOM);
+    bool plain = count > 1 && numbers[0] == count - 1 &&
+                 (soup->limits.corners == 0 || numbers[0] <= soup->limits.corners);
+    for (size_t i = 1; i < count && plain; i++) {
+        plain = numbers[i] < o->vertices;
+    }
+    he_status added = plain ? he_soup_add_face(soup, numbers + 1, count - 1, err) : HE_LIMIT;
+    if (added == HE_LIMIT) {
+        return false;
+    }
+    if (added == HE_OK) {
+        added = he_places_add(&o->into->faces, (uint32_t)soup->face_count - 1, line->number, err);
+    }
+    if (soup->face_count == o->faces) {
+        o->section = DONE;
+    }
+    *p = line->end;
+    *status = he_line_locate(added, line, err);
+    return true;
+}
+
+static he_status read_face(off *o, const he_line *line, const char **p, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    he_status status = HE_OK;
+    if (!o->open && read_plain_face(o, line, p, &status, err)) {
+        return status;
+    }
+    if (!o->open) {
+        status = read_count(line, p, "corners", soup->limits.corners, &o->missing, err);
+        if (status == HE_OK) {
+            status = he_places_add(&o->into->faces, (uint32_t)soup->face_count, line->number, err);
+        }
+        if (status == HE_OK) {
+            status = he_soup_begin_face(soup, err);
+        }
+        o->open = true;
+        *p = he_skip_blanks(*p, line->end);
+    }
+    while (status == HE_OK && o->missing > 0 && !he_at_end(*p, line->end)) {
+        status = read_corner(o, line, p, err);
+        *p = he_skip_blanks(*p, line->end);
+    }
+    if (status == HE_OK && o->missing == 0) {
+        o->open = false;
+        status = read_face_color(o, line, p, err);
+        if (soup->face_count == o->faces) {
+            o->section = DONE;
+        }
+    }
+    return he_line_locate(status, line, err);
+}
+
+static he_status read_line(void *context, const he_line *line, he_error *err)
+{
+    off *o = context;
+    he_soup *soup = &o->into->soup;
+    const char *begin = he_skip_blanks(line->begin, line->end), *p = begin;
+    he_status status = HE_OK;
+    bool counts = false; /* the first two are on this line */
+    while (status == HE_OK && !he_at_end(p, line->end)) {
+        switch (o->section) {
+        case HEADER:
+            status = read_header(o, line, &p, err);
+            break;
+        case VERTEX_COUNT:
+            status = read_count(line, &p, "vertices", soup->limits.vertices, &o->vertices, err);
+            o->section = FACE_COUNT;
+            break;
+        case FACE_COUNT:
+            status = read_count(line, &p, "faces", soup->limits.faces, &o->faces, err);
+            o->section = EDGE_COUNT;
+            counts = true;
+            break;
+        case EDGE_COUNT:
+            status = read_edge_count(o, line, &p, counts, err);
+            break;
+        case VERTICES:
+            status = read_vertex(o, line, &p, err);
+            break;
+        case FACES:
+            status = read_face(o, line, &p, err);
+            break;
+        case DONE:
+            return he_token_fail(err, HE_SYNTAX, line, p, "comes after the last face announced");
+        }
+        p = he_skip_blanks(p, line->end);
+    }
+    return status;
+}
+
+static void off_close(void *state)
+{
+    off *o = state;
+    he_lines_clear(&o->lines);
+    he_colors_clear(&o->vertex_colors);
+    he_colors_clear(&o->face_colors);
+    he_mem_free(o);
+}
+
+static he_status off_open(he_import *into, void **state, he_error *err)
+{
+    off *o = he_mem_zero(1, sizeof *o);
+    if (o == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+    }
+    o->into = into;
+    he_lines_init(&o->lines, read_line, o);
+    o->lines.limit = into->soup.limits.bytes;
+    he_places_init(&into->vertices, HE_PLACE_LINE, 1);
+    he_places_init(&into->faces, HE_PLACE_LINE, 1);
+    *state = o;
+    return HE_OK;
+}
+
+/* Vertices that were read without a part may go on on the next line: then all that follows is out
+ * of step, and the refusal is of something else. */
+static he_status explain(const off *o, he_status status, he_error *err)
+{
+    if (o->lacking != 0 && err != NULL && (status == HE_SYNTAX || status == HE_BAD_INDEX)) {
+        size_t length = strlen(err->text);
+        snprintf(err->text + length, sizeof err->text - length,
+                 "; vertices from line %llu on lack what the header announces: one that has it "
+                 "needs it in its own line",
+                 (unsigned long long)o->lacking);
+    }
+    return status;
+}
+
+static he_status off_feed(void *state, const void *bytes, size_t n, he_error *err)
+{
+    off *o = state;
+    return explain(o, he_lines_feed(&o->lines, bytes, n, err), err);
+}
+
+static he_status too_short(uint64_t last_line, const char *what, size_t came, uint64_t announced,
+                           he_error *err)
+{
+    return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, last_line,
+                      "the file ends after %zu of the %llu %s it announces", came,
+                      (unsigned long long)announced, what);
+}
+
+static he_status finish(off *o, he_error *err)
+{
+    he_soup *soup = &o->into->soup;
+    uint64_t last_line = he_lines_last(&o->lines);
+    he_status status = he_lines_finish(&o->lines, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    switch (o->section) {
+    case HEADER:
+    case VERTEX_COUNT:
+    case FACE_COUNT:
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, last_line,
+                          "the file ends before its counts");
+    case EDGE_COUNT:
+        begin_vertices(o);
+        break;
+    case VERTICES:
+    case FACES:
+    case DONE:
+        break;
+    }
+    if (soup->vertex_count < o->vertices) {
+        return too_short(last_line, "vertices", soup->vertex_count, o->vertices, err);
+    }
+    if (soup->face_count - o->open < o->faces) {
+        return too_short(last_line, "faces", soup->face_count - o->open, o->faces, err);
+    }
+    status = he_colors_finish(&o->vertex_colors, soup, HE_VERTEX, soup->vertex_count, err);
+    if (status == HE_OK) {
+        status = he_colors_finish(&o->face_colors, soup, HE_FACE, soup->face_count, err);
+    }
+    return status;
+}
+
+static he_status off_finish(void *state, he_error *err)
+{
+    off *o = state;
+    return explain(o, finish(o, err), err);
+}
+
+const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close, false};
+
+/* The first token is a header; without one nothing tells the format. */
+bool he_off_sniff(const char *bytes, size_t n)
+{
+    const char *p = bytes, *end = bytes + n;
+    if (n >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0) {
+        p += 3;
+    }
+    while (p < end && (*p == ' ' || *p == '\t' || *p == '\r' || *p == '\n' || *p == '#')) {
+        if (*p == '#') {
+            while (p < end && *p != '\n' && *p != '\r') {
+                p++;
+            }
+        } else {
+            p++;
+        }
+    }
+    const char *token = p;
+    while (p < end && p - token < 12 && *p > ' ' && *p != '#') {
+        p++;
+    }
+    return header_flags(token, p) != -1;
+}

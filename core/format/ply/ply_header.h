@@ -1,0 +1,73 @@
+/* ply_header.h - what the header of a PLY file announces. */
+#ifndef HE_FORMAT_PLY_PLY_HEADER_H
+#define HE_FORMAT_PLY_PLY_HEADER_H
+
+#include "format/text/lines.h"
+#include "format/text/notes.h"
+#include "mesh/column.h"
+
+/* In all: what is done for each of them, whatever the bytes, stays small. */
+enum { HE_PLY_ELEMENTS = 64, HE_PLY_PROPERTIES = 1024 };
+
+typedef enum he_ply_encoding {
+    HE_PLY_UNKNOWN,
+    HE_PLY_ASCII,
+    HE_PLY_LITTLE_ENDIAN,
+    HE_PLY_BIG_ENDIAN
+} he_ply_encoding;
+
+typedef enum he_ply_type {
+    HE_PLY_INT8,
+    HE_PLY_UINT8,
+    HE_PLY_INT16,
+    HE_PLY_UINT16,
+    HE_PLY_INT32,
+    HE_PLY_UINT32,
+    HE_PLY_FLOAT,
+    HE_PLY_DOUBLE,
+    HE_PLY_TYPE_COUNT
+} he_ply_type;
+
+size_t he_ply_type_bytes(he_ply_type type);
+/* "char" ... "double" */
+const char *he_ply_type_name(he_ply_type type);
+/* The type of an attribute that holds all its values. */
+he_type he_ply_type_column(he_ply_type type);
+
+typedef struct he_ply_property {
+    char name[HE_NOTE_SUBJECT]; /* made printable, and cut when longer */
+    bool nameable;              /* an attribute can have this name */
+    bool list;
+    he_ply_type count, type; /* `count` of a list */
+    uint64_t line;
+} he_ply_property;
+
+typedef struct he_ply_element {
+    char name[HE_NOTE_SUBJECT];
+    uint64_t rows;
+    size_t first, properties; /* its part of the header's */
+    bool lists;               /* has any: rows differ in length */
+    size_t stride;            /* bytes of a row without lists */
+    uint64_t line;
+} he_ply_element;
+
+/* {0} is empty. */
+typedef struct he_ply_header {
+    bool begun, ended;
+    he_ply_encoding encoding;
+    he_ply_element *elements;
+    size_t count, capacity;
+    he_ply_property *properties;
+    size_t property_count, property_capacity;
+} he_ply_header;
+
+void he_ply_header_clear(he_ply_header *header);
+/* The next line; not after the end. HE_SYNTAX, HE_BAD_VALUE, HE_UNSUPPORTED, HE_LIMIT,
+ * HE_NO_MEMORY.
+ */
+HE_NODISCARD he_status he_ply_header_read(he_ply_header *header, const he_line *line,
+                                          he_error *err);
+/* The property of this name, `properties` when there is none. */
+size_t he_ply_find(const he_ply_header *header, const he_ply_element *element, const char *name);
+
+#endif

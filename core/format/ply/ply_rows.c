@@ -1,0 +1,448 @@
+#include "format/ply/ply_rows.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { GROUP = 4 };
+
+/* Properties that are one attribute. The first of an attribute's groups that an element has all
+ * needed members of is it. */
+static const struct {
+    const char *attribute;
+    size_t least;
+    const char *names[GROUP];
+} groups[] = {
+    {"normal", 3, {"nx", "ny", "nz"}},
+    {"color", 3, {"red", "green", "blue", "alpha"}},
+    {"color", 3, {"r", "g", "b", "a"}},
+    {"uv", 2, {"s", "t"}},
+    {"uv", 2, {"u", "v"}},
+    {"uv", 2, {"texture_u", "texture_v"}},
+    {"uv", 2, {"texture_s", "texture_t"}},
+};
+
+static he_status at_place(const he_ply_rows *rows, he_status status, he_error *err)
+{
+    if (status != HE_OK && err != NULL && err->place == HE_PLACE_NONE) {
+        err->place = rows->unit;
+        err->at = rows->at;
+    }
+    return status;
+}
+
+/* --- where properties go --- */
+
+static void note_ignored(const he_ply_rows *rows, const he_ply_property *property)
+{
+    he_notes_add(&rows->into->notes, property->list ? "ignored_list" : "ignored_property",
+                 property->list ? "ignored: list property" : "ignored: property", property->name,
+                 strlen(property->name), HE_PLACE_LINE, property->line);
+}
+
+static bool has_column(const he_soup *soup, he_kind domain, const char *name)
+{
+    for (size_t i = 0; i < soup->column_count; i++) {
+        if (soup->columns[i]->domain == domain && strcmp(soup->columns[i]->name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind domain, size_t group,
+                           he_error *err)
+{
+    const he_ply_property *properties = rows->header->properties + e->first;
+    size_t found[GROUP], count = 0;
+    he_type type = HE_TYPE_COUNT;
+    while (count < GROUP && groups[group].names[count] != NULL) {
+        size_t k = he_ply_find(rows->header, e, groups[group].names[count]);
+        if (k == e->properties || properties[k].list) {
+            break;
+        }
+        he_type own = he_ply_type_column(properties[k].type);
+        type = count == 0 || own == type ? own : HE_DOUBLE;
+        found[count++] = k;
+    }
+    if (count < groups[group].least ||
+        has_column(&rows->into->soup, domain, groups[group].attribute)) {
+        return HE_OK;
+    }
+    he_column *column;
+    he_status status = he_soup_column(&rows->into->soup, groups[group].attribute, domain, type,
+                                      (uint32_t)count, HE_INTERPOLATE, &column, err);
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        rows->targets[e->first + found[i]] = (he_ply_target){HE_PLY_ATTRIBUTE, (uint32_t)i, column};
+    }
+    return status;
+}
+
+/* What no group has taken. */
+static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind domain, he_error *err)
+{
+    he_soup *soup = &rows->into->soup;
+    for (size_t k = 0; k < e->properties; k++) {
+        const he_ply_property *property = &rows->header->properties[e->first + k];
+        he_ply_target *target = &rows->targets[e->first + k];
+        if (target->role != HE_PLY_IGNORED) {
+            continue;
+        }
+        if (property->list || !property->nameable || has_column(soup, domain, property->name)) {
+            note_ignored(rows, property);
+            continue;
+        }
+        he_type type = he_ply_type_column(property->type);
+        he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
+        he_status status =
+            he_soup_column(soup, property->name, domain, type, 1, rule, &target->column, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        target->role = HE_PLY_ATTRIBUTE;
+    }
+    return HE_OK;
+}
+
+static he_status map_attributes(he_ply_rows *rows, const he_ply_element *e, he_kind domain,
+                                he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; i < sizeof groups / sizeof *groups && status == HE_OK; i++) {
+        status = map_group(rows, e, domain, i, err);
+    }
+    return status == HE_OK ? map_rest(rows, e, domain, err) : status;
+}
+
+static he_status map_position(he_ply_rows *rows, const he_ply_element *e, he_error *err)
+{
+    static const char *const names[3] = {"x", "y", "z"};
+    for (uint32_t i = 0; i < 3; i++) {
+        size_t k = he_ply_find(rows->header, e, names[i]);
+        if (k == e->properties || rows->header->properties[e->first + k].list) {
+            return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, e->line,
+                              "vertices have no property '%s'", names[i]);
+        }
+        rows->targets[e->first + k] = (he_ply_target){HE_PLY_POSITION, i, NULL};
+    }
+    return HE_OK;
+}
+
+static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_role role,
+                             he_error *err)
+{
+    size_t k = he_ply_find(rows->header, e, "vertex_indices");
+    k = k < e->properties ? k : he_ply_find(rows->header, e, "vertex_index");
+    if (k == e->properties) {
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, e->line,
+                          "element '%s' has no list 'vertex_indices' or 'vertex_index'", e->name);
+    }
+    const he_ply_property *property = &rows->header->properties[e->first + k];
+    if (!property->list) {
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, property->line,
+                          "property '%s' is not a list", property->name);
+    }
+    if (property->type >= HE_PLY_FLOAT) {
+        he_notes_add(&rows->into->notes, "fraction_indices",
+                     "read as whole numbers: corners of the type", he_ply_type_name(property->type),
+                     strlen(he_ply_type_name(property->type)), HE_PLACE_LINE, property->line);
+    }
+    rows->targets[e->first + k].role = role;
+    return HE_OK;
+}
+
+static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_error *err)
+{
+    he_status status = HE_OK;
+    if (strcmp(e->name, "vertex") == 0) {
+        rows->vertices = e->rows;
+        status = map_position(rows, e, err);
+        return status == HE_OK ? map_attributes(rows, e, HE_VERTEX, err) : status;
+    }
+    if (strcmp(e->name, "face") == 0) {
+        status = map_corners(rows, e, HE_PLY_CORNERS, err);
+        return status == HE_OK ? map_attributes(rows, e, HE_FACE, err) : status;
+    }
+    if (strcmp(e->name, "tristrips") != 0) {
+        he_notes_add(&rows->into->notes, "ignored_element", "ignored: element", e->name,
+                     strlen(e->name), HE_PLACE_LINE, e->line);
+        return HE_OK;
+    }
+    status = map_corners(rows, e, HE_PLY_STRIP, err);
+    for (size_t k = 0; k < e->properties && status == HE_OK; k++) {
+        if (rows->targets[e->first + k].role == HE_PLY_IGNORED) {
+            note_ignored(rows, &rows->header->properties[e->first + k]);
+        }
+    }
+    return status;
+}
+
+he_status he_ply_rows_open(he_ply_rows *out, he_import *into, const he_ply_header *header,
+                           he_error *err)
+{
+    bool text = header->encoding == HE_PLY_ASCII;
+    he_ply_rows rows = {
+        .into = into, .header = header, .unit = text ? HE_PLACE_LINE : HE_PLACE_BYTE};
+    rows.targets = he_mem_zero(header->property_count + 1, sizeof *rows.targets);
+    he_status status = HE_OK;
+    if (rows.targets == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu properties",
+                             header->property_count);
+    }
+    for (size_t i = 0; i < header->count && status == HE_OK; i++) {
+        if (header->elements[i].rows > 0) {
+            status = map_element(&rows, &header->elements[i], err);
+        }
+    }
+    if (status != HE_OK) {
+        he_ply_rows_clear(&rows);
+        return status;
+    }
+    he_places_init(&into->vertices, rows.unit, 0);
+    he_places_init(&into->faces, rows.unit, 0);
+    *out = rows;
+    return HE_OK;
+}
+
+void he_ply_rows_clear(he_ply_rows *rows)
+{
+    he_mem_free(rows->targets);
+    rows->targets = NULL;
+}
+
+void he_ply_rows_next(he_ply_rows *rows)
+{
+    const he_ply_header *h = rows->header;
+    size_t i = rows->element == NULL ? 0 : (size_t)(rows->element - h->elements) + 1;
+    while (i < h->count && h->elements[i].rows == 0) {
+        i++;
+    }
+    const he_ply_element *e = i < h->count ? &h->elements[i] : NULL;
+    rows->element = e;
+    rows->left = e == NULL ? 0 : e->rows;
+    rows->vertex = e != NULL && strcmp(e->name, "vertex") == 0;
+    rows->wanted = false;
+    for (size_t k = 0; e != NULL && k < e->properties; k++) {
+        rows->wanted |= rows->targets[e->first + k].role != HE_PLY_IGNORED;
+    }
+}
+
+/* --- rows --- */
+
+/* The first two elements tell how far apart they mostly are. */
+static he_status add_place(const he_ply_rows *rows, he_places *places, size_t element,
+                           he_error *err)
+{
+    if (element == 1 && rows->at - places->runs[0].at <= UINT32_MAX) {
+        places->step = (uint32_t)(rows->at - places->runs[0].at);
+    }
+    return he_places_add(places, (uint32_t)element, rows->at, err);
+}
+
+static he_status extend(const he_ply_rows *rows, const he_ply_target *target, he_error *err)
+{
+    he_column *column = target->column;
+    if (column->rows > rows->row) {
+        return HE_OK;
+    }
+    uint64_t limit = rows->into->soup.limits.bytes;
+    if (limit != 0 && (rows->row + 1) * (uint64_t)column->row_bytes > limit) {
+        return he_fail_plain(err, HE_LIMIT, "attribute %s needs more than %llu bytes of memory",
+                             column->name, (unsigned long long)limit);
+    }
+    return he_column_extend(column, rows->row + 1 - column->rows, err);
+}
+
+he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err)
+{
+    const he_ply_element *e = rows->element;
+    he_soup *soup = &rows->into->soup;
+    he_status status = HE_OK;
+    if (rows->vertex) {
+        status = add_place(rows, &rows->into->vertices, soup->vertex_count, err);
+    }
+    rows->row = rows->vertex ? soup->vertex_count : soup->face_count;
+    for (size_t k = 0; k < e->properties && status == HE_OK; k++) {
+        const he_ply_target *target = &rows->targets[e->first + k];
+        if (target->role == HE_PLY_ATTRIBUTE && target->component == 0) {
+            status = extend(rows, target, err);
+        }
+    }
+    return at_place(rows, status, err);
+}
+
+/* Up to here the type has every whole number. */
+static const double FLOAT_WHOLE = 1 << 24, DOUBLE_WHOLE = 9007199254740992;
+
+static bool is_whole(double value, double low, double high)
+{
+    return value >= low && value <= high && value == floor(value);
+}
+
+static he_status refuse_value(const he_ply_rows *rows, size_t property, he_error *err)
+{
+    const he_ply_property *p = &rows->header->properties[rows->element->first + property];
+    return he_fail_at(err, HE_BAD_VALUE, rows->unit, rows->at,
+                      "a value of property '%s' is not of its type %s", p->name,
+                      he_ply_type_name(p->type));
+}
+
+he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he_error *err)
+{
+    const he_ply_target *target = &rows->targets[rows->element->first + property];
+    if (target->role == HE_PLY_POSITION) {
+        rows->position[target->component] = value;
+    }
+    if (target->role != HE_PLY_ATTRIBUTE) {
+        return HE_OK;
+    }
+    he_column *column = target->column;
+    bool whole = column->type == HE_INT32 || column->type == HE_UINT32;
+    if (!whole && !(fabs(value) <= (column->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
+        he_notes_add(&rows->into->notes, "not_finite", "set to 0: values that are not finite of",
+                     column->name, strlen(column->name), rows->unit, rows->at);
+        value = 0;
+    }
+    unsigned char *at = he_column_row(column, rows->row);
+    at += target->component * he_type_bytes(column->type);
+    if (column->type == HE_INT32) {
+        if (!is_whole(value, INT32_MIN, INT32_MAX)) {
+            return refuse_value(rows, property, err);
+        }
+        int32_t number = (int32_t)value;
+        memcpy(at, &number, sizeof number);
+    } else if (column->type == HE_UINT32) {
+        if (!is_whole(value, 0, UINT32_MAX)) {
+            return refuse_value(rows, property, err);
+        }
+        uint32_t number = (uint32_t)value;
+        memcpy(at, &number, sizeof number);
+    } else if (column->type == HE_FLOAT) {
+        float number = (float)value;
+        memcpy(at, &number, sizeof number);
+    } else {
+        memcpy(at, &value, sizeof value);
+    }
+    return HE_OK;
+}
+
+static he_status begin_face(he_ply_rows *rows, he_error *err)
+{
+    he_soup *soup = &rows->into->soup;
+    he_status status = he_soup_begin_face(soup, err);
+    return status == HE_OK ? add_place(rows, &rows->into->faces, soup->face_count - 1, err)
+                           : status;
+}
+
+he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int64_t count, he_error *err)
+{
+    uint64_t limit = rows->into->soup.limits.corners;
+    if (count < 0 || count > UINT32_MAX) {
+        return he_fail_at(err, HE_BAD_VALUE, rows->unit, rows->at, "a list cannot have %lld values",
+                          (long long)count);
+    }
+    switch (he_ply_rows_role(rows, property)) {
+    case HE_PLY_CORNERS:
+        if (count > HE_MAX_ROWS) {
+            return he_fail_at(err, HE_BAD_VALUE, rows->unit, rows->at,
+                              "%lld corners are more than a mesh can have", (long long)count);
+        }
+        if (limit != 0 && (uint64_t)count > limit) {
+            return he_fail_at(err, HE_LIMIT, rows->unit, rows->at,
+                              "%lld corners are more than the limit of %llu", (long long)count,
+                              (unsigned long long)limit);
+        }
+        return at_place(rows, begin_face(rows, err), err);
+    case HE_PLY_STRIP:
+        rows->strip_length = 0;
+        break;
+    case HE_PLY_IGNORED:
+    case HE_PLY_POSITION:
+    case HE_PLY_ATTRIBUTE:
+        break;
+    }
+    return HE_OK;
+}
+
+bool he_ply_rows_face(he_ply_rows *rows, const uint32_t *vertices, size_t count, he_status *status,
+                      he_error *err)
+{
+    he_soup *soup = &rows->into->soup;
+    he_status added = HE_LIMIT;
+    if (soup->limits.corners == 0 || count <= soup->limits.corners) {
+        added = he_soup_add_face(soup, vertices, count, err);
+    }
+    if (added == HE_LIMIT) {
+        return false;
+    }
+    if (added == HE_OK) {
+        added = add_place(rows, &rows->into->faces, soup->face_count - 1, err);
+        rows->left--;
+    }
+    *status = at_place(rows, added, err);
+    return true;
+}
+
+static he_status add_to_strip(he_ply_rows *rows, uint32_t vertex, he_error *err)
+{
+    uint32_t *strip = rows->strip;
+    if (rows->strip_length < 2) {
+        strip[rows->strip_length++] = vertex;
+        rows->turned = false;
+        return HE_OK;
+    }
+    uint32_t corners[3] = {strip[rows->turned], strip[!rows->turned], vertex};
+    he_status status = he_soup_add_face(&rows->into->soup, corners, 3, err);
+    if (status == HE_OK) {
+        status = add_place(rows, &rows->into->faces, rows->into->soup.face_count - 1, err);
+    }
+    strip[0] = strip[1];
+    strip[1] = vertex;
+    rows->turned = !rows->turned;
+    return status;
+}
+
+he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value, he_error *err)
+{
+    he_ply_role role = he_ply_rows_role(rows, property);
+    if (role == HE_PLY_STRIP && value == -1) {
+        rows->strip_length = 0;
+        return HE_OK;
+    }
+    if (value < 0 || (uint64_t)value >= rows->vertices) {
+        if (rows->vertices == 0) {
+            return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
+                              "there is no vertex %lld, nor any other", (long long)value);
+        }
+        return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
+                          "there is no vertex %lld, only 0 to %lld", (long long)value,
+                          (long long)rows->vertices - 1);
+    }
+    uint32_t vertex = (uint32_t)value;
+    return at_place(rows,
+                    role == HE_PLY_STRIP ? add_to_strip(rows, vertex, err)
+                                         : he_soup_add_corner(&rows->into->soup, vertex, err),
+                    err);
+}
+
+he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value, he_error *err)
+{
+    const he_ply_property *p = &rows->header->properties[rows->element->first + property];
+    double most = p->type == HE_PLY_FLOAT ? FLOAT_WHOLE : DOUBLE_WHOLE;
+    if (!is_whole(value, -most, most)) {
+        return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
+                          "the %s %.17g does not name a vertex", he_ply_type_name(p->type), value);
+    }
+    return he_ply_rows_item(rows, property, (int64_t)value, err);
+}
+
+he_status he_ply_rows_end(he_ply_rows *rows, he_error *err)
+{
+    const double *p = rows->position;
+    he_status status = HE_OK;
+    if (rows->vertex) {
+        status = he_soup_add_vertex(&rows->into->soup, (he_vec3){p[0], p[1], p[2]}, err);
+    }
+    rows->left--;
+    return at_place(rows, status, err);
+}

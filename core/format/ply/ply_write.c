@@ -1,0 +1,389 @@
+#include "format/ply/ply.h"
+
+#include "format/io/export.h"
+#include "format/ply/ply_header.h"
+#include "format/text/number.h"
+
+#include <string.h>
+
+/* What is written, in this order. */
+typedef enum part { HEADER, VERTICES, FACES, END } part;
+
+/* Room for one value, or one line of the header. */
+enum { VALUE_ROOM = 160 };
+
+/* One number of a row. */
+typedef struct output {
+    const char *name;
+    const he_column *column; /* NULL: the position */
+    uint32_t component;
+    he_ply_type type;
+} output;
+
+typedef struct ply_writer {
+    const he_mesh *mesh;
+    uint32_t *numbers; /* of vertices */
+    he_ply_encoding encoding;
+    output *outputs; /* of vertices, then of faces */
+    size_t vertex_outputs, count;
+    he_ply_type degree; /* of the count of a face's corners */
+    part part;
+    size_t line;       /* next output in the header */
+    uint32_t row;      /* next vertex or face */
+    size_t output;     /* next of the row */
+    bool in_face;      /* the row's corners have begun */
+    uint32_t halfedge; /* next corner of the face that is being written, or HE_NONE */
+} ply_writer;
+
+static void ply_close(void *state)
+{
+    ply_writer *w = state;
+    he_mem_free(w->numbers);
+    he_mem_free(w->outputs);
+    he_mem_free(w);
+}
+
+/* --- choosing what is written --- */
+
+static bool positions_are_floats(const he_mesh *mesh)
+{
+    for (uint32_t v = 0; v < mesh->c.vertices.issued; v++) {
+        he_vec3 p = mesh->c.position[v];
+        if (he_vertex_is_live(mesh, (he_vertex){v}) &&
+            !(he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static he_ply_type type_of_degree(const he_mesh *mesh)
+{
+    for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
+        if (he_face_is_live(mesh, (he_face){f}) && he_face_degree(mesh, (he_face){f}) > UINT8_MAX) {
+            return HE_PLY_UINT32;
+        }
+    }
+    return HE_PLY_UINT8;
+}
+
+static bool is_bytes(const he_column *column)
+{
+    for (size_t row = 0; row <= column->rows; row++) { /* the last one is the default */
+        for (uint32_t i = 0; i < column->components; i++) {
+            if (he_export_number(column, row, i) > UINT8_MAX) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+static he_ply_type type_of(const he_column *column)
+{
+    switch (column->type) {
+    case HE_BOOL:
+        return HE_PLY_UINT8;
+    case HE_INT32:
+        return HE_PLY_INT32;
+    case HE_UINT32:
+        return strcmp(column->name, "color") == 0 && is_bytes(column) ? HE_PLY_UINT8
+                                                                      : HE_PLY_UINT32;
+    case HE_FLOAT:
+        return HE_PLY_FLOAT;
+    case HE_DOUBLE:
+    case HE_TYPE_COUNT:
+        break;
+    }
+    return HE_PLY_DOUBLE;
+}
+
+static void add(ply_writer *w, const char *name, const he_column *column, uint32_t component,
+                he_ply_type type)
+{
+    w->outputs[w->count++] = (output){name, column, component, type};
+}
+
+static bool is_taken(const ply_writer *w, size_t first, const char *name)
+{
+    static const char *const own[] = {"vertex_indices", "vertex_index", "x", "y", "z"};
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
+        if (strcmp(own[i], name) == 0) {
+            return true;
+        }
+    }
+    for (size_t i = first; i < w->count; i++) {
+        if (strcmp(w->outputs[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A property's name is a word. */
+static bool is_word(const char *name)
+{
+    for (const char *p = name; *p != '\0'; p++) {
+        if (*p <= 0x20 || *p >= 0x7F) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void add_attributes(ply_writer *w, he_kind domain, const he_column **used, he_notes *notes)
+{
+    static const struct {
+        const char *attribute;
+        uint32_t least, most;
+        const char *names[4];
+    } groups[] = {{"normal", 3, 3, {"nx", "ny", "nz"}},
+                  {"color", 3, 4, {"red", "green", "blue", "alpha"}},
+                  {"uv", 2, 2, {"s", "t"}}};
+    size_t first = w->count;
+    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
+        const he_column *column = he_export_find(w->mesh, domain, groups[g].attribute,
+                                                 groups[g].least, groups[g].most, notes);
+        for (uint32_t i = 0; column != NULL && i < column->components; i++) {
+            add(w, groups[g].names[i], column, i, type_of(column));
+        }
+    }
+    for (size_t i = 0; i < he_mesh_columns(w->mesh); i++) {
+        const he_column *column = he_mesh_column(w->mesh, i);
+        if (column != NULL && column->domain == domain && is_word(column->name) &&
+            !is_taken(w, first, column->name) &&
+            he_export_find(w->mesh, domain, column->name, 1, 1, notes) != NULL) {
+            add(w, column->name, column, 0, type_of(column));
+        }
+    }
+    for (size_t i = first; i < w->count; i++) {
+        used[i] = w->outputs[i].column;
+    }
+}
+
+static he_status choose_outputs(ply_writer *w, he_notes *notes, he_error *err)
+{
+    size_t most = 3;
+    for (size_t i = 0; i < he_mesh_columns(w->mesh); i++) {
+        const he_column *column = he_mesh_column(w->mesh, i);
+        most += column == NULL ? 0 : column->components;
+    }
+    const he_column **used = he_mem_array(NULL, most, sizeof *used);
+    w->outputs = he_mem_array(NULL, most, sizeof *w->outputs);
+    if (used == NULL || w->outputs == NULL) {
+        he_mem_free(used);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu properties", most);
+    }
+    static const char *const names[3] = {"x", "y", "z"};
+    he_ply_type type = positions_are_floats(w->mesh) ? HE_PLY_FLOAT : HE_PLY_DOUBLE;
+    for (uint32_t i = 0; i < 3; i++) {
+        used[i] = NULL;
+        add(w, names[i], NULL, i, type);
+    }
+    add_attributes(w, HE_VERTEX, used, notes);
+    w->vertex_outputs = w->count;
+    add_attributes(w, HE_FACE, used, notes);
+    he_export_note_lost(w->mesh, used, w->count, notes);
+    he_mem_free(used);
+    return HE_OK;
+}
+
+static he_status ply_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
+                          he_error *err)
+{
+    /* in the order of the row's list */
+    static const he_ply_encoding encodings[] = {HE_PLY_LITTLE_ENDIAN, HE_PLY_ASCII,
+                                                HE_PLY_BIG_ENDIAN};
+    ply_writer *w = he_mem_zero(1, sizeof *w);
+    if (w == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+    }
+    w->mesh = mesh;
+    w->encoding = encodings[encoding];
+    w->halfedge = HE_NONE;
+    he_status status = he_export_numbers(mesh, &w->numbers, err);
+    if (status == HE_OK) {
+        status = choose_outputs(w, notes, err);
+    }
+    if (status != HE_OK) {
+        ply_close(w);
+        return status;
+    }
+    w->degree = type_of_degree(mesh);
+    *state = w;
+    return HE_OK;
+}
+
+/* --- writing it --- */
+
+static char *put_whole(uint32_t value, size_t bytes, bool big, char *p)
+{
+    for (size_t i = 0; i < bytes; i++) {
+        size_t shift = 8 * (big ? bytes - 1 - i : i);
+        *p++ = (char)(unsigned char)(value >> shift);
+    }
+    return p;
+}
+
+static char *put_value(double value, he_ply_type type, bool big, char *p)
+{
+    uint64_t bits;
+    uint32_t half;
+    if (type == HE_PLY_DOUBLE) {
+        memcpy(&bits, &value, sizeof bits);
+        p = put_whole((uint32_t)(big ? bits >> 32 : bits), 4, big, p);
+        return put_whole((uint32_t)(big ? bits : bits >> 32), 4, big, p);
+    }
+    if (type == HE_PLY_FLOAT) {
+        float number = (float)value;
+        memcpy(&half, &number, sizeof half);
+    } else {
+        half = (uint32_t)(int64_t)value;
+    }
+    return put_whole(half, he_ply_type_bytes(type), big, p);
+}
+
+static char *write_output(const ply_writer *w, const output *o, bool first, char *p)
+{
+    double value = o->column != NULL ? he_export_number(o->column, w->row, o->component)
+                                     : (&w->mesh->c.position[w->row].x)[o->component];
+    if (w->encoding != HE_PLY_ASCII) {
+        return put_value(value, o->type, w->encoding == HE_PLY_BIG_ENDIAN, p);
+    }
+    if (!first) {
+        *p++ = ' ';
+    }
+    return o->column != NULL ? he_export_value(o->column, w->row, o->component, p)
+                             : p + he_double_print(value, p);
+}
+
+static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, bool first, char *p)
+{
+    if (w->encoding != HE_PLY_ASCII) {
+        return put_whole(value, he_ply_type_bytes(type), w->encoding == HE_PLY_BIG_ENDIAN, p);
+    }
+    if (!first) {
+        *p++ = ' ';
+    }
+    return p + he_u32_print(value, p);
+}
+
+static char *write_element(const char *name, uint32_t count, char *p)
+{
+    p = he_export_text(name, he_export_text("element ", p));
+    *p++ = ' ';
+    p += he_u32_print(count, p);
+    *p++ = '\n';
+    return p;
+}
+
+static char *write_header(ply_writer *w, char *p)
+{
+    static const char *const names[] = {
+        [HE_PLY_UNKNOWN] = "",
+        [HE_PLY_ASCII] = "ascii",
+        [HE_PLY_LITTLE_ENDIAN] = "binary_little_endian",
+        [HE_PLY_BIG_ENDIAN] = "binary_big_endian",
+    };
+    if (w->line == 0) {
+        p = he_export_text(" 1.0\n",
+                           he_export_text(names[w->encoding], he_export_text("ply\nformat ", p)));
+        p = write_element("vertex", he_mesh_vertices(w->mesh), p);
+    }
+    if (w->line == w->vertex_outputs) {
+        p = write_element("face", he_mesh_faces(w->mesh), p);
+        p = he_export_text(he_ply_type_name(w->degree), he_export_text("property list ", p));
+        p = he_export_text(" int vertex_indices\n", p);
+    }
+    if (w->line == w->count) {
+        w->part = VERTICES;
+        return he_export_text("end_header\n", p);
+    }
+    const output *o = &w->outputs[w->line++];
+    p = he_export_text(he_ply_type_name(o->type), he_export_text("property ", p));
+    *p++ = ' ';
+    p = he_export_text(o->name, p);
+    *p++ = '\n';
+    return p;
+}
+
+static char *end_row(ply_writer *w, size_t first, char *p)
+{
+    w->row++;
+    w->output = first;
+    if (w->encoding == HE_PLY_ASCII) {
+        *p++ = '\n';
+    }
+    return p;
+}
+
+static char *write_vertices(ply_writer *w, char *p, const char *end)
+{
+    uint32_t issued = w->mesh->c.vertices.issued;
+    while (w->row < issued && end - p >= VALUE_ROOM) {
+        if (!he_vertex_is_live(w->mesh, (he_vertex){w->row})) {
+            w->row++;
+            continue;
+        }
+        p = write_output(w, &w->outputs[w->output], w->output == 0, p);
+        w->output++;
+        if (w->output == w->vertex_outputs) {
+            p = end_row(w, 0, p);
+        }
+    }
+    if (w->row == issued) {
+        w->row = 0;
+        w->output = w->vertex_outputs;
+        w->part = FACES;
+    }
+    return p;
+}
+
+static char *write_faces(ply_writer *w, char *p, const char *end)
+{
+    const he_content *c = &w->mesh->c;
+    while (end - p >= VALUE_ROOM) {
+        if (w->halfedge != HE_NONE) {
+            uint32_t id = c->origin[w->halfedge];
+            p = write_whole(w, w->numbers != NULL ? w->numbers[id] : id, HE_PLY_INT32, false, p);
+            w->halfedge = c->next[w->halfedge];
+            w->halfedge = w->halfedge == c->face_halfedge[w->row] ? HE_NONE : w->halfedge;
+        } else if (w->in_face && w->output < w->count) {
+            p = write_output(w, &w->outputs[w->output++], false, p);
+        } else if (w->in_face) {
+            p = end_row(w, w->vertex_outputs, p);
+            w->in_face = false;
+        } else if (w->row == c->faces.issued) {
+            w->part = END;
+            break;
+        } else if (c->face_halfedge[w->row] == HE_DEAD) {
+            w->row++;
+        } else {
+            p = write_whole(w, he_face_degree(w->mesh, (he_face){w->row}), w->degree, true, p);
+            w->halfedge = c->face_halfedge[w->row];
+            w->in_face = true;
+        }
+    }
+    return p;
+}
+
+static bool ply_step(void *state, char **p, const char *end)
+{
+    ply_writer *w = state;
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        break;
+    case VERTICES:
+        *p = write_vertices(w, *p, end);
+        break;
+    case FACES:
+        *p = write_faces(w, *p, end);
+        break;
+    case END:
+        break;
+    }
+    return w->part != END;
+}
+
+const he_writing he_ply_writing = {ply_open, ply_step, ply_close, false};

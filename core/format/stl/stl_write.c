@@ -1,0 +1,233 @@
+#include "format/stl/stl.h"
+
+#include "format/io/cuts.h"
+#include "format/io/export.h"
+#include "format/io/weld.h"
+#include "format/text/number.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What is written, in this order. */
+typedef enum part { HEADER, FACETS, END } part;
+
+enum { HEADER_BYTES = 80 };
+
+typedef struct stl_writer {
+    const he_mesh *mesh;
+    bool text;
+    he_cuts cuts;
+    he_cut_walk walk;
+    part part;
+} stl_writer;
+
+static void stl_close(void *state)
+{
+    stl_writer *w = state;
+    he_cuts_clear(&w->cuts);
+    he_mem_free(w);
+}
+
+/* --- what is known before the first byte --- */
+
+static void note_cuts(const he_cuts *cuts, he_notes *notes)
+{
+    he_notes_add_count(notes, "triangulated", "cut into triangles: a face", cuts->polygons);
+    he_notes_add_count(notes, "turned_triangles",
+                       "cut into triangles some of which have no area or are turned over: a face",
+                       cuts->turned);
+}
+
+/* What becomes of vertices when there are only positions. */
+static he_status note_vertices(const stl_writer *w, he_notes *notes, he_error *err)
+{
+    he_soup soup;
+    he_weld weld = {0};
+    he_status status = HE_OK;
+    uint64_t isolated = 0, rounded = 0, used = 0;
+    he_soup_init(&soup, NULL);
+    for (uint32_t v = 0; v < w->mesh->c.vertices.issued && status == HE_OK; v++) {
+        if (!he_vertex_is_live(w->mesh, (he_vertex){v})) {
+            continue;
+        }
+        if (he_is_isolated(w->mesh, (he_vertex){v})) {
+            isolated++;
+            continue;
+        }
+        he_vec3 p = w->mesh->c.position[v];
+        if (!w->text) {
+            rounded += !(he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z));
+            p = (he_vec3){he_narrow(p.x), he_narrow(p.y), he_narrow(p.z)};
+        }
+        uint32_t vertex;
+        used++;
+        status = he_weld_vertex(&weld, &soup, p, &vertex, err);
+    }
+    if (status == HE_OK) {
+        he_notes_add_count(notes, "isolated_vertices", "not carried: a vertex of no face",
+                           isolated);
+        he_notes_add_count(notes, "rounded", "rounded to floats: a position", rounded);
+        he_notes_add_count(notes, "merged", "at the position of another, and one with it: a vertex",
+                           used - soup.vertex_count);
+    }
+    he_weld_clear(&weld);
+    he_soup_clear(&soup);
+    return status;
+}
+
+static he_status stl_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
+                          he_error *err)
+{
+    stl_writer *w = he_mem_zero(1, sizeof *w);
+    if (w == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+    }
+    w->mesh = mesh;
+    w->text = encoding != 0;
+    he_status status = he_cuts_make(mesh, &w->cuts, err);
+    if (status == HE_OK) {
+        note_cuts(&w->cuts, notes);
+        status = note_vertices(w, notes, err);
+    }
+    if (status != HE_OK) {
+        stl_close(w);
+        return status;
+    }
+    he_export_note_lost(mesh, NULL, 0, notes);
+    *state = w;
+    return HE_OK;
+}
+
+/* --- facets --- */
+
+static he_vec3 minus(he_vec3 a, he_vec3 b)
+{
+    return (he_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static double largest(he_vec3 p)
+{
+    return fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+}
+
+static he_vec3 scaled(he_vec3 p, double factor)
+{
+    return (he_vec3){p.x * factor, p.y * factor, p.z * factor};
+}
+
+/* Unit, or zero where there is no area. Scaled, so that nothing overflows or vanishes. */
+static he_vec3 normal_of(const he_vec3 *p)
+{
+    he_vec3 quarter[3] = {scaled(p[0], 0.25), scaled(p[1], 0.25), scaled(p[2], 0.25)};
+    he_vec3 a = minus(quarter[1], quarter[0]), b = minus(quarter[2], quarter[0]);
+    double size_a = largest(a), size_b = largest(b);
+    if (size_a == 0 || size_b == 0) {
+        return (he_vec3){0, 0, 0};
+    }
+    a = (he_vec3){a.x / size_a, a.y / size_a, a.z / size_a};
+    b = (he_vec3){b.x / size_b, b.y / size_b, b.z / size_b};
+    he_vec3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    double length = sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    length = length == 0 ? 1 : length;
+    return (he_vec3){n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0}; /* -0 is 0 */
+}
+
+/* Positions keep all digits, a normal those of a float. */
+static char *put_numbers(he_vec3 v, bool all, char *p)
+{
+    const double values[3] = {v.x, v.y, v.z};
+    for (unsigned i = 0; i < 3; i++) {
+        *p++ = ' ';
+        p += all ? he_double_print(values[i], p) : he_float_print((float)values[i], p);
+    }
+    *p++ = '\n';
+    return p;
+}
+
+static char *write_text(const he_vec3 *corners, char *p)
+{
+    p = put_numbers(normal_of(corners), false, he_export_text("facet normal", p));
+    p = he_export_text("outer loop\n", p);
+    for (unsigned i = 0; i < 3; i++) {
+        p = put_numbers(corners[i], true, he_export_text("vertex", p));
+    }
+    return he_export_text("endloop\nendfacet\n", p);
+}
+
+static char *put_word(uint32_t value, char *p)
+{
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+        *p++ = (char)(unsigned char)(value >> shift);
+    }
+    return p;
+}
+
+static char *put_floats(he_vec3 v, char *p)
+{
+    const double values[3] = {v.x, v.y, v.z};
+    for (unsigned i = 0; i < 3; i++) {
+        float value = he_narrow(values[i]);
+        uint32_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        p = put_word(bits, p);
+    }
+    return p;
+}
+
+static char *write_binary(const he_vec3 *corners, char *p)
+{
+    p = put_floats(normal_of(corners), p);
+    for (unsigned i = 0; i < 3; i++) {
+        p = put_floats(corners[i], p);
+    }
+    *p++ = 0;
+    *p++ = 0;
+    return p;
+}
+
+static char *write_header(const stl_writer *w, char *p)
+{
+    if (w->text) {
+        return he_export_text("solid\n", p);
+    }
+    const he_content *c = &w->mesh->c;
+    uint32_t corners = 2 * c->edges.live - c->boundary_halfedges;
+    char *end = p + HEADER_BYTES;
+    p = he_export_text("binary STL", p); /* never "solid" */
+    memset(p, 0, (size_t)(end - p));
+    return put_word(corners - 2 * c->faces.live, end);
+}
+
+static char *write_facets(stl_writer *w, char *p, const char *end)
+{
+    while (end - p >= HE_WRITE_ROOM) {
+        uint32_t v[3];
+        if (!he_cuts_next(&w->cuts, &w->walk, v)) {
+            w->part = END;
+            return w->text ? he_export_text("endsolid\n", p) : p;
+        }
+        const he_vec3 *position = w->mesh->c.position;
+        he_vec3 corners[3] = {position[v[0]], position[v[1]], position[v[2]]};
+        p = w->text ? write_text(corners, p) : write_binary(corners, p);
+    }
+    return p;
+}
+
+static bool stl_step(void *state, char **p, const char *end)
+{
+    stl_writer *w = state;
+    switch (w->part) {
+    case HEADER:
+        *p = write_header(w, *p);
+        w->part = FACETS;
+        break;
+    case FACETS:
+        *p = write_facets(w, *p, end);
+        break;
+    case END:
+        break;
+    }
+    return w->part != END;
+}
+
+const he_writing he_stl_writing = {stl_open, stl_step, stl_close, true};

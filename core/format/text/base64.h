@@ -1,0 +1,13 @@
+/* base64.h - the base 64 encoding of RFC 4648, with or without the padding at its end. */
+#ifndef HE_FORMAT_TEXT_BASE64_H
+#define HE_FORMAT_TEXT_BASE64_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Room that any text of this length decodes into. */
+size_t he_base64_room(size_t length);
+/* Decode; `to` has that room. False where the text is not of the encoding. */
+bool he_base64_decode(const char *text, size_t length, unsigned char *to, size_t *decoded);
+
+#endif

@@ -1,0 +1,50 @@
+/* notes.h - what a reader or writer has to say besides success: content it passed over, or could
+ * not carry.
+ *
+ * Notes of one code and subject are counted, not repeated; of the first HE_NOTE_SPOTS things the
+ * places are kept. There is room for HE_NOTES of them and
+ * no memory to run out of; `more` counts what found no room. */
+#ifndef HE_FORMAT_TEXT_NOTES_H
+#define HE_FORMAT_TEXT_NOTES_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+enum { HE_NOTES = 32, HE_NOTE_SUBJECT = 80, HE_NOTE_SPOTS = 100 };
+
+typedef struct he_note {
+    const char *code;              /* a stable slug, static */
+    const char *text;              /* one sentence without the subject, static */
+    char subject[HE_NOTE_SUBJECT]; /* what it is about: printable ASCII, may be "" */
+    uint64_t count;
+    he_place place; /* of the first one */
+    uint64_t at;
+} he_note;
+
+/* Where one of the things was that a note counts. */
+typedef struct he_note_spot {
+    size_t note; /* its index */
+    uint64_t at;
+} he_note_spot;
+
+typedef struct he_notes {
+    he_note items[HE_NOTES];
+    size_t count;
+    uint64_t more;
+    he_note_spot spots[HE_NOTE_SPOTS]; /* of all notes together, the first ones */
+    size_t spot_count;
+} he_notes;
+
+/* `subject` (may be NULL) is cut to fit and made printable. */
+void he_notes_add(he_notes *notes, const char *code, const char *text, const char *subject,
+                  size_t length, he_place place, uint64_t at);
+/* What has no place and is counted at once; nothing when `count` is 0. */
+void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count);
+/* "ignored: unknown keyword 'xyz', 3 times, first on line 7" */
+size_t he_note_text(const he_note *note, char *text, size_t size);
+
+/* Copy bytes of an input for a message: at most size - 1, other than printable ASCII as '?'. */
+void he_quote(const char *begin, const char *end, char *text, size_t size);
+
+#endif

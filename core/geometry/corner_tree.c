@@ -1,0 +1,328 @@
+#include "geometry/corner_tree.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static const he_corner_box EMPTY = {{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
+
+/* --- order --- */
+
+typedef struct keyed {
+    uint64_t key;
+    uint32_t corner;
+} keyed;
+
+/* Bit i of the lower half moves to bit 2i. */
+static uint64_t spread(uint64_t x)
+{
+    x = (x | x << 16) & 0x0000FFFF0000FFFFu;
+    x = (x | x << 8) & 0x00FF00FF00FF00FFu;
+    x = (x | x << 4) & 0x0F0F0F0F0F0F0F0Fu;
+    x = (x | x << 2) & 0x3333333333333333u;
+    return (x | x << 1) & 0x5555555555555555u;
+}
+
+/* Coordinates lie within [-2, 2], see flat.h; a little more does no harm. */
+static uint64_t on_curve(double x)
+{
+    double scaled = (x + 2) * ((uint64_t)1 << 30);
+    return scaled <= 0 ? 0 : scaled >= UINT32_MAX ? UINT32_MAX : (uint64_t)scaled;
+}
+
+/* Stable, a byte at a time. Corners of equal keys stay in the order of the loop, which keeps
+ * neighbours together. Returns the one of the two arrays that holds the result. */
+static keyed *sort(keyed *from, keyed *to, uint32_t count)
+{
+    for (unsigned shift = 0; shift < 64; shift += 8) {
+        uint32_t starts[257] = {0};
+        for (uint32_t i = 0; i < count; i++) {
+            starts[(from[i].key >> shift & 255) + 1]++;
+        }
+        if (starts[(from[0].key >> shift & 255) + 1] == count) {
+            continue;
+        }
+        for (unsigned i = 0; i < 256; i++) {
+            starts[i + 1] += starts[i];
+        }
+        for (uint32_t i = 0; i < count; i++) {
+            to[starts[from[i].key >> shift & 255]++] = from[i];
+        }
+        keyed *swap = from;
+        from = to;
+        to = swap;
+    }
+    return from;
+}
+
+static void put(he_corner_tree *t, uint32_t place, uint32_t corner)
+{
+    t->order[place] = corner;
+    t->place[corner] = place;
+}
+
+static bool fill_order(he_corner_tree *t, const uint32_t *corners)
+{
+    const he_flat *f = t->flat;
+    if (t->leaves == 1) {
+        for (uint32_t i = 0; i < t->count; i++) {
+            put(t, i, corners[i]);
+        }
+        return true;
+    }
+    keyed *block = he_mem_array(NULL, 2 * (size_t)t->count, sizeof *block);
+    if (block == NULL) {
+        return false;
+    }
+    for (uint32_t i = 0; i < t->count; i++) {
+        uint32_t c = corners[i];
+        block[i] = (keyed){spread(on_curve(f->x[c])) | spread(on_curve(f->y[c])) << 1, c};
+    }
+    const keyed *sorted = sort(block, block + t->count, t->count);
+    for (uint32_t i = 0; i < t->count; i++) {
+        put(t, i, sorted[i].corner);
+    }
+    he_mem_free(block);
+    return true;
+}
+
+/* --- boxes --- */
+
+static void include(he_corner_box *box, const he_corner_box *other)
+{
+    for (int k = 0; k < 2; k++) {
+        box->min[k] = other->min[k] < box->min[k] ? other->min[k] : box->min[k];
+        box->max[k] = other->max[k] > box->max[k] ? other->max[k] : box->max[k];
+    }
+}
+
+static uint32_t leaf_start(const he_corner_tree *t, uint32_t leaf)
+{
+    return (uint32_t)((uint64_t)t->count * leaf / t->leaves);
+}
+
+static he_corner_box box_of_leaf(const he_corner_tree *t, uint32_t leaf)
+{
+    he_corner_box box = EMPTY;
+    for (uint32_t i = leaf_start(t, leaf); i < leaf_start(t, leaf + 1); i++) {
+        uint32_t c = t->order[i];
+        if (c != HE_NONE) {
+            double x = t->flat->x[c], y = t->flat->y[c];
+            include(&box, &(he_corner_box){{x, y}, {x, y}});
+        }
+    }
+    return box;
+}
+
+static he_corner_box box_of_children(const he_corner_tree *t, uint32_t node)
+{
+    he_corner_box box = t->boxes[2 * (size_t)node];
+    include(&box, &t->boxes[2 * (size_t)node + 1]);
+    return box;
+}
+
+static bool same_box(const he_corner_box *a, const he_corner_box *b)
+{
+    return a->min[0] == b->min[0] && a->min[1] == b->min[1] && a->max[0] == b->max[0] &&
+           a->max[1] == b->max[1];
+}
+
+void he_corner_tree_clear(he_corner_tree *tree)
+{
+    he_mem_free(tree->boxes);
+    *tree = (he_corner_tree){.boxes = NULL};
+}
+
+he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat, const uint32_t *corners,
+                              uint32_t count, he_error *err)
+{
+    he_corner_tree t = {.flat = flat, .count = count, .leaves = 1};
+    if (count == 0) {
+        *out = t;
+        return HE_OK;
+    }
+    while (count > HE_CORNER_FEW && (uint64_t)t.leaves * HE_CORNER_LEAF < count) {
+        t.leaves *= 2;
+    }
+    size_t boxes = 2 * (size_t)t.leaves, words = (size_t)flat->n + count;
+    t.boxes = he_mem_array(NULL, boxes + words / 8 + 1, sizeof *t.boxes);
+    if (t.boxes != NULL) {
+        t.place = (uint32_t *)(t.boxes + boxes);
+        t.order = t.place + flat->n;
+        memset(t.place, 0xFF, flat->n * sizeof *t.place);
+    }
+    if (t.boxes == NULL || !fill_order(&t, corners)) {
+        he_corner_tree_clear(&t);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %u corners of a loop", count);
+    }
+    for (uint32_t leaf = 0; leaf < t.leaves; leaf++) {
+        t.boxes[t.leaves + leaf] = box_of_leaf(&t, leaf);
+    }
+    for (uint32_t node = t.leaves - 1; node > 0; node--) {
+        t.boxes[node] = box_of_children(&t, node);
+    }
+    *out = t;
+    return HE_OK;
+}
+
+/* The leaf that holds a place in the order: the inverse of leaf_start. */
+static uint32_t leaf_of(const he_corner_tree *t, uint32_t place)
+{
+    return (uint32_t)((((uint64_t)place + 1) * t->leaves - 1) / t->count);
+}
+
+void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
+{
+    if (t->leaves == 1) {
+        put(t, t->place[corner], t->order[--t->count]);
+        t->place[corner] = HE_NONE;
+        return;
+    }
+    uint32_t leaf = leaf_of(t, t->place[corner]), node = t->leaves + leaf;
+    t->order[t->place[corner]] = HE_NONE;
+    t->place[corner] = HE_NONE;
+    he_corner_box box = box_of_leaf(t, leaf);
+    while (!same_box(&box, &t->boxes[node])) {
+        t->boxes[node] = box;
+        if (node == 1) {
+            break;
+        }
+        node /= 2;
+        box = box_of_children(t, node);
+    }
+}
+
+/* --- searching --- */
+
+/* What he_flat_turns_left takes for rounding, of the squared size of the triangle; with room to
+ * spare for points beside it and for the rounding of a determinant. */
+static const double ABOUT = 4e-12;
+
+/* The side from `at` to `at` + `along`, and the corner of a box that lies furthest to its left. */
+typedef struct side {
+    double at[2], along[2];
+    bool high[2]; /* is the furthest corner at the box's maximum? */
+} side;
+
+typedef struct triangle {
+    uint32_t corner[3];
+    side sides[3];
+    he_corner_box box;
+    double slack; /* a point so far to the right of a side is not in the triangle */
+} triangle;
+
+static triangle triangle_of(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+{
+    triangle t = {.corner = {a, b, c}, .box = EMPTY};
+    for (int i = 0; i < 3; i++) {
+        double x = f->x[t.corner[i]], y = f->y[t.corner[i]];
+        uint32_t to = t.corner[(i + 1) % 3];
+        double dx = f->x[to] - x, dy = f->y[to] - y;
+        t.sides[i] = (side){{x, y}, {dx, dy}, {dy<0, dx> 0}};
+        include(&t.box, &(he_corner_box){{x, y}, {x, y}});
+    }
+    double width = t.box.max[0] - t.box.min[0], height = t.box.max[1] - t.box.min[1];
+    double about = ABOUT * (width + height);
+    t.slack = about * (width + height);
+    for (int k = 0; k < 2; k++) {
+        t.box.min[k] -= about;
+        t.box.max[k] += about;
+    }
+    return t;
+}
+
+static double clamped(double x, double min, double max)
+{
+    return x < min ? min : x > max ? max : x;
+}
+
+/* Twice the area of the triangle that a side makes with a point; negative on its right. */
+static double left_of(const side *s, double x, double y)
+{
+    return s->along[0] * (y - s->at[1]) - s->along[1] * (x - s->at[0]);
+}
+
+/* False only where the box has no point of the triangle. */
+static bool touches(const triangle *t, const he_corner_box *box)
+{
+    if (box->min[0] > t->box.max[0] || box->max[0] < t->box.min[0] || box->min[1] > t->box.max[1] ||
+        box->max[1] < t->box.min[1]) {
+        return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        const side *s = &t->sides[i];
+        double x = s->high[0] ? box->max[0] : box->min[0];
+        double y = s->high[1] ? box->max[1] : box->min[1];
+        if (left_of(s, clamped(x, t->box.min[0], t->box.max[0]),
+                    clamped(y, t->box.min[1], t->box.max[1])) < -t->slack) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A corner of the tree: is it in the triangle? */
+static bool holds(const triangle *t, const he_flat *f, uint32_t p)
+{
+    double x = f->x[p], y = f->y[p];
+    if (x < t->box.min[0] || x > t->box.max[0] || y < t->box.min[1] || y > t->box.max[1]) {
+        return false;
+    }
+    double left[3];
+    for (int i = 0; i < 3; i++) {
+        left[i] = left_of(&t->sides[i], x, y);
+        if (left[i] < -t->slack) {
+            return false;
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        if (p == t->corner[i] || (x == t->sides[i].at[0] && y == t->sides[i].at[1]) ||
+            (left[i] < t->slack &&
+             he_flat_turns_left(f, t->corner[(i + 1) % 3], t->corner[i], p))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, const triangle *t,
+                             uint64_t *steps)
+{
+    for (uint32_t i = leaf_start(tree, leaf); i < leaf_start(tree, leaf + 1); i++) {
+        uint32_t c = tree->order[i];
+        *steps += 1;
+        if (c != HE_NONE && holds(t, tree->flat, c)) {
+            return c;
+        }
+    }
+    return HE_NONE;
+}
+
+uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
+                             uint64_t *steps)
+{
+    if (tree->count == 0) {
+        return HE_NONE;
+    }
+    const triangle t = triangle_of(tree->flat, a, b, c);
+    /* Of each level one node waits, and two of the last. */
+    uint32_t stack[34], depth = 0;
+    stack[depth++] = 1;
+    while (depth > 0) {
+        uint32_t node = stack[--depth];
+        *steps += 1;
+        if (!touches(&t, &tree->boxes[node])) {
+            continue;
+        }
+        if (node < tree->leaves) {
+            stack[depth++] = 2 * node + 1;
+            stack[depth++] = 2 * node;
+            continue;
+        }
+        uint32_t found = find_in_leaf(tree, node - tree->leaves, &t, steps);
+        if (found != HE_NONE) {
+            return found;
+        }
+    }
+    return HE_NONE;
+}

@@ -1,0 +1,58 @@
+/* corner_tree.h - corners of a flat loop in a tree of boxes: does one of them lie in a triangle?
+ *
+ * The corners are sorted along the Z curve (G. M. Morton, 1966) and cut into leaves of
+ * HE_CORNER_LEAF. The tree is complete, so it is one array without links:
+ *
+ *                1                 node i has the children 2i and 2i + 1
+ *            2       3             leaf l is node `leaves` + l and holds the corners
+ *          4   5   6   7           count * l / leaves up to count * (l + 1) / leaves
+ *
+ * Corners can be removed, never added; boxes shrink with them. Making the tree is linear, removing
+ * a corner logarithmic. A search enters the boxes that the triangle touches: few in practice, all
+ * of them at worst. What it entered is counted, so that the caller can limit it. */
+#ifndef HE_GEOMETRY_CORNER_TREE_H
+#define HE_GEOMETRY_CORNER_TREE_H
+
+#include "geometry/flat.h"
+
+enum {
+    HE_CORNER_LEAF = 6,
+    HE_CORNER_FEW = 16 /* up to so many corners are one leaf, in no order */
+};
+
+/* Empty when the minimum is larger than the maximum. */
+typedef struct he_corner_box {
+    double min[2], max[2];
+} he_corner_box;
+
+/* {0} holds no corners. */
+typedef struct he_corner_tree {
+    const he_flat *flat;
+    he_corner_box *boxes; /* with the block of memory that holds the two arrays below */
+    uint32_t *place; /* of each corner of the loop in `order`, HE_NONE when it is not in the tree */
+    uint32_t *order; /* the corners along the curve, HE_NONE where one was removed */
+    uint32_t count, leaves;
+} he_corner_tree;
+
+/* Makes a tree of some corners of a loop. Borrows `flat`, copies `corners`. Returns HE_NO_MEMORY if
+ * memory is out. he_corner_tree_clear frees. */
+HE_NODISCARD he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat,
+                                           const uint32_t *corners, uint32_t count, he_error *err);
+void he_corner_tree_clear(he_corner_tree *tree);
+
+static inline bool he_corner_tree_has(const he_corner_tree *tree, uint32_t corner)
+{
+    return tree->count > 0 && tree->place[corner] != HE_NONE;
+}
+
+/* The corner must be in the tree. */
+void he_corner_tree_remove(he_corner_tree *tree, uint32_t corner);
+
+/* Returns a corner in the closed triangle a, b, c, which turns left, or HE_NONE. A corner lies in
+ * it unless it is to the right of a side by more than rounding (flat.h), so that corners on a
+ * straight side are in the way of it. Corners at the place of a, b or c do not count. Adds the
+ * boxes and corners looked at to `steps`. */
+uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
+                             uint64_t *steps);
+
+#endif

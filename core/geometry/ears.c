@@ -1,0 +1,294 @@
+#include "geometry/ears.h"
+
+#include "geometry/corner_tree.h"
+
+/* --- rings: corners in lists that each begin and end at a node of their own --- */
+
+typedef struct ring {
+    uint32_t *next, *prev;
+} ring;
+
+/* Alone, as nodes that begin a list are at first and corners that are in none. */
+static void isolate(ring r, uint32_t i)
+{
+    r.next[i] = r.prev[i] = i;
+}
+
+static void insert_after(ring r, uint32_t before, uint32_t i)
+{
+    uint32_t after = r.next[before];
+    r.next[before] = r.prev[after] = i;
+    r.prev[i] = before;
+    r.next[i] = after;
+}
+
+static void take_out(ring r, uint32_t i)
+{
+    r.next[r.prev[i]] = r.next[i];
+    r.prev[r.next[i]] = r.prev[i];
+    isolate(r, i);
+}
+
+/* --- ears --- */
+
+typedef enum state {
+    CANDIDATE, /* turns left; whether it is an ear must be found out */
+    PIERCED,   /* turns left, with a corner in its triangle */
+    FLAT,      /* does not turn left */
+    TAKEN      /* would be an ear, but its diagonal is an edge */
+} state;
+
+typedef struct ears {
+    const he_mesh *m;
+    const he_flat *f;
+    bool avoid; /* diagonals that exist as edges */
+    ring loop;  /* what is left of it, without a node of its own */
+    ring kinds; /* CANDIDATE, PIERCED and FLAT: lists that begin at n + state */
+    ring watch; /* PIERCED, by the corner in the way: lists that begin at n + that one,
+                   and at 2n for those whose corner no longer is in the way */
+    uint8_t *state;
+    he_corner_tree tree;     /* corners that never turned left yet */
+    uint32_t left, at, last; /* corners; the candidate to try next; where the last triangle is */
+    uint32_t taken;          /* corners in that state */
+    uint64_t most;           /* steps of `work` up to which what is in the way is looked for */
+    he_triangulation_work *work;
+} ears;
+
+static bool is_taken(const ears *e, uint32_t a, uint32_t c)
+{
+    return e->avoid && he_diagonal_exists(e->m, e->f, a, c, e->work);
+}
+
+static uint32_t list_of(const ears *e, state s)
+{
+    return e->f->n + (uint32_t)s;
+}
+
+/* The corner is no longer in anybody's way. */
+static void leave_tree(ears *e, uint32_t corner)
+{
+    uint32_t list = e->f->n + corner, waiting = 2 * e->f->n, i;
+    he_corner_tree_remove(&e->tree, corner);
+    while ((i = e->watch.next[list]) != list) {
+        take_out(e->watch, i);
+        insert_after(e->watch, e->watch.prev[waiting], i);
+    }
+}
+
+/* A neighbour of the corner has changed. A candidate is put behind `before` among them. */
+static void look_at(ears *e, uint32_t i, uint32_t before)
+{
+    take_out(e->kinds, i);
+    take_out(e->watch, i);
+    e->taken -= e->state[i] == TAKEN;
+    bool convex = he_flat_turns_left(e->f, e->loop.prev[i], i, e->loop.next[i]);
+    if (convex && he_corner_tree_has(&e->tree, i)) {
+        leave_tree(e, i);
+    }
+    e->state[i] = convex ? CANDIDATE : FLAT;
+    insert_after(e->kinds, convex ? before : e->kinds.prev[list_of(e, FLAT)], i);
+}
+
+/* Looking for edges does not count: with it or without, the same ears are found. */
+static bool is_exhausted(const ears *e)
+{
+    return e->work->steps - e->work->searched >= e->most;
+}
+
+static bool is_ear(ears *e, uint32_t i)
+{
+    uint32_t a = e->loop.prev[i], c = e->loop.next[i];
+    e->work->steps++;
+    uint32_t in_the_way = HE_NONE;
+    if (!is_exhausted(e)) {
+        in_the_way = he_corner_tree_find(&e->tree, a, i, c, &e->work->steps);
+    }
+    if (in_the_way != HE_NONE) {
+        take_out(e->kinds, i);
+        insert_after(e->kinds, e->kinds.prev[list_of(e, PIERCED)], i);
+        insert_after(e->watch, e->f->n + in_the_way, i);
+        e->state[i] = PIERCED;
+        return false;
+    }
+    if (is_taken(e, a, c)) {
+        take_out(e->kinds, i);
+        e->state[i] = TAKEN;
+        e->taken++;
+        return false;
+    }
+    return true;
+}
+
+/* HE_NONE when there is none, save such as are taken. */
+static uint32_t find_ear(ears *e)
+{
+    uint32_t list = list_of(e, CANDIDATE), waiting = 2 * e->f->n, i;
+    for (;;) {
+        while (e->kinds.next[list] != list) {
+            i = e->at == list ? e->kinds.next[list] : e->at;
+            e->at = e->kinds.next[i];
+            if (is_ear(e, i)) {
+                return i;
+            }
+        }
+        if (e->watch.next[waiting] == waiting) {
+            return HE_NONE;
+        }
+        while ((i = e->watch.next[waiting]) != waiting) {
+            take_out(e->watch, i);
+            take_out(e->kinds, i);
+            insert_after(e->kinds, e->kinds.prev[list], i);
+            e->state[i] = CANDIDATE;
+        }
+        e->at = list;
+    }
+}
+
+/* Any corner whose diagonal is free, those that turn left first; HE_NONE when there is none. What
+ * is taken need not be looked at again before it changes. */
+static uint32_t find_corner(ears *e)
+{
+    for (state s = PIERCED; s <= FLAT; s++) {
+        uint32_t list = list_of(e, s), i;
+        while ((i = e->kinds.next[list]) != list) {
+            e->work->steps++;
+            if (!is_taken(e, e->loop.prev[i], e->loop.next[i])) {
+                return i;
+            }
+            take_out(e->kinds, i);
+        }
+    }
+    return HE_NONE;
+}
+
+static void write_triangle(ears *e, uint32_t i, uint32_t *corners)
+{
+    uint32_t *triangle = corners + 3 * (size_t)(e->f->n - e->left);
+    triangle[0] = e->loop.prev[i];
+    triangle[1] = i;
+    triangle[2] = e->loop.next[i];
+}
+
+static void cut_off(ears *e, uint32_t i, uint32_t *corners)
+{
+    uint32_t a = e->loop.prev[i], c = e->loop.next[i];
+    write_triangle(e, i, corners);
+    take_out(e->loop, i);
+    take_out(e->watch, i);
+    if (he_corner_tree_has(&e->tree, i)) {
+        leave_tree(e, i);
+    }
+    if (e->state[i] != CANDIDATE) {
+        take_out(e->kinds, i);
+        insert_after(e->kinds, list_of(e, CANDIDATE), i);
+    }
+    e->left--;
+    /* a and c stand where i stood. */
+    look_at(e, c, i);
+    take_out(e->kinds, a);
+    look_at(e, a, e->kinds.prev[i]);
+    e->at = e->kinds.next[e->state[c] == CANDIDATE ? c : i];
+    take_out(e->kinds, i);
+    e->last = e->loop.next[c];
+}
+
+static he_status cut_all(ears *e, bool any_corner, he_triangulation *plan, bool *stuck,
+                         he_error *err)
+{
+    while (e->left > 3) {
+        he_status status = he_triangulation_step(e->m, e->work, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        uint32_t i = find_ear(e);
+        bool found = i != HE_NONE && !is_exhausted(e);
+        if (!found && e->taken == 0 && !any_corner) {
+            *stuck = true;
+            return HE_OK;
+        }
+        if (i == HE_NONE && e->taken == 0) {
+            i = find_corner(e);
+        }
+        if (i == HE_NONE) {
+            return he_diagonals_refuse(e->m, e->f, err);
+        }
+        plan->degenerate |= !found;
+        cut_off(e, i, plan->corners);
+    }
+    plan->degenerate |=
+        !he_flat_turns_left(e->f, e->loop.prev[e->last], e->last, e->loop.next[e->last]);
+    write_triangle(e, e->last, plan->corners);
+    return HE_OK;
+}
+
+static void lay_out(ears *e, uint32_t *block)
+{
+    uint32_t n = e->f->n;
+    e->loop = (ring){block, block + n};
+    e->kinds = (ring){block + 2 * (size_t)n, block + 3 * (size_t)n + 3};
+    e->watch = (ring){block + 4 * (size_t)n + 6, block + 6 * (size_t)n + 7};
+    e->state = (uint8_t *)(block + 8 * (size_t)n + 8);
+    for (uint32_t i = 0; i < n; i++) {
+        e->loop.next[i] = i + 1 == n ? 0 : i + 1;
+        e->loop.prev[i] = i == 0 ? n - 1 : i - 1;
+    }
+    for (uint32_t i = n; i < n + 3; i++) {
+        isolate(e->kinds, i);
+    }
+    for (uint32_t i = 0; i < 2 * n + 1; i++) {
+        isolate(e->watch, i);
+    }
+}
+
+/* Every corner into its list; those that do not turn left into the tree. The triangulation's
+ * corners, which are not written yet, have the room to list them. */
+static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
+{
+    uint32_t n = e->f->n, flat = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        bool convex = he_flat_turns_left(e->f, e->loop.prev[i], i, e->loop.next[i]);
+        e->state[i] = convex ? CANDIDATE : FLAT;
+        insert_after(e->kinds, e->kinds.prev[list_of(e, e->state[i])], i);
+        if (!convex) {
+            room[flat++] = i;
+        }
+    }
+    e->at = list_of(e, CANDIDATE);
+    return he_corner_tree_make(&e->tree, e->f, room, flat, err);
+}
+
+/* So many for a corner are enough for ordinary polygons of any size. */
+static uint64_t most_steps(uint32_t n)
+{
+    uint64_t steps = 0;
+    for (uint32_t rest = n; rest > 0; rest /= 2) {
+        steps += HE_EAR_STEPS;
+    }
+    return steps * n;
+}
+
+he_status he_ears_cut(const he_mesh *m, unsigned flags, he_triangulation_work *work,
+                      he_triangulation *plan, bool *stuck, he_error *err)
+{
+    uint32_t n = plan->flat.n;
+    ears e = {.m = m,
+              .f = &plan->flat,
+              .avoid = (flags & HE_AVOID_EDGES) != 0,
+              .left = n,
+              .most = work->steps - work->searched + most_steps(n),
+              .work = work};
+    uint32_t *block = he_mem_array(NULL, (size_t)n + 1, 8 * sizeof *block + sizeof *e.state);
+    if (block == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop of %u corners", n);
+    }
+    plan->degenerate = false;
+    *stuck = false;
+    lay_out(&e, block);
+    he_status status = sort_corners(&e, plan->corners, err);
+    if (status == HE_OK) {
+        status = cut_all(&e, (flags & HE_ANY_CORNER) != 0, plan, stuck, err);
+    }
+    he_corner_tree_clear(&e.tree);
+    he_mem_free(block);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* flat.h - a loop of half-edges laid into its Newell plane.
+ *
+ * The normal of the plane is the sum of the cross products of successive corners (M. E. Newell's
+ * method; I. E. Sutherland, R. F. Sproull and R. A. Schumacker, "A characterization of ten
+ * hidden-surface algorithms", 1974). It is the vector area of the loop, so a loop that is not
+ * planar is seen from where it looks largest, and runs counter-clockwise. Coordinates are scaled
+ * by a power of two to lie within [-2, 2]: no size of mesh overflows or vanishes. */
+#ifndef HE_GEOMETRY_FLAT_H
+#define HE_GEOMETRY_FLAT_H
+
+#include "mesh/walk.h"
+
+typedef struct he_flat {
+    uint32_t n;
+    uint32_t *halfedge; /* of corner i, which is its origin */
+    double *x, *y;
+    bool degenerate; /* no area, so no plane: all coordinates are zero */
+    void *memory;    /* of the arrays */
+} he_flat;
+
+/* HE_NO_MEMORY. he_flat_clear frees. */
+HE_NODISCARD he_status he_flat_init(he_flat *flat, const he_mesh *m, he_halfedge first,
+                                    he_error *err);
+void he_flat_clear(he_flat *flat);
+
+/* Does the triangle of corners a, b, c run counter-clockwise, by more than rounding? */
+bool he_flat_turns_left(const he_flat *flat, uint32_t a, uint32_t b, uint32_t c);
+
+#endif

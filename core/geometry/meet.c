@@ -1,0 +1,191 @@
+#include "geometry/meet.h"
+
+#include "geometry/orient.h"
+
+/* --- in the plane of both --- */
+
+/* Drop one axis. Coordinates stay as they are, so nothing is rounded. */
+static he_vec2 flat(he_vec3 p, int axis)
+{
+    return axis == 0 ? (he_vec2){p.y, p.z} : axis == 1 ? (he_vec2){p.z, p.x} : (he_vec2){p.x, p.y};
+}
+
+/* The axis along which the triangle seems to be seen with the largest area. */
+static int likely_axis(const he_vec3 t[3])
+{
+    he_vec3 n = he_vec3_cross(he_vec3_sub(t[1], t[0]), he_vec3_sub(t[2], t[0]));
+    double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+    return x > y && x > z ? 0 : y > z ? 1 : 2;
+}
+
+/* An axis along which the triangle is seen with area, -1 when it has none. */
+static int open_axis(const he_vec3 t[3])
+{
+    int likely = likely_axis(t);
+    for (int i = 0; i < 3; i++) {
+        int axis = (likely + i) % 3;
+        if (he_orient2(flat(t[0], axis), flat(t[1], axis), flat(t[2], axis)) != 0) {
+            return axis;
+        }
+    }
+    return -1;
+}
+
+bool he_triangle_has_area(const he_vec3 t[3])
+{
+    return open_axis(t) >= 0;
+}
+
+/* p is on the line of a and b: is it between them? */
+static bool between(he_vec2 a, he_vec2 b, he_vec2 p)
+{
+    return fmin(a.x, b.x) <= p.x && p.x <= fmax(a.x, b.x) && fmin(a.y, b.y) <= p.y &&
+           p.y <= fmax(a.y, b.y);
+}
+
+static bool segments_meet(he_vec2 a, he_vec2 b, he_vec2 c, he_vec2 d)
+{
+    int abc = he_orient2(a, b, c), abd = he_orient2(a, b, d);
+    int cda = he_orient2(c, d, a), cdb = he_orient2(c, d, b);
+    if (abc * abd < 0 && cda * cdb < 0) {
+        return true;
+    }
+    return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
+           (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
+}
+
+static bool is_inside(he_vec2 p, const he_vec2 t[3])
+{
+    int turns[3];
+    for (int i = 0; i < 3; i++) {
+        turns[i] = he_orient2(t[i], t[(i + 1) % 3], p);
+    }
+    return (turns[0] >= 0 && turns[1] >= 0 && turns[2] >= 0) ||
+           (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
+}
+
+/* A segment and a triangle in one plane, seen along an axis. */
+static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axis)
+{
+    he_vec2 a = flat(p, axis), b = flat(q, axis);
+    he_vec2 c[3] = {flat(t[0], axis), flat(t[1], axis), flat(t[2], axis)};
+    return is_inside(a, c) || is_inside(b, c) || segments_meet(a, b, c[0], c[1]) ||
+           segments_meet(a, b, c[1], c[2]) || segments_meet(a, b, c[2], c[0]);
+}
+
+/* --- in space --- */
+
+/* Two triangles, the sides of each one's plane that the other's corners lie on, and an axis along
+ * which both are seen with area where they lie in one plane, else -1. */
+typedef struct meeting {
+    const he_vec3 *t[2];
+    int side[2][3]; /* of the corners of t[0], as seen from t[1], and the other way */
+    int axis;
+} meeting;
+
+/* Does the side that begins at corner i of one triangle meet the other one? */
+static bool side_meets(const meeting *m, int of, int i)
+{
+    const he_vec3 *t = m->t[1 - of];
+    int k = (i + 1) % 3, at_p = m->side[of][i], at_q = m->side[of][k];
+    he_vec3 p = m->t[of][i], q = m->t[of][k];
+    if (m->axis >= 0) {
+        return flat_segment_meets(p, q, t, m->axis);
+    }
+    if (at_p == 0 && at_q == 0) {
+        return flat_segment_meets(p, q, t, open_axis(t));
+    }
+    if (at_p * at_q > 0) {
+        return false;
+    }
+    int turns[3];
+    for (int j = 0; j < 3; j++) {
+        turns[j] = he_orient3(p, q, t[j], t[(j + 1) % 3]);
+    }
+    return (turns[0] >= 0 && turns[1] >= 0 && turns[2] >= 0) ||
+           (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
+}
+
+/* The sides of the plane of t[1 - of] that the corners of t[of] lie on; those in the set `shared`
+ * lie in it. True when the others all lie on one side, with none in the plane: nearly all
+ * neighbours do. */
+static bool is_beside(meeting *m, int of, unsigned shared)
+{
+    const he_vec3 *plane = m->t[1 - of];
+    int least = 1, most = -1;
+    for (unsigned k = 0; k < 3; k++) {
+        m->side[of][k] = 0;
+        if (shared >> k & 1) {
+            continue;
+        }
+        int side = he_orient3(plane[0], plane[1], plane[2], m->t[of][k]);
+        m->side[of][k] = side;
+        least = side < least ? side : least;
+        most = side > most ? side : most;
+    }
+    return least == most && most != 0;
+}
+
+static bool is_in_plane(const int side[3])
+{
+    return side[0] == 0 && side[1] == 0 && side[2] == 0;
+}
+
+static bool same(he_vec3 p, he_vec3 q)
+{
+    return p.x == q.x && p.y == q.y && p.z == q.z;
+}
+
+/* Triangles in one plane that share the side opposite to corners i and k lie on one another when
+ * they are on the same side of it. */
+static bool meet_beyond_side(const meeting *m, int i, int k)
+{
+    const he_vec3 *a = m->t[0], *b = m->t[1];
+    he_vec2 p = flat(a[(i + 1) % 3], m->axis), q = flat(a[(i + 2) % 3], m->axis);
+    return he_orient2(p, q, flat(a[i], m->axis)) == he_orient2(p, q, flat(b[k], m->axis));
+}
+
+bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
+{
+    int shared = 0, at_a = 0, at_b = 0, sum_a = 0, sum_b = 0;
+    unsigned of_a = 0, of_b = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            if (same(a[i], b[k])) {
+                shared++;
+                at_a = i;
+                at_b = k;
+                sum_a += i;
+                sum_b += k;
+                of_a |= 1u << i;
+                of_b |= 1u << k;
+            }
+        }
+    }
+    meeting m = {.t = {a, b}, .axis = -1};
+    if (is_beside(&m, 1, of_b)) {
+        return false;
+    }
+    bool flat = is_in_plane(m.side[1]);
+    if ((!flat && is_beside(&m, 0, of_a)) || !he_triangle_has_area(a) || !he_triangle_has_area(b)) {
+        return false;
+    }
+    m.axis = flat ? open_axis(a) : -1;
+    if (shared == 1) {
+        /* What leaves a shared corner on both triangles ends on the side opposite to it of one,
+         * which the other then meets. */
+        return side_meets(&m, 0, (at_a + 1) % 3) || side_meets(&m, 1, (at_b + 1) % 3);
+    }
+    if (shared == 2) {
+        return meet_beyond_side(&m, 3 - sum_a, 3 - sum_b);
+    }
+    if (shared == 3) {
+        return true;
+    }
+    for (int i = 0; i < 3; i++) {
+        if (side_meets(&m, 0, i) || side_meets(&m, 1, i)) {
+            return true;
+        }
+    }
+    return false;
+}

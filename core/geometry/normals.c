@@ -1,0 +1,347 @@
+#include "base/exec.h"
+#include "geometry/geometry.h"
+#include "geometry/ring.h"
+#include "mesh/walk.h"
+
+#include <stdlib.h>
+
+/* Areas differ beyond what a double spans only in meshes nobody draws; this keeps their faces from
+ * vanishing where there are no larger ones. */
+static double area_weight(const he_ring *r, int exponent, int unit)
+{
+    return fmax(ldexp(0.5 * he_vec3_length(r->vector), 2 * exponent - unit), DBL_MIN);
+}
+
+/* The binary exponent of the largest area about a vertex, from which the weights are taken. */
+static int area_unit(const he_mesh *m, he_vertex v)
+{
+    int unit = INT32_MIN;
+    uint32_t first = m->c.vertex_halfedge[v.i], h = first, budget = he_ring_budget(m);
+    do {
+        he_vec3 normal;
+        int exponent, own;
+        if (m->c.face[h] < m->c.faces.issued) {
+            he_ring r = he_ring_of_face(m, (he_face){m->c.face[h]}, &exponent);
+            if (he_ring_normal(&r, &normal)) {
+                frexp(he_vec3_length(r.vector), &own);
+                unit = own + 2 * exponent > unit ? own + 2 * exponent : unit;
+            }
+        }
+        h = m->c.prev[h] ^ 1u;
+    } while (h != first && h < he_ring_budget(m) && budget-- > 0);
+    return unit;
+}
+
+bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out)
+{
+    he_vec3 sum = {0, 0, 0};
+    uint32_t first = m->c.vertex_halfedge[v.i], h = first, budget = he_ring_budget(m);
+    if (first == HE_NONE) {
+        return he_vec3_normalise(sum, out);
+    }
+    int unit = weight == HE_WEIGHT_AREA ? area_unit(m, v) : 0;
+    do {
+        he_vec3 normal;
+        int exponent;
+        if (m->c.face[h] < m->c.faces.issued) {
+            he_ring r = he_ring_of_face(m, (he_face){m->c.face[h]}, &exponent);
+            if (he_ring_normal(&r, &normal)) {
+                double w = 1;
+                switch (weight) {
+                case HE_WEIGHT_AREA:
+                    w = area_weight(&r, exponent, unit);
+                    break;
+                case HE_WEIGHT_ANGLE:
+                    w = he_corner_angle(m, (he_halfedge){h});
+                    break;
+                case HE_WEIGHT_UNIFORM:
+                    break;
+                }
+                sum = he_vec3_add(sum, he_vec3_scale(normal, w));
+            }
+        }
+        h = m->c.prev[h] ^ 1u;
+    } while (h != first && h < he_ring_budget(m) && budget-- > 0);
+    return he_vec3_normalise(sum, out);
+}
+
+/* A triangle of ordinary size. Most faces of most meshes are, and whole-mesh loops treat those
+ * without a call or a square root more than needed. */
+typedef struct triangle {
+    uint32_t a, b, c; /* corners from the stored half-edge on */
+    he_vec3 u, v;     /* a to b, a to c */
+    he_vec3 vector;   /* u x v: twice the area vector */
+    double square;    /* its length squared */
+} triangle;
+
+/* Neither degenerate nor of coordinates whose products would overflow or vanish. */
+static inline bool is_plain(double square, double reach)
+{
+    return (reach > HE_LEAST_PRODUCT) & (reach < HE_MOST_PRODUCT) &
+           (square > HE_RING_NOISE * 3 * reach);
+}
+
+/* False where the face has other than three corners, is degenerate, or has coordinates whose
+ * products would overflow or vanish, and where links are broken: the general way decides those. */
+static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
+{
+    const uint32_t end = 2u * m->c.edges.issued, vertices = m->c.vertices.issued;
+    if (h >= end) {
+        return false;
+    }
+    uint32_t i = m->c.next[h];
+    uint32_t j = i < end ? m->c.next[i] : HE_NONE;
+    if (j >= end || m->c.next[j] != h) {
+        return false;
+    }
+    /* Targets share a cache line with the origins; the third half-edge is only looked at. */
+    triangle t = {.a = m->c.origin[h], .b = m->c.origin[h ^ 1u], .c = m->c.origin[i ^ 1u]};
+    if (t.a >= vertices || t.b >= vertices || t.c >= vertices) {
+        return false;
+    }
+    he_vec3 p = m->c.position[t.a];
+    t.u = he_vec3_sub(m->c.position[t.b], p);
+    t.v = he_vec3_sub(m->c.position[t.c], p);
+    t.vector = he_vec3_cross(t.u, t.v);
+    t.square = he_vec3_dot(t.vector, t.vector);
+    double reach = he_vec3_dot(t.u, t.u) * he_vec3_dot(t.v, t.v);
+    *out = t;
+    return is_plain(t.square, reach);
+}
+
+/* Ask for what the triangles some way ahead will need: their links first, and nearer by what those
+ * lead to. Where ids are in no order every access misses the caches, and this overlaps the misses.
+ */
+static inline void look_ahead(const he_mesh *m, uint32_t f)
+{
+    enum { LINKS = 24, CORNERS = 12 };
+    const uint32_t end = 2u * m->c.edges.issued;
+    if (m->c.faces.issued - f <= LINKS) {
+        return;
+    }
+    uint32_t far = m->c.face_halfedge[f + LINKS], near = m->c.face_halfedge[f + CORNERS];
+    if (far < end) {
+        __builtin_prefetch(&m->c.next[far]);
+        __builtin_prefetch(&m->c.origin[far]);
+    }
+    if (near < end && m->c.next[near] < end) {
+        __builtin_prefetch(&m->c.next[m->c.next[near]]);
+        __builtin_prefetch(&m->c.origin[m->c.next[near]]);
+        __builtin_prefetch(&m->c.position[m->c.origin[near]]);
+        __builtin_prefetch(&m->c.position[m->c.origin[near ^ 1u]]);
+    }
+}
+
+/* --- faces ------------------------------------------------------------------------------------ */
+
+/* Faces are taken in blocks: first their corners, which asks for the positions of all of them at
+ * once, then their vectors, then the lengths of those, which have no branch between them. */
+enum { BLOCK = 64 };
+
+typedef struct faces {
+    const he_mesh *m;
+    bool triangles; /* all of them, so that none needs to be followed to see that it closes */
+    he_vec3 *out;
+} faces;
+
+/* Every face has three corners at least (I7), so that these are all triangles if they have three
+ * corners each in the mean. */
+static bool are_triangles(const he_content *c)
+{
+    return 2 * (uint64_t)c->edges.live - c->boundary_halfedges == 3 * (uint64_t)c->faces.live;
+}
+
+typedef struct triple {
+    uint32_t a, b, c; /* vertices; all HE_NONE where the general way is needed */
+} triple;
+
+static inline triple find_triple(const he_content *c, uint32_t f, bool triangles)
+{
+    const uint32_t end = 2u * c->edges.issued, vertices = c->vertices.issued;
+    const triple none = {HE_NONE, HE_NONE, HE_NONE};
+    uint32_t h = c->face_halfedge[f], i = h < end ? c->next[h] : HE_NONE;
+    if (i >= end) {
+        return none;
+    }
+    if (!triangles) {
+        uint32_t j = c->next[i];
+        if (j >= end || c->next[j] != h) {
+            return none;
+        }
+    }
+    /* Targets share a cache line with the origins; the third half-edge is not looked at. */
+    triple t = {c->origin[h], c->origin[h ^ 1u], c->origin[i ^ 1u]};
+    return t.a < vertices && t.b < vertices && t.c < vertices ? t : none;
+}
+
+static inline void block_triples(const he_content *c, size_t from, size_t to, bool triangles,
+                                 triple *out)
+{
+    for (size_t f = from; f < to; f++) {
+        triple t = find_triple(c, (uint32_t)f, triangles);
+        if (t.a != HE_NONE) {
+            __builtin_prefetch(&c->position[t.a]);
+            __builtin_prefetch(&c->position[t.b]);
+            __builtin_prefetch(&c->position[t.c]);
+        }
+        out[f - from] = t;
+    }
+}
+
+static he_status one_normal(const he_mesh *m, uint32_t f, uint32_t *budget, he_vec3 *out,
+                            he_error *err)
+{
+    *out = (he_vec3){0, 0, 0};
+    if (m->c.face_halfedge[f] != HE_DEAD) {
+        int exponent;
+        he_ring r = he_ring_measure(m, m->c.face_halfedge[f], budget, &exponent);
+        if (r.degree == 0) {
+            return he_ring_corrupt(f, err);
+        }
+        he_ring_normal(&r, out);
+    }
+    return HE_OK;
+}
+
+static he_status face_block(const faces *all, size_t from, size_t to, uint32_t *budget,
+                            he_error *err)
+{
+    const he_content *c = &all->m->c;
+    triple corners[BLOCK] = {{0}};
+    double square[BLOCK] = {0};
+    if (all->triangles) {
+        block_triples(c, from, to, true, corners);
+    } else {
+        block_triples(c, from, to, false, corners);
+    }
+    for (size_t k = 0; k < to - from; k++) {
+        if (corners[k].a != HE_NONE) {
+            he_vec3 p = c->position[corners[k].a];
+            he_vec3 u = he_vec3_sub(c->position[corners[k].b], p);
+            he_vec3 v = he_vec3_sub(c->position[corners[k].c], p);
+            he_vec3 vector = he_vec3_cross(u, v);
+            double length = he_vec3_dot(vector, vector);
+            double reach = he_vec3_dot(u, u) * he_vec3_dot(v, v);
+            all->out[from + k] = vector;
+            square[k] = is_plain(length, reach) ? length : 0;
+        }
+    }
+    for (size_t k = 0; k < BLOCK; k++) {
+        square[k] = 1 / sqrt(square[k]);
+    }
+    for (size_t k = 0; k < to - from; k++) {
+        he_vec3 *out = &all->out[from + k];
+        if (square[k] < INFINITY) {
+            *out = he_vec3_scale(*out, square[k]);
+            continue;
+        }
+        he_status status = one_normal(all->m, (uint32_t)(from + k), budget, out, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    return HE_OK;
+}
+
+static he_status face_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const faces *all = context;
+    uint32_t budget = he_ring_budget(all->m);
+    he_status status = HE_OK;
+    (void)part;
+    for (size_t f = from; f < to && status == HE_OK; f += BLOCK) {
+        status = face_block(all, f, to - f < BLOCK ? to : f + BLOCK, &budget, err);
+    }
+    return status;
+}
+
+he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out, he_error *err)
+{
+    faces all = {m, are_triangles(&m->c), out};
+    return he_run_ranges(watch, m->c.faces.issued, face_range, &all, err);
+}
+
+/* --- vertices --------------------------------------------------------------------------------- */
+
+static void add_to(he_vec3 *sum, he_vec3 normal, double weight)
+{
+    *sum = he_vec3_add(*sum, he_vec3_scale(normal, weight));
+}
+
+/* Add a triangle's share to its corners. `half` is half the unit of area, 0 where a double cannot
+ * hold it; false when the share would vanish in that unit. */
+static bool share_triangle(const triangle *t, he_weight weight, double half, he_vec3 *out)
+{
+    if (weight == HE_WEIGHT_AREA) {
+        he_vec3 share = he_vec3_scale(t->vector, half);
+        if (!(he_vec3_extent(share) > HE_LEAST_PRODUCT)) {
+            return false;
+        }
+        out[t->a] = he_vec3_add(out[t->a], share);
+        out[t->b] = he_vec3_add(out[t->b], share);
+        out[t->c] = he_vec3_add(out[t->c], share);
+        return true;
+    }
+    double root = sqrt(t->square), at_a = 1, at_b = 1, at_c = 1;
+    if (weight == HE_WEIGHT_ANGLE) {
+        /* At each corner the cross product of its two sides is as long as `vector`. */
+        he_vec3 w = he_vec3_sub(t->v, t->u);
+        at_a = atan2(root, he_vec3_dot(t->u, t->v));
+        at_b = atan2(root, -he_vec3_dot(t->u, w));
+        at_c = atan2(root, he_vec3_dot(t->v, w));
+    }
+    he_vec3 normal = he_vec3_scale(t->vector, 1 / root);
+    add_to(&out[t->a], normal, at_a);
+    add_to(&out[t->b], normal, at_b);
+    add_to(&out[t->c], normal, at_c);
+    return true;
+}
+
+/* That of a square about the origin that would hold the mesh. */
+static int area_unit_of_all(const he_mesh *m)
+{
+    he_box box;
+    he_surface_box(m, &box);
+    return 2 * he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
+}
+
+he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_vec3 *out, he_error *err)
+{
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        out[v] = (he_vec3){0, 0, 0};
+    }
+    int unit = weight == HE_WEIGHT_AREA ? area_unit_of_all(m) : 0;
+    double half = abs(unit) < 1000 ? ldexp(0.5, -unit) : 0;
+    uint32_t budget = he_ring_budget(m);
+    for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        uint32_t first = m->c.face_halfedge[f], h = first;
+        triangle t;
+        if (plain_triangle(m, first, &t) && share_triangle(&t, weight, half, out)) {
+            continue;
+        }
+        if (first == HE_DEAD) {
+            continue;
+        }
+        int exponent;
+        he_vec3 normal;
+        he_ring r = he_ring_measure(m, first, &budget, &exponent);
+        if (r.degree == 0) {
+            return he_ring_corrupt(f, err);
+        }
+        if (!he_ring_normal(&r, &normal)) {
+            continue;
+        }
+        if (weight == HE_WEIGHT_AREA) {
+            normal = he_vec3_scale(normal, area_weight(&r, exponent, unit));
+        }
+        do {
+            double w = weight == HE_WEIGHT_ANGLE ? he_corner_angle(m, (he_halfedge){h}) : 1;
+            add_to(&out[m->c.origin[h]], normal, w);
+            h = m->c.next[h];
+        } while (h != first);
+    }
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        he_vec3_normalise(out[v], &out[v]);
+    }
+    return HE_OK;
+}

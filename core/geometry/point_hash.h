@@ -1,0 +1,28 @@
+/* point_hash.h - the hash of a point, for the tables of points (geometry/near.h, format/io/weld.h).
+ */
+#ifndef HE_GEOMETRY_POINT_HASH_H
+#define HE_GEOMETRY_POINT_HASH_H
+
+#include "mesh/mesh.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static inline uint64_t he_point_hash_add(uint64_t h, double value)
+{
+    uint64_t bits;
+    value = value == 0 ? 0 : value; /* -0 too */
+    memcpy(&bits, &value, sizeof bits);
+    h = (h ^ bits) * 0x9E3779B97F4A7C15;
+    return h ^ h >> 32;
+}
+
+/* Equal for equal coordinates, 0 and -0 among them. Nobody who does not know the seed can choose
+ * points of one hash. */
+static inline uint32_t he_point_hash(uint64_t seed, he_vec3 p)
+{
+    uint64_t h = he_point_hash_add(he_point_hash_add(he_point_hash_add(seed, p.x), p.y), p.z);
+    return (uint32_t)(h * 0xBF58476D1CE4E5B9 >> 32);
+}
+
+#endif

@@ -1,0 +1,61 @@
+/* scale.h - keeping products of coordinates within what a double holds. Powers of two make scaling
+ * exact. */
+#ifndef HE_GEOMETRY_SCALE_H
+#define HE_GEOMETRY_SCALE_H
+
+#include "geometry/vec3.h"
+
+#include <float.h>
+
+#define HE_PI 3.14159265358979323846
+
+/* Between these, products of four lengths neither overflow nor lose their digits. */
+#define HE_LEAST_PRODUCT 1e-250
+#define HE_MOST_PRODUCT  1e250
+
+/* The exponent by which to divide so that `extent` falls into [1/2, 1). The floor keeps the factor
+ * itself finite. */
+static inline int he_exponent_of(double extent)
+{
+    int exponent = 0;
+    if (extent > 0) {
+        frexp(extent, &exponent);
+    }
+    return exponent < -1000 ? -1000 : exponent;
+}
+
+static inline double he_saturated(double x)
+{
+    return fmin(x, DBL_MAX);
+}
+
+static inline double he_clamped(double x)
+{
+    return fmax(fmin(x, DBL_MAX), -DBL_MAX);
+}
+
+/* A unit vector, whatever the size of `a`; zero and false when it is zero. */
+static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
+{
+    double square = he_vec3_dot(a, a);
+    if (!(square > HE_LEAST_PRODUCT && square < HE_MOST_PRODUCT)) {
+        double extent = he_vec3_extent(a);
+        if (!(extent > 0)) {
+            *out = (he_vec3){0, 0, 0};
+            return false;
+        }
+        a = he_vec3_scale(a, ldexp(1, -he_exponent_of(extent)));
+        square = he_vec3_dot(a, a);
+    }
+    double length = sqrt(square);
+    *out = (he_vec3){a.x / length, a.y / length, a.z / length}; /* along an axis exactly 1 */
+    return true;
+}
+
+/* The angle between two vectors; exact to rounding at 0 and pi, where acos is not. */
+static inline double he_vec3_angle(he_vec3 a, he_vec3 b)
+{
+    return atan2(he_vec3_length(he_vec3_cross(a, b)), he_vec3_dot(a, b));
+}
+
+#endif

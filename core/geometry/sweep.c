@@ -1,0 +1,420 @@
+#include "geometry/sweep.h"
+
+#include "geometry/orient.h"
+
+#include <string.h>
+
+/* A corner in the chain of an interval. One corner may be in two chains. */
+typedef struct link {
+    uint32_t corner, up, down; /* HE_NONE at the ends */
+} link;
+
+typedef struct interval {
+    uint32_t lower, upper;      /* sides, by the corner where they begin in the loop */
+    uint32_t bottom, top, last; /* links: the ends of the chain, the corner that was met last */
+    uint32_t parent, child[2];  /* in the tree: intervals below, above */
+} interval;
+
+typedef struct sweep {
+    const he_flat *f;
+    uint32_t *rank;   /* of each corner in the order in which they are met */
+    uint32_t *within; /* of each side the interval it bounds, HE_NONE when the line is not on it */
+    interval *intervals;
+    link *links;
+    uint32_t interval_count, link_count, root;
+    uint32_t *corners, made; /* triangles */
+    uint64_t *steps;
+} sweep;
+
+static uint32_t before(const sweep *s, uint32_t i)
+{
+    return i == 0 ? s->f->n - 1 : i - 1;
+}
+
+static uint32_t after(const sweep *s, uint32_t i)
+{
+    return i + 1 == s->f->n ? 0 : i + 1;
+}
+
+static int orientation(const sweep *s, uint32_t a, uint32_t b, uint32_t c)
+{
+    const double *x = s->f->x, *y = s->f->y;
+    return he_orient2((he_vec2){x[a], y[a]}, (he_vec2){x[b], y[b]}, (he_vec2){x[c], y[c]});
+}
+
+/* --- the order of corners --- */
+
+static bool is_earlier(const he_flat *f, uint32_t a, uint32_t b)
+{
+    return f->x[a] != f->x[b] ? f->x[a] < f->x[b] : f->y[a] != f->y[b] ? f->y[a] < f->y[b] : a < b;
+}
+
+/* Merges runs of 1, 2, 4... Returns the one of the two arrays that holds the result. */
+static uint32_t *sort(const he_flat *f, uint32_t *from, uint32_t *to)
+{
+    for (size_t run = 1; run < f->n; run *= 2) {
+        for (size_t at = 0; at < f->n; at += 2 * run) {
+            size_t middle = at + run < f->n ? at + run : f->n;
+            size_t end = middle + run < f->n ? middle + run : f->n;
+            size_t i = at, k = middle;
+            for (size_t out = at; out < end; out++) {
+                bool first = k == end || (i < middle && is_earlier(f, from[i], from[k]));
+                to[out] = first ? from[i++] : from[k++];
+            }
+        }
+        uint32_t *swap = from;
+        from = to;
+        to = swap;
+    }
+    return from;
+}
+
+/* --- the tree of intervals --- */
+
+static void hang(sweep *s, uint32_t parent, int side, uint32_t child)
+{
+    if (parent == HE_NONE) {
+        s->root = child;
+    } else {
+        s->intervals[parent].child[side] = child;
+    }
+    if (child != HE_NONE) {
+        s->intervals[child].parent = parent;
+    }
+}
+
+static int side_of(const sweep *s, uint32_t child)
+{
+    return s->intervals[s->intervals[child].parent].child[1] == child;
+}
+
+/* Above its parent, which goes below it on the other side. */
+static void rotate(sweep *s, uint32_t i)
+{
+    interval *of = s->intervals;
+    uint32_t parent = of[i].parent, grand = of[parent].parent;
+    int side = side_of(s, i), outer = grand == HE_NONE ? 0 : side_of(s, parent);
+    hang(s, parent, side, of[i].child[!side]);
+    hang(s, i, !side, parent);
+    hang(s, grand, outer, i);
+    *s->steps += 1;
+}
+
+static void splay(sweep *s, uint32_t i)
+{
+    const interval *of = s->intervals;
+    while (of[i].parent != HE_NONE) {
+        uint32_t parent = of[i].parent;
+        if (of[parent].parent != HE_NONE) {
+            rotate(s, side_of(s, i) == side_of(s, parent) ? parent : i);
+        }
+        rotate(s, i);
+    }
+}
+
+/* The interval with the highest lower side below a corner, or HE_NONE. */
+static uint32_t find_below(sweep *s, uint32_t corner)
+{
+    uint32_t found = HE_NONE, deepest = HE_NONE;
+    for (uint32_t i = s->root; i != HE_NONE;) {
+        uint32_t lower = s->intervals[i].lower;
+        bool above = orientation(s, lower, after(s, lower), corner) > 0;
+        found = above ? i : found;
+        deepest = i;
+        i = s->intervals[i].child[above];
+    }
+    /* The way down is paid for by bringing its end up. */
+    if (deepest != HE_NONE) {
+        splay(s, deepest);
+    }
+    return found;
+}
+
+/* Just above `below`, HE_NONE: below all. */
+static uint32_t add_interval(sweep *s, uint32_t below)
+{
+    interval *of = s->intervals;
+    uint32_t made = s->interval_count++;
+    of[made] = (interval){.parent = HE_NONE, .child = {HE_NONE, HE_NONE}};
+    if (below == HE_NONE) {
+        hang(s, made, 1, s->root);
+    } else {
+        splay(s, below);
+        hang(s, made, 1, of[below].child[1]);
+        of[below].child[1] = HE_NONE;
+        hang(s, made, 0, below);
+    }
+    hang(s, HE_NONE, 0, made);
+    return made;
+}
+
+static void remove_interval(sweep *s, uint32_t gone)
+{
+    const interval *of = s->intervals;
+    splay(s, gone);
+    uint32_t below = of[gone].child[0], above = of[gone].child[1];
+    hang(s, HE_NONE, 0, below);
+    if (below == HE_NONE) {
+        hang(s, HE_NONE, 0, above);
+        return;
+    }
+    while (of[below].child[1] != HE_NONE) {
+        below = of[below].child[1];
+    }
+    splay(s, below);
+    hang(s, below, 1, above);
+}
+
+/* --- chains --- */
+
+static uint32_t new_link(sweep *s, uint32_t corner)
+{
+    s->links[s->link_count] = (link){corner, HE_NONE, HE_NONE};
+    return s->link_count++;
+}
+
+static void join_links(sweep *s, uint32_t lower, uint32_t upper)
+{
+    s->links[lower].up = upper;
+    s->links[upper].down = lower;
+}
+
+/* The triangle of a corner that is met and of two links, the upper one first. */
+static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
+{
+    uint32_t a = s->links[upper].corner, b = s->links[lower].corner;
+    *s->steps += 1;
+    if (s->made == s->f->n - 2 || orientation(s, corner, a, b) <= 0) {
+        return false;
+    }
+    uint32_t *triangle = s->corners + 3 * (size_t)s->made++;
+    triangle[0] = corner;
+    triangle[1] = a;
+    triangle[2] = b;
+    return true;
+}
+
+/* A corner on, or at the upper end of, the upper side: the new top of the chain. */
+static void add_top(sweep *s, interval *of, uint32_t corner)
+{
+    uint32_t top = of->top;
+    while (s->links[top].down != HE_NONE && cut(s, corner, top, s->links[top].down)) {
+        top = s->links[top].down;
+    }
+    of->top = of->last = new_link(s, corner);
+    join_links(s, top, of->top);
+}
+
+static void add_bottom(sweep *s, interval *of, uint32_t corner)
+{
+    uint32_t bottom = of->bottom;
+    while (s->links[bottom].up != HE_NONE && cut(s, corner, s->links[bottom].up, bottom)) {
+        bottom = s->links[bottom].up;
+    }
+    of->bottom = of->last = new_link(s, corner);
+    join_links(s, of->bottom, bottom);
+}
+
+/* --- events; false where they cannot be those of a simple polygon --- */
+
+static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
+{
+    s->intervals[which].lower = lower;
+    s->intervals[which].upper = upper;
+    s->within[lower] = s->within[upper] = which;
+}
+
+/* Both sides go on from the corner, with the inside between them. */
+static bool start(sweep *s, uint32_t corner)
+{
+    uint32_t made = add_interval(s, find_below(s, corner));
+    interval *of = &s->intervals[made];
+    bound(s, made, corner, before(s, corner));
+    of->bottom = of->top = of->last = new_link(s, corner);
+    return true;
+}
+
+/* Both sides go on from the corner, with the outside between them. */
+static bool split(sweep *s, uint32_t corner)
+{
+    uint32_t below = find_below(s, corner);
+    if (below == HE_NONE) {
+        return false;
+    }
+    uint32_t above = add_interval(s, below);
+    interval *low = &s->intervals[below], *high = &s->intervals[above];
+    link *last = &s->links[low->last];
+    bound(s, above, corner, low->upper);
+    bound(s, below, low->lower, before(s, corner));
+    /* Its last corner is in both chains. */
+    high->bottom = new_link(s, last->corner);
+    high->top = high->bottom;
+    if (last->up != HE_NONE) {
+        high->top = low->top;
+        join_links(s, high->bottom, last->up);
+        last->up = HE_NONE;
+    }
+    low->top = low->last;
+    add_top(s, low, corner);
+    add_bottom(s, high, corner);
+    return true;
+}
+
+/* Both sides end at the corner, with the outside between them. */
+static bool merge(sweep *s, uint32_t corner)
+{
+    uint32_t below = s->within[corner], above = s->within[before(s, corner)];
+    if (below == above) {
+        return false;
+    }
+    interval *low = &s->intervals[below], *high = &s->intervals[above];
+    add_top(s, low, corner);
+    add_bottom(s, high, corner);
+    /* The corner is the end of both chains: one of its links goes. */
+    join_links(s, low->top, s->links[high->bottom].up);
+    low->last = low->top;
+    low->top = high->top;
+    bound(s, below, low->lower, high->upper);
+    remove_interval(s, above);
+    return true;
+}
+
+/* Both sides end at the corner, with the inside between them. */
+static bool end(sweep *s, uint32_t corner)
+{
+    uint32_t which = s->within[corner];
+    if (which != s->within[before(s, corner)]) {
+        return false;
+    }
+    interval *of = &s->intervals[which];
+    add_top(s, of, corner);
+    remove_interval(s, which);
+    return s->links[of->top].down == of->bottom;
+}
+
+static bool meet(sweep *s, uint32_t corner)
+{
+    uint32_t b = before(s, corner), a = after(s, corner);
+    bool onward = s->rank[a] > s->rank[corner], back = s->rank[b] > s->rank[corner];
+    /* Sides that end here must have begun, and be what their intervals are bounded by. */
+    if ((!onward && s->within[corner] == HE_NONE) || (!back && s->within[b] == HE_NONE)) {
+        return false;
+    }
+    if (onward != back) {
+        interval *of = &s->intervals[s->within[onward ? b : corner]];
+        s->within[onward ? corner : b] = s->within[onward ? b : corner];
+        if (onward) {
+            of->lower = corner;
+            add_bottom(s, of, corner);
+        } else {
+            of->upper = b;
+            add_top(s, of, corner);
+        }
+        return true;
+    }
+    int turn = orientation(s, b, corner, a);
+    if (turn == 0) {
+        return false;
+    }
+    return turn > 0 ? (onward ? start(s, corner) : end(s, corner))
+                    : (onward ? split(s, corner) : merge(s, corner));
+}
+
+/* --- the triangles in an order in which each cuts a corner off --- */
+
+/* The corner of the three that is neither the least nor the greatest. */
+static uint32_t middle_of(const uint32_t t[3])
+{
+    uint32_t low = t[0] < t[1] ? t[0] : t[1], high = t[0] < t[1] ? t[1] : t[0];
+    return t[2] < low ? low : t[2] > high ? high : t[2];
+}
+
+static uint32_t span_of(const uint32_t t[3])
+{
+    uint32_t low = t[0], high = t[0];
+    for (int i = 1; i < 3; i++) {
+        low = t[i] < low ? t[i] : low;
+        high = t[i] > high ? t[i] : high;
+    }
+    return high - low;
+}
+
+/* Inside the span of corners of a triangle lie the triangles that cut off what is between them, so
+ * those of small spans come first. False where they are no triangulation. `room` has n + 2. */
+static bool put_in_order(const he_flat *f, const uint32_t *from, uint32_t *to, uint32_t *room)
+{
+    uint32_t n = f->n, *next = room;
+    memset(room, 0, ((size_t)n + 2) * sizeof *room);
+    for (uint32_t k = 0; k + 2 < n; k++) {
+        room[span_of(from + 3 * (size_t)k) + 1]++;
+    }
+    for (uint32_t i = 1; i < n; i++) {
+        room[i] += room[i - 1];
+    }
+    for (uint32_t k = 0; k + 2 < n; k++) {
+        const uint32_t *t = from + 3 * (size_t)k;
+        uint32_t middle = middle_of(t), first = t[0] == middle ? 2 : t[1] == middle ? 0 : 1;
+        uint32_t *out = to + 3 * (size_t)room[span_of(t)]++;
+        for (uint32_t i = 0; i < 3; i++) {
+            out[i] = t[(first + i) % 3];
+        }
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        next[i] = i + 1;
+    }
+    for (uint32_t k = 0; k + 2 < n; k++) {
+        const uint32_t *t = to + 3 * (size_t)k;
+        if (t[0] >= t[1] || next[t[0]] != t[1] || next[t[1]] != t[2]) {
+            return false;
+        }
+        next[t[0]] = t[2];
+    }
+    return true;
+}
+
+/* --- both --- */
+
+static bool sweep_over(sweep *s, const uint32_t *order)
+{
+    for (uint32_t i = 0; i < s->f->n; i++) {
+        s->rank[order[i]] = i;
+        s->within[i] = HE_NONE;
+    }
+    for (uint32_t i = 0; i < s->f->n; i++) {
+        if (!meet(s, order[i])) {
+            return false;
+        }
+    }
+    return s->made == s->f->n - 2;
+}
+
+he_status he_sweep_cut(const he_flat *f, uint32_t *corners, bool *done, uint64_t *steps,
+                       he_error *err)
+{
+    size_t n = f->n;
+    he_status status = HE_NO_MEMORY;
+    sweep s = {.f = f, .root = HE_NONE, .steps = steps};
+    uint32_t *words = he_mem_array(NULL, n + 1, 7 * sizeof *words);
+    /* Each corner begins one interval at most, and has three links at most. */
+    s.intervals = he_mem_array(NULL, n, sizeof *s.intervals);
+    s.links = he_mem_array(NULL, n, 3 * sizeof *s.links);
+    if (words == NULL || s.intervals == NULL || s.links == NULL) {
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop of %zu corners", n);
+        goto out;
+    }
+    s.rank = words + 2 * n;
+    s.within = words + 3 * n;
+    s.corners = words + 4 * n;
+    for (uint32_t i = 0; i < n; i++) {
+        words[i] = i;
+    }
+    *done = sweep_over(&s, sort(f, words, words + n)) && put_in_order(f, s.corners, corners, words);
+    *steps += n;
+    status = HE_OK;
+out:
+    he_mem_free(words);
+    he_mem_free(s.intervals);
+    he_mem_free(s.links);
+    return status;
+}

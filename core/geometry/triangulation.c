@@ -1,0 +1,324 @@
+#include "geometry/triangulation.h"
+
+#include "geometry/ears.h"
+#include "geometry/sweep.h"
+#include "mesh/long_faces.h"
+
+#include <float.h>
+#include <string.h>
+
+/* --- what loops share --- */
+
+/* Steps between two looks at the watch: below a millisecond. */
+enum { STEPS_UNTOLD = 1 << 15 };
+
+/* Edges are looked for around their ends until that has cost about as much as sorting them. */
+enum { SEARCHED_AT_LEAST = 4096 };
+
+bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
+                        he_triangulation_work *work)
+{
+    he_vertex a = he_origin(m, (he_halfedge){flat->halfedge[i]});
+    he_vertex b = he_origin(m, (he_halfedge){flat->halfedge[k]});
+    uint64_t steps = 0;
+    bool exists = he_joined(m, work->joins, a, b, &steps);
+    work->steps += steps;
+    work->searched += steps;
+    return exists;
+}
+
+he_status he_triangulation_step(const he_mesh *m, he_triangulation_work *work, he_error *err)
+{
+    if ((work->joins == NULL || work->joins == &work->own) &&
+        work->searched - work->sorted > SEARCHED_AT_LEAST + 2 * (uint64_t)m->c.edges.issued) {
+        he_joins_clear(&work->own);
+        work->joins = NULL;
+        he_status status = he_joins_make(m, &work->own, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        work->joins = &work->own;
+        work->sorted = work->searched;
+    }
+    if (work->watch != NULL && work->steps - work->told > STEPS_UNTOLD) {
+        work->told = work->steps;
+        return he_watch_step(work->watch, work->done, work->of, err);
+    }
+    return HE_OK;
+}
+
+void he_triangulation_work_clear(he_triangulation_work *work)
+{
+    he_joins_clear(&work->own);
+    *work = (he_triangulation_work){0};
+}
+
+he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *err)
+{
+    uint32_t v = m->c.origin[flat->halfedge[0]];
+    return he_fail(err, HE_DOUBLED_EDGE, HE_VERTEX, v,
+                   "diagonals of the loop at vertex %u would double edges that are there", v);
+}
+
+/* --- exact: all sub-loops i..k of corners, smallest first --- */
+
+/* A triangle that does not turn left outweighs all diagonals of a loop, each of which costs at most
+ * one: its squared length over the largest there can be in the frame of flat.h. */
+static const double BAD = 4096;
+
+typedef struct table {
+    double *cost;    /* of the best triangulation of sub-loop i..k, under i, k and under k, i;
+                        DBL_MAX when there is none */
+    uint8_t *middle; /* its triangle on the side i, k */
+    he_triangulation_work *work;
+} table;
+
+static double diagonal_cost(const he_flat *f, uint32_t i, uint32_t k)
+{
+    double x = f->x[i] - f->x[k], y = f->y[i] - f->y[k];
+    return (x * x + y * y) / 12;
+}
+
+/* What the sub-loop i..k costs, `side` with it. */
+static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, table *t)
+{
+    uint32_t n = f->n;
+    const double *from_i = t->cost + (size_t)i * n, *to_k = t->cost + (size_t)k * n;
+    double best = DBL_MAX;
+    for (uint32_t j = i + 1; j < k; j++) {
+        double cost = side + from_i[j] + to_k[j];
+        /* Most are no better even if they turn left: do not look. */
+        if (cost < best) {
+            cost += he_flat_turns_left(f, i, j, k) ? 0 : BAD;
+            if (cost < best) {
+                best = cost;
+                t->middle[(size_t)i * n + k] = (uint8_t)j;
+            }
+        }
+    }
+    return best;
+}
+
+static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, table *t, he_error *err)
+{
+    uint32_t n = f->n;
+    for (uint32_t i = 0; i + 1 < n; i++) {
+        t->cost[i * n + i + 1] = t->cost[(i + 1) * n + i] = 0;
+    }
+    for (uint32_t span = 2; span < n; span++) {
+        he_status status = he_triangulation_step(m, t->work, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        for (uint32_t i = 0; i + span < n; i++) {
+            uint32_t k = i + span;
+            bool free = span == n - 1 || !avoid || !he_diagonal_exists(m, f, i, k, t->work);
+            double side = span < n - 1 ? diagonal_cost(f, i, k) : 0;
+            double cost = free ? fill_cell(f, i, k, side, t) : DBL_MAX;
+            t->cost[i * n + k] = t->cost[k * n + i] = cost;
+            t->work->steps += span;
+        }
+    }
+    return HE_OK;
+}
+
+/* Triangles innermost first, so that each has its middle corner to itself when its turn comes.
+ * The stack holds sub-loops; preorder written backwards is children before parents. */
+static void read_table(const he_flat *f, const table *t, uint32_t *corners)
+{
+    uint32_t stack[2 * HE_EXACT_CORNERS], depth = 0, n = f->n, left = n - 2;
+    stack[depth++] = 0 * n + (n - 1);
+    while (depth > 0) {
+        uint32_t at = stack[--depth], i = at / n, k = at % n, j = t->middle[at];
+        left--;
+        corners[3 * left] = i;
+        corners[3 * left + 1] = j;
+        corners[3 * left + 2] = k;
+        if (j - i > 1) {
+            stack[depth++] = i * n + j;
+        }
+        if (k - j > 1) {
+            stack[depth++] = j * n + k;
+        }
+    }
+}
+
+static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation_work *work,
+                            he_triangulation *plan, he_error *err)
+{
+    const he_flat *f = &plan->flat;
+    size_t cells = (size_t)f->n * f->n, whole = f->n - 1;
+    he_status status = HE_OK;
+    table t = {he_mem_array(NULL, cells, sizeof *t.cost), he_mem_zero(cells, sizeof *t.middle),
+               work};
+    if (t.cost == NULL || t.middle == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
+        goto out;
+    }
+    status = fill_table(m, f, avoid, &t, err);
+    double cost = t.cost[whole];
+    if (status == HE_OK && avoid && cost >= BAD) {
+        /* Did avoiding edges make it so? */
+        status = fill_table(m, f, false, &t, err);
+        if (status == HE_OK && cost >= t.cost[whole] + BAD / 2) {
+            status = he_diagonals_refuse(m, f, err);
+        }
+        if (status == HE_OK) {
+            status = fill_table(m, f, true, &t, err);
+        }
+    }
+    if (status != HE_OK) {
+        goto out;
+    }
+    plan->degenerate = cost >= BAD;
+    read_table(f, &t, plan->corners);
+out:
+    he_mem_free(t.cost);
+    he_mem_free(t.middle);
+    return status;
+}
+
+/* --- both --- */
+
+void he_triangulation_clear(he_triangulation *triangulation)
+{
+    he_flat_clear(&triangulation->flat);
+    he_mem_free(triangulation->corners);
+    *triangulation = (he_triangulation){.corners = NULL};
+}
+
+/* Is a side of the triangles that is none of the loop an edge of the mesh? */
+static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
+                         he_triangulation_work *work)
+{
+    /* The third side of a triangle is the diagonal it is cut off by; the last one has none. */
+    for (uint32_t k = 0; k + 3 < plan->flat.n; k++) {
+        const uint32_t *corners = plan->corners + 3 * (size_t)k;
+        if (he_diagonal_exists(m, &plan->flat, corners[0], corners[2], work)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Where the ears of a loop were not enough. */
+static he_status plan_sweep(const he_mesh *m, unsigned flags, he_triangulation_work *work,
+                            he_triangulation *plan, bool *done, he_error *err)
+{
+    const he_flat *f = &plan->flat;
+    he_status status = he_sweep_cut(f, plan->corners, done, &work->steps, err);
+    if (status != HE_OK || !*done) {
+        return status;
+    }
+    if ((flags & HE_AVOID_EDGES) != 0 && doubles_edge(m, plan, work)) {
+        return he_diagonals_refuse(m, f, err);
+    }
+    plan->degenerate = false;
+    for (uint32_t k = 0; k + 2 < f->n && !plan->degenerate; k++) {
+        const uint32_t *corners = plan->corners + 3 * (size_t)k;
+        plan->degenerate = !he_flat_turns_left(f, corners[0], corners[1], corners[2]);
+    }
+    return HE_OK;
+}
+
+static he_status plan_long(const he_mesh *m, unsigned flags, he_triangulation_work *work,
+                           he_triangulation *plan, he_error *err)
+{
+    bool stuck = true;
+    he_status status = HE_OK;
+    if (!plan->flat.degenerate) {
+        status = he_ears_cut(m, flags, work, plan, &stuck, err);
+        if (status == HE_OK && stuck) {
+            bool done = false;
+            status = plan_sweep(m, flags, work, plan, &done, err);
+            stuck = !done;
+        }
+    }
+    if (status == HE_OK && stuck) {
+        status = he_ears_cut(m, flags | HE_ANY_CORNER, work, plan, &stuck, err);
+    }
+    return status;
+}
+
+static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_work *work,
+                           he_triangulation *plan, he_error *err)
+{
+    if (plan->flat.n > HE_EXACT_CORNERS) {
+        return plan_long(m, flags, work, plan, err);
+    }
+    if (flags & HE_ANY_DIAGONALS) {
+        bool stuck = false, flat = plan->flat.degenerate;
+        he_status status =
+            he_ears_cut(m, flat ? flags | HE_ANY_CORNER : flags, work, plan, &stuck, err);
+        bool done = status == HE_OK && !stuck && (!plan->degenerate || flat);
+        if (done || (status != HE_OK && status != HE_DOUBLED_EDGE)) {
+            return status;
+        }
+    }
+    return plan_exact(m, (flags & HE_AVOID_EDGES) != 0, work, plan, err);
+}
+
+/* Where the mesh keeps it. `found` stays false if it does not, or doubles an edge. */
+static he_status take_kept(const he_mesh *m, he_halfedge first, unsigned flags,
+                           he_triangulation_work *work, he_triangulation *plan, bool *found,
+                           he_error *err)
+{
+    const he_long_face *kept = he_long_faces_find(m, first);
+    if (kept == NULL || (flags & HE_ANY_DIAGONALS) == 0) {
+        return HE_OK;
+    }
+    size_t n = kept->n, bytes = 3 * (n - 2) * sizeof *plan->corners;
+    plan->flat.n = kept->n;
+    plan->flat.memory = he_mem_array(NULL, n, sizeof *plan->flat.halfedge);
+    plan->flat.halfedge = plan->flat.memory;
+    plan->corners = he_mem_alloc(bytes);
+    if (plan->flat.halfedge == NULL || plan->corners == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
+    }
+    for (size_t i = 0; i < n; i++, first = he_next(m, first)) {
+        plan->flat.halfedge[i] = first.i;
+    }
+    memcpy(plan->corners, kept->corners, bytes);
+    plan->degenerate = kept->degenerate;
+    work->steps += n;
+    *found = (flags & HE_AVOID_EDGES) == 0 || !doubles_edge(m, plan, work);
+    if (!*found) {
+        he_triangulation_clear(plan);
+    }
+    return he_triangulation_step(m, work, err);
+}
+
+static he_status make(const he_mesh *m, he_halfedge first, unsigned flags,
+                      he_triangulation_work *work, he_triangulation *plan, he_error *err)
+{
+    bool found = false;
+    he_status status = take_kept(m, first, flags, work, plan, &found, err);
+    if (status == HE_OK && !found) {
+        status = he_flat_init(&plan->flat, m, first, err);
+    }
+    if (status != HE_OK || found) {
+        return status;
+    }
+    plan->corners = he_mem_array(NULL, 3 * (size_t)(plan->flat.n - 2), sizeof *plan->corners);
+    if (plan->corners == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
+    }
+    return plan_loop(m, flags, work, plan, err);
+}
+
+he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
+                                he_triangulation_work *work, he_triangulation *out, he_error *err)
+{
+    he_triangulation plan = {.degenerate = false};
+    he_triangulation_work alone = {0}, *shared = work == NULL ? &alone : work;
+    uint64_t before = shared->steps;
+    he_status status = make(m, first, flags, shared, &plan, err);
+    plan.steps = shared->steps - before;
+    he_triangulation_work_clear(&alone);
+    if (status != HE_OK) {
+        he_triangulation_clear(&plan);
+        return status;
+    }
+    *out = plan;
+    return HE_OK;
+}

@@ -1,0 +1,195 @@
+#include "server/http/http.h"
+
+#include "base/mem.h"
+#include "server/http/http_buffer.h"
+#include "server/http/http_handle.h"
+#include "server/http/http_recv.h"
+#include "server/http/http_request.h"
+#include "server/system/limits.h"
+#include "server/system/memory.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+
+enum { BACKLOG = 1024 };
+
+_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES, "a head that passes leaves room");
+
+/* --- what libmicrohttpd calls --- */
+
+static void *request_begin(void *context, const char *uri, struct MHD_Connection *connection)
+{
+    return srv_request_begin(context, uri, connection);
+}
+
+static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *url,
+                              const char *method, const char *version, const char *upload,
+                              size_t *upload_size, void **slot)
+{
+    (void)context;
+    (void)connection;
+    (void)url;
+    srv_request *r = *slot;
+    bool goes_on = r != NULL && srv_request_handle(r, method, version, upload, upload_size);
+    return goes_on ? MHD_YES : MHD_NO;
+}
+
+static void request_completed(void *context, struct MHD_Connection *connection, void **slot,
+                              enum MHD_RequestTerminationCode how)
+{
+    (void)context;
+    (void)connection;
+    (void)how;
+    srv_request *r = *slot;
+    *slot = NULL;
+    if (r != NULL) {
+        srv_request_end(r);
+    }
+}
+
+/* What libmicrohttpd would decode, the router decodes a segment at a time. */
+static size_t keep_escapes(void *context, struct MHD_Connection *connection, char *text)
+{
+    (void)context;
+    (void)connection;
+    return strlen(text);
+}
+
+static void connection_changed(void *context, struct MHD_Connection *connection, void **slot,
+                               enum MHD_ConnectionNotificationCode what)
+{
+    srv_http *http = context;
+    if (what == MHD_CONNECTION_NOTIFY_STARTED) {
+        int fd = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+        const int most = SRV_SEND_BUFFER;
+        setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
+        const struct sockaddr *peer =
+            MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
+        srv_connection *c = srv_deadlines_add(http->deadlines, fd, peer, srv_buffer_taken());
+        *slot = c;
+        if (c == NULL || !srv_recv_watch(fd, &c->syntax)) {
+            /* Nothing unchecked is served: libmicrohttpd reads the end at once. */
+            shutdown(fd, SHUT_RDWR);
+        }
+    } else {
+        srv_connection *c = *slot;
+        if (c != NULL) {
+            srv_recv_forget(c->socket);
+        }
+        srv_deadlines_remove(http->deadlines, c);
+        *slot = NULL;
+    }
+}
+
+/* Nobody beyond even those that are answered 503, nobody for whom there is no memory, and nobody
+ * once the server stops. */
+static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer, socklen_t length)
+{
+    (void)peer;
+    (void)length;
+    const srv_http *http = context;
+    bool room = srv_deadlines_count(http->deadlines) < http->options.max_sockets &&
+                srv_memory_has(SRV_BUFFER_BYTES);
+    return room && !atomic_load(&http->stopping) ? MHD_YES : MHD_NO;
+}
+
+/* --- the daemon --- */
+
+static struct MHD_Daemon *start_daemon(srv_http *http)
+{
+    const srv_http_options *o = &http->options;
+    unsigned flags = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME;
+    if (o->address.socket.any.sa_family == AF_INET6) {
+        flags |= MHD_USE_IPv6;
+    }
+    struct MHD_OptionItem numbers[] = {
+        /* Strict, it would refuse with pages of its own what http_syntax.h has refused already. */
+        {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
+        {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
+        /* Divided among the workers, which connections are not: each may hold them all. */
+        {MHD_OPTION_CONNECTION_LIMIT, (intptr_t)(o->max_sockets * o->workers), NULL},
+        {MHD_OPTION_CONNECTION_TIMEOUT, (intptr_t)o->deadlines.idle + 1, NULL},
+        {MHD_OPTION_LISTEN_BACKLOG_SIZE, BACKLOG, NULL},
+        /* A pool of one is not a pool. */
+        {o->workers > 1 ? MHD_OPTION_THREAD_POOL_SIZE : MHD_OPTION_END, (intptr_t)o->workers, NULL},
+        {MHD_OPTION_END, 0, NULL},
+    };
+    return MHD_start_daemon(flags, 0, accept_policy, http, handle, http, MHD_OPTION_ARRAY, numbers,
+                            MHD_OPTION_SOCK_ADDR, &o->address.socket.any,
+                            MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes, NULL,
+                            MHD_OPTION_URI_LOG_CALLBACK, request_begin, http,
+                            MHD_OPTION_NOTIFY_COMPLETED, request_completed, NULL,
+                            MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http, MHD_OPTION_END);
+}
+
+static void http_free(srv_http *http)
+{
+    srv_live_free(http->live);
+    srv_deadlines_free(http->deadlines);
+    srv_gate_clear(&http->gate);
+    he_mem_free(http);
+}
+
+srv_http *srv_http_start(const srv_http_options *options, char *message, size_t size)
+{
+    srv_http *http = he_mem_zero(1, sizeof *http);
+    if (http == NULL) {
+        snprintf(message, size, "no memory to start");
+        return NULL;
+    }
+    http->options = *options;
+    srv_gate_init(&http->gate);
+    srv_ids_init(&http->ids);
+    http->deadlines = srv_deadlines_new(&options->deadlines);
+    http->live = srv_live_new(options->heartbeat_micros);
+    if (http->deadlines == NULL || http->live == NULL) {
+        snprintf(message, size, "no memory or threads to start");
+        http_free(http);
+        return NULL;
+    }
+    /* Each worker may have taken one for a connection that is not yet, or no longer, counted. */
+    if (!srv_buffers_reserve(options->max_sockets + options->workers)) {
+        snprintf(message, size, "no address space for %zu connections", options->max_sockets);
+        http_free(http);
+        return NULL;
+    }
+    errno = 0;
+    http->daemon = start_daemon(http);
+    if (http->daemon == NULL) {
+        char text[SRV_ADDRESS_TEXT];
+        srv_address_format(&options->address.socket.any, true, text);
+        snprintf(message, size, "cannot listen on %s: %s", text,
+                 errno == 0 ? "the server could not be started" : strerror(errno));
+        http_free(http);
+        return NULL;
+    }
+    http->port = MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+    return http;
+}
+
+unsigned srv_http_port(const srv_http *http)
+{
+    return http->port;
+}
+
+bool srv_http_stop(srv_http *http, unsigned millis)
+{
+    if (http == NULL) {
+        return true;
+    }
+    /* From here on accept_policy lets nobody in. MHD_quiesce_daemon is not called for that: it
+     * takes the listening socket out of the workers' epoll sets while they may do so themselves,
+     * and the library aborts where both try. */
+    atomic_store(&http->stopping, true);
+    srv_held_abandon(srv_store_held(http->options.store));
+    srv_live_stop(http->live);
+    /* At the deadline only those that are suspended still count. */
+    if (!srv_gate_close(&http->gate, millis)) {
+        return false;
+    }
+    MHD_stop_daemon(http->daemon);
+    http_free(http);
+    return true;
+}

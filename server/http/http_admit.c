@@ -1,0 +1,66 @@
+#include "server/http/http_admit.h"
+
+#include "server/system/random.h"
+
+#include <string.h>
+
+void srv_ids_init(srv_ids *ids)
+{
+    srv_random_id(ids->prefix, SRV_ID_PREFIX);
+    atomic_init(&ids->next, 0);
+}
+
+static bool is_id_character(char c)
+{
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '.' ||
+           c == '_' || c == '-';
+}
+
+void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID + 1])
+{
+    const srv_field *given = srv_head_find(head, "X-Request-Id");
+    bool fits = given != NULL && given->value_length > 0 && given->value_length <= SRV_REQUEST_ID;
+    for (size_t i = 0; fits && i < given->value_length; i++) {
+        fits = is_id_character(given->value[i]);
+    }
+    if (fits) {
+        memcpy(out, given->value, given->value_length);
+        out[given->value_length] = '\0';
+        return;
+    }
+    /* The prefix and the counter in hexadecimal, without the cost of printf. */
+    uint64_t number = atomic_fetch_add_explicit(&ids->next, 1, memory_order_relaxed);
+    char *at = out + SRV_ID_PREFIX;
+    memcpy(out, ids->prefix, SRV_ID_PREFIX);
+    *at++ = '-';
+    int shift = 60;
+    while (shift > 0 && number >> shift == 0) {
+        shift -= 4;
+    }
+    for (; shift >= 0; shift -= 4) {
+        *at++ = "0123456789abcdef"[number >> shift & 15];
+    }
+    *at = '\0';
+}
+
+static const char *field_value(const srv_head *head, const char *name)
+{
+    const srv_field *field = srv_head_find(head, name);
+    return field == NULL ? NULL : field->value;
+}
+
+bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
+               const char **cors, api_problem *problem)
+{
+    const char *host = framing->host;
+    size_t length = host == NULL ? 0 : strlen(host);
+    if (framing->authority != NULL &&
+        !srv_policy_host(policy, framing->authority, framing->authority_length, problem)) {
+        return false;
+    }
+    const char *origin = field_value(head, "Origin");
+    *cors = srv_policy_cors(policy, origin);
+    return srv_policy_host(policy, host, length, problem) &&
+           srv_policy_origin(policy, head->method, host, origin,
+                             field_value(head, "Sec-Fetch-Site"), problem);
+}

@@ -1,0 +1,33 @@
+/* http_admit.h - a request whose headers have arrived: what it is called, and whether it may run.
+ */
+#ifndef HE_SERVER_HTTP_HTTP_ADMIT_H
+#define HE_SERVER_HTTP_HTTP_ADMIT_H
+
+#include "server/http/http_framing.h"
+#include "server/http/http_policy.h"
+#include "server/net/access_log.h"
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { SRV_ID_PREFIX = 8 };
+
+/* Names for requests that bring none: a prefix of this server and a counter. */
+typedef struct srv_ids {
+    char prefix[SRV_ID_PREFIX + 1];
+    _Atomic uint64_t next;
+} srv_ids;
+
+void srv_ids_init(srv_ids *ids);
+
+/* The client's X-Request-Id where it is 1 to SRV_REQUEST_ID letters, digits and . _ -, or a new
+ * one. */
+void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID + 1]);
+
+/* P1 to P4 of http_policy.h for a request whose framing is good. False with the problem filled.
+ * `cors` is the origin to be named in the answer, NULL: none. */
+bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
+               const char **cors, api_problem *problem);
+
+#endif

@@ -1,0 +1,51 @@
+#include "server/http/http_ahead.h"
+
+#include "base/mem.h"
+
+#include <string.h>
+
+/* Some milliseconds of coding, and more than a socket takes at once. */
+enum { PIECE = 128 * 1024 };
+
+void srv_ahead_clear(srv_ahead *ahead)
+{
+    he_mem_free(ahead->piece);
+    ahead->piece = NULL;
+}
+
+int64_t srv_ahead_take(srv_ahead *ahead, char *buffer, size_t size)
+{
+    size_t left = ahead->to - ahead->from;
+    size_t take = left < size ? left : size;
+    if (take > 0) {
+        memcpy(buffer, ahead->piece + ahead->from, take);
+        ahead->from += take;
+        return (int64_t)take;
+    }
+    if (ahead->begun && ahead->piece == NULL) {
+        return ahead->read(ahead->context, buffer, size);
+    }
+    return ahead->begun && ahead->last <= 0 ? ahead->last : SRV_AHEAD_WAIT;
+}
+
+static void make(void *context)
+{
+    srv_ahead *ahead = context;
+    if (ahead->piece == NULL) {
+        ahead->piece = he_mem_alloc(PIECE);
+    }
+    ahead->begun = true;
+    if (ahead->piece != NULL) {
+        ahead->last = ahead->read(ahead->context, ahead->piece, PIECE);
+        ahead->from = 0;
+        ahead->to = ahead->last > 0 ? (size_t)ahead->last : 0;
+    }
+    ahead->resume(ahead);
+}
+
+void srv_ahead_make(srv_ahead *ahead, srv_pool *threads)
+{
+    if (!srv_pool_submit(threads, &(srv_task){.work = make, .context = ahead})) {
+        make(ahead);
+    }
+}

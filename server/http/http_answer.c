@@ -1,0 +1,219 @@
+#include "server/http/http_answer.h"
+
+#include "server/http/http_buffer.h"
+#include "server/http/http_request.h"
+#include "server/http/http_wire.h"
+#include "server/system/clock.h"
+#include "server/system/memory.h"
+
+#include <string.h>
+
+enum {
+    ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once, into memory of libmicrohttpd */
+    LIVE_BLOCK = 1024         /* where thousands wait; used by HTTP/1.0 only */
+};
+
+/* --- what is sent piece by piece --- */
+
+/* What a reader of libmicrohttpd returns for bytes, for the end (0) and for a failure. An end
+ * before the length that was announced is one. */
+static ssize_t pulled(srv_request *r, int64_t got)
+{
+    int64_t length = api_answer_of(r->exchange)->length;
+    if (got == 0 && length >= 0 && r->bytes_out != (uint64_t)length) {
+        return MHD_CONTENT_READER_END_WITH_ERROR;
+    }
+    if (got > 0) {
+        r->bytes_out += (uint64_t)got;
+        return (ssize_t)got;
+    }
+    return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
+static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
+{
+    (void)position;
+    srv_request *r = context;
+    const api_answer *answer = api_answer_of(r->exchange);
+    return pulled(r, answer->read(answer->context, buffer, size));
+}
+
+static void resume_ahead(srv_ahead *ahead)
+{
+    srv_request *r = (srv_request *)((char *)ahead - offsetof(srv_request, ahead));
+    MHD_resume_connection(r->connection);
+}
+
+/* Takes what another thread makes. */
+static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
+{
+    (void)position;
+    srv_request *r = context;
+    const api_answer *answer = api_answer_of(r->exchange);
+    srv_request_resumed(r);
+    r->ahead.read = answer->read;
+    r->ahead.context = answer->context;
+    r->ahead.resume = resume_ahead;
+    int64_t got = srv_ahead_take(&r->ahead, buffer, size);
+    if (got == SRV_AHEAD_WAIT && srv_request_suspend(r)) {
+        srv_ahead_make(&r->ahead, r->http->options.makers);
+        return 0;
+    }
+    return pulled(r, got);
+}
+
+static void resume_stream(srv_stream *stream)
+{
+    srv_request *r = (srv_request *)((char *)stream - offsetof(srv_request, stream));
+    MHD_resume_connection(r->connection);
+}
+
+/* The same for an answer that goes on. Once the stream is aside the request is another's. */
+static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t size)
+{
+    (void)position;
+    srv_request *r = context;
+    const api_answer *answer = api_answer_of(r->exchange);
+    srv_request_resumed(r);
+    if (r->stream.live == NULL) {
+        int socket =
+            MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+        srv_live_begin(r->http->live, &r->stream, answer->live, answer->idle, socket,
+                       resume_stream);
+    }
+    int64_t got = srv_live_read(&r->stream, buffer, size);
+    if (got == API_READ_WAIT && srv_request_suspend(r)) {
+        /* Of the buffer only the request's headers are needed. */
+        srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, srv_clock_micros());
+        srv_live_aside(&r->stream);
+        return 0;
+    }
+    return pulled(r, got);
+}
+
+/* --- the answer --- */
+
+void srv_answer_refuse(srv_request *r, int code, const char *text)
+{
+    api_free(r->exchange);
+    r->exchange = NULL;
+    r->refusal = (api_problem){0};
+    api_problem_set(&r->refusal, code, "%s", text);
+    r->step = API_READY;
+}
+
+/* The answer as it is to be sent: the exchange's, or what was refused without one. Valid until the
+ * request ends. */
+static void describe(srv_request *r, srv_wire *wire)
+{
+    *wire = (srv_wire){.close = r->close};
+    if (r->exchange != NULL) {
+        const api_answer *answer = api_answer_of(r->exchange);
+        srv_wire_answer(wire, answer);
+        /* With all of the body read there is nothing left to be mistaken for a request. */
+        wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
+    } else {
+        srv_wire_refusal(wire, r->preflight ? NULL : &r->refusal, r->request_id, &r->text);
+    }
+    if (r->cors != NULL) {
+        srv_wire_cors(wire, r->cors, r->preflight);
+    }
+    wire->close = wire->close || atomic_load(&r->http->stopping);
+}
+
+static bool is_live(const srv_request *r)
+{
+    return r->exchange != NULL && api_answer_of(r->exchange)->live != NULL;
+}
+
+static bool is_streamed(const srv_request *r)
+{
+    return is_live(r) || (r->exchange != NULL && api_answer_of(r->exchange)->read != NULL);
+}
+
+/* Making a piece takes up to a millisecond. A worker that serves a few downloads makes them itself,
+ * which saves a way through the pool; a thousand would keep it from all else for a second. */
+static bool is_made_ahead(srv_request *r)
+{
+    size_t others = atomic_fetch_add(&r->http->downloads, 1);
+    r->block = ANSWER_BLOCK;
+    srv_memory_count(ANSWER_BLOCK);
+    return api_answer_of(r->exchange)->slow || others >= r->http->options.workers;
+}
+
+static struct MHD_Response *response_of(srv_request *r, const srv_wire *wire)
+{
+    struct MHD_Response *response;
+    if (is_streamed(r)) {
+        response = MHD_create_response_from_callback(wire->length < 0 ? MHD_SIZE_UNKNOWN
+                                                                      : (uint64_t)wire->length,
+                                                     is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK,
+                                                     is_live(r)         ? pull_live
+                                                     : is_made_ahead(r) ? pull_ahead
+                                                                        : pull,
+                                                     r, NULL);
+    } else {
+        /* The bytes are the exchange's and live until the request has completed. */
+        response = MHD_create_response_from_buffer((size_t)wire->length, (void *)wire->bytes,
+                                                   MHD_RESPMEM_PERSISTENT);
+    }
+    if (response == NULL) {
+        return NULL;
+    }
+    bool ok = true;
+    for (size_t i = 0; i < wire->header_count && ok; i++) {
+        ok = MHD_add_response_header(response, wire->headers[i].name, wire->headers[i].value) ==
+             MHD_YES;
+    }
+    if (ok && wire->close) {
+        ok = MHD_add_response_header(response, "Connection", "close") == MHD_YES;
+    }
+    if (!ok) {
+        MHD_destroy_response(response);
+        return NULL;
+    }
+    return response;
+}
+
+bool srv_answer_send(srv_request *r)
+{
+    srv_wire wire;
+    describe(r, &wire);
+    struct MHD_Response *response = response_of(r, &wire);
+    if (response == NULL) {
+        return false;
+    }
+    r->state = SRV_DONE;
+    r->status = wire.status;
+    srv_connection_enter(r->socket, is_live(r) ? SRV_STAGE_LIVE : SRV_STAGE_ANSWER,
+                         srv_clock_micros());
+    if (is_live(r)) {
+        /* Its silence is no fault; the connection is closed after it. */
+        MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
+    }
+    if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
+        r->bytes_out = (uint64_t)wire.length;
+    }
+    enum MHD_Result queued = MHD_queue_response(r->connection, (unsigned)wire.status, response);
+    MHD_destroy_response(response);
+    return queued == MHD_YES;
+}
+
+/* libmicrohttpd takes no response while a body is arriving. So that a client who sends without end
+ * learns why it is cut off, the answer is written to the socket as it is; closing it then drains
+ * the rest of the body. */
+void srv_answer_cut_off(srv_request *r)
+{
+    srv_wire wire;
+    r->close = true;
+    describe(r, &wire);
+    if (r->socket != NULL && !is_streamed(r)) {
+        r->socket->drain = true;
+        if (srv_wire_send(&wire, MHD_get_reason_phrase_for((unsigned)wire.status),
+                          r->socket->socket)) {
+            r->status = wire.status;
+            r->bytes_out = (uint64_t)wire.length;
+        }
+    }
+    r->state = SRV_CUT;
+}

@@ -1,0 +1,345 @@
+#define _GNU_SOURCE /* RTLD_NEXT */
+
+#include "server/http/http_buffer.h"
+
+#include "base/mem.h"
+#include "server/system/clock.h"
+#include "server/system/memory.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+enum {
+    REST_MICROS = 1000 * 1000,
+    LOOK_MILLIS = 500, /* a worker with idle buffers looks this often */
+    AT_ONCE = 32,      /* buffers given back before others are served again */
+    KEPT = 64,         /* free ones that keep their pages for long, for the next connections */
+    LANES = 64         /* as many workers as --workers allows */
+};
+
+/* A buffer is FREE, or belongs to a connection: USED, or in its worker's line of idle ones, or not
+ * in it because its pages were given back. */
+typedef enum state { FREE, USED, IDLE, GIVEN } state;
+
+struct lane;
+
+typedef struct buffer {
+    state state;
+    uint32_t next, previous; /* in the list of free ones, or in the worker's line */
+    struct lane *lane;       /* of the worker that took it */
+    uint64_t since;          /* when it became idle */
+    size_t held;             /* bytes, as they are counted */
+} buffer;
+
+/* A worker's idle buffers, in the order in which they became idle. Its own, without a lock; what
+ * connections are left when it has ended are closed by the thread that stops the server. */
+typedef struct lane {
+    uint32_t first, last;
+} lane;
+
+static struct {
+    char *memory; /* NULL: nothing is reserved */
+    size_t bytes; /* of one */
+    size_t page;
+    uint32_t most;
+    buffer *buffers;
+    lane lanes[LANES];
+    pthread_mutex_t lock; /* of what follows */
+    size_t lanes_used;
+    uint32_t warm, cold, fresh; /* lists of free ones with and without pages; how many ever were */
+    uint64_t put;               /* when one became warm last */
+    _Atomic size_t warm_count;
+} all = {.lock = PTHREAD_MUTEX_INITIALIZER, .warm = SRV_NO_BUFFER, .cold = SRV_NO_BUFFER};
+
+static _Thread_local lane *own;
+static _Thread_local uint32_t taken = SRV_NO_BUFFER;
+
+bool srv_buffers_reserve(size_t most)
+{
+    long page = sysconf(_SC_PAGESIZE);
+    if (all.memory != NULL) {
+        return true;
+    }
+    if (page <= 0 || most >= SRV_NO_BUFFER) {
+        return false;
+    }
+    all.page = (size_t)page;
+    all.bytes = (SRV_BUFFER_BYTES + all.page - 1) / all.page * all.page;
+    all.most = (uint32_t)most;
+    all.buffers = he_mem_zero(most, sizeof *all.buffers);
+    void *memory = all.buffers == NULL ? MAP_FAILED
+                                       : mmap(NULL, most * all.bytes, PROT_READ | PROT_WRITE,
+                                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) {
+        he_mem_free(all.buffers);
+        return false;
+    }
+    /* A huge page would bring back the pages beside the one that is written. */
+    madvise(memory, most * all.bytes, MADV_NOHUGEPAGE);
+    all.memory = memory;
+    return true;
+}
+
+static void count(buffer *b, size_t held)
+{
+    srv_memory_count((int64_t)held - (int64_t)b->held);
+    b->held = held;
+}
+
+/* --- the line of idle ones, by the worker that has it --- */
+
+static void leave_line(uint32_t i)
+{
+    buffer *b = &all.buffers[i];
+    uint32_t *before =
+        b->previous == SRV_NO_BUFFER ? &b->lane->first : &all.buffers[b->previous].next;
+    uint32_t *after = b->next == SRV_NO_BUFFER ? &b->lane->last : &all.buffers[b->next].previous;
+    *before = b->next;
+    *after = b->previous;
+}
+
+void srv_buffer_rest(uint32_t i, uint64_t now)
+{
+    if (i == SRV_NO_BUFFER || all.buffers[i].state != USED) {
+        return;
+    }
+    buffer *b = &all.buffers[i];
+    b->state = IDLE;
+    b->since = now;
+    b->next = SRV_NO_BUFFER;
+    b->previous = b->lane->last;
+    *(b->previous == SRV_NO_BUFFER ? &b->lane->first : &all.buffers[b->previous].next) = i;
+    b->lane->last = i;
+}
+
+void srv_buffer_use(uint32_t i)
+{
+    if (i == SRV_NO_BUFFER) {
+        return;
+    }
+    if (all.buffers[i].state == IDLE) {
+        leave_line(i);
+    }
+    all.buffers[i].state = USED;
+    count(&all.buffers[i], all.bytes);
+}
+
+/* --- giving back --- */
+
+static bool is_zero(const char *page, size_t size)
+{
+    return page[0] == 0 && memcmp(page, page + 1, size - 1) == 0;
+}
+
+static void give_back(uint32_t i)
+{
+    buffer *b = &all.buffers[i];
+    char *memory = all.memory + (size_t)i * all.bytes;
+    size_t held = 0;
+    for (size_t at = 0; at < all.bytes;) {
+        size_t end = at;
+        while (end < all.bytes && is_zero(memory + end, all.page)) {
+            end += all.page;
+        }
+        if (end > at && madvise(memory + at, end - at, MADV_DONTNEED) != 0) {
+            held += end - at;
+        }
+        held += end < all.bytes ? all.page : 0;
+        at = end + all.page;
+    }
+    count(b, held);
+}
+
+static int sooner(int timeout)
+{
+    return timeout < 0 || timeout > LOOK_MILLIS ? LOOK_MILLIS : timeout;
+}
+
+/* --- lists of free ones, under the lock --- */
+
+static void push(uint32_t *list, uint32_t i)
+{
+    all.buffers[i].next = *list;
+    *list = i;
+}
+
+static uint32_t pop(uint32_t *list)
+{
+    uint32_t i = *list;
+    *list = all.buffers[i].next;
+    return i;
+}
+
+/* Give back pages of free ones beyond those that are kept, a second after the last connection
+ * ended. How many milliseconds the worker may wait at most before it has to look again. */
+static int give_back_free(int timeout)
+{
+    if (atomic_load_explicit(&all.warm_count, memory_order_relaxed) <= KEPT) {
+        return timeout;
+    }
+    uint64_t now = srv_clock_micros();
+    bool more = false;
+    pthread_mutex_lock(&all.lock);
+    bool ripe = now - all.put >= REST_MICROS || srv_memory_is_full();
+    for (int done = 0; ripe && done < AT_ONCE; done++) {
+        if (atomic_load_explicit(&all.warm_count, memory_order_relaxed) <= KEPT) {
+            break;
+        }
+        uint32_t i = pop(&all.warm);
+        atomic_fetch_sub_explicit(&all.warm_count, 1, memory_order_relaxed);
+        madvise(all.memory + (size_t)i * all.bytes, all.bytes, MADV_DONTNEED);
+        count(&all.buffers[i], 0);
+        push(&all.cold, i);
+        more = done + 1 == AT_ONCE;
+    }
+    pthread_mutex_unlock(&all.lock);
+    return more ? 0 : sooner(timeout);
+}
+
+/* How many milliseconds the worker may wait at most before it has to look again. */
+static int give_back_idle(int timeout)
+{
+    if (own == NULL || own->first == SRV_NO_BUFFER) {
+        return timeout;
+    }
+    uint64_t now = srv_clock_micros();
+    uint64_t rest = srv_memory_is_full() ? 0 : REST_MICROS;
+    for (int done = 0; done < AT_ONCE && own->first != SRV_NO_BUFFER; done++) {
+        uint32_t i = own->first;
+        if (now - all.buffers[i].since < rest) {
+            return sooner(timeout);
+        }
+        leave_line(i);
+        all.buffers[i].state = GIVEN;
+        give_back(i);
+    }
+    return own->first == SRV_NO_BUFFER ? timeout : 0;
+}
+
+/* --- what libmicrohttpd calls --- */
+
+uint32_t srv_buffer_taken(void)
+{
+    uint32_t last = taken;
+    taken = SRV_NO_BUFFER;
+    return last;
+}
+
+static void *take(void)
+{
+    pthread_mutex_lock(&all.lock);
+    if (own == NULL && all.lanes_used < LANES) {
+        own = &all.lanes[all.lanes_used++];
+        *own = (lane){SRV_NO_BUFFER, SRV_NO_BUFFER};
+    }
+    uint32_t i = SRV_NO_BUFFER;
+    if (own == NULL) {
+        /* A server was started and stopped in this process again and again. */
+    } else if (all.warm != SRV_NO_BUFFER) {
+        i = pop(&all.warm);
+        atomic_fetch_sub_explicit(&all.warm_count, 1, memory_order_relaxed);
+    } else if (all.cold != SRV_NO_BUFFER) {
+        i = pop(&all.cold);
+    } else if (all.fresh < all.most) {
+        i = all.fresh++;
+    }
+    pthread_mutex_unlock(&all.lock);
+    if (i == SRV_NO_BUFFER) {
+        return NULL;
+    }
+    all.buffers[i].state = USED;
+    all.buffers[i].lane = own;
+    count(&all.buffers[i], all.bytes);
+    taken = i;
+    return all.memory + (size_t)i * all.bytes;
+}
+
+static void put(uint32_t i)
+{
+    buffer *b = &all.buffers[i];
+    if (b->state == IDLE) {
+        leave_line(i);
+    }
+    b->state = FREE;
+    uint64_t now = srv_clock_micros();
+    pthread_mutex_lock(&all.lock);
+    if (b->held > 0) {
+        push(&all.warm, i);
+        atomic_fetch_add_explicit(&all.warm_count, 1, memory_order_relaxed);
+        all.put = now;
+    } else {
+        push(&all.cold, i);
+    }
+    pthread_mutex_unlock(&all.lock);
+}
+
+typedef void *(*map_function)(void *, size_t, int, int, int, off_t);
+typedef int (*unmap_function)(void *, size_t);
+
+/* Before anything is reserved the program may not even have begun, and a sanitizer not be ready to
+ * watch it: then neither is called, and the system is asked directly. */
+#define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
+
+/* The next definition after this program's: the C library's, or a sanitizer's before it. */
+static void *next_definition(_Atomic(void *) *kept, const char *name)
+{
+    void *found = atomic_load_explicit(kept, memory_order_acquire);
+    if (found == NULL) {
+        found = dlsym(RTLD_NEXT, name);
+        atomic_store_explicit(kept, found, memory_order_release);
+    }
+    return found;
+}
+
+static void *map(void *address, size_t length, int protection, int flags, int fd, off_t offset)
+{
+    static _Atomic(void *) next;
+    map_function system = NULL;
+    if (address == NULL && length == all.bytes && flags == (MAP_PRIVATE | MAP_ANONYMOUS)) {
+        void *memory = take();
+        if (memory != NULL) {
+            return memory;
+        }
+    }
+    *(void **)&system = next_definition(&next, "mmap");
+    return system(address, length, protection, flags, fd, offset);
+}
+
+static int unmap(void *address, size_t length)
+{
+    static _Atomic(void *) next;
+    unmap_function system = NULL;
+    size_t at = (size_t)((char *)address - all.memory);
+    if ((char *)address >= all.memory && at < (size_t)all.most * all.bytes) {
+        put((uint32_t)(at / all.bytes));
+        return 0;
+    }
+    *(void **)&system = next_definition(&next, "munmap");
+    return system(address, length);
+}
+
+UNWATCHED void *mmap(void *address, size_t length, int protection, int flags, int fd, off_t offset)
+{
+    if (all.memory == NULL) {
+        long mapped = syscall(SYS_mmap, address, length, protection, flags, fd, offset);
+        return (void *)mapped; /* an address, or MAP_FAILED */
+    }
+    return map(address, length, protection, flags, fd, offset);
+}
+
+UNWATCHED int munmap(void *address, size_t length)
+{
+    return all.memory == NULL ? (int)syscall(SYS_munmap, address, length) : unmap(address, length);
+}
+
+/* epoll_pwait without signals is the same call. */
+int epoll_wait(int set, struct epoll_event *events, int most, int timeout)
+{
+    return epoll_pwait(set, events, most, give_back_idle(give_back_free(timeout)), NULL);
+}

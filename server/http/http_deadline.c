@@ -1,0 +1,377 @@
+#define _GNU_SOURCE /* POLLRDHUP */
+
+#include "server/http/http_deadline.h"
+
+#include "base/mem.h"
+#include "server/http/http_buffer.h"
+#include "server/system/clock.h"
+#include "server/system/memory.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/sock_diag.h>
+#include <linux/sockios.h>
+#include <linux/tcp.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/eventfd.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+enum {
+    SWEEP_MILLIS = 500,
+    CROWDED_SECONDS = 2,
+    DRAINS = 64,          /* sockets drained at once; further ones are just closed */
+    DRAIN_BYTES = 1 << 20 /* of one socket */
+};
+
+#define SECOND       UINT64_C(1000000)
+#define DRAIN_MICROS (2 * SECOND)
+
+typedef struct drain {
+    int socket;
+    size_t bytes;
+    uint64_t until;
+} drain;
+
+struct srv_deadlines {
+    srv_deadline_options options;
+    pthread_mutex_t lock; /* of the list, the drains and `ending` */
+    srv_connection *first;
+    _Atomic size_t count;
+    drain drains[DRAINS];
+    size_t drain_count;
+    bool ending;
+    int wake; /* eventfd */
+    pthread_t thread;
+};
+
+void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)
+{
+    if (c != NULL) {
+        /* The beginning first: whoever reads the new stage, or that nothing came in it yet, reads
+         * its beginning too. */
+        atomic_store_explicit(&c->since, now, memory_order_relaxed);
+        atomic_store_explicit(&c->bytes, 0, memory_order_release);
+        atomic_store_explicit(&c->stage, (int)stage, memory_order_release);
+    }
+}
+
+void srv_connection_moved(srv_connection *c, uint64_t bytes)
+{
+    if (c != NULL) {
+        atomic_fetch_add_explicit(&c->bytes, bytes, memory_order_relaxed);
+    }
+}
+
+bool srv_connection_is_left(const srv_connection *connection, uint64_t now)
+{
+    struct pollfd watched = {.fd = connection == NULL ? -1 : connection->socket,
+                             .events = POLLRDHUP};
+    if (poll(&watched, 1, 0) <= 0) {
+        return false;
+    }
+    uint64_t since = atomic_load_explicit(&connection->since, memory_order_relaxed);
+    return (watched.revents & (POLLERR | POLLHUP)) != 0 ||
+           ((watched.revents & POLLRDHUP) != 0 && now > since + SRV_CLOSED_MICROS);
+}
+
+static bool is_slow(const srv_deadline_options *o, uint64_t elapsed, uint64_t bytes)
+{
+    if (o->min_rate == 0 || elapsed <= o->grace * SECOND) {
+        return false;
+    }
+    return bytes / o->min_rate < (elapsed - o->grace * SECOND) / SECOND;
+}
+
+bool srv_connection_is_late(const srv_connection *c, const srv_deadline_options *o, bool crowded,
+                            uint64_t now)
+{
+    srv_stage stage = (srv_stage)atomic_load_explicit(&c->stage, memory_order_acquire);
+    uint64_t bytes = atomic_load_explicit(&c->bytes, memory_order_acquire);
+    uint64_t since = atomic_load_explicit(&c->since, memory_order_relaxed);
+    uint64_t elapsed = now > since ? now - since : 0;
+    switch (stage) {
+    case SRV_STAGE_IDLE:
+        return elapsed > (crowded ? CROWDED_SECONDS : o->idle) * SECOND;
+    case SRV_STAGE_HEAD:
+        return elapsed > o->head * SECOND;
+    case SRV_STAGE_BODY:
+        return elapsed > o->total * SECOND || is_slow(o, elapsed, bytes);
+    case SRV_STAGE_WORK:
+    case SRV_STAGE_ANSWER:
+    case SRV_STAGE_LIVE:
+        break;
+    }
+    return false;
+}
+
+bool srv_connection_is_stuck(srv_connection *c, const srv_deadline_options *o, uint64_t outstanding,
+                             uint64_t acknowledged, uint64_t now)
+{
+    uint64_t elapsed = now - c->window;
+    if (outstanding == 0 || o->min_rate == 0) {
+        c->window = 0;
+        return false;
+    }
+    if (c->window != 0 && elapsed < o->grace * SECOND) {
+        return false;
+    }
+    bool stuck =
+        c->window != 0 && (acknowledged - c->window_acked) / o->min_rate < elapsed / SECOND;
+    c->window = now;
+    c->window_acked = acknowledged;
+    return stuck;
+}
+
+static void count_kept(srv_connection *c, uint64_t kept)
+{
+    srv_memory_count((int64_t)kept - (int64_t)c->kept);
+    c->kept = kept;
+}
+
+/* What the kernel holds of an answer, with its own records; 0 where it does not say. */
+static uint64_t kept_by_kernel(int socket)
+{
+    uint32_t info[SK_MEMINFO_VARS] = {0};
+    socklen_t length = sizeof info;
+    return getsockopt(socket, SOL_SOCKET, SO_MEMINFO, info, &length) == 0
+               ? info[SK_MEMINFO_WMEM_QUEUED]
+               : 0;
+}
+
+/* May bytes of an answer wait? While IDLE, no longer than until once none did. */
+static bool may_wait(const srv_connection *c, int stage, uint64_t since)
+{
+    return stage == SRV_STAGE_ANSWER || stage == SRV_STAGE_LIVE ||
+           (stage == SRV_STAGE_IDLE && c->taken != since);
+}
+
+static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, uint64_t now)
+{
+    struct tcp_info info = {0};
+    socklen_t length = sizeof info;
+    int outstanding = 0;
+    int stage = atomic_load_explicit(&c->stage, memory_order_acquire);
+    uint64_t since = atomic_load_explicit(&c->since, memory_order_relaxed);
+    if (!may_wait(c, stage, since)) {
+        c->window = 0;
+        return false;
+    }
+    if (ioctl(c->socket, SIOCOUTQ, &outstanding) != 0 ||
+        getsockopt(c->socket, IPPROTO_TCP, TCP_INFO, &info, &length) != 0) {
+        return false;
+    }
+    c->taken = stage == SRV_STAGE_IDLE && outstanding == 0 ? since : 0;
+    count_kept(c, outstanding == 0 ? 0 : kept_by_kernel(c->socket));
+    const srv_deadline_options patient = {.grace = o->total, .min_rate = 1};
+    return srv_connection_is_stuck(c, stage == SRV_STAGE_LIVE ? &patient : o, (uint64_t)outstanding,
+                                   info.tcpi_bytes_acked, now);
+}
+
+/* Has the client closed before its body was complete? Seen twice without a move in between: what
+ * was read together with the end may still be on its way through the handler. */
+static bool is_body_cut(srv_connection *c)
+{
+    char byte;
+    if (atomic_load_explicit(&c->stage, memory_order_acquire) != SRV_STAGE_BODY ||
+        recv(c->socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT) != 0) {
+        c->closed = 0;
+        return false;
+    }
+    uint64_t since = atomic_load_explicit(&c->since, memory_order_relaxed);
+    uint64_t bytes = atomic_load_explicit(&c->bytes, memory_order_relaxed);
+    bool again = c->closed == since && c->closed_bytes == bytes;
+    c->closed = since;
+    c->closed_bytes = bytes;
+    return again;
+}
+
+/* While the lock is held no socket of the list is closed, so none can be another's by now. */
+static void sweep(srv_deadlines *d)
+{
+    uint64_t now = srv_clock_micros();
+    bool crowded = srv_deadlines_count(d) > d->options.max_connections;
+    for (srv_connection *c = d->first; c != NULL; c = c->next) {
+        if (is_answer_stuck(c, &d->options, now)) {
+            /* Without this the system goes on sending what is in its buffer. */
+            struct linger reset = {.l_onoff = 1, .l_linger = 0};
+            setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+            shutdown(c->socket, SHUT_RDWR);
+        } else if (srv_connection_is_late(c, &d->options, crowded, now) || is_body_cut(c)) {
+            shutdown(c->socket, SHUT_RDWR);
+        }
+    }
+}
+
+/* True when there is nothing more to wait for. */
+static bool drain_once(drain *one, uint64_t now)
+{
+    char buffer[16 * 1024];
+    for (;;) {
+        ssize_t got = recv(one->socket, buffer, sizeof buffer, MSG_DONTWAIT);
+        if (got == 0 || now > one->until) {
+            return true;
+        }
+        if (got < 0) {
+            return errno != EAGAIN && errno != EINTR;
+        }
+        one->bytes += (size_t)got;
+        if (one->bytes > DRAIN_BYTES) {
+            return true;
+        }
+    }
+}
+
+static void drain_all(srv_deadlines *d)
+{
+    uint64_t now = srv_clock_micros();
+    for (size_t i = d->drain_count; i > 0; i--) {
+        if (drain_once(&d->drains[i - 1], now)) {
+            close(d->drains[i - 1].socket);
+            d->drains[i - 1] = d->drains[--d->drain_count];
+        }
+    }
+}
+
+static void *run(void *context)
+{
+    srv_deadlines *d = context;
+    uint64_t swept = srv_clock_micros();
+    pthread_mutex_lock(&d->lock);
+    while (!d->ending) {
+        struct pollfd polls[DRAINS + 1] = {{.fd = d->wake, .events = POLLIN}};
+        nfds_t count = 1;
+        for (size_t i = 0; i < d->drain_count; i++) {
+            polls[count++] = (struct pollfd){.fd = d->drains[i].socket, .events = POLLIN};
+        }
+        pthread_mutex_unlock(&d->lock);
+        poll(polls, count, SWEEP_MILLIS);
+        uint64_t ignored;
+        if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
+            /* Somebody else's wake: the list is looked at anyway. */
+        }
+        pthread_mutex_lock(&d->lock);
+        drain_all(d);
+        uint64_t now = srv_clock_micros();
+        if (now - swept >= SWEEP_MILLIS * SECOND / 1000) {
+            swept = now;
+            sweep(d);
+        }
+    }
+    pthread_mutex_unlock(&d->lock);
+    return NULL;
+}
+
+static void wake(srv_deadlines *d)
+{
+    uint64_t one = 1;
+    if (write(d->wake, &one, sizeof one) < 0) {
+        /* The counter is full, so the thread is awake. */
+    }
+}
+
+srv_deadlines *srv_deadlines_new(const srv_deadline_options *options)
+{
+    srv_deadlines *d = he_mem_zero(1, sizeof *d);
+    if (d == NULL) {
+        return NULL;
+    }
+    d->options = *options;
+    pthread_mutex_init(&d->lock, NULL);
+    d->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (d->wake < 0 || pthread_create(&d->thread, NULL, run, d) != 0) {
+        if (d->wake >= 0) {
+            close(d->wake);
+        }
+        pthread_mutex_destroy(&d->lock);
+        he_mem_free(d);
+        return NULL;
+    }
+    return d;
+}
+
+void srv_deadlines_free(srv_deadlines *d)
+{
+    if (d == NULL) {
+        return;
+    }
+    pthread_mutex_lock(&d->lock);
+    d->ending = true;
+    pthread_mutex_unlock(&d->lock);
+    wake(d);
+    pthread_join(d->thread, NULL);
+    for (size_t i = 0; i < d->drain_count; i++) {
+        close(d->drains[i].socket);
+    }
+    close(d->wake);
+    pthread_mutex_destroy(&d->lock);
+    he_mem_free(d);
+}
+
+srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct sockaddr *peer,
+                                  uint32_t buffer)
+{
+    srv_connection *c = he_mem_zero(1, sizeof *c);
+    if (c == NULL) {
+        return NULL;
+    }
+    c->socket = socket;
+    c->buffer = buffer;
+    srv_buffer_rest(buffer, srv_clock_micros());
+    srv_address_format(peer, false, c->peer);
+    srv_connection_enter(c, SRV_STAGE_IDLE, srv_clock_micros());
+    pthread_mutex_lock(&d->lock);
+    c->next = d->first;
+    if (c->next != NULL) {
+        c->next->previous = c;
+    }
+    d->first = c;
+    pthread_mutex_unlock(&d->lock);
+    atomic_fetch_add_explicit(&d->count, 1, memory_order_relaxed);
+    return c;
+}
+
+/* A duplicate keeps the connection open after its owner has closed the socket. */
+static void begin_drain(srv_deadlines *d, int socket)
+{
+    if (d->drain_count == DRAINS || d->ending) {
+        return;
+    }
+    int duplicate = fcntl(socket, F_DUPFD_CLOEXEC, 0);
+    if (duplicate >= 0) {
+        shutdown(duplicate, SHUT_WR);
+        d->drains[d->drain_count++] =
+            (drain){.socket = duplicate, .until = srv_clock_micros() + DRAIN_MICROS};
+        wake(d);
+    }
+}
+
+void srv_deadlines_remove(srv_deadlines *d, srv_connection *c)
+{
+    if (c == NULL) {
+        return;
+    }
+    pthread_mutex_lock(&d->lock);
+    if (c->previous != NULL) {
+        c->previous->next = c->next;
+    } else {
+        d->first = c->next;
+    }
+    if (c->next != NULL) {
+        c->next->previous = c->previous;
+    }
+    count_kept(c, 0);
+    if (c->drain) {
+        begin_drain(d, c->socket);
+    }
+    pthread_mutex_unlock(&d->lock);
+    atomic_fetch_sub_explicit(&d->count, 1, memory_order_relaxed);
+    he_mem_free(c);
+}
+
+size_t srv_deadlines_count(const srv_deadlines *d)
+{
+    return atomic_load_explicit(&d->count, memory_order_relaxed);
+}

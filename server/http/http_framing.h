@@ -1,0 +1,45 @@
+/* http_framing.h - where in a request its path, its query and its body are.
+ *
+ * The bytes were checked on their way in (http_syntax.h, rules F1 to F8): here the target is
+ * visible ASCII, Content-Length a number, Transfer-Encoding chunked, and neither of them nor Host
+ * is given twice. What is left to refuse is a target that is neither path?query nor
+ * http://authority/path?query. The connection of a refused request is closed. */
+#ifndef HE_SERVER_HTTP_HTTP_FRAMING_H
+#define HE_SERVER_HTTP_HTTP_FRAMING_H
+
+#include "server/http/http_fault.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct srv_field {
+    const char *name, *value;
+    size_t name_length, value_length;
+} srv_field;
+
+/* A request as libmicrohttpd read it; everything is borrowed. */
+typedef struct srv_head {
+    const char *method, *target, *version;
+    srv_field fields[SRV_MAX_FIELDS];
+    size_t field_count;
+} srv_head;
+
+typedef struct srv_framing {
+    const char *path; /* points into the target, up to '?' or the end */
+    size_t path_length;
+    const char *query;     /* into the target, "" when absent */
+    const char *authority; /* of an absolute target, NULL else; it counts instead of Host */
+    size_t authority_length;
+    const char *host; /* the header, NULL when absent */
+    bool chunked;
+    bool has_length;
+    uint64_t length;
+} srv_framing;
+
+/* False with the problem filled, bad_path. */
+bool srv_framing_read(const srv_head *head, srv_framing *out, api_problem *problem);
+/* Without case; NULL when absent. */
+const srv_field *srv_head_find(const srv_head *head, const char *name);
+
+#endif

@@ -1,0 +1,350 @@
+#include "server/http/http_handle.h"
+
+#include "api/limits.h"
+#include "server/http/http_answer.h"
+#include "server/http/http_request.h"
+#include "server/system/clock.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    SWALLOW = 256 * 1024, /* of a refused body, rather than close the connection */
+    WORKER_MICROS = 20000 /* that a worker spends on a read, which then goes to the pool */
+};
+
+/* Where a function of this file says nothing else, false has the connection closed. */
+
+/* --- waiting --- */
+
+static void resume_held(srv_hold *hold)
+{
+    srv_request *r = (srv_request *)((char *)hold - offsetof(srv_request, hold));
+    MHD_resume_connection(r->connection);
+}
+
+static bool begin_wait(srv_request *r, srv_state why)
+{
+    bool allowed = srv_request_suspend(r);
+    if (allowed) {
+        r->state = why;
+    }
+    return allowed;
+}
+
+/* The worker serves its other connections before it comes back to this one. */
+static bool give_way(srv_request *r)
+{
+    if (!begin_wait(r, r->state)) {
+        return false;
+    }
+    MHD_resume_connection(r->connection);
+    return true;
+}
+
+/* D1. Suspended before the hold is known to others: from then on it may be resumed. */
+static bool answer_when_durable(srv_request *r)
+{
+    const api_answer *answer = r->exchange == NULL ? NULL : api_answer_of(r->exchange);
+    if (answer == NULL || answer->mesh == NULL ||
+        srv_store_is_durable(r->http->options.store, answer->mesh, answer->record)) {
+        return srv_answer_send(r);
+    }
+    r->hold = (srv_hold){.mesh = answer->mesh, .record = answer->record, .resume = resume_held};
+    if (!begin_wait(r, SRV_HELD)) {
+        return false;
+    }
+    if (!srv_held_add(srv_store_held(r->http->options.store), &r->hold)) {
+        MHD_resume_connection(r->connection);
+    }
+    return true;
+}
+
+static bool answer_held(srv_request *r)
+{
+    if (r->hold.abandoned) {
+        srv_answer_refuse(r, API_NOT_READY, "the server stopped before the change was durable");
+        r->close = true;
+    }
+    return srv_answer_send(r);
+}
+
+/* The exchange has become a job: the client is answered by another one. */
+static void detach(srv_request *r)
+{
+    api_exchange *answer = api_detach(r->exchange);
+    if (answer == NULL) {
+        srv_answer_refuse(r, HE_NO_MEMORY, "no memory for the request");
+    } else {
+        r->exchange = answer;
+    }
+}
+
+/* May the worker go on with a read, or do its other connections wait for too long? */
+static bool is_short(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    const srv_request *r = context;
+    return srv_clock_micros() < r->work_until;
+}
+
+/* Is the client still waiting, and may it? */
+static bool is_awaited(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    const srv_request *r = context;
+    uint64_t now = srv_clock_micros();
+    if (now >= r->work_until) {
+        char text[128];
+        snprintf(text, sizeof text,
+                 "the answer was not found within %" PRIu64 " seconds; a job has more time, for "
+                 "which the header is Prefer: respond-async",
+                 r->http->options.read_seconds);
+        api_give_up(r->exchange, API_READ_TIMEOUT, text);
+        return false;
+    }
+    return !srv_connection_is_left(r->socket, now);
+}
+
+static void do_work(void *context)
+{
+    srv_request *r = context;
+    if (r->work_until != UINT64_MAX) {
+        r->work_until = srv_clock_micros() + r->http->options.read_seconds * 1000000;
+    }
+    api_watch(r->exchange, is_awaited, r);
+    if (api_work(r->exchange) == API_JOB) {
+        detach(r);
+    }
+    MHD_resume_connection(r->connection);
+}
+
+static bool begin_work(srv_request *r)
+{
+    if (!begin_wait(r, SRV_WORK)) {
+        return false;
+    }
+    const api_load load = api_load_of(r->exchange);
+    const bool is_long = load.reads || load.seconds > API_PATIENCE;
+    const srv_task task = {.work = do_work,
+                           .context = r,
+                           .share = is_long ? SRV_SHARE_LONG : SRV_SHARE_BRIEF,
+                           .cost = load.seconds,
+                           .flow =
+                               srv_pool_flow(r->socket == NULL ? "" : r->socket->peer, load.mesh)};
+    r->work_until = load.reads ? 0 : UINT64_MAX;
+    if (!srv_pool_submit(r->http->options.pool, &task)) {
+        srv_answer_refuse(r, API_OVERLOADED, "too many long requests are waiting");
+        MHD_resume_connection(r->connection);
+    }
+    return true;
+}
+
+/* --- reading --- */
+
+/* Did its bytes turn out to be no request (http_syntax.h)? What libmicrohttpd reads then ends with
+ * something else than the client sent. */
+static bool is_faulty(const srv_request *r, api_problem *problem)
+{
+    return r->socket != NULL && srv_syntax_fault(&r->socket->syntax, r->number, problem);
+}
+
+static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, const char *name,
+                                    size_t name_length, const char *value, size_t value_length)
+{
+    (void)kind;
+    srv_head *head = context;
+    if (head->field_count == SRV_MAX_FIELDS) {
+        return MHD_NO;
+    }
+    head->fields[head->field_count++] =
+        (srv_field){name, value == NULL ? "" : value, name_length, value_length};
+    return MHD_YES;
+}
+
+static const char *header_value(void *context, const char *name)
+{
+    srv_request *r = context;
+    const char *list = srv_lists_find(&r->lists, name);
+    return list != NULL ? list : MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
+}
+
+/* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
+static bool admit(srv_request *r, const srv_head *head, const srv_framing *framing)
+{
+    srv_http *http = r->http;
+    uint64_t most = http->options.deadlines.max_connections;
+    if (atomic_load(&http->stopping)) {
+        r->close = true;
+        return api_problem_set(&r->refusal, API_NOT_READY, "the server is stopping");
+    }
+    if (srv_deadlines_count(http->deadlines) > most) {
+        r->close = true;
+        return api_problem_set(&r->refusal, API_OVERLOADED,
+                               "more than %" PRIu64 " connections are open", most);
+    }
+    if (!srv_lists_join(&r->lists, head)) {
+        return api_problem_set(&r->refusal, HE_NO_MEMORY, "no memory for the request");
+    }
+    return srv_admit(http->options.policy, head, framing, &r->cors, &r->refusal);
+}
+
+static void begin_exchange(srv_request *r, const srv_framing *framing)
+{
+    api_request asked = {
+        .method = r->method,
+        .path = r->path,
+        .query = framing->query,
+        .request_id = r->request_id,
+        .header = header_value,
+        .context = r,
+        .has_length = framing->has_length,
+        .length = framing->length,
+        .has_body = framing->chunked || framing->length > 0,
+        .has_consent = r->cors != NULL,
+    };
+    r->exchange = api_begin(r->http->options.service, &asked, &r->step);
+    if (r->exchange == NULL) {
+        srv_answer_refuse(r, HE_NO_MEMORY, "no memory for the request");
+    }
+}
+
+/* The answer is known while the body is not here. A small one is let in and forgotten, so that the
+ * connection can be used again; a client that asks before it sends hears at once. */
+static bool answer_early(srv_request *r, bool expects)
+{
+    if (r->whole || (!expects && r->announced <= SWALLOW)) {
+        return true;
+    }
+    r->close = true;
+    if (r->socket != NULL) {
+        r->socket->drain = true;
+    }
+    return answer_when_durable(r);
+}
+
+static bool read_head(srv_request *r, const char *method, const char *version)
+{
+    srv_head head;
+    head.method = method;
+    head.target = r->target;
+    head.version = version;
+    head.field_count = 0;
+    MHD_get_connection_values_n(r->connection, MHD_HEADER_KIND, gather_field, &head);
+    memcpy(r->method, method, strnlen(method, SRV_METHOD));
+    srv_admit_name(&head, &r->http->ids, r->request_id);
+    srv_gate_enter(&r->http->gate);
+    r->counted = true;
+    r->state = SRV_BODY;
+
+    srv_framing framing;
+    if (is_faulty(r, &r->refusal) || !srv_framing_read(&head, &framing, &r->refusal)) {
+        /* Where the body ends is not known, so it cannot be passed over. */
+        r->step = API_READY;
+        r->announced = UINT64_MAX;
+        return answer_early(r, true);
+    }
+    r->announced = framing.chunked ? UINT64_MAX : framing.length;
+    r->whole = r->announced == 0;
+    r->path = framing.path;
+    char *mark = strchr(r->target, '?');
+    if (mark != NULL) {
+        *mark = '\0'; /* now the path ends where the query begins */
+    }
+    bool ok = admit(r, &head, &framing);
+    if (ok && r->cors != NULL && strcmp(method, "OPTIONS") == 0 &&
+        srv_head_find(&head, "Access-Control-Request-Method") != NULL) {
+        r->preflight = true;
+        ok = false;
+    }
+    if (ok) {
+        begin_exchange(r, &framing);
+    } else {
+        r->step = API_READY;
+    }
+    srv_connection_enter(r->socket, r->whole ? SRV_STAGE_WORK : SRV_STAGE_BODY, srv_clock_micros());
+    return r->step == API_MORE || answer_early(r, srv_head_find(&head, "Expect") != NULL);
+}
+
+static void refuse_fault(srv_request *r)
+{
+    api_problem problem = {0};
+    (void)is_faulty(r, &problem);
+    srv_answer_refuse(r, problem.code, problem.detail);
+    r->close = true;
+    r->socket->drain = true;
+}
+
+/* `size` goes down to what of the bytes is to come again. */
+static bool read_body(srv_request *r, const char *bytes, size_t *size)
+{
+    if (is_faulty(r, NULL)) {
+        refuse_fault(r);
+        srv_answer_cut_off(r);
+        return false;
+    }
+    size_t used = *size;
+    if (r->step == API_MORE) {
+        r->step = api_body(r->exchange, bytes, *size, &used);
+    } else {
+        r->swallowed += used;
+    }
+    *size -= used;
+    r->bytes_in += used;
+    srv_connection_moved(r->socket, used);
+    if (*size > 0) {
+        return give_way(r);
+    }
+    if (r->step != API_READY) {
+        return true;
+    }
+    bool much =
+        r->announced == UINT64_MAX ? r->swallowed > SWALLOW : r->announced - r->bytes_in > SWALLOW;
+    if (much) {
+        srv_answer_cut_off(r);
+    }
+    return !much;
+}
+
+static bool end_body(srv_request *r)
+{
+    r->whole = true;
+    if (is_faulty(r, NULL)) {
+        refuse_fault(r);
+    }
+    if (r->step == API_MORE) {
+        uint64_t now = srv_clock_micros();
+        srv_connection_enter(r->socket, SRV_STAGE_WORK, now);
+        r->work_until = now + WORKER_MICROS;
+        api_watch_worker(r->exchange, is_short, r);
+        r->step = api_end(r->exchange);
+    }
+    if (r->step == API_JOB) {
+        detach(r);
+    }
+    return r->step == API_WORK ? begin_work(r) : answer_when_durable(r);
+}
+
+bool srv_request_handle(srv_request *r, const char *method, const char *version, const char *upload,
+                        size_t *size)
+{
+    srv_request_resumed(r);
+    switch (r->state) {
+    case SRV_FRESH:
+        return read_head(r, method, version);
+    case SRV_BODY:
+        return *size > 0 ? read_body(r, upload, size) : end_body(r);
+    case SRV_WORK:
+        return answer_when_durable(r);
+    case SRV_HELD:
+        return answer_held(r);
+    case SRV_DONE:
+        return true;
+    case SRV_CUT:
+        break;
+    }
+    return false;
+}

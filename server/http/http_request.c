@@ -1,0 +1,106 @@
+#include "server/http/http_request.h"
+
+#include "api/limits.h"
+#include "base/mem.h"
+#include "server/http/http_buffer.h"
+#include "server/system/clock.h"
+#include "server/system/memory.h"
+
+#include <string.h>
+
+static srv_connection *socket_of(struct MHD_Connection *connection)
+{
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    return info == NULL ? NULL : info->socket_context;
+}
+
+srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection)
+{
+    srv_connection *socket = socket_of(connection);
+    /* Counted first, whatever becomes of it, as http_syntax.h has counted it (S4). One that was not
+     * counted there came past the check. */
+    if (socket == NULL || !srv_syntax_has_begun(&socket->syntax, ++socket->requests)) {
+        return NULL;
+    }
+    size_t length = strnlen(uri, API_MAX_URI + 1);
+    srv_request *r = he_mem_zero(1, sizeof *r + length + 1);
+    if (r == NULL) {
+        return NULL;
+    }
+    memcpy(r->target, uri, length);
+    r->http = http;
+    r->connection = connection;
+    r->socket = socket;
+    r->number = socket->requests;
+    r->started = srv_clock_micros();
+    srv_connection_enter(r->socket, SRV_STAGE_HEAD, r->started);
+    srv_buffer_use(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer);
+    return r;
+}
+
+static void copy_text(char *out, size_t size, const char *text)
+{
+    size_t length = strnlen(text, size - 1);
+    memcpy(out, text, length);
+    out[length] = '\0';
+}
+
+static void write_log(const srv_request *r, uint64_t now)
+{
+    srv_access access; /* not zeroed: most of it is room for a long path */
+    access.time = srv_clock_utc();
+    access.route = r->exchange == NULL ? "-" : api_answer_of(r->exchange)->route;
+    access.status = r->status;
+    access.bytes_in = r->bytes_in;
+    access.bytes_out = r->bytes_out;
+    access.duration_us = now - r->started;
+    copy_text(access.request_id, sizeof access.request_id, r->request_id);
+    copy_text(access.method, sizeof access.method, r->method);
+    copy_text(access.path, sizeof access.path, r->path == NULL ? r->target : r->path);
+    copy_text(access.peer, sizeof access.peer, r->socket == NULL ? "-" : r->socket->peer);
+    srv_access_log_add(r->http->options.log, &access);
+}
+
+bool srv_request_suspend(srv_request *r)
+{
+    r->aside = srv_gate_wait(&r->http->gate);
+    if (r->aside) {
+        MHD_suspend_connection(r->connection);
+    }
+    return r->aside;
+}
+
+void srv_request_resumed(srv_request *r)
+{
+    if (r->aside) {
+        r->aside = false;
+        srv_gate_resume(&r->http->gate);
+    }
+}
+
+void srv_request_end(srv_request *r)
+{
+    srv_http *http = r->http;
+    uint64_t now = srv_clock_micros();
+    srv_connection_enter(r->socket, SRV_STAGE_IDLE, now);
+    srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
+    if (r->counted && http->options.log != NULL) {
+        write_log(r, now);
+    }
+    bool counted = r->counted;
+    srv_request_resumed(r); /* a client who was lost while it was suspended comes here at once */
+    if (r->block > 0) {
+        atomic_fetch_sub(&http->downloads, 1);
+        srv_memory_count(-(int64_t)r->block);
+    }
+    srv_live_end(&r->stream);
+    srv_ahead_clear(&r->ahead);
+    api_free(r->exchange);
+    srv_lists_clear(&r->lists);
+    api_text_clear(&r->text);
+    he_mem_free(r);
+    if (counted) {
+        srv_gate_leave(&http->gate);
+    }
+}

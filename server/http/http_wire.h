@@ -1,0 +1,38 @@
+/* http_wire.h - an answer as plain data: status, headers, bytes. */
+#ifndef HE_SERVER_HTTP_HTTP_WIRE_H
+#define HE_SERVER_HTTP_HTTP_WIRE_H
+
+#include "api/json/problem.h"
+#include "api/request/api.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { SRV_WIRE_HEADERS = API_ANSWER_HEADERS + 16 };
+
+/* Everything is borrowed. */
+typedef struct srv_wire {
+    int status;
+    api_header headers[SRV_WIRE_HEADERS];
+    size_t header_count;
+    const char *bytes;
+    int64_t length; /* -1: not known */
+    bool close;
+} srv_wire;
+
+void srv_wire_add(srv_wire *wire, const char *name, const char *value);
+/* What api answers. */
+void srv_wire_answer(srv_wire *wire, const api_answer *answer);
+/* A problem that was found before or beside api, written into `text`, which `wire` then borrows.
+ * NULL is no problem but 204 without a body. */
+void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *request_id,
+                      api_text *text);
+/* Let a page of `origin` read the answer (P4). `preflight`: and say what it may send. */
+void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight);
+
+/* Write it to a socket that does not block, closing the connection. False when the socket would
+ * not take all of it. */
+bool srv_wire_send(const srv_wire *wire, const char *reason, int socket);
+
+#endif

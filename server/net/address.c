@@ -1,0 +1,125 @@
+#include "server/net/address.h"
+
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_PORT = 65535, MAX_HOST = 47 };
+
+static bool parse_port(const char *text, unsigned *port)
+{
+    unsigned value = 0;
+    size_t length = strlen(text);
+    if (length == 0 || length > 5 || strspn(text, "0123456789") != length) {
+        return false;
+    }
+    for (size_t i = 0; i < length; i++) {
+        value = value * 10 + (unsigned)(text[i] - '0');
+    }
+    *port = value;
+    return value <= MAX_PORT;
+}
+
+static bool parse_host(const char *host, srv_address *out)
+{
+    *out = (srv_address){0};
+    if (strcmp(host, "localhost") == 0) {
+        host = "127.0.0.1";
+    }
+    size_t length = strlen(host);
+    if (host[0] == '[' && length > 2 && host[length - 1] == ']') {
+        char inner[MAX_HOST + 1];
+        memcpy(inner, host + 1, length - 2);
+        inner[length - 2] = '\0';
+        out->socket.v6.sin6_family = AF_INET6;
+        out->length = sizeof out->socket.v6;
+        return inet_pton(AF_INET6, inner, &out->socket.v6.sin6_addr) == 1;
+    }
+    out->socket.v4.sin_family = AF_INET;
+    out->length = sizeof out->socket.v4;
+    return inet_pton(AF_INET, host, &out->socket.v4.sin_addr) == 1;
+}
+
+bool srv_address_parse(const char *text, srv_address *out)
+{
+    const char *colon = strrchr(text, ':');
+    char host[MAX_HOST + 1];
+    unsigned port;
+    srv_address address;
+    if (colon == NULL || (size_t)(colon - text) >= sizeof host || !parse_port(colon + 1, &port)) {
+        return false;
+    }
+    memcpy(host, text, (size_t)(colon - text));
+    host[colon - text] = '\0';
+    if (!parse_host(host, &address)) {
+        return false;
+    }
+    srv_address_set_port(&address, port);
+    *out = address;
+    return true;
+}
+
+static bool is_loopback_v4(const struct in_addr *address)
+{
+    return ntohl(address->s_addr) >> 24 == 127;
+}
+
+bool srv_address_is_loopback(const srv_address *address)
+{
+    if (address->socket.any.sa_family == AF_INET6) {
+        return IN6_IS_ADDR_LOOPBACK(&address->socket.v6.sin6_addr);
+    }
+    return is_loopback_v4(&address->socket.v4.sin_addr);
+}
+
+void srv_address_set_port(srv_address *address, unsigned port)
+{
+    if (address->socket.any.sa_family == AF_INET6) {
+        address->socket.v6.sin6_port = htons((uint16_t)port);
+    } else {
+        address->socket.v4.sin_port = htons((uint16_t)port);
+    }
+}
+
+unsigned srv_address_port(const srv_address *address)
+{
+    return address->socket.any.sa_family == AF_INET6 ? ntohs(address->socket.v6.sin6_port)
+                                                     : ntohs(address->socket.v4.sin_port);
+}
+
+void srv_address_format(const struct sockaddr *address, bool with_port, char out[SRV_ADDRESS_TEXT])
+{
+    char host[INET6_ADDRSTRLEN] = "-";
+    bool v6 = address->sa_family == AF_INET6;
+    unsigned port = 0;
+    if (v6) {
+        const struct sockaddr_in6 *in = (const struct sockaddr_in6 *)(const void *)address;
+        inet_ntop(AF_INET6, &in->sin6_addr, host, sizeof host);
+        port = ntohs(in->sin6_port);
+    } else if (address->sa_family == AF_INET) {
+        const struct sockaddr_in *in = (const struct sockaddr_in *)(const void *)address;
+        inet_ntop(AF_INET, &in->sin_addr, host, sizeof host);
+        port = ntohs(in->sin_port);
+    }
+    if (with_port) {
+        snprintf(out, SRV_ADDRESS_TEXT, v6 ? "[%s]:%u" : "%s:%u", host, port);
+    } else {
+        snprintf(out, SRV_ADDRESS_TEXT, "%s", host);
+    }
+}
+
+bool srv_address_text_is_loopback(const char *text, size_t length)
+{
+    char host[MAX_HOST + 1];
+    struct in_addr v4;
+    struct in6_addr v6;
+    if (length > MAX_HOST) {
+        return false;
+    }
+    memcpy(host, text, length);
+    host[length] = '\0';
+    if (inet_pton(AF_INET, host, &v4) == 1) {
+        return is_loopback_v4(&v4);
+    }
+    return inet_pton(AF_INET6, host, &v6) == 1 && IN6_IS_ADDR_LOOPBACK(&v6);
+}
