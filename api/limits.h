@@ -129,6 +129,9 @@ enum {
  * Beyond either it only says that there was one. */
 enum { API_MAX_EVENT = 64 * 1024, API_MAX_EVENT_ROWS = 1 << 15 };
 
+/* Listeners that are brought forward from the history at once, each with a copy of its mesh. */
+enum { API_MAX_BACKFILLS = 8 };
+
 enum { API_PROBLEM_ELEMENTS = 100 }; /* named one by one in a problem */
 
 #endif

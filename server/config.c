@@ -23,7 +23,7 @@ typedef struct option {
 #define KIB       (UINT64_C(1) << 10)
 #define TIB       (UINT64_C(1) << 40)
 
-static const char *const log_kinds[] = {"off", "access", "auto", NULL}; /* by srv_log_kind */
+static const char *const log_kinds[] = {"off", "access", "auto", NULL}; /* by st_log_kind */
 
 static const option options[] = {
     {"listen", TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT", 0, 0,

@@ -15,7 +15,7 @@
 
 /* SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury what its
  * reader wants to see. */
-typedef enum srv_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS, SRV_LOG_AUTO } srv_log_kind;
+typedef enum st_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS, SRV_LOG_AUTO } st_log_kind;
 
 typedef struct srv_config {
     const char *listen;
@@ -23,10 +23,10 @@ typedef struct srv_config {
     srv_policy policy;
     const char *web; /* "": look beside the executable */
     bool samples;
-    uint64_t log; /* srv_log_kind */
+    uint64_t log; /* st_log_kind */
 
     uint64_t max_upload;    /* bytes */
-    uint64_t memory_budget; /* bytes; 0: three quarters of srv_memory_limit_find */
+    uint64_t memory_budget; /* bytes; 0: three quarters of st_memory_limit_find */
     uint64_t undo_budget;   /* bytes a mesh */
     uint64_t max_meshes;
     bool no_compression;

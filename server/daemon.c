@@ -1,12 +1,13 @@
 #include "server/daemon.h"
 
+#include "api/event/event_follow.h"
+#include "api/job/job_table.h"
 #include "server/assets.h"
 #include "server/http/http.h"
-#include "server/job/job_board.h"
 #include "server/samples.h"
-#include "server/system/hands.h"
-#include "server/system/memory.h"
-#include "server/system/memory_limit.h"
+#include "system/memory.h"
+#include "system/memory_limit.h"
+#include "system/parallel.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -27,14 +28,12 @@ enum {
 };
 
 typedef struct daemon_parts {
-    srv_store *store;
-    api_store interface;
+    st_store *store;
     srv_assets *assets;
     api_service *service;
-    srv_pool *pool, *makers;
-    srv_hands *hands;
-    srv_board *board;
-    api_jobs board_interface;
+    st_pool *pool, *makers;
+    st_parallel *hands;
+    api_job_table *job_table;
     srv_access_log *log;
     srv_http *http;
     srv_policy policy;
@@ -101,29 +100,28 @@ static bool fail(const char *why)
 static bool open_threads(daemon_parts *parts, const srv_config *config)
 {
     size_t jobs = config->jobs != 0 ? (size_t)config->jobs : cores() > 2 ? cores() : 2;
-    parts->pool = srv_pool_new("hedged-pool", jobs + SHORT_THREADS, (size_t)config->job_queue);
-    parts->makers = srv_pool_new("hedged-answers", cores(), MAKER_QUEUE);
-    parts->hands = srv_hands_new(cores() - 1);
+    parts->pool = st_pool_new("hedged-pool", jobs + SHORT_THREADS, (size_t)config->job_queue);
+    parts->makers = st_pool_new("hedged-answers", cores(), MAKER_QUEUE);
+    parts->hands = st_parallel_new(cores() - 1);
     return (parts->pool != NULL && parts->makers != NULL && parts->hands != NULL) ||
            fail("no memory or threads to start");
 }
 
 static bool open_store(daemon_parts *parts, const srv_config *config)
 {
-    parts->store = srv_store_new(&(srv_store_options){
+    parts->store = st_store_new(&(st_store_options){
         .undo_budget = config->undo_budget,
         .max_meshes = config->max_meshes,
-        .journal = srv_journal_memory(),
+        .journal = st_journal_memory(),
         .listeners = config->max_listeners,
         .mesh_listeners = config->max_mesh_listeners,
-        .pool = parts->pool,
+        .render = api_event_render,
     });
     if (parts->store == NULL) {
         return fail("no memory to start");
     }
-    parts->interface = srv_store_interface(parts->store);
     he_error err;
-    if (config->samples && srv_samples_add(&parts->interface, &err) != HE_OK) {
+    if (config->samples && srv_samples_add(parts->store, &err) != HE_OK) {
         return fail(err.text);
     }
     return true;
@@ -143,35 +141,35 @@ static bool load_page(daemon_parts *parts, const srv_config *config)
 
 static void count_memory(uint64_t *used, uint64_t *budget)
 {
-    *used = srv_memory_used();
-    *budget = srv_memory_budget();
+    *used = st_memory_used();
+    *budget = st_memory_budget();
 }
 
-static bool submit_job(void *pool, const srv_task *task)
+static bool submit_job(void *pool, const st_task *task)
 {
-    return srv_pool_submit(pool, task);
+    return st_pool_submit(pool, task);
 }
 
 static bool open_service(daemon_parts *parts, const srv_config *config)
 {
-    parts->board = srv_board_new(&(srv_board_options){
-        .store = parts->store, .submit = submit_job, .pool = parts->pool, .keep = SRV_JOB_SECONDS});
-    if (parts->board == NULL) {
+    parts->job_table = api_job_table_new(&(api_job_table_options){
+        .store = parts->store, .submit = submit_job, .pool = parts->pool, .keep = API_JOB_SECONDS});
+    if (parts->job_table == NULL) {
         return fail("no memory to start");
     }
-    parts->board_interface = srv_board_interface(parts->board);
-    parts->service = api_service_new(&parts->interface, &(api_options){
-                                                            .max_upload = config->max_upload,
-                                                            .version = SRV_VERSION,
-                                                            .asset = srv_assets_find,
-                                                            .asset_context = parts->assets,
-                                                            .ready = is_ready,
-                                                            .ready_context = parts,
-                                                            .memory = count_memory,
-                                                            .jobs = &parts->board_interface,
-                                                            .plain_answers = config->no_compression,
-                                                            .exec = srv_hands_exec(parts->hands),
-                                                        });
+    parts->service = api_service_new(parts->store, &(api_options){
+                                                       .max_upload = config->max_upload,
+                                                       .version = SRV_VERSION,
+                                                       .asset = srv_assets_find,
+                                                       .asset_context = parts->assets,
+                                                       .ready = is_ready,
+                                                       .ready_context = parts,
+                                                       .memory = count_memory,
+                                                       .jobs = parts->job_table,
+                                                       .pool = parts->pool,
+                                                       .plain_answers = config->no_compression,
+                                                       .exec = st_parallel_exec(parts->hands),
+                                                   });
     bool logs = config->log == SRV_LOG_ACCESS ||
                 (config->log == SRV_LOG_AUTO && isatty(STDERR_FILENO) == 0);
     if (logs) {
@@ -249,11 +247,11 @@ static uint64_t processor_micros(void)
 static void wait_for_stop(const sigset_t *signals)
 {
     const struct timespec second = {.tv_sec = 1};
-    srv_memory_rest rest = {0};
+    st_memory_rest rest = {0};
     int number;
     do {
         number = sigtimedwait(signals, NULL, &second);
-        srv_memory_rests(&rest, processor_micros());
+        st_memory_rests(&rest, processor_micros());
     } while (number != SIGTERM && number != SIGINT);
 }
 
@@ -284,7 +282,7 @@ static void block_signals(sigset_t *waited)
 static void choose_budget(const srv_config *config)
 {
     const uint64_t mib = UINT64_C(1) << 20;
-    const srv_memory_limit limit = srv_memory_limit_find("", srv_memory_limit_machine());
+    const st_memory_limit limit = st_memory_limit_find("", st_memory_limit_machine());
     uint64_t budget = config->memory_budget;
     if (budget == 0 && limit.bytes == UINT64_MAX) {
         fprintf(stderr, "hedged: no memory budget: the system does not say what the machine has\n");
@@ -302,7 +300,7 @@ static void choose_budget(const srv_config *config)
     } else {
         fprintf(stderr, "hedged: memory budget %" PRIu64 " MiB as told\n", budget / mib);
     }
-    srv_memory_set_budget(budget);
+    st_memory_set_budget(budget);
 }
 
 int srv_daemon_run(const srv_config *config)
@@ -319,19 +317,19 @@ int srv_daemon_run(const srv_config *config)
     if (started) {
         wait_for_stop(&signals);
         atomic_store(&parts.ready, false);
-        srv_board_stop(parts.board);
+        api_job_table_stop(parts.job_table);
         if (!srv_http_stop(parts.http, STOP_MILLIS)) {
             /* A long operation is in the middle of its work, on memory that must stay. */
             srv_access_log_free(parts.log);
             _exit(0);
         }
     }
-    srv_pool_free(parts.pool);
-    srv_pool_free(parts.makers);
-    srv_hands_free(parts.hands);
-    srv_board_free(parts.board);
+    st_pool_free(parts.pool);
+    st_pool_free(parts.makers);
+    st_parallel_free(parts.hands);
+    api_job_table_free(parts.job_table);
     api_service_free(parts.service);
-    srv_store_free(parts.store);
+    st_store_free(parts.store);
     srv_assets_free(parts.assets);
     srv_access_log_free(parts.log);
     return started ? 0 : 1;

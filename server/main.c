@@ -1,7 +1,7 @@
 #include "server/config.h"
 #include "server/daemon.h"
 #include "server/net/healthcheck.h"
-#include "server/system/memory.h"
+#include "system/memory.h"
 
 #include <stdlib.h>
 
@@ -12,7 +12,7 @@ int main(int argc, char **argv)
     srv_config config;
     char message[320];
     int status = 0;
-    srv_memory_install(0);
+    st_memory_install(0);
     if (!srv_config_read(&config, argc - 1, argv + 1, getenv, message, sizeof message)) {
         fprintf(stderr, "hedged: %s\n", message);
         return MISUSE;

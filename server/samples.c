@@ -22,38 +22,38 @@ static he_status make(const char *name, he_mesh **out, he_error *err)
     return status;
 }
 
-static he_status add(const api_store *store, const char *name, he_error *err)
+static he_status add(st_store *store, const char *name, he_error *err)
 {
     he_mesh *content;
-    api_mesh *mesh;
+    st_mesh *mesh;
     he_status status = make(name, &content, err);
     if (status != HE_OK) {
         return status;
     }
-    switch (store->create(store->self, name, name, content, NULL, &mesh)) {
-    case API_STORE_OK:
-        store->release(store->self, mesh);
+    switch (st_create(store, name, name, content, NULL, &mesh)) {
+    case ST_OK:
+        st_release(mesh);
         return HE_OK;
-    case API_STORE_TAKEN:
+    case ST_TAKEN:
         he_mesh_free(content);
         return HE_OK;
-    case API_STORE_ABSENT:
-    case API_STORE_NO_MEMORY:
-    case API_STORE_BUDGET:
-    case API_STORE_TOO_MANY:
-    case API_STORE_NOTHING:
-    case API_STORE_BUSY:
-    case API_STORE_LISTENERS:
-    case API_STORE_AHEAD:
-    case API_STORE_GONE:
-    case API_STORE_ELSEWHERE:
+    case ST_ABSENT:
+    case ST_NO_MEMORY:
+    case ST_BUDGET:
+    case ST_TOO_MANY:
+    case ST_NOTHING:
+    case ST_BUSY:
+    case ST_LISTENERS:
+    case ST_AHEAD:
+    case ST_GONE:
+    case ST_ELSEWHERE:
         break;
     }
     he_mesh_free(content);
     return he_fail_plain(err, HE_NO_MEMORY, "the store has no room for the sample %s", name);
 }
 
-he_status srv_samples_add(const api_store *store, he_error *err)
+he_status srv_samples_add(st_store *store, he_error *err)
 {
     static const char *const names[] = {"cube", "icosphere", "torus"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

@@ -2,10 +2,10 @@
 #ifndef HE_SERVER_SAMPLES_H
 #define HE_SERVER_SAMPLES_H
 
-#include "api/store.h"
+#include "store/store.h"
 
 /* Makes cube, icosphere and torus under these ids, each with its shape's default parameters, unless
  * an id is taken. HE_NO_MEMORY. */
-HE_NODISCARD he_status srv_samples_add(const api_store *store, he_error *err);
+HE_NODISCARD he_status srv_samples_add(st_store *store, he_error *err);
 
 #endif

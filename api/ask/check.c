@@ -35,7 +35,7 @@ static he_thresholds read_thresholds(const api_exchange *x, const he_mesh *mesh)
     he_thresholds t = he_thresholds_of(mesh);
     return (he_thresholds){api_param_number(x, "merge", t.merge),
                            api_param_number(x, "flat", t.flat),
-                           api_param_number(x, "small", t.small), x->store->secret[0]};
+                           api_param_number(x, "small", t.small), st_secret(x->store)[0]};
 }
 
 static bool find_intersections(api_asker *a, report *r)

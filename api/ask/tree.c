@@ -50,7 +50,7 @@ static bool must_be_made(const api_tree *tree)
 }
 
 /* Under the place. NULL when memory is out, or with a->spent. */
-static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tree **dropped,
+static api_tree *take(api_asker *a, const api_in *in, st_derived *place, api_tree **dropped,
                       bool *made_here)
 {
     api_tree *kept = place->value;
@@ -74,7 +74,7 @@ static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tr
     } else if (kept == NULL || kept->revision < a->revision) {
         hold(tree);
         *dropped = kept;
-        *place = (api_derived){tree, destroy};
+        *place = (st_derived){tree, destroy};
     }
     *made_here = tree != NULL;
     return tree;
@@ -84,11 +84,10 @@ static api_tree *take(api_asker *a, const api_in *in, api_derived *place, api_tr
  * the place of one of an earlier revision. */
 static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
 {
-    const api_store *store = a->x->store;
     api_tree *dropped = NULL;
-    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+    st_derived *place = st_derived_begin(a->x->mesh, ST_DERIVED_TREE);
     api_tree *tree = take(a, in, place, &dropped, made_here);
-    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+    st_derived_end(a->x->mesh, ST_DERIVED_TREE);
     api_tree_release(dropped);
     return tree;
 }
@@ -96,15 +95,14 @@ static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
 /* Somebody else makes it. HE_CANCELLED when the asker gives up first. */
 static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
 {
-    const api_store *store = a->x->store;
     for (;;) {
-        store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+        st_derived_begin(a->x->mesh, ST_DERIVED_TREE);
         bool waits = must_be_made(tree);
         if (waits) {
-            store->derived_wait(store->self, a->x->mesh, API_DERIVED_TREE);
+            st_derived_wait(a->x->mesh, ST_DERIVED_TREE);
             waits = must_be_made(tree);
         }
-        store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+        st_derived_end(a->x->mesh, ST_DERIVED_TREE);
         he_status status = waits ? he_watch_step(&a->x->watch, 0, 1, err) : HE_OK;
         if (!waits || status != HE_OK) {
             return status;
@@ -115,15 +113,14 @@ static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
 /* Once made, or given up with NULL: whoever waits for it goes on. */
 static void finish(const api_asker *a, api_tree *tree, he_bvh *bvh)
 {
-    const api_store *store = a->x->store;
-    api_derived *place = store->derived_begin(store->self, a->x->mesh, API_DERIVED_TREE);
+    st_derived *place = st_derived_begin(a->x->mesh, ST_DERIVED_TREE);
     bool forget = bvh == NULL && place->value == tree;
     tree->bvh = bvh;
     tree->abandoned = bvh == NULL;
     if (forget) {
-        *place = (api_derived){NULL, NULL};
+        *place = (st_derived){NULL, NULL};
     }
-    store->derived_end(store->self, a->x->mesh, API_DERIVED_TREE);
+    st_derived_end(a->x->mesh, ST_DERIVED_TREE);
     if (forget) {
         api_tree_release(tree);
     }

@@ -83,7 +83,7 @@ static const api_parameter encoding = {
     "encoding", API_PARAM_CHOICE, 0,
     0,          encodings,        "Text or binary, where a format has both; binary if not said."};
 static const api_parameter name = {
-    "name", API_PARAM_TEXT, 0, API_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
+    "name", API_PARAM_TEXT, 0, ST_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
 static const api_parameter repair = {
     "repair",
     API_PARAM_CHOICES,

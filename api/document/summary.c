@@ -68,14 +68,14 @@ static void write_box(api_out *out, const api_summary *summary)
     api_out_object_end(out);
 }
 
-static void write_identity(api_out *out, const api_mesh_info *info)
+static void write_identity(api_out *out, const st_mesh_info *info)
 {
     api_out_key_string(out, "id", info->id);
     api_out_key_string(out, "name", info->name);
     api_out_key_u64(out, "revision", info->revision);
 }
 
-void api_write_brief(api_out *out, const api_mesh_info *info, const he_mesh *mesh)
+void api_write_brief(api_out *out, const st_mesh_info *info, const he_mesh *mesh)
 {
     write_identity(out, info);
     api_out_key(out, "counts");
@@ -87,7 +87,7 @@ void api_write_brief(api_out *out, const api_mesh_info *info, const he_mesh *mes
     api_out_object_end(out);
 }
 
-void api_write_summary(api_out *out, const api_mesh_info *info, const api_summary *summary)
+void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary)
 {
     const he_topology *t = &summary->topology;
     write_identity(out, info);
@@ -131,12 +131,12 @@ static void write_answer(api_exchange *x, const api_summary *summary, int status
 /* Keep what was computed, unless the mesh has moved on meanwhile. */
 static void keep(api_exchange *x, const api_summary *summary)
 {
-    api_mesh_info now;
-    if (x->store->read_begin(x->store->self, x->mesh, &now) != NULL) {
+    st_mesh_info now;
+    if (st_read_begin(x->mesh, &now) != NULL) {
         if (now.revision == x->info.revision && now.incarnation == x->info.incarnation) {
-            x->store->cache_put(x->store->self, x->mesh, summary, sizeof *summary);
+            st_cache_put(x->mesh, summary, sizeof *summary);
         }
-        x->store->read_end(x->store->self, x->mesh);
+        st_read_end(x->mesh);
     }
 }
 
@@ -151,8 +151,8 @@ void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
 void api_answer_created(api_exchange *x, const api_summary *summary, void (*extra)(api_exchange *x))
 {
     /* Its facts are read even where somebody has deleted it by now: it was made. */
-    x->store->read_begin(x->store->self, x->mesh, &x->info);
-    x->store->read_end(x->store->self, x->mesh);
+    st_read_begin(x->mesh, &x->info);
+    st_read_end(x->mesh);
     x->has_info = true;
     api_publish(x, 201);
     api_answer_header(x, "Location", x->location);
@@ -163,13 +163,13 @@ void api_answer_created(api_exchange *x, const api_summary *summary, void (*extr
 static void answer_from_snapshot(api_exchange *x)
 {
     const he_mesh *mesh;
-    api_snapshot *snapshot = api_snapshot_of(x, &mesh);
+    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
     if (snapshot == NULL) {
         return;
     }
     api_summary summary;
     bool found = api_summary_find(x, mesh, &summary);
-    x->store->snapshot_release(x->store->self, snapshot);
+    st_snapshot_release(snapshot);
     if (found) {
         api_answer_stored(x, 200, &summary, NULL);
     }
@@ -197,7 +197,7 @@ void api_answer_summary(api_exchange *x)
     }
     api_summary summary;
     bool past = x->past != NULL;
-    bool cached = !past && x->store->cache_get(x->store->self, x->mesh, &summary, sizeof summary);
+    bool cached = !past && st_cache_get(x->mesh, &summary, sizeof summary);
     if (!cached && api_is_large(x, mesh)) {
         api_read_end(x);
         api_defer(x, answer_from_snapshot);
@@ -205,7 +205,7 @@ void api_answer_summary(api_exchange *x)
     }
     if (cached || api_summary_find(x, mesh, &summary)) {
         if (!cached && !past) {
-            x->store->cache_put(x->store->self, x->mesh, &summary, sizeof summary);
+            st_cache_put(x->mesh, &summary, sizeof summary);
         }
         write_answer(x, &summary, 200, NULL);
     }

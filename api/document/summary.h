@@ -27,9 +27,9 @@ typedef struct api_summary {
 bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out);
 
 /* The members of an object that is open: id, name, revision, counts, ... */
-void api_write_summary(api_out *out, const api_mesh_info *info, const api_summary *summary);
+void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary);
 /* id, name, revision and the counts that cost nothing. */
-void api_write_brief(api_out *out, const api_mesh_info *info, const he_mesh *mesh);
+void api_write_brief(api_out *out, const st_mesh_info *info, const he_mesh *mesh);
 
 /* Answer 200 with the summary of x->mesh, from the cache where it has it. A large mesh is summed up
  * on the job pool from a snapshot. */

@@ -83,10 +83,10 @@ void api_write_changes(api_out *out, const he_changes *changes)
     }
 }
 
-api_tally api_changes_tally(const he_changes *changes)
+st_tally api_changes_tally(const he_changes *changes)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
-    api_tally tally = {.known = !changes->replaced};
+    st_tally tally = {.known = !changes->replaced};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         tally.created[i] = (uint32_t)changes->created[kinds[i]].count;
         tally.deleted[i] = (uint32_t)changes->deleted[kinds[i]].count;
@@ -95,9 +95,9 @@ api_tally api_changes_tally(const he_changes *changes)
     return tally;
 }
 
-const char *api_action_name(api_action action)
+const char *api_action_name(st_action action)
 {
     static const char *const names[] = {
-        [API_EDIT] = "edit", [API_UNDO] = "undo", [API_REDO] = "redo", [API_REPLACE] = "replace"};
+        [ST_EDIT] = "edit", [ST_UNDO] = "undo", [ST_REDO] = "redo", [ST_REPLACE] = "replace"};
     return names[action];
 }

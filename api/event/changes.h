@@ -4,9 +4,9 @@
 #define HE_API_EVENT_CHANGES_H
 
 #include "api/json/json_out.h"
-#include "api/store.h"
 #include "mesh/delta.h"
 #include "op/op.h"
+#include "store/store.h"
 
 /* One object of `results`: {"op":"edge_split","vertex":17,"edges":[30,31,32]}. */
 void api_write_results(api_out *out, const he_op *op, const he_results *results);
@@ -16,9 +16,9 @@ void api_write_results(api_out *out, const he_op *op, const he_results *results)
 void api_write_changes(api_out *out, const he_changes *changes);
 
 /* How many of each, for the history; not known where the content was changed as a whole. */
-api_tally api_changes_tally(const he_changes *changes);
+st_tally api_changes_tally(const he_changes *changes);
 
 /* "edit", "undo", "redo", "replace". */
-const char *api_action_name(api_action action);
+const char *api_action_name(st_action action);
 
 #endif

@@ -3,7 +3,6 @@
 #include "api/event/changes.h"
 #include "api/event/event_values.h"
 #include "api/limits.h"
-#include "api/request/job_out.h"
 #include "format/text/number.h"
 
 #include <inttypes.h>
@@ -16,7 +15,7 @@ static void add_id(api_text *text, uint64_t incarnation, uint64_t revision)
     api_text_add_format(text, "id: %016" PRIx64 ".%" PRIu64 "\n", incarnation, revision);
 }
 
-static void add_event(api_text *text, const char *name, const api_text *data)
+void api_event_add(api_text *text, const char *name, const api_text *data)
 {
     api_text_add_format(text, "event: %s\ndata: ", name);
     api_text_add(text, data->bytes, data->length);
@@ -24,7 +23,7 @@ static void add_event(api_text *text, const char *name, const api_text *data)
     text->failed |= data->failed;
 }
 
-void api_event_begin(api_text *text, const api_mesh_info *info, bool place)
+void api_event_begin(api_text *text, const st_mesh_info *info, bool place)
 {
     api_text_add_format(text, "retry: %d\n", RETRY_MILLIS);
     if (place) {
@@ -43,11 +42,11 @@ void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, c
     api_out_key_string(&out, "reason", reason);
     api_out_object_end(&out);
     add_id(text, incarnation, revision);
-    add_event(text, "resync", &data);
+    api_event_add(text, "resync", &data);
     api_text_clear(&data);
 }
 
-void api_event_metadata(api_text *text, const api_mesh_info *info)
+void api_event_metadata(api_text *text, const st_mesh_info *info)
 {
     api_text data = {0};
     api_out out;
@@ -55,24 +54,7 @@ void api_event_metadata(api_text *text, const api_mesh_info *info)
     api_out_object_begin(&out);
     api_out_key_string(&out, "name", info->name);
     api_out_object_end(&out);
-    add_event(text, "metadata", &data);
-    api_text_clear(&data);
-}
-
-void api_event_job(api_text *text, const api_text *data)
-{
-    add_event(text, "job", data);
-}
-
-void api_event_job_state(api_text *text, const api_job *job)
-{
-    api_text data = {0};
-    api_out out;
-    api_out_init(&out, &data);
-    api_out_object_begin(&out);
-    api_write_job_state(&out, job);
-    api_out_object_end(&out);
-    add_event(text, "job", &data);
+    api_event_add(text, "metadata", &data);
     api_text_clear(&data);
 }
 
@@ -84,11 +66,11 @@ void api_event_bye(api_text *text, const char *reason)
     api_out_object_begin(&out);
     api_out_key_string(&out, "reason", reason);
     api_out_object_end(&out);
-    add_event(text, "bye", &data);
+    api_event_add(text, "bye", &data);
     api_text_clear(&data);
 }
 
-static void begin_edit(api_out *out, const api_mesh_info *info)
+static void begin_edit(api_out *out, const st_mesh_info *info)
 {
     api_out_object_begin(out);
     api_out_key_u64(out, "base", info->revision - 1);
@@ -96,7 +78,7 @@ static void begin_edit(api_out *out, const api_mesh_info *info)
 }
 
 /* False when it cannot be said: it would be too long, or memory is out. */
-static bool write_edit(api_text *data, const api_mesh_info *info, api_action action,
+static bool write_edit(api_text *data, const st_mesh_info *info, st_action action,
                        const he_mesh *content, const he_delta *delta, const he_changes *changes,
                        bool undone)
 {
@@ -112,7 +94,7 @@ static bool write_edit(api_text *data, const api_mesh_info *info, api_action act
     return !data->failed;
 }
 
-static void write_stale(api_text *data, const api_mesh_info *info)
+static void write_stale(api_text *data, const st_mesh_info *info)
 {
     api_out out;
     api_text_empty(data);
@@ -122,13 +104,13 @@ static void write_stale(api_text *data, const api_mesh_info *info)
     api_out_object_end(&out);
 }
 
-static void add_edit(api_text *text, const api_mesh_info *info, const api_text *data)
+static void add_edit(api_text *text, const st_mesh_info *info, const api_text *data)
 {
     add_id(text, info->incarnation, info->revision);
-    add_event(text, "edit", data);
+    api_event_add(text, "edit", data);
 }
 
-void api_event_stale(api_text *text, const api_mesh_info *info)
+void api_event_stale(api_text *text, const st_mesh_info *info)
 {
     api_text data = {0};
     write_stale(&data, info);
@@ -136,7 +118,7 @@ void api_event_stale(api_text *text, const api_mesh_info *info)
     api_text_clear(&data);
 }
 
-void api_event_edit(api_text *text, const api_mesh_info *info, api_action action,
+void api_event_edit(api_text *text, const st_mesh_info *info, st_action action,
                     const he_mesh *content, const he_delta *delta, bool undone)
 {
     api_text data = {.maximum = API_MAX_EVENT};
@@ -172,10 +154,10 @@ static bool read_hexadecimal(const char *text, size_t length, uint64_t *out)
     return true;
 }
 
-bool api_since_read(const char *text, api_since *out)
+bool api_since_read(const char *text, st_since *out)
 {
     enum { INCARNATION = 16 };
-    api_since since = {.given = true};
+    st_since since = {.given = true};
     const char *dot = strchr(text, '.');
     const char *number = dot == NULL ? text : dot + 1, *end = number + strlen(number);
     size_t used = 0;

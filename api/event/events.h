@@ -18,34 +18,33 @@
 #ifndef HE_API_EVENT_EVENTS_H
 #define HE_API_EVENT_EVENTS_H
 
-#include "api/job/jobs.h"
+#include "api/json/text.h"
+#include "store/followers.h"
 
 /* What is sent when nothing happens: a comment. */
 #define API_EVENT_IDLE ":\n\n"
 
 /* `place` is false where the stream does not begin at the present revision: then its first event
  * brings the id. */
-void api_event_begin(api_text *text, const api_mesh_info *info, bool place);
+void api_event_begin(api_text *text, const st_mesh_info *info, bool place);
 
 /* What made info->revision out of the one before: `content` is the mesh after it. A delta that
  * replaces the content becomes a resync. */
-void api_event_edit(api_text *text, const api_mesh_info *info, api_action action,
+void api_event_edit(api_text *text, const st_mesh_info *info, st_action action,
                     const he_mesh *content, const he_delta *delta, bool undone);
 /* The same of a revision that cannot be said. */
-void api_event_stale(api_text *text, const api_mesh_info *info);
-void api_event_metadata(api_text *text, const api_mesh_info *info);
+void api_event_stale(api_text *text, const st_mesh_info *info);
+void api_event_metadata(api_text *text, const st_mesh_info *info);
 /* Reasons: "replaced" (the content as a whole, or a compact), "gap" (neither the listener's speed
  * nor the history reach), "busy" (too many listeners are being brought forward), "incarnation" and
  * "future" (of what the client said it has). */
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
-/* A job, as GET shows it: `data`. */
-void api_event_job(api_text *text, const api_text *data);
-/* How a job is, for those who listen to its mesh. */
-void api_event_job_state(api_text *text, const api_job *job);
+/* A message of this name. */
+void api_event_add(api_text *text, const char *name, const api_text *data);
 /* Reasons: "deleted", "stopping", and of a job's stream "ended". */
 void api_event_bye(api_text *text, const char *reason);
 
 /* An id, or a bare revision. False when it is neither. */
-bool api_since_read(const char *text, api_since *out);
+bool api_since_read(const char *text, st_since *out);
 
 #endif

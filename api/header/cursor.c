@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* "vertices.INCARNATION.REVISION.POSITION", the incarnation in hexadecimal digits. */
-void api_cursor_write(const char *collection, const api_mesh_info *info, uint64_t position,
+void api_cursor_write(const char *collection, const st_mesh_info *info, uint64_t position,
                       char out[API_CURSOR])
 {
     snprintf(out, API_CURSOR, "%s.%016" PRIx64 ".%" PRIu64 ".%" PRIu64, collection,
@@ -48,14 +48,14 @@ static bool split(const char *text, parts *out)
            *at == '\0' && at[-1] != '.';
 }
 
-static bool is_of(const parts *cursor, const api_mesh_info *info)
+static bool is_of(const parts *cursor, const st_mesh_info *info)
 {
     char incarnation[DIGITS + 4];
     snprintf(incarnation, sizeof incarnation, "%016" PRIx64, info->incarnation);
     return memcmp(incarnation, cursor->incarnation, DIGITS) == 0;
 }
 
-bool api_cursor_pins(const char *text, const api_mesh_info *info, uint64_t *revision)
+bool api_cursor_pins(const char *text, const st_mesh_info *info, uint64_t *revision)
 {
     parts cursor;
     if (!split(text, &cursor) || !is_of(&cursor, info)) {
@@ -65,7 +65,7 @@ bool api_cursor_pins(const char *text, const api_mesh_info *info, uint64_t *revi
     return true;
 }
 
-bool api_cursor_read(const char *text, const char *collection, const api_mesh_info *info,
+bool api_cursor_read(const char *text, const char *collection, const st_mesh_info *info,
                      uint64_t *position, api_problem *problem)
 {
     parts cursor;

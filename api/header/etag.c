@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Without the C library's formats: nearly every answer has one. */
-static size_t write_state(const api_mesh_info *info, char out[API_ETAG])
+static size_t write_state(const st_mesh_info *info, char out[API_ETAG])
 {
     static const char digits[] = "0123456789abcdef";
     char *at = out;
@@ -23,7 +23,7 @@ static size_t write_state(const api_mesh_info *info, char out[API_ETAG])
     return (size_t)(at - out);
 }
 
-void api_etag_write(const api_mesh_info *info, const char *representation, char out[API_ETAG])
+void api_etag_write(const st_mesh_info *info, const char *representation, char out[API_ETAG])
 {
     enum { STATE = 1 + 16 + 1 + 20 + 1 + 20 + 1 };
     size_t used = write_state(info, out), length = strlen(representation);
@@ -89,7 +89,7 @@ bool api_etag_listed(const char *header, const char *etag, const api_codings *co
     return false;
 }
 
-bool api_etag_is_present(const char *header, const api_mesh_info *info)
+bool api_etag_is_present(const char *header, const st_mesh_info *info)
 {
     if (is_any(header)) {
         return true;

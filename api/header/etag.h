@@ -8,11 +8,11 @@
 #define HE_API_HEADER_ETAG_H
 
 #include "api/header/coding.h"
-#include "api/store.h"
+#include "store/store.h"
 
 enum { API_ETAG = 128 };
 
-void api_etag_write(const api_mesh_info *info, const char *representation, char out[API_ETAG]);
+void api_etag_write(const st_mesh_info *info, const char *representation, char out[API_ETAG]);
 
 /* The same of an answer with this content coding: "...-obj-gzip". */
 void api_etag_code(const char *etag, api_coding coding, char out[API_ETAG]);
@@ -24,6 +24,6 @@ bool api_etag_listed(const char *header, const char *etag, const api_codings *co
 
 /* If-Match of a write: does the list name the present state in any representation, or is it "*"?
  * A weak tag never matches. */
-bool api_etag_is_present(const char *header, const api_mesh_info *info);
+bool api_etag_is_present(const char *header, const st_mesh_info *info);
 
 #endif

@@ -1,7 +1,7 @@
 #include "api/header/path.h"
 
-#include "api/store.h"
 #include "base/utf8.h"
+#include "store/store.h"
 
 #include <string.h>
 
@@ -144,6 +144,6 @@ bool api_path_is_mesh_id(const char *text)
          c = text[length]) {
         length++;
     }
-    return length >= 1 && length <= API_MESH_ID && text[length] == '\0' && strcmp(text, ".") != 0 &&
+    return length >= 1 && length <= ST_MESH_ID && text[length] == '\0' && strcmp(text, ".") != 0 &&
            strcmp(text, "..") != 0;
 }

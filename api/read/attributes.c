@@ -197,8 +197,8 @@ static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *c
 /* --- as octets --- */
 
 typedef struct rows {
-    const api_store *store;
-    api_snapshot *snapshot;
+    st_store *store;
+    st_snapshot *snapshot;
     const he_column *column;
     uint64_t next, end; /* bytes */
 } rows;
@@ -206,7 +206,7 @@ typedef struct rows {
 static void free_rows(void *stream)
 {
     rows *r = stream;
-    r->store->snapshot_release(r->store->self, r->snapshot);
+    st_snapshot_release(r->snapshot);
     he_mem_free(r);
 }
 
@@ -248,7 +248,7 @@ static void answer_octets(api_exchange *x)
     if (done) {
         return;
     }
-    api_snapshot *snapshot = api_snapshot_of(x, &mesh);
+    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
     if (snapshot == NULL) {
         return;
     }
@@ -256,7 +256,7 @@ static void answer_octets(api_exchange *x)
     rows *r = NULL;
     if (column == NULL || api_not_modified(x, "octets") ||
         (r = he_mem_zero(1, sizeof *r)) == NULL) {
-        x->store->snapshot_release(x->store->self, snapshot);
+        st_snapshot_release(snapshot);
         if (column != NULL && !x->answered) {
             api_fail_memory(x);
         }

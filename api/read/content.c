@@ -10,8 +10,8 @@
 
 /* A snapshot with what writes it; freed with the exchange. */
 typedef struct content {
-    const api_store *store;
-    api_snapshot *snapshot;
+    st_store *store;
+    st_snapshot *snapshot;
     he_writer *writer;
     api_document_out *document;
 } content;
@@ -22,7 +22,7 @@ static void free_content(void *stream)
     he_writer_free(c->writer);
     api_document_out_free(c->document);
     if (c->snapshot != NULL) {
-        c->store->snapshot_release(c->store->self, c->snapshot);
+        st_snapshot_release(c->snapshot);
     }
     he_mem_free(c);
 }

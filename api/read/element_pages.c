@@ -67,8 +67,8 @@ static void answer_page(api_exchange *x)
 enum { LINES_BUFFER = 64 * 1024 };
 
 typedef struct lines {
-    const api_store *store;
-    api_snapshot *snapshot;
+    st_store *store;
+    st_snapshot *snapshot;
     const he_mesh *mesh;
     he_kind kind;
     uint64_t next;  /* id to look at */
@@ -81,7 +81,7 @@ typedef struct lines {
 static void free_lines(void *stream)
 {
     lines *l = stream;
-    l->store->snapshot_release(l->store->self, l->snapshot);
+    st_snapshot_release(l->snapshot);
     api_text_clear(&l->text);
     he_mem_free(l);
 }
@@ -138,13 +138,13 @@ static void answer_lines(api_exchange *x)
     if (api_not_modified_yet(x, "lines")) {
         return;
     }
-    api_snapshot *snapshot = api_snapshot_of(x, &mesh);
+    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
     if (snapshot == NULL) {
         return;
     }
     lines *l = NULL;
     if (api_not_modified(x, "lines") || (l = he_mem_zero(1, sizeof *l)) == NULL) {
-        x->store->snapshot_release(x->store->self, snapshot);
+        st_snapshot_release(snapshot);
         if (!x->answered) {
             api_fail_memory(x);
         }

@@ -1,18 +1,19 @@
 /* GET .../events: the changes of a mesh as they happen. */
 #include "api/request/handlers.h"
 
+#include "api/event/event_follow.h"
 #include "api/event/events.h"
 
 /* A browser that was cut off repeats its request with what it saw last, which is newer than the
  * `since` of the URL. An id that is none of ours is answered as one of another incarnation: a
  * refusal would end an EventSource for good. */
-static bool read_since(api_exchange *x, api_since *since)
+static bool read_since(api_exchange *x, st_since *since)
 {
     const char *last = api_header_of(x, "Last-Event-ID");
     const char *text = api_param_text(x, "since");
     if (last != NULL && last[0] != '\0') {
         if (!api_since_read(last, since)) {
-            *since = (api_since){.given = true, .has_incarnation = true};
+            *since = (st_since){.given = true, .has_incarnation = true};
         }
         return true;
     }
@@ -23,13 +24,13 @@ static bool read_since(api_exchange *x, api_since *since)
 
 void api_events_get(api_exchange *x)
 {
-    api_since since = {0};
+    st_since since = {0};
     api_source source;
     if (!read_since(x, &since)) {
         return;
     }
-    api_store_status status = x->store->follow(x->store->self, x->mesh, &since, &x->info, &source);
-    if (status != API_STORE_OK) {
+    st_status status = api_event_follow(x->mesh, &since, &x->service->backfills, &x->info, &source);
+    if (status != ST_OK) {
         api_fail_store(x, status);
         return;
     }

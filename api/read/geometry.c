@@ -8,6 +8,7 @@
 
 #include "api/read/geometry_rows.h"
 #include "geometry/long_faces_keep.h"
+#include "system/random.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -18,8 +19,8 @@ enum { ATTEMPTS = 3 };
 
 typedef struct geometry {
     api_exchange *x;
-    const api_store *store;
-    api_snapshot *snapshot;
+    st_store *store;
+    st_snapshot *snapshot;
     api_rows rows;
 } geometry;
 
@@ -36,7 +37,7 @@ static void free_geometry(void *stream)
     geometry *g = stream;
     api_rows_clear(&g->rows);
     if (g->snapshot != NULL) {
-        g->store->snapshot_release(g->store->self, g->snapshot);
+        st_snapshot_release(g->snapshot);
     }
     he_mem_free(g);
 }
@@ -64,7 +65,7 @@ static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_
     uint64_t records = 0;
     he_status status = HE_OK;
     for (uint64_t r = slots->revision + 1; r <= x->info.revision && status == HE_OK; r++) {
-        const he_delta *delta = x->store->revision_delta(x->store->self, x->mesh, r);
+        const he_delta *delta = st_revision_delta(x->mesh, r);
         records += delta == NULL ? 0 : delta->count + 1;
         if (delta == NULL) {
             status = he_fail_plain(err, HE_UNSUPPORTED, "the history does not reach back");
@@ -143,7 +144,7 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
     api_exchange *x = g->x;
     he_error err = {0};
     geometry_step outcome = MISSING;
-    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    st_derived *kept = st_derived_begin(x->mesh, ST_DERIVED_SLOTS);
     if (kept->value != NULL) {
         he_status status = bring_forward(x, kept->value, mesh, &err);
         if (status == HE_OK) {
@@ -157,19 +158,19 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
             outcome = fail(x, &err);
         }
     }
-    x->store->derived_end(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    st_derived_end(x->mesh, ST_DERIVED_SLOTS);
     return outcome;
 }
 
 /* Keep them, unless somebody was faster: then they are freed. */
 static bool keep(api_exchange *x, he_slots *slots)
 {
-    api_derived *kept = x->store->derived_begin(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    st_derived *kept = st_derived_begin(x->mesh, ST_DERIVED_SLOTS);
     bool first = kept->value == NULL;
     if (first) {
-        *kept = (api_derived){slots, free_slots};
+        *kept = (st_derived){slots, free_slots};
     }
-    x->store->derived_end(x->store->self, x->mesh, API_DERIVED_SLOTS);
+    st_derived_end(x->mesh, ST_DERIVED_SLOTS);
     if (!first) {
         he_slots_free(slots);
     }
@@ -187,7 +188,7 @@ static int64_t read_rows(void *stream, char *buffer, size_t size)
 static void answer_stream(api_exchange *x, geometry *g)
 {
     he_error err = {0};
-    const he_mesh *mesh = x->store->snapshot_content(g->snapshot, NULL);
+    const he_mesh *mesh = st_snapshot_content(g->snapshot, NULL);
     if ((g->rows.base == 0 && he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
         api_rows_draw(&g->rows, mesh, UINT64_MAX, &err) != HE_OK) {
         free_geometry(g);
@@ -228,20 +229,20 @@ static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
 static bool take_snapshot(geometry *g)
 {
     api_exchange *x = g->x;
-    api_store_status status = x->store->snapshot_held(x->store->self, x->mesh, &g->snapshot);
+    st_status status = st_snapshot_held(x->mesh, &g->snapshot);
     api_read_end(x);
-    return status == API_STORE_OK || api_fail_store(x, status);
+    return status == ST_OK || api_fail_store(x, status);
 }
 
 /* With a snapshot: slots of its revision. False when somebody else's are kept by now. */
 static bool make_slots(geometry *g, geometry_step *outcome)
 {
     api_exchange *x = g->x;
-    const he_mesh *mesh = x->store->snapshot_content(g->snapshot, NULL);
+    const he_mesh *mesh = st_snapshot_content(g->snapshot, NULL);
     he_error err = {0};
     he_slots *slots = NULL;
     /* A number that JSON's readers can hold. */
-    uint64_t layout = x->store->random(x->store->self) >> 11 | 1;
+    uint64_t layout = st_random() >> 11 | 1;
     if (he_slots_new(mesh, layout, x->info.revision, &slots, &err) != HE_OK) {
         *outcome = fail(x, &err);
         return true;

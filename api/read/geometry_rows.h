@@ -29,8 +29,8 @@
 #ifndef HE_API_READ_GEOMETRY_ROWS_H
 #define HE_API_READ_GEOMETRY_ROWS_H
 
-#include "api/store.h"
 #include "draw/slots.h"
+#include "store/store.h"
 
 enum { API_ROWS_AT_ONCE = 1024, API_ROW_BYTES = 16 };
 

@@ -27,7 +27,7 @@ static void write_tally(api_out *out, const char *key, const uint32_t counts[3])
     api_out_object_end(out);
 }
 
-static void write_entry(api_out *out, const api_entry *entry)
+static void write_entry(api_out *out, const st_entry *entry)
 {
     api_out_object_begin(out);
     api_out_key_u64(out, "revision", entry->revision);
@@ -54,16 +54,16 @@ typedef struct page {
 } page;
 
 /* The entry of a revision, unless it is after the page's last. */
-static bool find_entry(const api_exchange *x, const page *p, uint64_t revision, api_entry *out)
+static bool find_entry(const api_exchange *x, const page *p, uint64_t revision, st_entry *out)
 {
     return revision > p->last &&
-           x->store->history(x->store->self, x->mesh, (size_t)(x->info.revision - revision), out);
+           st_history_entry(x->mesh, (size_t)(x->info.revision - revision), out);
 }
 
 /* What is after the page's entries goes to `*next`, 0 at the end. */
 static void write_entries(api_exchange *x, const page *p, uint64_t *next)
 {
-    api_entry entry;
+    st_entry entry;
     uint64_t revision = p->first;
     bool more = find_entry(x, p, revision, &entry);
     api_out_key(&x->out, "entries");
@@ -96,8 +96,8 @@ static void write_history(api_exchange *x, const page *p)
 {
     api_out *out = &x->out;
     uint64_t next;
-    api_history history;
-    x->store->history_facts(x->store->self, x->mesh, &history);
+    st_history history;
+    st_history_reach(x->mesh, &history);
     api_out_object_begin(out);
     api_out_key_u64(out, "revision", x->info.revision);
     write_entries(x, p, &next);
@@ -114,7 +114,7 @@ static void write_history(api_exchange *x, const page *p)
 /* False when the cursor leads nowhere. */
 static bool read_cursor(api_exchange *x, const char *cursor, page *p)
 {
-    api_entry entry;
+    st_entry entry;
     p->first = x->info.revision;
     if (cursor == NULL) {
         return true;

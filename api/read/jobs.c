@@ -1,9 +1,7 @@
 /* GET and DELETE /v1/jobs: what has become of work that was answered 202. */
-#include "api/job/jobs.h"
-
 #include "api/event/events.h"
+#include "api/job/job_out.h"
 #include "api/request/handlers.h"
-#include "api/request/job_out.h"
 #include "format/text/number.h"
 
 #include <stdio.h>
@@ -22,8 +20,8 @@ static void show_whole(void *context, const api_job *job)
 
 void api_job_get(api_exchange *x)
 {
-    const api_jobs *jobs = x->service->options.jobs;
-    if (jobs == NULL || !jobs->find(jobs->self, x->job_id, show_whole, x)) {
+    api_job_table *jobs = x->service->options.jobs;
+    if (jobs == NULL || !api_job_find(jobs, x->job_id, show_whole, x)) {
         fail_absent(x);
         return;
     }
@@ -32,9 +30,9 @@ void api_job_get(api_exchange *x)
 
 void api_job_delete(api_exchange *x)
 {
-    const api_jobs *jobs = x->service->options.jobs;
+    api_job_table *jobs = x->service->options.jobs;
     bool forgotten = false;
-    if (jobs == NULL || !jobs->remove(jobs->self, x->job_id, &forgotten, show_whole, x)) {
+    if (jobs == NULL || !api_job_remove(jobs, x->job_id, &forgotten, show_whole, x)) {
         fail_absent(x);
     } else if (forgotten) {
         api_answer_empty(x, 204);
@@ -43,30 +41,14 @@ void api_job_delete(api_exchange *x)
     }
 }
 
-/* The result comes along where an event may be as large; it is always at the job itself. */
-static void write_event(const api_job *job, bool bye, api_text *text)
-{
-    api_text data = {0};
-    api_out out;
-    if (bye) {
-        api_event_bye(text, job->state >= API_JOB_DONE ? "ended" : "stopping");
-        return;
-    }
-    api_out_init(&out, &data);
-    api_write_job(&out, job, job->length <= API_MAX_EVENT);
-    api_event_job(text, &data);
-    api_text_clear(&data);
-}
-
 void api_job_events(api_exchange *x)
 {
-    const api_jobs *jobs = x->service->options.jobs;
+    api_job_table *jobs = x->service->options.jobs;
     api_source source;
-    api_store_status status =
-        jobs == NULL ? API_STORE_ABSENT : jobs->follow(jobs->self, x->job_id, write_event, &source);
-    if (status == API_STORE_ABSENT) {
+    st_status status = jobs == NULL ? ST_ABSENT : api_job_follow(jobs, x->job_id, &source);
+    if (status == ST_ABSENT) {
         fail_absent(x);
-    } else if (status != API_STORE_OK) {
+    } else if (status != ST_OK) {
         api_fail_store(x, status);
     } else {
         api_answer_live(x, 200, "text/event-stream", &source, API_EVENT_IDLE);
@@ -106,7 +88,7 @@ static bool read_cursor(api_exchange *x, uint64_t *after)
 
 void api_jobs_list(api_exchange *x)
 {
-    const api_jobs *jobs = x->service->options.jobs;
+    api_job_table *jobs = x->service->options.jobs;
     size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_JOBS);
     page p = {.out = &x->out};
     uint64_t after;
@@ -116,7 +98,7 @@ void api_jobs_list(api_exchange *x)
     api_out_object_begin(&x->out);
     api_out_key(&x->out, "items");
     api_out_array_begin(&x->out);
-    bool more = jobs != NULL && jobs->list(jobs->self, after, limit, show_brief, &p);
+    bool more = jobs != NULL && api_job_list(jobs, after, limit, show_brief, &p);
     api_out_array_end(&x->out);
     api_out_key(&x->out, "next");
     if (more) {

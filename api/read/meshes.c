@@ -3,6 +3,7 @@
 #include "api/request/handlers.h"
 
 #include "api/document/summary.h"
+#include "store/followers.h"
 
 #include <string.h>
 
@@ -22,22 +23,22 @@ static bool read_list_cursor(api_exchange *x, const char **after)
 }
 
 /* One item, with what is known of the mesh in `info`. */
-static void write_item(api_exchange *x, api_mesh *mesh, api_mesh_info *info)
+static void write_item(api_exchange *x, st_mesh *mesh, st_mesh_info *info)
 {
-    const he_mesh *content = x->store->read_begin(x->store->self, mesh, info);
+    const he_mesh *content = st_read_begin(mesh, info);
     if (!info->removed) {
         api_out_object_begin(&x->out);
         api_write_brief(&x->out, info, content);
         api_out_object_end(&x->out);
     }
-    x->store->read_end(x->store->self, mesh);
+    st_read_end(mesh);
 }
 
 /* Of the whole server: it is here that a client sees what to delete. */
 static void write_server(api_exchange *x)
 {
     uint64_t used, budget;
-    api_out_key_u64(&x->out, "listeners", x->store->listeners(x->store->self));
+    api_out_key_u64(&x->out, "listeners", st_listeners(x->store));
     if (x->service->options.memory != NULL) {
         x->service->options.memory(&used, &budget);
         api_out_key_u64(&x->out, "memory_bytes", used);
@@ -52,14 +53,14 @@ void api_meshes_list(api_exchange *x)
     if (!read_list_cursor(x, &after)) {
         return;
     }
-    api_mesh **meshes = api_arena_array(&x->arena, limit + 1, sizeof(api_mesh *));
+    st_mesh **meshes = api_arena_array(&x->arena, limit + 1, sizeof(st_mesh *));
     if (meshes == NULL) {
         api_fail_memory(x);
         return;
     }
     /* One more than asked tells whether there is a next page. */
-    size_t count = x->store->list(x->store->self, after, meshes, limit + 1);
-    api_mesh_info info = {.id = ""};
+    size_t count = st_list(x->store, after, meshes, limit + 1);
+    st_mesh_info info = {.id = ""};
     api_out *out = &x->out;
     api_out_object_begin(out);
     api_out_key(out, "items");
@@ -68,12 +69,12 @@ void api_meshes_list(api_exchange *x)
         if (i < limit) {
             write_item(x, meshes[i], &info);
         }
-        x->store->release(x->store->self, meshes[i]);
+        st_release(meshes[i]);
     }
     api_out_array_end(out);
     api_out_key(out, "next");
     if (count > limit) {
-        char cursor[API_MESH_ID + 2] = "m";
+        char cursor[ST_MESH_ID + 2] = "m";
         memcpy(cursor + 1, info.id, sizeof info.id);
         api_out_string(out, cursor);
         api_answer_header_format(x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"", limit,
@@ -103,7 +104,7 @@ void api_mesh_patch(api_exchange *x)
     }
     if (api_in_find(&x->root, "name", &member)) {
         name = "";
-        if (!api_in_is_null(&member) && !api_in_string(&member, API_MESH_NAME, &name)) {
+        if (!api_in_is_null(&member) && !api_in_string(&member, ST_MESH_NAME, &name)) {
             return;
         }
     }
@@ -112,9 +113,9 @@ void api_mesh_patch(api_exchange *x)
         return;
     }
     if (name != NULL && strcmp(name, x->info.name) != 0) {
-        x->store->rename(x->store->self, x->mesh, name, &x->info);
+        st_write_rename(x->mesh, name, &x->info);
     }
-    x->store->write_end(x->store->self, x->mesh);
+    st_write_end(x->mesh);
     api_publish(x, 204);
     api_answer_etag(x, "summary");
     if (!api_answer_minimal(x)) {
@@ -129,9 +130,9 @@ void api_mesh_delete(api_exchange *x)
     if (api_write_begin(x, NULL, &delta) == NULL) {
         return;
     }
-    api_store_status status = x->store->remove(x->store->self, x->mesh, &x->info);
-    x->store->write_end(x->store->self, x->mesh);
-    if (status == API_STORE_OK) {
+    st_status status = st_remove(x->mesh, &x->info);
+    st_write_end(x->mesh);
+    if (status == ST_OK) {
         api_answer_empty(x, 204);
     } else {
         api_fail_store(x, status);
@@ -155,7 +156,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
         return false;
     }
     if (api_in_find(&x->root, "id", &member)) {
-        if (!api_in_string(&member, API_MESH_ID, &r->id)) {
+        if (!api_in_string(&member, ST_MESH_ID, &r->id)) {
             return false;
         }
         if (!api_path_is_mesh_id(r->id)) {
@@ -163,7 +164,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
         }
     }
     return !api_in_find(&x->root, "name", &member) ||
-           api_in_string(&member, API_MESH_NAME, &r->name);
+           api_in_string(&member, ST_MESH_NAME, &r->name);
 }
 
 /* Of making the copy; what is left is its summary's. */
@@ -173,12 +174,12 @@ static void copy(api_exchange *x)
 {
     const copy_request *r = x->state;
     const he_mesh *content;
-    api_snapshot *snapshot = api_snapshot_of(x, &content);
+    st_snapshot *snapshot = api_snapshot_of(x, &content);
     if (snapshot == NULL) {
         return;
     }
     he_mesh *fresh = NULL;
-    api_mesh *made = NULL;
+    st_mesh *made = NULL;
     api_summary summary;
     he_error err = {0};
     he_watch_span(&x->watch, COPY_SHARE);
@@ -186,7 +187,7 @@ static void copy(api_exchange *x)
         he_mesh_copy_watched(content, &x->watch, &fresh, &err) != HE_OK) {
         api_fail_core(x, &err);
     }
-    x->store->snapshot_release(x->store->self, snapshot);
+    st_snapshot_release(snapshot);
     if (fresh == NULL) {
         return;
     }
@@ -196,14 +197,14 @@ static void copy(api_exchange *x)
         return;
     }
     he_mesh_watch(fresh, NULL);
-    api_store_status stored = x->store->create(
-        x->store->self, r->id, r->name != NULL ? r->name : x->info.name, fresh, x->claim, &made);
-    if (stored != API_STORE_OK) {
+    st_status stored = st_create(x->store, r->id, r->name != NULL ? r->name : x->info.name, fresh,
+                                 x->claim, &made);
+    if (stored != ST_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);
         return;
     }
-    x->store->release(x->store->self, x->mesh);
+    st_release(x->mesh);
     x->mesh = made;
     api_answer_created(x, &summary, NULL);
 }

@@ -5,8 +5,8 @@
  * be sent. */
 #include "api/request/handlers.h"
 
-#include "api/header/hash.h"
 #include "api/read/progressive_rows.h"
+#include "base/siphash.h"
 #include "geometry/geometry.h"
 
 #include <inttypes.h>
@@ -41,13 +41,13 @@ static void name_representation(api_exchange *x, char out[REPRESENTATION])
     const he_decimate_options options = options_of(x);
     const uint64_t splits = api_param_u64(x, "splits", HE_MAX_ROWS);
     uint64_t sum[2];
-    api_hash hash;
-    api_hash_begin(&hash, key);
-    api_hash_add(&hash, &options.faces, sizeof options.faces);
-    api_hash_add(&hash, &options.max_error, sizeof options.max_error);
-    api_hash_add(&hash, &options.boundary_weight, sizeof options.boundary_weight);
-    api_hash_add(&hash, &splits, sizeof splits);
-    api_hash_end(&hash, sum);
+    he_siphash hash;
+    he_siphash_begin(&hash, key);
+    he_siphash_add(&hash, &options.faces, sizeof options.faces);
+    he_siphash_add(&hash, &options.max_error, sizeof options.max_error);
+    he_siphash_add(&hash, &options.boundary_weight, sizeof options.boundary_weight);
+    he_siphash_add(&hash, &splits, sizeof splits);
+    he_siphash_end(&hash, sum);
     snprintf(out, REPRESENTATION, "progressive-%016" PRIx64, sum[0]);
 }
 
@@ -80,7 +80,7 @@ void api_progressive_get(api_exchange *x)
     if (api_not_modified_yet(x, representation)) {
         return;
     }
-    api_snapshot *snapshot = api_snapshot_of(x, &mesh);
+    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
     if (snapshot == NULL) {
         return;
     }
@@ -95,5 +95,5 @@ void api_progressive_get(api_exchange *x)
             free_progressive(p);
         }
     }
-    x->store->snapshot_release(x->store->self, snapshot);
+    st_snapshot_release(snapshot);
 }

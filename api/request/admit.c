@@ -179,13 +179,12 @@ static bool find_mesh(api_exchange *x)
     if (x->mesh_id == NULL) {
         return true;
     }
-    api_store_status status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
-    if (status == API_STORE_OK) {
+    st_status status = st_find(x->store, x->mesh_id, &x->mesh);
+    if (status == ST_OK) {
         return true;
     }
     x->mesh = NULL;
-    return (status == API_STORE_ABSENT && (x->route->flags & API_MAY_CREATE)) ||
-           api_fail_store(x, status);
+    return (status == ST_ABSENT && (x->route->flags & API_MAY_CREATE)) || api_fail_store(x, status);
 }
 
 uint64_t api_body_cap(const api_exchange *x)

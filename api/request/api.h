@@ -24,10 +24,10 @@
 #ifndef HE_API_REQUEST_API_H
 #define HE_API_REQUEST_API_H
 
-#include "api/job/jobs.h"
+#include "api/job/job_table.h"
 #include "api/live.h"
-#include "api/store.h"
 #include "base/exec.h"
+#include "system/thread_pool.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -56,11 +56,11 @@ typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
 
 /* What api_work or a job is about to do, so that its host can choose when. */
 typedef struct api_load {
-    bool reads;             /* it changes nothing */
-    double seconds;         /* about how long it takes; far too little for some */
-    const char *mesh;       /* id of the mesh it is about, "" where there is none */
-    struct api_mesh *about; /* that mesh, held by the exchange; NULL while there is none */
-    bool claims;            /* the exchange has claimed it: see api_store.claim */
+    bool reads;       /* it changes nothing */
+    double seconds;   /* about how long it takes; far too little for some */
+    const char *mesh; /* id of the mesh it is about, "" where there is none */
+    st_mesh *about;   /* that mesh, held by the exchange; NULL while there is none */
+    bool claims;      /* the exchange has claimed it: see st_claim */
 } api_load;
 
 enum { API_ANSWER_HEADERS = 16 };
@@ -85,9 +85,9 @@ typedef struct api_answer {
     const api_source *live;
     const char *idle;
     bool close; /* the connection must not be used again */
-    /* Hold the answer until this mesh is durable up to this record (api_mesh_info); mesh NULL: do
+    /* Hold the answer until this mesh is durable up to this record (st_mesh_info); mesh NULL: do
      * not. */
-    api_mesh *mesh;
+    st_mesh *mesh;
     uint64_t record;
     const char *route; /* template for logs and metrics, "-" when none matched */
 } api_answer;
@@ -107,13 +107,14 @@ typedef struct api_options {
     /* Bytes the process holds by its own count, and how many it may hold, 0 for as many as there
      * are; NULL: not told. */
     void (*memory)(uint64_t *used, uint64_t *budget);
-    const api_jobs *jobs; /* NULL: nothing becomes a job, and no route shows any */
-    bool plain_answers;   /* never coded, whatever a client accepts */
-    const he_exec *exec;  /* threads for parts of large work; NULL: none */
+    api_job_table *jobs; /* NULL: nothing becomes a job, and no route shows any */
+    bool plain_answers;  /* never coded, whatever a client accepts */
+    const he_exec *exec; /* threads for parts of large work; NULL: none */
+    st_pool *pool;       /* brings listeners forward from the history; NULL: they fetch anew */
 } api_options;
 
 /* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */
-api_service *api_service_new(const api_store *store, const api_options *options);
+api_service *api_service_new(st_store *store, const api_options *options);
 void api_service_free(api_service *service);
 
 /* NULL when memory is out. `request` is copied, but for its header callback. */

@@ -121,36 +121,36 @@ bool api_fail_path(api_exchange *x, const he_error *err)
     return api_problem_set_path(&x->problem, err);
 }
 
-bool api_fail_store(api_exchange *x, api_store_status status)
+bool api_fail_store(api_exchange *x, st_status status)
 {
     switch (status) {
-    case API_STORE_OK:
+    case ST_OK:
         break;
-    case API_STORE_ABSENT:
+    case ST_ABSENT:
         return api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"",
                         x->mesh_id == NULL ? "" : x->mesh_id);
-    case API_STORE_TAKEN:
+    case ST_TAKEN:
         return api_fail(x, API_MESH_EXISTS, "the id is that of another mesh");
-    case API_STORE_NO_MEMORY:
+    case ST_NO_MEMORY:
         return api_fail_memory(x);
-    case API_STORE_BUDGET:
+    case ST_BUDGET:
         return api_fail(x, API_MEMORY_BUDGET, "the mesh does not fit the memory budget");
-    case API_STORE_TOO_MANY:
+    case ST_TOO_MANY:
         return api_fail(x, API_TOO_MANY_MESHES, "the server holds as many meshes as it may");
-    case API_STORE_BUSY:
+    case ST_BUSY:
         return x->info.job[0] == '\0'
                    ? api_fail(x, API_MESH_BUSY, "a long operation changes the mesh")
                    : api_fail(x, API_MESH_BUSY, "job %s changes the mesh: see /v1/jobs/%s",
                               x->info.job, x->info.job);
-    case API_STORE_NOTHING:
+    case ST_NOTHING:
         return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
-    case API_STORE_LISTENERS:
+    case ST_LISTENERS:
         return api_fail(x, API_OVERLOADED, "as many clients listen as may");
-    case API_STORE_AHEAD:
+    case ST_AHEAD:
         return api_fail(x, API_NO_SUCH_REVISION, "the revision is still to come");
-    case API_STORE_GONE:
+    case ST_GONE:
         return api_fail(x, API_REVISION_GONE, "the history does not reach back to the revision");
-    case API_STORE_ELSEWHERE:
+    case ST_ELSEWHERE:
         return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
     }
     return api_fail(x, API_INTERNAL, "the store refused without a reason");
@@ -175,16 +175,16 @@ const he_mesh *api_read_begin(api_exchange *x)
 {
     uint64_t revision;
     if (x->past != NULL) {
-        return x->store->snapshot_content(x->past, &x->info);
+        return st_snapshot_content(x->past, &x->info);
     }
-    const he_mesh *mesh = x->store->read_begin(x->store->self, x->mesh, &x->info);
+    const he_mesh *mesh = st_read_begin(x->mesh, &x->info);
     if (x->info.removed) {
-        x->store->read_end(x->store->self, x->mesh);
-        api_fail_store(x, API_STORE_ABSENT);
+        st_read_end(x->mesh);
+        api_fail_store(x, ST_ABSENT);
         return NULL;
     }
     if (api_past_wanted(x, &revision)) {
-        x->store->read_end(x->store->self, x->mesh);
+        st_read_end(x->mesh);
         return api_past_begin(x, revision) ? api_read_begin(x) : NULL;
     }
     x->has_info = true;
@@ -194,7 +194,7 @@ const he_mesh *api_read_begin(api_exchange *x)
 void api_read_end(api_exchange *x)
 {
     if (x->past == NULL) {
-        x->store->read_end(x->store->self, x->mesh);
+        st_read_end(x->mesh);
     }
 }
 
@@ -232,40 +232,40 @@ he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **del
     if (expected != NULL && !api_in_u64(expected, 1, (uint64_t)1 << 53, &revision)) {
         return NULL;
     }
-    he_mesh *mesh = x->store->write_begin(x->store->self, x->mesh, &x->info, delta);
+    he_mesh *mesh = st_write_begin(x->mesh, &x->info, delta);
     if (mesh == NULL) {
         api_fail_memory(x);
         return NULL;
     }
     /* A refusal, too, shows the state it was found in. */
     x->has_info = !x->info.removed;
-    bool good = x->has_info || api_fail_store(x, API_STORE_ABSENT);
+    bool good = x->has_info || api_fail_store(x, ST_ABSENT);
     if (good && x->info.busy && !(x->route->flags & API_INTERRUPTS)) {
-        good = api_fail_store(x, API_STORE_BUSY);
+        good = api_fail_store(x, ST_BUSY);
     }
     if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
         if (x->claim != NULL) {
-            x->store->write_keyed(x->store->self, x->mesh, x->claim);
+            st_write_keyed(x->mesh, x->claim);
         }
         return mesh;
     }
-    x->store->write_end(x->store->self, x->mesh);
+    st_write_end(x->mesh);
     return NULL;
 }
 
 /* Of the present, with x->info; NULL with the problem filled. */
-static api_snapshot *present_snapshot(api_exchange *x)
+static st_snapshot *present_snapshot(api_exchange *x)
 {
-    api_snapshot *snapshot = NULL;
-    api_store_status status = x->store->snapshot(x->store->self, x->mesh, &snapshot);
-    if (status != API_STORE_OK) {
+    st_snapshot *snapshot = NULL;
+    st_status status = st_snapshot_take(x->mesh, &snapshot);
+    if (status != ST_OK) {
         api_fail_store(x, status);
         return NULL;
     }
-    x->store->snapshot_content(snapshot, &x->info);
+    st_snapshot_content(snapshot, &x->info);
     if (x->info.removed) {
-        x->store->snapshot_release(x->store->self, snapshot);
-        api_fail_store(x, API_STORE_ABSENT);
+        st_snapshot_release(snapshot);
+        api_fail_store(x, ST_ABSENT);
         return NULL;
     }
     return snapshot;
@@ -283,9 +283,9 @@ static bool is_past(api_exchange *x)
     return x->past != NULL;
 }
 
-api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
+st_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
 {
-    api_snapshot *snapshot = NULL;
+    st_snapshot *snapshot = NULL;
     uint64_t revision;
     if (!is_past(x)) {
         if (x->problem.code != HE_OK || x->deferred != NULL) {
@@ -297,7 +297,7 @@ api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
         }
         /* It may have moved on in between. */
         if (api_past_wanted(x, &revision)) {
-            x->store->snapshot_release(x->store->self, snapshot);
+            st_snapshot_release(snapshot);
             snapshot = NULL;
             if (!api_past_begin(x, revision)) {
                 return NULL;
@@ -309,7 +309,7 @@ api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
         x->past = NULL;
     }
     x->has_info = true;
-    *content = x->store->snapshot_content(snapshot, &x->info);
+    *content = st_snapshot_content(snapshot, &x->info);
     return snapshot;
 }
 

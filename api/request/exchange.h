@@ -23,9 +23,9 @@
 #ifndef HE_API_REQUEST_EXCHANGE_H
 #define HE_API_REQUEST_EXCHANGE_H
 
+#include "api/event/event_backfill.h"
 #include "api/header/cursor.h"
 #include "api/header/etag.h"
-#include "api/header/hash.h"
 #include "api/header/media.h"
 #include "api/header/pack.h"
 #include "api/header/prefer.h"
@@ -35,10 +35,12 @@
 #include "api/limits.h"
 #include "api/request/api.h"
 #include "api/request/routes.h"
+#include "base/siphash.h"
 
 struct api_service {
-    const api_store *store;
+    st_store *store;
     api_options options;
+    api_backfills backfills;
     api_unpack_room unpacking; /* of the decoders of bodies that are arriving */
 };
 
@@ -51,7 +53,7 @@ enum { API_KEPT_HEADERS = 2 };
 
 struct api_exchange {
     api_service *service;
-    const api_store *store;
+    st_store *store;
     api_arena arena;
     api_phase phase;
 
@@ -72,8 +74,8 @@ struct api_exchange {
     api_prefer prefer;
     char allow[API_ALLOW]; /* methods of a path that does not take this one */
     const char *key;       /* Idempotency-Key, NULL without one or where the row takes none */
-    api_hash hash;         /* of a keyed request */
-    api_claim *claim;      /* on the key; NULL: none, or it was settled */
+    he_siphash hash;       /* of a keyed request */
+    st_keyed *claim;       /* on the key; NULL: none, or it was settled */
     api_coding coding_in;  /* of the body */
     api_codings codings;   /* the answer may have */
 
@@ -88,11 +90,11 @@ struct api_exchange {
     api_items ops; /* of an edit list, in `body` */
 
     /* --- the mesh --- */
-    api_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
-    api_mesh_info info; /* filled by read_begin, write_begin and what the handler passes on */
+    st_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
+    st_mesh_info info; /* filled by read_begin, write_begin and what the handler passes on */
     bool has_info;
-    bool claimed;       /* x->mesh is, by this exchange: see api_store.claim */
-    api_snapshot *past; /* the earlier revision the request is about; NULL: the present, or taken */
+    bool claimed;      /* x->mesh is, by this exchange: see st_claim */
+    st_snapshot *past; /* the earlier revision the request is about; NULL: the present, or taken */
 
     /* --- the handler's own, freed by `free_state` with the exchange --- */
     void *state;
@@ -147,7 +149,7 @@ bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
 /* An immutable copy of the present revision, or of the one api_read_begin would give, with x->info
  * filled; 404, 410, 507 or no problem on NULL. Released by the caller through the store. Not on a
  * worker thread for large meshes: see api_defer. */
-api_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content);
+st_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content);
 
 /* If-None-Match: * or If-Match while the mesh of a PUT is absent. */
 bool api_precondition_absent(api_exchange *x);
@@ -209,7 +211,7 @@ bool api_fail(api_exchange *x, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 bool api_fail_core(api_exchange *x, const he_error *err); /* about the body */
 bool api_fail_path(api_exchange *x, const he_error *err); /* about the path */
-bool api_fail_store(api_exchange *x, api_store_status status);
+bool api_fail_store(api_exchange *x, st_status status);
 bool api_fail_memory(api_exchange *x);
 /* Accept allows none of what the route answers with. */
 bool api_fail_accept(api_exchange *x);

@@ -3,9 +3,9 @@
 #include <string.h>
 
 /* With the 0 at its end, so that texts do not run together. */
-static void add_text(api_hash *hash, const char *text)
+static void add_text(he_siphash *hash, const char *text)
 {
-    api_hash_add(hash, text == NULL ? "" : text, (text == NULL ? 0 : strlen(text)) + 1);
+    he_siphash_add(hash, text == NULL ? "" : text, (text == NULL ? 0 : strlen(text)) + 1);
 }
 
 bool api_keyed_begin(api_exchange *x)
@@ -29,7 +29,7 @@ bool api_keyed_begin(api_exchange *x)
     if (x->key == NULL) {
         return api_fail_memory(x);
     }
-    api_hash_begin(&x->hash, x->store->secret);
+    he_siphash_begin(&x->hash, st_secret(x->store));
     add_text(&x->hash, x->request.method);
     add_text(&x->hash, x->request.path);
     add_text(&x->hash, x->request.query);
@@ -40,36 +40,36 @@ bool api_keyed_begin(api_exchange *x)
 void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
 {
     if (x->key != NULL) {
-        api_hash_add(&x->hash, bytes, length);
+        he_siphash_add(&x->hash, bytes, length);
     }
 }
 
 /* Hold the answer until what it shows is durable. A mesh that is gone shows nothing. */
-static void find_shown(api_exchange *x, const api_kept *kept)
+static void find_shown(api_exchange *x, const st_kept *kept)
 {
-    api_mesh_info info = {.incarnation = 0};
+    st_mesh_info info = {.incarnation = 0};
     if (x->mesh != NULL && !(x->route->flags & API_KEYED_NEW)) {
         x->info.record = kept->record;
         x->has_info = true;
         return;
     }
     if (x->mesh != NULL) {
-        x->store->release(x->store->self, x->mesh);
+        st_release(x->mesh);
         x->mesh = NULL;
     }
-    if (x->store->find(x->store->self, kept->id, &x->mesh) != API_STORE_OK) {
+    if (st_find(x->store, kept->id, &x->mesh) != ST_OK) {
         x->mesh = NULL;
         return;
     }
-    x->store->read_begin(x->store->self, x->mesh, &info);
-    x->store->read_end(x->store->self, x->mesh);
+    st_read_begin(x->mesh, &info);
+    st_read_end(x->mesh);
     x->has_info = info.incarnation == kept->incarnation;
     x->info.record = kept->record;
 }
 
 static void replay(api_exchange *x)
 {
-    const api_kept *kept = x->store->kept(x->claim);
+    const st_kept *kept = st_keyed_answer(x->claim);
     find_shown(x, kept);
     api_answer_header(x, "Idempotency-Replayed", "true");
     if (kept->etag[0] != '\0') {
@@ -90,22 +90,22 @@ bool api_keyed_claim(api_exchange *x)
     if (x->key == NULL) {
         return true;
     }
-    api_key key = {.text = x->key};
-    api_hash_end(&x->hash, key.digest);
-    api_mesh *mesh = x->route->flags & API_KEYED_NEW ? NULL : x->mesh;
-    switch (x->store->claim_key(x->store->self, mesh, &key, &x->claim)) {
-    case API_CLAIM_NEW:
+    st_key key = {.text = x->key};
+    he_siphash_end(&x->hash, key.digest);
+    st_mesh *mesh = x->route->flags & API_KEYED_NEW ? NULL : x->mesh;
+    switch (st_keyed_begin(x->store, mesh, &key, &x->claim)) {
+    case ST_KEYED_NEW:
         return true;
-    case API_CLAIM_KEPT:
+    case ST_KEYED_KEPT:
         replay(x);
         return false;
-    case API_CLAIM_BUSY:
+    case ST_KEYED_BUSY:
         return api_fail(x, API_IDEMPOTENCY_BUSY, "the request with the key \"%.100s\" is under way",
                         x->key);
-    case API_CLAIM_OTHER:
+    case ST_KEYED_OTHER:
         return api_fail(x, API_IDEMPOTENCY_MISMATCH, "the key \"%.100s\" is of another request",
                         x->key);
-    case API_CLAIM_NO_MEMORY:
+    case ST_KEYED_NO_MEMORY:
         break;
     }
     return api_fail_memory(x);
@@ -124,23 +124,23 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
 void api_keyed_settle(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
-    if (x->claim == NULL || x->store->kept(x->claim)->status != 0) {
+    if (x->claim == NULL || st_keyed_answer(x->claim)->status != 0) {
         return; /* without a key, or a replay, whose answer is lent until the end */
     }
     if (answer->status < 300) {
-        api_kept kept = {.status = answer->status,
-                         .changed = x->published != 0,
-                         .incarnation = x->info.incarnation,
-                         .record = x->info.record,
-                         .body = answer->bytes,
-                         .length = (size_t)answer->length};
+        st_kept kept = {.status = answer->status,
+                        .changed = x->published != 0,
+                        .incarnation = x->info.incarnation,
+                        .record = x->info.record,
+                        .body = answer->bytes,
+                        .length = (size_t)answer->length};
         const char *etag = header_of_answer(x, "ETag");
         if (strlen(etag) < sizeof kept.etag) {
             memcpy(kept.etag, etag, strlen(etag) + 1);
         }
         memcpy(kept.id, x->info.id, sizeof kept.id);
-        x->store->keep(x->store->self, x->claim, &kept);
+        st_keyed_keep(x->claim, &kept);
     }
-    x->store->claim_end(x->store->self, x->claim);
+    st_keyed_end(x->claim);
     x->claim = NULL;
 }

@@ -32,13 +32,13 @@ bool api_past_wanted(api_exchange *x, uint64_t *revision)
     return (asked != 0 || pinned != 0) && *revision != present;
 }
 
-static bool refuse(api_exchange *x, api_store_status status, uint64_t revision, uint64_t present)
+static bool refuse(api_exchange *x, st_status status, uint64_t revision, uint64_t present)
 {
-    if (status == API_STORE_AHEAD) {
+    if (status == ST_AHEAD) {
         return api_fail(x, API_NO_SUCH_REVISION, "the mesh is at revision %llu, before %llu",
                         (unsigned long long)present, (unsigned long long)revision);
     }
-    if (status == API_STORE_GONE) {
+    if (status == ST_GONE) {
         return api_fail(x, API_REVISION_GONE, "the history does not reach back to revision %llu",
                         (unsigned long long)revision);
     }
@@ -53,16 +53,16 @@ bool api_past_begin(api_exchange *x, uint64_t revision)
     }
     uint64_t present = x->info.revision;
     if (revision > present) {
-        return refuse(x, API_STORE_AHEAD, revision, present);
+        return refuse(x, ST_AHEAD, revision, present);
     }
     if (x->phase == API_PHASE_BODY) {
         api_defer(x, x->route->run);
         return false;
     }
-    api_store_status status = x->store->snapshot_at(x->store->self, x->mesh, revision, &x->past);
-    if (status != API_STORE_OK) {
+    st_status status = st_snapshot_at(x->mesh, revision, &x->past);
+    if (status != ST_OK) {
         return refuse(x, status, revision, present);
     }
-    x->store->snapshot_content(x->past, &x->info);
+    st_snapshot_content(x->past, &x->info);
     return true;
 }

@@ -1,21 +1,22 @@
 #include "api/request/api.h"
 
+#include "api/job/job_out.h"
 #include "api/request/admit.h"
 #include "api/request/coded.h"
-#include "api/request/job_out.h"
 #include "api/request/keyed.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
-api_service *api_service_new(const api_store *store, const api_options *options)
+api_service *api_service_new(st_store *store, const api_options *options)
 {
     api_in_setup();
     api_service *service = he_mem_zero(1, sizeof *service);
     if (service != NULL) {
         service->store = store;
         service->options = *options;
+        service->backfills.pool = options->pool;
         if (service->options.max_upload == 0) {
             service->options.max_upload = API_DEFAULT_UPLOAD;
         }
@@ -117,7 +118,7 @@ static bool varies(const api_route *route)
 static void end_claim(api_exchange *x)
 {
     if (x->claimed) {
-        x->store->unclaim(x->store->self, x->mesh);
+        st_unclaim(x->mesh);
         x->claimed = false;
     }
 }
@@ -251,9 +252,9 @@ api_load api_load_of(const api_exchange *x)
     const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
     uint64_t amount = x->received;
     if (x->mesh != NULL) {
-        api_mesh_info info;
-        amount += api_elements_of(x->store->read_begin(x->store->self, x->mesh, &info));
-        x->store->read_end(x->store->self, x->mesh);
+        st_mesh_info info;
+        amount += api_elements_of(st_read_begin(x->mesh, &info));
+        st_read_end(x->mesh);
     }
     double seconds = (double)amount / API_EDIT_PER_SECOND;
     return (api_load){.reads = !(x->route->flags & API_WRITES),
@@ -285,9 +286,45 @@ static api_exchange *exchange_new(api_service *service, const api_request *reque
     return x;
 }
 
+static void answer_job(api_exchange *x, const api_job *job)
+{
+    api_write_job(&x->out, job, true);
+    api_answer_header_format(x, "Location", "/v1/jobs/%s", job->id);
+    if (x->prefer.respond_async) {
+        api_answer_header(x, "Preference-Applied", "respond-async");
+    }
+    api_answer_json(x, 202);
+}
+
+/* The exchange as the table of jobs works on it. */
+static void run_job(void *self, api_job_progress *progress, void *context, api_job_outcome *out)
+{
+    api_exchange *x = self;
+    api_watch(x, progress, context);
+    api_work(x);
+    const api_answer *answer = api_answer_of(x);
+    out->status = answer->status;
+    for (size_t i = 0; i < answer->header_count; i++) {
+        if (strcmp(answer->headers[i].name, "Location") == 0) {
+            out->location = answer->headers[i].value;
+        }
+    }
+    if (answer->read == NULL && answer->length > 0) {
+        out->body = answer->bytes;
+        out->length = (size_t)answer->length;
+    }
+    out->mesh = answer->mesh;
+    out->record = answer->record;
+}
+
+static void free_job(void *self)
+{
+    api_free(self);
+}
+
 api_exchange *api_detach(api_exchange *x)
 {
-    const api_jobs *jobs = x->service->options.jobs;
+    api_job_table *jobs = x->service->options.jobs;
     assert(x->phase == API_PHASE_JOB);
     api_exchange *answer = exchange_new(x->service, &x->request);
     if (answer == NULL || !keep_headers(x)) {
@@ -300,17 +337,22 @@ api_exchange *api_detach(api_exchange *x)
     answer->prefer = x->prefer;
     answer->codings = x->codings;
     api_job job;
+    const api_job_work work = {.self = x,
+                               .run = run_job,
+                               .free = free_job,
+                               .seconds = api_load_of(x).seconds,
+                               .about = x->mesh,
+                               .claims = x->claimed};
     const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
-    api_store_status status =
-        jobs->submit(jobs->self, x, x->route->name, mesh == NULL ? "" : mesh, &job);
-    if (status == API_STORE_OK) {
-        api_answer_job(answer, &job);
+    st_status status = api_job_submit(jobs, &work, x->route->name, mesh == NULL ? "" : mesh, &job);
+    if (status == ST_OK) {
+        answer_job(answer, &job);
     } else {
         api_free(x);
     }
-    if (status == API_STORE_TOO_MANY) {
+    if (status == ST_TOO_MANY) {
         api_fail(answer, API_TOO_MANY_JOBS, "as many jobs wait as may");
-    } else if (status != API_STORE_OK) {
+    } else if (status != ST_OK) {
         api_fail_store(answer, status);
     }
     finish(answer);
@@ -436,10 +478,10 @@ static bool is_costly(api_exchange *x)
     if (x->mesh == NULL) {
         return false;
     }
-    api_mesh_info info;
-    const he_mesh *mesh = x->store->read_begin(x->store->self, x->mesh, &info);
+    st_mesh_info info;
+    const he_mesh *mesh = st_read_begin(x->mesh, &info);
     bool large = api_is_large(x, mesh);
-    x->store->read_end(x->store->self, x->mesh);
+    st_read_end(x->mesh);
     return large;
 }
 
@@ -535,13 +577,13 @@ void api_free(api_exchange *x)
     api_text_clear(&x->text);
     end_claim(x);
     if (x->past != NULL) {
-        x->store->snapshot_release(x->store->self, x->past);
+        st_snapshot_release(x->past);
     }
     if (x->claim != NULL) {
-        x->store->claim_end(x->store->self, x->claim);
+        st_keyed_end(x->claim);
     }
     if (x->mesh != NULL) {
-        x->store->release(x->store->self, x->mesh);
+        st_release(x->mesh);
     }
     api_arena_clear(&x->arena);
     he_mem_free(x);

@@ -14,7 +14,7 @@ bool api_view_begin(api_exchange *x, api_view *view)
 void api_view_end(api_exchange *x, api_view *view)
 {
     if (view->snapshot != NULL) {
-        x->store->snapshot_release(x->store->self, view->snapshot);
+        st_snapshot_release(view->snapshot);
     } else {
         api_read_end(x);
     }

@@ -9,7 +9,7 @@
 
 typedef struct api_view {
     const he_mesh *mesh;
-    api_snapshot *snapshot; /* NULL: under the lock */
+    st_snapshot *snapshot; /* NULL: under the lock */
 } api_view;
 
 /* With x->info filled. On false the problem is filled and there is nothing to end. */

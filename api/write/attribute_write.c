@@ -83,17 +83,17 @@ static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, cons
         good = api_fail_core(x, &err);
     }
     bool effect = good && !he_changes_none(&changes);
-    bool undoable = !effect || x->store->undoable(x->store->self, x->mesh);
+    bool undoable = !effect || st_write_undoable(x->mesh);
     good =
         good && write_answer(x, w, mesh, &changes, x->info.revision + (effect ? 1 : 0), undoable);
     if (good && effect && !w->dry_run) {
-        api_tally tally = api_changes_tally(&changes);
-        x->store->tally(x->store->self, x->mesh, &tally);
-        x->store->write_commit(x->store->self, x->mesh, op, false, &x->info);
+        st_tally tally = api_changes_tally(&changes);
+        st_write_tally(x->mesh, &tally);
+        st_write_commit(x->mesh, op, false, &x->info);
         api_publish(x, status == 201 ? 201 : 204);
         api_attribute_path(x, x->location);
     } else {
-        x->store->write_abort(x->store->self, x->mesh);
+        st_write_abort(x->mesh);
     }
     he_changes_clear(&changes);
     if (!good) {

@@ -34,7 +34,7 @@ static bool forget_removed(api_exchange *x)
         return false;
     }
     x->problem = (api_problem){0};
-    x->store->release(x->store->self, x->mesh);
+    st_release(x->mesh);
     x->mesh = NULL;
     return true;
 }
@@ -44,8 +44,7 @@ void api_mesh_put_begin(api_exchange *x)
 {
     bool good = false;
     if (x->mesh != NULL && api_read_begin(x) != NULL) {
-        good =
-            (!x->info.busy || api_fail_store(x, API_STORE_BUSY)) && api_preconditions_hold(x, NULL);
+        good = (!x->info.busy || api_fail_store(x, ST_BUSY)) && api_preconditions_hold(x, NULL);
         api_read_end(x);
     } else if (x->mesh == NULL || forget_removed(x)) {
         good = api_precondition_absent(x);
@@ -82,10 +81,10 @@ static bool build(api_exchange *x, made *out)
 }
 
 /* Takes `mesh` on success. `id` NULL lets the store choose. */
-static api_store_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
+static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
     const char *name = api_upload_name(x);
-    return x->store->create(x->store->self, id, name == NULL ? "" : name, mesh, x->claim, &x->mesh);
+    return st_create(x->store, id, name == NULL ? "" : name, mesh, x->claim, &x->mesh);
 }
 
 static void create(api_exchange *x)
@@ -95,8 +94,8 @@ static void create(api_exchange *x)
     if (!build(x, &m)) {
         return;
     }
-    api_store_status status = store_new(x, id, m.mesh);
-    if (status == API_STORE_OK) {
+    st_status status = store_new(x, id, m.mesh);
+    if (status == ST_OK) {
         api_answer_created(x, &m.summary, api_upload_write_report);
     } else {
         he_mesh_free(m.mesh);
@@ -116,11 +115,11 @@ static bool replace(api_exchange *x, const made *m)
         return !removed;
     }
     const char *name = api_upload_name(x);
-    x->store->replace(x->store->self, x->mesh, m->mesh, &x->info);
+    st_write_replace(x->mesh, m->mesh, &x->info);
     if (name != NULL) {
-        x->store->rename(x->store->self, x->mesh, name, &x->info);
+        st_write_rename(x->mesh, name, &x->info);
     }
-    x->store->write_end(x->store->self, x->mesh);
+    st_write_end(x->mesh);
     api_publish(x, 204);
     api_answer_etag(x, "summary");
     if (!api_answer_minimal(x)) {
@@ -137,14 +136,14 @@ static bool create_named(api_exchange *x, const made *m)
         he_mesh_free(m->mesh);
         return true;
     }
-    api_store_status status = store_new(x, x->mesh_id, m->mesh);
-    if (status == API_STORE_OK) {
+    st_status status = store_new(x, x->mesh_id, m->mesh);
+    if (status == ST_OK) {
         api_answer_created(x, &m->summary, api_upload_write_report);
         return true;
     }
-    if (status == API_STORE_TAKEN) {
-        status = x->store->find(x->store->self, x->mesh_id, &x->mesh);
-        if (status == API_STORE_OK || status == API_STORE_ABSENT) {
+    if (status == ST_TAKEN) {
+        status = st_find(x->store, x->mesh_id, &x->mesh);
+        if (status == ST_OK || status == ST_ABSENT) {
             return false;
         }
     }

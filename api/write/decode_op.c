@@ -174,7 +174,7 @@ static bool decode_matrix(const api_in *in, he_arg *arg)
 static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
 {
     const char *id;
-    return api_in_string(in, API_MESH_ID, &id) &&
+    return api_in_string(in, ST_MESH_ID, &id) &&
            (d->meshes == NULL || d->meshes->find(d->meshes->context, in, id, &arg->mesh));
 }
 

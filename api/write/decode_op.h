@@ -14,9 +14,9 @@
 #ifndef HE_API_WRITE_DECODE_OP_H
 #define HE_API_WRITE_DECODE_OP_H
 
-#include "api/store.h"
 #include "api/write/element_set.h"
 #include "op/op.h"
+#include "store/store.h"
 
 /* Ids a reference stands for; borrowed from the scope. */
 typedef struct api_found {

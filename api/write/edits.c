@@ -37,7 +37,7 @@ typedef struct edits {
     api_arena scratch; /* arguments of the operation at hand */
     api_text results;  /* objects of `results`, comma-separated */
     api_out out;       /* writes them */
-    char ops[API_ENTRY_OPS];
+    char ops[ST_ENTRY_OPS];
     /* of a claim */
     const he_mesh *content;
     he_delta *delta;
@@ -329,7 +329,7 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
     }
     /* An edit without effect makes no revision, unless it used up ids that its answer names. */
     bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
-    bool undoable = !changes.renumbered && x->store->undoable(x->store->self, x->mesh);
+    bool undoable = !changes.renumbered && st_write_undoable(x->mesh);
     write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0), undoable || !effect);
     if (x->text.failed) {
         api_fail_memory(x);
@@ -337,8 +337,8 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
         publish = effect && !e->dry_run;
     }
     if (publish) {
-        api_tally tally = api_changes_tally(&changes);
-        x->store->tally(x->store->self, x->mesh, &tally);
+        st_tally tally = api_changes_tally(&changes);
+        st_write_tally(x->mesh, &tally);
     }
     *barrier = changes.renumbered;
     he_changes_clear(&changes);
@@ -424,10 +424,9 @@ static bool claim(api_exchange *x, edits *e)
     if (e->has_expected && !api_in_u64(&e->expected, 1, (uint64_t)1 << 53, &expected)) {
         return false;
     }
-    api_store_status status =
-        x->store->claim(x->store->self, x->mesh, &e->content, &e->delta, &x->info);
-    x->has_info = status != API_STORE_ABSENT;
-    if (status != API_STORE_OK) {
+    st_status status = st_claim(x->mesh, &e->content, &e->delta, &x->info);
+    x->has_info = status != ST_ABSENT;
+    if (status != ST_OK) {
         return api_fail_store(x, status);
     }
     x->claimed = true;
@@ -437,10 +436,9 @@ static bool claim(api_exchange *x, edits *e)
 
 static bool publish_copy(api_exchange *x, const edits *e, he_mesh *copy, bool barrier)
 {
-    api_store_status status =
-        x->store->publish(x->store->self, x->mesh, copy, e->ops, barrier, x->claim, &x->info);
+    st_status status = st_publish(x->mesh, copy, e->ops, barrier, x->claim, &x->info);
     x->claimed = false;
-    if (status != API_STORE_OK) {
+    if (status != ST_OK) {
         x->has_info = false;
         return api_fail_store(x, status);
     }
@@ -513,10 +511,10 @@ static void run(api_exchange *x)
     he_mesh_watch(mesh, NULL);
     unlimit_work(x, e);
     if (publish) {
-        x->store->write_commit(x->store->self, x->mesh, e->ops, barrier, &x->info);
+        st_write_commit(x->mesh, e->ops, barrier, &x->info);
         api_publish(x, 204);
     } else {
-        x->store->write_abort(x->store->self, x->mesh);
+        st_write_abort(x->mesh);
     }
     api_others_release(&e->others);
     if (e->exceeded && !publish) {
@@ -562,7 +560,7 @@ void api_edits_post(api_exchange *x)
     x->state = e;
     x->free_state = free_edits;
     e->growth = 1;
-    api_names_init(&e->names, x->store->secret);
+    api_names_init(&e->names, st_secret(x->store));
     api_others_init(&e->others, x->store);
     api_out_init(&e->out, &e->results);
     if (!read_request(x, e)) {

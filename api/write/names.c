@@ -1,6 +1,6 @@
 #include "api/write/names.h"
 
-#include "api/header/hash.h"
+#include "base/siphash.h"
 
 #include <assert.h>
 #include <string.h>
@@ -9,7 +9,7 @@
  * known outside, so that nobody can choose names that meet. */
 static size_t find_slot(const api_names *names, const char *text, size_t length)
 {
-    size_t slot = (size_t)api_hash_of(names->secret, text, length) & (names->table_size - 1);
+    size_t slot = (size_t)he_siphash_of(names->secret, text, length) & (names->table_size - 1);
     while (names->table[slot] != 0) {
         const char *name = names->names[names->table[slot] - 1].name;
         if (strncmp(name, text, length) == 0 && name[length] == '\0') {

@@ -25,7 +25,7 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
                            (int)API_MAX_OTHERS);
     }
     api_other *other = &o->other[o->count];
-    if (!api_path_is_mesh_id(id) || o->store->find(o->store->self, id, &other->mesh) != 0) {
+    if (!api_path_is_mesh_id(id) || st_find(o->store, id, &other->mesh) != 0) {
         return refuse_absent(at, id);
     }
     memcpy(other->id, id, strlen(id) + 1);
@@ -36,7 +36,7 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
     return true;
 }
 
-void api_others_init(api_others *o, const api_store *store)
+void api_others_init(api_others *o, st_store *store)
 {
     o->meshes = (api_meshes){find, o};
     o->store = store;
@@ -47,9 +47,9 @@ uint64_t api_others_elements(const api_others *o)
 {
     uint64_t elements = 0;
     for (size_t i = 0; i < o->count; i++) {
-        api_mesh_info info;
-        elements += api_elements_of(o->store->read_begin(o->store->self, o->other[i].mesh, &info));
-        o->store->read_end(o->store->self, o->other[i].mesh);
+        st_mesh_info info;
+        elements += api_elements_of(st_read_begin(o->other[i].mesh, &info));
+        st_read_end(o->other[i].mesh);
     }
     return elements;
 }
@@ -58,13 +58,13 @@ bool api_others_take(api_exchange *x, api_others *o)
 {
     for (size_t i = 0; i < o->count; i++) {
         api_other *other = &o->other[i];
-        api_mesh_info info;
-        api_store_status status = o->store->snapshot(o->store->self, other->mesh, &other->snapshot);
-        if (status != API_STORE_OK) {
+        st_mesh_info info;
+        st_status status = st_snapshot_take(other->mesh, &other->snapshot);
+        if (status != ST_OK) {
             other->snapshot = NULL;
             return api_fail_store(x, status);
         }
-        other->content = o->store->snapshot_content(other->snapshot, &info);
+        other->content = st_snapshot_content(other->snapshot, &info);
         if (info.removed) {
             api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"", other->id);
             x->problem.status = 422;
@@ -78,7 +78,7 @@ void api_others_release(api_others *o)
 {
     for (size_t i = 0; i < o->count; i++) {
         if (o->other[i].snapshot != NULL) {
-            o->store->snapshot_release(o->store->self, o->other[i].snapshot);
+            st_snapshot_release(o->other[i].snapshot);
             o->other[i].snapshot = NULL;
             o->other[i].content = NULL;
         }
@@ -89,7 +89,7 @@ void api_others_clear(api_others *o)
 {
     api_others_release(o);
     for (size_t i = 0; i < o->count; i++) {
-        o->store->release(o->store->self, o->other[i].mesh);
+        st_release(o->other[i].mesh);
     }
     o->count = 0;
 }

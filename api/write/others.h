@@ -10,22 +10,22 @@
 #include "api/write/decode_op.h"
 
 typedef struct api_other {
-    char id[API_MESH_ID + 1];
-    api_mesh *mesh;
-    api_snapshot *snapshot; /* NULL until it is taken */
+    char id[ST_MESH_ID + 1];
+    st_mesh *mesh;
+    st_snapshot *snapshot; /* NULL until it is taken */
     const he_mesh *content;
 } api_other;
 
 typedef struct api_others {
     api_meshes meshes; /* give this to api_decode_op */
-    const api_store *store;
+    st_store *store;
     api_other other[API_MAX_OTHERS];
     size_t count;
 } api_others;
 
 /* The first named one counts; naming more than API_MAX_OTHERS is refused as they are found, and so
  * is one that does not exist. */
-void api_others_init(api_others *others, const api_store *store);
+void api_others_init(api_others *others, st_store *store);
 /* Of all of them now, for choosing where the work is done. */
 uint64_t api_others_elements(const api_others *others);
 /* Take snapshots; false with x->problem filled. They are given back by release, and the references

@@ -5,7 +5,7 @@
 
 /* A request between decoding and answer. */
 typedef struct steps {
-    api_action which;
+    st_action which;
     api_in expected, to;
     bool has_expected;
     uint64_t revision; /* to that of `to`; 0: by count */
@@ -41,41 +41,41 @@ static bool read_request(api_exchange *x, steps *s)
 
 static const char *name_of(const steps *s)
 {
-    return s->which == API_UNDO ? "undo" : "do again";
+    return s->which == ST_UNDO ? "undo" : "do again";
 }
 
-static void refuse(api_exchange *x, const steps *s, api_store_status status)
+static void refuse(api_exchange *x, const steps *s, st_status status)
 {
     unsigned long long to = s->revision, present = x->info.revision;
-    uint32_t left = s->which == API_UNDO ? x->info.undo : x->info.redo;
+    uint32_t left = s->which == ST_UNDO ? x->info.undo : x->info.redo;
     switch (status) {
-    case API_STORE_NOTHING:
-        api_fail(x, s->which == API_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
+    case ST_NOTHING:
+        api_fail(x, s->which == ST_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
                  left == 0 ? "no edit is left to %s at revision %llu"
                            : "fewer edits are left to %s at revision %llu than are asked for",
                  name_of(s), present);
         return;
-    case API_STORE_AHEAD:
+    case ST_AHEAD:
         api_in_fail(&s->to, API_NO_SUCH_REVISION, "the mesh is at revision %llu, before %llu",
                     present, to);
         x->problem.status = 422;
         return;
-    case API_STORE_GONE:
+    case ST_GONE:
         api_in_fail(&s->to, API_REVISION_GONE, "the history does not reach back to revision %llu",
                     to);
         return;
-    case API_STORE_ELSEWHERE:
+    case ST_ELSEWHERE:
         api_in_fail(&s->to, API_UNREACHABLE_REVISION,
                     "no number of steps to %s leads to revision %llu", name_of(s), to);
         return;
-    case API_STORE_OK:
-    case API_STORE_ABSENT:
-    case API_STORE_TAKEN:
-    case API_STORE_NO_MEMORY:
-    case API_STORE_BUDGET:
-    case API_STORE_BUSY:
-    case API_STORE_TOO_MANY:
-    case API_STORE_LISTENERS:
+    case ST_OK:
+    case ST_ABSENT:
+    case ST_TAKEN:
+    case ST_NO_MEMORY:
+    case ST_BUDGET:
+    case ST_BUSY:
+    case ST_TOO_MANY:
+    case ST_LISTENERS:
         break;
     }
     api_fail_store(x, status);
@@ -108,16 +108,15 @@ static void take(api_exchange *x, const steps *s, const he_mesh *mesh, uint32_t 
         return;
     }
     if (count > 0) {
-        api_store_status status =
-            x->store->step(x->store->self, x->mesh, s->which, count, deltas, &x->info);
-        if (status != API_STORE_OK) {
+        st_status status = st_write_step(x->mesh, s->which, count, deltas, &x->info);
+        if (status != ST_OK) {
             refuse(x, s, status);
             return;
         }
         api_publish(x, 204);
     }
     for (uint32_t i = 0; i < count; i++) {
-        parts[i] = (he_change_part){deltas[i], 0, deltas[i]->count, s->which == API_UNDO};
+        parts[i] = (he_change_part){deltas[i], 0, deltas[i]->count, s->which == ST_UNDO};
     }
     if (he_changes_sum(mesh, parts, count, &changes, &err) == HE_OK) {
         write_answer(x, &changes);
@@ -130,7 +129,6 @@ static void take(api_exchange *x, const steps *s, const he_mesh *mesh, uint32_t 
 static void run(api_exchange *x)
 {
     const steps *s = x->state;
-    const api_store *store = x->store;
     he_delta *recording;
     he_mesh *mesh = api_write_begin(x, s->has_expected ? &s->expected : NULL, &recording);
     if (mesh == NULL) {
@@ -138,14 +136,13 @@ static void run(api_exchange *x)
     }
     uint32_t count = s->count;
     uint64_t bytes;
-    api_store_status status =
-        store->steps_to(store->self, x->mesh, s->which, s->revision, &count, &bytes);
-    if (status == API_STORE_OK) {
+    st_status status = st_steps_to(x->mesh, s->which, s->revision, &count, &bytes);
+    if (status == ST_OK) {
         take(x, s, mesh, count);
     } else {
         refuse(x, s, status);
     }
-    store->write_end(store->self, x->mesh);
+    st_write_end(x->mesh);
     if (x->problem.code != HE_OK) {
         return;
     }
@@ -163,13 +160,12 @@ static bool is_long(api_exchange *x, const steps *s)
     if (api_read_begin(x) == NULL) {
         return false;
     }
-    api_store_status status =
-        x->store->steps_to(x->store->self, x->mesh, s->which, s->revision, &count, &bytes);
+    st_status status = st_steps_to(x->mesh, s->which, s->revision, &count, &bytes);
     api_read_end(x);
-    return status == API_STORE_OK && api_is_costly(x, bytes, API_COSTLY_STEPS);
+    return status == ST_OK && api_is_costly(x, bytes, API_COSTLY_STEPS);
 }
 
-static void begin(api_exchange *x, api_action which)
+static void begin(api_exchange *x, st_action which)
 {
     steps *s = api_arena_array(&x->arena, 1, sizeof *s);
     if (s == NULL) {
@@ -190,10 +186,10 @@ static void begin(api_exchange *x, api_action which)
 
 void api_undo_post(api_exchange *x)
 {
-    begin(x, API_UNDO);
+    begin(x, ST_UNDO);
 }
 
 void api_redo_post(api_exchange *x)
 {
-    begin(x, API_REDO);
+    begin(x, ST_REDO);
 }

@@ -5,8 +5,8 @@
 #include "server/http/http_handle.h"
 #include "server/http/http_recv.h"
 #include "server/http/http_request.h"
-#include "server/system/limits.h"
-#include "server/system/memory.h"
+#include "server/http/limits.h"
+#include "system/memory.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -91,7 +91,7 @@ static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer,
     (void)length;
     const srv_http *http = context;
     bool room = srv_deadlines_count(http->deadlines) < http->options.max_sockets &&
-                srv_memory_has(SRV_BUFFER_BYTES);
+                st_memory_has(SRV_BUFFER_BYTES);
     return room && !atomic_load(&http->stopping) ? MHD_YES : MHD_NO;
 }
 
@@ -183,7 +183,7 @@ bool srv_http_stop(srv_http *http, unsigned millis)
      * takes the listening socket out of the workers' epoll sets while they may do so themselves,
      * and the library aborts where both try. */
     atomic_store(&http->stopping, true);
-    srv_held_abandon(srv_store_held(http->options.store));
+    st_waits_abandon(st_store_waits(http->options.store));
     srv_live_stop(http->live);
     /* At the deadline only those that are suspended still count. */
     if (!srv_gate_close(&http->gate, millis)) {

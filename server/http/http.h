@@ -12,8 +12,8 @@
 #include "server/http/http_policy.h"
 #include "server/net/access_log.h"
 #include "server/net/address.h"
-#include "server/store/store.h"
-#include "server/system/thread_pool.h"
+#include "store/store.h"
+#include "system/thread_pool.h"
 
 typedef struct srv_http srv_http;
 
@@ -21,9 +21,9 @@ typedef struct srv_http srv_http;
 typedef struct srv_http_options {
     srv_address address;
     api_service *service;
-    srv_store *store;
-    srv_pool *pool;
-    srv_pool *makers;    /* for answers that are made while they are sent: http_ahead.h */
+    st_store *store;
+    st_pool *pool;
+    st_pool *makers;     /* for answers that are made while they are sent: http_ahead.h */
     srv_access_log *log; /* NULL: none */
     const srv_policy *policy;
     srv_deadline_options deadlines;

@@ -1,12 +1,12 @@
 #include "server/http/http_admit.h"
 
-#include "server/system/random.h"
+#include "system/random.h"
 
 #include <string.h>
 
 void srv_ids_init(srv_ids *ids)
 {
-    srv_random_id(ids->prefix, SRV_ID_PREFIX);
+    st_random_id(ids->prefix, SRV_ID_PREFIX);
     atomic_init(&ids->next, 0);
 }
 

@@ -43,9 +43,9 @@ static void make(void *context)
     ahead->resume(ahead);
 }
 
-void srv_ahead_make(srv_ahead *ahead, srv_pool *threads)
+void srv_ahead_make(srv_ahead *ahead, st_pool *threads)
 {
-    if (!srv_pool_submit(threads, &(srv_task){.work = make, .context = ahead})) {
+    if (!st_pool_submit(threads, &(st_task){.work = make, .context = ahead})) {
         make(ahead);
     }
 }

@@ -10,7 +10,7 @@
 #ifndef HE_SERVER_HTTP_HTTP_AHEAD_H
 #define HE_SERVER_HTTP_HTTP_AHEAD_H
 
-#include "server/system/thread_pool.h"
+#include "system/thread_pool.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -35,6 +35,6 @@ void srv_ahead_clear(srv_ahead *ahead);
 int64_t srv_ahead_take(srv_ahead *ahead, char *buffer, size_t size);
 /* After SRV_AHEAD_WAIT. The caller touches nothing of the request after that. Where too much
  * waits for the threads it is made here. */
-void srv_ahead_make(srv_ahead *ahead, srv_pool *threads);
+void srv_ahead_make(srv_ahead *ahead, st_pool *threads);
 
 #endif

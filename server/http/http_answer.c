@@ -3,8 +3,8 @@
 #include "server/http/http_buffer.h"
 #include "server/http/http_request.h"
 #include "server/http/http_wire.h"
-#include "server/system/clock.h"
-#include "server/system/memory.h"
+#include "system/clock.h"
+#include "system/memory.h"
 
 #include <string.h>
 
@@ -84,7 +84,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
         /* Of the buffer only the request's headers are needed. */
-        srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, srv_clock_micros());
+        srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, st_clock_micros());
         srv_live_aside(&r->stream);
         return 0;
     }
@@ -137,7 +137,7 @@ static bool is_made_ahead(srv_request *r)
 {
     size_t others = atomic_fetch_add(&r->http->downloads, 1);
     r->block = ANSWER_BLOCK;
-    srv_memory_count(ANSWER_BLOCK);
+    st_memory_count(ANSWER_BLOCK);
     return api_answer_of(r->exchange)->slow || others >= r->http->options.workers;
 }
 
@@ -186,7 +186,7 @@ bool srv_answer_send(srv_request *r)
     r->state = SRV_DONE;
     r->status = wire.status;
     srv_connection_enter(r->socket, is_live(r) ? SRV_STAGE_LIVE : SRV_STAGE_ANSWER,
-                         srv_clock_micros());
+                         st_clock_micros());
     if (is_live(r)) {
         /* Its silence is no fault; the connection is closed after it. */
         MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);

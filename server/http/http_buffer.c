@@ -3,8 +3,8 @@
 #include "server/http/http_buffer.h"
 
 #include "base/mem.h"
-#include "server/system/clock.h"
-#include "server/system/memory.h"
+#include "system/clock.h"
+#include "system/memory.h"
 
 #include <dlfcn.h>
 #include <pthread.h>
@@ -88,7 +88,7 @@ bool srv_buffers_reserve(size_t most)
 
 static void count(buffer *b, size_t held)
 {
-    srv_memory_count((int64_t)held - (int64_t)b->held);
+    st_memory_count((int64_t)held - (int64_t)b->held);
     b->held = held;
 }
 
@@ -183,10 +183,10 @@ static int give_back_free(int timeout)
     if (atomic_load_explicit(&all.warm_count, memory_order_relaxed) <= KEPT) {
         return timeout;
     }
-    uint64_t now = srv_clock_micros();
+    uint64_t now = st_clock_micros();
     bool more = false;
     pthread_mutex_lock(&all.lock);
-    bool ripe = now - all.put >= REST_MICROS || srv_memory_is_full();
+    bool ripe = now - all.put >= REST_MICROS || st_memory_is_full();
     for (int done = 0; ripe && done < AT_ONCE; done++) {
         if (atomic_load_explicit(&all.warm_count, memory_order_relaxed) <= KEPT) {
             break;
@@ -208,8 +208,8 @@ static int give_back_idle(int timeout)
     if (own == NULL || own->first == SRV_NO_BUFFER) {
         return timeout;
     }
-    uint64_t now = srv_clock_micros();
-    uint64_t rest = srv_memory_is_full() ? 0 : REST_MICROS;
+    uint64_t now = st_clock_micros();
+    uint64_t rest = st_memory_is_full() ? 0 : REST_MICROS;
     for (int done = 0; done < AT_ONCE && own->first != SRV_NO_BUFFER; done++) {
         uint32_t i = own->first;
         if (now - all.buffers[i].since < rest) {
@@ -267,7 +267,7 @@ static void put(uint32_t i)
         leave_line(i);
     }
     b->state = FREE;
-    uint64_t now = srv_clock_micros();
+    uint64_t now = st_clock_micros();
     pthread_mutex_lock(&all.lock);
     if (b->held > 0) {
         push(&all.warm, i);

@@ -15,7 +15,7 @@
  *       waits for it. It is the one thread that reads and writes these pages.
  *   B3  Only pages that are all zeros are given back: the system puts zeros in their place, so that
  *       the library cannot tell, whatever it keeps there.
- *   B4  What a buffer holds is counted by srv_memory_count: all of it from the beginning of a
+ *   B4  What a buffer holds is counted by st_memory_count: all of it from the beginning of a
  *       request, and what was not given back while idle. */
 #ifndef HE_SERVER_HTTP_HTTP_BUFFER_H
 #define HE_SERVER_HTTP_HTTP_BUFFER_H

@@ -4,8 +4,8 @@
 
 #include "base/mem.h"
 #include "server/http/http_buffer.h"
-#include "server/system/clock.h"
-#include "server/system/memory.h"
+#include "system/clock.h"
+#include "system/memory.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -127,7 +127,7 @@ bool srv_connection_is_stuck(srv_connection *c, const srv_deadline_options *o, u
 
 static void count_kept(srv_connection *c, uint64_t kept)
 {
-    srv_memory_count((int64_t)kept - (int64_t)c->kept);
+    st_memory_count((int64_t)kept - (int64_t)c->kept);
     c->kept = kept;
 }
 
@@ -191,7 +191,7 @@ static bool is_body_cut(srv_connection *c)
 /* While the lock is held no socket of the list is closed, so none can be another's by now. */
 static void sweep(srv_deadlines *d)
 {
-    uint64_t now = srv_clock_micros();
+    uint64_t now = st_clock_micros();
     bool crowded = srv_deadlines_count(d) > d->options.max_connections;
     for (srv_connection *c = d->first; c != NULL; c = c->next) {
         if (is_answer_stuck(c, &d->options, now)) {
@@ -226,7 +226,7 @@ static bool drain_once(drain *one, uint64_t now)
 
 static void drain_all(srv_deadlines *d)
 {
-    uint64_t now = srv_clock_micros();
+    uint64_t now = st_clock_micros();
     for (size_t i = d->drain_count; i > 0; i--) {
         if (drain_once(&d->drains[i - 1], now)) {
             close(d->drains[i - 1].socket);
@@ -238,7 +238,7 @@ static void drain_all(srv_deadlines *d)
 static void *run(void *context)
 {
     srv_deadlines *d = context;
-    uint64_t swept = srv_clock_micros();
+    uint64_t swept = st_clock_micros();
     pthread_mutex_lock(&d->lock);
     while (!d->ending) {
         struct pollfd polls[DRAINS + 1] = {{.fd = d->wake, .events = POLLIN}};
@@ -254,7 +254,7 @@ static void *run(void *context)
         }
         pthread_mutex_lock(&d->lock);
         drain_all(d);
-        uint64_t now = srv_clock_micros();
+        uint64_t now = st_clock_micros();
         if (now - swept >= SWEEP_MILLIS * SECOND / 1000) {
             swept = now;
             sweep(d);
@@ -319,9 +319,9 @@ srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct soc
     }
     c->socket = socket;
     c->buffer = buffer;
-    srv_buffer_rest(buffer, srv_clock_micros());
+    srv_buffer_rest(buffer, st_clock_micros());
     srv_address_format(peer, false, c->peer);
-    srv_connection_enter(c, SRV_STAGE_IDLE, srv_clock_micros());
+    srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
     pthread_mutex_lock(&d->lock);
     c->next = d->first;
     if (c->next != NULL) {
@@ -343,7 +343,7 @@ static void begin_drain(srv_deadlines *d, int socket)
     if (duplicate >= 0) {
         shutdown(duplicate, SHUT_WR);
         d->drains[d->drain_count++] =
-            (drain){.socket = duplicate, .until = srv_clock_micros() + DRAIN_MICROS};
+            (drain){.socket = duplicate, .until = st_clock_micros() + DRAIN_MICROS};
         wake(d);
     }
 }

@@ -1,12 +1,12 @@
 #include "server/http/http_gate.h"
 
-#include "server/system/clock.h"
+#include "system/clock.h"
 
 void srv_gate_init(srv_gate *gate)
 {
     *gate = (srv_gate){0};
     pthread_mutex_init(&gate->lock, NULL);
-    srv_clock_condition(&gate->ended);
+    st_clock_condition(&gate->ended);
 }
 
 void srv_gate_clear(srv_gate *gate)
@@ -49,11 +49,11 @@ void srv_gate_resume(srv_gate *gate)
 
 bool srv_gate_close(srv_gate *gate, unsigned millis)
 {
-    const uint64_t until = srv_clock_micros() + (uint64_t)millis * 1000;
+    const uint64_t until = st_clock_micros() + (uint64_t)millis * 1000;
     bool in_time = true;
     pthread_mutex_lock(&gate->lock);
     while (gate->active > 0 && in_time) {
-        in_time = srv_clock_wait(&gate->ended, &gate->lock, until);
+        in_time = st_clock_wait(&gate->ended, &gate->lock, until);
     }
     gate->closed = gate->waiting == 0;
     bool closed = gate->closed;

@@ -3,7 +3,7 @@
 #include "api/limits.h"
 #include "server/http/http_answer.h"
 #include "server/http/http_request.h"
-#include "server/system/clock.h"
+#include "system/clock.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -18,7 +18,7 @@ enum {
 
 /* --- waiting --- */
 
-static void resume_held(srv_hold *hold)
+static void resume_held(st_wait *hold)
 {
     srv_request *r = (srv_request *)((char *)hold - offsetof(srv_request, hold));
     MHD_resume_connection(r->connection);
@@ -48,14 +48,14 @@ static bool answer_when_durable(srv_request *r)
 {
     const api_answer *answer = r->exchange == NULL ? NULL : api_answer_of(r->exchange);
     if (answer == NULL || answer->mesh == NULL ||
-        srv_store_is_durable(r->http->options.store, answer->mesh, answer->record)) {
+        st_store_is_durable(r->http->options.store, answer->mesh, answer->record)) {
         return srv_answer_send(r);
     }
-    r->hold = (srv_hold){.mesh = answer->mesh, .record = answer->record, .resume = resume_held};
+    r->hold = (st_wait){.mesh = answer->mesh, .record = answer->record, .resume = resume_held};
     if (!begin_wait(r, SRV_HELD)) {
         return false;
     }
-    if (!srv_held_add(srv_store_held(r->http->options.store), &r->hold)) {
+    if (!st_waits_add(st_store_waits(r->http->options.store), &r->hold)) {
         MHD_resume_connection(r->connection);
     }
     return true;
@@ -87,7 +87,7 @@ static bool is_short(void *context, const char *phase, double done)
     (void)phase;
     (void)done;
     const srv_request *r = context;
-    return srv_clock_micros() < r->work_until;
+    return st_clock_micros() < r->work_until;
 }
 
 /* Is the client still waiting, and may it? */
@@ -96,7 +96,7 @@ static bool is_awaited(void *context, const char *phase, double done)
     (void)phase;
     (void)done;
     const srv_request *r = context;
-    uint64_t now = srv_clock_micros();
+    uint64_t now = st_clock_micros();
     if (now >= r->work_until) {
         char text[128];
         snprintf(text, sizeof text,
@@ -113,7 +113,7 @@ static void do_work(void *context)
 {
     srv_request *r = context;
     if (r->work_until != UINT64_MAX) {
-        r->work_until = srv_clock_micros() + r->http->options.read_seconds * 1000000;
+        r->work_until = st_clock_micros() + r->http->options.read_seconds * 1000000;
     }
     api_watch(r->exchange, is_awaited, r);
     if (api_work(r->exchange) == API_JOB) {
@@ -129,14 +129,14 @@ static bool begin_work(srv_request *r)
     }
     const api_load load = api_load_of(r->exchange);
     const bool is_long = load.reads || load.seconds > API_PATIENCE;
-    const srv_task task = {.work = do_work,
-                           .context = r,
-                           .share = is_long ? SRV_SHARE_LONG : SRV_SHARE_BRIEF,
-                           .cost = load.seconds,
-                           .flow =
-                               srv_pool_flow(r->socket == NULL ? "" : r->socket->peer, load.mesh)};
+    const st_task task = {.work = do_work,
+                          .context = r,
+                          .share = is_long ? ST_SHARE_LONG : ST_SHARE_BRIEF,
+                          .cost = load.seconds,
+                          .flow =
+                              st_pool_flow(r->socket == NULL ? "" : r->socket->peer, load.mesh)};
     r->work_until = load.reads ? 0 : UINT64_MAX;
-    if (!srv_pool_submit(r->http->options.pool, &task)) {
+    if (!st_pool_submit(r->http->options.pool, &task)) {
         srv_answer_refuse(r, API_OVERLOADED, "too many long requests are waiting");
         MHD_resume_connection(r->connection);
     }
@@ -265,7 +265,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     } else {
         r->step = API_READY;
     }
-    srv_connection_enter(r->socket, r->whole ? SRV_STAGE_WORK : SRV_STAGE_BODY, srv_clock_micros());
+    srv_connection_enter(r->socket, r->whole ? SRV_STAGE_WORK : SRV_STAGE_BODY, st_clock_micros());
     return r->step == API_MORE || answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
@@ -316,7 +316,7 @@ static bool end_body(srv_request *r)
         refuse_fault(r);
     }
     if (r->step == API_MORE) {
-        uint64_t now = srv_clock_micros();
+        uint64_t now = st_clock_micros();
         srv_connection_enter(r->socket, SRV_STAGE_WORK, now);
         r->work_until = now + WORKER_MICROS;
         api_watch_worker(r->exchange, is_short, r);

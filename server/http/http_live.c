@@ -1,7 +1,7 @@
 #include "server/http/http_live.h"
 
 #include "base/mem.h"
-#include "server/system/clock.h"
+#include "system/clock.h"
 
 #include <poll.h>
 #include <pthread.h>
@@ -58,7 +58,7 @@ static void make_ready(srv_live *live, srv_stream *stream)
 
 static void ready_due(srv_live *live)
 {
-    uint64_t now = srv_clock_micros();
+    uint64_t now = st_clock_micros();
     while (live->first != NULL && live->first->deadline <= now) {
         live->first->due = true;
         make_ready(live, live->first);
@@ -90,7 +90,7 @@ static void wait_for_change(srv_live *live)
     struct pollfd watched = {.fd = live->watch, .events = POLLIN};
     int millis = -1;
     if (live->first != NULL) {
-        uint64_t now = srv_clock_micros(), until = live->first->deadline;
+        uint64_t now = st_clock_micros(), until = live->first->deadline;
         uint64_t left = until > now ? (until - now + 999) / 1000 : 0;
         millis = left < LONGEST_MILLIS ? (int)left : LONGEST_MILLIS;
     }
@@ -252,7 +252,7 @@ void srv_live_aside(srv_stream *stream)
     srv_live *live = stream->live;
     pthread_mutex_lock(&live->lock);
     bool alone = live->first == NULL;
-    stream->deadline = srv_clock_micros() + live->heartbeat;
+    stream->deadline = st_clock_micros() + live->heartbeat;
     stream->aside = true;
     add_last(live, stream);
     bool at_once = stream->woken || stream->gone || (live->stopping && !stream->finished);

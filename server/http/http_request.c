@@ -3,8 +3,8 @@
 #include "api/limits.h"
 #include "base/mem.h"
 #include "server/http/http_buffer.h"
-#include "server/system/clock.h"
-#include "server/system/memory.h"
+#include "system/clock.h"
+#include "system/memory.h"
 
 #include <string.h>
 
@@ -33,7 +33,7 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
     r->connection = connection;
     r->socket = socket;
     r->number = socket->requests;
-    r->started = srv_clock_micros();
+    r->started = st_clock_micros();
     srv_connection_enter(r->socket, SRV_STAGE_HEAD, r->started);
     srv_buffer_use(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer);
     return r;
@@ -49,7 +49,7 @@ static void copy_text(char *out, size_t size, const char *text)
 static void write_log(const srv_request *r, uint64_t now)
 {
     srv_access access; /* not zeroed: most of it is room for a long path */
-    access.time = srv_clock_utc();
+    access.time = st_clock_utc();
     access.route = r->exchange == NULL ? "-" : api_answer_of(r->exchange)->route;
     access.status = r->status;
     access.bytes_in = r->bytes_in;
@@ -82,7 +82,7 @@ void srv_request_resumed(srv_request *r)
 void srv_request_end(srv_request *r)
 {
     srv_http *http = r->http;
-    uint64_t now = srv_clock_micros();
+    uint64_t now = st_clock_micros();
     srv_connection_enter(r->socket, SRV_STAGE_IDLE, now);
     srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
     if (r->counted && http->options.log != NULL) {
@@ -92,7 +92,7 @@ void srv_request_end(srv_request *r)
     srv_request_resumed(r); /* a client who was lost while it was suspended comes here at once */
     if (r->block > 0) {
         atomic_fetch_sub(&http->downloads, 1);
-        srv_memory_count(-(int64_t)r->block);
+        st_memory_count(-(int64_t)r->block);
     }
     srv_live_end(&r->stream);
     srv_ahead_clear(&r->ahead);

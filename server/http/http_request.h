@@ -38,7 +38,7 @@
 #include "server/http/http_gate.h"
 #include "server/http/http_lists.h"
 #include "server/http/http_live.h"
-#include "server/store/held.h"
+#include "store/durability_wait.h"
 
 #include <microhttpd.h>
 #include <stdatomic.h>
@@ -81,7 +81,7 @@ typedef struct srv_request {
     api_problem refusal;
     api_text text; /* the refusal as JSON */
     bool preflight;
-    srv_hold hold;
+    st_wait hold;
     uint64_t work_until; /* microseconds of the monotonic clock; UINT64_MAX: as long as it takes */
     srv_stream stream;
     srv_ahead ahead;

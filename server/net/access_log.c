@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "format/text/number.h"
-#include "server/system/clock.h"
+#include "system/clock.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -78,8 +78,8 @@ static void append_number(char line[SRV_LOG_LINE], size_t *at, const char *key, 
  * line takes its time from the requests. */
 size_t srv_access_format(const srv_access *access, char line[SRV_LOG_LINE])
 {
-    char time[SRV_TIMESTAMP];
-    srv_clock_format(access->time, time);
+    char time[ST_TIMESTAMP];
+    st_clock_format(access->time, time);
     size_t at = 0;
     append_member(line, &at, "{\"time\":\"", time);
     append_member(line, &at, "\"request_id\":\"", access->request_id);
@@ -121,8 +121,8 @@ static void write_all(srv_access_log *log, const char *bytes, size_t length)
 
 static void write_dropped(srv_access_log *log, uint64_t dropped)
 {
-    char time[SRV_TIMESTAMP], line[96];
-    srv_clock_format(srv_clock_utc(), time);
+    char time[ST_TIMESTAMP], line[96];
+    st_clock_format(st_clock_utc(), time);
     int length =
         snprintf(line, sizeof line, "{\"time\":\"%s\",\"dropped\":%" PRIu64 "}\n", time, dropped);
     write_all(log, line, (size_t)length);
@@ -135,10 +135,10 @@ static bool wait_for_records(srv_access_log *log)
     while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
         pthread_cond_wait(&log->wake, &log->lock);
     }
-    const uint64_t until = srv_clock_micros() + GATHER_MILLIS * 1000;
+    const uint64_t until = st_clock_micros() + GATHER_MILLIS * 1000;
     bool in_time = true;
     while (in_time && log->count < log->capacity / 2 && !atomic_load(&log->ending)) {
-        in_time = srv_clock_wait(&log->wake, &log->lock, until);
+        in_time = st_clock_wait(&log->wake, &log->lock, until);
     }
     return log->count > 0 || log->dropped > 0;
 }
@@ -186,7 +186,7 @@ srv_access_log *srv_access_log_new(int fd, size_t capacity)
     log->capacity = capacity;
     log->ring = he_mem_zero(capacity, sizeof *log->ring);
     pthread_mutex_init(&log->lock, NULL);
-    srv_clock_condition(&log->wake);
+    st_clock_condition(&log->wake);
     if (log->ring == NULL || pthread_create(&log->thread, NULL, run, log) != 0) {
         pthread_mutex_destroy(&log->lock);
         pthread_cond_destroy(&log->wake);

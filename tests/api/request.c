@@ -4,7 +4,8 @@
 
 #include "tests/traffic.h"
 
-#include "server/job/job_board.h"
+#include "api/event/event_follow.h"
+#include "api/job/job_table.h"
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -22,18 +23,16 @@ typedef struct piece {
 } piece;
 
 struct api_bench {
-    srv_pool *pool; /* of the store */
-    srv_store *meshes;
-    api_store store;
-    srv_board *board;
-    api_jobs jobs;
+    st_pool *pool; /* of the store */
+    st_store *store;
+    api_job_table *jobs;
     piece waiting[BENCH_JOBS];
     size_t waits, most;
     api_service *service;
 };
 
 /* A pool without threads. */
-static bool submit(void *pool, const srv_task *task)
+static bool submit(void *pool, const st_task *task)
 {
     api_bench *b = pool;
     if (b->waits == b->most) {
@@ -67,37 +66,36 @@ api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
 {
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
-    b->pool = srv_pool_new("test", 1, 64);
+    b->pool = st_pool_new("test", 1, 64);
     assert_non_null(b->pool);
-    b->meshes = srv_store_new(&(srv_store_options){.undo_budget = undo_budget,
-                                                   .max_meshes = 1000,
-                                                   .journal = srv_journal_memory(),
-                                                   .listeners = 3,
-                                                   .mesh_listeners = 2,
-                                                   .pool = b->pool});
-    assert_non_null(b->meshes);
-    b->store = srv_store_interface(b->meshes);
+    b->store = st_store_new(&(st_store_options){.undo_budget = undo_budget,
+                                                .max_meshes = 1000,
+                                                .journal = st_journal_memory(),
+                                                .listeners = 3,
+                                                .mesh_listeners = 2,
+                                                .render = api_event_render});
+    assert_non_null(b->store);
     b->most = BENCH_JOBS;
-    b->board = srv_board_new(&(srv_board_options){
-        .store = b->meshes, .submit = submit, .pool = b, .keep = SRV_JOB_SECONDS});
-    assert_non_null(b->board);
-    b->jobs = srv_board_interface(b->board);
+    b->jobs = api_job_table_new(&(api_job_table_options){
+        .store = b->store, .submit = submit, .pool = b, .keep = API_JOB_SECONDS});
+    assert_non_null(b->jobs);
     b->service =
-        api_service_new(&b->store, &(api_options){.version = "0.0.0-test",
-                                                  .max_upload = upload == 0 ? 8 << 20 : upload,
-                                                  .jobs = &b->jobs});
+        api_service_new(b->store, &(api_options){.version = "0.0.0-test",
+                                                 .max_upload = upload == 0 ? 8 << 20 : upload,
+                                                 .jobs = b->jobs,
+                                                 .pool = b->pool});
     assert_non_null(b->service);
     return b;
 }
 
 void bench_free(api_bench *b)
 {
-    srv_board_stop(b->board);
+    api_job_table_stop(b->jobs);
     bench_run_jobs(b, BENCH_JOBS);
-    srv_board_free(b->board);
-    srv_pool_free(b->pool);
+    api_job_table_free(b->jobs);
+    st_pool_free(b->pool);
     api_service_free(b->service);
-    srv_store_free(b->meshes);
+    st_store_free(b->store);
     free(b);
 }
 
@@ -106,9 +104,9 @@ api_service *bench_service(api_bench *b)
     return b->service;
 }
 
-const api_store *bench_store(api_bench *b)
+st_store *bench_store(api_bench *b)
 {
-    return &b->store;
+    return b->store;
 }
 
 static const char *find_header(void *context, const char *name)
@@ -153,7 +151,7 @@ static bool take_signal(signal *s, bool wait)
 static void wait_for_jobs(api_bench *b)
 {
     signal done = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
-    assert_true(srv_pool_submit(b->pool, &(srv_task){.work = set_signal, .context = &done}));
+    assert_true(st_pool_submit(b->pool, &(st_task){.work = set_signal, .context = &done}));
     (void)take_signal(&done, true);
 }
 

@@ -3,7 +3,7 @@
 #define TESTS_API_REQUEST_H
 
 #include "api/request/api.h"
-#include "server/store/store.h"
+#include "store/store.h"
 
 #include <cjson/cJSON.h>
 
@@ -14,7 +14,7 @@ api_bench *bench_new(void);
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
-const api_store *bench_store(api_bench *b);
+st_store *bench_store(api_bench *b);
 /* Jobs wait until this runs them: without threads, in their order, up to `most`. */
 void bench_run_jobs(api_bench *b, size_t most);
 /* How many may wait; BENCH_JOBS at first. */

@@ -114,24 +114,23 @@ uint64_t stream_number(const listener *l, const char *member)
     return (uint64_t)found->valuedouble;
 }
 
-api_mesh *stream_mesh(api_bench *b)
+st_mesh *stream_mesh(api_bench *b)
 {
-    const api_store *store = bench_store(b);
-    api_mesh *mesh = NULL;
-    assert_int_equal(store->find(store->self, "m", &mesh), API_STORE_OK);
+    st_store *store = bench_store(b);
+    st_mesh *mesh = NULL;
+    assert_int_equal(st_find(store, "m", &mesh), ST_OK);
     return mesh;
 }
 
 /* What the mesh is now. */
 void stream_dump(api_bench *b, mirror *m)
 {
-    const api_store *store = bench_store(b);
-    api_mesh *mesh = stream_mesh(b);
-    api_mesh_info info;
-    const he_mesh *content = store->read_begin(store->self, mesh, &info);
+    st_mesh *mesh = stream_mesh(b);
+    st_mesh_info info;
+    const he_mesh *content = st_read_begin(mesh, &info);
     mirror_take(m, content, info.revision);
-    store->read_end(store->self, mesh);
-    store->release(store->self, mesh);
+    st_read_end(mesh);
+    st_release(mesh);
 }
 
 void stream_require(api_bench *b, const mirror *copy, const char *after)

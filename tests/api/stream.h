@@ -31,7 +31,7 @@ const char *stream_text(const listener *l, const char *member);
 uint64_t stream_number(const listener *l, const char *member);
 
 /* The mesh "m", with a reference. */
-api_mesh *stream_mesh(api_bench *b);
+st_mesh *stream_mesh(api_bench *b);
 /* What it is now. */
 void stream_dump(api_bench *b, mirror *m);
 void stream_require(api_bench *b, const mirror *copy, const char *after);

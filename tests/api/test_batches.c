@@ -46,14 +46,14 @@ static api_bench *begin(void)
 /* The mesh as it is, ids that were issued included. */
 static he_mesh *copy_of(api_bench *b)
 {
-    const api_store *store = bench_store(b);
-    api_mesh *mesh = NULL;
+    st_store *store = bench_store(b);
+    st_mesh *mesh = NULL;
     he_mesh *copy = NULL;
-    assert_int_equal(store->find(store->self, "m", &mesh), API_STORE_OK);
-    const he_mesh *content = store->read_begin(store->self, mesh, NULL);
+    assert_int_equal(st_find(store, "m", &mesh), ST_OK);
+    const he_mesh *content = st_read_begin(mesh, NULL);
     assert_int_equal(he_mesh_copy(content, &copy, NULL), HE_OK);
-    store->read_end(store->self, mesh);
-    store->release(store->self, mesh);
+    st_read_end(mesh);
+    st_release(mesh);
     return copy;
 }
 

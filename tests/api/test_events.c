@@ -9,7 +9,7 @@
 #include "mesh/column.h"
 #include "mesh/write.h"
 #include "op/op.h"
-#include "server/system/limits.h"
+#include "store/limits.h"
 #include "tests/seed.h"
 
 #include <inttypes.h>
@@ -125,14 +125,13 @@ static void columns_that_come_and_go_are_told(void **state)
 {
     (void)state;
     api_bench *b = bench_new();
-    const api_store *store = bench_store(b);
     mirror copy = {0};
     put_mesh(b);
     listener *l = stream_open(b, "/v1/meshes/m/events", "", NULL);
     stream_dump(b, &copy);
     size_t before = copy.column_count;
-    api_mesh *stored = stream_mesh(b);
-    he_mesh *mesh = store->write_begin(store->self, stored, NULL, NULL);
+    st_mesh *stored = stream_mesh(b);
+    he_mesh *mesh = st_write_begin(stored, NULL, NULL);
     he_column *weight = NULL;
     assert_int_equal(he_column_new("weight", HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE, &weight, NULL),
                      HE_OK);
@@ -141,8 +140,8 @@ static void columns_that_come_and_go_are_told(void **state)
     memcpy(he_column_row(weight, 3), value, sizeof value);
     assert_int_equal(he_mesh_add_column(mesh, weight, NULL), HE_OK);
     assert_int_equal(he_mesh_drop_column(mesh, 0, NULL), HE_OK);
-    store->write_commit(store->self, stored, "attributes", false, NULL);
-    store->release(store->self, stored);
+    st_write_commit(stored, "attributes", false, NULL);
+    st_release(stored);
     assert_string_equal(stream_next(l, false), "edit");
     assert_non_null(cJSON_GetObjectItem(l->data, "attributes_added"));
     assert_non_null(cJSON_GetObjectItem(l->data, "attributes_dropped"));
@@ -305,7 +304,7 @@ static void who_was_cut_off_goes_on_where_it_was(void **state)
 static void who_is_far_behind_is_told_from_the_history(void **state)
 {
     (void)state;
-    enum { EDITS = SRV_FEED_MESSAGES + 500 };
+    enum { EDITS = ST_QUEUE_MESSAGES + 500 };
     md_random random = {seed_of_run()};
     char text[RANDOM_EDIT_TEXT];
     api_bench *b = bench_new();
@@ -426,7 +425,7 @@ static void a_slow_listener_is_told_to_fetch_anew(void **state)
     put_mesh(b);
     listener *slow = stream_open(b, "/v1/meshes/m/events", "", NULL);
     stream_dump(b, &copy);
-    for (int i = 0; i < SRV_FEED_MESSAGES + 50; i++) {
+    for (int i = 0; i < ST_QUEUE_MESSAGES + 50; i++) {
         const char *target = i % 2 == 0 ? "/v1/meshes/m/edits" : "/v1/meshes/m/undo";
         assert_int_equal(send(b, "POST", target, i % 2 == 0 ? POKE : NULL), 200);
     }

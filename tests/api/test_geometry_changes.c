@@ -25,8 +25,8 @@
 
 typedef struct world {
     api_bench *b;
-    const api_store *store;
-    api_mesh *mesh;
+    st_store *store;
+    st_mesh *mesh;
     md_random r;
     uint64_t done, refused, stepped;
 } world;
@@ -148,11 +148,10 @@ static bool run_one(world *w, he_mesh *m, bool *barrier)
 /* As a long edit begins. */
 static he_mesh *claim(world *w, he_delta **delta)
 {
-    api_mesh_info info;
+    st_mesh_info info;
     const he_mesh *content;
     he_mesh *copy = NULL;
-    assert_int_equal(w->store->claim(w->store->self, w->mesh, &content, delta, &info),
-                     API_STORE_OK);
+    assert_int_equal(st_claim(w->mesh, &content, delta, &info), ST_OK);
     assert_int_equal(he_mesh_copy(content, &copy, NULL), HE_OK);
     he_mesh_record(copy, *delta);
     return copy;
@@ -160,10 +159,9 @@ static he_mesh *claim(world *w, he_delta **delta)
 
 static void edit(world *w)
 {
-    const api_store *s = w->store;
     bool barrier = false, claimed = md_chance(&w->r, 20);
     he_delta *delta = NULL;
-    he_mesh *m = claimed ? claim(w, &delta) : s->write_begin(s->self, w->mesh, NULL, &delta);
+    he_mesh *m = claimed ? claim(w, &delta) : st_write_begin(w->mesh, NULL, &delta);
     assert_non_null(m);
     uint32_t batch = md_chance(&w->r, 70) ? 1 : md_from(&w->r, 2, 6);
     for (uint32_t i = 0; i < batch && !barrier; i++) {
@@ -172,27 +170,25 @@ static void edit(world *w)
         w->refused += !good;
     }
     if (claimed && delta->count == 0) {
-        s->unclaim(s->self, w->mesh);
+        st_unclaim(w->mesh);
         he_mesh_free(m);
     } else if (claimed) {
-        api_mesh_info info;
-        assert_int_equal(s->publish(s->self, w->mesh, m, "random", barrier, NULL, &info),
-                         API_STORE_OK);
+        st_mesh_info info;
+        assert_int_equal(st_publish(w->mesh, m, "random", barrier, NULL, &info), ST_OK);
     } else if (delta->count == 0) {
-        s->write_abort(s->self, w->mesh);
+        st_write_abort(w->mesh);
     } else {
-        s->write_commit(s->self, w->mesh, "random", barrier, NULL);
+        st_write_commit(w->mesh, "random", barrier, NULL);
     }
 }
 
-static void step(world *w, api_action which)
+static void step(world *w, st_action which)
 {
-    const api_store *s = w->store;
     he_delta *delta = NULL;
-    assert_non_null(s->write_begin(s->self, w->mesh, NULL, &delta));
+    assert_non_null(st_write_begin(w->mesh, NULL, &delta));
     const he_delta *deltas[1];
-    w->stepped += s->step(s->self, w->mesh, which, 1, deltas, NULL) == API_STORE_OK;
-    s->write_end(s->self, w->mesh);
+    w->stepped += st_write_step(w->mesh, which, 1, deltas, NULL) == ST_OK;
+    st_write_end(w->mesh);
 }
 
 static void put(api_bench *b, const char *body)
@@ -211,8 +207,8 @@ enum { STARTS = sizeof starts / sizeof *starts };
 
 static uint32_t faces_of(world *w)
 {
-    uint32_t faces = he_mesh_faces(w->store->read_begin(w->store->self, w->mesh, NULL));
-    w->store->read_end(w->store->self, w->mesh);
+    uint32_t faces = he_mesh_faces(st_read_begin(w->mesh, NULL));
+    st_read_end(w->mesh);
     return faces;
 }
 
@@ -227,13 +223,13 @@ static world begin(uint64_t seed)
     world w = {.b = bench_new(), .r = {seed}};
     w.store = bench_store(w.b);
     put(w.b, starts[1]);
-    assert_int_equal(w.store->find(w.store->self, "m", &w.mesh), API_STORE_OK);
+    assert_int_equal(st_find(w.store, "m", &w.mesh), ST_OK);
     return w;
 }
 
 static void end(world *w)
 {
-    w->store->release(w->store->self, w->mesh);
+    st_release(w->mesh);
     bench_free(w->b);
 }
 
@@ -252,7 +248,7 @@ static void test_patched_arrays_equal_fresh_ones(void **state)
             edit(&w);
         } else if (dice < 99) {
             for (uint32_t n = md_from(&w.r, 1, 4); n > 0; n--) {
-                step(&w, dice < 90 ? API_UNDO : API_REDO);
+                step(&w, dice < 90 ? ST_UNDO : ST_REDO);
             }
         }
         if (faces_of(&w) > ROOM || faces_of(&w) < 2) {
@@ -268,8 +264,8 @@ static void test_patched_arrays_equal_fresh_ones(void **state)
             arrays_update(w.b, "m", &fresh);
             arrays_assert_same(&often, &fresh);
             arrays_assert_same(&seldom, &fresh);
-            arrays_check(&fresh, w.store->read_begin(w.store->self, w.mesh, NULL));
-            w.store->read_end(w.store->self, w.mesh);
+            arrays_check(&fresh, st_read_begin(w.mesh, NULL));
+            st_read_end(w.mesh);
         }
     }
     assert_true(often.changes > 2 * often.whole);
@@ -518,8 +514,8 @@ static void test_a_face_of_many_corners(void **state)
     arrays_update(w.b, "m", &c);
     arrays_update(w.b, "m", &fresh);
     arrays_assert_same(&c, &fresh);
-    arrays_check(&c, w.store->read_begin(w.store->self, w.mesh, NULL));
-    w.store->read_end(w.store->self, w.mesh);
+    arrays_check(&c, st_read_begin(w.mesh, NULL));
+    st_read_end(w.mesh);
     arrays_forget(&c);
     arrays_forget(&fresh);
     end(&w);
@@ -604,7 +600,7 @@ static void test_many_bring_forward_at_once(void **state)
     for (int i = 0; i < WRITES; i++) {
         edit(&w);
         if (i % 3 == 0) {
-            step(&w, API_UNDO);
+            step(&w, ST_UNDO);
         }
         if (i % 100 == 50) {
             put(w.b, starts[1]);

@@ -3,9 +3,9 @@
 #include "tests/api/request.h"
 
 #include "api/header/prefer.h"
+#include "api/job/job_table.h"
 #include "api/limits.h"
 #include "base/mem.h"
-#include "server/job/job_board.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -276,31 +276,30 @@ static void a_long_edit_is_undone_in_one_step_to_the_same_bits(void **state)
         "{\"op\":\"plane_split\",\"point\":[0.001,0,0],\"normal\":[1,0.3,0]}",
         "{\"ops\":[" TRANSFORM "," POKE ",{\"op\":\"edge_split\",\"edge\":7}]}",
     };
-    const api_store *store = bench_store(bench);
+    st_store *store = bench_store(bench);
     for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
         char path[64];
-        api_mesh *mesh = NULL;
+        st_mesh *mesh = NULL;
         he_mesh *before = NULL, *after = NULL;
         send(i == 0 ? 201 : 200, "PUT", "/v1/meshes/m", LARGE);
-        assert_int_equal(store->find(store->self, "m", &mesh), API_STORE_OK);
-        assert_int_equal(he_mesh_copy(store->read_begin(store->self, mesh, NULL), &before, NULL),
-                         HE_OK);
-        store->read_end(store->self, mesh);
+        assert_int_equal(st_find(store, "m", &mesh), ST_OK);
+        assert_int_equal(he_mesh_copy(st_read_begin(mesh, NULL), &before, NULL), HE_OK);
+        st_read_end(mesh);
         submit("POST", "/v1/meshes/m/edits", edits[i], path);
         bench_run_jobs(bench, 1);
         bench_reply r = job_in(path, "done");
         bench_reply_free(&r);
-        const he_mesh *content = store->read_begin(store->self, mesh, NULL);
+        const he_mesh *content = st_read_begin(mesh, NULL);
         assert_false(he_mesh_equal_live(before, content));
         assert_int_equal(he_mesh_copy(content, &after, NULL), HE_OK);
-        store->read_end(store->self, mesh);
+        st_read_end(mesh);
         send(200, "POST", "/v1/meshes/m/undo", NULL);
-        assert_true(he_mesh_equal_live(before, store->read_begin(store->self, mesh, NULL)));
-        store->read_end(store->self, mesh);
+        assert_true(he_mesh_equal_live(before, st_read_begin(mesh, NULL)));
+        st_read_end(mesh);
         send(200, "POST", "/v1/meshes/m/redo", NULL);
-        assert_true(he_mesh_equal(after, store->read_begin(store->self, mesh, NULL)));
-        store->read_end(store->self, mesh);
-        store->release(store->self, mesh);
+        assert_true(he_mesh_equal(after, st_read_begin(mesh, NULL)));
+        st_read_end(mesh);
+        st_release(mesh);
         he_mesh_free(before);
         he_mesh_free(after);
     }

@@ -2,7 +2,7 @@
  * the history keeps. */
 #include "tests/api/stream.h"
 
-#include "api/job/jobs.h"
+#include "api/job/job_table.h"
 #include "tests/model/random.h"
 #include "tests/seed.h"
 
@@ -175,30 +175,29 @@ static void do_something(api_bench *b, md_random *random, int turn)
  * the mesh is. Of those before, some are read once more. */
 static uint64_t note_revisions(api_bench *b, he_mesh *copies[REVISIONS], uint64_t known)
 {
-    const api_store *store = bench_store(b);
-    api_mesh *mesh = stream_mesh(b);
-    api_mesh_info info;
-    const he_mesh *content = store->read_begin(store->self, mesh, &info);
+    st_mesh *mesh = stream_mesh(b);
+    st_mesh_info info;
+    const he_mesh *content = st_read_begin(mesh, &info);
     assert_true(info.revision < REVISIONS);
     if (info.revision > known) {
         assert_int_equal(he_mesh_copy(content, &copies[info.revision], NULL), HE_OK);
     }
-    store->read_end(store->self, mesh);
+    st_read_end(mesh);
     for (uint64_t r = 1; r < info.revision; r++) {
         if (r <= known && (r + known) % SOME != 0) {
             continue;
         }
-        api_snapshot *snapshot;
-        assert_int_equal(store->snapshot_at(store->self, mesh, r, &snapshot), API_STORE_OK);
-        const he_mesh *past = store->snapshot_content(snapshot, NULL);
+        st_snapshot *snapshot;
+        assert_int_equal(st_snapshot_at(mesh, r, &snapshot), ST_OK);
+        const he_mesh *past = st_snapshot_content(snapshot, NULL);
         if (r > known) {
             assert_int_equal(he_mesh_copy(past, &copies[r], NULL), HE_OK);
         } else {
             assert_true(he_mesh_equal_live(past, copies[r]));
         }
-        store->snapshot_release(store->self, snapshot);
+        st_snapshot_release(snapshot);
     }
-    store->release(store->self, mesh);
+    st_release(mesh);
     return info.revision;
 }
 

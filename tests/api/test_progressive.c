@@ -218,14 +218,14 @@ static void assert_same(const level *l, const he_mesh *m)
 /* The mesh of the present revision, which must be this one. */
 static void assert_is(api_bench *b, const char *id, const level *l, uint64_t revision)
 {
-    const api_store *store = bench_store(b);
-    api_mesh *mesh = NULL;
-    api_mesh_info info;
-    assert_int_equal(store->find(store->self, id, &mesh), API_STORE_OK);
-    assert_same(l, store->read_begin(store->self, mesh, &info));
+    st_store *store = bench_store(b);
+    st_mesh *mesh = NULL;
+    st_mesh_info info;
+    assert_int_equal(st_find(store, id, &mesh), ST_OK);
+    assert_same(l, st_read_begin(mesh, &info));
     assert_int_equal(info.revision, revision);
-    store->read_end(store->self, mesh);
-    store->release(store->self, mesh);
+    st_read_end(mesh);
+    st_release(mesh);
 }
 
 /* Every level where there are few splits, else some. */

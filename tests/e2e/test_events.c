@@ -8,7 +8,7 @@
 #include "tests/random_edit.h"
 
 #include "op/op.h"
-#include "server/system/clock.h"
+#include "system/clock.h"
 
 #include <dirent.h>
 #include <inttypes.h>
@@ -450,13 +450,13 @@ static void closed_listeners_free_their_descriptors(void **state)
         listener_close(gone[i]);
     }
     int looks = 0;
-    uint64_t closed = srv_clock_micros();
+    uint64_t closed = st_clock_micros();
     while (open_descriptors(d) > before && looks < MOST_LOOKS) {
         looks++;
         reply_done(reply_expect(200, client_get(c, "/livez")));
     }
     print_message("note: %d closed listeners were gone after %.1f s\n", GONE,
-                  (double)(srv_clock_micros() - closed) / 1e6);
+                  (double)(st_clock_micros() - closed) / 1e6);
     assert_true(looks < MOST_LOOKS);
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);

@@ -7,7 +7,7 @@
  * says so and gives the daemon the budget that 300 MiB lead to. */
 #include "tests/e2e/client.h"
 
-#include "server/system/memory_limit.h"
+#include "system/memory_limit.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

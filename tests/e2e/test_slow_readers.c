@@ -2,7 +2,7 @@
  */
 #include "tests/e2e/client.h"
 
-#include "server/system/limits.h"
+#include "server/http/limits.h"
 
 #include <errno.h>
 #include <poll.h>

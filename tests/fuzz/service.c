@@ -25,17 +25,17 @@ api_bench *fuzz_service_new(void)
 
 he_mesh *fuzz_service_mesh(api_bench *b, const char *id)
 {
-    const api_store *store = bench_store(b);
-    api_mesh_info info;
-    api_mesh *stored;
+    st_store *store = bench_store(b);
+    st_mesh_info info;
+    st_mesh *stored;
     he_mesh *copy = NULL;
-    if (store->find(store->self, id, &stored) != API_STORE_OK) {
+    if (st_find(store, id, &stored) != ST_OK) {
         return NULL;
     }
-    const he_mesh *content = store->read_begin(store->self, stored, &info);
+    const he_mesh *content = st_read_begin(stored, &info);
     assert_int_equal(he_mesh_copy(content, &copy, NULL), HE_OK);
-    store->read_end(store->self, stored);
-    store->release(store->self, stored);
+    st_read_end(stored);
+    st_release(stored);
     fixture_check(copy);
     return copy;
 }

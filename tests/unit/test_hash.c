@@ -1,5 +1,5 @@
-/* The keyed hash of api/header/hash.h. */
-#include "api/header/hash.h"
+/* The keyed hash of base/siphash.h. */
+#include "base/siphash.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,12 +29,12 @@ static void values_are_those_of_its_authors(void **state)
     }
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         uint64_t out[2];
-        api_hash h;
-        api_hash_begin(&h, key);
-        api_hash_add(&h, message, cases[i].length);
-        api_hash_end(&h, out);
+        he_siphash h;
+        he_siphash_begin(&h, key);
+        he_siphash_add(&h, message, cases[i].length);
+        he_siphash_end(&h, out);
         assert_true(out[0] == cases[i].out[0] && out[1] == cases[i].out[1]);
-        assert_true(api_hash_of(key, message, cases[i].length) == cases[i].out[0]);
+        assert_true(he_siphash_of(key, message, cases[i].length) == cases[i].out[0]);
     }
 }
 
@@ -44,14 +44,14 @@ static void cuts_do_not_count(void **state)
     char text[100];
     memset(text, 'x', sizeof text);
     for (size_t length = 0; length <= 40; length++) {
-        uint64_t whole = api_hash_of(key, text, length);
+        uint64_t whole = he_siphash_of(key, text, length);
         for (size_t cut = 0; cut <= length; cut++) {
             uint64_t out[2];
-            api_hash h;
-            api_hash_begin(&h, key);
-            api_hash_add(&h, text, cut);
-            api_hash_add(&h, text + cut, length - cut);
-            api_hash_end(&h, out);
+            he_siphash h;
+            he_siphash_begin(&h, key);
+            he_siphash_add(&h, text, cut);
+            he_siphash_add(&h, text + cut, length - cut);
+            he_siphash_end(&h, out);
             assert_true(out[0] == whole);
         }
     }
@@ -64,15 +64,15 @@ static void length_key_and_each_byte_count(void **state)
     size_t count = 0;
     char text[32] = {0};
     for (size_t length = 0; length < sizeof text; length++) {
-        seen[count++] = api_hash_of(key, text, length);
+        seen[count++] = he_siphash_of(key, text, length);
     }
     for (size_t i = 0; i < 16; i++) {
         text[i] = 1;
-        seen[count++] = api_hash_of(key, text, 16);
+        seen[count++] = he_siphash_of(key, text, 16);
         text[i] = 0;
     }
-    seen[count++] = api_hash_of((const uint64_t[2]){key[0] + 1, key[1]}, text, 16);
-    seen[count++] = api_hash_of((const uint64_t[2]){key[0], key[1] + 1}, text, 16);
+    seen[count++] = he_siphash_of((const uint64_t[2]){key[0] + 1, key[1]}, text, 16);
+    seen[count++] = he_siphash_of((const uint64_t[2]){key[0], key[1] + 1}, text, 16);
     for (size_t i = 0; i < count; i++) {
         for (size_t j = 0; j < i; j++) {
             assert_true(seen[i] != seen[j]);

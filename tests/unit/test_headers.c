@@ -115,11 +115,11 @@ static void ids_in_paths_are_digits(void **state)
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         assert_false(api_path_is_mesh_id(names[i]));
     }
-    char longest[API_MESH_ID + 2];
+    char longest[ST_MESH_ID + 2];
     memset(longest, 'a', sizeof longest);
-    longest[API_MESH_ID + 1] = '\0';
+    longest[ST_MESH_ID + 1] = '\0';
     assert_false(api_path_is_mesh_id(longest));
-    longest[API_MESH_ID] = '\0';
+    longest[ST_MESH_ID] = '\0';
     assert_true(api_path_is_mesh_id(longest));
 }
 
@@ -277,7 +277,7 @@ static void one_content_coding_is_taken(void **state)
     }
 }
 
-static const api_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
+static const st_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
 
 /* Is a tag listed, by a client that accepts gzip, and in this coding? */
 static bool listed(const char *header, const char *etag, api_coding coding)
@@ -350,7 +350,7 @@ static void cursors_come_back_or_are_refused(void **state)
         assert_int_equal(problem.code, API_BAD_CURSOR);
     }
     /* Edits leave it what it was, of the revision it pins; another mesh of the id does not. */
-    api_mesh_info later = facts;
+    st_mesh_info later = facts;
     uint64_t pinned = 0;
     later.revision++;
     assert_true(api_cursor_pins(text, &later, &pinned));

@@ -3,94 +3,6 @@
 
 #include "fixture.h"
 
-/* --- a store of one mesh --- */
-
-struct api_mesh {
-    he_mesh *content;
-    int references;
-};
-
-static api_store_status store_find(void *self, const char *id, api_mesh **out)
-{
-    api_mesh *mesh = self;
-    if (strcmp(id, "m") != 0) {
-        return API_STORE_ABSENT;
-    }
-    mesh->references++;
-    *out = mesh;
-    return API_STORE_OK;
-}
-
-static void store_release(void *self, api_mesh *mesh)
-{
-    assert_ptr_equal(self, mesh);
-    mesh->references--;
-}
-
-static const he_mesh *store_read_begin(void *self, api_mesh *mesh, api_mesh_info *info)
-{
-    assert_ptr_equal(self, mesh);
-    *info = (api_mesh_info){.id = "m", .incarnation = 1, .metadata = 1, .revision = 7, .record = 9};
-    return mesh->content;
-}
-
-static void store_read_end(void *self, api_mesh *mesh)
-{
-    assert_ptr_equal(self, mesh);
-}
-
-static bool store_cache_get(void *self, api_mesh *mesh, void *value, size_t size)
-{
-    (void)self;
-    (void)mesh;
-    (void)value;
-    return size == 0;
-}
-
-static void store_cache_put(void *self, api_mesh *mesh, const void *value, size_t size)
-{
-    (void)self;
-    (void)mesh;
-    (void)value;
-    (void)size;
-}
-
-/* The mesh does not change: it is its own snapshot. */
-struct api_snapshot {
-    api_mesh *mesh;
-};
-
-static api_store_status store_snapshot(void *self, api_mesh *mesh, api_snapshot **out)
-{
-    static api_snapshot only_one;
-    assert_ptr_equal(self, mesh);
-    only_one.mesh = mesh;
-    *out = &only_one;
-    return API_STORE_OK;
-}
-
-static const he_mesh *store_snapshot_content(const api_snapshot *snapshot, api_mesh_info *info)
-{
-    return store_read_begin(snapshot->mesh, snapshot->mesh, info);
-}
-
-static void store_snapshot_release(void *self, api_snapshot *snapshot)
-{
-    assert_ptr_equal(self, snapshot->mesh);
-}
-
-static api_mesh only;
-static const api_store store = {.self = &only,
-                                .find = store_find,
-                                .release = store_release,
-                                .read_begin = store_read_begin,
-                                .read_end = store_read_end,
-                                .snapshot = store_snapshot,
-                                .snapshot_content = store_snapshot_content,
-                                .snapshot_release = store_snapshot_release,
-                                .cache_get = store_cache_get,
-                                .cache_put = store_cache_put};
-
 static bool find_asset(void *context, const char *path, const char **bytes, size_t *length,
                        const char **type, const char **etag, bool *immutable)
 {
@@ -113,6 +25,8 @@ static bool not_ready(void *context)
 }
 
 static bool is_ready = true;
+static st_store *store;
+static st_mesh *only; /* "m" */
 static api_service *service;
 
 static int set_up(void **state)
@@ -123,8 +37,11 @@ static int set_up(void **state)
                            .asset = find_asset,
                            .ready = not_ready,
                            .ready_context = &is_ready};
-    only.content = fixture_mesh("012");
-    service = api_service_new(&store, &options);
+    store = st_store_new(&(st_store_options){
+        .undo_budget = 1 << 20, .max_meshes = 10, .journal = st_journal_memory()});
+    assert_non_null(store);
+    assert_int_equal(st_create(store, "m", "", fixture_mesh("012"), NULL, &only), ST_OK);
+    service = api_service_new(store, &options);
     return service == NULL;
 }
 
@@ -132,8 +49,9 @@ static int tear_down(void **state)
 {
     (void)state;
     api_service_free(service);
-    he_mesh_free(only.content);
-    return only.references;
+    st_release(only);
+    st_store_free(store);
+    return 0;
 }
 
 /* --- requests --- */
@@ -491,14 +409,18 @@ static void a_body_without_a_length_meets_the_cap_as_it_comes(void **state)
 static void costly_work_leaves_the_worker(void **state)
 {
     (void)state;
-    he_mesh *small = only.content;
+    he_mesh *large;
+    st_mesh_info info;
     he_soup soup;
     he_soup_init(&soup, NULL);
     for (int i = 0; i <= API_COSTLY_ELEMENTS; i++) {
         assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){i, 0, 0}, NULL), HE_OK);
     }
-    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &only.content, NULL, NULL), HE_OK);
+    assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &large, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
+    assert_non_null(st_write_begin(only, NULL, NULL));
+    st_write_replace(only, large, &info);
+    st_write_end(only);
     api_request request = {.method = "GET", .path = "/v1/meshes/m", .query = "", .request_id = "r"};
     api_step step;
     api_exchange *x = api_begin(service, &request, &step);
@@ -506,11 +428,12 @@ static void costly_work_leaves_the_worker(void **state)
     assert_int_equal(api_end(x), API_WORK);
     api_work(x);
     assert_int_equal(api_answer_of(x)->status, 200);
-    assert_ptr_equal(api_answer_of(x)->mesh, &only);
-    assert_int_equal(api_answer_of(x)->record, 9);
+    assert_ptr_equal(api_answer_of(x)->mesh, only);
+    assert_int_equal(api_answer_of(x)->record, info.record);
     api_free(x);
-    he_mesh_free(only.content);
-    only.content = small;
+    assert_non_null(st_write_begin(only, NULL, NULL));
+    st_write_replace(only, fixture_mesh("012"), NULL);
+    st_write_end(only);
 }
 
 static void a_large_document_is_read_off_the_worker(void **state)

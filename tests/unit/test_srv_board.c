@@ -2,12 +2,13 @@
  * when it is durable, and a stop ends everything. */
 #include "tests/unit/fixture.h"
 
-#include "server/job/job_board.h"
-#include "server/store/held.h"
-#include "server/store/idempotency.h"
-#include "server/system/clock.h"
-#include "server/system/memory.h"
-#include "server/system/thread_pool.h"
+#include "api/job/job_table.h"
+#include "api/request/api.h"
+#include "store/durability_wait.h"
+#include "store/idempotency.h"
+#include "system/clock.h"
+#include "system/memory.h"
+#include "system/thread_pool.h"
 
 #include <pthread.h>
 
@@ -25,10 +26,10 @@ static struct {
     void *context;
 } slow;
 
-static void slow_append(void *self, const srv_record *record)
+static void slow_append(void *self, const st_record *record)
 {
     (void)self;
-    snprintf(slow.key, sizeof slow.key, "%s", record->claim == NULL ? "" : record->claim->key);
+    snprintf(slow.key, sizeof slow.key, "%s", record->keyed == NULL ? "" : record->keyed->key);
 }
 
 static uint64_t slow_durable(void *self, const char *id, uint64_t incarnation)
@@ -53,51 +54,47 @@ static void slow_close(void *self)
 
 /* --- the server --- */
 
-static srv_store *store;
-static api_store interface;
-static srv_pool *pool;
-static srv_board *board;
-static api_jobs jobs;
+static st_store *store;
+static st_pool *pool;
+static api_job_table *jobs;
 static api_service *service;
 
 static const char *key; /* of the requests; NULL: none */
 
-static bool submit(void *context, const srv_task *task)
+static bool submit(void *context, const st_task *task)
 {
-    return srv_pool_submit(context, task);
+    return st_pool_submit(context, task);
 }
 
 static int start_keeping(double keep)
 {
     slow.behind = false;
-    pool = srv_pool_new("test", 2, 4);
-    store = srv_store_new(&(srv_store_options){
+    pool = st_pool_new("test", 2, 4);
+    store = st_store_new(&(st_store_options){
         .undo_budget = 64 << 20,
         .max_meshes = 100,
         .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
     });
-    interface = srv_store_interface(store);
-    board = srv_board_new(
-        &(srv_board_options){.store = store, .submit = submit, .pool = pool, .keep = keep});
-    jobs = srv_board_interface(board);
-    service = api_service_new(&interface, &(api_options){.version = "test", .jobs = &jobs});
+    jobs = api_job_table_new(
+        &(api_job_table_options){.store = store, .submit = submit, .pool = pool, .keep = keep});
+    service = api_service_new(store, &(api_options){.version = "test", .jobs = jobs});
     return 0;
 }
 
 static int start(void **state)
 {
     (void)state;
-    return start_keeping(SRV_JOB_SECONDS);
+    return start_keeping(API_JOB_SECONDS);
 }
 
 static int stop(void **state)
 {
     (void)state;
-    srv_board_stop(board);
-    srv_pool_free(pool);
-    srv_board_free(board);
+    api_job_table_stop(jobs);
+    st_pool_free(pool);
+    api_job_table_free(jobs);
     api_service_free(service);
-    srv_store_free(store);
+    st_store_free(store);
     return 0;
 }
 
@@ -141,7 +138,7 @@ static void take_facts(void *context, const api_job *job)
 static api_job look(const char *id)
 {
     api_job job = {.number = 0};
-    assert_true(jobs.find(jobs.self, id, take_facts, &job));
+    assert_true(api_job_find(jobs, id, take_facts, &job));
     return job;
 }
 
@@ -187,25 +184,25 @@ static bool cancel_at(int percent)
 {
     char id[API_JOB_ID + 1];
     bool forgotten = false;
-    uint64_t before = srv_memory_used();
+    uint64_t before = st_memory_used();
     assert_int_equal(post("/v1/meshes", MIDDLE, id), 202);
     api_job job = wait_for(id, API_JOB_RUNNING);
     while (job.state == API_JOB_RUNNING && job.progress * 100 < percent) {
         job = look(id);
     }
-    uint64_t asked = srv_clock_micros();
-    assert_true(jobs.remove(jobs.self, id, &forgotten, take_facts, &job));
+    uint64_t asked = st_clock_micros();
+    assert_true(api_job_remove(jobs, id, &forgotten, take_facts, &job));
     if (forgotten || wait_for(id, API_JOB_DONE).state == API_JOB_DONE) {
         return false;
     }
     print_message("note: cancelled at %d %%, ended in %.1f ms\n", percent,
-                  (double)(srv_clock_micros() - asked) / 1000);
+                  (double)(st_clock_micros() - asked) / 1000);
     assert_int_equal(look(id).state, API_JOB_CANCELLED);
-    assert_true(jobs.remove(jobs.self, id, &forgotten, take_facts, &job));
+    assert_true(api_job_remove(jobs, id, &forgotten, take_facts, &job));
     assert_true(forgotten);
     /* The pool's thread gives its hold of the job back last. */
-    while (srv_memory_used() != before) {
-        assert_false(jobs.find(jobs.self, id, take_facts, &job));
+    while (st_memory_used() != before) {
+        assert_false(api_job_find(jobs, id, take_facts, &job));
     }
     return true;
 }
@@ -217,7 +214,7 @@ static void cancelling_gives_the_memory_back(void **state)
     while (percent < 100 && cancel_at(percent)) {
         percent += 20;
     }
-    assert_int_equal(srv_store_count(store), percent < 100 ? 1 : 0);
+    assert_int_equal(st_store_count(store), percent < 100 ? 1 : 0);
 }
 
 static void beyond_the_queue_jobs_are_refused(void **state)
@@ -262,7 +259,7 @@ static void what_is_never_durable_was_not_done(void **state)
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     while (strcmp(look(id).phase, "storing") != 0) {
     }
-    srv_held_abandon(srv_store_held(store));
+    st_waits_abandon(st_store_waits(store));
     assert_int_equal(post("/v1/meshes", CUBE, late), 202);
     const char *const ids[] = {id, late};
     for (int i = 0; i < 2; i++) {
@@ -329,7 +326,7 @@ static void a_mesh_may_go_while_a_job_changes_it(void **state)
         job = wait_for(id, API_JOB_DONE);
         assert_int_equal(job.status, job.state == API_JOB_DONE ? 200 : 404);
         lost += job.state == API_JOB_FAILED;
-        assert_int_equal(srv_store_count(store), 0);
+        assert_int_equal(st_store_count(store), 0);
     }
     print_message("note: %u of 5 jobs lost their mesh\n", lost);
 }
@@ -341,7 +338,7 @@ static void what_ended_is_forgotten_in_time(void **state)
     api_job job;
     start_keeping(0);
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
-    while (jobs.find(jobs.self, id, take_facts, &job)) {
+    while (api_job_find(jobs, id, take_facts, &job)) {
         assert_true(job.state <= API_JOB_RUNNING);
     }
     stop(NULL);
@@ -353,13 +350,13 @@ static void only_so_many_are_kept(void **state)
     char id[API_JOB_ID + 1], first[API_JOB_ID + 1];
     assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", first), 202);
     wait_for(first, API_JOB_DONE);
-    for (int i = 0; i < SRV_JOBS_KEPT; i++) {
+    for (int i = 0; i < API_JOBS_KEPT; i++) {
         assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", id), 202);
         wait_for(id, API_JOB_DONE);
     }
     api_job job;
-    assert_false(jobs.find(jobs.self, first, take_facts, &job));
-    assert_true(jobs.find(jobs.self, id, take_facts, &job));
+    assert_false(api_job_find(jobs, first, take_facts, &job));
+    assert_true(api_job_find(jobs, id, take_facts, &job));
 }
 
 static void a_stop_ends_what_waits_and_what_runs(void **state)
@@ -369,7 +366,7 @@ static void a_stop_ends_what_waits_and_what_runs(void **state)
     for (int i = 0; i < 4; i++) {
         assert_int_equal(post("/v1/meshes", HUGE_TORUS, ids[i]), 202);
     }
-    srv_board_stop(board);
+    api_job_table_stop(jobs);
     for (int i = 0; i < 4; i++) {
         assert_int_equal(wait_for(ids[i], API_JOB_DONE).state, API_JOB_CANCELLED);
     }
@@ -393,6 +390,6 @@ int main(void)
         BOARD_TEST(a_stop_ends_what_waits_and_what_runs),
         cmocka_unit_test(what_ended_is_forgotten_in_time),
     };
-    srv_memory_install(0);
+    st_memory_install(0);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

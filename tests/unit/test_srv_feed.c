@@ -3,26 +3,26 @@
 #include "tests/unit/fixture.h"
 
 #include "base/mem.h"
-#include "server/store/feed.h"
+#include "store/broadcast_queue.h"
 
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static srv_feed feed;
+static st_queue feed;
 
 static int setup(void **state)
 {
     (void)state;
-    srv_feed_init(&feed, (srv_place){.stamp = 7, .key = 3});
+    st_queue_init(&feed, (st_place){.stamp = 7, .key = 3});
     return 0;
 }
 
 static int teardown(void **state)
 {
     (void)state;
-    srv_feed_clear(&feed);
+    st_queue_clear(&feed);
     return 0;
 }
 
@@ -31,10 +31,10 @@ static void count_wake(void *context)
     ++*(unsigned *)context;
 }
 
-static void join(srv_listener *listener, unsigned *wakes)
+static void join(st_listener *listener, unsigned *wakes)
 {
-    assert_true(srv_feed_listen(&feed, listener, SIZE_MAX));
-    srv_feed_wake(listener, count_wake, wakes);
+    assert_true(st_queue_listen(&feed, listener, SIZE_MAX));
+    st_queue_wake(listener, count_wake, wakes);
 }
 
 /* A message that says its stamp. */
@@ -42,14 +42,14 @@ static void add(uint64_t stamp, uint64_t key)
 {
     char text[32];
     int length = snprintf(text, sizeof text, "%llu;", (unsigned long long)stamp);
-    srv_feed_add(&feed, (srv_place){stamp, key}, text, (size_t)length);
+    st_queue_add(&feed, (st_place){stamp, key}, text, (size_t)length);
 }
 
-static void assert_reads(srv_listener *listener, const char *expected)
+static void assert_reads(st_listener *listener, const char *expected)
 {
     char text[256];
     size_t length = 0, got = 0;
-    while (srv_feed_read(listener, text + length, 3, &got) == SRV_FEED_GOT) {
+    while (st_queue_read(listener, text + length, 3, &got) == ST_QUEUE_GOT) {
         length += got;
         assert_true(length + 3 < sizeof text);
     }
@@ -57,130 +57,130 @@ static void assert_reads(srv_listener *listener, const char *expected)
     assert_string_equal(text, expected);
 }
 
-static void assert_step(srv_listener *listener, srv_feed_step expected)
+static void assert_step(st_listener *listener, st_queue_result expected)
 {
     char text[256];
     size_t got;
-    assert_int_equal(srv_feed_read(listener, text, sizeof text, &got), expected);
+    assert_int_equal(st_queue_read(listener, text, sizeof text, &got), expected);
 }
 
 static void everybody_reads_everything_once(void **state)
 {
     (void)state;
-    srv_listener early, late;
+    st_listener early, late;
     unsigned early_wakes = 0, late_wakes = 0;
     join(&early, &early_wakes);
     add(8, 4);
-    srv_feed_allow(&feed, 8);
+    st_queue_allow(&feed, 8);
     join(&late, &late_wakes);
     add(9, 5);
-    srv_feed_allow(&feed, 9);
+    st_queue_allow(&feed, 9);
     assert_int_equal(early_wakes, 0); /* it does not wait yet */
     assert_reads(&early, "8;9;");
     assert_reads(&late, "9;");
     add(10, 5);
-    srv_feed_allow(&feed, 10);
+    st_queue_allow(&feed, 10);
     assert_int_equal(early_wakes, 1);
     add(12, 6);
-    srv_feed_allow(&feed, 12);
+    st_queue_allow(&feed, 12);
     assert_int_equal(early_wakes, 1); /* once for each wait */
     assert_int_equal(late_wakes, 1);
     assert_reads(&early, "10;12;");
     assert_reads(&late, "10;12;");
-    srv_feed_leave(&early);
-    srv_feed_leave(&late);
+    st_queue_leave(&early);
+    st_queue_leave(&late);
 }
 
 static void what_is_not_allowed_is_not_read(void **state)
 {
     (void)state;
-    srv_listener listener;
+    st_listener listener;
     unsigned wakes = 0;
     join(&listener, &wakes);
-    assert_step(&listener, SRV_FEED_WAIT);
+    assert_step(&listener, ST_QUEUE_WAIT);
     add(8, 4);
     add(9, 5);
     add(10, 6);
     assert_int_equal(wakes, 0);
     assert_reads(&listener, "");
-    srv_feed_allow(&feed, 9);
+    st_queue_allow(&feed, 9);
     assert_int_equal(wakes, 1);
     assert_reads(&listener, "8;9;");
-    srv_feed_end(&feed);
-    assert_step(&listener, SRV_FEED_WAIT); /* the end, too, is not allowed yet */
-    srv_feed_allow(&feed, 10);
+    st_queue_end(&feed);
+    assert_step(&listener, ST_QUEUE_WAIT); /* the end, too, is not allowed yet */
+    st_queue_allow(&feed, 10);
     assert_reads(&listener, "10;");
-    assert_step(&listener, SRV_FEED_ENDED);
-    srv_feed_leave(&listener);
+    assert_step(&listener, ST_QUEUE_ENDED);
+    st_queue_leave(&listener);
 }
 
 static void what_is_beside_a_message_comes_after_it(void **state)
 {
     (void)state;
-    srv_listener listener, late;
+    st_listener listener, late;
     unsigned wakes = 0;
     join(&listener, &wakes);
-    srv_feed_allow(&feed, 7);
+    st_queue_allow(&feed, 7);
     assert_reads(&listener, "");
-    srv_feed_add_beside(&feed, "a;", 2);
+    st_queue_add_beside(&feed, "a;", 2);
     assert_int_equal(wakes, 1);
     add(8, 4);
-    srv_feed_add_beside(&feed, "b;", 2);
-    srv_feed_add_beside(&feed, "c;", 2);
+    st_queue_add_beside(&feed, "b;", 2);
+    st_queue_add_beside(&feed, "c;", 2);
     assert_reads(&listener, "a;"); /* what is beside 8 shows it */
     assert_int_equal(wakes, 1);
     add(9, 5);
-    srv_feed_allow(&feed, 9);
+    st_queue_allow(&feed, 9);
     assert_reads(&listener, "8;b;c;9;");
     join(&late, &wakes);
-    assert_true(srv_feed_rewind(&late, 4));
+    assert_true(st_queue_rewind(&late, 4));
     assert_reads(&late, "b;c;9;");
-    assert_true(srv_feed_rewind(&late, 3));
+    assert_true(st_queue_rewind(&late, 3));
     assert_reads(&late, "a;8;b;c;9;");
-    srv_feed_add_beside(&feed, NULL, 0);
-    assert_step(&listener, SRV_FEED_BEHIND);
-    assert_int_equal(srv_feed_skip(&listener).key, 5);
-    srv_feed_end(&feed);
-    srv_feed_add_beside(&feed, "d;", 2);
-    assert_step(&listener, SRV_FEED_ENDED);
-    srv_feed_leave(&listener);
-    srv_feed_leave(&late);
+    st_queue_add_beside(&feed, NULL, 0);
+    assert_step(&listener, ST_QUEUE_BEHIND);
+    assert_int_equal(st_queue_skip(&listener).key, 5);
+    st_queue_end(&feed);
+    st_queue_add_beside(&feed, "d;", 2);
+    assert_step(&listener, ST_QUEUE_ENDED);
+    st_queue_leave(&listener);
+    st_queue_leave(&late);
 }
 
 static void who_is_slow_is_behind_once(void **state)
 {
     (void)state;
-    srv_listener slow, middle;
+    st_listener slow, middle;
     unsigned wakes = 0;
     char byte[2];
     size_t got;
     join(&slow, &wakes);
     join(&middle, &wakes);
     add(8, 4);
-    srv_feed_allow(&feed, 8);
-    assert_int_equal(srv_feed_read(&middle, byte, 1, &got), SRV_FEED_GOT);
+    st_queue_allow(&feed, 8);
+    assert_int_equal(st_queue_read(&middle, byte, 1, &got), ST_QUEUE_GOT);
     uint64_t stamp = 9;
-    for (; stamp < 9 + SRV_FEED_MESSAGES + 10; stamp++) {
+    for (; stamp < 9 + ST_QUEUE_MESSAGES + 10; stamp++) {
         add(stamp, stamp);
     }
-    assert_int_equal(feed.count, SRV_FEED_MESSAGES);
+    assert_int_equal(feed.count, ST_QUEUE_MESSAGES);
     /* Not even where to go on may be told. */
-    assert_step(&slow, SRV_FEED_WAIT);
-    srv_feed_allow(&feed, stamp - 3);
-    assert_step(&slow, SRV_FEED_BEHIND);
-    srv_place place = srv_feed_skip(&slow);
+    assert_step(&slow, ST_QUEUE_WAIT);
+    st_queue_allow(&feed, stamp - 3);
+    assert_step(&slow, ST_QUEUE_BEHIND);
+    st_place place = st_queue_skip(&slow);
     assert_int_equal(place.stamp, stamp - 3);
     assert_int_equal(place.key, stamp - 3);
-    assert_step(&slow, SRV_FEED_WAIT);
+    assert_step(&slow, ST_QUEUE_WAIT);
     /* A message that was begun is read to its end. */
-    assert_int_equal(srv_feed_read(&middle, byte, 2, &got), SRV_FEED_GOT);
+    assert_int_equal(st_queue_read(&middle, byte, 2, &got), ST_QUEUE_GOT);
     assert_int_equal(got, 1);
     assert_int_equal(byte[0], ';');
-    assert_step(&middle, SRV_FEED_BEHIND);
-    srv_feed_allow(&feed, stamp);
-    assert_step(&slow, SRV_FEED_GOT);
-    srv_feed_leave(&slow);
-    srv_feed_leave(&middle);
+    assert_step(&middle, ST_QUEUE_BEHIND);
+    st_queue_allow(&feed, stamp);
+    assert_step(&slow, ST_QUEUE_GOT);
+    st_queue_leave(&slow);
+    st_queue_leave(&middle);
 }
 
 static void bytes_are_bounded_too(void **state)
@@ -188,20 +188,20 @@ static void bytes_are_bounded_too(void **state)
     (void)state;
     enum { LARGE = 100 * 1000 };
     static char text[LARGE];
-    srv_listener slow;
+    st_listener slow;
     unsigned wakes = 0;
     join(&slow, &wakes);
     memset(text, 'x', sizeof text);
     for (uint64_t stamp = 8; stamp < 100; stamp++) {
-        srv_feed_add(&feed, (srv_place){stamp, stamp}, text, sizeof text);
-        assert_true(feed.bytes <= SRV_FEED_BYTES);
+        st_queue_add(&feed, (st_place){stamp, stamp}, text, sizeof text);
+        assert_true(feed.bytes <= ST_QUEUE_BYTES);
     }
-    assert_int_equal(feed.count, SRV_FEED_BYTES / LARGE);
-    srv_feed_shed(&feed); /* somebody listens */
-    assert_int_equal(feed.count, SRV_FEED_BYTES / LARGE);
-    srv_feed_leave(&slow);
-    assert_true(srv_feed_is_followed(&feed)); /* until lately */
-    srv_feed_shed(&feed);
+    assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
+    st_queue_shed(&feed); /* somebody listens */
+    assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
+    st_queue_leave(&slow);
+    assert_true(st_queue_is_followed(&feed)); /* until lately */
+    st_queue_shed(&feed);
     assert_int_equal(feed.count, 0);
     assert_int_equal(feed.bytes, 0);
 }
@@ -209,35 +209,35 @@ static void bytes_are_bounded_too(void **state)
 static void a_listener_goes_back_to_a_key(void **state)
 {
     (void)state;
-    srv_listener listener;
+    st_listener listener;
     unsigned wakes = 0;
     join(&listener, &wakes);
     add(8, 4);
     add(9, 4); /* beside the revision */
     add(10, 5);
-    srv_feed_allow(&feed, 10);
-    assert_true(srv_feed_rewind(&listener, 3));
+    st_queue_allow(&feed, 10);
+    assert_true(st_queue_rewind(&listener, 3));
     assert_reads(&listener, "8;9;10;");
-    assert_true(srv_feed_rewind(&listener, 4));
+    assert_true(st_queue_rewind(&listener, 4));
     assert_reads(&listener, "9;10;");
-    assert_true(srv_feed_rewind(&listener, 5));
+    assert_true(st_queue_rewind(&listener, 5));
     assert_reads(&listener, "");
-    assert_false(srv_feed_rewind(&listener, 2));
-    assert_false(srv_feed_rewind(&listener, 6));
-    srv_feed_leave(&listener);
+    assert_false(st_queue_rewind(&listener, 2));
+    assert_false(st_queue_rewind(&listener, 6));
+    st_queue_leave(&listener);
 }
 
 static void only_so_many_may_listen(void **state)
 {
     (void)state;
-    srv_listener listener[3];
-    assert_true(srv_feed_listen(&feed, &listener[0], 2));
-    assert_true(srv_feed_listen(&feed, &listener[1], 2));
-    assert_false(srv_feed_listen(&feed, &listener[2], 2));
-    srv_feed_leave(&listener[0]);
-    assert_true(srv_feed_listen(&feed, &listener[2], 2));
-    srv_feed_leave(&listener[1]);
-    srv_feed_leave(&listener[2]);
+    st_listener listener[3];
+    assert_true(st_queue_listen(&feed, &listener[0], 2));
+    assert_true(st_queue_listen(&feed, &listener[1], 2));
+    assert_false(st_queue_listen(&feed, &listener[2], 2));
+    st_queue_leave(&listener[0]);
+    assert_true(st_queue_listen(&feed, &listener[2], 2));
+    st_queue_leave(&listener[1]);
+    st_queue_leave(&listener[2]);
 }
 
 static void *no_memory(void *context, void *memory, size_t size)
@@ -253,23 +253,23 @@ static void a_message_without_memory_is_a_gap(void **state)
 {
     (void)state;
     static const he_mem_hook hook = {no_memory, NULL};
-    srv_listener listener;
+    st_listener listener;
     unsigned wakes = 0;
     join(&listener, &wakes);
     add(8, 4);
     he_mem_set_hook(&hook);
     add(9, 5);
     he_mem_set_hook(NULL);
-    srv_feed_allow(&feed, 9);
-    assert_step(&listener, SRV_FEED_BEHIND);
-    assert_int_equal(srv_feed_skip(&listener).key, 5);
+    st_queue_allow(&feed, 9);
+    assert_step(&listener, ST_QUEUE_BEHIND);
+    assert_int_equal(st_queue_skip(&listener).key, 5);
     add(10, 6);
-    srv_feed_add(&feed, (srv_place){11, 7}, NULL, 0);
+    st_queue_add(&feed, (st_place){11, 7}, NULL, 0);
     add(12, 8);
-    srv_feed_allow(&feed, 12);
-    assert_step(&listener, SRV_FEED_BEHIND);
-    assert_int_equal(srv_feed_skip(&listener).key, 8);
-    srv_feed_leave(&listener);
+    st_queue_allow(&feed, 12);
+    assert_step(&listener, ST_QUEUE_BEHIND);
+    assert_int_equal(st_queue_skip(&listener).key, 8);
+    st_queue_leave(&listener);
 }
 
 /* --- threads --------------------------------------------------------------------------------- */
@@ -278,7 +278,7 @@ enum { LISTENERS = 6, MESSAGES = 20000 };
 
 typedef struct reader {
     pthread_t thread;
-    srv_listener listener;
+    st_listener listener;
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool woken, leaves;
@@ -323,13 +323,13 @@ static void *read_feed(void *context)
     char buffer[16 * sizeof(uint64_t)];
     for (;;) {
         size_t got = 0;
-        srv_feed_step step = srv_feed_read(&r->listener, buffer, sizeof buffer, &got);
-        if (step == SRV_FEED_GOT) {
+        st_queue_result step = st_queue_read(&r->listener, buffer, sizeof buffer, &got);
+        if (step == ST_QUEUE_GOT) {
             take(r, buffer, got);
-        } else if (step == SRV_FEED_WAIT) {
+        } else if (step == ST_QUEUE_WAIT) {
             wait_for_wake(r);
-        } else if (step == SRV_FEED_BEHIND) {
-            r->last = srv_feed_skip(&r->listener).stamp;
+        } else if (step == ST_QUEUE_BEHIND) {
+            r->last = st_queue_skip(&r->listener).stamp;
             r->behind++;
         } else {
             break;
@@ -338,7 +338,7 @@ static void *read_feed(void *context)
             break;
         }
     }
-    srv_feed_leave(&r->listener);
+    st_queue_leave(&r->listener);
     return NULL;
 }
 
@@ -351,17 +351,17 @@ static void threads_read_what_one_writes(void **state)
         *r = (reader){.last = 7, .leaves = i == 0};
         pthread_mutex_init(&r->lock, NULL);
         pthread_cond_init(&r->changed, NULL);
-        assert_true(srv_feed_listen(&feed, &r->listener, LISTENERS));
-        srv_feed_wake(&r->listener, wake_reader, r);
+        assert_true(st_queue_listen(&feed, &r->listener, LISTENERS));
+        st_queue_wake(&r->listener, wake_reader, r);
         assert_int_equal(pthread_create(&r->thread, NULL, read_feed, r), 0);
     }
     for (uint64_t stamp = 8; stamp <= MESSAGES; stamp++) {
-        srv_feed_add(&feed, (srv_place){stamp, stamp}, (const char *)&stamp, sizeof stamp);
+        st_queue_add(&feed, (st_place){stamp, stamp}, (const char *)&stamp, sizeof stamp);
         if (stamp % 3 == 0 || stamp == MESSAGES) {
-            srv_feed_allow(&feed, stamp);
+            st_queue_allow(&feed, stamp);
         }
     }
-    srv_feed_end(&feed);
+    st_queue_end(&feed);
     unsigned behind = 0;
     for (size_t i = 0; i < LISTENERS; i++) {
         pthread_join(readers[i].thread, NULL);

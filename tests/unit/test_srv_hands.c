@@ -5,7 +5,7 @@
 #include "base/exec.h"
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
-#include "server/system/hands.h"
+#include "system/parallel.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -65,8 +65,8 @@ static void each_part_is_run_once_whoever_else_has_work(void **state)
     (void)state;
     for (size_t i = 0; i < HAND_COUNTS; i++) {
         pthread_t owners[OWNERS];
-        srv_hands *hands = srv_hands_new(hand_counts[i]);
-        const he_exec *exec = srv_hands_exec(hands);
+        st_parallel *hands = st_parallel_new(hand_counts[i]);
+        const he_exec *exec = st_parallel_exec(hands);
         assert_int_equal(exec->threads, hand_counts[i] + 1);
         for (size_t k = 0; k < OWNERS; k++) {
             assert_int_equal(pthread_create(&owners[k], NULL, own_work, (void *)(uintptr_t)exec),
@@ -77,7 +77,7 @@ static void each_part_is_run_once_whoever_else_has_work(void **state)
             pthread_join(owners[k], &failed);
             assert_null(failed);
         }
-        srv_hands_free(hands);
+        st_parallel_free(hands);
     }
 }
 
@@ -85,8 +85,8 @@ static void of_parts_that_fail_the_first_one_is_told(void **state)
 {
     (void)state;
     for (size_t i = 0; i < HAND_COUNTS; i++) {
-        srv_hands *hands = srv_hands_new(hand_counts[i]);
-        const he_exec *exec = srv_hands_exec(hands);
+        st_parallel *hands = st_parallel_new(hand_counts[i]);
+        const he_exec *exec = st_parallel_exec(hands);
         for (uint32_t failing = 0; failing < PARTS; failing += 7) {
             tally t = {.failing = failing};
             he_error err = {0};
@@ -102,7 +102,7 @@ static void of_parts_that_fail_the_first_one_is_told(void **state)
             }
             assert_true(runs <= hand_counts[i] + 1);
         }
-        srv_hands_free(hands);
+        st_parallel_free(hands);
     }
 }
 
@@ -126,8 +126,8 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
 {
     (void)state;
     for (size_t i = 0; i < HAND_COUNTS; i++) {
-        srv_hands *hands = srv_hands_new(hand_counts[i]);
-        const he_exec *exec = srv_hands_exec(hands);
+        st_parallel *hands = st_parallel_new(hand_counts[i]);
+        const he_exec *exec = st_parallel_exec(hands);
         tally t = {.failing = PARTS};
         listener l = {.owner = pthread_self(), .give_up_at = 1};
         he_watch watch;
@@ -136,7 +136,7 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
         assert_int_equal(exec->run(exec->self, PARTS, count_part, &t, &watch, &err), HE_CANCELLED);
         assert_int_equal(err.status, HE_CANCELLED);
         assert_false(l.elsewhere);
-        srv_hands_free(hands);
+        st_parallel_free(hands);
     }
 }
 
@@ -220,11 +220,11 @@ static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
         make_soup(which, &soup);
         he_mesh *alone = build_with(&soup, NULL);
         for (size_t i = 0; i < HAND_COUNTS; i++) {
-            srv_hands *hands = srv_hands_new(hand_counts[i]);
-            he_mesh *mesh = build_with(&soup, srv_hands_exec(hands));
+            st_parallel *hands = st_parallel_new(hand_counts[i]);
+            he_mesh *mesh = build_with(&soup, st_parallel_exec(hands));
             assert_true(he_mesh_equal(alone, mesh));
             he_mesh_free(mesh);
-            srv_hands_free(hands);
+            st_parallel_free(hands);
         }
         he_mesh_free(alone);
         he_soup_clear(&soup);
@@ -282,14 +282,14 @@ static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **sta
         he_mesh *mesh = build_with(&soup, NULL);
         for (size_t i = 0; i < HAND_COUNTS; i++) {
             he_watch watch;
-            srv_hands *hands = srv_hands_new(hand_counts[i]);
+            st_parallel *hands = st_parallel_new(hand_counts[i]);
             he_watch_init(&watch, NULL, NULL);
-            watch.exec = srv_hands_exec(hands);
+            watch.exec = st_parallel_exec(hands);
             expect_same_normals(mesh, &watch);
             for (int scheme = HE_LOOP; scheme <= HE_SQRT3; scheme++) {
                 expect_same_subdivision(mesh, (he_scheme)scheme, &watch);
             }
-            srv_hands_free(hands);
+            st_parallel_free(hands);
         }
         he_mesh_free(mesh);
         he_soup_clear(&soup);
@@ -311,10 +311,10 @@ static void defects_are_the_same_on_1_2_and_8_threads(void **state)
         he_status status = he_build(&soup, 0, &mesh, &alone, &first);
         assert_true(status != HE_OK);
         for (size_t i = 0; i < HAND_COUNTS; i++) {
-            srv_hands *hands = srv_hands_new(hand_counts[i]);
+            st_parallel *hands = st_parallel_new(hand_counts[i]);
             he_watch watch;
             he_watch_init(&watch, NULL, NULL);
-            watch.exec = srv_hands_exec(hands);
+            watch.exec = st_parallel_exec(hands);
             soup.limits.watch = &watch;
             assert_int_equal(he_build(&soup, 0, &mesh, &report, &err), status);
             assert_int_equal(report.total, alone.total);
@@ -323,7 +323,7 @@ static void defects_are_the_same_on_1_2_and_8_threads(void **state)
                 (report.total < HE_REPORT_DEFECTS ? report.total : HE_REPORT_DEFECTS) *
                     sizeof *report.defects);
             assert_string_equal(err.text, first.text);
-            srv_hands_free(hands);
+            st_parallel_free(hands);
         }
         soup.limits.watch = NULL;
         he_soup_clear(&soup);
@@ -356,10 +356,10 @@ static void memory_that_runs_out_leaves_nothing_behind(void **state)
     static const he_mem_hook hook = {fail_one, NULL};
     he_soup soup;
     make_soup(2, &soup);
-    srv_hands *hands = srv_hands_new(1);
+    st_parallel *hands = st_parallel_new(1);
     he_watch watch;
     he_watch_init(&watch, NULL, NULL);
-    watch.exec = srv_hands_exec(hands);
+    watch.exec = st_parallel_exec(hands);
     soup.limits.watch = &watch;
     he_mem_set_hook(&hook);
     he_status status = HE_NO_MEMORY;
@@ -377,7 +377,7 @@ static void memory_that_runs_out_leaves_nothing_behind(void **state)
     }
     he_mem_set_hook(NULL);
     assert_true(n > 10);
-    srv_hands_free(hands);
+    st_parallel_free(hands);
     soup.limits.watch = NULL;
     he_soup_clear(&soup);
 }

@@ -4,9 +4,9 @@
 #include "tests/unit/fixture.h"
 
 #include "mesh/write.h"
-#include "server/store/replay_walk.h"
-#include "server/store/store.h"
-#include "server/system/memory.h"
+#include "store/history_cursor.h"
+#include "store/store.h"
+#include "system/memory.h"
 #include "tests/model/random.h"
 #include "tests/seed.h"
 
@@ -17,26 +17,24 @@
 
 enum { MOST = 300 };
 
-static srv_store *store;
-static api_store api;
+static st_store *store;
 
-static api_mesh *open_mesh(uint64_t budget)
+static st_mesh *open_mesh(uint64_t budget)
 {
-    store = srv_store_new(&(srv_store_options){
-        .undo_budget = budget, .max_meshes = 10, .journal = srv_journal_memory()});
+    store = st_store_new(&(st_store_options){
+        .undo_budget = budget, .max_meshes = 10, .journal = st_journal_memory()});
     assert_non_null(store);
-    api = srv_store_interface(store);
     he_mesh *content = script_mesh("012,023,034,045,051", NULL);
     script_add_columns(content);
-    api_mesh *mesh;
-    assert_int_equal(api.create(api.self, "m", NULL, content, NULL, &mesh), API_STORE_OK);
+    st_mesh *mesh;
+    assert_int_equal(st_create(store, "m", NULL, content, NULL, &mesh), ST_OK);
     return mesh;
 }
 
-static void close_mesh(api_mesh *mesh)
+static void close_mesh(st_mesh *mesh)
 {
-    api.release(api.self, mesh);
-    srv_store_free(store);
+    st_release(mesh);
+    st_store_free(store);
 }
 
 static void add_column(he_mesh *m, unsigned serial)
@@ -62,11 +60,11 @@ static void drop_column(he_mesh *m)
 }
 
 /* One edit, refused ones included, which make no revision. */
-static void edit(api_mesh *mesh, md_random *random, unsigned serial)
+static void edit(st_mesh *mesh, md_random *random, unsigned serial)
 {
     char text[96];
     he_delta *delta;
-    he_mesh *m = api.write_begin(api.self, mesh, NULL, &delta);
+    he_mesh *m = st_write_begin(mesh, NULL, &delta);
     assert_non_null(m);
     switch (md_below(random, 7)) {
     case 0:
@@ -91,39 +89,39 @@ static void edit(api_mesh *mesh, md_random *random, unsigned serial)
         break;
     }
     if (delta->count > 0) {
-        api.write_commit(api.self, mesh, "some", false, NULL);
+        st_write_commit(mesh, "some", false, NULL);
     } else {
-        api.write_abort(api.self, mesh);
+        st_write_abort(mesh);
     }
 }
 
-static api_store_status step(api_mesh *mesh, api_action which, uint32_t steps)
+static st_status step(st_mesh *mesh, st_action which, uint32_t steps)
 {
     const he_delta *deltas[8];
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api_store_status status = api.step(api.self, mesh, which, steps, deltas, NULL);
-    api.write_end(api.self, mesh);
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_status status = st_write_step(mesh, which, steps, deltas, NULL);
+    st_write_end(mesh);
     return status;
 }
 
-static void change(api_mesh *mesh, md_random *random, unsigned serial)
+static void change(st_mesh *mesh, md_random *random, unsigned serial)
 {
     uint32_t what = md_below(random, 5);
     if (what < 3) {
         edit(mesh, random, serial);
     } else {
-        (void)step(mesh, what == 3 ? API_UNDO : API_REDO, 1 + md_below(random, 3));
+        (void)step(mesh, what == 3 ? ST_UNDO : ST_REDO, 1 + md_below(random, 3));
     }
 }
 
-static uint64_t head_of(api_mesh *mesh, he_mesh **content)
+static uint64_t head_of(st_mesh *mesh, he_mesh **content)
 {
-    api_mesh_info info;
-    const he_mesh *m = api.read_begin(api.self, mesh, &info);
+    st_mesh_info info;
+    const he_mesh *m = st_read_begin(mesh, &info);
     if (content != NULL) {
         *content = copy_of(m);
     }
-    api.read_end(api.self, mesh);
+    st_read_end(mesh);
     return info.revision;
 }
 
@@ -133,7 +131,7 @@ typedef struct album {
     uint64_t head;
 } album;
 
-static void take_picture(album *a, api_mesh *mesh)
+static void take_picture(album *a, st_mesh *mesh)
 {
     he_mesh *content;
     uint64_t head = head_of(mesh, &content);
@@ -160,24 +158,24 @@ static void expect_picture(const album *a, uint64_t revision, const he_mesh *m)
     }
 }
 
-static void expect_snapshot(const album *a, api_mesh *mesh, uint64_t revision)
+static void expect_snapshot(const album *a, st_mesh *mesh, uint64_t revision)
 {
-    api_snapshot *snapshot;
-    api_mesh_info info;
-    assert_int_equal(api.snapshot_at(api.self, mesh, revision, &snapshot), API_STORE_OK);
-    const he_mesh *m = api.snapshot_content(snapshot, &info);
+    st_snapshot *snapshot;
+    st_mesh_info info;
+    assert_int_equal(st_snapshot_at(mesh, revision, &snapshot), ST_OK);
+    const he_mesh *m = st_snapshot_content(snapshot, &info);
     assert_int_equal(info.revision, revision);
     expect_picture(a, revision, m);
-    api.snapshot_release(api.self, snapshot);
+    st_snapshot_release(snapshot);
 }
 
 static void snapshots_of_earlier_revisions(void **state)
 {
     (void)state;
     md_random random = {seed_of_run()};
-    api_mesh *mesh = open_mesh(1 << 20);
+    st_mesh *mesh = open_mesh(1 << 20);
     album pictures = {0};
-    api_snapshot *held = NULL, *none;
+    st_snapshot *held = NULL, *none;
     take_picture(&pictures, mesh);
     for (unsigned i = 0; pictures.head < 200; i++) {
         change(mesh, &random, i);
@@ -186,37 +184,37 @@ static void snapshots_of_earlier_revisions(void **state)
         expect_snapshot(&pictures, mesh, revision);
         if (i % 16 == 0) { /* somebody reads on, so that the copy has to stay */
             if (held != NULL) {
-                api.snapshot_release(api.self, held);
+                st_snapshot_release(held);
             }
-            assert_int_equal(api.snapshot_at(api.self, mesh, revision, &held), API_STORE_OK);
+            assert_int_equal(st_snapshot_at(mesh, revision, &held), ST_OK);
         }
         if (i % 32 == 0) {
-            srv_store_shed(store);
+            st_store_shed(store);
         }
-        api_mesh_info info;
-        const he_mesh *m = api.snapshot_content(held, &info);
+        st_mesh_info info;
+        const he_mesh *m = st_snapshot_content(held, &info);
         expect_picture(&pictures, info.revision, m);
     }
-    api.snapshot_release(api.self, held);
-    assert_int_equal(api.snapshot_at(api.self, mesh, pictures.head + 1, &none), API_STORE_AHEAD);
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api.replace(api.self, mesh, fixture_mesh("012"), NULL);
-    api.write_end(api.self, mesh);
-    assert_int_equal(api.snapshot_at(api.self, mesh, pictures.head, &none), API_STORE_GONE);
+    st_snapshot_release(held);
+    assert_int_equal(st_snapshot_at(mesh, pictures.head + 1, &none), ST_AHEAD);
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_write_replace(mesh, fixture_mesh("012"), NULL);
+    st_write_end(mesh);
+    assert_int_equal(st_snapshot_at(mesh, pictures.head, &none), ST_GONE);
     clear_album(&pictures);
     close_mesh(mesh);
 }
 
-static void follow(const album *a, srv_walk *walk, uint64_t head)
+static void follow(const album *a, st_cursor *walk, uint64_t head)
 {
-    srv_walk_step at;
-    uint64_t revision = srv_walk_revision(walk);
-    expect_picture(a, revision, srv_walk_content(walk));
+    st_cursor_step at;
+    uint64_t revision = st_cursor_revision(walk);
+    expect_picture(a, revision, st_cursor_content(walk));
     while (revision < head) {
-        assert_int_equal(srv_walk_next(walk, &at), API_STORE_OK);
+        assert_int_equal(st_cursor_next(walk, &at), ST_OK);
         assert_int_equal(at.revision, ++revision);
-        assert_ptr_equal(at.content, srv_walk_content(walk));
-        assert_int_equal(at.undone, at.action == API_UNDO);
+        assert_ptr_equal(at.content, st_cursor_content(walk));
+        assert_int_equal(at.undone, at.action == ST_UNDO);
         expect_picture(a, revision, at.content);
         he_changes changes;
         assert_int_equal(
@@ -224,7 +222,7 @@ static void follow(const album *a, srv_walk *walk, uint64_t head)
             HE_OK);
         he_changes_clear(&changes);
     }
-    assert_int_equal(srv_walk_next(walk, &at), API_STORE_NOTHING);
+    assert_int_equal(st_cursor_next(walk, &at), ST_NOTHING);
 }
 
 static void a_walk_follows_the_mesh(void **state)
@@ -232,17 +230,17 @@ static void a_walk_follows_the_mesh(void **state)
     (void)state;
     md_random random = {seed_of_run()};
     for (int round = 0; round < 10; round++) {
-        api_mesh *mesh = open_mesh(1 << 20);
+        st_mesh *mesh = open_mesh(1 << 20);
         album pictures = {0};
-        srv_walk *walk, *none;
+        st_cursor *walk, *none;
         take_picture(&pictures, mesh);
         for (unsigned i = 0; i < 30; i++) {
             change(mesh, &random, i);
             take_picture(&pictures, mesh);
         }
         uint64_t from = 1 + md_below(&random, (uint32_t)pictures.head);
-        assert_int_equal(srv_walk_begin(mesh, from, &walk), API_STORE_OK);
-        assert_int_equal(srv_walk_begin(mesh, pictures.head + 1, &none), API_STORE_AHEAD);
+        assert_int_equal(st_cursor_begin(mesh, from, &walk), ST_OK);
+        assert_int_equal(st_cursor_begin(mesh, pictures.head + 1, &none), ST_AHEAD);
         follow(&pictures, walk, pictures.head);
         /* On behind a mesh that goes on, columns that nobody but it holds included. */
         for (unsigned i = 0; i < 30; i++) {
@@ -253,7 +251,7 @@ static void a_walk_follows_the_mesh(void **state)
             }
         }
         follow(&pictures, walk, pictures.head);
-        srv_walk_end(walk);
+        st_cursor_end(walk);
         clear_album(&pictures);
         close_mesh(mesh);
     }
@@ -265,15 +263,15 @@ static void a_walk_is_told_that_the_history_was_cut(void **state)
 {
     (void)state;
     md_random random = {3};
-    api_mesh *mesh = open_mesh(3000);
-    srv_walk *walk;
-    srv_walk_step at;
+    st_mesh *mesh = open_mesh(3000);
+    st_cursor *walk;
+    st_cursor_step at;
     for (unsigned i = 0; i < 5; i++) {
         edit(mesh, &random, i);
     }
     uint64_t head = head_of(mesh, NULL);
-    assert_int_equal(srv_walk_begin(mesh, head - 1, &walk), API_STORE_OK);
-    assert_int_equal(srv_walk_next(walk, &at), API_STORE_OK);
+    assert_int_equal(st_cursor_begin(mesh, head - 1, &walk), ST_OK);
+    assert_int_equal(st_cursor_next(walk, &at), ST_OK);
     assert_int_equal(at.revision, head);
     for (unsigned i = 0; i < 60; i++) {
         edit(mesh, &random, 10 + i);
@@ -283,15 +281,15 @@ static void a_walk_is_told_that_the_history_was_cut(void **state)
         he_changes_find(at.content, at.delta, 0, at.delta->count, at.undone, &changes, NULL),
         HE_OK);
     he_changes_clear(&changes);
-    assert_int_equal(srv_walk_next(walk, &at), API_STORE_GONE);
-    srv_walk_end(walk);
-    assert_int_equal(srv_walk_begin(mesh, 2, &walk), API_STORE_GONE);
-    assert_int_equal(srv_walk_begin(mesh, head_of(mesh, NULL), &walk), API_STORE_OK);
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api.replace(api.self, mesh, fixture_mesh("012"), NULL);
-    api.write_end(api.self, mesh);
-    assert_int_equal(srv_walk_next(walk, &at), API_STORE_GONE);
-    srv_walk_end(walk);
+    assert_int_equal(st_cursor_next(walk, &at), ST_GONE);
+    st_cursor_end(walk);
+    assert_int_equal(st_cursor_begin(mesh, 2, &walk), ST_GONE);
+    assert_int_equal(st_cursor_begin(mesh, head_of(mesh, NULL), &walk), ST_OK);
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_write_replace(mesh, fixture_mesh("012"), NULL);
+    st_write_end(mesh);
+    assert_int_equal(st_cursor_next(walk, &at), ST_GONE);
+    st_cursor_end(walk);
     close_mesh(mesh);
 }
 
@@ -303,16 +301,16 @@ static void the_log_keeps_its_budget(void **state)
     (void)state;
     md_random random = {seed_of_run()};
     for (uint64_t budget = 0; budget < 20000; budget = 2 * budget + 700) {
-        api_mesh *mesh = open_mesh(budget);
+        st_mesh *mesh = open_mesh(budget);
         album pictures = {0};
         take_picture(&pictures, mesh);
         for (unsigned i = 0; i < 200; i++) {
             change(mesh, &random, i);
             take_picture(&pictures, mesh);
-            api_history facts;
-            api.history_facts(api.self, mesh, &facts);
-            api_entry newest;
-            bool any = api.history(api.self, mesh, 0, &newest);
+            st_history facts;
+            st_history_reach(mesh, &facts);
+            st_entry newest;
+            bool any = st_history_entry(mesh, 0, &newest);
             assert_true(facts.bytes <= budget || (any && facts.bytes < 600));
             assert_true(facts.oldest <= pictures.head);
             expect_snapshot(&pictures, mesh, facts.oldest);
@@ -327,25 +325,25 @@ static void what_the_log_frees_is_free(void **state)
     (void)state;
     enum { BUDGET = 1 << 20 };
     md_random random = {5};
-    srv_memory_install(0);
-    uint64_t before = srv_memory_used();
-    api_mesh *mesh = open_mesh(BUDGET);
+    st_memory_install(0);
+    uint64_t before = st_memory_used();
+    st_mesh *mesh = open_mesh(BUDGET);
     for (unsigned i = 0; i < 20000; i++) {
-        he_mesh *m = api.write_begin(api.self, mesh, NULL, NULL);
+        he_mesh *m = st_write_begin(mesh, NULL, NULL);
         char text[64];
         snprintf(text, sizeof text, "vertex_move vertex=%u to=%u,1,2", md_below(&random, 6), i);
         assert_int_equal(script_run(m, text, NULL, NULL), HE_OK);
-        api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+        st_write_commit(mesh, "vertex_move", false, NULL);
     }
-    api_history facts;
-    api.history_facts(api.self, mesh, &facts);
-    uint64_t used = srv_memory_used() - before;
+    st_history facts;
+    st_history_reach(mesh, &facts);
+    uint64_t used = st_memory_used() - before;
     printf("note: a budget of %d bytes: %" PRIu64 " counted, %" PRIu64 " held in all\n", BUDGET,
            facts.bytes, used);
     assert_true(facts.dropped > 0);
     assert_true(used < BUDGET + BUDGET / 4);
     close_mesh(mesh);
-    assert_true(srv_memory_used() == before);
+    assert_true(st_memory_used() == before);
     he_mem_set_hook(NULL);
 }
 
@@ -355,7 +353,7 @@ static void every_allocation_may_fail(void **state)
     bool failed = true;
     for (unsigned n = 1; failed; n++) {
         md_random random = {11};
-        api_mesh *mesh = open_mesh(1 << 20);
+        st_mesh *mesh = open_mesh(1 << 20);
         album pictures = {0};
         take_picture(&pictures, mesh);
         for (unsigned i = 0; i < 25; i++) {
@@ -364,37 +362,37 @@ static void every_allocation_may_fail(void **state)
         }
         uint64_t head = pictures.head;
         const he_delta *deltas[8];
-        assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
+        assert_non_null(st_write_begin(mesh, NULL, NULL));
         fail_allocation(n);
-        api_store_status status = api.step(api.self, mesh, API_UNDO, 7, deltas, NULL);
+        st_status status = st_write_step(mesh, ST_UNDO, 7, deltas, NULL);
         bool step_failed = allocation_failed();
-        api.write_end(api.self, mesh);
-        api_snapshot *snapshot = NULL;
-        srv_walk *walk = NULL;
-        srv_walk_step at;
-        api_store_status seen = api.snapshot_at(api.self, mesh, 3, &snapshot);
-        api_store_status walked = srv_walk_begin(mesh, 2, &walk);
-        while (walked == API_STORE_OK) {
-            walked = srv_walk_next(walk, &at);
+        st_write_end(mesh);
+        st_snapshot *snapshot = NULL;
+        st_cursor *walk = NULL;
+        st_cursor_step at;
+        st_status seen = st_snapshot_at(mesh, 3, &snapshot);
+        st_status walked = st_cursor_begin(mesh, 2, &walk);
+        while (walked == ST_OK) {
+            walked = st_cursor_next(walk, &at);
         }
         failed = allocation_failed();
         fail_allocation(0);
-        assert_true(status == API_STORE_OK || (step_failed && status == API_STORE_NO_MEMORY));
-        assert_true(seen == API_STORE_OK || (failed && seen == API_STORE_NO_MEMORY));
-        assert_true(walked == API_STORE_NOTHING || (failed && walked == API_STORE_NO_MEMORY));
+        assert_true(status == ST_OK || (step_failed && status == ST_NO_MEMORY));
+        assert_true(seen == ST_OK || (failed && seen == ST_NO_MEMORY));
+        assert_true(walked == ST_NOTHING || (failed && walked == ST_NO_MEMORY));
         he_mesh *now;
-        assert_int_equal(head_of(mesh, &now), head + (status == API_STORE_OK ? 7 : 0));
-        if (status != API_STORE_OK) {
+        assert_int_equal(head_of(mesh, &now), head + (status == ST_OK ? 7 : 0));
+        if (status != ST_OK) {
             assert_true(he_mesh_equal(now, pictures.at[head]));
         } else {
             assert_true(he_mesh_equal_live(now, pictures.at[head - 7]));
         }
         he_mesh_free(now);
         if (snapshot != NULL) {
-            expect_picture(&pictures, 3, api.snapshot_content(snapshot, NULL));
-            api.snapshot_release(api.self, snapshot);
+            expect_picture(&pictures, 3, st_snapshot_content(snapshot, NULL));
+            st_snapshot_release(snapshot);
         }
-        srv_walk_end(walk);
+        st_cursor_end(walk);
         expect_snapshot(&pictures, mesh, 2);
         clear_album(&pictures);
         close_mesh(mesh);
@@ -410,16 +408,16 @@ static _Atomic bool writing, broken;
  * revision of the edit that put them there. */
 static void *write_on(void *context)
 {
-    api_mesh *mesh = context;
+    st_mesh *mesh = context;
     md_random random = {17};
     for (unsigned i = 0; i < ROUNDS; i++) {
         if (i % 5 == 4) {
-            (void)step(mesh, i % 2 == 0 ? API_UNDO : API_REDO, 1 + md_below(&random, 3));
+            (void)step(mesh, i % 2 == 0 ? ST_UNDO : ST_REDO, 1 + md_below(&random, 3));
             continue;
         }
         char text[96];
-        api_mesh_info info;
-        he_mesh *m = api.write_begin(api.self, mesh, &info, NULL);
+        st_mesh_info info;
+        he_mesh *m = st_write_begin(mesh, &info, NULL);
         snprintf(text, sizeof text, "vertex_move vertex=0,1 to=%" PRIu64 ",0,0", info.revision + 1);
         bool good = m != NULL && script_run(m, text, NULL, NULL) == HE_OK;
         if (good && i % 7 == 0) {
@@ -429,7 +427,7 @@ static void *write_on(void *context)
             atomic_store(&broken, true);
             break;
         }
-        api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+        st_write_commit(mesh, "vertex_move", false, NULL);
     }
     atomic_store(&writing, false);
     return NULL;
@@ -443,21 +441,21 @@ static bool is_whole(const he_mesh *m, uint64_t revision)
 
 static void *read_back(void *context)
 {
-    api_mesh *mesh = context;
+    st_mesh *mesh = context;
     md_random random = {23};
     bool more = true;
     while (more) {
         more = atomic_load(&writing);
         uint64_t head = head_of(mesh, NULL);
         uint64_t revision = md_from(&random, head > 60 ? (uint32_t)head - 50 : 2, (uint32_t)head);
-        api_snapshot *snapshot;
-        api_store_status status = api.snapshot_at(api.self, mesh, revision, &snapshot);
-        if (status == API_STORE_OK) {
-            if (!is_whole(api.snapshot_content(snapshot, NULL), revision)) {
+        st_snapshot *snapshot;
+        st_status status = st_snapshot_at(mesh, revision, &snapshot);
+        if (status == ST_OK) {
+            if (!is_whole(st_snapshot_content(snapshot, NULL), revision)) {
                 atomic_store(&broken, true);
             }
-            api.snapshot_release(api.self, snapshot);
-        } else if (status != API_STORE_GONE && revision != 1) {
+            st_snapshot_release(snapshot);
+        } else if (status != ST_GONE && revision != 1) {
             atomic_store(&broken, true);
         }
     }
@@ -466,42 +464,42 @@ static void *read_back(void *context)
 
 static void *walk_behind(void *context)
 {
-    api_mesh *mesh = context;
-    srv_walk *walk = NULL;
+    st_mesh *mesh = context;
+    st_cursor *walk = NULL;
     bool more = true;
     while (more) {
         more = atomic_load(&writing);
-        srv_walk_step at;
-        api_store_status status = API_STORE_OK;
+        st_cursor_step at;
+        st_status status = ST_OK;
         if (walk == NULL) {
-            status = srv_walk_begin(mesh, head_of(mesh, NULL), &walk);
+            status = st_cursor_begin(mesh, head_of(mesh, NULL), &walk);
         }
-        while (status == API_STORE_OK && (status = srv_walk_next(walk, &at)) == API_STORE_OK) {
+        while (status == ST_OK && (status = st_cursor_next(walk, &at)) == ST_OK) {
             if (!is_whole(at.content, at.revision)) {
                 atomic_store(&broken, true);
             }
         }
-        if (status == API_STORE_GONE) {
-            srv_walk_end(walk);
+        if (status == ST_GONE) {
+            st_cursor_end(walk);
             walk = NULL;
-        } else if (status != API_STORE_NOTHING) {
+        } else if (status != ST_NOTHING) {
             atomic_store(&broken, true);
         }
     }
-    srv_walk_end(walk);
+    st_cursor_end(walk);
     return NULL;
 }
 
 static void readers_of_the_past_and_a_writer(void **state)
 {
     (void)state;
-    api_mesh *mesh = open_mesh(64 * 1024);
-    he_mesh *m = api.write_begin(api.self, mesh, NULL, NULL);
+    st_mesh *mesh = open_mesh(64 * 1024);
+    he_mesh *m = st_write_begin(mesh, NULL, NULL);
     he_vec3 point = {2, 0, 0};
     assert_int_equal(he_reserve(m, (he_need){.positions = 2}, NULL), HE_OK);
     he_set_position(m, (he_vertex){0}, point);
     he_set_position(m, (he_vertex){1}, point);
-    api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+    st_write_commit(mesh, "vertex_move", false, NULL);
     pthread_t threads[THREADS];
     atomic_store(&writing, true);
     assert_int_equal(pthread_create(&threads[0], NULL, read_back, mesh), 0);

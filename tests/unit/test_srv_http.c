@@ -2,6 +2,8 @@
  * purpose (D1), a full job queue and too many connections are 503, a stop ends everything. */
 #include "tests/unit/fixture.h"
 
+#include "api/event/event_follow.h"
+
 #include "server/http/http.h"
 #include "server/http/http_recv.h"
 
@@ -21,7 +23,7 @@ static struct {
     void *context;
 } slow = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
-static void slow_append(void *self, const srv_record *record)
+static void slow_append(void *self, const st_record *record)
 {
     (void)self;
     pthread_mutex_lock(&slow.lock);
@@ -74,10 +76,9 @@ static void slow_advance(uint64_t revision)
 
 enum { CONNECTIONS = 20 };
 
-static srv_store *store;
-static api_store interface;
+static st_store *store;
 static api_service *service;
-static srv_pool *jobs, *makers;
+static st_pool *jobs, *makers;
 static srv_http *http;
 static uint64_t read_seconds = 3600;
 static const srv_policy policy;
@@ -87,18 +88,17 @@ static int start(void **state)
     (void)state;
     slow.appended = 0;
     slow.durable = 0;
-    jobs = srv_pool_new("test", 1, 1);
-    makers = srv_pool_new("test", 1, 1);
-    store = srv_store_new(&(srv_store_options){
+    jobs = st_pool_new("test", 1, 1);
+    makers = st_pool_new("test", 1, 1);
+    store = st_store_new(&(st_store_options){
         .undo_budget = 1 << 20,
         .max_meshes = 100,
         .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
         .listeners = 10,
         .mesh_listeners = 10,
-        .pool = jobs,
+        .render = api_event_render,
     });
-    interface = srv_store_interface(store);
-    service = api_service_new(&interface, &(api_options){.version = "test"});
+    service = api_service_new(store, &(api_options){.version = "test", .pool = jobs});
     srv_http_options options = {
         .service = service,
         .store = store,
@@ -130,10 +130,10 @@ static int stop(void **state)
     (void)state;
     bool stopped = http == NULL || srv_http_stop(http, 20000);
     http = NULL;
-    srv_pool_free(jobs);
-    srv_pool_free(makers);
+    st_pool_free(jobs);
+    st_pool_free(makers);
     api_service_free(service);
-    srv_store_free(store);
+    st_store_free(store);
     return stopped ? 0 : -1;
 }
 
@@ -364,7 +364,7 @@ static void wait_at_gate(void *context)
 static void shut_gate(void)
 {
     gate_entered = gate_open = false;
-    assert_true(srv_pool_submit(jobs, &(srv_task){.work = wait_at_gate}));
+    assert_true(st_pool_submit(jobs, &(st_task){.work = wait_at_gate}));
     pthread_mutex_lock(&gate);
     while (!gate_entered) {
         pthread_cond_wait(&gate_changed, &gate);
@@ -385,8 +385,8 @@ static void test_full_queue_is_503(void **state)
     (void)state;
     slow_advance(UINT64_MAX);
     shut_gate();
-    assert_true(srv_pool_submit(jobs, &(srv_task){.work = wait_at_gate}));
-    assert_false(srv_pool_submit(jobs, &(srv_task){.work = wait_at_gate}));
+    assert_true(st_pool_submit(jobs, &(st_task){.work = wait_at_gate}));
+    assert_false(st_pool_submit(jobs, &(st_task){.work = wait_at_gate}));
 
     static const char large[] = "{\"shape\":\"icosphere\",\"subdivisions\":6}";
     char text[4096];

@@ -2,7 +2,7 @@
 #include "tests/unit/fixture.h"
 
 #include "base/mem.h"
-#include "server/system/memory.h"
+#include "system/memory.h"
 
 #include <stdio.h>
 #include <unistd.h>
@@ -12,15 +12,15 @@
 static void pages_are_given_back_once_after_work_when_it_rests(void **state)
 {
     (void)state;
-    srv_memory_rest rest = {0};
-    assert_false(srv_memory_rests(&rest, 10 * MILLIS)); /* hardly anything was done */
-    assert_false(srv_memory_rests(&rest, 400 * MILLIS));
-    assert_false(srv_memory_rests(&rest, 450 * MILLIS)); /* it still works */
-    assert_true(srv_memory_rests(&rest, 499 * MILLIS));
-    assert_false(srv_memory_rests(&rest, 499 * MILLIS));
-    assert_false(srv_memory_rests(&rest, 518 * MILLIS));
-    assert_true(srv_memory_rests(&rest, 519 * MILLIS)); /* little by little */
-    assert_false(srv_memory_rests(&rest, 520 * MILLIS));
+    st_memory_rest rest = {0};
+    assert_false(st_memory_rests(&rest, 10 * MILLIS)); /* hardly anything was done */
+    assert_false(st_memory_rests(&rest, 400 * MILLIS));
+    assert_false(st_memory_rests(&rest, 450 * MILLIS)); /* it still works */
+    assert_true(st_memory_rests(&rest, 499 * MILLIS));
+    assert_false(st_memory_rests(&rest, 499 * MILLIS));
+    assert_false(st_memory_rests(&rest, 518 * MILLIS));
+    assert_true(st_memory_rests(&rest, 519 * MILLIS)); /* little by little */
+    assert_false(st_memory_rests(&rest, 520 * MILLIS));
 }
 
 /* A sanitizer has an allocator of its own. */
@@ -41,7 +41,7 @@ static void what_is_freed_between_used_blocks_goes_back_to_the_system(void **sta
 {
     (void)state;
     static void *blocks[BLOCKS];
-    srv_memory_install(0);
+    st_memory_install(0);
     for (size_t i = 0; i < BLOCKS; i++) {
         blocks[i] = he_mem_zero(1, BLOCK);
         assert_non_null(blocks[i]);
@@ -53,8 +53,8 @@ static void what_is_freed_between_used_blocks_goes_back_to_the_system(void **sta
             he_mem_free(blocks[i]);
         }
     }
-    srv_memory_rest rest = {0};
-    assert_true(srv_memory_rests(&rest, 20 * MILLIS));
+    st_memory_rest rest = {0};
+    assert_true(st_memory_rests(&rest, 20 * MILLIS));
     assert_true(resident_bytes() < full - (size_t)BLOCKS * BLOCK / 10 * 9);
     for (size_t i = KEPT - 1; i < BLOCKS; i += KEPT) {
         he_mem_free(blocks[i]);
@@ -86,7 +86,7 @@ static void large_blocks_have_huge_pages_only_in_mappings_of_their_own(void **st
     (void)state;
     enum { PIECES = 32, PIECE = 512 * 1024, LARGE = 8 << 20, HUGE_BLOCK = 256 << 20 };
     void *pieces[PIECES];
-    srv_memory_install(0);
+    st_memory_install(0);
     for (size_t i = 0; i < PIECES; i++) {
         pieces[i] = he_mem_alloc(PIECE);
         assert_non_null(pieces[i]);

@@ -4,7 +4,7 @@
 
 #include "tests/unit/fixture.h"
 
-#include "server/system/memory_limit.h"
+#include "system/memory_limit.h"
 
 #include <ftw.h>
 #include <limits.h>
@@ -59,7 +59,7 @@ static void put(const char *name, const char *text)
 
 static void expect(uint64_t bytes, const char *source)
 {
-    srv_memory_limit limit = srv_memory_limit_find(root, MACHINE_MIB * MIB);
+    st_memory_limit limit = st_memory_limit_find(root, MACHINE_MIB * MIB);
     assert_string_equal(limit.source, source);
     assert_true(limit.bytes == bytes);
 }
@@ -77,7 +77,7 @@ static void without_control_groups_the_machine_is_the_limit(void **state)
     expect(MACHINE_MIB * MIB, "the machine");
     put("/sys/fs/cgroup/memory.max", "max\n");
     expect(MACHINE_MIB * MIB, "the machine");
-    srv_memory_limit unknown = srv_memory_limit_find(root, 0);
+    st_memory_limit unknown = st_memory_limit_find(root, 0);
     assert_true(unknown.bytes == UINT64_MAX);
 }
 

@@ -4,9 +4,9 @@
 #include "server/assets.h"
 #include "server/http/http_deadline.h"
 #include "server/net/access_log.h"
-#include "server/system/clock.h"
-#include "server/system/random.h"
-#include "server/system/thread_pool.h"
+#include "system/clock.h"
+#include "system/random.h"
+#include "system/thread_pool.h"
 
 #include <pthread.h>
 #include <sys/stat.h>
@@ -31,12 +31,12 @@ static void test_jobs_run_in_order_and_to_the_end(void **state)
     (void)state;
     int numbers[JOBS];
     done = 0;
-    srv_pool *jobs = srv_pool_new("test", 1, JOBS);
+    st_pool *jobs = st_pool_new("test", 1, JOBS);
     for (int i = 0; i < JOBS; i++) {
         numbers[i] = i;
-        assert_true(srv_pool_submit(jobs, &(srv_task){.work = note, .context = &numbers[i]}));
+        assert_true(st_pool_submit(jobs, &(st_task){.work = note, .context = &numbers[i]}));
     }
-    srv_pool_free(jobs);
+    st_pool_free(jobs);
     assert_int_equal(done, JOBS);
     for (int i = 0; i < JOBS; i++) {
         assert_int_equal(order[i], i);
@@ -352,13 +352,13 @@ static void test_random_ids(void **state)
     enum { IDS = 200, LENGTH = 10 };
     static char ids[IDS][LENGTH + 1];
     for (int i = 0; i < IDS; i++) {
-        srv_random_id(ids[i], LENGTH);
+        st_random_id(ids[i], LENGTH);
         assert_int_equal(strlen(ids[i]), LENGTH);
         for (int j = 0; j < i; j++) {
             assert_string_not_equal(ids[i], ids[j]);
         }
     }
-    assert_true(srv_random() != srv_random());
+    assert_true(st_random() != st_random());
 }
 
 int main(void)

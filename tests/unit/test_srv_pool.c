@@ -1,5 +1,5 @@
 /* The thread pool: who begins when, and what keeps whom from a thread. */
-#include "server/system/thread_pool.h"
+#include "system/thread_pool.h"
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -16,7 +16,7 @@ enum { ROOM = 64 };
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t changed = PTHREAD_COND_INITIALIZER;
 static bool open;
-static int waiting_at_gate[SRV_SHARES], most_at_gate[SRV_SHARES], most_long;
+static int waiting_at_gate[ST_SHARES], most_at_gate[ST_SHARES], most_long;
 static char order[ROOM + 1];
 static size_t begun;
 
@@ -40,14 +40,14 @@ static void note(void *context)
     pthread_mutex_unlock(&lock);
 }
 
-static const srv_share shares[SRV_SHARES] = {SRV_SHARE_BRIEF, SRV_SHARE_LONG, SRV_SHARE_JOB};
+static const st_share shares[ST_SHARES] = {ST_SHARE_BRIEF, ST_SHARE_LONG, ST_SHARE_JOB};
 
 static void wait_at_gate(void *context)
 {
-    const srv_share share = *(const srv_share *)context;
+    const st_share share = *(const st_share *)context;
     pthread_mutex_lock(&lock);
     int here = ++waiting_at_gate[share];
-    int all_long = waiting_at_gate[SRV_SHARE_LONG] + waiting_at_gate[SRV_SHARE_JOB];
+    int all_long = waiting_at_gate[ST_SHARE_LONG] + waiting_at_gate[ST_SHARE_JOB];
     most_at_gate[share] = here > most_at_gate[share] ? here : most_at_gate[share];
     most_long = all_long > most_long ? all_long : most_long;
     pthread_cond_broadcast(&changed);
@@ -58,14 +58,13 @@ static void wait_at_gate(void *context)
     pthread_mutex_unlock(&lock);
 }
 
-static void send_to_gate(srv_pool *pool, srv_share share)
+static void send_to_gate(st_pool *pool, st_share share)
 {
-    assert_true(srv_pool_submit(
-        pool,
-        &(srv_task){.work = wait_at_gate, .context = (void *)&shares[share], .share = share}));
+    assert_true(st_pool_submit(
+        pool, &(st_task){.work = wait_at_gate, .context = (void *)&shares[share], .share = share}));
 }
 
-static void await_at_gate(srv_share share, int count)
+static void await_at_gate(st_share share, int count)
 {
     pthread_mutex_lock(&lock);
     while (waiting_at_gate[share] < count) {
@@ -91,43 +90,43 @@ static void open_gate(void)
     pthread_mutex_unlock(&lock);
 }
 
-static void submit(srv_pool *pool, const char *name, double cost, uint64_t flow)
+static void submit(st_pool *pool, const char *name, double cost, uint64_t flow)
 {
-    assert_true(srv_pool_submit(
-        pool, &(srv_task){.work = note, .context = (void *)name, .cost = cost, .flow = flow}));
+    assert_true(st_pool_submit(
+        pool, &(st_task){.work = note, .context = (void *)name, .cost = cost, .flow = flow}));
 }
 
 /* Four threads: of them two may have long reads, two jobs, and three either. */
 static void long_work_leaves_a_thread_to_brief_work(void **state)
 {
     (void)state;
-    srv_pool *pool = srv_pool_new("test", 4, ROOM);
+    st_pool *pool = st_pool_new("test", 4, ROOM);
     assert_non_null(pool);
     for (int i = 0; i < 4; i++) {
-        send_to_gate(pool, SRV_SHARE_LONG);
-        send_to_gate(pool, SRV_SHARE_JOB);
+        send_to_gate(pool, ST_SHARE_LONG);
+        send_to_gate(pool, ST_SHARE_JOB);
     }
-    await_at_gate(SRV_SHARE_LONG, 1);
-    await_at_gate(SRV_SHARE_JOB, 1);
+    await_at_gate(ST_SHARE_LONG, 1);
+    await_at_gate(ST_SHARE_JOB, 1);
     submit(pool, "b", 1, 0);
     await_begun(1);
     open_gate();
-    srv_pool_free(pool);
-    assert_in_range(most_at_gate[SRV_SHARE_LONG], 1, 2);
-    assert_in_range(most_at_gate[SRV_SHARE_JOB], 1, 2);
+    st_pool_free(pool);
+    assert_in_range(most_at_gate[ST_SHARE_LONG], 1, 2);
+    assert_in_range(most_at_gate[ST_SHARE_JOB], 1, 2);
     assert_in_range(most_long, 2, 3);
 }
 
 static void one_thread_does_everything(void **state)
 {
     (void)state;
-    srv_pool *pool = srv_pool_new("test", 1, ROOM);
+    st_pool *pool = st_pool_new("test", 1, ROOM);
     assert_non_null(pool);
-    send_to_gate(pool, SRV_SHARE_LONG);
-    send_to_gate(pool, SRV_SHARE_JOB);
+    send_to_gate(pool, ST_SHARE_LONG);
+    send_to_gate(pool, ST_SHARE_JOB);
     submit(pool, "b", 1, 0);
     open_gate();
-    srv_pool_free(pool);
+    st_pool_free(pool);
     assert_string_equal(order, "b");
     assert_int_equal(most_long, 1);
 }
@@ -135,72 +134,72 @@ static void one_thread_does_everything(void **state)
 static void a_full_queue_refuses_its_own_share_only(void **state)
 {
     (void)state;
-    srv_pool *pool = srv_pool_new("test", 1, 2);
+    st_pool *pool = st_pool_new("test", 1, 2);
     assert_non_null(pool);
-    send_to_gate(pool, SRV_SHARE_LONG);
-    await_at_gate(SRV_SHARE_LONG, 1);
-    const srv_task task = {
-        .work = wait_at_gate, .context = (void *)&shares[SRV_SHARE_LONG], .share = SRV_SHARE_LONG};
-    assert_true(srv_pool_submit(pool, &task));
-    assert_true(srv_pool_submit(pool, &task));
-    assert_false(srv_pool_submit(pool, &task));
+    send_to_gate(pool, ST_SHARE_LONG);
+    await_at_gate(ST_SHARE_LONG, 1);
+    const st_task task = {
+        .work = wait_at_gate, .context = (void *)&shares[ST_SHARE_LONG], .share = ST_SHARE_LONG};
+    assert_true(st_pool_submit(pool, &task));
+    assert_true(st_pool_submit(pool, &task));
+    assert_false(st_pool_submit(pool, &task));
     submit(pool, "b", 1, 0);
     open_gate();
-    srv_pool_free(pool);
+    st_pool_free(pool);
     assert_string_equal(order, "b");
 }
 
 /* One thread, which stands at the gate while tasks are submitted. */
-static srv_pool *one_at_gate(void)
+static st_pool *one_at_gate(void)
 {
-    srv_pool *pool = srv_pool_new("test", 1, ROOM);
+    st_pool *pool = st_pool_new("test", 1, ROOM);
     assert_non_null(pool);
-    send_to_gate(pool, SRV_SHARE_BRIEF);
-    await_at_gate(SRV_SHARE_BRIEF, 1);
+    send_to_gate(pool, ST_SHARE_BRIEF);
+    await_at_gate(ST_SHARE_BRIEF, 1);
     return pool;
 }
 
 static void short_work_goes_before_long_work(void **state)
 {
     (void)state;
-    srv_pool *pool = one_at_gate();
+    st_pool *pool = one_at_gate();
     submit(pool, "l", 10, 1);
     submit(pool, "m", 3, 2);
     submit(pool, "s", 1, 3);
     open_gate();
-    srv_pool_free(pool);
+    st_pool_free(pool);
     assert_string_equal(order, "sml");
 }
 
 static void flows_take_turns(void **state)
 {
     (void)state;
-    srv_pool *pool = one_at_gate();
+    st_pool *pool = one_at_gate();
     for (int i = 0; i < 5; i++) {
         submit(pool, "a", 1, 1);
     }
     submit(pool, "b", 1, 2);
     submit(pool, "b", 1, 2);
     open_gate();
-    srv_pool_free(pool);
+    st_pool_free(pool);
     assert_string_equal(order, "ababaaa");
 }
 
 static void a_flow_keeps_its_order(void **state)
 {
     (void)state;
-    srv_pool *pool = one_at_gate();
+    st_pool *pool = one_at_gate();
     submit(pool, "1", 10, 1);
     submit(pool, "2", 1, 1);
     submit(pool, "3", 0, 1);
     open_gate();
-    srv_pool_free(pool);
+    st_pool_free(pool);
     assert_string_equal(order, "123");
 }
 
 /* Each short task is submitted by the one before, so that there is always one that waits. */
 typedef struct stream {
-    srv_pool *pool;
+    st_pool *pool;
     int left;
 } stream;
 
@@ -209,22 +208,22 @@ static void note_and_go_on(void *context)
     stream *s = context;
     note("s");
     if (s->left-- > 0) {
-        assert_true(srv_pool_submit(
-            s->pool, &(srv_task){.work = note_and_go_on, .context = s, .cost = 1, .flow = 2}));
+        assert_true(st_pool_submit(
+            s->pool, &(st_task){.work = note_and_go_on, .context = s, .cost = 1, .flow = 2}));
     }
 }
 
 static void long_work_is_not_passed_over_for_ever(void **state)
 {
     (void)state;
-    srv_pool *pool = one_at_gate();
+    st_pool *pool = one_at_gate();
     stream s = {pool, 30};
     submit(pool, "l", 10, 1);
-    assert_true(srv_pool_submit(
-        pool, &(srv_task){.work = note_and_go_on, .context = &s, .cost = 1, .flow = 2}));
+    assert_true(st_pool_submit(
+        pool, &(st_task){.work = note_and_go_on, .context = &s, .cost = 1, .flow = 2}));
     open_gate();
     await_begun(32);
-    srv_pool_free(pool);
+    st_pool_free(pool);
     const char *at = strchr(order, 'l');
     assert_non_null(at);
     assert_in_range(at - order, 9, 11);
@@ -233,9 +232,9 @@ static void long_work_is_not_passed_over_for_ever(void **state)
 static void a_flow_is_a_client_with_a_mesh(void **state)
 {
     (void)state;
-    assert_true(srv_pool_flow("ab", "c") == srv_pool_flow("ab", "c"));
-    assert_true(srv_pool_flow("ab", "c") != srv_pool_flow("a", "bc"));
-    assert_true(srv_pool_flow("a", "") != srv_pool_flow("", "a"));
+    assert_true(st_pool_flow("ab", "c") == st_pool_flow("ab", "c"));
+    assert_true(st_pool_flow("ab", "c") != st_pool_flow("a", "bc"));
+    assert_true(st_pool_flow("a", "") != st_pool_flow("", "a"));
 }
 
 int main(void)

@@ -2,8 +2,8 @@
 #include "tests/unit/fixture.h"
 
 #include "edit/local/vertex.h"
-#include "server/store/store.h"
-#include "server/system/memory.h"
+#include "store/store.h"
+#include "system/memory.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -11,15 +11,13 @@
 
 enum { BUDGET = 1 << 20, MESHES = 100 };
 
-static srv_store *store;
-static api_store api;
+static st_store *store;
 
 static void open_store(uint64_t budget, uint64_t meshes)
 {
-    store = srv_store_new(&(srv_store_options){
-        .undo_budget = budget, .max_meshes = meshes, .journal = srv_journal_memory()});
+    store = st_store_new(&(st_store_options){
+        .undo_budget = budget, .max_meshes = meshes, .journal = st_journal_memory()});
     assert_non_null(store);
-    api = srv_store_interface(store);
 }
 
 static int setup(void **state)
@@ -32,74 +30,73 @@ static int setup(void **state)
 static int teardown(void **state)
 {
     (void)state;
-    srv_store_free(store);
+    st_store_free(store);
     he_mem_set_hook(NULL);
     return 0;
 }
 
-static api_mesh *create(const char *id)
+static st_mesh *create(const char *id)
 {
-    api_mesh *mesh = NULL;
-    assert_int_equal(api.create(api.self, id, "a name", fixture_mesh("012,023"), NULL, &mesh),
-                     API_STORE_OK);
+    st_mesh *mesh = NULL;
+    assert_int_equal(st_create(store, id, "a name", fixture_mesh("012,023"), NULL, &mesh), ST_OK);
     return mesh;
 }
 
 /* Moves vertex 0 to x: one edit, one step. */
-static void move(api_mesh *mesh, double x, bool barrier, api_mesh_info *info)
+static void move(st_mesh *mesh, double x, bool barrier, st_mesh_info *info)
 {
     he_delta *delta = NULL;
-    he_mesh *content = api.write_begin(api.self, mesh, NULL, &delta);
+    he_mesh *content = st_write_begin(mesh, NULL, &delta);
     assert_non_null(content);
     assert_int_equal(delta->count, 0);
     he_vec3 point = {x, 0, 0};
     uint32_t vertex = 0;
     assert_int_equal(he_vertex_move(content, &vertex, 1, HE_MOVE_TO, &point, 1, NULL), HE_OK);
     assert_true(delta->count > 0);
-    api.write_commit(api.self, mesh, "vertex_move", barrier, info);
+    st_write_commit(mesh, "vertex_move", barrier, info);
 }
 
-static double x_of(api_mesh *mesh)
+static double x_of(st_mesh *mesh)
 {
-    const he_mesh *content = api.read_begin(api.self, mesh, NULL);
+    const he_mesh *content = st_read_begin(mesh, NULL);
     double x = he_position(content, (he_vertex){0}).x;
-    api.read_end(api.self, mesh);
+    st_read_end(mesh);
     return x;
 }
 
-static api_mesh_info info_of(api_mesh *mesh)
+static st_mesh_info info_of(st_mesh *mesh)
 {
-    api_mesh_info info;
-    assert_non_null(api.read_begin(api.self, mesh, &info));
-    api.read_end(api.self, mesh);
+    st_mesh_info info;
+    assert_non_null(st_read_begin(mesh, &info));
+    st_read_end(mesh);
     return info;
 }
 
-static api_store_status take_away(api_mesh *mesh)
+static st_status take_away(st_mesh *mesh)
 {
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api_store_status status = api.remove(api.self, mesh, NULL);
-    api.write_end(api.self, mesh);
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_status status = st_remove(mesh, NULL);
+    st_write_end(mesh);
     return status;
 }
 
-static api_store_status step(api_mesh *mesh, api_action which)
+static st_status step(st_mesh *mesh, st_action which)
 {
     const he_delta *delta = NULL;
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api_store_status status = api.step(api.self, mesh, which, 1, &delta, NULL);
-    if (status == API_STORE_OK) {
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_status status = st_write_step(mesh, which, 1, &delta, NULL);
+    if (status == ST_OK) {
         assert_true(delta->count > 0);
     }
-    api.write_end(api.self, mesh);
+    st_write_end(mesh);
     return status;
 }
 
 static void test_ids(void **state)
 {
     (void)state;
-    api_mesh *a = create("b"), *b = create(NULL), *found = NULL, *list[4];
-    api_mesh_info info = info_of(b);
+    st_mesh *a = create("b"), *b = create(NULL), *found = NULL, *list[4];
+    st_mesh_info info = info_of(b);
     assert_int_equal(strlen(info.id), 10);
     assert_int_equal(strspn(info.id, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
                                      "0123456789"),
@@ -110,80 +107,80 @@ static void test_ids(void **state)
     assert_true(info.incarnation != info_of(a).incarnation);
 
     he_mesh *content = fixture_mesh("012");
-    assert_int_equal(api.create(api.self, "b", NULL, content, NULL, &found), API_STORE_TAKEN);
+    assert_int_equal(st_create(store, "b", NULL, content, NULL, &found), ST_TAKEN);
     he_mesh_free(content);
-    assert_int_equal(api.find(api.self, "c", &found), API_STORE_ABSENT);
-    assert_int_equal(api.find(api.self, "b", &found), API_STORE_OK);
+    assert_int_equal(st_find(store, "c", &found), ST_ABSENT);
+    assert_int_equal(st_find(store, "b", &found), ST_OK);
     assert_ptr_equal(found, a);
-    api.release(api.self, found);
+    st_release(found);
 
-    api_mesh *c = create("a"), *d = create("c");
-    assert_int_equal(api.list(api.self, "a", list, 1), 1);
+    st_mesh *c = create("a"), *d = create("c");
+    assert_int_equal(st_list(store, "a", list, 1), 1);
     /* The id the store chose may lie anywhere among the others. */
     bool first = strcmp(info.id, "a") > 0 && strcmp(info.id, "b") < 0;
     assert_ptr_equal(list[0], first ? b : a);
-    api.release(api.self, list[0]);
+    st_release(list[0]);
     int after = 2 + (strcmp(info.id, "aa") > 0);
-    assert_int_equal(api.list(api.self, "aa", list, 4), after);
+    assert_int_equal(st_list(store, "aa", list, 4), after);
     for (int i = 0; i < after; i++) {
-        api.release(api.self, list[i]);
+        st_release(list[i]);
     }
-    api.release(api.self, a);
-    api.release(api.self, b);
-    api.release(api.self, c);
-    api.release(api.self, d);
-    assert_int_equal(srv_store_count(store), 4);
+    st_release(a);
+    st_release(b);
+    st_release(c);
+    st_release(d);
+    assert_int_equal(st_store_count(store), 4);
 }
 
 static void test_removed_mesh_stays_for_its_readers(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m"), *found = NULL;
+    st_mesh *mesh = create("m"), *found = NULL;
     uint64_t incarnation = info_of(mesh).incarnation;
-    assert_int_equal(take_away(mesh), API_STORE_OK);
-    assert_int_equal(take_away(mesh), API_STORE_ABSENT);
+    assert_int_equal(take_away(mesh), ST_OK);
+    assert_int_equal(take_away(mesh), ST_ABSENT);
     assert_true(info_of(mesh).removed);
-    assert_int_equal(api.find(api.self, "m", &found), API_STORE_ABSENT);
-    api_mesh *again = create("m");
+    assert_int_equal(st_find(store, "m", &found), ST_ABSENT);
+    st_mesh *again = create("m");
     assert_true(info_of(again).incarnation != incarnation);
-    assert_int_equal(take_away(mesh), API_STORE_ABSENT);
-    api.release(api.self, mesh);
-    api.release(api.self, again);
+    assert_int_equal(take_away(mesh), ST_ABSENT);
+    st_release(mesh);
+    st_release(again);
 }
 
 static void test_too_many(void **state)
 {
     (void)state;
-    srv_store_free(store);
+    st_store_free(store);
     open_store(BUDGET, 1);
-    api_mesh *mesh = create("m"), *other = NULL;
+    st_mesh *mesh = create("m"), *other = NULL;
     he_mesh *content = fixture_mesh("012");
-    assert_int_equal(api.create(api.self, "n", NULL, content, NULL, &other), API_STORE_TOO_MANY);
-    assert_int_equal(api.create(api.self, "m", NULL, content, NULL, &other), API_STORE_TAKEN);
+    assert_int_equal(st_create(store, "n", NULL, content, NULL, &other), ST_TOO_MANY);
+    assert_int_equal(st_create(store, "m", NULL, content, NULL, &other), ST_TAKEN);
     he_mesh_free(content);
-    api.release(api.self, mesh);
+    st_release(mesh);
 }
 
 static void test_undo_and_redo(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m");
+    st_mesh *mesh = create("m");
     double first = x_of(mesh);
-    assert_int_equal(step(mesh, API_UNDO), API_STORE_NOTHING);
-    assert_int_equal(step(mesh, API_REDO), API_STORE_NOTHING);
+    assert_int_equal(step(mesh, ST_UNDO), ST_NOTHING);
+    assert_int_equal(step(mesh, ST_REDO), ST_NOTHING);
     assert_int_equal(info_of(mesh).revision, 1);
     move(mesh, 10, false, NULL);
-    api_mesh_info info;
+    st_mesh_info info;
     move(mesh, 20, false, &info);
     assert_int_equal(info.revision, 3);
     assert_int_equal(info.undo, 2);
 
-    assert_int_equal(step(mesh, API_UNDO), API_STORE_OK);
+    assert_int_equal(step(mesh, ST_UNDO), ST_OK);
     assert_true(x_of(mesh) == 10);
-    assert_int_equal(step(mesh, API_UNDO), API_STORE_OK);
+    assert_int_equal(step(mesh, ST_UNDO), ST_OK);
     assert_true(x_of(mesh) == first);
-    assert_int_equal(step(mesh, API_UNDO), API_STORE_NOTHING);
-    assert_int_equal(step(mesh, API_REDO), API_STORE_OK);
+    assert_int_equal(step(mesh, ST_UNDO), ST_NOTHING);
+    assert_int_equal(step(mesh, ST_REDO), ST_OK);
     assert_true(x_of(mesh) == 10);
     info = info_of(mesh);
     assert_int_equal(info.revision, 6);
@@ -192,16 +189,16 @@ static void test_undo_and_redo(void **state)
 
     static const struct {
         uint64_t revision, inverts;
-        api_action action;
+        st_action action;
         bool undoable;
     } rows[] = {
-        {6, 2, API_REDO, true},  {5, 2, API_UNDO, false}, {4, 3, API_UNDO, false},
-        {3, 0, API_EDIT, false}, {2, 0, API_EDIT, false},
+        {6, 2, ST_REDO, true},  {5, 2, ST_UNDO, false}, {4, 3, ST_UNDO, false},
+        {3, 0, ST_EDIT, false}, {2, 0, ST_EDIT, false},
     };
-    api_entry entry;
-    api.read_begin(api.self, mesh, NULL);
+    st_entry entry;
+    st_read_begin(mesh, NULL);
     for (size_t i = 0; i < 5; i++) {
-        assert_true(api.history(api.self, mesh, i, &entry));
+        assert_true(st_history_entry(mesh, i, &entry));
         assert_int_equal(entry.revision, rows[i].revision);
         assert_int_equal(entry.inverts, rows[i].inverts);
         assert_int_equal(entry.action, rows[i].action);
@@ -210,87 +207,87 @@ static void test_undo_and_redo(void **state)
         assert_true(entry.bytes > 0);
         assert_true(entry.time > 1e9);
     }
-    assert_false(api.history(api.self, mesh, 5, &entry));
-    api.read_end(api.self, mesh);
+    assert_false(st_history_entry(mesh, 5, &entry));
+    st_read_end(mesh);
 
     move(mesh, 30, false, &info);
     assert_int_equal(info.redo, 0);
     assert_int_equal(info.undo, 2);
-    assert_int_equal(step(mesh, API_REDO), API_STORE_NOTHING);
-    api.release(api.self, mesh);
+    assert_int_equal(step(mesh, ST_REDO), ST_NOTHING);
+    st_release(mesh);
 }
 
 static void test_abort_leaves_nothing(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m");
+    st_mesh *mesh = create("m");
     he_mesh *before = NULL;
-    const he_mesh *content = api.read_begin(api.self, mesh, NULL);
+    const he_mesh *content = st_read_begin(mesh, NULL);
     assert_int_equal(he_mesh_copy(content, &before, NULL), HE_OK);
-    api.read_end(api.self, mesh);
+    st_read_end(mesh);
     for (int end = 0; end < 2; end++) {
-        he_mesh *writing = api.write_begin(api.self, mesh, NULL, NULL);
+        he_mesh *writing = st_write_begin(mesh, NULL, NULL);
         he_vertex made;
         assert_int_equal(he_vertex_add(writing, (he_vec3){1, 2, 3}, &made, NULL), HE_OK);
         if (end == 0) {
-            api.write_abort(api.self, mesh);
+            st_write_abort(mesh);
         } else {
-            api.write_end(api.self, mesh);
+            st_write_end(mesh);
         }
-        content = api.read_begin(api.self, mesh, NULL);
+        content = st_read_begin(mesh, NULL);
         assert_true(he_mesh_equal(content, before));
-        api.read_end(api.self, mesh);
+        st_read_end(mesh);
     }
     assert_int_equal(info_of(mesh).revision, 1);
     he_mesh_free(before);
-    api.release(api.self, mesh);
+    st_release(mesh);
 }
 
 static void test_barrier_and_replace_end_undo(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m");
-    api_mesh_info info;
+    st_mesh *mesh = create("m");
+    st_mesh_info info;
     move(mesh, 1, false, NULL);
     move(mesh, 2, true, &info);
     assert_int_equal(info.undo, 0);
     assert_int_equal(info.revision, 3);
     move(mesh, 3, false, NULL);
-    assert_int_equal(step(mesh, API_UNDO), API_STORE_OK);
+    assert_int_equal(step(mesh, ST_UNDO), ST_OK);
 
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api.replace(api.self, mesh, fixture_mesh("012"), &info);
-    api.write_end(api.self, mesh);
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_write_replace(mesh, fixture_mesh("012"), &info);
+    st_write_end(mesh);
     assert_int_equal(info.undo, 0);
     assert_int_equal(info.redo, 0);
     assert_int_equal(info.revision, 6);
-    const he_mesh *content = api.read_begin(api.self, mesh, NULL);
+    const he_mesh *content = st_read_begin(mesh, NULL);
     fixture_counts(content, 3, 3, 1);
-    api_entry entry;
-    assert_true(api.history(api.self, mesh, 0, &entry));
-    assert_int_equal(entry.action, API_REPLACE);
+    st_entry entry;
+    assert_true(st_history_entry(mesh, 0, &entry));
+    assert_int_equal(entry.action, ST_REPLACE);
     assert_false(entry.undoable);
-    api.read_end(api.self, mesh);
+    st_read_end(mesh);
 
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api.rename(api.self, mesh, "other", &info);
-    api.write_end(api.self, mesh);
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_write_rename(mesh, "other", &info);
+    st_write_end(mesh);
     assert_string_equal(info.name, "other");
     assert_int_equal(info.metadata, 2);
     assert_int_equal(info.revision, 6);
     move(mesh, 9, false, NULL);
-    assert_int_equal(step(mesh, API_UNDO), API_STORE_OK);
-    api.release(api.self, mesh);
+    assert_int_equal(step(mesh, ST_UNDO), ST_OK);
+    st_release(mesh);
 }
 
 static void test_undo_budget(void **state)
 {
     (void)state;
-    srv_store_free(store);
+    st_store_free(store);
     enum { SMALL_BUDGET = 4000, EDITS = 200 };
     open_store(SMALL_BUDGET, MESHES);
-    api_mesh *mesh = create("m");
-    api_mesh_info info = {0};
+    st_mesh *mesh = create("m");
+    st_mesh_info info = {0};
     for (int i = 0; i < EDITS; i++) {
         move(mesh, i + 1, false, &info);
     }
@@ -299,26 +296,26 @@ static void test_undo_budget(void **state)
     uint32_t steps = info.undo;
     for (uint32_t i = 0; i < steps; i++) {
         uint32_t left = info_of(mesh).undo;
-        assert_int_equal(step(mesh, API_UNDO), left > 0 ? API_STORE_OK : API_STORE_NOTHING);
+        assert_int_equal(step(mesh, ST_UNDO), left > 0 ? ST_OK : ST_NOTHING);
     }
     assert_true(x_of(mesh) < EDITS - 2);
 
     /* One edit beyond the budget: applied, but it cannot be undone, nor can what came before. */
-    he_mesh *content = api.write_begin(api.self, mesh, NULL, NULL);
+    he_mesh *content = st_write_begin(mesh, NULL, NULL);
     for (int i = 0; i < EDITS; i++) {
         he_vertex made;
         assert_int_equal(he_vertex_add(content, (he_vec3){1, 2, 3}, &made, NULL), HE_OK);
     }
-    api.write_commit(api.self, mesh, "vertex_add", false, &info);
+    st_write_commit(mesh, "vertex_add", false, &info);
     assert_int_equal(info.undo, 0);
     assert_int_equal(info.redo, 0);
-    api_entry entry;
-    api.read_begin(api.self, mesh, NULL);
-    assert_true(api.history(api.self, mesh, 0, &entry));
+    st_entry entry;
+    st_read_begin(mesh, NULL);
+    assert_true(st_history_entry(mesh, 0, &entry));
     assert_false(entry.undoable);
     assert_true(entry.bytes > SMALL_BUDGET);
-    api.read_end(api.self, mesh);
-    api.release(api.self, mesh);
+    st_read_end(mesh);
+    st_release(mesh);
 }
 
 static void test_long_names_of_operations_are_cut(void **state)
@@ -329,90 +326,90 @@ static void test_long_names_of_operations_are_cut(void **state)
     while (at < 900) {
         at += (size_t)snprintf(ops + at, sizeof ops - at, "%svertex_move", at == 0 ? "" : ",");
     }
-    api_mesh *mesh = create("m");
-    he_mesh *content = api.write_begin(api.self, mesh, NULL, NULL);
+    st_mesh *mesh = create("m");
+    he_mesh *content = st_write_begin(mesh, NULL, NULL);
     he_vertex made;
     assert_int_equal(he_vertex_add(content, (he_vec3){0}, &made, NULL), HE_OK);
-    api.write_commit(api.self, mesh, ops, false, NULL);
-    api_entry entry;
-    api.read_begin(api.self, mesh, NULL);
-    assert_true(api.history(api.self, mesh, 0, &entry));
-    api.read_end(api.self, mesh);
+    st_write_commit(mesh, ops, false, NULL);
+    st_entry entry;
+    st_read_begin(mesh, NULL);
+    assert_true(st_history_entry(mesh, 0, &entry));
+    st_read_end(mesh);
     size_t length = strlen(entry.ops);
-    assert_true(length < API_ENTRY_OPS);
+    assert_true(length < ST_ENTRY_OPS);
     assert_string_equal(entry.ops + length - strlen("vertex_move,..."), "vertex_move,...");
-    api.release(api.self, mesh);
+    st_release(mesh);
 }
 
 static void test_snapshots(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m");
-    api_snapshot *a = NULL, *b = NULL;
-    api_mesh_info info;
+    st_mesh *mesh = create("m");
+    st_snapshot *a = NULL, *b = NULL;
+    st_mesh_info info;
     move(mesh, 1, false, NULL);
-    assert_int_equal(api.snapshot(api.self, mesh, &a), API_STORE_OK);
-    assert_int_equal(api.snapshot(api.self, mesh, &b), API_STORE_OK);
-    const he_mesh *shared = api.snapshot_content(a, &info);
-    assert_ptr_equal(api.snapshot_content(b, NULL), shared);
+    assert_int_equal(st_snapshot_take(mesh, &a), ST_OK);
+    assert_int_equal(st_snapshot_take(mesh, &b), ST_OK);
+    const he_mesh *shared = st_snapshot_content(a, &info);
+    assert_ptr_equal(st_snapshot_content(b, NULL), shared);
     assert_int_equal(info.revision, 2);
 
     /* Held: it stays as it was. */
     move(mesh, 2, false, NULL);
     assert_true(he_position(shared, (he_vertex){0}).x == 1);
-    api.snapshot_release(api.self, b);
-    assert_int_equal(api.snapshot(api.self, mesh, &b), API_STORE_OK);
-    assert_ptr_not_equal(api.snapshot_content(b, &info), shared);
+    st_snapshot_release(b);
+    assert_int_equal(st_snapshot_take(mesh, &b), ST_OK);
+    assert_ptr_not_equal(st_snapshot_content(b, &info), shared);
     assert_int_equal(info.revision, 3);
-    assert_true(he_position(api.snapshot_content(b, NULL), (he_vertex){0}).x == 2);
-    api.snapshot_release(api.self, a);
-    api.snapshot_release(api.self, b);
+    assert_true(he_position(st_snapshot_content(b, NULL), (he_vertex){0}).x == 2);
+    st_snapshot_release(a);
+    st_snapshot_release(b);
 
     /* Released: brought forward, undo and new rows included. */
     for (int round = 0; round < 4; round++) {
         if (round == 1) {
-            assert_int_equal(step(mesh, API_UNDO), API_STORE_OK);
+            assert_int_equal(step(mesh, ST_UNDO), ST_OK);
         } else if (round == 2) {
-            he_mesh *content = api.write_begin(api.self, mesh, NULL, NULL);
+            he_mesh *content = st_write_begin(mesh, NULL, NULL);
             he_vertex made;
             assert_int_equal(he_vertex_add(content, (he_vec3){7, 8, 9}, &made, NULL), HE_OK);
-            api.write_commit(api.self, mesh, "vertex_add", false, NULL);
+            st_write_commit(mesh, "vertex_add", false, NULL);
         } else {
             move(mesh, 10 + round, false, NULL);
         }
-        assert_int_equal(api.snapshot(api.self, mesh, &a), API_STORE_OK);
-        const he_mesh *content = api.read_begin(api.self, mesh, NULL);
-        assert_true(he_mesh_equal(api.snapshot_content(a, NULL), content));
-        api.read_end(api.self, mesh);
-        api.snapshot_release(api.self, a);
+        assert_int_equal(st_snapshot_take(mesh, &a), ST_OK);
+        const he_mesh *content = st_read_begin(mesh, NULL);
+        assert_true(he_mesh_equal(st_snapshot_content(a, NULL), content));
+        st_read_end(mesh);
+        st_snapshot_release(a);
     }
 
     /* It outlives its mesh. */
-    assert_int_equal(api.snapshot(api.self, mesh, &a), API_STORE_OK);
-    assert_int_equal(take_away(mesh), API_STORE_OK);
-    api.release(api.self, mesh);
-    assert_int_equal(he_mesh_vertices(api.snapshot_content(a, NULL)), 5);
-    api.snapshot_release(api.self, a);
+    assert_int_equal(st_snapshot_take(mesh, &a), ST_OK);
+    assert_int_equal(take_away(mesh), ST_OK);
+    st_release(mesh);
+    assert_int_equal(he_mesh_vertices(st_snapshot_content(a, NULL)), 5);
+    st_snapshot_release(a);
 }
 
 static void test_cache(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m");
+    st_mesh *mesh = create("m");
     int value = 7, got = 0;
     long other;
-    api.read_begin(api.self, mesh, NULL);
-    assert_false(api.cache_get(api.self, mesh, &got, sizeof got));
-    api.cache_put(api.self, mesh, &value, sizeof value);
-    assert_true(api.cache_get(api.self, mesh, &got, sizeof got));
+    st_read_begin(mesh, NULL);
+    assert_false(st_cache_get(mesh, &got, sizeof got));
+    st_cache_put(mesh, &value, sizeof value);
+    assert_true(st_cache_get(mesh, &got, sizeof got));
     assert_int_equal(got, 7);
-    assert_false(api.cache_get(api.self, mesh, &other, sizeof other));
-    api.read_end(api.self, mesh);
+    assert_false(st_cache_get(mesh, &other, sizeof other));
+    st_read_end(mesh);
     move(mesh, 1, false, NULL);
-    api.read_begin(api.self, mesh, NULL);
-    assert_false(api.cache_get(api.self, mesh, &got, sizeof got));
-    api.read_end(api.self, mesh);
-    api.release(api.self, mesh);
+    st_read_begin(mesh, NULL);
+    assert_false(st_cache_get(mesh, &got, sizeof got));
+    st_read_end(mesh);
+    st_release(mesh);
 }
 
 /* Every call of the store with each of its allocations failing in turn: a clean refusal, and the
@@ -420,49 +417,49 @@ static void test_cache(void **state)
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m");
+    st_mesh *mesh = create("m");
     for (long n = 1; n < 200; n++) {
-        api_mesh *made = NULL;
-        api_snapshot *snapshot = NULL;
+        st_mesh *made = NULL;
+        st_snapshot *snapshot = NULL;
         he_mesh *content = fixture_mesh("012,023");
         bool all = true;
         fixture_fail_at(n);
-        api_store_status status = api.create(api.self, NULL, "x", content, NULL, &made);
-        if (status != API_STORE_OK) {
-            assert_int_equal(status, API_STORE_NO_MEMORY);
+        st_status status = st_create(store, NULL, "x", content, NULL, &made);
+        if (status != ST_OK) {
+            assert_int_equal(status, ST_NO_MEMORY);
             all = false;
         }
-        he_mesh *writing = api.write_begin(api.self, mesh, NULL, NULL);
+        he_mesh *writing = st_write_begin(mesh, NULL, NULL);
         if (writing != NULL) {
             uint32_t vertex = 0;
             he_vec3 point = {(double)n, 0, 0};
             if (he_vertex_move(writing, &vertex, 1, HE_MOVE_TO, &point, 1, NULL) == HE_OK) {
-                api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+                st_write_commit(mesh, "vertex_move", false, NULL);
             } else {
-                api.write_abort(api.self, mesh);
+                st_write_abort(mesh);
                 all = false;
             }
         } else {
             all = false;
         }
-        if (api.snapshot(api.self, mesh, &snapshot) != API_STORE_OK) {
+        if (st_snapshot_take(mesh, &snapshot) != ST_OK) {
             all = false;
         }
         fixture_memory_back();
         if (snapshot != NULL) {
-            const he_mesh *now = api.read_begin(api.self, mesh, NULL);
-            assert_true(he_mesh_equal_live(api.snapshot_content(snapshot, NULL), now));
-            api.read_end(api.self, mesh);
-            api.snapshot_release(api.self, snapshot);
+            const he_mesh *now = st_read_begin(mesh, NULL);
+            assert_true(he_mesh_equal_live(st_snapshot_content(snapshot, NULL), now));
+            st_read_end(mesh);
+            st_snapshot_release(snapshot);
         }
-        if (status == API_STORE_OK) {
-            assert_int_equal(take_away(made), API_STORE_OK);
-            api.release(api.self, made);
+        if (status == ST_OK) {
+            assert_int_equal(take_away(made), ST_OK);
+            st_release(made);
         } else {
             he_mesh_free(content);
         }
         if (all && n > 1) {
-            api.release(api.self, mesh);
+            st_release(mesh);
             return;
         }
     }
@@ -472,45 +469,45 @@ static void test_every_allocation_may_fail(void **state)
 static void test_memory_budget(void **state)
 {
     (void)state;
-    srv_store_free(store);
-    srv_memory_install(0);
+    st_store_free(store);
+    st_memory_install(0);
     open_store(BUDGET, MESHES);
-    api_mesh *mesh = create("m"), *other = NULL;
-    assert_true(srv_memory_used() > he_mesh_bytes(api.read_begin(api.self, mesh, NULL)));
-    api.read_end(api.self, mesh);
+    st_mesh *mesh = create("m"), *other = NULL;
+    assert_true(st_memory_used() > he_mesh_bytes(st_read_begin(mesh, NULL)));
+    st_read_end(mesh);
 
     he_mesh *content = fixture_mesh("012");
-    srv_memory_set_budget(srv_memory_used());
-    assert_true(srv_memory_is_full());
-    assert_int_equal(api.create(api.self, "n", NULL, content, NULL, &other), API_STORE_BUDGET);
+    st_memory_set_budget(st_memory_used());
+    assert_true(st_memory_is_full());
+    assert_int_equal(st_create(store, "n", NULL, content, NULL, &other), ST_BUDGET);
     assert_null(he_mem_alloc(1 << 20));
     /* A writer has what is only kept for later freed. */
-    srv_memory_set_budget(0);
-    api_snapshot *snapshot = NULL;
-    assert_int_equal(api.snapshot(api.self, mesh, &snapshot), API_STORE_OK);
-    api.snapshot_release(api.self, snapshot);
+    st_memory_set_budget(0);
+    st_snapshot *snapshot = NULL;
+    assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
+    st_snapshot_release(snapshot);
     void *filling = he_mem_alloc(1 << 20);
-    uint64_t with_copy = srv_memory_used();
-    srv_memory_set_budget(with_copy + with_copy / 32);
-    assert_true(srv_memory_is_full());
-    assert_non_null(api.write_begin(api.self, mesh, NULL, NULL));
-    api.write_abort(api.self, mesh);
-    uint64_t without = srv_memory_used();
-    srv_store_shed(store);
-    assert_true(srv_memory_used() == without);
+    uint64_t with_copy = st_memory_used();
+    st_memory_set_budget(with_copy + with_copy / 32);
+    assert_true(st_memory_is_full());
+    assert_non_null(st_write_begin(mesh, NULL, NULL));
+    st_write_abort(mesh);
+    uint64_t without = st_memory_used();
+    st_store_shed(store);
+    assert_true(st_memory_used() == without);
     he_mem_free(filling);
-    uint64_t used = srv_memory_used();
-    srv_memory_set_budget(0);
+    uint64_t used = st_memory_used();
+    st_memory_set_budget(0);
     void *block = he_mem_alloc(100000);
-    assert_true(srv_memory_used() >= used + 100000);
+    assert_true(st_memory_used() >= used + 100000);
     block = he_mem_resize(block, 10);
-    assert_true(srv_memory_used() < used + 10000);
+    assert_true(st_memory_used() < used + 10000);
     he_mem_free(block);
-    assert_int_equal(srv_memory_used(), used);
+    assert_int_equal(st_memory_used(), used);
     he_mesh_free(content);
-    api.release(api.self, mesh);
-    srv_store_free(store);
-    assert_int_equal(srv_memory_used(), 0);
+    st_release(mesh);
+    st_store_free(store);
+    assert_int_equal(st_memory_used(), 0);
     he_mem_set_hook(NULL);
     open_store(BUDGET, MESHES);
 }
@@ -531,13 +528,13 @@ static void destroy(void *value)
 }
 
 /* One of each kind. */
-static void derive(api_mesh *mesh)
+static void derive(st_mesh *mesh)
 {
-    for (int kind = 0; kind < API_DERIVED_COUNT; kind++) {
-        api_derived *kept = api.derived_begin(api.self, mesh, (api_derived_kind)kind);
+    for (int kind = 0; kind < ST_DERIVED_COUNT; kind++) {
+        st_derived *kept = st_derived_begin(mesh, (st_derived_kind)kind);
         assert_null(kept->value);
-        *kept = (api_derived){he_mem_alloc(1000), destroy};
-        api.derived_end(api.self, mesh, (api_derived_kind)kind);
+        *kept = (st_derived){he_mem_alloc(1000), destroy};
+        st_derived_end(mesh, (st_derived_kind)kind);
     }
 }
 
@@ -545,53 +542,53 @@ static void test_what_is_derived_goes_with_shedding_and_the_mesh(void **state)
 {
     (void)state;
     atomic_store(&destroyed, 0);
-    api_mesh *mesh = create("a");
+    st_mesh *mesh = create("a");
     derive(mesh);
     move(mesh, 1, false, NULL);
-    api_derived *kept = api.derived_begin(api.self, mesh, API_DERIVED_SLOTS);
+    st_derived *kept = st_derived_begin(mesh, ST_DERIVED_SLOTS);
     assert_non_null(kept->value);
-    api.derived_end(api.self, mesh, API_DERIVED_SLOTS);
-    srv_store_shed(store);
-    assert_int_equal(atomic_load(&destroyed), API_DERIVED_COUNT);
+    st_derived_end(mesh, ST_DERIVED_SLOTS);
+    st_store_shed(store);
+    assert_int_equal(atomic_load(&destroyed), ST_DERIVED_COUNT);
     derive(mesh);
-    assert_int_equal(take_away(mesh), API_STORE_OK);
-    assert_int_equal(atomic_load(&destroyed), API_DERIVED_COUNT);
-    api.release(api.self, mesh);
-    assert_int_equal(atomic_load(&destroyed), 2 * API_DERIVED_COUNT);
+    assert_int_equal(take_away(mesh), ST_OK);
+    assert_int_equal(atomic_load(&destroyed), ST_DERIVED_COUNT);
+    st_release(mesh);
+    assert_int_equal(atomic_load(&destroyed), 2 * ST_DERIVED_COUNT);
 }
 
 /* Each revision has its delta while the history is kept; a barrier ends what was before. */
 static void test_deltas_by_revision(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("a");
+    st_mesh *mesh = create("a");
     move(mesh, 1, false, NULL);
     move(mesh, 2, false, NULL);
-    assert_int_equal(step(mesh, API_UNDO), API_STORE_OK);
-    api.read_begin(api.self, mesh, NULL);
-    assert_null(api.revision_delta(api.self, mesh, 0));
-    assert_null(api.revision_delta(api.self, mesh, 1));
-    const he_delta *third = api.revision_delta(api.self, mesh, 3);
-    assert_non_null(api.revision_delta(api.self, mesh, 2));
-    assert_true(third != NULL && third != api.revision_delta(api.self, mesh, 2));
-    assert_ptr_equal(api.revision_delta(api.self, mesh, 4), third);
-    assert_null(api.revision_delta(api.self, mesh, 5));
-    assert_null(api.revision_delta(api.self, mesh, UINT64_MAX));
-    api.read_end(api.self, mesh);
+    assert_int_equal(step(mesh, ST_UNDO), ST_OK);
+    st_read_begin(mesh, NULL);
+    assert_null(st_revision_delta(mesh, 0));
+    assert_null(st_revision_delta(mesh, 1));
+    const he_delta *third = st_revision_delta(mesh, 3);
+    assert_non_null(st_revision_delta(mesh, 2));
+    assert_true(third != NULL && third != st_revision_delta(mesh, 2));
+    assert_ptr_equal(st_revision_delta(mesh, 4), third);
+    assert_null(st_revision_delta(mesh, 5));
+    assert_null(st_revision_delta(mesh, UINT64_MAX));
+    st_read_end(mesh);
     move(mesh, 3, true, NULL);
-    api.read_begin(api.self, mesh, NULL);
+    st_read_begin(mesh, NULL);
     for (uint64_t revision = 0; revision < 8; revision++) {
-        assert_null(api.revision_delta(api.self, mesh, revision));
+        assert_null(st_revision_delta(mesh, revision));
     }
-    api.read_end(api.self, mesh);
-    api.release(api.self, mesh);
+    st_read_end(mesh);
+    st_release(mesh);
 }
 
 static void *write_some(void *context)
 {
-    api_mesh *mesh = context;
+    st_mesh *mesh = context;
     for (int i = 0; i < ROUNDS; i++) {
-        he_mesh *content = api.write_begin(api.self, mesh, NULL, NULL);
+        he_mesh *content = st_write_begin(mesh, NULL, NULL);
         uint32_t vertices[] = {0, 1};
         he_vec3 point = {i, i, i};
         if (content == NULL) {
@@ -600,17 +597,16 @@ static void *write_some(void *context)
         }
         if (i % 7 == 3) {
             const he_delta *lent;
-            api_store_status status =
-                api.step(api.self, mesh, i % 2 ? API_UNDO : API_REDO, 1, &lent, NULL);
+            st_status status = st_write_step(mesh, i % 2 ? ST_UNDO : ST_REDO, 1, &lent, NULL);
             (void)status;
-            api.write_end(api.self, mesh);
+            st_write_end(mesh);
         } else if (he_vertex_move(content, vertices, 2, HE_MOVE_TO, &point, 1, NULL) != HE_OK) {
             atomic_store(&broken, true);
-            api.write_abort(api.self, mesh);
+            st_write_abort(mesh);
         } else if (i % 5 == 0) {
-            api.write_abort(api.self, mesh);
+            st_write_abort(mesh);
         } else {
-            api.write_commit(api.self, mesh, "vertex_move", false, NULL);
+            st_write_commit(mesh, "vertex_move", false, NULL);
         }
     }
     return NULL;
@@ -624,22 +620,22 @@ static bool together(const he_mesh *mesh)
 
 static void *read_some(void *context)
 {
-    api_mesh *mesh = context;
+    st_mesh *mesh = context;
     uint64_t last = 0;
     for (int i = 0; i < ROUNDS; i++) {
-        api_mesh_info info;
-        api_snapshot *snapshot = NULL;
-        const he_mesh *content = api.read_begin(api.self, mesh, &info);
+        st_mesh_info info;
+        st_snapshot *snapshot = NULL;
+        const he_mesh *content = st_read_begin(mesh, &info);
         bool good = together(content) && info.revision >= last;
         last = info.revision;
         int value = i;
-        api.cache_put(api.self, mesh, &value, sizeof value);
-        good = good && api.cache_get(api.self, mesh, &value, sizeof value);
-        api.read_end(api.self, mesh);
-        good = good && api.snapshot(api.self, mesh, &snapshot) == API_STORE_OK;
+        st_cache_put(mesh, &value, sizeof value);
+        good = good && st_cache_get(mesh, &value, sizeof value);
+        st_read_end(mesh);
+        good = good && st_snapshot_take(mesh, &snapshot) == ST_OK;
         if (snapshot != NULL) {
-            good = good && together(api.snapshot_content(snapshot, NULL));
-            api.snapshot_release(api.self, snapshot);
+            good = good && together(st_snapshot_content(snapshot, NULL));
+            st_snapshot_release(snapshot);
         }
         if (!good) {
             atomic_store(&broken, true);
@@ -653,18 +649,18 @@ static void *come_and_go(void *context)
     (void)context;
     for (int i = 0; i < ROUNDS; i++) {
         char id[16];
-        api_mesh *mesh = NULL;
+        st_mesh *mesh = NULL;
         snprintf(id, sizeof id, "t%d", i % 5);
         he_mesh *content = he_mesh_new();
-        if (api.create(api.self, id, NULL, content, NULL, &mesh) != API_STORE_OK) {
+        if (st_create(store, id, NULL, content, NULL, &mesh) != ST_OK) {
             he_mesh_free(content);
-            if (api.find(api.self, id, &mesh) != API_STORE_OK) {
+            if (st_find(store, id, &mesh) != ST_OK) {
                 continue;
             }
         }
-        api_store_status status = take_away(mesh);
+        st_status status = take_away(mesh);
         (void)status;
-        api.release(api.self, mesh);
+        st_release(mesh);
     }
     return NULL;
 }
@@ -672,12 +668,12 @@ static void *come_and_go(void *context)
 static void test_threads(void **state)
 {
     (void)state;
-    api_mesh *mesh = create("m");
-    he_mesh *content = api.write_begin(api.self, mesh, NULL, NULL);
+    st_mesh *mesh = create("m");
+    he_mesh *content = st_write_begin(mesh, NULL, NULL);
     uint32_t vertices[] = {0, 1};
     he_vec3 point = {0, 0, 0};
     assert_int_equal(he_vertex_move(content, vertices, 2, HE_MOVE_TO, &point, 1, NULL), HE_OK);
-    api.write_commit(api.self, mesh, "vertex_move", true, NULL);
+    st_write_commit(mesh, "vertex_move", true, NULL);
     pthread_t threads[WRITERS + READERS + 2];
     size_t count = 0;
     for (int i = 0; i < WRITERS; i++) {
@@ -693,10 +689,10 @@ static void test_threads(void **state)
         pthread_join(threads[i], NULL);
     }
     assert_false(atomic_load(&broken));
-    const he_mesh *final = api.read_begin(api.self, mesh, NULL);
+    const he_mesh *final = st_read_begin(mesh, NULL);
     fixture_check(final);
-    api.read_end(api.self, mesh);
-    api.release(api.self, mesh);
+    st_read_end(mesh);
+    st_release(mesh);
 }
 
 int main(void)

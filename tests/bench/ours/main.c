@@ -1,7 +1,7 @@
 /* The kernel's side of the bench: side.h says how it is spoken to. */
 #include "bench/ours/ours.h"
 
-#include "server/system/memory.h"
+#include "system/memory.h"
 
 int main(int argc, char **argv)
 {
@@ -10,6 +10,6 @@ int main(int argc, char **argv)
         bench_document_rows, bench_decimate_rows, bench_error_rows,   bench_subdivide_rows,
         bench_memory_rows,   bench_growth_rows,   bench_scaling_rows, NULL};
     /* Memory as the daemon takes it, counted and in mappings of its own. */
-    srv_memory_install(0);
+    st_memory_install(0);
     return bench_serve(argc, argv, tables);
 }

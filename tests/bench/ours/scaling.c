@@ -5,7 +5,7 @@
 #include "algo/subdivide.h"
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
-#include "server/system/hands.h"
+#include "system/parallel.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,15 +21,15 @@ static double wall_seconds(void)
 /* The threads of the rows, made once. */
 static void lend(he_watch *watch, bool helped)
 {
-    static srv_hands *hands;
+    static st_parallel *hands;
     if (hands == NULL) {
-        hands = srv_hands_new(1);
+        hands = st_parallel_new(1);
     }
     if (hands == NULL) {
         bench_require(HE_NO_MEMORY);
     }
     he_watch_init(watch, NULL, NULL);
-    watch->exec = helped ? srv_hands_exec(hands) : NULL;
+    watch->exec = helped ? st_parallel_exec(hands) : NULL;
 }
 
 static void build(bench_side *side, bool helped, bench_result *out)

@@ -1,0 +1,202 @@
+#include "api/event/event_follow.h"
+
+#include "api/event/events.h"
+#include "base/mem.h"
+
+#include <string.h>
+
+static void render(const st_mesh_info *info, const st_record *record, api_text *text)
+{
+    if (record->removed) {
+        api_event_bye(text, "deleted");
+    } else if (record->action == ST_REPLACE) {
+        api_event_resync(text, info->incarnation, info->revision, "replaced");
+    } else if (record->delta == NULL) {
+        api_event_metadata(text, info);
+    } else {
+        api_event_edit(text, info, record->action, record->content, record->delta, record->undone);
+    }
+}
+
+bool api_event_render(const st_mesh_info *info, const st_record *record, char **bytes,
+                      size_t *length)
+{
+    api_text text = {0};
+    render(info, record, &text);
+    if (text.failed) {
+        api_text_clear(&text);
+        return false;
+    }
+    *bytes = text.bytes;
+    *length = text.length;
+    return true;
+}
+
+typedef struct stream {
+    st_mesh *mesh; /* a reference */
+    st_listener listener;
+    bool listens;
+    uint64_t incarnation;
+    api_backfill *missed; /* NULL: nothing, or no more */
+    uint64_t caught_up;   /* the last revision of it */
+    api_text text;        /* to be sent before anything else */
+    size_t sent;
+    bool finishing; /* the server stops */
+    bool ended;     /* nothing comes after `text` */
+} stream;
+
+static void start(void *self, void (*wake)(void *context), void *context)
+{
+    stream *s = self;
+    st_queue_wake(&s->listener, wake, context);
+    if (s->missed != NULL) {
+        api_backfill_wake(s->missed, wake, context);
+    }
+}
+
+static size_t copy_text(stream *s, char *buffer, size_t size)
+{
+    size_t length = s->text.length - s->sent;
+    length = length < size ? length : size;
+    memcpy(buffer, s->text.bytes + s->sent, length);
+    s->sent += length;
+    if (s->sent == s->text.length) {
+        api_text_clear(&s->text);
+        s->sent = 0;
+    }
+    return length;
+}
+
+enum { IN_TEXT = -3 }; /* there is something to be sent in `text` */
+
+/* What cannot be had is left out, and said. */
+static int64_t read_missed(stream *s)
+{
+    switch (api_backfill_take(s->missed, &s->text)) {
+    case API_BACKFILL_TEXT:
+        return IN_TEXT;
+    case API_BACKFILL_WAIT:
+        return API_READ_WAIT;
+    case API_BACKFILL_FAILED:
+        api_event_resync(&s->text, s->incarnation, s->caught_up, "gap");
+        break;
+    case API_BACKFILL_DONE:
+        break;
+    }
+    api_backfill_free(s->missed);
+    s->missed = NULL;
+    return IN_TEXT;
+}
+
+static int64_t read_queue(stream *s, char *buffer, size_t size)
+{
+    size_t got = 0;
+    switch (st_queue_read(&s->listener, buffer, size, &got)) {
+    case ST_QUEUE_GOT:
+        return (int64_t)got;
+    case ST_QUEUE_WAIT:
+        return API_READ_WAIT;
+    case ST_QUEUE_ENDED:
+        return 0;
+    case ST_QUEUE_BEHIND:
+        break;
+    }
+    api_event_resync(&s->text, s->incarnation, st_queue_skip(&s->listener).key, "gap");
+    return IN_TEXT;
+}
+
+/* A stop waits for none of the three. */
+static int64_t read_stream(void *self, char *buffer, size_t size)
+{
+    stream *s = self;
+    while (s->text.length == 0 && !s->text.failed) {
+        if (s->ended) {
+            return 0;
+        }
+        int64_t got = s->missed != NULL ? read_missed(s) : read_queue(s, buffer, size);
+        if (got == API_READ_WAIT && s->finishing) {
+            api_event_bye(&s->text, "stopping");
+            s->ended = true;
+        } else if (got != IN_TEXT) {
+            return got;
+        }
+    }
+    return s->text.failed ? -1 : (int64_t)copy_text(s, buffer, size);
+}
+
+static void finish(void *self)
+{
+    stream *s = self;
+    s->finishing = true;
+}
+
+static void free_stream(void *self)
+{
+    stream *s = self;
+    if (s->listens) {
+        st_unfollow(s->mesh, &s->listener);
+    }
+    api_backfill_free(s->missed);
+    st_release(s->mesh);
+    api_text_clear(&s->text);
+    he_mem_free(s);
+}
+
+/* The history knows nothing of changes that are no revision: the name is told as it is. */
+static void begin_with_history(stream *s, const st_mesh_info *info, uint64_t since,
+                               api_backfills *backfills)
+{
+    st_mesh_info from = *info;
+    from.revision = since;
+    s->caught_up = info->revision;
+    s->missed = api_backfill_new(backfills, s->mesh, &from, info->revision);
+    if (s->missed == NULL) {
+        api_event_resync(&s->text, info->incarnation, info->revision, "busy");
+    } else {
+        api_event_metadata(&s->text, info);
+    }
+}
+
+static void begin(stream *s, const st_mesh_info *info, const st_since *since, st_missed missed,
+                  api_backfills *backfills)
+{
+    s->incarnation = info->incarnation;
+    api_event_begin(&s->text, info, !since->given);
+    switch (missed) {
+    case ST_MISSED_NOTHING:
+        break;
+    case ST_MISSED_HISTORY:
+        begin_with_history(s, info, since->revision, backfills);
+        break;
+    case ST_MISSED_FOREIGN:
+        api_event_resync(&s->text, info->incarnation, info->revision, "incarnation");
+        break;
+    case ST_MISSED_FUTURE:
+        api_event_resync(&s->text, info->incarnation, info->revision, "future");
+        break;
+    }
+}
+
+st_status api_event_follow(st_mesh *mesh, const st_since *since, api_backfills *backfills,
+                           st_mesh_info *info, api_source *out)
+{
+    stream *s = he_mem_zero(1, sizeof *s);
+    if (s == NULL) {
+        return ST_NO_MEMORY;
+    }
+    s->mesh = st_hold(mesh);
+    st_missed missed = ST_MISSED_NOTHING;
+    st_status status = st_follow(mesh, &s->listener, since, &missed, info);
+    s->listens = status == ST_OK;
+    if (s->listens) {
+        begin(s, info, since, missed, backfills);
+        status = s->text.failed ? ST_NO_MEMORY : ST_OK;
+    }
+    if (status != ST_OK) {
+        free_stream(s);
+        return status;
+    }
+    *out = (api_source){
+        .self = s, .start = start, .read = read_stream, .finish = finish, .free = free_stream};
+    return ST_OK;
+}

@@ -1,0 +1,57 @@
+/* job_entry.h - one job of a table: what job_table.c and job_events.c share. */
+#ifndef HE_API_JOB_JOB_ENTRY_H
+#define HE_API_JOB_JOB_ENTRY_H
+
+#include "api/job/job_table.h"
+#include "store/durability_wait.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+typedef struct api_job_listener api_job_listener;
+
+/* In the list of its table, whose lock is for all but the atomics, and `work` while it runs. */
+typedef struct api_job_entry {
+    api_job_table *table;
+    api_job facts;     /* but for phase and progress until it has ended */
+    char *body;        /* facts.body, owned */
+    api_job_work work; /* self NULL when it has ended */
+    st_mesh *about;    /* the mesh whose listeners are told, held; NULL: none, or the job ended */
+    st_wait wait;      /* from the end of the work until that is durable */
+    uint32_t uses;     /* by the list, by the pool, by listeners */
+    bool listed;
+    struct api_job_entry *next, *previous; /* in the order of numbers */
+    api_job_listener *waiting;             /* to be woken when something is new */
+
+    _Atomic bool stop;
+    _Atomic(const char *) phase;
+    _Atomic double progress;
+    _Atomic bool awaited; /* somebody waits for more than `shown` */
+    _Atomic double shown;
+} api_job_entry;
+
+struct api_job_table {
+    api_job_table_options options;
+    pthread_mutex_t lock;
+    api_job_entry *first, *last;
+    size_t count;
+    size_t bytes; /* of bodies */
+    uint64_t submitted;
+    size_t listeners;
+    bool stopped;
+};
+
+/* All under the table's lock. */
+static inline bool api_job_entry_has_ended(const api_job_entry *job)
+{
+    return job->facts.state >= API_JOB_DONE;
+}
+api_job_entry *api_job_entry_find(const api_job_table *table, const char *id); /* NULL: none */
+/* The facts as they are now. */
+const api_job *api_job_entry_facts(api_job_entry *job);
+void api_job_entry_release(api_job_entry *job);
+
+/* job_events.c */
+void api_job_entry_wake(api_job_entry *job);
+
+#endif

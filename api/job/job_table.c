@@ -1,0 +1,429 @@
+#include "api/job/job_table.h"
+
+#include "api/job/job_entry.h"
+#include "api/job/job_out.h"
+#include "base/mem.h"
+#include "store/followers.h"
+#include "system/clock.h"
+#include "system/random.h"
+
+#include <stddef.h>
+#include <string.h>
+
+api_job_table *api_job_table_new(const api_job_table_options *options)
+{
+    api_job_table *table = he_mem_zero(1, sizeof *table);
+    if (table != NULL) {
+        table->options = *options;
+        pthread_mutex_init(&table->lock, NULL);
+    }
+    return table;
+}
+
+/* Tells those who listen to the mesh that the job is about: not to one that has its id since. */
+static void tell_listeners(st_mesh *mesh, const api_job *job)
+{
+    if (mesh != NULL && st_is_followed(mesh)) {
+        api_text text = {0};
+        api_event_job_state(&text, job);
+        st_follow_tell(mesh, text.failed ? NULL : text.bytes, text.length);
+        api_text_clear(&text);
+    }
+}
+
+static void free_work(api_job_work *work)
+{
+    if (work->self != NULL) {
+        work->free(work->self);
+        work->self = NULL;
+    }
+}
+
+/* --- the list, under the lock --- */
+
+void api_job_entry_release(api_job_entry *j)
+{
+    if (--j->uses == 0) {
+        free_work(&j->work);
+        he_mem_free(j->body);
+        he_mem_free(j);
+    }
+}
+
+static void append(api_job_table *table, api_job_entry *j)
+{
+    j->previous = table->last;
+    if (table->last != NULL) {
+        table->last->next = j;
+    } else {
+        table->first = j;
+    }
+    table->last = j;
+    table->count++;
+    j->listed = true;
+}
+
+static void forget(api_job_table *table, api_job_entry *j)
+{
+    if (j->previous != NULL) {
+        j->previous->next = j->next;
+    } else {
+        table->first = j->next;
+    }
+    if (j->next != NULL) {
+        j->next->previous = j->previous;
+    } else {
+        table->last = j->previous;
+    }
+    table->count--;
+    table->bytes -= j->body == NULL ? 0 : j->facts.length;
+    j->listed = false;
+    api_job_entry_release(j);
+}
+
+/* The one that ended first; NULL when none has. */
+static api_job_entry *ended_first(const api_job_table *table)
+{
+    api_job_entry *found = NULL;
+    for (api_job_entry *j = table->first; j != NULL; j = j->next) {
+        if (api_job_entry_has_ended(j) &&
+            (found == NULL || j->facts.finished < found->facts.finished)) {
+            found = j;
+        }
+    }
+    return found;
+}
+
+/* Forget what is too old, and as many more as it takes for `room` jobs; the newest answer stays
+ * however large it is. */
+static void tidy(api_job_table *table, size_t room)
+{
+    double now = st_clock_utc();
+    api_job_entry *j = ended_first(table);
+    while (j != NULL &&
+           (now - j->facts.finished >= table->options.keep || table->count + room > API_JOBS_KEPT ||
+            (table->bytes > API_JOBS_BYTES && table->bytes > j->facts.length))) {
+        forget(table, j);
+        j = ended_first(table);
+    }
+}
+
+api_job_entry *api_job_entry_find(const api_job_table *table, const char *id)
+{
+    api_job_entry *j = table->first;
+    while (j != NULL && strcmp(j->facts.id, id) != 0) {
+        j = j->next;
+    }
+    return j;
+}
+
+/* --- running --- */
+
+/* Progress that listeners are woken for. */
+static const double WORTH = 0.005;
+
+static bool tell(void *context, const char *phase, double done)
+{
+    api_job_entry *j = context;
+    atomic_store_explicit(&j->phase, phase, memory_order_relaxed);
+    atomic_store_explicit(&j->progress, done, memory_order_relaxed);
+    if (atomic_load_explicit(&j->awaited, memory_order_relaxed) &&
+        done >= atomic_load_explicit(&j->shown, memory_order_relaxed) + WORTH) {
+        pthread_mutex_lock(&j->table->lock);
+        api_job_entry_wake(j);
+        pthread_mutex_unlock(&j->table->lock);
+    }
+    return !atomic_load_explicit(&j->stop, memory_order_relaxed);
+}
+
+/* Without memory the body is not kept. */
+static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
+{
+    j->facts.status = outcome->status;
+    size_t length = strlen(outcome->location);
+    if (length < sizeof j->facts.location) {
+        memcpy(j->facts.location, outcome->location, length + 1);
+    }
+    if (outcome->body != NULL && outcome->length > 0) {
+        j->facts.length = outcome->length;
+        j->body = he_mem_alloc(j->facts.length);
+        if (j->body != NULL) {
+            memcpy(j->body, outcome->body, outcome->length);
+        }
+    }
+    j->facts.body = j->body;
+    j->facts.length = j->body == NULL ? 0 : j->facts.length;
+}
+
+/* Frees the work first: its memory is back before the end shows. */
+static void end(api_job_entry *j)
+{
+    api_job_table *table = j->table;
+    free_work(&j->work);
+    pthread_mutex_lock(&table->lock);
+    st_mesh *about = j->about;
+    j->about = NULL;
+    const char *slash = strrchr(j->facts.location, '/');
+    if (slash != NULL && strlen(slash + 1) <= ST_MESH_ID) {
+        memcpy(j->facts.mesh, slash + 1, strlen(slash + 1) + 1);
+    }
+    j->facts.state = j->facts.status < 400   ? API_JOB_DONE
+                     : atomic_load(&j->stop) ? API_JOB_CANCELLED
+                                             : API_JOB_FAILED;
+    j->facts.progress = j->facts.state == API_JOB_DONE ? 1 : atomic_load(&j->progress);
+    j->facts.phase = atomic_load(&j->phase);
+    j->facts.finished = st_clock_utc();
+    table->bytes += j->facts.length;
+    api_job_entry_wake(j);
+    api_job facts = j->facts;
+    tidy(table, 0);
+    api_job_entry_release(j);
+    pthread_mutex_unlock(&table->lock);
+    tell_listeners(about, &facts);
+    st_release(about);
+}
+
+/* Nobody is told that something was done which the journal may never have. */
+static void lose_answer(api_job_entry *j)
+{
+    pthread_mutex_lock(&j->table->lock);
+    he_mem_free(j->body);
+    j->body = NULL;
+    j->facts.body = NULL;
+    j->facts.length = 0;
+    j->facts.location[0] = '\0';
+    j->facts.status = 503;
+    pthread_mutex_unlock(&j->table->lock);
+}
+
+static void resume(st_wait *wait)
+{
+    api_job_entry *j = (api_job_entry *)((char *)wait - offsetof(api_job_entry, wait));
+    if (wait->abandoned) {
+        lose_answer(j);
+    }
+    end(j);
+}
+
+/* D1: the end is not shown before it is durable. */
+static void end_when_durable(api_job_entry *j, const api_job_outcome *outcome)
+{
+    st_store *store = j->table->options.store;
+    if (outcome->mesh != NULL && !st_store_is_durable(store, outcome->mesh, outcome->record)) {
+        atomic_store(&j->phase, "storing");
+        j->wait = (st_wait){.mesh = outcome->mesh, .record = outcome->record, .resume = resume};
+        if (!st_waits_add(st_store_waits(store), &j->wait)) {
+            resume(&j->wait);
+        }
+        return;
+    }
+    end(j);
+}
+
+static void run(void *context)
+{
+    api_job_entry *j = context;
+    api_job_table *table = j->table;
+    pthread_mutex_lock(&table->lock);
+    bool wanted = j->facts.state == API_JOB_QUEUED;
+    api_job facts = {.number = 0};
+    if (wanted) {
+        j->facts.state = API_JOB_RUNNING;
+        j->facts.started = st_clock_utc();
+        api_job_entry_wake(j);
+        facts = *api_job_entry_facts(j);
+    } else {
+        api_job_entry_release(j);
+    }
+    pthread_mutex_unlock(&table->lock);
+    if (!wanted) {
+        return;
+    }
+    tell_listeners(j->about, &facts); /* which only the end lets go */
+    api_job_outcome outcome = {.location = ""};
+    j->work.run(j->work.self, tell, j, &outcome);
+    pthread_mutex_lock(&table->lock);
+    keep_outcome(j, &outcome);
+    pthread_mutex_unlock(&table->lock);
+    end_when_durable(j, &outcome);
+}
+
+/* --- what api asks for --- */
+
+const api_job *api_job_entry_facts(api_job_entry *j)
+{
+    if (!api_job_entry_has_ended(j)) {
+        j->facts.phase = atomic_load(&j->phase);
+        j->facts.progress = atomic_load(&j->progress);
+    }
+    return &j->facts;
+}
+
+static api_job_entry *job_new(api_job_table *table, const api_job_work *work, const char *operation,
+                              const char *mesh)
+{
+    api_job_entry *j = he_mem_zero(1, sizeof *j);
+    if (j == NULL) {
+        return NULL;
+    }
+    j->table = table;
+    j->work = *work;
+    j->uses = 2;
+    st_random_id(j->facts.id, API_JOB_ID);
+    j->facts.operation = operation;
+    memcpy(j->facts.mesh, mesh, strnlen(mesh, ST_MESH_ID));
+    j->facts.created = st_clock_utc();
+    atomic_init(&j->phase, "");
+    atomic_init(&j->progress, 0);
+    atomic_init(&j->stop, false);
+    atomic_init(&j->awaited, false);
+    atomic_init(&j->shown, 0);
+    return j;
+}
+
+st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
+                         const char *mesh, api_job *out)
+{
+    api_job_entry *j = job_new(table, work, operation, mesh);
+    if (j == NULL) {
+        return ST_NO_MEMORY;
+    }
+    if (work->claims) {
+        st_claimed_by(work->about, j->facts.id);
+    }
+    const st_task task = {.work = run,
+                          .context = j,
+                          .share = ST_SHARE_JOB,
+                          .cost = work->seconds,
+                          .flow = st_pool_flow("", mesh)};
+    pthread_mutex_lock(&table->lock);
+    tidy(table, 1);
+    bool accepted = !table->stopped && table->count < API_JOBS_KEPT;
+    if (accepted) {
+        j->facts.number = ++table->submitted;
+        *out = *api_job_entry_facts(j);
+        j->about = work->about == NULL ? NULL : st_hold(work->about);
+        append(table, j);
+        /* It cannot run before the lock is given back. */
+        accepted = table->options.submit(table->options.pool, &task);
+        if (!accepted) {
+            forget(table, j);
+        }
+    }
+    pthread_mutex_unlock(&table->lock);
+    if (!accepted) {
+        st_release(j->about);
+        he_mem_free(j);
+    }
+    return accepted ? ST_OK : ST_TOO_MANY;
+}
+
+bool api_job_find(api_job_table *table, const char *id,
+                  void (*show)(void *context, const api_job *job), void *context)
+{
+    pthread_mutex_lock(&table->lock);
+    tidy(table, 0);
+    api_job_entry *j = api_job_entry_find(table, id);
+    if (j != NULL) {
+        show(context, api_job_entry_facts(j));
+    }
+    pthread_mutex_unlock(&table->lock);
+    return j != NULL;
+}
+
+bool api_job_list(api_job_table *table, uint64_t after, size_t limit,
+                  void (*show)(void *context, const api_job *job), void *context)
+{
+    size_t given = 0;
+    pthread_mutex_lock(&table->lock);
+    tidy(table, 0);
+    api_job_entry *j = table->first;
+    for (; j != NULL && given < limit; j = j->next) {
+        if (j->facts.number > after) {
+            show(context, api_job_entry_facts(j));
+            given++;
+        }
+    }
+    pthread_mutex_unlock(&table->lock);
+    return j != NULL;
+}
+
+/* Under the lock; what is left of a job that waited, and its hold of a mesh, are to be given back
+ * without it. */
+static api_job_work cancel(api_job_entry *j, st_mesh **about)
+{
+    api_job_work work = {.self = NULL};
+    *about = NULL;
+    atomic_store(&j->stop, true);
+    if (j->facts.state == API_JOB_QUEUED) {
+        work = j->work;
+        *about = j->about;
+        j->work.self = NULL;
+        j->about = NULL;
+        j->facts.state = API_JOB_CANCELLED;
+        j->facts.finished = st_clock_utc();
+        api_job_entry_wake(j);
+    }
+    return work;
+}
+
+bool api_job_remove(api_job_table *table, const char *id, bool *forgotten,
+                    void (*show)(void *context, const api_job *job), void *context)
+{
+    api_job_work over = {.self = NULL};
+    st_mesh *about = NULL;
+    api_job facts = {.number = 0};
+    pthread_mutex_lock(&table->lock);
+    tidy(table, 0);
+    api_job_entry *j = api_job_entry_find(table, id);
+    if (j != NULL) {
+        *forgotten = api_job_entry_facts(j)->state >= API_JOB_DONE;
+        if (*forgotten) {
+            forget(table, j);
+        } else {
+            over = cancel(j, &about);
+            facts = *api_job_entry_facts(j);
+            show(context, &facts);
+        }
+    }
+    pthread_mutex_unlock(&table->lock);
+    if (over.self != NULL) {
+        free_work(&over);
+        tell_listeners(about, &facts);
+        st_release(about);
+    }
+    return j != NULL;
+}
+
+/* What is left of some job that waited; NULL when none does. */
+static api_job_work cancel_one(api_job_table *table, st_mesh **about)
+{
+    api_job_work work = {.self = NULL};
+    pthread_mutex_lock(&table->lock);
+    table->stopped = true;
+    for (api_job_entry *j = table->first; j != NULL && work.self == NULL; j = j->next) {
+        work = cancel(j, about);
+    }
+    pthread_mutex_unlock(&table->lock);
+    return work;
+}
+
+void api_job_table_stop(api_job_table *table)
+{
+    st_mesh *about = NULL;
+    for (api_job_work work; (work = cancel_one(table, &about)).self != NULL;) {
+        free_work(&work);
+        st_release(about);
+    }
+}
+
+void api_job_table_free(api_job_table *table)
+{
+    if (table != NULL) {
+        while (table->first != NULL) {
+            forget(table, table->first);
+        }
+        pthread_mutex_destroy(&table->lock);
+        he_mem_free(table);
+    }
+}

@@ -1,0 +1,104 @@
+/* feed.h - messages for many listeners, kept once.
+ *
+ * A feed is a bounded queue of messages that any number of listeners read, each at its own pace.
+ * Messages are bytes; what they mean is their maker's business. Each has a place: a stamp, which
+ * grows with every message of a change, and a key, which need not. What is no change is put beside
+ * the newest one, at its place. Listeners go by numbers, which have no gaps.
+ *
+ *        floor                                     newest
+ *          |    [m] [m] [m] [m] [m] [m] [m]          |
+ *       dropped          ^           ^   may not be read yet
+ *                    listener     allowed
+ *
+ * The oldest messages are dropped beyond ST_QUEUE_MESSAGES or ST_QUEUE_BYTES. A listener that had
+ * not read one of them is behind: it is told so once and goes on at the newest message it may
+ * read. It is never waited for, and never costs more than the message it is in the middle of.
+ *
+ * A message may be read once its stamp is allowed: a revision that is not yet durable is in the
+ * feed, in its order, and is seen by nobody (D1).
+ *
+ * Every function takes the feed's lock; wakes are called under it and may not call back. */
+#ifndef HE_STORE_BROADCAST_QUEUE_H
+#define HE_STORE_BROADCAST_QUEUE_H
+
+#include "store/limits.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct st_place {
+    uint64_t stamp, key;
+} st_place;
+
+typedef struct st_message st_message;
+
+/* In the storage of its owner, who outlives no call of `wake` that it has not ended by
+ * st_queue_leave. */
+typedef struct st_listener {
+    struct st_queue *feed; /* NULL: it listens to none */
+    uint64_t number;       /* of the message it read last, or is reading */
+    st_message *message;   /* being read, NULL: none */
+    size_t sent;           /* of it */
+    void (*wake)(void *context);
+    void *context;
+    bool waiting; /* in the list of those to be woken */
+    struct st_listener *next, *previous;
+} st_listener;
+
+typedef struct st_queue {
+    pthread_mutex_t lock;
+    st_message **ring; /* a power of two of places */
+    size_t capacity, first, count;
+    size_t bytes;           /* of messages */
+    st_place floor, newest; /* the last that is not in the ring, and the last of all */
+    uint64_t floor_number;  /* the ring holds those after it, up to the newest */
+    uint64_t allowed;       /* stamps up to here may be read */
+    bool ended;             /* nothing comes after `newest` */
+    size_t listeners;
+    uint64_t left; /* when the last listener went, 0: there was none */
+    st_listener *waiting;
+} st_queue;
+
+/* What comes is after `place`. */
+void st_queue_init(st_queue *feed, st_place place);
+/* Nobody may listen. */
+void st_queue_clear(st_queue *feed);
+
+/* Does, or did until lately, anybody listen, so that messages are worth making? */
+bool st_queue_is_followed(st_queue *feed);
+/* Add a message; its bytes are copied. NULL bytes, or no memory: who reads up to here is behind. */
+void st_queue_add(st_queue *feed, st_place place, const char *bytes, size_t length);
+/* The same at the place of the newest message. After the end it is left out. */
+void st_queue_add_beside(st_queue *feed, const char *bytes, size_t length);
+/* The newest stamp. */
+uint64_t st_queue_newest(st_queue *feed);
+/* Messages up to this stamp may be read: wakes who waits. */
+void st_queue_allow(st_queue *feed, uint64_t stamp);
+/* Nothing will be added any more. */
+void st_queue_end(st_queue *feed);
+/* Forget the messages if nobody listens. */
+void st_queue_shed(st_queue *feed);
+
+/* Begin after the newest message, allowed or not; false when `most` listen already. */
+bool st_queue_listen(st_queue *feed, st_listener *listener, size_t most);
+/* Go back to what follows the first message of this key: false when that is not all there. */
+bool st_queue_rewind(st_listener *listener, uint64_t key);
+/* What to call after ST_QUEUE_WAIT. Before the first read. */
+void st_queue_wake(st_listener *listener, void (*wake)(void *context), void *context);
+/* Accepts a listener that listens to none. */
+void st_queue_leave(st_listener *listener);
+
+typedef enum st_queue_result {
+    ST_QUEUE_GOT,  /* *got of them */
+    ST_QUEUE_WAIT, /* nothing now; `wake` will be called */
+    ST_QUEUE_BEHIND,
+    ST_QUEUE_ENDED
+} st_queue_result;
+
+st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, size_t *got);
+/* After ST_QUEUE_BEHIND: go on from the newest message that may be read, whose place this is. */
+st_place st_queue_skip(st_listener *listener);
+
+#endif

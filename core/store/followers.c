@@ -1,0 +1,130 @@
+#include "store/followers.h"
+
+#include "base/mem.h"
+#include "store/stored_mesh.h"
+
+#include <stddef.h>
+
+static bool is_durable(const st_mesh *mesh, uint64_t record)
+{
+    const st_journal *journal = mesh->journal;
+    return journal->durable(journal->self, mesh->info.id, mesh->info.incarnation) >= record;
+}
+
+static void became_durable(st_wait *wait);
+
+/* Lets what is durable be read. One wait at a time is for the journal: a thread that finds it
+ * waiting leaves its message to became_durable, which looks for newer ones after it has let go. */
+static void allow(st_mesh *mesh)
+{
+    for (;;) {
+        uint64_t newest = st_queue_newest(&mesh->queue);
+        if (is_durable(mesh, newest)) {
+            st_queue_allow(&mesh->queue, newest);
+            return;
+        }
+        if (atomic_exchange(&mesh->waiting, true)) {
+            return;
+        }
+        st_hold(mesh);
+        mesh->wait = (st_wait){.mesh = mesh, .record = newest, .resume = became_durable};
+        if (st_waits_add(mesh->followers->waits, &mesh->wait)) {
+            return;
+        }
+        bool abandoned = mesh->wait.abandoned;
+        atomic_store(&mesh->waiting, false);
+        st_release(mesh);
+        if (abandoned) {
+            return;
+        }
+    }
+}
+
+static void became_durable(st_wait *wait)
+{
+    st_mesh *mesh = (st_mesh *)((char *)wait - offsetof(st_mesh, wait));
+    bool abandoned = wait->abandoned;
+    uint64_t record = wait->record;
+    atomic_store(&mesh->waiting, false);
+    if (!abandoned) {
+        st_queue_allow(&mesh->queue, record);
+        allow(mesh);
+    }
+    st_release(mesh);
+}
+
+void st_mesh_tell(st_mesh *mesh, const st_record *record)
+{
+    st_place place = {.stamp = record->number, .key = record->revision};
+    bool followed = st_queue_is_followed(&mesh->queue);
+    char *bytes = NULL;
+    size_t length = 0;
+    if (followed && !mesh->followers->render(&mesh->info, record, &bytes, &length)) {
+        bytes = NULL;
+    }
+    st_queue_add(&mesh->queue, place, bytes, length);
+    he_mem_free(bytes);
+    if (record->removed) {
+        st_queue_end(&mesh->queue);
+    }
+    if (followed) {
+        allow(mesh);
+    }
+}
+
+bool st_is_followed(st_mesh *mesh)
+{
+    return st_queue_is_followed(&mesh->queue);
+}
+
+void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length)
+{
+    st_queue_add_beside(&mesh->queue, bytes, length);
+    allow(mesh);
+}
+
+/* Under the mesh's lock. */
+static st_missed begin(st_listener *listener, const st_since *since, const st_mesh_info *info)
+{
+    if (!since->given) {
+        return ST_MISSED_NOTHING;
+    }
+    if (since->has_incarnation && since->incarnation != info->incarnation) {
+        return ST_MISSED_FOREIGN;
+    }
+    if (since->revision > info->revision) {
+        return ST_MISSED_FUTURE;
+    }
+    return st_queue_rewind(listener, since->revision) ? ST_MISSED_NOTHING : ST_MISSED_HISTORY;
+}
+
+st_status st_follow(st_mesh *mesh, st_listener *listener, const st_since *since, st_missed *missed,
+                    st_mesh_info *info)
+{
+    st_followers *followers = mesh->followers;
+    st_status status = ST_OK;
+    if (atomic_fetch_add(&followers->count, 1) >= followers->most) {
+        atomic_fetch_sub(&followers->count, 1);
+        return ST_LISTENERS;
+    }
+    pthread_rwlock_rdlock(&mesh->lock);
+    st_mesh_facts(mesh, info);
+    if (info->removed) {
+        status = ST_ABSENT;
+    } else if (!st_queue_listen(&mesh->queue, listener, followers->most_of_mesh)) {
+        status = ST_LISTENERS;
+    } else {
+        *missed = begin(listener, since, info);
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+    if (status != ST_OK) {
+        atomic_fetch_sub(&followers->count, 1);
+    }
+    return status;
+}
+
+void st_unfollow(st_mesh *mesh, st_listener *listener)
+{
+    st_queue_leave(listener);
+    atomic_fetch_sub(&mesh->followers->count, 1);
+}

@@ -1,0 +1,153 @@
+#include "store/history_cursor.h"
+
+#include "store/stored_mesh.h"
+#include "system/memory.h"
+
+/* Bytes of deltas that are replayed before writers get their turn: some milliseconds. */
+enum { TURN_BYTES = 8 << 20 };
+
+struct st_cursor {
+    st_mesh *mesh;
+    he_replay *replay;
+    uint64_t at;
+    st_step *held; /* what the last step lends */
+};
+
+static st_status no_memory(void)
+{
+    return st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
+}
+
+static st_status bounds(const st_revision_log *log, uint64_t revision)
+{
+    if (revision > st_log_head(log)) {
+        return ST_AHEAD;
+    }
+    return revision < log->oldest ? ST_GONE : ST_OK;
+}
+
+/* Under the shared lock: towards the revision, from the head where there is no copy yet. */
+static he_status one_turn(const st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision,
+                          uint64_t most)
+{
+    if (*replay == NULL) {
+        he_status status = he_replay_new(mesh->content, replay, NULL);
+        if (status != HE_OK) {
+            return status;
+        }
+        *at = st_log_head(&mesh->log);
+    }
+    return st_log_walk(&mesh->log, *replay, at, revision, most);
+}
+
+st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision)
+{
+    st_status status;
+    uint64_t most = TURN_BYTES;
+    do {
+        pthread_rwlock_rdlock(&mesh->lock);
+        he_status walked = HE_OK;
+        status = bounds(&mesh->log, revision);
+        if (status == ST_OK) {
+            walked = one_turn(mesh, replay, at, revision, most);
+        }
+        pthread_rwlock_unlock(&mesh->lock);
+        if (walked == HE_NO_MEMORY) {
+            status = no_memory();
+        } else if (walked != HE_OK) {
+            /* The mesh has gone back and forth meanwhile: from its head all is at hand, if it
+             * stands still. */
+            he_replay_free(*replay);
+            *replay = NULL;
+            most = UINT64_MAX;
+        }
+    } while (status == ST_OK && (*replay == NULL || *at != revision));
+    if (status != ST_OK) {
+        he_replay_free(*replay);
+        *replay = NULL;
+    }
+    return status;
+}
+
+st_status st_cursor_begin(st_mesh *mesh, uint64_t revision, st_cursor **out)
+{
+    st_cursor *cursor = he_mem_zero(1, sizeof *cursor);
+    if (cursor == NULL) {
+        return ST_NO_MEMORY;
+    }
+    st_status status = st_replay_to(mesh, &cursor->replay, &cursor->at, revision);
+    if (status != ST_OK) {
+        he_mem_free(cursor);
+        return status;
+    }
+    cursor->mesh = mesh;
+    st_hold(mesh);
+    *out = cursor;
+    return ST_OK;
+}
+
+const he_mesh *st_cursor_content(const st_cursor *cursor)
+{
+    return he_replay_mesh(cursor->replay);
+}
+
+uint64_t st_cursor_revision(const st_cursor *cursor)
+{
+    return cursor->at;
+}
+
+/* Under the shared lock. */
+static st_status advance(st_cursor *cursor, st_action *action)
+{
+    const st_revision_log *log = &cursor->mesh->log;
+    uint64_t next = cursor->at + 1;
+    if (cursor->replay == NULL || cursor->at < log->oldest) {
+        return ST_GONE;
+    }
+    if (next > st_log_head(log)) {
+        return ST_NOTHING;
+    }
+    he_status walked = one_turn(cursor->mesh, &cursor->replay, &cursor->at, next, UINT64_MAX);
+    if (walked == HE_UNSUPPORTED) {
+        he_replay_free(cursor->replay);
+        cursor->replay = NULL;
+        walked = one_turn(cursor->mesh, &cursor->replay, &cursor->at, next, UINT64_MAX);
+    }
+    if (walked != HE_OK) {
+        he_replay_free(cursor->replay);
+        cursor->replay = NULL;
+        return no_memory();
+    }
+    cursor->held = st_log_hold(log, next, action);
+    return ST_OK;
+}
+
+st_status st_cursor_next(st_cursor *cursor, st_cursor_step *out)
+{
+    st_action action = ST_EDIT;
+    st_step_release(cursor->held);
+    cursor->held = NULL;
+    pthread_rwlock_rdlock(&cursor->mesh->lock);
+    st_status status = advance(cursor, &action);
+    pthread_rwlock_unlock(&cursor->mesh->lock);
+    if (status == ST_OK) {
+        *out = (st_cursor_step){
+            .revision = cursor->at,
+            .action = action,
+            .delta = st_step_delta(cursor->held),
+            .undone = action == ST_UNDO,
+            .content = he_replay_mesh(cursor->replay),
+        };
+    }
+    return status;
+}
+
+void st_cursor_end(st_cursor *cursor)
+{
+    if (cursor != NULL) {
+        st_step_release(cursor->held);
+        he_replay_free(cursor->replay);
+        st_release(cursor->mesh);
+        he_mem_free(cursor);
+    }
+}

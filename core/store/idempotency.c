@@ -1,0 +1,199 @@
+#include "store/idempotency.h"
+
+#include "base/mem.h"
+#include "base/siphash.h"
+
+#include <assert.h>
+#include <string.h>
+
+enum { FIRST_BUCKETS = 16 };
+
+void st_keys_init(st_keys *keys, const uint64_t secret[2])
+{
+    *keys = (st_keys){.secret = {secret[0], secret[1]}};
+    pthread_mutex_init(&keys->lock, NULL);
+}
+
+static uint64_t bytes_of(const st_keyed *keyed)
+{
+    return sizeof *keyed + strlen(keyed->key) + 1 +
+           (keyed->answer.body == NULL ? 0 : keyed->answer.length);
+}
+
+static void release(st_keyed *keyed)
+{
+    if (--keyed->uses == 0) {
+        he_mem_free((char *)keyed->answer.body);
+        he_mem_free(keyed);
+    }
+}
+
+static st_keyed **find(const st_keys *keys, const char *key, uint64_t hash)
+{
+    st_keyed **at = &keys->buckets[hash & (keys->bucket_count - 1)];
+    while (*at != NULL && ((*at)->hash != hash || strcmp((*at)->key, key) != 0)) {
+        at = &(*at)->next;
+    }
+    return at;
+}
+
+/* Take it out of the table. */
+static void forget(st_keys *keys, st_keyed *keyed)
+{
+    *find(keys, keyed->key, keyed->hash) = keyed->next;
+    keys->count--;
+    if (keyed->is_kept) {
+        *(keyed->older == NULL ? &keys->oldest : &keyed->older->newer) = keyed->newer;
+        *(keyed->newer == NULL ? &keys->newest : &keyed->newer->older) = keyed->older;
+        keys->kept--;
+        keys->bytes -= bytes_of(keyed);
+    }
+    keyed->listed = false;
+    release(keyed);
+}
+
+void st_keys_clear(st_keys *keys)
+{
+    while (keys->oldest != NULL) {
+        forget(keys, keys->oldest);
+    }
+    assert(keys->count == 0);
+    he_mem_free(keys->buckets);
+    pthread_mutex_destroy(&keys->lock);
+}
+
+/* Without memory for more the chains grow longer. */
+static bool reserve_bucket(st_keys *keys)
+{
+    if (keys->count < keys->bucket_count) {
+        return true;
+    }
+    size_t before = keys->bucket_count;
+    size_t size = before == 0 ? FIRST_BUCKETS : 2 * before;
+    st_keyed **old = keys->buckets, **buckets = he_mem_zero(size, sizeof(st_keyed *));
+    if (buckets == NULL) {
+        return before > 0;
+    }
+    keys->buckets = buckets;
+    keys->bucket_count = size;
+    for (size_t i = 0; i < before; i++) {
+        for (st_keyed *keyed = old[i], *next; keyed != NULL; keyed = next) {
+            st_keyed **at = &buckets[keyed->hash & (size - 1)];
+            next = keyed->next;
+            keyed->next = *at;
+            *at = keyed;
+        }
+    }
+    he_mem_free(old);
+    return true;
+}
+
+static void forget_old(st_keys *keys, double now)
+{
+    while (keys->oldest != NULL && keys->oldest->time + ST_KEPT_SECONDS <= now) {
+        forget(keys, keys->oldest);
+    }
+}
+
+static st_keyed_status add(st_keys *keys, const st_key *key, uint64_t hash, double now,
+                           st_keyed **out)
+{
+    size_t length = strlen(key->text);
+    st_keyed *keyed = reserve_bucket(keys) ? he_mem_zero(1, sizeof *keyed + length + 1) : NULL;
+    if (keyed == NULL) {
+        return ST_KEYED_NO_MEMORY;
+    }
+    keyed->keys = keys;
+    keyed->uses = 2;
+    keyed->listed = true;
+    keyed->time = now;
+    keyed->digest[0] = key->digest[0];
+    keyed->digest[1] = key->digest[1];
+    keyed->hash = hash;
+    memcpy(keyed->key, key->text, length + 1);
+    st_keyed **at = &keys->buckets[hash & (keys->bucket_count - 1)];
+    keyed->next = *at;
+    *at = keyed;
+    keys->count++;
+    *out = keyed;
+    return ST_KEYED_NEW;
+}
+
+st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out)
+{
+    uint64_t hash = he_siphash_of(keys->secret, key->text, strlen(key->text));
+    pthread_mutex_lock(&keys->lock);
+    forget_old(keys, now);
+    st_keyed *keyed = keys->bucket_count == 0 ? NULL : *find(keys, key->text, hash);
+    st_keyed_status status;
+    if (keyed == NULL) {
+        status = add(keys, key, hash, now, out);
+    } else if (keyed->digest[0] != key->digest[0] || keyed->digest[1] != key->digest[1]) {
+        status = ST_KEYED_OTHER;
+    } else if (!keyed->is_kept) {
+        status = ST_KEYED_BUSY;
+    } else {
+        keyed->uses++;
+        *out = keyed;
+        status = ST_KEYED_KEPT;
+    }
+    pthread_mutex_unlock(&keys->lock);
+    return status;
+}
+
+void st_keyed_keep(st_keyed *keyed, const st_kept *answer)
+{
+    st_keys *keys = keyed->keys;
+    char *body = NULL;
+    if (answer->length > 0 && answer->length <= ST_KEPT_BODY) {
+        body = he_mem_alloc(answer->length);
+    }
+    if (body != NULL) {
+        memcpy(body, answer->body, answer->length);
+    } else if (answer->length > 0 && !answer->changed) {
+        return; /* nothing to protect, so that it may be tried again */
+    }
+    pthread_mutex_lock(&keys->lock);
+    assert(keyed->listed && !keyed->is_kept);
+    keyed->answer = *answer;
+    keyed->answer.body = body;
+    keyed->is_kept = true;
+    keyed->older = keys->newest;
+    *(keys->newest == NULL ? &keys->oldest : &keys->newest->newer) = keyed;
+    keys->newest = keyed;
+    keys->kept++;
+    keys->bytes += bytes_of(keyed);
+    while (keys->kept > ST_KEPT_KEYS || keys->bytes > ST_KEPT_BYTES) {
+        forget(keys, keys->oldest);
+    }
+    pthread_mutex_unlock(&keys->lock);
+}
+
+void st_keyed_end(st_keyed *keyed)
+{
+    st_keys *keys = keyed->keys;
+    pthread_mutex_lock(&keys->lock);
+    if (keyed->listed && !keyed->is_kept) {
+        forget(keys, keyed);
+    }
+    release(keyed);
+    pthread_mutex_unlock(&keys->lock);
+}
+
+void st_keys_shed(st_keys *keys)
+{
+    pthread_mutex_lock(&keys->lock);
+    for (st_keyed *keyed = keys->oldest; keyed != NULL; keyed = keyed->newer) {
+        if (keyed->uses == 1 && keyed->answer.changed && keyed->answer.body != NULL) {
+            keys->bytes -= keyed->answer.length;
+            he_mem_free((char *)keyed->answer.body);
+            keyed->answer.body = NULL;
+        }
+    }
+    pthread_mutex_unlock(&keys->lock);
+}
+
+const st_kept *st_keyed_answer(const st_keyed *keyed)
+{
+    return &keyed->answer;
+}

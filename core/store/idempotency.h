@@ -1,0 +1,58 @@
+/* idempotency.h - the first answers to requests that carried an Idempotency-Key.
+ *
+ * After draft-ietf-httpapi-idempotency-key-header. A table belongs to a mesh, or to the store for
+ * what makes a mesh, and dies with it. An entry is begun before its request is tried, which takes
+ * all the memory that remembering needs:
+ *
+ *     keyed ----> under way ----> kept, with the answer        after ST_KEPT_SECONDS, or when
+ *                     |             |                          newer ones need the room, forgotten
+ *                     +-> end       +-> the same keyed is told the answer
+ *
+ * The body of an answer is a copy made when it is kept. Where it is larger than ST_KEPT_BODY or
+ * memory is out, status and tag are kept without it: that the request took effect is never
+ * forgotten for want of memory. The table has a lock of its own, taken after all others. */
+#ifndef HE_STORE_IDEMPOTENCY_H
+#define HE_STORE_IDEMPOTENCY_H
+
+#include "store/store.h"
+
+#include <pthread.h>
+
+enum {
+    ST_KEPT_KEYS = 16384,     /* answers of one table; the oldest go first */
+    ST_KEPT_BYTES = 16 << 20, /* of one table, entries and bodies */
+    ST_KEPT_BODY = 4 << 20,   /* of one answer */
+    ST_KEPT_SECONDS = 24 * 3600
+};
+
+typedef struct st_keys {
+    pthread_mutex_t lock;
+    struct st_keyed **buckets;        /* a power of two, NULL before the first */
+    size_t bucket_count, count;       /* of all entries */
+    struct st_keyed *oldest, *newest; /* of those kept */
+    size_t kept;
+    uint64_t bytes; /* of those kept */
+    uint64_t secret[2];
+} st_keys;
+
+/* An entry, counted by its table and by the request that began it. */
+struct st_keyed {
+    st_keys *keys;
+    unsigned uses;
+    bool is_kept, listed; /* listed: the table holds it */
+    bool of_store;        /* the key is the store's, not the mesh's */
+    double time;          /* of the keyed, seconds since 1970 */
+    uint64_t digest[2], hash;
+    st_kept answer; /* `body` is owned */
+    struct st_keyed *next, *older, *newer;
+    char key[];
+};
+
+void st_keys_init(st_keys *keys, const uint64_t secret[2]);
+void st_keys_clear(st_keys *keys); /* nothing may be claimed */
+/* `now` in seconds since 1970. */
+st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out);
+/* Free the bodies nobody reads. */
+void st_keys_shed(st_keys *keys);
+
+#endif

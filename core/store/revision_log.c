@@ -1,0 +1,501 @@
+#include "store/revision_log.h"
+
+#include "store/revision_entry.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* A reserved delta that grew beyond this is freed rather than kept for the next edit. */
+enum { SPARE_BYTES = 64 * 1024 };
+
+/* The ring is at least a quarter full, but for these. */
+enum { FEWEST_PLACES = 8 };
+
+static void note_marks(st_point *point, const he_mesh *content)
+{
+    for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
+        point->issued[kind] = he_mesh_issued(content, (he_kind)kind);
+    }
+}
+
+void st_log_init(st_revision_log *log, uint64_t budget, uint64_t revision, const he_mesh *content,
+                 double time)
+{
+    *log = (st_revision_log){.budget = budget, .oldest = revision, .bottom = revision};
+    log->before = (st_point){.revision = revision, .state = revision, .time = time};
+    note_marks(&log->before, content);
+}
+
+static void release_step(st_revision_log *log, st_step *step)
+{
+    if (--step->uses == 0) {
+        log->bytes -= step->charged;
+        st_step_release(step);
+    }
+}
+
+static bool move_ring(st_revision_log *log, size_t capacity)
+{
+    st_revision **ring = he_mem_array(NULL, capacity, sizeof(st_revision *));
+    if (ring == NULL) {
+        return false;
+    }
+    for (size_t i = 0; i < log->count; i++) {
+        ring[i] = st_entry_at(log, i);
+    }
+    he_mem_free(log->ring);
+    log->ring = ring;
+    log->capacity = capacity;
+    log->first = 0;
+    return true;
+}
+
+static bool reserve_places(st_revision_log *log, size_t more)
+{
+    size_t capacity = log->capacity == 0 ? FEWEST_PLACES : log->capacity;
+    while (capacity < log->count + more) {
+        capacity *= 2;
+    }
+    return capacity == log->capacity || move_ring(log, capacity);
+}
+
+static void push_undo(st_revision_log *log, st_step *step)
+{
+    step->stack = ST_ON_UNDO;
+    step->above = NULL;
+    step->below = log->undo_top;
+    if (log->undo_top != NULL) {
+        log->undo_top->above = step;
+    } else {
+        log->undo_bottom = step;
+    }
+    log->undo_top = step;
+    log->undo_count++;
+}
+
+static void push_redo(st_revision_log *log, st_step *step)
+{
+    step->stack = ST_ON_REDO;
+    step->above = NULL;
+    step->below = log->redo_top;
+    log->redo_top = step;
+    log->redo_count++;
+}
+
+static st_step *pop_undo(st_revision_log *log)
+{
+    st_step *step = log->undo_top;
+    log->undo_top = step->below;
+    if (log->undo_top != NULL) {
+        log->undo_top->above = NULL;
+    } else {
+        log->undo_bottom = NULL;
+    }
+    log->undo_count--;
+    step->stack = ST_ON_NEITHER;
+    return step;
+}
+
+static st_step *pop_redo(st_revision_log *log)
+{
+    st_step *step = log->redo_top;
+    log->redo_top = step->below;
+    log->redo_count--;
+    step->stack = ST_ON_NEITHER;
+    if (step->kept != NULL) {
+        log->bytes -= step->kept->size;
+        he_mem_free(step->kept);
+        step->kept = NULL;
+    }
+    return step;
+}
+
+static void charge(st_revision_log *log, st_step *step, size_t bytes)
+{
+    log->bytes += bytes;
+    log->bytes -= step->charged;
+    step->charged = bytes;
+}
+
+static void forget_delta(st_revision_log *log, st_revision *entry)
+{
+    if (entry->step != NULL) {
+        st_step *step = entry->step;
+        entry->step = NULL;
+        release_step(log, step);
+    }
+}
+
+/* A step that can no longer be done again still serves those who travel along the log. */
+static void clear_redo(st_revision_log *log)
+{
+    while (log->redo_top != NULL) {
+        st_step *step = pop_redo(log);
+        charge(log, step, step->bytes);
+        release_step(log, step);
+    }
+}
+
+static void clear_stacks(st_revision_log *log)
+{
+    clear_redo(log);
+    while (log->undo_top != NULL) {
+        release_step(log, pop_undo(log));
+    }
+}
+
+/* Entries stay as history; what they changed is gone, and only the newest can be read. */
+static void forget_deltas(st_revision_log *log)
+{
+    clear_stacks(log);
+    for (size_t i = 0; i < log->count; i++) {
+        forget_delta(log, st_entry_at(log, i));
+    }
+    if (log->count > 0) {
+        const st_point *newest = &st_entry_at(log, log->count - 1)->point;
+        log->oldest = newest->revision;
+        log->bottom = newest->state;
+    }
+}
+
+static void drop_undo_bottom(st_revision_log *log)
+{
+    st_step *step = log->undo_bottom;
+    log->bottom = step->revision;
+    log->undo_bottom = step->above;
+    if (step->above != NULL) {
+        step->above->below = NULL;
+    } else {
+        log->undo_top = NULL;
+    }
+    log->undo_count--;
+    step->stack = ST_ON_NEITHER;
+    release_step(log, step);
+}
+
+/* The steps of the undo stack were applied last in the order in which they lie there: so the step
+ * that the oldest entry applied last, if it is on the undo stack, is at its bottom. */
+static void drop_oldest(st_revision_log *log)
+{
+    st_revision *entry = st_entry_at(log, 0);
+    st_step *step = entry->step;
+    bool last = step != NULL && step->applied == entry->point.revision;
+    bool keeps = last && step->stack == ST_ON_REDO;
+    if (last && step->stack == ST_ON_UNDO) {
+        assert(step == log->undo_bottom);
+        drop_undo_bottom(log);
+    }
+    forget_delta(log, entry);
+    log->before = entry->point;
+    if (log->oldest < entry->point.revision) {
+        log->oldest = entry->point.revision;
+    }
+    if (keeps) {
+        step->kept = entry;
+    } else {
+        log->bytes -= entry->size;
+        he_mem_free(entry);
+    }
+    log->first = (log->first + 1) & (log->capacity - 1);
+    log->count--;
+    log->dropped++;
+}
+
+/* Few entries in the place of many: give the places back, if there is memory to move. */
+static void shrink_ring(st_revision_log *log)
+{
+    if (log->capacity > FEWEST_PLACES && log->count < log->capacity / 4) {
+        (void)move_ring(log, log->capacity / 2);
+    }
+}
+
+void st_log_settle(st_revision_log *log)
+{
+    /* The newest entry stays, whatever the budget: it says what the present revision is. */
+    while (log->bytes > log->budget && log->count > 1) {
+        drop_oldest(log);
+    }
+    shrink_ring(log);
+}
+
+static void drop_spare_step(st_revision_log *log)
+{
+    if (log->spare_step != NULL) {
+        he_delta_free(log->spare_step->delta);
+        he_mem_free(log->spare_step);
+        log->spare_step = NULL;
+    }
+}
+
+static void drop_step_entries(st_revision_log *log)
+{
+    while (log->steps != NULL) {
+        st_revision *entry = log->steps;
+        log->steps = entry->next;
+        he_mem_free(entry);
+    }
+}
+
+void st_log_clear(st_revision_log *log)
+{
+    if (log->capacity > 0) {
+        forget_deltas(log);
+        while (log->count > 0) {
+            drop_oldest(log);
+        }
+    }
+    he_mem_free(log->ring);
+    he_mem_free(log->spare);
+    drop_step_entries(log);
+    drop_spare_step(log);
+    *log = (st_revision_log){0};
+}
+
+static st_step *step_new(void)
+{
+    st_step *step = he_mem_zero(1, sizeof *step);
+    if (step == NULL) {
+        return NULL;
+    }
+    step->delta = he_delta_new();
+    if (step->delta == NULL) {
+        he_mem_free(step);
+        return NULL;
+    }
+    atomic_init(&step->holders, 1);
+    return step;
+}
+
+he_delta *st_log_reserve(st_revision_log *log)
+{
+    if (!reserve_places(log, 1)) {
+        return NULL;
+    }
+    if (log->spare == NULL) {
+        log->spare = he_mem_alloc(sizeof *log->spare + ST_ENTRY_OPS);
+    }
+    if (log->spare_step == NULL) {
+        log->spare_step = step_new();
+    }
+    return log->spare == NULL || log->spare_step == NULL ? NULL : log->spare_step->delta;
+}
+
+void st_log_unreserve(st_revision_log *log)
+{
+    if (log->spare_step != NULL && he_delta_bytes(log->spare_step->delta) > SPARE_BYTES) {
+        drop_spare_step(log);
+    }
+    log->tally = (st_tally){0};
+}
+
+/* Bytes of the step that the reserved delta would become. */
+static size_t spare_bytes(const st_revision_log *log)
+{
+    const he_delta *delta = log->spare_step->delta;
+    size_t slack = (delta->capacity - delta->count) * sizeof *delta->records;
+    return sizeof *log->spare_step + he_delta_bytes(delta) - slack;
+}
+
+static size_t entry_size(size_t ops)
+{
+    /* A ring that grows is half empty. */
+    return sizeof(st_revision) + ops + 1 + 2 * sizeof(st_revision *);
+}
+
+bool st_log_fits(const st_revision_log *log)
+{
+    return spare_bytes(log) + entry_size(ST_ENTRY_OPS) <= log->budget;
+}
+
+/* Cut at a name's end, so that the reader sees whole names and then "...". */
+static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
+{
+    size_t length = strlen(ops);
+    if (length < ST_ENTRY_OPS) {
+        memcpy(out, ops, length + 1);
+        return;
+    }
+    size_t end = ST_ENTRY_OPS - sizeof ",...";
+    while (end > 0 && ops[end] != ',') {
+        end--;
+    }
+    memcpy(out, ops, end);
+    memcpy(out + end, end == 0 ? "..." : ",...", end == 0 ? sizeof "..." : sizeof ",...");
+}
+
+/* The entry becomes the newest one. */
+static void add_entry(st_revision_log *log, st_revision *entry)
+{
+    assert(log->count < log->capacity && entry->point.revision == st_log_head(log) + 1);
+    log->ring[(log->first + log->count) & (log->capacity - 1)] = entry;
+    log->count++;
+    log->bytes += entry->size;
+}
+
+/* The reserved entry, of content that differs from all before. */
+static st_revision *add_spare(st_revision_log *log, uint64_t revision, st_action action,
+                              const char *ops, double time, const he_mesh *content)
+{
+    st_revision *entry = log->spare;
+    assert(entry != NULL);
+    log->spare = NULL;
+    *entry = (st_revision){.action = action, .forward = true, .tally = log->tally};
+    entry->point = (st_point){.revision = revision, .state = revision, .time = time};
+    note_marks(&entry->point, content);
+    log->tally = (st_tally){0};
+    copy_ops(entry->ops, ops);
+    entry->size = entry_size(strlen(entry->ops));
+    st_revision *shrunk = he_mem_resize(entry, sizeof *entry + strlen(entry->ops) + 1);
+    if (shrunk != NULL) {
+        entry = shrunk;
+    }
+    add_entry(log, entry);
+    return entry;
+}
+
+void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, double time,
+                     const he_mesh *content)
+{
+    bool fits = st_log_fits(log);
+    st_revision *entry = add_spare(log, revision, ST_EDIT, ops, time, content);
+    st_step *step = log->spare_step;
+    log->spare_step = NULL;
+    he_delta_trim(step->delta);
+    step->bytes = sizeof *step + he_delta_bytes(step->delta);
+    step->charged = step->bytes;
+    step->revision = revision;
+    step->applied = revision;
+    entry->delta_bytes = step->bytes;
+    clear_redo(log);
+    if (!fits) {
+        forget_deltas(log);
+        st_step_release(step);
+    } else {
+        step->uses = 2;
+        entry->step = step;
+        push_undo(log, step);
+        log->bytes += step->charged;
+    }
+    st_log_settle(log);
+    /* Without memory to trim it, the step can be larger than was foreseen. */
+    if (log->bytes > log->budget) {
+        forget_deltas(log);
+    }
+}
+
+void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action action, const char *ops,
+                        double time, const he_mesh *content)
+{
+    st_revision *entry = add_spare(log, revision, action, ops, time, content);
+    forget_deltas(log);
+    if (log->spare_step != NULL) {
+        entry->delta_bytes = he_delta_bytes(log->spare_step->delta);
+        drop_spare_step(log);
+    }
+    st_log_settle(log);
+}
+
+he_delta *st_log_next(const st_revision_log *log, st_action which)
+{
+    const st_step *step = which == ST_UNDO ? log->undo_top : log->redo_top;
+    return step == NULL ? NULL : step->delta;
+}
+
+/* What an undo created is what the edit deleted, and the other way round. */
+static void turn_tally(st_tally *tally)
+{
+    st_tally before = *tally;
+    memcpy(tally->created, before.deleted, sizeof tally->created);
+    memcpy(tally->deleted, before.created, sizeof tally->deleted);
+}
+
+/* An entry that applies a step the other way than the entry that applied the step last, which a
+ * step on a stack always has. */
+static st_revision *step_entry(const st_revision_log *log, const st_step *step)
+{
+    const st_revision *last = step->kept != NULL ? step->kept : st_entry_of(log, step->applied);
+    size_t length = strlen(last->ops);
+    st_revision *entry = he_mem_alloc(sizeof *entry + length + 1);
+    if (entry == NULL) {
+        return NULL;
+    }
+    *entry = (st_revision){.inverts = step->revision, .size = entry_size(length)};
+    entry->tally = last->tally;
+    turn_tally(&entry->tally);
+    memcpy(entry->ops, last->ops, length + 1);
+    return entry;
+}
+
+bool st_log_reserve_steps(st_revision_log *log, st_action which, uint32_t steps,
+                          const he_mesh *content)
+{
+    assert(log->steps == NULL);
+    st_revision **end = &log->steps;
+    const st_step *step = which == ST_UNDO ? log->undo_top : log->redo_top;
+    bool reserved = reserve_places(log, steps);
+    for (uint32_t i = 0; i < steps && reserved; i++, step = step->below) {
+        *end = step_entry(log, step);
+        reserved = *end != NULL && he_delta_ready(step->delta, content, NULL) == HE_OK;
+        end = *end != NULL ? &(*end)->next : end;
+    }
+    if (!reserved) {
+        drop_step_entries(log);
+    }
+    return reserved;
+}
+
+void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, double time,
+                     const he_mesh *content)
+{
+    st_revision *entry = log->steps;
+    assert(entry != NULL);
+    log->steps = entry->next;
+    st_step *step = which == ST_UNDO ? pop_undo(log) : pop_redo(log);
+    assert(step->revision == entry->inverts);
+    /* Columns and contents have changed sides, and with them who holds their bytes. */
+    step->bytes = sizeof *step + he_delta_bytes(step->delta);
+    entry->action = which;
+    entry->forward = which == ST_REDO;
+    entry->delta_bytes = step->bytes;
+    entry->step = step;
+    step->uses++;
+    step->applied = revision;
+    if (which == ST_UNDO) {
+        push_redo(log, step);
+    } else {
+        push_undo(log, step);
+    }
+    entry->point = (st_point){.revision = revision, .time = time};
+    entry->point.state = log->undo_top == NULL ? log->bottom : log->undo_top->revision;
+    note_marks(&entry->point, content);
+    add_entry(log, entry);
+}
+
+bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out)
+{
+    if (i >= log->count) {
+        return false;
+    }
+    const st_revision *entry = st_entry_at(log, log->count - 1 - i);
+    *out = (st_entry){
+        .revision = entry->point.revision,
+        .inverts = entry->inverts,
+        .action = entry->action,
+        .undoable = entry->step != NULL && entry->step->stack == ST_ON_UNDO &&
+                    entry->step->applied == entry->point.revision,
+        .bytes = entry->delta_bytes,
+        .time = entry->point.time,
+        .tally = entry->tally,
+    };
+    memcpy(out->ops, entry->ops, strlen(entry->ops) + 1);
+    return true;
+}
+
+const he_delta *st_log_delta(const st_revision_log *log, uint64_t revision)
+{
+    if (log->count == 0 || revision <= log->oldest || revision > st_log_head(log)) {
+        return NULL;
+    }
+    const st_step *step = st_entry_of(log, revision)->step;
+    return step == NULL ? NULL : step->delta;
+}

@@ -1,0 +1,214 @@
+#include "store/stored_mesh.h"
+
+#include "store/history_cursor.h"
+#include "system/memory.h"
+
+/* What one caller holds: a copy that many may share, and the facts as they were when it asked. */
+struct st_snapshot {
+    st_copy *copy;
+    st_mesh_info info;
+};
+
+void st_copy_release(st_copy *copy)
+{
+    if (copy != NULL && atomic_fetch_sub_explicit(&copy->uses, 1, memory_order_acq_rel) == 1) {
+        he_replay_free(copy->replay);
+        he_mem_free(copy);
+    }
+}
+
+/* Under the snapshot lock nobody else can begin to use the cached copy. */
+static bool is_cached_alone(const st_copy *copy)
+{
+    return atomic_load_explicit(&copy->uses, memory_order_acquire) == 1;
+}
+
+/* Replaying costs about a random access a record, copying a stream: above half the mesh's bytes
+ * the copy is cheaper. */
+static bool is_near(const st_mesh *mesh, uint64_t from, uint64_t to)
+{
+    return st_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
+}
+
+static bool bring_forward(const st_mesh *mesh, st_copy *copy)
+{
+    uint64_t head = mesh->info.revision;
+    return is_near(mesh, copy->revision, head) &&
+           st_log_walk(&mesh->log, copy->replay, &copy->revision, head, UINT64_MAX) == HE_OK;
+}
+
+static st_copy *copy_new(const st_mesh *mesh)
+{
+    st_copy *copy = he_mem_zero(1, sizeof *copy);
+    if (copy == NULL) {
+        return NULL;
+    }
+    if (he_replay_new(mesh->content, &copy->replay, NULL) != HE_OK) {
+        he_mem_free(copy);
+        return NULL;
+    }
+    atomic_init(&copy->uses, 1);
+    return copy;
+}
+
+/* The cached copy at the present revision, or NULL. Under both locks. */
+static st_copy *present_copy(st_mesh *mesh)
+{
+    st_copy *copy = mesh->copy;
+    if (copy != NULL && copy->revision == mesh->info.revision) {
+        return copy;
+    }
+    if (copy != NULL && !(is_cached_alone(copy) && bring_forward(mesh, copy))) {
+        mesh->copy = NULL;
+        st_copy_release(copy);
+    }
+    if (mesh->copy == NULL) {
+        mesh->copy = copy_new(mesh);
+    }
+    if (mesh->copy != NULL) {
+        mesh->copy->revision = mesh->info.revision;
+    }
+    return mesh->copy;
+}
+
+st_status st_snapshot_held(st_mesh *mesh, st_snapshot **out)
+{
+    st_snapshot *snapshot = he_mem_zero(1, sizeof *snapshot);
+    if (snapshot == NULL) {
+        return ST_NO_MEMORY;
+    }
+    pthread_mutex_lock(&mesh->snapshot_lock);
+    snapshot->copy = present_copy(mesh);
+    if (snapshot->copy != NULL) {
+        atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
+        st_mesh_facts(mesh, &snapshot->info);
+    }
+    pthread_mutex_unlock(&mesh->snapshot_lock);
+    if (snapshot->copy == NULL) {
+        he_mem_free(snapshot);
+        return st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
+    }
+    *out = snapshot;
+    return ST_OK;
+}
+
+st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out)
+{
+    pthread_rwlock_rdlock(&mesh->lock);
+    st_status status = st_snapshot_held(mesh, out);
+    pthread_rwlock_unlock(&mesh->lock);
+    return status;
+}
+
+/* The cached copy of an earlier revision, made or moved there. Under the past lock. */
+static st_status past_copy(st_mesh *mesh, uint64_t revision)
+{
+    st_copy *copy = mesh->past;
+    if (copy != NULL && copy->revision == revision) {
+        return ST_OK;
+    }
+    mesh->past = NULL;
+    if (copy != NULL) {
+        pthread_rwlock_rdlock(&mesh->lock);
+        bool near = is_near(mesh, copy->revision, revision);
+        pthread_rwlock_unlock(&mesh->lock);
+        if (!is_cached_alone(copy) || !near) {
+            st_copy_release(copy);
+            copy = NULL;
+        }
+    }
+    if (copy == NULL) {
+        copy = he_mem_zero(1, sizeof *copy);
+        if (copy == NULL) {
+            return ST_NO_MEMORY;
+        }
+        atomic_init(&copy->uses, 1);
+    }
+    st_status status = st_replay_to(mesh, &copy->replay, &copy->revision, revision);
+    if (status != ST_OK) {
+        st_copy_release(copy);
+        return status;
+    }
+    mesh->past = copy;
+    return ST_OK;
+}
+
+/* The facts of now, but for the revision and its time. */
+static st_status past_info(st_mesh *mesh, uint64_t revision, st_mesh_info *out)
+{
+    st_point point;
+    pthread_rwlock_rdlock(&mesh->lock);
+    bool there = revision >= mesh->log.oldest;
+    if (there) {
+        st_mesh_facts(mesh, out);
+        st_log_point(&mesh->log, revision, &point);
+        out->revision = revision;
+        out->modified = point.time;
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+    return there ? ST_OK : ST_GONE;
+}
+
+st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
+{
+    st_snapshot *snapshot = he_mem_zero(1, sizeof *snapshot);
+    if (snapshot == NULL) {
+        return ST_NO_MEMORY;
+    }
+    pthread_mutex_lock(&mesh->past_lock);
+    st_status status = past_copy(mesh, revision);
+    if (status == ST_OK) {
+        status = past_info(mesh, revision, &snapshot->info);
+    }
+    if (status == ST_OK) {
+        snapshot->copy = mesh->past;
+        atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
+    } else {
+        st_copy_release(mesh->past);
+        mesh->past = NULL;
+    }
+    pthread_mutex_unlock(&mesh->past_lock);
+    if (status != ST_OK) {
+        he_mem_free(snapshot);
+        return status;
+    }
+    *out = snapshot;
+    return ST_OK;
+}
+
+const he_mesh *st_snapshot_content(const st_snapshot *snapshot, st_mesh_info *info)
+{
+    if (info != NULL) {
+        *info = snapshot->info;
+    }
+    return he_replay_mesh(snapshot->copy->replay);
+}
+
+void st_snapshot_release(st_snapshot *snapshot)
+{
+    if (snapshot != NULL) {
+        st_copy_release(snapshot->copy);
+        he_mem_free(snapshot);
+    }
+}
+
+static void shed(st_copy **copy)
+{
+    if (*copy != NULL && is_cached_alone(*copy)) {
+        st_copy_release(*copy);
+        *copy = NULL;
+    }
+}
+
+void st_copy_shed(st_mesh *mesh)
+{
+    pthread_mutex_lock(&mesh->snapshot_lock);
+    shed(&mesh->copy);
+    pthread_mutex_unlock(&mesh->snapshot_lock);
+    st_queue_shed(&mesh->queue);
+    /* Held for as long as a copy is being made; that one is wanted. */
+    if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
+        shed(&mesh->past);
+        pthread_mutex_unlock(&mesh->past_lock);
+    }
+}

@@ -1,0 +1,289 @@
+#include "store/store.h"
+
+#include "store/durability_wait.h"
+#include "store/followers.h"
+#include "store/stored_mesh.h"
+#include "system/clock.h"
+#include "system/memory.h"
+#include "system/random.h"
+
+#include <assert.h>
+#include <string.h>
+
+struct st_store {
+    st_journal journal;
+    uint64_t undo_budget;
+    uint64_t max_meshes;
+    st_followers followers;
+    pthread_rwlock_t lock; /* of the table */
+    st_mesh **meshes;      /* in the order of ids, each with a use */
+    size_t count, capacity;
+    uint64_t secret[2];
+    st_keys keys; /* of what makes a mesh */
+};
+
+enum { ID_LENGTH = 10, SHED_BATCH = 64 };
+
+st_store *st_store_new(const st_store_options *options)
+{
+    st_store *store = he_mem_zero(1, sizeof *store);
+    if (store == NULL) {
+        return NULL;
+    }
+    if (pthread_rwlock_init(&store->lock, NULL) != 0) {
+        he_mem_free(store);
+        return NULL;
+    }
+    store->journal = options->journal;
+    store->undo_budget = options->undo_budget;
+    store->max_meshes = options->max_meshes;
+    store->secret[0] = st_random();
+    store->secret[1] = st_random();
+    st_keys_init(&store->keys, store->secret);
+    store->followers = (st_followers){
+        .render = options->render,
+        .most = options->listeners,
+        .most_of_mesh = options->mesh_listeners,
+        .waits = st_waits_new(store),
+    };
+    if (store->followers.waits == NULL) {
+        pthread_rwlock_destroy(&store->lock);
+        he_mem_free(store);
+        return NULL;
+    }
+    return store;
+}
+
+void st_store_free(st_store *store)
+{
+    if (store == NULL) {
+        return;
+    }
+    for (size_t i = 0; i < store->count; i++) {
+        st_release(store->meshes[i]);
+    }
+    he_mem_free(store->meshes);
+    st_keys_clear(&store->keys);
+    st_waits_free(store->followers.waits);
+    store->journal.close(store->journal.self);
+    pthread_rwlock_destroy(&store->lock);
+    he_mem_free(store);
+}
+
+/* The first mesh whose id is not below `id`; *found when it is that id. Under the table's lock. */
+static size_t position_of(const st_store *store, const char *id, bool *found)
+{
+    size_t low = 0, high = store->count;
+    *found = false;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        int order = strcmp(store->meshes[middle]->info.id, id);
+        if (order == 0) {
+            *found = true;
+            return middle;
+        }
+        if (order < 0) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+st_status st_find(st_store *store, const char *id, st_mesh **out)
+{
+    bool found;
+    pthread_rwlock_rdlock(&store->lock);
+    size_t i = position_of(store, id, &found);
+    if (found) {
+        *out = st_hold(store->meshes[i]);
+    }
+    pthread_rwlock_unlock(&store->lock);
+    return found ? ST_OK : ST_ABSENT;
+}
+
+static bool reserve_place(st_store *store)
+{
+    if (store->count < store->capacity) {
+        return true;
+    }
+    size_t capacity = he_mem_grown(store->capacity, store->count + 1);
+    st_mesh **meshes = he_mem_array(store->meshes, capacity, sizeof(st_mesh *));
+    if (meshes == NULL) {
+        return false;
+    }
+    store->meshes = meshes;
+    store->capacity = capacity;
+    return true;
+}
+
+/* Under the table's exclusive lock. */
+static st_status insert(st_store *store, st_mesh *mesh)
+{
+    bool found;
+    size_t place = position_of(store, mesh->info.id, &found);
+    if (found) {
+        return ST_TAKEN;
+    }
+    if (store->count >= store->max_meshes) {
+        return ST_TOO_MANY;
+    }
+    if (!reserve_place(store)) {
+        return ST_NO_MEMORY;
+    }
+    memmove(store->meshes + place + 1, store->meshes + place,
+            (store->count - place) * sizeof(st_mesh *));
+    store->meshes[place] = mesh;
+    store->count++;
+    return ST_OK;
+}
+
+static st_status create_as(st_store *store, const char *id, const char *name, he_mesh *content,
+                           const st_keyed *keyed, st_mesh **out)
+{
+    const st_mesh_options options = {.store = store,
+                                     .journal = &store->journal,
+                                     .followers = &store->followers,
+                                     .undo_budget = store->undo_budget,
+                                     .secret = store->secret};
+    st_mesh *mesh = st_mesh_new(&options, id, name, content);
+    if (mesh == NULL) {
+        return ST_NO_MEMORY;
+    }
+    /* Whoever finds it waits until the journal has its first record. */
+    pthread_rwlock_wrlock(&mesh->lock);
+    pthread_rwlock_wrlock(&store->lock);
+    st_status status = insert(store, mesh);
+    pthread_rwlock_unlock(&store->lock);
+    if (status == ST_OK) {
+        *out = st_hold(mesh);
+        mesh->keyed = keyed;
+        st_mesh_append(mesh, ST_REPLACE, NULL, false);
+        mesh->keyed = NULL;
+    } else {
+        mesh->content = NULL; /* still the caller's */
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+    if (status != ST_OK) {
+        st_release(mesh);
+    }
+    return status;
+}
+
+st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
+                    const st_keyed *keyed, st_mesh **out)
+{
+    if (st_memory_is_full()) {
+        st_store_shed(store);
+        if (st_memory_is_full()) {
+            return ST_BUDGET;
+        }
+    }
+    if (id != NULL) {
+        return create_as(store, id, name, content, keyed, out);
+    }
+    st_status status;
+    do {
+        char made[ID_LENGTH + 1];
+        st_random_id(made, ID_LENGTH);
+        status = create_as(store, made, name, content, keyed, out);
+    } while (status == ST_TAKEN);
+    return status;
+}
+
+st_status st_remove(st_mesh *mesh, st_mesh_info *info)
+{
+    st_store *store = mesh->store;
+    if (mesh->info.removed) {
+        return ST_ABSENT;
+    }
+    mesh->info.removed = true;
+    st_mesh_append(mesh, ST_REPLACE, NULL, false);
+    if (info != NULL) {
+        st_mesh_facts(mesh, info);
+    }
+    /* Only now may the id be another's. */
+    bool found;
+    pthread_rwlock_wrlock(&store->lock);
+    size_t place = position_of(store, mesh->info.id, &found);
+    assert(found && store->meshes[place] == mesh);
+    store->count--;
+    memmove(store->meshes + place, store->meshes + place + 1,
+            (store->count - place) * sizeof(st_mesh *));
+    pthread_rwlock_unlock(&store->lock);
+    st_release(mesh);
+    return ST_OK;
+}
+
+size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
+{
+    bool found;
+    size_t given = 0;
+    pthread_rwlock_rdlock(&store->lock);
+    size_t i = position_of(store, after, &found);
+    for (i += found ? 1 : 0; i < store->count && given < limit; i++) {
+        out[given++] = st_hold(store->meshes[i]);
+    }
+    pthread_rwlock_unlock(&store->lock);
+    return given;
+}
+
+st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key, st_keyed **out)
+{
+    st_keys *keys = mesh == NULL ? &store->keys : &mesh->keys;
+    st_keyed_status status = st_keys_begin(keys, key, st_clock_utc(), out);
+    if (status == ST_KEYED_NEW) {
+        (*out)->of_store = mesh == NULL;
+    }
+    return status;
+}
+
+size_t st_listeners(st_store *store)
+{
+    return atomic_load(&store->followers.count);
+}
+
+const uint64_t *st_secret(const st_store *store)
+{
+    return store->secret;
+}
+
+bool st_store_is_durable(const st_store *store, const st_mesh *mesh, uint64_t record)
+{
+    const st_journal *journal = &store->journal;
+    return journal->durable(journal->self, mesh->info.id, mesh->info.incarnation) >= record;
+}
+
+void st_store_listen(st_store *store, void (*notify)(void *context), void *context)
+{
+    store->journal.listen(store->journal.self, notify, context);
+}
+
+st_waits *st_store_waits(st_store *store)
+{
+    return store->followers.waits;
+}
+
+size_t st_store_count(st_store *store)
+{
+    pthread_rwlock_rdlock(&store->lock);
+    size_t count = store->count;
+    pthread_rwlock_unlock(&store->lock);
+    return count;
+}
+
+void st_store_shed(st_store *store)
+{
+    st_keys_shed(&store->keys);
+    st_mesh *batch[SHED_BATCH];
+    char after[ST_MESH_ID + 1] = "";
+    size_t count;
+    while ((count = st_list(store, after, batch, SHED_BATCH)) > 0) {
+        memcpy(after, batch[count - 1]->info.id, sizeof after);
+        for (size_t i = 0; i < count; i++) {
+            st_mesh_shed(batch[i]);
+            st_release(batch[i]);
+        }
+    }
+}

@@ -1,0 +1,258 @@
+/* store.h - the meshes a daemon holds: by id, locked, revised, and durable.
+ *
+ * A handle is a counted reference to a stored mesh; it stays valid after the mesh was removed from
+ * the store, reading `removed` true, and is given back by st_release. A mesh is freed with its last
+ * handle, so a removed mesh is still there for those who were reading it.
+ *
+ * Locks are held for as long as it takes to compute, never while a client is waited for. They are
+ * taken in this order:
+ *     past      the mesh's cached copy of an earlier revision; not on a worker
+ *     mesh      one mesh, shared by readers or held by one writer; writers come first
+ *     table     the collection, for as long as a search takes
+ *     snapshot  the mesh's cached copy
+ *     cache     the mesh's cached value
+ *     keys      answers kept for keyed requests, of a mesh or of the store
+ *     derived   what a handler derived from it
+ *     queue     messages for those who listen to it (broadcast_queue.h)
+ *     waits     answers that wait until they are durable (durability_wait.h)
+ * The table of jobs (api/job/job_table.h) has a lock that is taken after a mesh's, and connections
+ * that wait for events (server/http/http_live.h) one that is taken after all others. A thread that
+ * holds a mesh's lock takes no other mesh's, not even shared, and not the same one twice: a waiting
+ * writer would stop both. To bring another mesh's content in, take its snapshot first. */
+#ifndef HE_STORE_STORE_H
+#define HE_STORE_STORE_H
+
+#include "journal/journal.h"
+
+typedef struct st_store st_store;
+typedef struct st_mesh st_mesh;         /* a stored mesh */
+typedef struct st_snapshot st_snapshot; /* an immutable copy at one revision */
+
+/* Plain facts about a stored mesh, copied out under its lock. */
+typedef struct st_mesh_info {
+    char id[ST_MESH_ID + 1];
+    char name[ST_MESH_NAME + 1]; /* UTF-8, may be empty */
+    uint64_t incarnation;        /* random, new for each create of an id */
+    uint64_t metadata;           /* counts changes of name and metadata, from 1 */
+    uint64_t revision;           /* of the content, from 1 */
+    uint64_t record;             /* counts every change: revisions, metadata, the removal */
+    double created, modified;    /* seconds since 1970 UTC */
+    uint32_t undo, redo;         /* steps on the stacks */
+    bool removed;
+    bool busy;               /* a long edit has claimed it, see st_claim */
+    char job[ST_JOB_ID + 1]; /* the job whose edit that is, "" when it is none */
+} st_mesh_info;
+
+/* Writes a change as a message for those who listen to the mesh. `bytes` is allocated by base/mem.h
+ * and the caller's to free. False when memory is out. Called under the mesh's write lock. */
+typedef bool st_render(const st_mesh_info *info, const st_record *record, char **bytes,
+                       size_t *length);
+
+typedef struct st_store_options {
+    uint64_t undo_budget; /* bytes a mesh */
+    uint64_t max_meshes;
+    st_journal journal; /* closed with the store */
+    st_render *render;  /* NULL: nobody will listen */
+    size_t listeners;   /* at once, and of one mesh */
+    size_t mesh_listeners;
+} st_store_options;
+
+/* NULL when memory is out; the journal is the caller's then. */
+st_store *st_store_new(const st_store_options *options);
+/* Nobody may hold a handle. */
+void st_store_free(st_store *store);
+/* Two random words. What is hashed with them cannot be foreseen from outside: names in tables,
+ * requests that are remembered. They are kept as long as those are. */
+const uint64_t *st_secret(const st_store *store);
+size_t st_store_count(st_store *store);
+/* Frees the cached copies and bodies of kept answers that nobody reads, and what was derived from
+ * meshes. Called without a lock. */
+void st_store_shed(st_store *store);
+
+/* May an answer that shows the mesh at this record be sent? */
+bool st_store_is_durable(const st_store *store, const st_mesh *mesh, uint64_t record);
+/* Calls `notify` whenever that may have become true for some mesh; see journal.h. */
+void st_store_listen(st_store *store, void (*notify)(void *context), void *context);
+/* Where to wait for that. */
+struct st_waits *st_store_waits(st_store *store);
+
+/* --- the collection --- */
+
+/* Adds a reference. ST_ABSENT. */
+st_status st_find(st_store *store, const char *id, st_mesh **out);
+st_mesh *st_hold(st_mesh *mesh); /* adds a reference */
+void st_release(st_mesh *mesh);  /* takes NULL */
+/* Takes `content` on success. `id` NULL lets the store choose. `keyed`, or NULL, goes into the
+ * record of the new mesh. ST_TAKEN, ST_TOO_MANY, ST_BUDGET, ST_NO_MEMORY. */
+st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
+                    const st_keyed *keyed, st_mesh **out);
+/* Under the write lock, so that what the caller looked at is what goes. ST_ABSENT. */
+st_status st_remove(st_mesh *mesh, st_mesh_info *info);
+/* Up to `limit` meshes with ids after `after` ("" from the start), in the order of ids, each with a
+ * reference. */
+size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit);
+
+/* --- reading --- */
+
+/* Takes the shared lock; the content is never NULL. `info` may be NULL. */
+const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info);
+void st_read_end(st_mesh *mesh);
+/* An immutable copy of the present revision, shared with everybody who asks for the same one. May
+ * copy the mesh: not on a worker thread for large ones. ST_NO_MEMORY, ST_BUDGET. */
+st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out);
+/* A copy of an earlier revision. May replay the history: not on a worker thread. The info is that
+ * of the present but for `revision` and `modified`. ST_AHEAD; ST_GONE when the history does not
+ * reach back to it; ST_NO_MEMORY, ST_BUDGET. */
+st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out);
+/* As st_snapshot_take, for a caller that holds the shared lock: at the revision that it sees. */
+st_status st_snapshot_held(st_mesh *mesh, st_snapshot **out);
+const he_mesh *st_snapshot_content(const st_snapshot *snapshot, st_mesh_info *info);
+void st_snapshot_release(st_snapshot *snapshot); /* takes NULL */
+/* A value derived from one revision, such as its summary, kept until the revision changes. get
+ * copies it out and is false when there is none; put replaces it. Under the read lock. */
+bool st_cache_get(st_mesh *mesh, void *value, size_t size);
+void st_cache_put(st_mesh *mesh, const void *value, size_t size);
+
+/* What handlers derive from a mesh and keep with it, one of each kind. */
+typedef enum st_derived_kind {
+    ST_DERIVED_SLOTS, /* of GET .../geometry, brought forward as the mesh changes */
+    ST_DERIVED_TREE,  /* of rays and nearest points, of one revision: see api/ask/tree.h */
+    ST_DERIVED_COUNT
+} st_derived_kind;
+
+/* The longest that st_derived_wait waits, so that its caller can look whether it was cancelled. */
+enum { ST_DERIVED_MILLIS = 100 };
+
+typedef struct st_derived {
+    void *value; /* NULL: nothing is kept */
+    void (*destroy)(void *value);
+} st_derived;
+
+/* The place of a derived object, for its holder alone until st_derived_end: taken after the read
+ * lock or without it, one at a time, and never for longer than a worker may take. The store
+ * destroys what is in it when memory is short, and with the mesh. */
+st_derived *st_derived_begin(st_mesh *mesh, st_derived_kind kind);
+void st_derived_end(st_mesh *mesh, st_derived_kind kind);
+/* The holder gives the place to others until one of them ended, or for ST_DERIVED_MILLIS, then has
+ * it again. Not on a worker, nor under a lock that another holder may want. */
+void st_derived_wait(st_mesh *mesh, st_derived_kind kind);
+/* What the revision changed, in either direction; NULL when that is not kept. Under the read
+ * lock. */
+const he_delta *st_revision_delta(st_mesh *mesh, uint64_t revision);
+
+/* --- writing --- */
+
+/* Takes the exclusive lock with a recording delta attached, which is lent through `delta` for
+ * he_changes_find. NULL when memory is out. Every begin is ended by exactly one of st_write_commit,
+ * st_write_abort and st_write_end, which give the lock back. Where info->busy only st_remove may be
+ * called, and st_write_end. */
+he_mesh *st_write_begin(st_mesh *mesh, st_mesh_info *info, he_delta **delta);
+/* What follows, up to the end of writing, is done for this request: its record carries the key. */
+void st_write_keyed(st_mesh *mesh, const st_keyed *keyed);
+/* Makes what was recorded a revision with one undo step. `ops` names the operations for the
+ * history. `barrier` ends the undo stack (compact). The new facts go to `info`. Cannot fail: what
+ * it needs was reserved by st_write_begin. */
+void st_write_commit(st_mesh *mesh, const char *ops, bool barrier, st_mesh_info *info);
+void st_write_abort(st_mesh *mesh); /* rolls back */
+/* For the history: what the change did that will be committed; without it the history has no
+ * counts. */
+void st_write_tally(st_mesh *mesh, const st_tally *tally);
+/* Could what was recorded so far be undone if it were committed? False when it is larger than the
+ * undo budget: committing it ends the history. */
+bool st_write_undoable(st_mesh *mesh);
+/* How many steps undo (redo) takes to the content of a revision, 0 when it is there, and the bytes
+ * of all their deltas. `revision` 0: for that many `steps`, which is read. Under either lock.
+ * ST_NOTHING when the stack has fewer steps; ST_AHEAD, ST_GONE, ST_ELSEWHERE. */
+st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,
+                      uint64_t *bytes);
+/* Takes that many steps, at least one, back or forward, under the write lock: each applies an
+ * inverse as a new revision. Their deltas are lent until st_write_end through `deltas`, which has a
+ * place for each, in the order they were applied. ST_NOTHING or ST_NO_MEMORY, and nothing has
+ * changed. */
+st_status st_write_step(st_mesh *mesh, st_action which, uint32_t steps, const he_delta **deltas,
+                        st_mesh_info *info);
+/* After st_write_step, st_write_replace, st_write_rename, st_remove or nothing. */
+void st_write_end(st_mesh *mesh);
+/* PUT and PATCH, under the write lock. st_write_replace takes `content`. */
+void st_write_replace(st_mesh *mesh, he_mesh *content, st_mesh_info *info);
+void st_write_rename(st_mesh *mesh, const char *name, st_mesh_info *info);
+
+/* --- a long edit --- works without a lock on a copy of its own, which takes the place of the
+ * content at once. Before that it claims the mesh: until the claim ends nobody else can write, so
+ * that the content stands still and is lent, to be copied. `delta` is for all that is then done to
+ * the copy. ST_BUSY, ST_ABSENT, ST_NO_MEMORY. */
+st_status st_claim(st_mesh *mesh, const he_mesh **content, he_delta **delta, st_mesh_info *info);
+/* Ends the claim as st_write_commit does, with the copy as the content: it is taken. `keyed` is the
+ * keyed request the edit is made for, or NULL. Or ends it with ST_ABSENT, where the mesh was
+ * removed meanwhile: the copy is not taken. */
+st_status st_publish(st_mesh *mesh, he_mesh *takes, const char *ops, bool barrier,
+                     const st_keyed *keyed, st_mesh_info *info);
+/* Ends the claim with nothing done; what was recorded is forgotten. */
+void st_unclaim(st_mesh *mesh);
+/* Names the job that has claimed the mesh, for those who find it busy. Without a lock. */
+void st_claimed_by(st_mesh *mesh, const char *id);
+
+/* --- keyed requests --- (idempotency.h) */
+
+typedef struct st_key {
+    const char *text;
+    uint64_t digest[2]; /* of the request, by st_secret */
+} st_key;
+
+typedef enum st_keyed_status {
+    ST_KEYED_NEW,   /* go on */
+    ST_KEYED_KEPT,  /* it was answered before */
+    ST_KEYED_BUSY,  /* the same request is under way */
+    ST_KEYED_OTHER, /* the key is that of another request */
+    ST_KEYED_NO_MEMORY
+} st_keyed_status;
+
+enum { ST_KEPT_TAG = 96 };
+
+/* The answer to a keyed request. */
+typedef struct st_kept {
+    int status;
+    bool changed; /* something: then it is kept even where there is no room for its body */
+    char etag[ST_KEPT_TAG];  /* "" for none */
+    char id[ST_MESH_ID + 1]; /* of the mesh it shows, which Location names with 201 */
+    uint64_t incarnation, record;
+    const char *body; /* JSON; NULL with a length: left out */
+    size_t length;
+} st_kept;
+
+/* Called before a request is tried, without a lock; `mesh` NULL: the key is among those of the
+ * store. With ST_KEYED_NEW all memory that remembering takes is there, so that st_keyed_keep cannot
+ * fail, and with ST_KEYED_KEPT st_keyed_answer gives the answer. Both are ended by st_keyed_end,
+ * which forgets the key again unless its answer was kept. Keys of a mesh go with the mesh, and all
+ * after a day or when newer ones need the room. */
+st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key, st_keyed **out);
+const st_kept *st_keyed_answer(const st_keyed *keyed);
+void st_keyed_keep(st_keyed *keyed, const st_kept *answer);
+void st_keyed_end(st_keyed *keyed);
+
+/* --- the history, under the read lock --- */
+
+enum { ST_ENTRY_OPS = 256 };
+
+typedef struct st_entry {
+    uint64_t revision;
+    uint64_t inverts; /* revision it undid or did again, 0 for an edit */
+    st_action action;
+    char ops[ST_ENTRY_OPS]; /* names joined by ',', cut with "..." */
+    bool undoable;
+    size_t bytes;
+    double time;
+    st_tally tally;
+} st_entry;
+
+typedef struct st_history {
+    uint64_t oldest;        /* revision that can be read */
+    uint64_t dropped;       /* entries, to stay within the budget */
+    uint64_t bytes, budget; /* that entries and deltas take, and may take */
+} st_history;
+
+/* The i-th newest entry; false past the end. */
+bool st_history_entry(st_mesh *mesh, size_t i, st_entry *out);
+void st_history_reach(st_mesh *mesh, st_history *out);
+
+#endif

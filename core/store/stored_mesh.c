@@ -1,0 +1,220 @@
+#include "store/stored_mesh.h"
+
+#include "system/clock.h"
+#include "system/random.h"
+
+#include <string.h>
+
+static void copy_name(char *out, size_t size, const char *name)
+{
+    size_t length = strlen(name);
+    if (length >= size) {
+        length = size - 1;
+        /* Not inside a UTF-8 sequence. */
+        while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) {
+            length--;
+        }
+    }
+    memcpy(out, name, length);
+    out[length] = '\0';
+}
+
+/* A steady stream of readers must not keep a writer out. */
+static int init_lock(pthread_rwlock_t *lock)
+{
+    pthread_rwlockattr_t attributes;
+    pthread_rwlockattr_init(&attributes);
+#ifdef __GLIBC__
+    pthread_rwlockattr_setkind_np(&attributes, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
+#endif
+    int failed = pthread_rwlock_init(lock, &attributes);
+    pthread_rwlockattr_destroy(&attributes);
+    return failed;
+}
+
+st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
+                     he_mesh *content)
+{
+    st_mesh *mesh = he_mem_zero(1, sizeof *mesh);
+    if (mesh == NULL || init_lock(&mesh->lock) != 0) {
+        he_mem_free(mesh);
+        return NULL;
+    }
+    pthread_mutex_init(&mesh->snapshot_lock, NULL);
+    pthread_mutex_init(&mesh->past_lock, NULL);
+    pthread_mutex_init(&mesh->cache_lock, NULL);
+    st_keys_init(&mesh->keys, options->secret);
+    for (int kind = 0; kind < ST_DERIVED_COUNT; kind++) {
+        pthread_mutex_init(&mesh->derived[kind].lock, NULL);
+        st_clock_condition(&mesh->derived[kind].ended);
+    }
+    atomic_init(&mesh->uses, 1);
+    mesh->store = options->store;
+    mesh->journal = options->journal;
+    mesh->followers = options->followers;
+    copy_name(mesh->info.id, sizeof mesh->info.id, id);
+    copy_name(mesh->info.name, sizeof mesh->info.name, name == NULL ? "" : name);
+    mesh->info.incarnation = st_random();
+    mesh->info.metadata = 1;
+    mesh->info.revision = 1;
+    mesh->info.created = st_clock_utc();
+    mesh->info.modified = mesh->info.created;
+    mesh->content = content;
+    st_log_init(&mesh->log, options->undo_budget, mesh->info.revision, content, mesh->info.created);
+    st_queue_init(&mesh->queue, (st_place){.stamp = mesh->info.record, .key = mesh->info.revision});
+    return mesh;
+}
+
+static void drop_derived(st_mesh *mesh)
+{
+    for (int kind = 0; kind < ST_DERIVED_COUNT; kind++) {
+        st_derived *place = st_derived_begin(mesh, (st_derived_kind)kind);
+        if (place->value != NULL) {
+            place->destroy(place->value);
+            *place = (st_derived){NULL, NULL};
+        }
+        st_derived_end(mesh, (st_derived_kind)kind);
+    }
+}
+
+st_mesh *st_hold(st_mesh *mesh)
+{
+    atomic_fetch_add_explicit(&mesh->uses, 1, memory_order_relaxed);
+    return mesh;
+}
+
+void st_release(st_mesh *mesh)
+{
+    if (mesh == NULL || atomic_fetch_sub_explicit(&mesh->uses, 1, memory_order_acq_rel) > 1) {
+        return;
+    }
+    st_log_clear(&mesh->log);
+    st_queue_clear(&mesh->queue);
+    he_mesh_free(mesh->content);
+    st_copy_release(mesh->copy);
+    st_copy_release(mesh->past);
+    he_mem_free(mesh->cache);
+    st_keys_clear(&mesh->keys);
+    drop_derived(mesh);
+    pthread_rwlock_destroy(&mesh->lock);
+    pthread_mutex_destroy(&mesh->snapshot_lock);
+    pthread_mutex_destroy(&mesh->past_lock);
+    pthread_mutex_destroy(&mesh->cache_lock);
+    for (int kind = 0; kind < ST_DERIVED_COUNT; kind++) {
+        pthread_mutex_destroy(&mesh->derived[kind].lock);
+        pthread_cond_destroy(&mesh->derived[kind].ended);
+    }
+    he_mem_free(mesh);
+}
+
+void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out)
+{
+    *out = mesh->info;
+    out->undo = mesh->log.undo_count;
+    out->redo = mesh->log.redo_count;
+    out->busy = mesh->claimed;
+}
+
+void st_mesh_append(st_mesh *mesh, st_action action, const he_delta *delta, bool undone)
+{
+    mesh->info.record++;
+    st_record record = {
+        .id = mesh->info.id,
+        .incarnation = mesh->info.incarnation,
+        .number = mesh->info.record,
+        .revision = mesh->info.revision,
+        .name = mesh->info.name,
+        .action = action,
+        .delta = delta,
+        .undone = undone,
+        .removed = mesh->info.removed,
+        .content = mesh->info.removed ? NULL : mesh->content,
+        .keyed = mesh->keyed,
+    };
+    mesh->journal->append(mesh->journal->self, &record);
+    st_mesh_tell(mesh, &record);
+}
+
+const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info)
+{
+    pthread_rwlock_rdlock(&mesh->lock);
+    if (info != NULL) {
+        st_mesh_facts(mesh, info);
+    }
+    return mesh->content;
+}
+
+void st_read_end(st_mesh *mesh)
+{
+    pthread_rwlock_unlock(&mesh->lock);
+}
+
+bool st_history_entry(st_mesh *mesh, size_t i, st_entry *out)
+{
+    return st_log_entry(&mesh->log, i, out);
+}
+
+void st_history_reach(st_mesh *mesh, st_history *out)
+{
+    const st_revision_log *log = &mesh->log;
+    *out = (st_history){
+        .oldest = log->oldest, .dropped = log->dropped, .bytes = log->bytes, .budget = log->budget};
+}
+
+bool st_cache_get(st_mesh *mesh, void *value, size_t size)
+{
+    pthread_mutex_lock(&mesh->cache_lock);
+    bool found = mesh->cache != NULL && mesh->cache_size == size &&
+                 mesh->cache_revision == mesh->info.revision;
+    if (found) {
+        memcpy(value, mesh->cache, size);
+    }
+    pthread_mutex_unlock(&mesh->cache_lock);
+    return found;
+}
+
+/* Without memory nothing is kept, and the value is computed again the next time. */
+void st_cache_put(st_mesh *mesh, const void *value, size_t size)
+{
+    pthread_mutex_lock(&mesh->cache_lock);
+    if (mesh->cache_size != size) {
+        he_mem_free(mesh->cache);
+        mesh->cache = he_mem_alloc(size);
+        mesh->cache_size = mesh->cache == NULL ? 0 : size;
+    }
+    if (mesh->cache != NULL) {
+        memcpy(mesh->cache, value, size);
+        mesh->cache_revision = mesh->info.revision;
+    }
+    pthread_mutex_unlock(&mesh->cache_lock);
+}
+
+st_derived *st_derived_begin(st_mesh *mesh, st_derived_kind kind)
+{
+    pthread_mutex_lock(&mesh->derived[kind].lock);
+    return &mesh->derived[kind].place;
+}
+
+void st_derived_end(st_mesh *mesh, st_derived_kind kind)
+{
+    pthread_cond_broadcast(&mesh->derived[kind].ended);
+    pthread_mutex_unlock(&mesh->derived[kind].lock);
+}
+
+void st_derived_wait(st_mesh *mesh, st_derived_kind kind)
+{
+    (void)st_clock_wait(&mesh->derived[kind].ended, &mesh->derived[kind].lock,
+                        st_clock_micros() + ST_DERIVED_MILLIS * 1000);
+}
+
+const he_delta *st_revision_delta(st_mesh *mesh, uint64_t revision)
+{
+    return st_log_delta(&mesh->log, revision);
+}
+
+void st_mesh_shed(st_mesh *mesh)
+{
+    st_copy_shed(mesh);
+    st_keys_shed(&mesh->keys);
+    drop_derived(mesh);
+}

@@ -1,0 +1,95 @@
+/* stored_mesh.h - one mesh of the store: what store.c, mesh_write.c and snapshot.c share. */
+#ifndef HE_STORE_STORED_MESH_H
+#define HE_STORE_STORED_MESH_H
+
+#include "store/broadcast_queue.h"
+#include "store/durability_wait.h"
+#include "store/idempotency.h"
+#include "store/revision_log.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+/* A copy at a revision, counted by the cache and by each snapshot: it stays there while there is a
+ * snapshot of it. */
+typedef struct st_copy {
+    _Atomic uint32_t uses;
+    uint64_t revision;
+    he_replay *replay;
+} st_copy;
+
+struct st_mesh {
+    _Atomic uint32_t uses;
+    st_store *store;
+    const st_journal *journal;
+    struct st_followers *followers;
+
+    pthread_rwlock_t lock; /* of all down to `claimed` */
+    st_mesh_info info;     /* but for undo and redo, which the log has */
+    he_mesh *content;
+    st_revision_log log;
+    he_savepoint mark;     /* where the writer began */
+    he_mesh *discard;      /* freed when the writer has given the lock back */
+    const st_keyed *keyed; /* the request the writer works for, NULL: none with a key */
+    bool claimed;          /* the log's reserve is lent to a long edit */
+
+    /* See followers.h. */
+    st_queue queue;
+    st_wait wait; /* until the newest message is durable */
+    _Atomic bool waiting;
+
+    pthread_mutex_t snapshot_lock;
+    st_copy *copy; /* of the present, NULL: none cached */
+
+    pthread_mutex_t past_lock;
+    st_copy *past; /* of an earlier revision, likewise */
+
+    pthread_mutex_t cache_lock;
+    void *cache;
+    size_t cache_size;
+    uint64_t cache_revision;
+
+    st_keys keys;
+    struct {
+        pthread_mutex_t lock;
+        pthread_cond_t ended; /* somebody gave it back */
+        st_derived place;
+    } derived[ST_DERIVED_COUNT];
+};
+
+/* What the meshes of a store share for those who listen to them. */
+typedef struct st_followers {
+    st_render *render;
+    size_t most, most_of_mesh; /* listeners */
+    struct st_waits *waits;
+    _Atomic size_t count; /* listeners */
+} st_followers;
+
+/* What a mesh takes over from its store. */
+typedef struct st_mesh_options {
+    st_store *store;
+    const st_journal *journal;
+    st_followers *followers;
+    uint64_t undo_budget;
+    const uint64_t *secret;
+} st_mesh_options;
+
+/* Takes `content`. NULL when memory is out. */
+st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
+                     he_mesh *content);
+/* Under its lock. */
+void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
+/* Frees the cached copies and the bodies of kept answers, unless somebody reads them, and what was
+ * derived. */
+void st_mesh_shed(st_mesh *mesh);
+/* Under the exclusive lock: numbers a change that was made and tells the journal and the listeners
+ * about it. */
+void st_mesh_append(st_mesh *mesh, st_action action, const he_delta *delta, bool undone);
+/* Under the exclusive lock: renders a change for those who listen. */
+void st_mesh_tell(st_mesh *mesh, const st_record *record);
+
+void st_copy_release(st_copy *copy);
+/* Frees the cached copy, unless somebody reads it. */
+void st_copy_shed(st_mesh *mesh);
+
+#endif

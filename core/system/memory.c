@@ -1,0 +1,121 @@
+#include "system/memory.h"
+
+#include "base/mem.h"
+
+#include <malloc.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
+
+static _Atomic uint64_t used;
+static _Atomic uint64_t budget_bytes;
+
+/* Count `size` more, unless that leaves the budget. Counting first and taking back on failure
+ * keeps two threads from passing the limit together. */
+static bool take(size_t size)
+{
+    uint64_t budget = atomic_load_explicit(&budget_bytes, memory_order_relaxed);
+    uint64_t after = atomic_fetch_add_explicit(&used, size, memory_order_relaxed) + size;
+    if (budget == 0) {
+        return true;
+    }
+    uint64_t limit = size <= SMALL ? budget : budget - budget / RESERVE_SHARE;
+    if (after <= limit) {
+        return true;
+    }
+    atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
+    return false;
+}
+
+static void give_back(size_t size)
+{
+    atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
+}
+
+/* The block's true size is known only once it is there: the request is taken from the budget
+ * first, the difference is settled after. */
+static void *resize(void *context, void *memory, size_t size)
+{
+    (void)context;
+    size_t before = memory == NULL ? 0 : malloc_usable_size(memory);
+    if (size == 0) {
+        free(memory);
+        give_back(before);
+        return NULL;
+    }
+    size_t growth = size > before ? size - before : 0;
+    if (growth > 0 && !take(growth)) {
+        return NULL;
+    }
+    void *resized = realloc(memory, size);
+    if (resized == NULL) {
+        give_back(growth);
+        return NULL;
+    }
+    size_t after = malloc_usable_size(resized);
+    /* Modular arithmetic: the sum is right whichever is larger. */
+    atomic_fetch_add_explicit(&used, (uint64_t)after - before - growth, memory_order_relaxed);
+    return resized;
+}
+
+/* From here on a block is a mapping of its own: growing it moves page tables and not bytes, so that
+ * the first edit of a large mesh does not copy it, and freeing it gives it back to the system. Left
+ * alone, glibc raises the threshold to 32 MB as blocks are freed. */
+enum { OWN_MAPPING_BYTES = 1 << 20 };
+
+void st_memory_install(uint64_t budget)
+{
+    mallopt(M_MMAP_THRESHOLD, OWN_MAPPING_BYTES);
+    st_memory_set_budget(budget);
+    he_mem_set_hook(&(he_mem_hook){resize, NULL});
+}
+
+void st_memory_set_budget(uint64_t budget)
+{
+    atomic_store(&budget_bytes, budget);
+}
+
+void st_memory_count(int64_t bytes)
+{
+    /* Modular arithmetic: adding a negative number subtracts. */
+    atomic_fetch_add_explicit(&used, (uint64_t)bytes, memory_order_relaxed);
+}
+
+uint64_t st_memory_used(void)
+{
+    return atomic_load_explicit(&used, memory_order_relaxed);
+}
+
+uint64_t st_memory_budget(void)
+{
+    return atomic_load(&budget_bytes);
+}
+
+bool st_memory_has(uint64_t bytes)
+{
+    uint64_t budget = st_memory_budget();
+    return budget == 0 || st_memory_used() + bytes <= budget;
+}
+
+bool st_memory_is_full(void)
+{
+    uint64_t budget = st_memory_budget();
+    return budget != 0 && st_memory_used() >= budget - budget / RESERVE_SHARE;
+}
+
+/* Every thread has a heap of its own, and glibc gives back only what is free at the end of one.
+ * Pages in between stay: after minutes of mixed requests more than all that is in use. */
+enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
+
+bool st_memory_rests(st_memory_rest *rest, uint64_t processor)
+{
+    bool resting = processor - rest->looked < RESTING_MICROS;
+    rest->looked = processor;
+    if (!resting || processor - rest->trimmed < WORKED_MICROS) {
+        return false;
+    }
+    malloc_trim(0);
+    rest->trimmed = processor;
+    return true;
+}

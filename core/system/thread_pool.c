@@ -1,0 +1,245 @@
+#include "system/thread_pool.h"
+
+#include "base/mem.h"
+
+#include <pthread.h>
+#include <string.h>
+#include <sys/prctl.h>
+
+/* Flows whose hashes agree in the low bits share a stamp, and so a turn. */
+enum { FLOWS = 256 };
+
+enum { NAME = 16 /* with its NUL, as prctl(2) has it */ };
+
+typedef struct waiting {
+    st_task task;
+    double stamp;
+    uint64_t number; /* in the order of submission */
+} waiting;
+
+/* A heap: none comes before its parent, which is at (i - 1) / 2. */
+typedef struct queue {
+    waiting *heap;
+    size_t count, room;
+    size_t running, most_running;
+} queue;
+
+struct st_pool {
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    bool ending;
+    size_t capacity; /* of each queue */
+    queue queues[ST_SHARES];
+    size_t most_long;     /* reads and jobs that may run at once */
+    double clock;         /* stamp of the task that was begun last */
+    double stamps[FLOWS]; /* of the last task of each */
+    uint64_t submitted;
+    char name[NAME];
+    pthread_t *threads;
+    size_t thread_count;
+};
+
+/* --- a queue --- */
+
+static bool is_before(const waiting *a, const waiting *b)
+{
+    return a->stamp != b->stamp ? a->stamp < b->stamp : a->number < b->number;
+}
+
+/* Returns false when memory is out. */
+static bool make_room(queue *q)
+{
+    if (q->count < q->room) {
+        return true;
+    }
+    size_t room = q->room == 0 ? 16 : 2 * q->room;
+    waiting *heap = he_mem_array(q->heap, room, sizeof *heap);
+    if (heap != NULL) {
+        q->heap = heap;
+        q->room = room;
+    }
+    return heap != NULL;
+}
+
+/* There must be room. */
+static void push(queue *q, const waiting *w)
+{
+    size_t at = q->count++;
+    while (at > 0 && is_before(w, &q->heap[(at - 1) / 2])) {
+        q->heap[at] = q->heap[(at - 1) / 2];
+        at = (at - 1) / 2;
+    }
+    q->heap[at] = *w;
+}
+
+static waiting pop(queue *q)
+{
+    waiting top = q->heap[0];
+    const waiting last = q->heap[--q->count];
+    size_t at = 0, child = 1;
+    while (child < q->count) {
+        if (child + 1 < q->count && is_before(&q->heap[child + 1], &q->heap[child])) {
+            child++;
+        }
+        if (!is_before(&q->heap[child], &last)) {
+            break;
+        }
+        q->heap[at] = q->heap[child];
+        at = child;
+        child = 2 * at + 1;
+    }
+    q->heap[at] = last;
+    return top;
+}
+
+/* --- the pool, under its lock --- */
+
+static bool may_begin(const st_pool *pool, st_share share)
+{
+    const queue *q = &pool->queues[share];
+    size_t long_running = pool->queues[ST_SHARE_LONG].running + pool->queues[ST_SHARE_JOB].running;
+    return q->count > 0 && q->running < q->most_running &&
+           (share == ST_SHARE_BRIEF || long_running < pool->most_long);
+}
+
+/* The share whose first task is next; ST_SHARES when none may begin. */
+static st_share next_share(const st_pool *pool)
+{
+    st_share next = ST_SHARES;
+    for (st_share share = 0; share < ST_SHARES; share++) {
+        if (may_begin(pool, share) &&
+            (next == ST_SHARES ||
+             is_before(&pool->queues[share].heap[0], &pool->queues[next].heap[0]))) {
+            next = share;
+        }
+    }
+    return next;
+}
+
+static bool is_empty(const st_pool *pool)
+{
+    size_t count = 0;
+    for (st_share share = 0; share < ST_SHARES; share++) {
+        count += pool->queues[share].count;
+    }
+    return count == 0;
+}
+
+static void run_next(st_pool *pool, st_share share)
+{
+    queue *q = &pool->queues[share];
+    const waiting next = pop(q);
+    pool->clock = next.stamp > pool->clock ? next.stamp : pool->clock;
+    q->running++;
+    pthread_mutex_unlock(&pool->lock);
+    next.task.work(next.task.context);
+    pthread_mutex_lock(&pool->lock);
+    q->running--;
+    /* One more of the long ones may begin, on another thread if this one finds something else. */
+    pthread_cond_signal(&pool->wake);
+}
+
+static void *run(void *context)
+{
+    st_pool *pool = context;
+    prctl(PR_SET_NAME, pool->name);
+    pthread_mutex_lock(&pool->lock);
+    while (!pool->ending || !is_empty(pool)) {
+        st_share share = next_share(pool);
+        if (share == ST_SHARES) {
+            pthread_cond_wait(&pool->wake, &pool->lock);
+        } else {
+            run_next(pool, share);
+        }
+    }
+    /* Others may wait for a share's turn that will not come any more. */
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    return NULL;
+}
+
+static size_t all_but(size_t threads, size_t kept)
+{
+    return threads > kept + 1 ? threads - kept : 1;
+}
+
+st_pool *st_pool_new(const char *name, size_t threads, size_t most_waiting)
+{
+    st_pool *pool = he_mem_zero(1, sizeof *pool);
+    if (pool == NULL) {
+        return NULL;
+    }
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->wake, NULL);
+    memcpy(pool->name, name, strnlen(name, NAME - 1));
+    pool->capacity = most_waiting;
+    pool->most_long = all_but(threads, 1);
+    pool->queues[ST_SHARE_BRIEF].most_running = threads;
+    pool->queues[ST_SHARE_LONG].most_running = all_but(threads, 2);
+    pool->queues[ST_SHARE_JOB].most_running = all_but(threads, 2);
+    pool->threads = he_mem_zero(threads, sizeof *pool->threads);
+    bool started = pool->threads != NULL;
+    for (st_share share = 0; share < ST_SHARES; share++) {
+        started = make_room(&pool->queues[share]) && started;
+    }
+    while (started && pool->thread_count < threads) {
+        started = pthread_create(&pool->threads[pool->thread_count], NULL, run, pool) == 0;
+        pool->thread_count += started;
+    }
+    if (!started) {
+        st_pool_free(pool);
+        return NULL;
+    }
+    return pool;
+}
+
+void st_pool_free(st_pool *pool)
+{
+    if (pool == NULL) {
+        return;
+    }
+    pthread_mutex_lock(&pool->lock);
+    pool->ending = true;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    for (size_t i = 0; i < pool->thread_count; i++) {
+        pthread_join(pool->threads[i], NULL);
+    }
+    pthread_mutex_destroy(&pool->lock);
+    pthread_cond_destroy(&pool->wake);
+    for (st_share share = 0; share < ST_SHARES; share++) {
+        he_mem_free(pool->queues[share].heap);
+    }
+    he_mem_free(pool->threads);
+    he_mem_free(pool);
+}
+
+bool st_pool_submit(st_pool *pool, const st_task *task)
+{
+    pthread_mutex_lock(&pool->lock);
+    queue *q = &pool->queues[task->share];
+    bool accepted = q->count < pool->capacity && !pool->ending && make_room(q);
+    if (accepted) {
+        double *last = &pool->stamps[task->flow % FLOWS];
+        double begin = *last > pool->clock ? *last : pool->clock;
+        *last = begin + task->cost;
+        push(q, &(waiting){.task = *task, .stamp = *last, .number = pool->submitted++});
+        pthread_cond_signal(&pool->wake);
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return accepted;
+}
+
+/* FNV-1a, 64 bits; texts end in their NUL, so that no two pairs read alike. */
+static uint64_t add_text(uint64_t hash, const char *text)
+{
+    do {
+        hash = (hash ^ (unsigned char)*text) * UINT64_C(0x100000001b3);
+    } while (*text++ != '\0');
+    return hash;
+}
+
+uint64_t st_pool_flow(const char *client, const char *mesh)
+{
+    return add_text(add_text(UINT64_C(0xcbf29ce484222325), client), mesh);
+}
