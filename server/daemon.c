@@ -1,5 +1,6 @@
 #include "server/daemon.h"
 
+#include "api/describe/routes.h"
 #include "api/event/event_follow.h"
 #include "api/job/job_table.h"
 #include "server/assets.h"
@@ -157,19 +158,20 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
     if (parts->job_table == NULL) {
         return fail("no memory to start");
     }
-    parts->service = api_service_new(parts->store, &(api_options){
-                                                       .max_upload = config->max_upload,
-                                                       .version = SRV_VERSION,
-                                                       .asset = srv_assets_find,
-                                                       .asset_context = parts->assets,
-                                                       .ready = is_ready,
-                                                       .ready_context = parts,
-                                                       .memory = count_memory,
-                                                       .jobs = parts->job_table,
-                                                       .pool = parts->pool,
-                                                       .plain_answers = config->no_compression,
-                                                       .exec = st_parallel_exec(parts->hands),
-                                                   });
+    parts->service = api_service_new(parts->store, api_routes(),
+                                     &(api_options){
+                                         .max_upload = config->max_upload,
+                                         .version = SRV_VERSION,
+                                         .asset = srv_assets_find,
+                                         .asset_context = parts->assets,
+                                         .ready = is_ready,
+                                         .ready_context = parts,
+                                         .memory = count_memory,
+                                         .jobs = parts->job_table,
+                                         .pool = parts->pool,
+                                         .plain_answers = config->no_compression,
+                                         .exec = st_parallel_exec(parts->hands),
+                                     });
     bool logs = config->log == SRV_LOG_ACCESS ||
                 (config->log == SRV_LOG_AUTO && isatty(STDERR_FILENO) == 0);
     if (logs) {

@@ -2,9 +2,9 @@
 
 #include "api/describe/examples.h"
 #include "api/describe/operations.h"
+#include "api/describe/routes.h"
 #include "api/describe/schemas.h"
 #include "api/document/shapes.h"
-#include "api/request/routes.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -405,7 +405,7 @@ static void write_operation(api_out *out, const api_route *route)
 static bool is_first_of_path(size_t i)
 {
     for (size_t j = 0; j < i; j++) {
-        if (strcmp(api_route_at(j)->path, api_route_at(i)->path) == 0) {
+        if (strcmp(api_routes().rows[j].path, api_routes().rows[i].path) == 0) {
             return false;
         }
     }
@@ -416,17 +416,17 @@ static void write_paths(api_out *out)
 {
     api_out_key(out, "paths");
     api_out_object_begin(out);
-    for (size_t i = 0; i < api_route_count(); i++) {
+    for (size_t i = 0; i < api_routes().count; i++) {
         if (!is_first_of_path(i)) {
             continue;
         }
-        const char *path = api_route_at(i)->path;
+        const char *path = api_routes().rows[i].path;
         api_out_key(out, path);
         api_out_object_begin(out);
         write_path_parameters(out, path);
-        for (size_t j = i; j < api_route_count(); j++) {
-            if (strcmp(api_route_at(j)->path, path) == 0) {
-                write_operation(out, api_route_at(j));
+        for (size_t j = i; j < api_routes().count; j++) {
+            if (strcmp(api_routes().rows[j].path, path) == 0) {
+                write_operation(out, &api_routes().rows[j]);
             }
         }
         api_out_object_end(out);

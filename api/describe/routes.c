@@ -1,4 +1,4 @@
-#include "api/request/routes.h"
+#include "api/describe/routes.h"
 
 #include "algo/decimate.h"
 #include "api/json/attribute_value.h"
@@ -697,13 +697,9 @@ static const api_route routes[] = {
      .doc = "Scripts and styles of the two pages."},
 };
 
-size_t api_route_count(void)
+api_route_table api_routes(void)
 {
-    return sizeof routes / sizeof routes[0];
-}
-const api_route *api_route_at(size_t i)
-{
-    return &routes[i];
+    return (api_route_table){routes, sizeof routes / sizeof routes[0]};
 }
 
 const int *api_route_common(void)
@@ -711,28 +707,4 @@ const int *api_route_common(void)
     static const int common[] = {400, 403, 404, 405, 406, 408, 414, 421,
                                  431, 500, 501, 503, 505, 507, 0};
     return common;
-}
-
-const char *const *api_relations(he_kind kind)
-{
-    static const char *const of_vertex[] = {"vertices", "outgoing", "incoming",
-                                            "edges",    "faces",    NULL};
-    static const char *const of_halfedge[] = {"loop", "ring", NULL};
-    static const char *const of_edge[] = {"vertices", "halfedges", "faces", NULL};
-    static const char *const of_face[] = {"vertices", "halfedges", "edges", "faces", NULL};
-    static const char *const of_mesh[] = {NULL};
-    switch (kind) {
-    case HE_VERTEX:
-        return of_vertex;
-    case HE_HALFEDGE:
-        return of_halfedge;
-    case HE_EDGE:
-        return of_edge;
-    case HE_FACE:
-        return of_face;
-    case HE_MESH_KIND:
-    case HE_KIND_COUNT:
-        break;
-    }
-    return of_mesh;
 }

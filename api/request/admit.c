@@ -148,7 +148,7 @@ static bool find_route(api_exchange *x)
     if (!api_path_split(x->request.path, &x->arena, &path, &x->problem)) {
         return false;
     }
-    x->route = api_route_find(x->request.method, &path, &variables, x->allow);
+    x->route = api_route_find(x->service->routes, x->request.method, &path, &variables, x->allow);
     if (x->route == NULL && x->allow[0] == '\0' && path.has_slash) {
         return api_fail(x, API_BAD_PATH,
                         "an escaped slash is taken only in the name of an attribute");

@@ -113,8 +113,14 @@ typedef struct api_options {
     st_pool *pool;       /* brings listeners forward from the history; NULL: they fetch anew */
 } api_options;
 
-/* Borrowed: store and options' pointers outlive the service. NULL when memory is out. */
-api_service *api_service_new(st_store *store, const api_options *options);
+/* The table of routes: api/describe/routes.h. */
+typedef struct api_route_table {
+    const struct api_route *rows;
+    size_t count;
+} api_route_table;
+
+/* Borrowed: store, rows and options' pointers outlive the service. NULL when memory is out. */
+api_service *api_service_new(st_store *store, api_route_table routes, const api_options *options);
 void api_service_free(api_service *service);
 
 /* NULL when memory is out. `request` is copied, but for its header callback. */

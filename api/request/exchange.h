@@ -34,11 +34,12 @@
 #include "api/json/json_out.h"
 #include "api/limits.h"
 #include "api/request/api.h"
-#include "api/request/routes.h"
+#include "api/request/route.h"
 #include "base/siphash.h"
 
 struct api_service {
     st_store *store;
+    api_route_table routes;
     api_options options;
     api_backfills backfills;
     api_unpack_room unpacking; /* of the decoders of bodies that are arriving */

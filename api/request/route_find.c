@@ -1,5 +1,5 @@
 /* Which row of the table answers a request, and how the values of its parameters read. */
-#include "api/request/routes.h"
+#include "api/request/route.h"
 
 #include <string.h>
 
@@ -99,12 +99,12 @@ static void add_method(char *allow, const char *method)
     strncat(allow, method, API_ALLOW - strlen(allow) - 1);
 }
 
-const api_route *api_route_find(const char *method, const api_path *path, api_variables *out,
-                                char allow[API_ALLOW])
+const api_route *api_route_find(api_route_table table, const char *method, const api_path *path,
+                                api_variables *out, char allow[API_ALLOW])
 {
     const char *wanted = strcmp(method, "HEAD") == 0 ? "GET" : method;
-    const api_route *routes = api_route_at(0);
-    size_t count = api_route_count();
+    const api_route *routes = table.rows;
+    size_t count = table.count;
     allow[0] = '\0';
     for (size_t i = 0; i < count; i++) {
         const api_route *route = &routes[i];
@@ -126,4 +126,28 @@ const api_route *api_route_find(const char *method, const api_path *path, api_va
         add_method(allow, "OPTIONS");
     }
     return NULL;
+}
+
+const char *const *api_relations(he_kind kind)
+{
+    static const char *const of_vertex[] = {"vertices", "outgoing", "incoming",
+                                            "edges",    "faces",    NULL};
+    static const char *const of_halfedge[] = {"loop", "ring", NULL};
+    static const char *const of_edge[] = {"vertices", "halfedges", "faces", NULL};
+    static const char *const of_face[] = {"vertices", "halfedges", "edges", "faces", NULL};
+    static const char *const of_mesh[] = {NULL};
+    switch (kind) {
+    case HE_VERTEX:
+        return of_vertex;
+    case HE_HALFEDGE:
+        return of_halfedge;
+    case HE_EDGE:
+        return of_edge;
+    case HE_FACE:
+        return of_face;
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return of_mesh;
 }

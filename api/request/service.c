@@ -9,12 +9,13 @@
 #include <stdio.h>
 #include <string.h>
 
-api_service *api_service_new(st_store *store, const api_options *options)
+api_service *api_service_new(st_store *store, api_route_table routes, const api_options *options)
 {
     api_in_setup();
     api_service *service = he_mem_zero(1, sizeof *service);
     if (service != NULL) {
         service->store = store;
+        service->routes = routes;
         service->options = *options;
         service->backfills.pool = options->pool;
         if (service->options.max_upload == 0) {

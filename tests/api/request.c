@@ -4,6 +4,7 @@
 
 #include "tests/traffic.h"
 
+#include "api/describe/routes.h"
 #include "api/event/event_follow.h"
 #include "api/job/job_table.h"
 
@@ -79,11 +80,11 @@ api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
     b->jobs = api_job_table_new(&(api_job_table_options){
         .store = b->store, .submit = submit, .pool = b, .keep = API_JOB_SECONDS});
     assert_non_null(b->jobs);
-    b->service =
-        api_service_new(b->store, &(api_options){.version = "0.0.0-test",
-                                                 .max_upload = upload == 0 ? 8 << 20 : upload,
-                                                 .jobs = b->jobs,
-                                                 .pool = b->pool});
+    b->service = api_service_new(b->store, api_routes(),
+                                 &(api_options){.version = "0.0.0-test",
+                                                .max_upload = upload == 0 ? 8 << 20 : upload,
+                                                .jobs = b->jobs,
+                                                .pool = b->pool});
     assert_non_null(b->service);
     return b;
 }

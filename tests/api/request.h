@@ -2,6 +2,7 @@
 #ifndef TESTS_API_REQUEST_H
 #define TESTS_API_REQUEST_H
 
+#include "api/describe/routes.h"
 #include "api/request/api.h"
 #include "store/store.h"
 

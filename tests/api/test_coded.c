@@ -240,7 +240,8 @@ static void answers_may_always_be_plain(void **state)
         int status;
     } rows[] = {{"gzip, zstd", 200}, {"*", 200}, {"gzip, identity;q=0", 406}};
     api_bench *b = with_grid();
-    api_service *service = api_service_new(bench_store(b), &(api_options){.plain_answers = true});
+    api_service *service =
+        api_service_new(bench_store(b), api_routes(), &(api_options){.plain_answers = true});
     assert_non_null(service);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         api_exchange *x = api_handle(service,

@@ -2,7 +2,7 @@
 #include "tests/api/request.h"
 
 #include "api/describe/examples.h"
-#include "api/request/routes.h"
+#include "api/describe/routes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,9 +13,9 @@
 
 static const api_route *route_of(const char *name)
 {
-    for (size_t i = 0; i < api_route_count(); i++) {
-        if (strcmp(api_route_at(i)->name, name) == 0) {
-            return api_route_at(i);
+    for (size_t i = 0; i < api_routes().count; i++) {
+        if (strcmp(api_routes().rows[i].name, name) == 0) {
+            return &api_routes().rows[i];
         }
     }
     fail_msg("an example is of %s, which is no route", name);
@@ -207,8 +207,8 @@ static const char *const too_long[] = {"operations_get", "openapi_get", NULL};
 static void no_route_is_without_one(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < api_route_count(); i++) {
-        const api_route *route = api_route_at(i);
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const api_route *route = &api_routes().rows[i];
         if ((route->flags & API_FIXED) || is_one_of(route->name, too_long)) {
             continue;
         }

@@ -3,7 +3,7 @@
 
 #include "algo/shape.h"
 #include "api/request/answer_headers.h"
-#include "api/request/routes.h"
+#include "api/describe/routes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -167,8 +167,8 @@ static void pages_of_other_origins_may_read_every_header_described(void **state)
     assert_true(is_exposed("ETag") && is_exposed("X-Request-Id") && is_exposed("Export-Warnings"));
     assert_false(is_exposed("Request-Id") || is_exposed("X-Request"));
     assert_false(api_header_is_listed("X-New"));
-    for (size_t i = 0; i < api_route_count(); i++) {
-        const api_told_header *const *told = api_route_at(i)->headers;
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const api_told_header *const *told = api_routes().rows[i].headers;
         for (; *told != NULL; told++) {
             assert_true(is_exposed((*told)->name));
         }

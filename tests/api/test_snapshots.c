@@ -40,7 +40,8 @@ static void begin(fixture *f, const char *shape)
     bench_reply r = bench_send(f->bench, "POST", "/v1/meshes?id=m", NULL, shape);
     assert_int_equal(r.status, 201);
     bench_reply_free(&r);
-    f->service = api_service_new(bench_store(f->bench), &(api_options){.version = "0"});
+    f->service =
+        api_service_new(bench_store(f->bench), api_routes(), &(api_options){.version = "0"});
     assert_non_null(f->service);
 }
 

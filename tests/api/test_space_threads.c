@@ -248,7 +248,8 @@ static void ask_twice(bool patient, bool second_gives_up, asker askers[2])
     gate.leaves = patient ? NULL : &askers[0].patient;
     gate.gives_up = second_gives_up ? &askers[1].patient : NULL;
     gate.closed = true;
-    api_service *service = api_service_new(bench_store(b), &(api_options){.version = "test"});
+    api_service *service =
+        api_service_new(bench_store(b), api_routes(), &(api_options){.version = "test"});
     assert_non_null(service);
     pthread_t threads[2];
     for (int i = 0; i < 2; i++) {

@@ -1,7 +1,7 @@
 /* Every row of the route table answers with every status it declares, and with no other. */
 #include "tests/api/request.h"
 
-#include "api/request/routes.h"
+#include "api/describe/routes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -255,9 +255,9 @@ static bool seen[MOST_ROUTES][STATUSES];
 
 static int route_index(const char *method, const char *path)
 {
-    for (size_t i = 0; i < api_route_count(); i++) {
-        if (strcmp(api_route_at(i)->path, path) == 0 &&
-            strcmp(api_route_at(i)->method, method) == 0) {
+    for (size_t i = 0; i < api_routes().count; i++) {
+        if (strcmp(api_routes().rows[i].path, path) == 0 &&
+            strcmp(api_routes().rows[i].method, method) == 0) {
             return (int)i;
         }
     }
@@ -289,7 +289,7 @@ static void take(api_bench *b, const char *method, const char *target, int statu
     int i = route_index(method, r.route);
     if (i >= 0) {
         seen[i][status] = true;
-        if (!holds(api_route_at((size_t)i)->statuses, status) &&
+        if (!holds(api_routes().rows[(size_t)i].statuses, status) &&
             !holds(api_route_common(), status)) {
             fail_msg("%s %s answers %d, which it does not declare", method, r.route, status);
         }
@@ -410,8 +410,8 @@ static void test_each_declared_status(void **state)
     take_keyed_edits(b);
     take_job(b);
     size_t missing = 0;
-    for (size_t i = 0; i < api_route_count(); i++) {
-        const api_route *route = api_route_at(i);
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const api_route *route = &api_routes().rows[i];
         if (strncmp(route->path, "/assets", 7) == 0 || strcmp(route->path, "/") == 0 ||
             strcmp(route->path, "/docs") == 0) {
             continue; /* there is no page without a server: tests/e2e and tests/web ask for it */

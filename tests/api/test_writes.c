@@ -297,7 +297,8 @@ static void nothing_comes_between_if_match_and_delete(void **state)
     (void)state;
     api_bench *b = begin();
     removed_under_lock = false;
-    api_service *service = api_service_new(bench_store(b), &(api_options){.version = "0"});
+    api_service *service =
+        api_service_new(bench_store(b), api_routes(), &(api_options){.version = "0"});
     assert_non_null(service);
     api_request request = {
         .method = "DELETE", .path = "/v1/meshes/m", .query = "", .request_id = "r"};

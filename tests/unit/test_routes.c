@@ -1,4 +1,5 @@
 /* Dispatch and the frame about every handler, with a store that holds one mesh, "m". */
+#include "api/describe/routes.h"
 #include "api/request/exchange.h"
 
 #include "fixture.h"
@@ -41,7 +42,7 @@ static int set_up(void **state)
         .undo_budget = 1 << 20, .max_meshes = 10, .journal = st_journal_memory()});
     assert_non_null(store);
     assert_int_equal(st_create(store, "m", "", fixture_mesh("012"), NULL, &only), ST_OK);
-    service = api_service_new(store, &options);
+    service = api_service_new(store, api_routes(), &options);
     return service == NULL;
 }
 
@@ -491,8 +492,8 @@ static void documents_of_the_tables_are_json(void **state)
 static void rows_are_whole(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < api_route_count(); i++) {
-        const api_route *route = api_route_at(i);
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const api_route *route = &api_routes().rows[i];
         assert_non_null(route->run);
         assert_non_null(route->name);
         assert_non_null(route->summary);
@@ -510,9 +511,9 @@ static void rows_are_whole(void **state)
             assert_true(s == 0 || route->statuses[s] > route->statuses[s - 1]);
         }
         for (size_t j = 0; j < i; j++) {
-            assert_true(strcmp(route->path, api_route_at(j)->path) != 0 ||
-                        strcmp(route->method, api_route_at(j)->method) != 0);
-            assert_string_not_equal(route->name, api_route_at(j)->name);
+            assert_true(strcmp(route->path, api_routes().rows[j].path) != 0 ||
+                        strcmp(route->method, api_routes().rows[j].method) != 0);
+            assert_string_not_equal(route->name, api_routes().rows[j].name);
         }
     }
 }

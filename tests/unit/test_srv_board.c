@@ -2,6 +2,7 @@
  * when it is durable, and a stop ends everything. */
 #include "tests/unit/fixture.h"
 
+#include "api/describe/routes.h"
 #include "api/job/job_table.h"
 #include "api/request/api.h"
 #include "store/durability_wait.h"
@@ -77,7 +78,7 @@ static int start_keeping(double keep)
     });
     jobs = api_job_table_new(
         &(api_job_table_options){.store = store, .submit = submit, .pool = pool, .keep = keep});
-    service = api_service_new(store, &(api_options){.version = "test", .jobs = jobs});
+    service = api_service_new(store, api_routes(), &(api_options){.version = "test", .jobs = jobs});
     return 0;
 }
 

@@ -2,6 +2,7 @@
  * purpose (D1), a full job queue and too many connections are 503, a stop ends everything. */
 #include "tests/unit/fixture.h"
 
+#include "api/describe/routes.h"
 #include "api/event/event_follow.h"
 
 #include "server/http/http.h"
@@ -98,7 +99,7 @@ static int start(void **state)
         .mesh_listeners = 10,
         .render = api_event_render,
     });
-    service = api_service_new(store, &(api_options){.version = "test", .pool = jobs});
+    service = api_service_new(store, api_routes(), &(api_options){.version = "test", .pool = jobs});
     srv_http_options options = {
         .service = service,
         .store = store,

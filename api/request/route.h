@@ -1,15 +1,16 @@
-/* routes.h - THE route table: one row a method and path, and all there is to know about it.
+/* route.h - one row of the table of routes: a method and path, and all there is to know about it.
  *
- * From the rows come dispatch, 404, 405 with Allow, HEAD and OPTIONS, the check of query
- * parameters, Content-Type and Accept, the caps of bodies, the OpenAPI document, labels of metrics,
- * and the tests' duty to hit every status a row declares.
+ * The table is api/describe/routes.c, which stands above the handlers it names and is handed down
+ * to the service. From the rows come dispatch, 404, 405 with Allow, HEAD and OPTIONS, the check of
+ * query parameters, Content-Type and Accept, the caps of bodies, the OpenAPI document, labels of
+ * metrics, and the tests' duty to hit every status a row declares.
  *
  * A template is literal segments and variables. {kind} matches vertices, halfedges, edges, faces
  * and nothing else; {domain} these or mesh; {id} an element id; {name} that of an attribute; {mesh}
  * a mesh id; {relation} one of the kind's relations; {code} and {job} any segment; {asset} the rest
  * of the path. */
-#ifndef HE_API_REQUEST_ROUTES_H
-#define HE_API_REQUEST_ROUTES_H
+#ifndef HE_API_REQUEST_ROUTE_H
+#define HE_API_REQUEST_ROUTE_H
 
 #include "api/header/path.h"
 #include "api/request/api.h"
@@ -84,14 +85,9 @@ typedef struct api_route {
     const char *doc;     /* a sentence or two */
 } api_route;
 
-size_t api_route_count(void);
-const api_route *api_route_at(size_t i);
 /* The set of `choices` that a list of them joined by commas names, a bit each; false where it names
  * another, one twice, or none. */
 bool api_choices_parse(const char *const *choices, const char *list, unsigned *out);
-/* Statuses any route may answer, those included that the server finds reasons for; ends in 0. */
-const int *api_route_common(void);
-
 /* What the segments of a path gave to the variables of its template. */
 typedef struct api_variables {
     const char *mesh; /* as decoded, not yet checked; NULL where the template has none */
@@ -103,8 +99,8 @@ typedef struct api_variables {
 /* The row for a method and path. NULL when there is none: then `allow`, which has room for
  * API_ALLOW bytes, lists the methods of the path, and is "" where the path matches no template. */
 enum { API_ALLOW = 64 };
-const api_route *api_route_find(const char *method, const api_path *path, api_variables *out,
-                                char allow[API_ALLOW]);
+const api_route *api_route_find(api_route_table table, const char *method, const api_path *path,
+                                api_variables *out, char allow[API_ALLOW]);
 
 /* The relations of a kind, ends in NULL. */
 const char *const *api_relations(he_kind kind);
