@@ -100,13 +100,14 @@ STAMPS     := build/.stamps
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
 # `make test TESTS=tests/web/rows.test.mjs`.
-TESTS   ?= $(SUITES) fuzz web install soak hostile
+TESTS   ?= $(SUITES) fuzz web install soak hostile lint
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web tests/web/%,$(TESTS))
 WITH_FUZZ = $(filter fuzz,$(TESTS))
 WITH_INSTALL = $(filter install,$(TESTS))
 WITH_SOAK = $(filter soak,$(TESTS))
 WITH_HOSTILE = $(filter hostile,$(TESTS))
+WITH_LINT = $(filter lint,$(TESTS))
 # What a narrower choice asks does not reach every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(filter web,$(TESTS)))
 WITH_DAEMON = $(filter e2e web install soak hostile tests/e2e/% tests/web/%,$(TESTS))
@@ -229,20 +230,21 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 
 # --- tests ---------------------------------------------------------------------------------
 
-TEST_NEEDS = $(if $(WITH_DAEMON),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
+TEST_NEEDS = $(if $(WITH_DAEMON)$(WITH_LINT),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
              $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(FUZZERS))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
 test: $(CHOSEN) $(TEST_NEEDS) | $(INSTALLED) ## all tests, with their counts
-	@HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
+	@BUILD=$(BUILD) HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
 	    sh .ci/run-tests $(BUILD)/logs $(if $(filter web,$(TESTS)),--web) \
 	    $(if $(WITH_TRAFFIC),--traffic) $(CHOSEN) $(filter tests/web/%,$(TESTS)) \
 	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh) \
+	    $(if $(WITH_LINT),tests/lint.sh) \
 	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh)
 
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
-	+$(MAKE) CONFIG=asan TESTS="$(filter-out web tests/web/% install soak hostile,$(TESTS))" test
+	+$(MAKE) CONFIG=asan TESTS="$(filter-out web tests/web/% install soak hostile lint,$(TESTS))" test
 
 # The kernel has no threads, and most of tests/api does one thing after the other: only what begins
 # jobs or threads, and the daemon itself, is worth the time here.
@@ -253,7 +255,7 @@ tsan: ## the threaded tests with ThreadSanitizer
 
 coverage: | $(INSTALLED) ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web tests/web/% install soak hostile,$(TESTS))" test
+	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web tests/web/% install soak hostile lint,$(TESTS))" test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 

@@ -1,0 +1,88 @@
+#!/bin/sh
+# lint.sh - does make lint see what it is there for? Plants one fault of each kind in a copy of the
+# sources and runs the check that must find it. The last line is `N passed, N failed`.
+#
+# Needs the libraries of a build, whose folder is BUILD (build).
+set -u
+
+build=$(cd "${BUILD:-build}" && pwd) || exit 1
+copy=$(mktemp -d) || exit 1
+trap 'rm -rf "$copy"' EXIT
+passed=0
+failed=0
+
+cp -R .ci core api server "$copy"
+cd "$copy" || exit 1
+
+sources() {
+    find core api server -name '*.[ch]' | sort
+}
+
+# verdict NAME STATUS OUTPUT WORDS: must the check have failed (WORDS given) or passed?
+verdict() {
+    if { [ -z "$4" ] && [ "$2" -eq 0 ]; } ||
+        { [ -n "$4" ] && [ "$2" -ne 0 ] && printf '%s' "$3" | grep -q -- "$4"; }; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        printf 'FAILED %s (exit %s)\n%s\n' "$1" "$2" "$3"
+    fi
+}
+
+# expect NAME WORDS COMMAND...
+expect() {
+    name=$1
+    words=$2
+    shift 2
+    output=$("$@" 2>&1)
+    verdict "$name" $? "$output" "$words"
+}
+
+# shellcheck disable=SC2046 # paths without blanks
+includes() { awk -f .ci/lint-includes $(sources); }
+# shellcheck disable=SC2046
+names() { awk -f .ci/lint-names $(sources); }
+# shellcheck disable=SC2046
+structs() { awk -f .ci/lint-structs $(sources); }
+
+expect 'the rooms are in order as they are' '' includes
+expect 'every name is defined once as it is' '' names
+expect 'every struct of functions is listed as it is' '' structs
+
+mkdir core/attic
+echo 'int nothing;' >core/attic/loose.c
+expect 'a file outside a room is found' 'no room' includes
+rm -r core/attic
+
+echo '#include "op/op.h"' >>core/mesh/mesh.h
+expect 'an include against the order is found' 'core/mesh is below core/op' includes
+cp "$OLDPWD/core/mesh/mesh.h" core/mesh/mesh.h
+
+# Two rooms that include each other: one of the two includes must run upward.
+echo '#include "api/write/edit_cost.h"' >>api/read/elements.h
+echo '#include "api/read/elements.h"' >>api/write/edit_cost.h
+expect 'a circle between rooms is found' 'api/read is below api/write' includes
+cp "$OLDPWD/api/read/elements.h" api/read/elements.h
+cp "$OLDPWD/api/write/edit_cost.h" api/write/edit_cost.h
+
+printf '\nint he_edge_split(void)\n{\n    return 0;\n}\n' >>core/repair/fill.c
+expect 'a prefixed name that is defined twice is found' 'he_edge_split is defined in' names
+cp "$OLDPWD/core/repair/fill.c" core/repair/fill.c
+
+printf '\ntypedef struct api_planted {\n    void (*begin)(void *self);\n    void (*end)(void *self);\n} api_planted;\n' >>api/limits.h
+expect 'a struct of functions that is not listed is found' 'api_planted is a struct' structs
+cp "$OLDPWD/api/limits.h" api/limits.h
+
+for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
+expect 'a room of too many files is found' 'more than one room' includes
+rm core/op/planted_*.c
+
+mkdir libraries
+cp "$build"/lib*.a libraries
+expect 'symbols are as they should be' '' sh .ci/lint-symbols libraries
+printf '#include <pthread.h>\nint he_planted(pthread_t *t, void *(*f)(void *))\n{\n    return pthread_create(t, 0, f, 0);\n}\n' >planted.c
+gcc -c -o planted.o planted.c && ar q libraries/libkernel.a planted.o
+expect 'a thread in the kernel is found' 'pthread_create' sh .ci/lint-symbols libraries
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
