@@ -33,7 +33,7 @@ typedef struct daemon_parts {
     srv_assets *assets;
     api_service *service;
     st_pool *pool, *makers;
-    st_parallel *hands;
+    st_parallel *parallel;
     api_job_table *job_table;
     srv_access_log *log;
     srv_http *http;
@@ -103,8 +103,8 @@ static bool open_threads(daemon_parts *parts, const srv_config *config)
     size_t jobs = config->jobs != 0 ? (size_t)config->jobs : cores() > 2 ? cores() : 2;
     parts->pool = st_pool_new("hedged-pool", jobs + SHORT_THREADS, (size_t)config->job_queue);
     parts->makers = st_pool_new("hedged-answers", cores(), MAKER_QUEUE);
-    parts->hands = st_parallel_new(cores() - 1);
-    return (parts->pool != NULL && parts->makers != NULL && parts->hands != NULL) ||
+    parts->parallel = st_parallel_new(cores() - 1);
+    return (parts->pool != NULL && parts->makers != NULL && parts->parallel != NULL) ||
            fail("no memory or threads to start");
 }
 
@@ -170,7 +170,7 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
                                          .jobs = parts->job_table,
                                          .pool = parts->pool,
                                          .plain_answers = config->no_compression,
-                                         .exec = st_parallel_exec(parts->hands),
+                                         .exec = st_parallel_exec(parts->parallel),
                                      });
     bool logs = config->log == SRV_LOG_ACCESS ||
                 (config->log == SRV_LOG_AUTO && isatty(STDERR_FILENO) == 0);
@@ -328,7 +328,7 @@ int srv_daemon_run(const srv_config *config)
     }
     st_pool_free(parts.pool);
     st_pool_free(parts.makers);
-    st_parallel_free(parts.hands);
+    st_parallel_free(parts.parallel);
     api_job_table_free(parts.job_table);
     api_service_free(parts.service);
     st_store_free(parts.store);

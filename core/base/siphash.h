@@ -1,4 +1,4 @@
-/* hash.h - a keyed hash of 128 bits: SipHash-2-4-128.
+/* siphash.h - a keyed hash of 128 bits: SipHash-2-4-128.
  *
  * J.-P. Aumasson and D. J. Bernstein, "SipHash: a fast short-input PRF" (INDOCRYPT 2012), with the
  * doubled output of its authors. Who does not know the key can neither foresee where a name falls

@@ -7,23 +7,23 @@
 #include <string.h>
 
 struct st_message {
-    uint32_t uses; /* by the ring and by listeners, under the feed's lock */
+    uint32_t uses; /* by the ring and by listeners, under the queue's lock */
     st_place place;
     size_t length;
     char bytes[];
 };
 
-void st_queue_init(st_queue *feed, st_place place)
+void st_queue_init(st_queue *queue, st_place place)
 {
-    *feed = (st_queue){.floor = place, .newest = place};
-    pthread_mutex_init(&feed->lock, NULL);
+    *queue = (st_queue){.floor = place, .newest = place};
+    pthread_mutex_init(&queue->lock, NULL);
 }
 
 /* --- under the lock --- */
 
-static st_message *message_at(const st_queue *feed, size_t i)
+static st_message *message_at(const st_queue *queue, size_t i)
 {
-    return feed->ring[(feed->first + i) & (feed->capacity - 1)];
+    return queue->ring[(queue->first + i) & (queue->capacity - 1)];
 }
 
 static void release(st_message *message)
@@ -33,68 +33,68 @@ static void release(st_message *message)
     }
 }
 
-static void drop_oldest(st_queue *feed)
+static void drop_oldest(st_queue *queue)
 {
-    st_message *message = message_at(feed, 0);
-    feed->floor = message->place;
-    feed->floor_number++;
-    feed->bytes -= message->length;
-    feed->first = (feed->first + 1) & (feed->capacity - 1);
-    feed->count--;
+    st_message *message = message_at(queue, 0);
+    queue->floor = message->place;
+    queue->floor_number++;
+    queue->bytes -= message->length;
+    queue->first = (queue->first + 1) & (queue->capacity - 1);
+    queue->count--;
     release(message);
 }
 
-static void drop_all(st_queue *feed)
+static void drop_all(st_queue *queue)
 {
-    while (feed->count > 0) {
-        drop_oldest(feed);
+    while (queue->count > 0) {
+        drop_oldest(queue);
     }
-    he_mem_free(feed->ring);
-    feed->ring = NULL;
-    feed->capacity = 0;
-    feed->first = 0;
+    he_mem_free(queue->ring);
+    queue->ring = NULL;
+    queue->capacity = 0;
+    queue->first = 0;
 }
 
-static bool reserve_place(st_queue *feed)
+static bool reserve_place(st_queue *queue)
 {
-    if (feed->count < feed->capacity) {
+    if (queue->count < queue->capacity) {
         return true;
     }
-    size_t capacity = feed->capacity == 0 ? 8 : 2 * feed->capacity;
+    size_t capacity = queue->capacity == 0 ? 8 : 2 * queue->capacity;
     st_message **ring = he_mem_array(NULL, capacity, sizeof(st_message *));
     if (ring == NULL) {
         return false;
     }
-    for (size_t i = 0; i < feed->count; i++) {
-        ring[i] = message_at(feed, i);
+    for (size_t i = 0; i < queue->count; i++) {
+        ring[i] = message_at(queue, i);
     }
-    he_mem_free(feed->ring);
-    feed->ring = ring;
-    feed->capacity = capacity;
-    feed->first = 0;
+    he_mem_free(queue->ring);
+    queue->ring = ring;
+    queue->capacity = capacity;
+    queue->first = 0;
     return true;
 }
 
-static bool is_followed(const st_queue *feed)
+static bool is_followed(const st_queue *queue)
 {
-    return feed->listeners > 0 ||
-           (feed->left != 0 && st_clock_micros() - feed->left < ST_QUEUE_LINGER);
+    return queue->listeners > 0 ||
+           (queue->left != 0 && st_clock_micros() - queue->left < ST_QUEUE_LINGER);
 }
 
-static void begin_waiting(st_queue *feed, st_listener *listener)
+static void begin_waiting(st_queue *queue, st_listener *listener)
 {
     if (!listener->waiting) {
         listener->waiting = true;
         listener->previous = NULL;
-        listener->next = feed->waiting;
+        listener->next = queue->waiting;
         if (listener->next != NULL) {
             listener->next->previous = listener;
         }
-        feed->waiting = listener;
+        queue->waiting = listener;
     }
 }
 
-static void end_waiting(st_queue *feed, st_listener *listener)
+static void end_waiting(st_queue *queue, st_listener *listener)
 {
     if (!listener->waiting) {
         return;
@@ -103,34 +103,34 @@ static void end_waiting(st_queue *feed, st_listener *listener)
     if (listener->previous != NULL) {
         listener->previous->next = listener->next;
     } else {
-        feed->waiting = listener->next;
+        queue->waiting = listener->next;
     }
     if (listener->next != NULL) {
         listener->next->previous = listener->previous;
     }
 }
 
-static void wake_all(st_queue *feed)
+static void wake_all(st_queue *queue)
 {
-    while (feed->waiting != NULL) {
-        st_listener *listener = feed->waiting;
-        end_waiting(feed, listener);
+    while (queue->waiting != NULL) {
+        st_listener *listener = queue->waiting;
+        end_waiting(queue, listener);
         listener->wake(listener->context);
     }
 }
 
-static uint64_t newest_number(const st_queue *feed)
+static uint64_t newest_number(const st_queue *queue)
 {
-    return feed->floor_number + feed->count;
+    return queue->floor_number + queue->count;
 }
 
 /* Places are in the order of stamps: the first message that may not be read. */
-static size_t first_forbidden(const st_queue *feed)
+static size_t first_forbidden(const st_queue *queue)
 {
-    size_t low = 0, high = feed->count;
+    size_t low = 0, high = queue->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (message_at(feed, middle)->place.stamp <= feed->allowed) {
+        if (message_at(queue, middle)->place.stamp <= queue->allowed) {
             low = middle + 1;
         } else {
             high = middle;
@@ -141,18 +141,18 @@ static size_t first_forbidden(const st_queue *feed)
 
 /* --- the maker's side --- */
 
-void st_queue_clear(st_queue *feed)
+void st_queue_clear(st_queue *queue)
 {
-    assert(feed->listeners == 0);
-    drop_all(feed);
-    pthread_mutex_destroy(&feed->lock);
+    assert(queue->listeners == 0);
+    drop_all(queue);
+    pthread_mutex_destroy(&queue->lock);
 }
 
-bool st_queue_is_followed(st_queue *feed)
+bool st_queue_is_followed(st_queue *queue)
 {
-    pthread_mutex_lock(&feed->lock);
-    bool followed = is_followed(feed);
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_lock(&queue->lock);
+    bool followed = is_followed(queue);
+    pthread_mutex_unlock(&queue->lock);
     return followed;
 }
 
@@ -168,112 +168,112 @@ static st_message *message_new(const char *bytes, size_t length)
 }
 
 /* Takes the message, at the newest place; NULL: it is lost. */
-static void append(st_queue *feed, st_message *message)
+static void append(st_queue *queue, st_message *message)
 {
-    if (message == NULL || !reserve_place(feed)) {
+    if (message == NULL || !reserve_place(queue)) {
         release(message);
-        drop_all(feed);
-        feed->floor = feed->newest;
-        feed->floor_number++;
+        drop_all(queue);
+        queue->floor = queue->newest;
+        queue->floor_number++;
         return;
     }
-    message->place = feed->newest;
-    feed->ring[(feed->first + feed->count) & (feed->capacity - 1)] = message;
-    feed->count++;
-    feed->bytes += message->length;
-    while (feed->count > ST_QUEUE_MESSAGES || feed->bytes > ST_QUEUE_BYTES) {
-        drop_oldest(feed);
+    message->place = queue->newest;
+    queue->ring[(queue->first + queue->count) & (queue->capacity - 1)] = message;
+    queue->count++;
+    queue->bytes += message->length;
+    while (queue->count > ST_QUEUE_MESSAGES || queue->bytes > ST_QUEUE_BYTES) {
+        drop_oldest(queue);
     }
 }
 
-void st_queue_add(st_queue *feed, st_place place, const char *bytes, size_t length)
+void st_queue_add(st_queue *queue, st_place place, const char *bytes, size_t length)
 {
     st_message *message = message_new(bytes, length);
-    pthread_mutex_lock(&feed->lock);
-    assert(place.stamp > feed->newest.stamp && !feed->ended);
-    feed->newest = place;
-    append(feed, message);
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_lock(&queue->lock);
+    assert(place.stamp > queue->newest.stamp && !queue->ended);
+    queue->newest = place;
+    append(queue, message);
+    pthread_mutex_unlock(&queue->lock);
 }
 
-void st_queue_add_beside(st_queue *feed, const char *bytes, size_t length)
+void st_queue_add_beside(st_queue *queue, const char *bytes, size_t length)
 {
     st_message *message = message_new(bytes, length);
-    pthread_mutex_lock(&feed->lock);
-    if (feed->ended) {
+    pthread_mutex_lock(&queue->lock);
+    if (queue->ended) {
         release(message);
     } else {
-        append(feed, message);
-        if (feed->newest.stamp <= feed->allowed) {
-            wake_all(feed);
+        append(queue, message);
+        if (queue->newest.stamp <= queue->allowed) {
+            wake_all(queue);
         }
     }
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_unlock(&queue->lock);
 }
 
-uint64_t st_queue_newest(st_queue *feed)
+uint64_t st_queue_newest(st_queue *queue)
 {
-    pthread_mutex_lock(&feed->lock);
-    uint64_t stamp = feed->newest.stamp;
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_lock(&queue->lock);
+    uint64_t stamp = queue->newest.stamp;
+    pthread_mutex_unlock(&queue->lock);
     return stamp;
 }
 
-void st_queue_allow(st_queue *feed, uint64_t stamp)
+void st_queue_allow(st_queue *queue, uint64_t stamp)
 {
-    pthread_mutex_lock(&feed->lock);
-    if (stamp > feed->allowed) {
-        feed->allowed = stamp;
-        wake_all(feed);
+    pthread_mutex_lock(&queue->lock);
+    if (stamp > queue->allowed) {
+        queue->allowed = stamp;
+        wake_all(queue);
     }
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_unlock(&queue->lock);
 }
 
-void st_queue_end(st_queue *feed)
+void st_queue_end(st_queue *queue)
 {
-    pthread_mutex_lock(&feed->lock);
-    feed->ended = true;
-    wake_all(feed);
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_lock(&queue->lock);
+    queue->ended = true;
+    wake_all(queue);
+    pthread_mutex_unlock(&queue->lock);
 }
 
-void st_queue_shed(st_queue *feed)
+void st_queue_shed(st_queue *queue)
 {
-    pthread_mutex_lock(&feed->lock);
-    if (feed->listeners == 0) {
-        drop_all(feed);
+    pthread_mutex_lock(&queue->lock);
+    if (queue->listeners == 0) {
+        drop_all(queue);
     }
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_unlock(&queue->lock);
 }
 
 /* --- the listener's side --- */
 
-bool st_queue_listen(st_queue *feed, st_listener *listener, size_t most)
+bool st_queue_listen(st_queue *queue, st_listener *listener, size_t most)
 {
-    pthread_mutex_lock(&feed->lock);
-    bool room = feed->listeners < most;
+    pthread_mutex_lock(&queue->lock);
+    bool room = queue->listeners < most;
     if (room) {
-        *listener = (st_listener){.feed = feed, .number = newest_number(feed)};
-        feed->listeners++;
+        *listener = (st_listener){.queue = queue, .number = newest_number(queue)};
+        queue->listeners++;
     }
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_unlock(&queue->lock);
     return room;
 }
 
 bool st_queue_rewind(st_listener *listener, uint64_t key)
 {
-    st_queue *feed = listener->feed;
-    pthread_mutex_lock(&feed->lock);
-    bool found = feed->floor.key == key;
-    uint64_t number = feed->floor_number;
-    for (size_t i = 0; i < feed->count && !found; i++) {
-        found = message_at(feed, i)->place.key == key;
+    st_queue *queue = listener->queue;
+    pthread_mutex_lock(&queue->lock);
+    bool found = queue->floor.key == key;
+    uint64_t number = queue->floor_number;
+    for (size_t i = 0; i < queue->count && !found; i++) {
+        found = message_at(queue, i)->place.key == key;
         number++;
     }
     if (found) {
         listener->number = number;
     }
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_unlock(&queue->lock);
     return found;
 }
 
@@ -285,30 +285,31 @@ void st_queue_wake(st_listener *listener, void (*wake)(void *context), void *con
 
 void st_queue_leave(st_listener *listener)
 {
-    st_queue *feed = listener->feed;
-    if (feed == NULL) {
+    st_queue *queue = listener->queue;
+    if (queue == NULL) {
         return;
     }
-    pthread_mutex_lock(&feed->lock);
-    end_waiting(feed, listener);
+    pthread_mutex_lock(&queue->lock);
+    end_waiting(queue, listener);
     release(listener->message);
-    feed->listeners--;
-    feed->left = st_clock_micros();
-    pthread_mutex_unlock(&feed->lock);
+    queue->listeners--;
+    queue->left = st_clock_micros();
+    pthread_mutex_unlock(&queue->lock);
     *listener = (st_listener){0};
 }
 
 /* The next message it may read becomes the one it is in the middle of. */
-static st_queue_result next_message(st_queue *feed, st_listener *listener)
+static st_queue_result next_message(st_queue *queue, st_listener *listener)
 {
-    if (listener->number < feed->floor_number) {
-        return feed->floor.stamp <= feed->allowed ? ST_QUEUE_BEHIND : ST_QUEUE_WAIT;
+    if (listener->number < queue->floor_number) {
+        return queue->floor.stamp <= queue->allowed ? ST_QUEUE_BEHIND : ST_QUEUE_WAIT;
     }
-    if (listener->number == newest_number(feed)) {
-        return feed->ended && feed->newest.stamp <= feed->allowed ? ST_QUEUE_ENDED : ST_QUEUE_WAIT;
+    if (listener->number == newest_number(queue)) {
+        return queue->ended && queue->newest.stamp <= queue->allowed ? ST_QUEUE_ENDED
+                                                                     : ST_QUEUE_WAIT;
     }
-    st_message *message = message_at(feed, (size_t)(listener->number - feed->floor_number));
-    if (message->place.stamp > feed->allowed) {
+    st_message *message = message_at(queue, (size_t)(listener->number - queue->floor_number));
+    if (message->place.stamp > queue->allowed) {
         return ST_QUEUE_WAIT;
     }
     message->uses++;
@@ -334,13 +335,13 @@ static size_t copy_out(st_listener *listener, char *buffer, size_t size)
 
 st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, size_t *got)
 {
-    st_queue *feed = listener->feed;
+    st_queue *queue = listener->queue;
     st_queue_result step = ST_QUEUE_GOT;
     size_t used = 0;
-    pthread_mutex_lock(&feed->lock);
+    pthread_mutex_lock(&queue->lock);
     while (used < size && step == ST_QUEUE_GOT) {
         if (listener->message == NULL) {
-            step = next_message(feed, listener);
+            step = next_message(queue, listener);
         }
         if (step == ST_QUEUE_GOT) {
             used += copy_out(listener, buffer + used, size - used);
@@ -349,20 +350,20 @@ st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, 
     if (used > 0) {
         step = ST_QUEUE_GOT;
     } else if (step == ST_QUEUE_WAIT) {
-        begin_waiting(feed, listener);
+        begin_waiting(queue, listener);
     }
-    pthread_mutex_unlock(&feed->lock);
+    pthread_mutex_unlock(&queue->lock);
     *got = used;
     return step;
 }
 
 st_place st_queue_skip(st_listener *listener)
 {
-    st_queue *feed = listener->feed;
-    pthread_mutex_lock(&feed->lock);
-    size_t i = first_forbidden(feed);
-    st_place place = i == 0 ? feed->floor : message_at(feed, i - 1)->place;
-    listener->number = feed->floor_number + i;
-    pthread_mutex_unlock(&feed->lock);
+    st_queue *queue = listener->queue;
+    pthread_mutex_lock(&queue->lock);
+    size_t i = first_forbidden(queue);
+    st_place place = i == 0 ? queue->floor : message_at(queue, i - 1)->place;
+    listener->number = queue->floor_number + i;
+    pthread_mutex_unlock(&queue->lock);
     return place;
 }

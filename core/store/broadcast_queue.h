@@ -1,6 +1,6 @@
-/* feed.h - messages for many listeners, kept once.
+/* broadcast_queue.h - messages for many listeners, kept once.
  *
- * A feed is a bounded queue of messages that any number of listeners read, each at its own pace.
+ * A queue is bounded; any number of listeners read its messages, each at its own pace.
  * Messages are bytes; what they mean is their maker's business. Each has a place: a stamp, which
  * grows with every message of a change, and a key, which need not. What is no change is put beside
  * the newest one, at its place. Listeners go by numbers, which have no gaps.
@@ -15,9 +15,9 @@
  * read. It is never waited for, and never costs more than the message it is in the middle of.
  *
  * A message may be read once its stamp is allowed: a revision that is not yet durable is in the
- * feed, in its order, and is seen by nobody (D1).
+ * queue, in its order, and is seen by nobody (D1).
  *
- * Every function takes the feed's lock; wakes are called under it and may not call back. */
+ * Every function takes the queue's lock; wakes are called under it and may not call back. */
 #ifndef HE_STORE_BROADCAST_QUEUE_H
 #define HE_STORE_BROADCAST_QUEUE_H
 
@@ -37,10 +37,10 @@ typedef struct st_message st_message;
 /* In the storage of its owner, who outlives no call of `wake` that it has not ended by
  * st_queue_leave. */
 typedef struct st_listener {
-    struct st_queue *feed; /* NULL: it listens to none */
-    uint64_t number;       /* of the message it read last, or is reading */
-    st_message *message;   /* being read, NULL: none */
-    size_t sent;           /* of it */
+    struct st_queue *queue; /* NULL: it listens to none */
+    uint64_t number;        /* of the message it read last, or is reading */
+    st_message *message;    /* being read, NULL: none */
+    size_t sent;            /* of it */
     void (*wake)(void *context);
     void *context;
     bool waiting; /* in the list of those to be woken */
@@ -62,27 +62,27 @@ typedef struct st_queue {
 } st_queue;
 
 /* What comes is after `place`. */
-void st_queue_init(st_queue *feed, st_place place);
+void st_queue_init(st_queue *queue, st_place place);
 /* Nobody may listen. */
-void st_queue_clear(st_queue *feed);
+void st_queue_clear(st_queue *queue);
 
 /* Does, or did until lately, anybody listen, so that messages are worth making? */
-bool st_queue_is_followed(st_queue *feed);
+bool st_queue_is_followed(st_queue *queue);
 /* Add a message; its bytes are copied. NULL bytes, or no memory: who reads up to here is behind. */
-void st_queue_add(st_queue *feed, st_place place, const char *bytes, size_t length);
+void st_queue_add(st_queue *queue, st_place place, const char *bytes, size_t length);
 /* The same at the place of the newest message. After the end it is left out. */
-void st_queue_add_beside(st_queue *feed, const char *bytes, size_t length);
+void st_queue_add_beside(st_queue *queue, const char *bytes, size_t length);
 /* The newest stamp. */
-uint64_t st_queue_newest(st_queue *feed);
+uint64_t st_queue_newest(st_queue *queue);
 /* Messages up to this stamp may be read: wakes who waits. */
-void st_queue_allow(st_queue *feed, uint64_t stamp);
+void st_queue_allow(st_queue *queue, uint64_t stamp);
 /* Nothing will be added any more. */
-void st_queue_end(st_queue *feed);
+void st_queue_end(st_queue *queue);
 /* Forget the messages if nobody listens. */
-void st_queue_shed(st_queue *feed);
+void st_queue_shed(st_queue *queue);
 
 /* Begin after the newest message, allowed or not; false when `most` listen already. */
-bool st_queue_listen(st_queue *feed, st_listener *listener, size_t most);
+bool st_queue_listen(st_queue *queue, st_listener *listener, size_t most);
 /* Go back to what follows the first message of this key: false when that is not all there. */
 bool st_queue_rewind(st_listener *listener, uint64_t key);
 /* What to call after ST_QUEUE_WAIT. Before the first read. */
