@@ -27,6 +27,7 @@ typedef struct api_out {
     unsigned depth;
     bool keyed;             /* a key waits for its value */
     struct he_watch *watch; /* asked in long lists whether to go on; NULL: they are written whole */
+    unsigned parts;         /* of lists of ids, written since the watch was made */
 } api_out;
 
 void api_out_init(api_out *out, api_text *text);

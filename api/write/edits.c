@@ -253,8 +253,8 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return true;
 }
 
-/* Operations of a list that are not told to whoever may end it. */
-enum { OPS_PER_LOOK = 16 };
+/* A list looks at its watch after so many operations or so much work, which takes a system call. */
+enum { OPS_PER_LOOK = 256 };
 
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
 {
@@ -262,13 +262,18 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
         he_watch_span(&x->watch, OPS_SHARE);
         return run_op(x, e, mesh, delta, &x->root);
     }
+    uint64_t next = 0;
     for (size_t i = 0; i < e->count; i++) {
         he_error err = {0};
         he_watch_span(&x->watch,
                       COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) / (double)e->count);
-        e->paid = PHASES;
-        if (i % OPS_PER_LOOK == 0 && he_watch_phase(&x->watch, "editing", 0, &err) != HE_OK) {
-            return api_fail_core(x, &err);
+        uint64_t work = e->work + delta->count / API_ROWS_OF_WORK;
+        if (i % OPS_PER_LOOK == 0 || work >= next) {
+            next = work + HE_WATCH_STRIDE;
+            e->paid = PHASES;
+            if (he_watch_phase(&x->watch, "editing", 0, &err) != HE_OK) {
+                return api_fail_core(x, &err);
+            }
         }
         if (!api_item_read(&x->ops, i, &e->list, &e->op) || !run_op(x, e, mesh, delta, &e->op.in)) {
             return false;
