@@ -467,6 +467,7 @@ static void run_claimed(api_exchange *x)
         api_fail_core(x, &err);
         return;
     }
+    he_mesh_expend(copy);
     he_mesh_record(copy, e->delta);
     limit_work(x, e);
     bool publish = edit(x, e, copy, e->delta, &barrier);

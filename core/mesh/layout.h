@@ -31,6 +31,7 @@ struct he_mesh {
     he_content c;
     he_delta *delta;      /* where writes are recorded, or NULL */
     he_watch *watch;      /* who is told of long work, or NULL */
+    bool expendable;      /* see he_mesh_expend */
     struct he_kept *kept; /* of a mesh that stays as it is: see long_faces.h. Else NULL */
 };
 

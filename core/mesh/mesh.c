@@ -26,6 +26,11 @@ void he_mesh_watch(he_mesh *mesh, he_watch *watch)
     mesh->watch = watch;
 }
 
+void he_mesh_expend(he_mesh *mesh)
+{
+    mesh->expendable = true;
+}
+
 he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err)
 {
     return he_mesh_copy_watched(mesh, NULL, out, err);

@@ -100,6 +100,10 @@ bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 /* Tell `watch` about all long work with this mesh, which may then fail with HE_CANCELLED; NULL
  * stops. For a mesh that nobody else uses; the watch outlives its use. */
 void he_mesh_watch(he_mesh *mesh, he_watch *watch);
+/* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled: a
+ * cancelled edit then leaves it half done, for taking back much work takes about as long as doing
+ * it. Any other failure leaves it as it was, as always. */
+void he_mesh_expend(he_mesh *mesh);
 
 /* What a mesh costs, counted from the capacities of its columns. */
 size_t he_mesh_bytes(const he_mesh *mesh);

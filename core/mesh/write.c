@@ -296,7 +296,7 @@ he_status he_edit_begin(he_mesh *m, he_bracket *out, he_error *err)
 
 he_status he_edit_end(he_mesh *m, he_bracket *bracket, he_status status)
 {
-    if (status != HE_OK) {
+    if (status != HE_OK && !(status == HE_CANCELLED && m->expendable)) {
         he_delta_rollback(m, bracket->mark);
     }
     if (bracket->own != NULL) {

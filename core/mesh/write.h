@@ -291,7 +291,8 @@ typedef enum he_replacing { HE_KEEPS_IDS, HE_RENUMBERS } he_replacing;
 HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err);
 
 /* A bracket around several edits that succeed or fail as one. While no delta is attached it brings
- * its own, so that it can roll back. he_edit_end returns `status` unchanged. */
+ * its own, so that it can roll back. he_edit_end returns `status` unchanged. A cancelled edit of an
+ * expendable mesh (he_mesh_expend) is not rolled back. */
 typedef struct he_bracket {
     he_delta *own;
     he_savepoint mark;

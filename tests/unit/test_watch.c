@@ -394,6 +394,38 @@ static void an_operation_is_given_up_and_the_mesh_is_as_it_was(void **state)
     he_mesh_free(mesh);
 }
 
+static void a_cancelled_edit_of_an_expendable_mesh_is_left_half_done(void **state)
+{
+    (void)state;
+    he_mesh *mesh;
+    size_t left = 0;
+    he_status status = HE_CANCELLED;
+    assert_int_equal(make(NULL, &mesh), HE_OK);
+    he_mem_set_hook(&counting);
+    blocks = 0;
+    for (long n = 1; status == HE_CANCELLED; n++) {
+        he_mesh *copy;
+        he_watch watch;
+        listener l = {.give_up_at = n};
+        he_delta *delta = he_delta_new();
+        assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
+        he_mesh_expend(copy);
+        he_watch_init(&watch, hear, &l);
+        he_mesh_watch(copy, &watch);
+        he_mesh_record(copy, delta);
+        status = run_triangulate(copy);
+        left += status == HE_CANCELLED ? delta->count : 0;
+        he_mesh_record(copy, NULL);
+        he_mesh_free(copy);
+        he_delta_free(delta);
+        assert_int_equal(blocks, 0);
+    }
+    assert_int_equal(status, HE_OK);
+    assert_true(left > 0);
+    he_mem_set_hook(NULL);
+    he_mesh_free(mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -401,6 +433,7 @@ int main(void)
         cmocka_unit_test(making_is_given_up_anywhere_and_leaves_nothing),
         cmocka_unit_test(a_file_that_is_read_at_its_end_is_given_up_anywhere),
         cmocka_unit_test(an_operation_is_given_up_and_the_mesh_is_as_it_was),
+        cmocka_unit_test(a_cancelled_edit_of_an_expendable_mesh_is_left_half_done),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
