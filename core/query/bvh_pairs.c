@@ -188,15 +188,14 @@ static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
     return fabs(off) > reach + 1e-6 * size;
 }
 
+/* Asked only where there are hubs or wide faces: the boxes of other meshes tell enough apart. */
 static bool is_needless(void *context, uint32_t a, uint32_t b)
 {
     const walk *w = context;
     const he_bvh *tree = w->search.tree;
-    if (w->commons != NULL) {
-        common shared = both(&w->commons[a], &w->commons[b]);
-        if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
-            return true; /* tried at the hub, or parts of one face */
-        }
+    common shared = both(&w->commons[a], &w->commons[b]);
+    if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
+        return true; /* tried at the hub, or parts of one face */
     }
     return a != b && (is_beside(&tree->discs[a], &tree->nodes[b]) ||
                       is_beside(&tree->discs[b], &tree->nodes[a]));
@@ -227,7 +226,7 @@ static he_status prepare(walk *w, he_error *err)
 
 static he_status search(walk *w, he_error *err)
 {
-    static const he_boxes_visit visit = {is_needless, try_leaves};
+    static const he_boxes_visit plain = {NULL, try_leaves}, grouped = {is_needless, try_leaves};
     he_pair_search *s = &w->search;
     he_status status = he_watch_phase(s->budget->watch, "intersecting", 1, err);
     if (status == HE_OK) {
@@ -237,7 +236,8 @@ static he_status search(walk *w, he_error *err)
         status = he_pairs_at_hub(s, hub, err);
     }
     if (status == HE_OK) {
-        status = he_boxes_visit_pairs(s->tree->nodes, &visit, w, s->budget, err);
+        status = he_boxes_visit_pairs(s->tree->nodes, w->commons == NULL ? &plain : &grouped, w,
+                                      s->budget, err);
     }
     he_mem_free(w->commons);
     he_mem_free(s->hubs_of);
