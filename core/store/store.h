@@ -121,7 +121,7 @@ typedef enum st_derived_kind {
 } st_derived_kind;
 
 /* The longest that st_derived_wait waits, so that its caller can look whether it was cancelled. */
-enum { ST_DERIVED_MILLIS = 100 };
+enum { ST_DERIVED_MILLIS = 50 };
 
 typedef struct st_derived {
     void *value; /* NULL: nothing is kept */
