@@ -33,8 +33,13 @@ run_until_ready() {
 
 if [ "${1-}" = --inside ]; then
     cd /src/hedge || exit 1
+    # A few rounds, for those that take rounds.
     case $2 in
     run) run_until_ready ;;
+    bench) make bench RUNS=1 SCALE=0.1 ;;
+    fuzz) make fuzz FUZZ_SECONDS=1 ;;
+    soak) make soak MINUTES=1 ;;
+    proof) make proof ROUNDS=1 ;;
     */*) sh "$2" ;;
     *) make "$2" ;;
     esac
@@ -54,7 +59,7 @@ if [ "${1-}" = --enter ]; then
         mount --bind "$downloads/apt" "$root/var/cache/apt/archives" &&
         mount --bind "$downloads/npm" "$root/root/.npm" || exit 1
     set -- PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-        RUNS=1 SCALE=0.1 MINUTES=1 ROUNDS=1 FUZZ_SECONDS=1 ${TESTS:+"TESTS=$TESTS"}
+        ${TESTS:+"TESTS=$TESTS"}
     for variable in $(env | sed -n 's/^\(npm_config_[A-Za-z0-9_]*\|[A-Za-z]*_[Pp][Rr][Oo][Xx][Yy]\)=.*/\1/p'); do
         eval "set -- \"\$@\" \"$variable=\$$variable\""
     done

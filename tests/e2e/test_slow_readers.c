@@ -97,8 +97,8 @@ static void end_quickly(slow_client *s, const char *whole, size_t length)
 static void slow_downloads_delay_nobody(void **state)
 {
     (void)state;
-    daemon_process *d = daemon_start(
-        (const char *const[]){"--log", "off", "--workers", "2", "--body-grace", "600", NULL});
+    daemon_process *d = daemon_start((const char *const[]){
+        "--log", "off", "--workers", "2", "--body-grace", "3600", "--idle-timeout", "3600", NULL});
     client *c = client_new(d);
     char body[128];
     int length =
@@ -230,8 +230,8 @@ static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
 {
     (void)state;
     int sockets[IDLERS];
-    daemon_process *d =
-        daemon_start((const char *const[]){"--log", "off", "--body-grace", "600", NULL});
+    daemon_process *d = daemon_start((const char *const[]){"--log", "off", "--body-grace", "3600",
+                                                           "--idle-timeout", "3600", NULL});
     client *c = client_new(d);
     put_grid(c, LARGE_SIDE);
     reply_done(reply_expect(200, client_get(c, "/v1/meshes/m/content?format=obj")));
