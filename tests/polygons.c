@@ -141,7 +141,8 @@ static void straight_sides(uint32_t n, he_vec3 *out)
     for (uint32_t i = 0; i < n; i++) {
         uint32_t side = (uint32_t)((uint64_t)4 * i / n),
                  first = (uint32_t)(((uint64_t)side * n + 3) / 4);
-        double t = i - first, m = n / 4 + 1;
+        uint32_t most = n / 4 + 1;
+        double t = i - first, m = most;
         const he_vec3 places[] = {{t, 0, 0}, {m, t, 0}, {m - t, m, 0}, {0, m - t, 0}};
         out[i] = places[side];
     }
@@ -204,7 +205,8 @@ static void grow_tree(cells *c, uint32_t count, uint32_t *stack)
 static he_vec3 corner_of_cell(const cells *c, uint32_t at, uint32_t which)
 {
     static const double corner[4][2] = {{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {0.2, 0.8}};
-    return (he_vec3){at % c->side + corner[which][0], at / c->side + corner[which][1], 0};
+    uint32_t column = at % c->side, row = at / c->side;
+    return (he_vec3){column + corner[which][0], row + corner[which][1], 0};
 }
 
 /* With the wall on the right, until the beginning. */
@@ -283,8 +285,9 @@ static void scribble(uint32_t n, he_vec3 *out)
 /* Turns about its centre nearly as often as it has points. */
 static void dense_star(uint32_t n, he_vec3 *out)
 {
+    const uint32_t half = n / 2;
     for (uint32_t i = 0; i < n; i++) {
-        double angle = TURN / 2 * (double)i * (n / 2 - 1) / (n / 2);
+        double angle = TURN / 2 * (double)i * (half - 1) / half;
         out[i] = polar(i % 2 == 0 ? 1 : 0.999, angle);
     }
 }

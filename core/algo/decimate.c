@@ -245,7 +245,7 @@ he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
     he_status status = he_watch_phase(m->watch, "collapsing edges", 1, err);
     uint64_t next = WORK_PER_LOOK;
     for (uint64_t step = 0; status == HE_OK && he_mesh_faces(m) > faces; step++) {
-        uint32_t edges[HE_QUEUE_CHUNK], bucket;
+        uint32_t edges[HE_QUEUE_CHUNK], bucket = 0;
         uint32_t count = he_queue_take(&d->queue, edges, &bucket);
         if (count == 0 && !he_decimation_catch_up(d)) {
             break;

@@ -125,7 +125,8 @@ static void expect_budget(daemon_process *d, client *c, const char *words)
     }
     free(log);
     reply r = reply_expect(200, client_get(c, "/v1/meshes"));
-    assert_true(reply_number(&r, "memory_budget") == (double)(LIMIT_MIB * MIB / 4 * 3));
+    const uint64_t budget = (uint64_t)LIMIT_MIB * MIB / 4 * 3;
+    assert_true(reply_number(&r, "memory_budget") == (double)budget);
     reply_free(&r);
 }
 
