@@ -2,8 +2,8 @@
  *
  * A thread that has work in parts goes through them itself, and idle threads of this pool take some
  * of them. The owner never waits for one to come: with all of them busy, or none, it does the work
- * alone, and work inside a part may be cut into parts again. Only parts that another thread has begun
- * are waited for, and none takes long.
+ * alone, and work inside a part may be cut into parts again. Only parts that another thread has
+ * begun are waited for, and none takes long.
  *
  * Idle threads take a part of each work in turn, so that a large import does not keep them from
  * another. One lock, held for as long as it takes to give out a part. */
