@@ -22,15 +22,18 @@ static void give_back(void *context, void *block)
     }
 }
 
-/* Counting first and taking back on failure keeps two threads from passing the ceiling together. */
+/* Compared and counted in one step: two threads cannot pass the ceiling together, and no other
+ * thread ever sees more than is lent. */
 static bool fits(api_packing_memory *memory, size_t size)
 {
-    size_t before = atomic_fetch_add_explicit(memory->lent, size, memory_order_relaxed);
-    if (size <= memory->most && before <= memory->most - size) {
-        return true;
-    }
-    atomic_fetch_sub_explicit(memory->lent, size, memory_order_relaxed);
-    return false;
+    size_t lent = atomic_load_explicit(memory->lent, memory_order_relaxed);
+    do {
+        if (size > memory->most || lent > memory->most - size) {
+            return false;
+        }
+    } while (!atomic_compare_exchange_weak_explicit(memory->lent, &lent, lent + size,
+                                                    memory_order_relaxed, memory_order_relaxed));
+    return true;
 }
 
 static bool lend(api_packing_memory *memory, size_t size)
