@@ -114,7 +114,7 @@ enum {
  * transformed, API_EDIT_PER_SECOND. An operation counts with its pace. A row of the delta takes as
  * long as half an element, and a step about a hub as long as a sixteenth. The steps of all
  * operations of a list have a maximum, too, which a job meets after half a minute. */
-#define API_WORKER_EDITS    ((uint64_t)1 << 17)
+#define API_WORKER_EDITS    ((uint64_t)1 << 16)
 #define API_POOL_EDITS      ((uint64_t)1 << 22)
 #define API_MAX_EDITS_STEPS ((uint64_t)1 << 33)
 enum { API_ROWS_OF_WORK = 2, API_STEPS_OF_WORK = 16 };
