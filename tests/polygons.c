@@ -75,7 +75,7 @@ static void interlocked(uint32_t n, he_vec3 *out)
     }
 }
 
-/* The same teeth, longer and turned. */
+/* The teeth of interlocked(), longer and turned. */
 static void zigzag(uint32_t n, he_vec3 *out)
 {
     interlocked(n, out);

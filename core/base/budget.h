@@ -20,7 +20,8 @@ typedef struct he_budget {
 
 enum { HE_BUDGET_STRIDE = 1 << 15 };
 
-/* For he_budget_take alone: the refusal, and the question to the watch. */
+/* The slow part of he_budget_take, called by it alone: the refusal, and the question to the watch.
+ */
 HE_NODISCARD he_status he_budget_exhausted(he_budget *budget, he_error *err);
 HE_NODISCARD he_status he_budget_ask(he_budget *budget, he_error *err);
 

@@ -53,9 +53,9 @@ typedef struct he_drawing {
  * does not fit its bits. he_drawing_clear frees. */
 HE_NODISCARD he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, const he_frame *frame,
                                        he_error *err);
-/* The same to draw some live faces only, in rising order. Returns HE_LIMIT if those that
- * are no fan would take more than `most` steps: for each of their corners one for each of the
- * face's, HE_EXACT_CORNERS at most. */
+/* Prepares, as he_drawing_init does, to draw some live faces only, in rising order. Returns
+ * HE_LIMIT if those that are no fan would take more than `most` steps: for each of their corners
+ * one for each of the face's, HE_EXACT_CORNERS at most. */
 HE_NODISCARD he_status he_drawing_init_faces(he_drawing *drawing, const he_mesh *m,
                                              const he_frame *frame, const uint32_t *faces,
                                              size_t count, uint64_t most, he_error *err);

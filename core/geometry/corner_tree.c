@@ -305,7 +305,7 @@ uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b,
         return HE_NONE;
     }
     const triangle t = triangle_of(tree->flat, a, b, c);
-    /* Of each level one node waits, and two of the last. */
+    /* One node of each level waits, and two of the last. */
     uint32_t stack[34], depth = 0;
     stack[depth++] = 1;
     while (depth > 0) {

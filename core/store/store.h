@@ -154,7 +154,7 @@ void st_write_keyed(st_mesh *mesh, const st_keyed *keyed);
  * it needs was reserved by st_write_begin. */
 void st_write_commit(st_mesh *mesh, const char *ops, bool barrier, st_mesh_info *info);
 void st_write_abort(st_mesh *mesh); /* rolls back */
-/* For the history: what the change did that will be committed; without it the history has no
+/* Tells the history what the change did that will be committed; without it the history has no
  * counts. */
 void st_write_tally(st_mesh *mesh, const st_tally *tally);
 /* Could what was recorded so far be undone if it were committed? False when it is larger than the

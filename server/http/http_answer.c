@@ -83,7 +83,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
-        /* Of the buffer only the request's headers are needed. */
+        /* Only the request's headers are needed of the buffer. */
         srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, st_clock_micros());
         srv_live_aside(&r->stream);
         return 0;

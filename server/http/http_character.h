@@ -50,7 +50,7 @@ static inline bool srv_is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* Of a header's value: visible, blank, or beyond ASCII. */
+/* May the character stand in a header's value? It is visible, blank, or beyond ASCII. */
 static inline bool srv_is_value(char c)
 {
     unsigned char u = (unsigned char)c;

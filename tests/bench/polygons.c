@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-/* Of the processor: other work on the machine does not count. */
+/* Time of the processor: other work on the machine does not count. */
 static double seconds(void)
 {
     struct timespec now;
