@@ -59,8 +59,6 @@ typedef struct api_load {
     bool reads;       /* it changes nothing */
     double seconds;   /* about how long it takes; far too little for some */
     const char *mesh; /* id of the mesh it is about, "" where there is none */
-    st_mesh *about;   /* that mesh, held by the exchange; NULL while there is none */
-    bool claims;      /* the exchange has claimed it: see st_claim */
 } api_load;
 
 enum { API_ANSWER_HEADERS = 16 };
@@ -140,7 +138,8 @@ void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *p
  * begins anew: api_end returns API_WORK. */
 void api_watch_worker(api_exchange *exchange,
                       bool (*tell)(void *context, const char *phase, double done), void *context);
-/* For `tell`, before it returns false: what the client is answered with in place of HE_CANCELLED.
+/* Called by `tell` before it returns false: what the client is answered with in place of
+ * HE_CANCELLED.
  */
 void api_give_up(api_exchange *exchange, int code, const char *text);
 /* After API_WORK and API_JOB, before the work has begun. */

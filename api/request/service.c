@@ -260,9 +260,7 @@ api_load api_load_of(const api_exchange *x)
     double seconds = (double)amount / API_EDIT_PER_SECOND;
     return (api_load){.reads = !(x->route->flags & API_WRITES),
                       .seconds = x->seconds > seconds ? x->seconds : seconds,
-                      .mesh = mesh == NULL ? "" : mesh,
-                      .about = x->mesh,
-                      .claims = x->claimed};
+                      .mesh = mesh == NULL ? "" : mesh};
 }
 
 static api_exchange *exchange_new(api_service *service, const api_request *request)

@@ -5,12 +5,6 @@
 
 #include <stddef.h>
 
-static bool is_durable(const st_mesh *mesh, uint64_t record)
-{
-    const st_journal *journal = mesh->journal;
-    return journal->durable(journal->self, mesh->info.id, mesh->info.incarnation) >= record;
-}
-
 static void became_durable(st_wait *wait);
 
 /* Lets what is durable be read. One wait at a time is for the journal: a thread that finds it
@@ -19,7 +13,7 @@ static void allow(st_mesh *mesh)
 {
     for (;;) {
         uint64_t newest = st_queue_newest(&mesh->queue);
-        if (is_durable(mesh, newest)) {
+        if (st_store_is_durable(mesh->store, mesh, newest)) {
             st_queue_allow(&mesh->queue, newest);
             return;
         }
