@@ -74,6 +74,7 @@ enum {
     /* What all questions of a request may be charged; of larger meshes as much as one pass takes.
      * Up to a second of work: steps take 10 ns and less. */
     API_MAX_STEPS = API_HALFEDGE_STEPS * API_MAX_WALK,
+    API_JOB_TIMES = 100, /* a job may be charged so many times as much */
     /* Beside those, what the first search for intersections of a request may be charged, for each
      * element of the mesh. Ordinary surfaces take half of it. */
     API_MEET_STEPS = 320,

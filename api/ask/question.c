@@ -21,7 +21,10 @@ static uint64_t allowance(const api_asker *a)
 {
     uint64_t elements = api_elements_of(a->mesh);
     uint64_t most = elements > API_MAX_WALK ? elements : API_MAX_WALK;
-    return API_HALFEDGE_STEPS * (a->on_worker ? API_COSTLY_ELEMENTS : most);
+    if (a->on_worker) {
+        return (uint64_t)API_HALFEDGE_STEPS * API_COSTLY_ELEMENTS;
+    }
+    return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
 void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
@@ -49,7 +52,7 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
         api_text_empty(&x->text);
         api_out_init(&x->out, &x->text);
         x->out.watch = &x->watch;
-        api_defer(x, handler);
+        x->deferred = handler;
     }
 }
 
@@ -66,15 +69,23 @@ void api_asker_pay(api_asker *a, uint64_t halfedges)
 
 bool api_asker_exceed(api_asker *a, const api_in *in)
 {
-    if (a->on_worker) {
+    /* A client that waits for a while and takes a job then (respond-async, wait=10) gets one. */
+    bool may_be_job = api_can_be_job(a->x);
+    bool is_job = !a->on_worker && may_be_job && a->x->prefer.respond_async;
+    if (a->on_worker || is_job) {
         a->spent = true;
+        a->x->is_job = is_job;
         return false;
     }
-    const char *limit = "\"%s\" takes more than is left of the %llu steps that a request may take "
-                        "on this mesh";
+    const char *limit = "\"%s\" takes more than is left of the %llu steps that a %s may take on "
+                        "this mesh%s";
+    const char *what = a->x->phase == API_PHASE_JOB ? "job" : "request";
+    const char *hint = may_be_job ? "; a job may take more, for which the header is Prefer: "
+                                    "respond-async"
+                                  : "";
     unsigned long long most = allowance(a);
-    return in == NULL ? api_fail(a->x, HE_LIMIT, limit, a->asked, most)
-                      : api_in_fail(in, HE_LIMIT, limit, a->asked, most);
+    return in == NULL ? api_fail(a->x, HE_LIMIT, limit, a->asked, most, what, hint)
+                      : api_in_fail(in, HE_LIMIT, limit, a->asked, most, what, hint);
 }
 
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err)

@@ -17,8 +17,9 @@
  * each half-edge that they look at; searches in space are charged for the boxes, triangles and
  * pairs that they do look at, as they go. On a worker an asker has little to spend; when that is
  * used up the request begins anew on the job pool with API_MAX_STEPS, or what one pass over the
- * mesh takes where that is more. What exceeds that is refused (limit_exceeded). A question
- * overspends by at most one pass over the mesh. */
+ * mesh takes where that is more. A job has API_JOB_TIMES times as much. What exceeds that is
+ * refused (limit_exceeded), unless the client takes a job instead. A question overspends by at most
+ * one pass over the mesh. */
 #ifndef HE_API_ASK_QUESTION_H
 #define HE_API_ASK_QUESTION_H
 
@@ -37,7 +38,7 @@ typedef struct api_asker {
     he_budget budget;  /* what may still be spent; it asks the watch of the exchange */
     const char *asked; /* the kind of question at hand, for refusals */
     bool on_worker;    /* what is not left is looked for on the job pool */
-    bool spent;        /* it has to be */
+    bool spent;        /* the request begins anew, there or as a job */
     bool has_met;      /* the one search for intersections beside the budget is done */
     he_ids first, second;
     struct api_tree *tree; /* once asked for: see tree.h */
@@ -86,7 +87,8 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
 /* Half-edges that may still be looked at, and the charge for some that were. */
 uint64_t api_asker_left(const api_asker *a);
 void api_asker_pay(api_asker *a, uint64_t halfedges);
-/* Always false: with a->spent on a worker, else limit_exceeded. `in` is NULL where no body asks. */
+/* Always false: with a->spent on a worker or where the client takes a job, else limit_exceeded.
+ * `in` is NULL where no body asks. */
 bool api_asker_exceed(api_asker *a, const api_in *in);
 /* Always false: the problem from core, and where it is. */
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err);

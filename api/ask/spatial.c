@@ -128,7 +128,7 @@ bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
         HE_OK) {
         return api_asker_refuse(a, in, &err);
     }
-    if (budget.left == 0 && a->on_worker) {
+    if (budget.left == 0 && !*complete) {
         return api_asker_exceed(a, in);
     }
     a->budget.left = budget.left < left ? budget.left : left;

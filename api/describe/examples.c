@@ -339,10 +339,12 @@ static const api_example examples[] = {
          "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
          "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
          "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
-         "\"status\":201,\"location\":\"/v1/meshes/disk\"},{\"id\":\"" API_EXAMPLE_WAITING
+         "\"status\":201,\"location\":\"/v1/meshes/disk\",\"result_link\":\"/v1/"
+         "jobs/" API_EXAMPLE_JOB "/result\"},{\"id\":\"" API_EXAMPLE_WAITING
          "\",\"operation\":\"mesh_put\",\"state\":\"queued\",\"phase\":null,\"progress\":0,"
          "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
-         "\"finished\":null,\"status\":null,\"location\":null}],\"next\":null}"},
+         "\"finished\":null,\"status\":null,\"location\":null,\"result_link\":null}],\"next\":"
+         "null}"},
     {.route = "job_get",
      .target = "/v1/jobs/" API_EXAMPLE_JOB,
      .status = 200,
@@ -352,7 +354,8 @@ static const api_example examples[] = {
          "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
          "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
          "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
-         "\"status\":201,\"location\":\"/v1/meshes/disk\",\"result\":{\"id\":\"disk\","
+         "\"status\":201,\"location\":\"/v1/meshes/disk\",\"result_link\":\"/v1/"
+         "jobs/" API_EXAMPLE_JOB "/result\",\"result\":{\"id\":\"disk\","
          "\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":4,\"halfedges\":12,\"edges\":6,"
          "\"faces\":3,\"boundary_loops\":1,\"isolated_vertices\":0,\"components\":1,"
          "\"components_by_edge\":1},\"euler\":1,\"genus\":0,\"closed\":false,\"manifold\":true,"
@@ -361,6 +364,20 @@ static const api_example examples[] = {
          "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000Z\","
          "\"import\":{\"format\":\"shape\",\"vertices\":4,\"faces\":3,\"repairs\":[],"
          "\"warnings\":[]}}}"},
+    {.route = "job_result",
+     .target = "/v1/jobs/" API_EXAMPLE_JOB "/result",
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"id\":\"disk\","
+         "\"name\":\"\",\"revision\":1,\"counts\":{\"vertices\":4,\"halfedges\":12,\"edges\":6,"
+         "\"faces\":3,\"boundary_loops\":1,\"isolated_vertices\":0,\"components\":1,"
+         "\"components_by_edge\":1},\"euler\":1,\"genus\":0,\"closed\":false,\"manifold\":true,"
+         "\"degrees\":{\"3\":3},\"bbox\":{\"min\":[-0.5,-0.8660254037844386,0],\"max\":[1,"
+         "0.8660254037844386,0]},\"area\":1.299038105676658,\"volume\":null,\"memory_bytes\":408,"
+         "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000Z\","
+         "\"import\":{\"format\":\"shape\",\"vertices\":4,\"faces\":3,\"repairs\":[],"
+         "\"warnings\":[]}}"},
     {.route = "job_delete",
      .target = "/v1/jobs/" API_EXAMPLE_WAITING,
      .status = 202,
@@ -369,7 +386,8 @@ static const api_example examples[] = {
          "{\"id\":\"" API_EXAMPLE_WAITING
          "\",\"operation\":\"mesh_put\",\"state\":\"cancelled\",\"phase\":null,\"progress\":0,"
          "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
-         "\"finished\":\"2026-01-01T12:00:00.000Z\",\"status\":null,\"location\":null,"
+         "\"finished\":\"2026-01-01T12:00:00.000Z\",\"status\":null,\"location\":null,\"result_"
+         "link\":null,"
          "\"problem\":null}"},
     {.route = "attribute_put",
      .target = "/v1/meshes/kite/attributes/faces/selected",

@@ -39,8 +39,9 @@ const api_member api_answer_members[] = {
     {"job", "finished", "time?", REQUIRED, NULL},
     {"job", "status", "integer?", REQUIRED, "What the request would have been answered with."},
     {"job", "location", "text?", REQUIRED, "Likewise."},
+    {"job", "result_link", "text?", REQUIRED, "Where the result is by itself, once there is one."},
     {"job", "result", "#job_result?", OPTIONAL,
-     "Likewise; null where it has no body or was too large to keep."},
+     "Likewise; null where it has no body, is no JSON or a whole mesh, or was too large to keep."},
     {"job", "problem", "#problem?", OPTIONAL, "In its place, where that is a refusal."},
 
     {"job_page", "items", "*#job", REQUIRED, NULL},
@@ -233,7 +234,7 @@ const api_member api_answer_members[] = {
      "not "
      "valid: then no defects are looked for."},
     {"check", "complete", "flag", REQUIRED,
-     "False when there may be more self-intersections than were found within the limits."},
+     "False when 1048576 pairs of faces that meet were found, and there may be more."},
 
     {"sets", "vertices", "*id", REQUIRED, NULL},
     {"sets", "edges", "*id", REQUIRED, "Half-edges of edge e are 2e and 2e + 1."},
@@ -317,7 +318,8 @@ const api_member api_answer_members[] = {
 
     {"intersections", "pairs", "*#pair", REQUIRED, "Faces, the lesser id first; in rising order."},
     {"intersections", "total", "count", REQUIRED, "Pairs that were found."},
-    {"intersections", "complete", "flag", REQUIRED, "When false there may be more."},
+    {"intersections", "complete", "flag", REQUIRED,
+     "False when 1048576 pairs were found, and there may be more."},
 
     {"query_results", "revision", "count", REQUIRED, NULL},
     {"query_results", "results", "*#answer", REQUIRED, "In the order of the questions."},

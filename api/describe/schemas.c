@@ -76,7 +76,14 @@ static const struct {
     {"job_result", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/edited\"},"
                    "{\"$ref\":\"#/components/schemas/created\"},"
                    "{\"$ref\":\"#/components/schemas/check\"},"
-                   "{\"$ref\":\"#/components/schemas/summary\"}]}"},
+                   "{\"$ref\":\"#/components/schemas/summary\"},"
+                   "{\"$ref\":\"#/components/schemas/query_results\"},"
+                   "{\"$ref\":\"#/components/schemas/walked\"},"
+                   "{\"$ref\":\"#/components/schemas/boundaries\"},"
+                   "{\"$ref\":\"#/components/schemas/components\"},"
+                   "{\"$ref\":\"#/components/schemas/element_page\"},"
+                   "{\"$ref\":\"#/components/schemas/attribute_values\"},"
+                   "{\"$ref\":\"#/components/schemas/document\"}]}"},
     {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"

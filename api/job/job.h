@@ -14,6 +14,10 @@ typedef enum api_job_state {
 
 enum { API_JOB_ID = ST_JOB_ID, API_JOB_LOCATION = sizeof "/v1/meshes/" + ST_MESH_ID };
 
+/* Headers of the answer that are kept with it, in the order of api_job_header_names. */
+enum { API_JOB_HEADERS = 4 };
+extern const char *const api_job_header_names[API_JOB_HEADERS];
+
 /* What is known of a job. */
 typedef struct api_job {
     char id[API_JOB_ID + 1]; /* unguessable: who knows it may look and cancel */
@@ -26,8 +30,10 @@ typedef struct api_job {
     double created, started, finished; /* seconds since 1970 UTC; 0: not yet */
     int status;                        /* HTTP, of the answer; 0: there is none */
     char location[API_JOB_LOCATION];   /* likewise; "" where it has none */
-    const char *body;                  /* JSON, lent for the call; NULL: none, or not kept */
+    const char *body;                  /* lent for the call; NULL: none, or not kept */
     size_t length;
+    bool shown;                           /* the body is JSON, and a part of what is told of it */
+    const char *headers[API_JOB_HEADERS]; /* lent for the call; NULL where it has none */
 } api_job;
 
 #endif

@@ -15,6 +15,7 @@ typedef struct api_job_entry {
     api_job_table *table;
     api_job facts;     /* but for phase and progress until it has ended */
     char *body;        /* facts.body, owned */
+    char *headers;     /* what facts.headers point into, owned */
     api_job_work work; /* self NULL when it has ended */
     st_mesh *about;    /* the mesh whose listeners are told, held; NULL: none, or the job ended */
     st_wait wait;      /* from the end of the work until that is durable */

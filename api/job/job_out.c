@@ -4,6 +4,7 @@
 #include "api/limits.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Digits of progress that mean something. */
 static const double STEPS = 10000;
@@ -12,6 +13,19 @@ static const char *const states[] = {
     [API_JOB_QUEUED] = "queued", [API_JOB_RUNNING] = "running",     [API_JOB_DONE] = "done",
     [API_JOB_FAILED] = "failed", [API_JOB_CANCELLED] = "cancelled",
 };
+
+const char *api_job_state_name(api_job_state state)
+{
+    return states[state];
+}
+
+void api_job_result_path(const api_job *job, char out[API_JOB_RESULT_PATH])
+{
+    out[0] = '\0';
+    if (job->state == API_JOB_DONE && job->body != NULL) {
+        snprintf(out, API_JOB_RESULT_PATH, "/v1/jobs/%s/result", job->id);
+    }
+}
 
 static void write_text(api_out *out, const char *key, const char *text)
 {
@@ -42,11 +56,14 @@ static void write_answer(api_out *out, const api_job *job, bool whole)
         api_out_u64(out, (uint64_t)job->status);
     }
     write_text(out, "location", ended ? job->location : "");
+    char path[API_JOB_RESULT_PATH];
+    api_job_result_path(job, path);
+    write_text(out, "result_link", path);
     if (!whole || !ended) {
         return;
     }
     api_out_key(out, job->state == API_JOB_DONE ? "result" : "problem");
-    if (job->body == NULL) {
+    if (job->body == NULL || !job->shown) {
         api_out_null(out);
     } else {
         api_out_raw(out, job->body, job->length);

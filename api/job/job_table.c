@@ -10,6 +10,9 @@
 #include <stddef.h>
 #include <string.h>
 
+const char *const api_job_header_names[API_JOB_HEADERS] = {"Content-Type", "Content-Disposition",
+                                                           "ETag", "Export-Warnings"};
+
 api_job_table *api_job_table_new(const api_job_table_options *options)
 {
     api_job_table *table = he_mem_zero(1, sizeof *table);
@@ -46,6 +49,7 @@ void api_job_entry_release(api_job_entry *j)
     if (--j->uses == 0) {
         free_work(&j->work);
         he_mem_free(j->body);
+        he_mem_free(j->headers);
         he_mem_free(j);
     }
 }
@@ -136,7 +140,26 @@ static bool tell(void *context, const char *phase, double done)
     return !atomic_load_explicit(&j->stop, memory_order_relaxed);
 }
 
-/* Without memory the body is not kept. */
+/* False without memory. */
+static bool keep_headers(api_job_entry *j, const api_job_outcome *outcome)
+{
+    size_t length = 0;
+    for (size_t i = 0; i < API_JOB_HEADERS; i++) {
+        length += outcome->headers[i] == NULL ? 0 : strlen(outcome->headers[i]) + 1;
+    }
+    char *at = length == 0 ? NULL : he_mem_alloc(length);
+    j->headers = at;
+    for (size_t i = 0; i < API_JOB_HEADERS && at != NULL; i++) {
+        if (outcome->headers[i] != NULL) {
+            size_t bytes = strlen(outcome->headers[i]) + 1;
+            j->facts.headers[i] = memcpy(at, outcome->headers[i], bytes);
+            at += bytes;
+        }
+    }
+    return length == 0 || at != NULL;
+}
+
+/* Without memory for its headers the body is not kept. */
 static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
 {
     j->facts.status = outcome->status;
@@ -144,15 +167,14 @@ static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
     if (length < sizeof j->facts.location) {
         memcpy(j->facts.location, outcome->location, length + 1);
     }
-    if (outcome->body != NULL && outcome->length > 0) {
-        j->facts.length = outcome->length;
-        j->body = he_mem_alloc(j->facts.length);
-        if (j->body != NULL) {
-            memcpy(j->body, outcome->body, outcome->length);
-        }
+    if (outcome->body != NULL && keep_headers(j, outcome)) {
+        j->body = outcome->body;
+    } else {
+        he_mem_free(outcome->body);
     }
     j->facts.body = j->body;
-    j->facts.length = j->body == NULL ? 0 : j->facts.length;
+    j->facts.length = j->body == NULL ? 0 : outcome->length;
+    j->facts.shown = outcome->shown;
 }
 
 /* Frees the work first: its memory is back before the end shows. */
@@ -329,6 +351,27 @@ bool api_job_find(api_job_table *table, const char *id,
     }
     pthread_mutex_unlock(&table->lock);
     return j != NULL;
+}
+
+api_job_loan *api_job_lend(api_job_table *table, const char *id, api_job *facts)
+{
+    pthread_mutex_lock(&table->lock);
+    tidy(table, 0);
+    api_job_entry *j = api_job_entry_find(table, id);
+    if (j != NULL) {
+        j->uses++;
+        *facts = *api_job_entry_facts(j);
+    }
+    pthread_mutex_unlock(&table->lock);
+    return j;
+}
+
+void api_job_return(api_job_loan *loan)
+{
+    api_job_table *table = loan->table;
+    pthread_mutex_lock(&table->lock);
+    api_job_entry_release(loan);
+    pthread_mutex_unlock(&table->lock);
 }
 
 bool api_job_list(api_job_table *table, uint64_t after, size_t limit,

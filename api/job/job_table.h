@@ -10,7 +10,8 @@
  * A job runs on the pool it shares with requests that are merely long. What it would have answered
  * is kept for a while, within API_JOBS_KEPT jobs and API_JOBS_BYTES of answers: the ones that ended
  * first go first. Everything else of it is freed before it shows its end, and the end shows only
- * when it is durable.
+ * when it is durable. An answer may be a file of many megabytes: it is handed over and lent to
+ * readers, not copied.
  *
  * One lock, held for as long as it takes to copy an answer. Progress goes past it. It is taken by
  * threads that hold a mesh's lock, when progress has come far enough for listeners: so no mesh's
@@ -48,12 +49,14 @@ void api_job_table_free(api_job_table *table);
 /* Cancels everything, and takes nothing more. */
 void api_job_table_stop(api_job_table *table);
 
-/* What the work would have answered, lent until it is freed. */
+/* What the work would have answered, lent until it is freed; the table takes `body`. */
 typedef struct api_job_outcome {
     int status;
     const char *location; /* "" for none */
-    const char *body;     /* JSON; NULL: none */
+    char *body;           /* from he_mem; NULL: none */
     size_t length;
+    bool shown;                           /* as in api_job */
+    const char *headers[API_JOB_HEADERS]; /* NULL where it has none */
     st_mesh *mesh; /* the end shows when this mesh is durable up to `record`; NULL: at once */
     uint64_t record;
 } api_job_outcome;
@@ -78,6 +81,11 @@ st_status api_job_submit(api_job_table *table, const api_job_work *work, const c
 /* Calls show with the job, under the lock. False when there is none of this id. */
 bool api_job_find(api_job_table *table, const char *id,
                   void (*show)(void *context, const api_job *job), void *context);
+/* Lends the facts of the job of this id, with its answer, until api_job_return: NULL when there is
+ * none. `*facts` is what is known of the job now. */
+typedef struct api_job_entry api_job_loan;
+api_job_loan *api_job_lend(api_job_table *table, const char *id, api_job *facts);
+void api_job_return(api_job_loan *loan);
 /* Calls show with up to `limit` jobs of numbers after `after`, in order. True when there are more.
  */
 bool api_job_list(api_job_table *table, uint64_t after, size_t limit,

@@ -86,6 +86,10 @@
       "has. Where a body names one, the status is 422.")                                           \
     X(NO_SUCH_JOB, "no_such_job", 404, "No such job",                                              \
       "No job has this id, or it ended so long ago that it was forgotten.")                        \
+    X(NO_SUCH_RESULT, "no_such_result", 404, "The job has no result",                              \
+      "It failed, was cancelled, or was answered without a body; or there was no room to keep "    \
+      "the "                                                                                       \
+      "body. The job itself says which.")                                                          \
     X(NO_SUCH_REVISION, "no_such_revision", 404, "The mesh has no such revision yet",              \
       "The revision that is named is beyond the present one, which every answer about the mesh "   \
       "shows.")                                                                                    \
@@ -151,11 +155,9 @@
       "What it takes to unfold the gzip and zstd bodies that are arriving has a common limit. "    \
       "Try again after Retry-After seconds, or send the body plain.")                              \
     X(READ_TIMEOUT, "read_timeout", 503, "What was asked takes too long to find",                  \
-      "A client may wait only so long for a check, a walk, questions or an export, because "       \
-      "others "                                                                                    \
-      "wait for the thread. Ask for less at once or, where the route takes it, for a job with "    \
-      "the "                                                                                       \
-      "header Prefer: respond-async: a job has the time it needs.")                                \
+      "A client may wait only so long for a read, because others wait for the thread. Ask for "    \
+      "less at once or for a job, which has the time it needs, with the header Prefer: "           \
+      "respond-async. What all elements of a mesh are read for takes that header.")                \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
     X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \

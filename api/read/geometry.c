@@ -49,7 +49,7 @@ static void free_slots(void *value)
 
 static bool is_working(const api_exchange *x)
 {
-    return x->phase == API_PHASE_WORK;
+    return x->phase != API_PHASE_BODY;
 }
 
 /* --- the slots --- */

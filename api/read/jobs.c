@@ -28,6 +28,60 @@ void api_job_get(api_exchange *x)
     api_answer_json(x, 200);
 }
 
+/* Headers of an answer that is kept, but for those that are put with it. */
+static void answer_kept_headers(api_exchange *x, const api_job *job)
+{
+    for (size_t i = 0; i < API_JOB_HEADERS; i++) {
+        const char *name = api_job_header_names[i];
+        if (job->headers[i] != NULL && strcmp(name, "Content-Type") != 0 &&
+            strcmp(name, "ETag") != 0) {
+            api_answer_header(x, name, job->headers[i]);
+        }
+    }
+}
+
+static const char *kept_header(const api_job *job, const char *name)
+{
+    for (size_t i = 0; i < API_JOB_HEADERS; i++) {
+        if (strcmp(name, api_job_header_names[i]) == 0) {
+            return job->headers[i];
+        }
+    }
+    return NULL;
+}
+
+static void return_loan(void *state)
+{
+    api_job_return(state);
+}
+
+void api_job_result(api_exchange *x)
+{
+    api_job_table *jobs = x->service->options.jobs;
+    api_job job;
+    char path[API_JOB_RESULT_PATH];
+    x->state = jobs == NULL ? NULL : api_job_lend(jobs, x->job_id, &job);
+    if (x->state == NULL) {
+        fail_absent(x);
+        return;
+    }
+    x->free_state = return_loan;
+    api_job_result_path(&job, path);
+    if (job.state < API_JOB_DONE) {
+        api_write_job(&x->out, &job, true);
+        api_answer_json(x, 202);
+    } else if (path[0] == '\0') {
+        api_fail(x, API_NO_SUCH_RESULT, "the job is %s, and no answer of it is kept",
+                 api_job_state_name(job.state));
+    } else {
+        const char *tag = kept_header(&job, "ETag");
+        if (tag == NULL || !api_not_modified_since(x, tag)) {
+            answer_kept_headers(x, &job);
+            api_answer_bytes(x, 200, kept_header(&job, "Content-Type"), job.body, job.length);
+        }
+    }
+}
+
 void api_job_delete(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;

@@ -142,6 +142,8 @@ void api_watch_worker(api_exchange *exchange,
  * HE_CANCELLED.
  */
 void api_give_up(api_exchange *exchange, int code, const char *text);
+/* May the request become a job, if its client prefers that? */
+bool api_can_be_job(const api_exchange *exchange);
 /* After API_WORK and API_JOB, before the work has begun. */
 api_load api_load_of(const api_exchange *exchange);
 const api_answer *api_answer_of(const api_exchange *exchange);

@@ -330,15 +330,26 @@ void api_defer(api_exchange *x, void (*handler)(api_exchange *x))
     }
 }
 
+bool api_can_be_job(const api_exchange *x)
+{
+    return x->service->options.jobs != NULL && x->route != NULL && (x->route->flags & API_LONG) &&
+           x->phase != API_PHASE_JOB;
+}
+
 static bool wants_job(const api_exchange *x, double seconds)
 {
-    if (x->service->options.jobs == NULL || x->phase == API_PHASE_JOB) {
+    if (!api_can_be_job(x)) {
         return false;
     }
     if (x->prefer.wait >= 0) {
         return seconds > x->prefer.wait;
     }
     return x->prefer.respond_async || seconds > API_PATIENCE;
+}
+
+bool api_prefers_job(const api_exchange *x)
+{
+    return wants_job(x, 0);
 }
 
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds)

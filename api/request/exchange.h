@@ -50,7 +50,7 @@ typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHAS
 
 enum { API_LOCATION = 512 }; /* a path of this API, escaped */
 /* Headers a handler may ask for when the client's connection is out of reach. */
-enum { API_KEPT_HEADERS = 2 };
+enum { API_KEPT_HEADERS = 3 };
 
 struct api_exchange {
     api_service *service;
@@ -161,8 +161,11 @@ bool api_precondition_absent(api_exchange *x);
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
 /* The same for work that may take so long that it becomes a job: where the client prefers that, or
  * `seconds` are more than it will wait. Otherwise deferred if `costly`, or called at once. The
- * route has API_LONG. */
+ * route has API_LONG. A read whose client prefers a job is one before its handler is called, so
+ * that only those whose length can be told beforehand call this. */
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
+/* Does the client prefer a job to an answer that may take long? */
+bool api_prefers_job(const api_exchange *x);
 /* Should work on this many elements (or bytes) leave the worker? False in api_work. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
 /* Vertices, half-edges and faces that were issued: what work on the whole mesh goes by. */

@@ -17,6 +17,7 @@ void api_openapi_get(api_exchange *x);
 void api_jobs_list(api_exchange *x);
 void api_job_get(api_exchange *x);
 void api_job_delete(api_exchange *x);
+void api_job_result(api_exchange *x);
 void api_job_events(api_exchange *x);
 
 /* The collection. */

@@ -3,6 +3,7 @@
 #include "api/job/job_out.h"
 #include "api/request/admit.h"
 #include "api/request/coded.h"
+#include "api/request/gather.h"
 #include "api/request/keyed.h"
 
 #include <assert.h>
@@ -138,6 +139,9 @@ static void end_given_up(api_exchange *x)
 static api_step finish(api_exchange *x)
 {
     end_claim(x);
+    if (x->phase == API_PHASE_JOB) {
+        api_gather(x);
+    }
     end_given_up(x);
     if (x->problem.code == HE_OK && !x->answered) {
         api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
@@ -196,7 +200,7 @@ static bool copy_request(api_exchange *x, const api_request *request)
 
 /* --- detaching --- */
 
-static const char *const kept_names[API_KEPT_HEADERS] = {"If-Match", "If-None-Match"};
+static const char *const kept_names[API_KEPT_HEADERS] = {"If-Match", "If-None-Match", "Accept"};
 
 static const char *kept_header(void *context, const char *name)
 {
@@ -209,7 +213,8 @@ static const char *kept_header(void *context, const char *name)
     return NULL;
 }
 
-/* Preconditions are asked again when the work is published, and the connection is gone by then. */
+/* Preconditions are asked again when the work is published, and what is accepted when it is known
+ * what there is: the connection is gone by then. */
 static bool keep_headers(api_exchange *x)
 {
     for (size_t i = 0; i < API_KEPT_HEADERS; i++) {
@@ -295,6 +300,34 @@ static void answer_job(api_exchange *x, const api_job *job)
     api_answer_json(x, 202);
 }
 
+static const char *header_of_answer(const api_answer *answer, const char *name)
+{
+    for (size_t i = 0; i < answer->header_count; i++) {
+        if (strcmp(answer->headers[i].name, name) == 0) {
+            return answer->headers[i].value;
+        }
+    }
+    return NULL;
+}
+
+/* The bytes of the answer, for others to keep; NULL without memory, or where it has none. */
+static char *take_bytes(api_exchange *x)
+{
+    const api_answer *answer = &x->answer;
+    char *bytes = NULL;
+    if (answer->bytes != NULL && answer->bytes == x->text.bytes) {
+        bytes = he_mem_resize(x->text.bytes, answer->length > 0 ? (size_t)answer->length : 1);
+        bytes = bytes == NULL ? x->text.bytes : bytes; /* as long as it was */
+        x->text = (api_text){0};
+    } else if (answer->bytes != NULL && answer->length > 0) {
+        bytes = he_mem_alloc((size_t)answer->length);
+        if (bytes != NULL) {
+            memcpy(bytes, answer->bytes, (size_t)answer->length);
+        }
+    }
+    return bytes;
+}
+
 /* The exchange as the table of jobs works on it. */
 static void run_job(void *self, api_job_progress *progress, void *context, api_job_outcome *out)
 {
@@ -302,16 +335,18 @@ static void run_job(void *self, api_job_progress *progress, void *context, api_j
     api_watch(x, progress, context);
     api_work(x);
     const api_answer *answer = api_answer_of(x);
+    const char *location = header_of_answer(answer, "Location");
+    const char *type = header_of_answer(answer, "Content-Type");
     out->status = answer->status;
-    for (size_t i = 0; i < answer->header_count; i++) {
-        if (strcmp(answer->headers[i].name, "Location") == 0) {
-            out->location = answer->headers[i].value;
-        }
+    out->location = location == NULL ? "" : location;
+    for (size_t i = 0; i < API_JOB_HEADERS; i++) {
+        out->headers[i] = header_of_answer(answer, api_job_header_names[i]);
     }
-    if (answer->read == NULL && answer->length > 0) {
-        out->body = answer->bytes;
-        out->length = (size_t)answer->length;
-    }
+    out->shown =
+        x->free_stream == NULL && type != NULL &&
+        (api_media_is(type, "application/json") || api_media_is(type, "application/problem+json"));
+    out->length = (size_t)answer->length;
+    out->body = take_bytes(x);
     out->mesh = answer->mesh;
     out->record = answer->record;
 }
@@ -507,10 +542,22 @@ static api_step finish_or_go_on(api_exchange *x)
     return x->is_job ? API_JOB : API_WORK;
 }
 
+/* Where its client prefers a job, a read becomes one before it has begun. Writes decide that for
+ * themselves: a refusal that can be told beforehand is answered at once. */
+static void run(api_exchange *x)
+{
+    x->is_job = !(x->route->flags & API_WRITES) && api_prefers_job(x);
+    if (x->is_job || is_costly(x)) {
+        x->deferred = x->route->run;
+    } else {
+        x->route->run(x);
+    }
+}
+
 static void parse_and_run(api_exchange *x)
 {
     if (parse_body(x)) {
-        x->route->run(x);
+        run(x);
     }
 }
 
@@ -525,12 +572,8 @@ api_step api_end(api_exchange *x)
     /* Reading a large document takes its time too. */
     if (x->body.length > API_COSTLY_UPLOAD) {
         x->deferred = parse_and_run;
-    } else if (parse_body(x)) {
-        if (is_costly(x)) {
-            x->deferred = x->route->run;
-        } else {
-            x->route->run(x);
-        }
+    } else {
+        parse_and_run(x);
     }
     return finish_or_go_on(x);
 }

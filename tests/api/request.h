@@ -19,7 +19,7 @@ st_store *bench_store(api_bench *b);
 /* Jobs wait until this runs them: without threads, in their order, up to `most`. */
 void bench_run_jobs(api_bench *b, size_t most);
 /* How many may wait; BENCH_JOBS at first. */
-enum { BENCH_JOBS = 16 };
+enum { BENCH_JOBS = 32 };
 void bench_limit_jobs(api_bench *b, size_t most);
 
 typedef struct bench_reply {

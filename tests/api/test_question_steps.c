@@ -1,10 +1,9 @@
 /* Searches in space are charged for what they look at: a fan of thousands is searched whole, and a
  * short request that asks for much work is refused by the limit that it meets. */
-#include "tests/api/request.h"
+#include "tests/api/fan.h"
 
 #include "api/limits.h"
 
-#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,47 +13,6 @@
 #include <cmocka.h>
 
 #define QUERY "/v1/meshes/m/query"
-
-typedef struct text {
-    char *bytes;
-    size_t length, room;
-} text;
-
-static text text_new(size_t room)
-{
-    text t = {malloc(room), 0, room};
-    assert_non_null(t.bytes);
-    return t;
-}
-
-static void add(text *t, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    t->length += (size_t)vsnprintf(t->bytes + t->length, t->room - t->length, format, list);
-    va_end(list);
-    assert_true(t->length < t->room);
-}
-
-/* A vertex with triangles to `spokes` places around it; every stride-th is the next corner. */
-static void put_fan(api_bench *b, int spokes, int stride)
-{
-    text t = text_new(128 * (size_t)spokes);
-    add(&t, "{\"vertices\":[[0,0,0]");
-    for (int i = 0; i < spokes; i++) {
-        double turn = 2 * 3.141592653589793 * fmod((double)i * stride, spokes) / spokes;
-        add(&t, ",[%.17g,%.17g,%.17g]", cos(turn), sin(turn), cos(turn) / 3);
-    }
-    add(&t, "],\"faces\":[");
-    for (int i = 0; i < spokes; i++) {
-        add(&t, "%s[0,%d,%d]", i == 0 ? "" : ",", i + 1, (i + 1) % spokes + 1);
-    }
-    add(&t, "]}");
-    bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL, t.bytes);
-    assert_true(r.status == 201 || r.status == 200);
-    bench_reply_free(&r);
-    free(t.bytes);
-}
 
 static const cJSON *in(const cJSON *object, const char *name)
 {
@@ -69,7 +27,7 @@ static void a_flat_fan_of_thousands_is_searched_whole(void **state)
 {
     (void)state;
     api_bench *b = bench_new();
-    put_fan(b, 10000, 1);
+    put_fan(b, "/v1/meshes/m", 10000, 1);
     bench_reply r = bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", NULL, NULL);
     assert_int_equal(r.status, 200);
     assert_true(cJSON_IsTrue(in(r.json, "complete")));
@@ -78,16 +36,46 @@ static void a_flat_fan_of_thousands_is_searched_whole(void **state)
     bench_free(b);
 }
 
-/* What a search would look at beyond the budget it does not, and says so. */
-static void a_search_that_is_cut_short_is_not_complete(void **state)
+static void expect_steps(const char *detail, const char *of)
+{
+    char steps[48];
+    snprintf(steps, sizeof steps, " %d steps that a %s may take", (int)API_MAX_STEPS, of);
+    if (strstr(detail, steps) == NULL || strstr(detail, "Prefer: respond-async") == NULL) {
+        fail_msg("%s", detail);
+    }
+}
+
+static void a_check_beyond_its_steps_is_refused_and_names_the_limit_and_a_job(void **state)
 {
     (void)state;
     api_bench *b = bench_new();
-    put_fan(b, 3001, 1201);
+    put_fan(b, "/v1/meshes/m", 3001, 1201);
     bench_reply r = bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", NULL, NULL);
-    assert_int_equal(r.status, 200);
-    assert_true(cJSON_IsFalse(in(r.json, "complete")));
-    assert_true(in(in(r.json, "totals"), "self_intersection")->valuedouble > 1000);
+    assert_int_equal(r.status, 413);
+    assert_string_equal(in(r.json, "code")->valuestring, "limit_exceeded");
+    expect_steps(in(r.json, "detail")->valuestring, "request");
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static void a_check_beyond_its_steps_is_a_job_where_the_client_takes_one(void **state)
+{
+    (void)state;
+    static const char *const patient[] = {"Prefer", "respond-async, wait=60", NULL};
+    api_bench *b = bench_new();
+    put_fan(b, "/v1/meshes/m", 3001, 1201);
+    bench_reply r =
+        bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", patient, NULL);
+    assert_int_equal(r.status, 202);
+    char path[128];
+    snprintf(path, sizeof path, "%s", bench_header(&r, "Location"));
+    bench_reply_free(&r);
+    bench_run_jobs(b, 1);
+    r = bench_expect(200, bench_get(b, path));
+    assert_string_equal(in(r.json, "state")->valuestring, "done");
+    const cJSON *report = in(r.json, "result");
+    print_message("note: %.0f pairs\n", in(in(report, "totals"), "self_intersection")->valuedouble);
+    assert_true(in(in(report, "totals"), "self_intersection")->valuedouble > 1000);
     bench_reply_free(&r);
     bench_free(b);
 }
@@ -98,18 +86,16 @@ static void many_searches_in_one_request_are_refused_by_the_limit(void **state)
     (void)state;
     enum { ASKED = 500 };
     api_bench *b = bench_new();
-    put_fan(b, 2500, 1);
-    text body = text_new(32 * (ASKED + 1));
-    add(&body, "{\"queries\":[");
+    put_fan(b, "/v1/meshes/m", 2500, 1);
+    fan_text body = fan_text_new(32 * (ASKED + 1));
+    fan_add(&body, "{\"queries\":[");
     for (int i = 0; i < ASKED; i++) {
-        add(&body, "%s{\"self_intersections\":{}}", i == 0 ? "" : ",");
+        fan_add(&body, "%s{\"self_intersections\":{}}", i == 0 ? "" : ",");
     }
-    add(&body, "]}");
+    fan_add(&body, "]}");
     bench_reply first = bench_expect(200, bench_post(b, QUERY, body.bytes));
     bench_reply second = bench_expect(200, bench_post(b, QUERY, body.bytes));
     int complete = 0, refused = 0;
-    char steps[32];
-    snprintf(steps, sizeof steps, " %d steps", (int)API_MAX_STEPS);
     const cJSON *result;
     cJSON_ArrayForEach(result, in(first.json, "results"))
     {
@@ -122,7 +108,7 @@ static void many_searches_in_one_request_are_refused_by_the_limit(void **state)
         assert_string_equal(code->valuestring, "limit_exceeded");
         assert_int_equal(in(result, "status")->valueint, 413);
         assert_non_null(strstr(in(result, "detail")->valuestring, "\"self_intersections\""));
-        assert_non_null(strstr(in(result, "detail")->valuestring, steps));
+        expect_steps(in(result, "detail")->valuestring, "request");
         refused++;
     }
     assert_true(complete > 100 && refused > 100);
@@ -137,7 +123,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_fan_of_thousands_is_searched_whole),
-        cmocka_unit_test(a_search_that_is_cut_short_is_not_complete),
+        cmocka_unit_test(a_check_beyond_its_steps_is_refused_and_names_the_limit_and_a_job),
+        cmocka_unit_test(a_check_beyond_its_steps_is_a_job_where_the_client_takes_one),
         cmocka_unit_test(many_searches_in_one_request_are_refused_by_the_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
 /* Every row of the route table answers with every status it declares, and with no other. */
-#include "tests/api/request.h"
+#include "tests/api/fan.h"
 
 #include "api/describe/routes.h"
 
@@ -221,6 +221,16 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/attributes?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/attributes/faces/selected?revision=1", 410, NULL, {NULL}},
 
+    {"GET", "/v1/meshes/m", 202, NULL, {ASYNC}},
+    {"GET", "/v1/meshes/m/content", 202, NULL, {ASYNC}},
+    {"GET", "/v1/meshes/m/geometry", 202, NULL, {ASYNC}},
+    {"GET", "/v1/meshes/m/progressive", 202, NULL, {ASYNC}},
+    {"GET", "/v1/meshes/m/vertices", 202, NULL, {ASYNC}},
+    {"GET", "/v1/meshes/m/attributes/faces/none", 202, NULL, {ASYNC}},
+    {"GET", "/v1/meshes/m/boundaries", 202, NULL, {ASYNC}},
+    {"GET", "/v1/meshes/m/components", 202, NULL, {ASYNC}},
+    {"POST", "/v1/meshes/m/query", 202, "{\"queries\":[]}", {ASYNC}},
+    {"POST", "/v1/meshes/m/traverse", 202, "{}", {ASYNC}},
     {"POST", "/v1/meshes?id=job", 202, CUBE, {ASYNC}},
     {"PUT", "/v1/meshes/job", 202, CUBE, {ASYNC}},
     {"POST", "/v1/meshes/m/copy", 202, NULL, {ASYNC}},
@@ -385,6 +395,27 @@ static void take_job(api_bench *b)
     bench_reply_free(&r);
 }
 
+static void take_result(api_bench *b)
+{
+    char path[80];
+    bench_reply r =
+        bench_send(b, "GET", "/v1/meshes/m/content", (const char *const[]){ASYNC, NULL}, NULL);
+    assert_int_equal(r.status, 202);
+    snprintf(path, sizeof path, "%s/result", bench_header(&r, "Location"));
+    take(b, "GET", path, 202, NULL, NULL, 0);
+    bench_run_jobs(b, BENCH_JOBS);
+    take(b, "GET", path, 200, NULL, NULL, 0);
+    take(b, "GET", path, 304, (const char *const[]){ANY, NULL}, NULL, 0);
+    take(b, "GET", "/v1/jobs/none/result", 404, NULL, NULL, 0);
+    bench_reply_free(&r);
+}
+
+static void take_costly_check(api_bench *b)
+{
+    put_fan(b, "/v1/meshes/fan", 3001, 1201);
+    take(b, "GET", "/v1/meshes/fan/check?self_intersections=true", 413, NULL, NULL, 0);
+}
+
 static void test_each_declared_status(void **state)
 {
     (void)state;
@@ -409,6 +440,8 @@ static void test_each_declared_status(void **state)
     take_keyed(b, "PATCH", "/v1/meshes/m/attributes/faces/a", "{\"ids\":[0],\"value\":true}");
     take_keyed_edits(b);
     take_job(b);
+    take_result(b);
+    take_costly_check(b);
     size_t missing = 0;
     for (size_t i = 0; i < api_routes().count; i++) {
         const api_route *route = &api_routes().rows[i];

@@ -77,7 +77,13 @@ static void slow_advance(uint64_t revision)
 
 enum { CONNECTIONS = 20 };
 
+static bool submit_job(void *pool, const st_task *task)
+{
+    return st_pool_submit(pool, task);
+}
+
 static st_store *store;
+static api_job_table *table;
 static api_service *service;
 static st_pool *jobs, *makers;
 static srv_http *http;
@@ -99,7 +105,10 @@ static int start(void **state)
         .mesh_listeners = 10,
         .render = api_event_render,
     });
-    service = api_service_new(store, api_routes(), &(api_options){.version = "test", .pool = jobs});
+    table = api_job_table_new(&(api_job_table_options){
+        .store = store, .submit = submit_job, .pool = jobs, .keep = API_JOB_SECONDS});
+    service = api_service_new(store, api_routes(),
+                              &(api_options){.version = "test", .pool = jobs, .jobs = table});
     srv_http_options options = {
         .service = service,
         .store = store,
@@ -131,7 +140,9 @@ static int stop(void **state)
     (void)state;
     bool stopped = http == NULL || srv_http_stop(http, 20000);
     http = NULL;
+    api_job_table_stop(table);
     st_pool_free(jobs);
+    api_job_table_free(table);
     st_pool_free(makers);
     api_service_free(service);
     st_store_free(store);
@@ -471,7 +482,7 @@ static void test_work_of_who_hung_up_is_given_up(void **state)
     close(writer);
 }
 
-static void a_read_beyond_its_time_is_refused(void **state)
+static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one(void **state)
 {
     char text[4096];
     stop(state);
@@ -486,6 +497,12 @@ static void a_read_beyond_its_time_is_refused(void **state)
     assert_int_equal(answer(fd, text, sizeof text), 503);
     assert_non_null(strstr(text, "\"code\":\"read_timeout\""));
     assert_non_null(strstr(text, "Prefer: respond-async"));
+    ask(fd, "POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}");
+    assert_int_equal(answer(fd, text, sizeof text), 200);
+    ask(fd, "GET", "/v1/meshes/m/vertices/0/faces?revision=1", "");
+    assert_int_equal(answer(fd, text, sizeof text), 503);
+    assert_non_null(strstr(text, "\"code\":\"read_timeout\""));
+    assert_null(strstr(text, "respond-async"));
     ask(fd, "GET", "/v1/meshes/m/halfedges/0", "");
     assert_int_equal(answer(fd, text, sizeof text), 200);
     close(fd);
@@ -592,7 +609,7 @@ int main(void)
         TEST(test_a_stop_after_a_working_client_hung_up),
         TEST(test_work_of_who_hung_up_is_given_up),
         TEST(test_full_queue_is_503),
-        TEST(a_read_beyond_its_time_is_refused),
+        TEST(a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one),
         TEST(test_too_many_connections),
         TEST(test_refused_bodies),
         TEST(a_request_that_was_not_checked_is_not_served),

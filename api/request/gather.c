@@ -1,0 +1,51 @@
+#include "api/request/gather.h"
+
+/* Bytes between two looks at the watch; an answer of known length has them all at once. */
+enum { PIECE = 256 * 1024 };
+
+static bool read_piece(api_exchange *x, bool *ended)
+{
+    api_text *text = &x->text;
+    char *room = api_text_room(text, PIECE);
+    if (room == NULL) {
+        return api_fail_memory(x);
+    }
+    int64_t got = x->answer.read(x->answer.context, room, PIECE);
+    if (got < 0) {
+        return api_fail_memory(x);
+    }
+    text->length += (size_t)got;
+    *ended = got == 0;
+    return true;
+}
+
+void api_gather(api_exchange *x)
+{
+    api_answer *a = &x->answer;
+    if (a->read == NULL || x->problem.code != HE_OK) {
+        return;
+    }
+    he_error err = {0};
+    bool ended = false;
+    uint64_t expected = a->length < 0 ? 0 : (uint64_t)a->length;
+    api_text_empty(&x->text);
+    he_watch_span(&x->watch, 1);
+    if (he_watch_phase(&x->watch, "writing", 1, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        return;
+    }
+    /* The last look at the stream, which finds its end, has room too. */
+    if (expected > 0 && api_text_room(&x->text, (size_t)expected + PIECE) == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    while (!ended && read_piece(x, &ended)) {
+        if (he_watch_step(&x->watch, x->text.length, expected, &err) != HE_OK) {
+            api_fail_core(x, &err);
+            return;
+        }
+    }
+    a->read = NULL;
+    a->bytes = x->text.bytes;
+    a->length = (int64_t)x->text.length;
+}

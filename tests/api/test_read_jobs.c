@@ -1,0 +1,297 @@
+/* Long reads as jobs: what each would have answered is fetched when the job has ended, in the
+ * bytes, type and tag that it would have had, be it JSON, lines, octets or a file. */
+#include "tests/api/request.h"
+
+#include "base/mem.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { PATH = 128 };
+
+static void get_string(const bench_reply *r, const char *name, char out[PATH])
+{
+    const cJSON *member = cJSON_GetObjectItemCaseSensitive(r->json, name);
+    if (!cJSON_IsString(member)) {
+        fail_msg("no text %s: %.300s", name, r->body);
+    }
+    snprintf(out, PATH, "%s", member->valuestring);
+}
+
+static api_bench *bench_of_sphere(void)
+{
+    api_bench *b = bench_new();
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"icosphere\"}")));
+    bench_done(bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL,
+                                            "{\"op\":\"face_delete\",\"face\":0}")));
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m/attributes/faces/a", NULL,
+                                            "{\"type\":\"uint32\"}")));
+    return b;
+}
+
+/* A read; `accept` NULL for any. */
+typedef struct reading {
+    const char *method, *target, *body, *accept;
+    bool linked; /* its answer is no JSON, or a whole mesh: it is not in the job itself */
+} reading;
+
+static const reading readings[] = {
+    {"GET", "/v1/meshes/m", NULL, NULL, false},
+    {"GET", "/v1/meshes/m?revision=1", NULL, NULL, false},
+    {"GET", "/v1/meshes/m/content", NULL, NULL, true},
+    {"GET", "/v1/meshes/m/content", NULL, "model/stl", true},
+    {"GET", "/v1/meshes/m/content?format=obj", NULL, NULL, true},
+    {"GET", "/v1/meshes/m/content?format=glb&revision=1", NULL, NULL, true},
+    {"GET", "/v1/meshes/m/geometry", NULL, NULL, true},
+    {"GET", "/v1/meshes/m/progressive?revision=1", NULL, NULL, true},
+    {"GET", "/v1/meshes/m/vertices?limit=5", NULL, NULL, false},
+    {"GET", "/v1/meshes/m/faces", NULL, "application/x-ndjson", true},
+    {"GET", "/v1/meshes/m/attributes/faces/a", NULL, NULL, false},
+    {"GET", "/v1/meshes/m/attributes/faces/a", NULL, "application/octet-stream", true},
+    {"GET", "/v1/meshes/m/boundaries", NULL, NULL, false},
+    {"GET", "/v1/meshes/m/components", NULL, NULL, false},
+    {"GET", "/v1/meshes/m/check?self_intersections=true", NULL, NULL, false},
+    {"POST", "/v1/meshes/m/query", "{\"queries\":[{\"get\":{\"edge\":3}},{\"ray\":1}]}", NULL,
+     false},
+    {"POST", "/v1/meshes/m/query",
+     "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"vertices\":\"all\"}}]}",
+     "application/octet-stream", true},
+    {"POST", "/v1/meshes/m/traverse", "{\"walk\":\"rings\",\"from\":{\"vertex\":5},\"depth\":2}",
+     NULL, false},
+};
+
+static bench_reply send(api_bench *b, const reading *r, bool async)
+{
+    const char *headers[7] = {"Content-Type", "application/json"};
+    size_t count = 2;
+    if (r->accept != NULL) {
+        headers[count++] = "Accept";
+        headers[count++] = r->accept;
+    }
+    if (async) {
+        headers[count++] = "Prefer";
+        headers[count++] = "respond-async";
+    }
+    return bench_send(b, r->method, r->target, headers, r->body);
+}
+
+static void expect_same(const bench_reply *given, const bench_reply *wanted)
+{
+    static const char *const names[] = {"Content-Type", "ETag", "Content-Disposition",
+                                        "Export-Warnings"};
+    assert_int_equal(given->length, wanted->length);
+    assert_memory_equal(given->body, wanted->body, wanted->length);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        assert_string_equal(bench_header(given, names[i]), bench_header(wanted, names[i]));
+    }
+}
+
+static void read_as_a_job(api_bench *b, const reading *r)
+{
+    char path[PATH], link[PATH + 8];
+    bench_reply wanted = bench_expect(200, send(b, r, false));
+    bench_reply begun = bench_expect(202, send(b, r, true));
+    assert_string_equal(bench_header(&begun, "Preference-Applied"), "respond-async");
+    snprintf(path, sizeof path, "%s", bench_header(&begun, "Location"));
+    snprintf(link, sizeof link, "%s/result", path);
+    bench_done(begun);
+    bench_reply early = bench_expect(202, bench_get(b, link));
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(early.json, "result_link")));
+    bench_done(early);
+    bench_run_jobs(b, 1);
+    bench_reply job = bench_expect(200, bench_get(b, path));
+    char told[PATH];
+    get_string(&job, "state", told);
+    assert_string_equal(told, "done");
+    get_string(&job, "result_link", told);
+    assert_string_equal(told, link);
+    const cJSON *result = cJSON_GetObjectItemCaseSensitive(job.json, "result");
+    assert_int_equal(cJSON_IsNull(result), r->linked);
+    assert_true(r->linked || cJSON_Compare(result, wanted.json, true));
+    bench_reply given = bench_expect(200, bench_get(b, link));
+    expect_same(&given, &wanted);
+    bench_done(given);
+    bench_done(job);
+    bench_done(wanted);
+}
+
+static void each_long_read_can_be_a_job_with_the_answer_it_would_have_given(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    for (size_t i = 0; i < sizeof readings / sizeof *readings; i++) {
+        print_message("%s %s\n", readings[i].method, readings[i].target);
+        read_as_a_job(b, &readings[i]);
+    }
+    bench_free(b);
+}
+
+/* A job that has begun; its path goes to `path`. */
+static void begin(api_bench *b, const char *target, char path[PATH])
+{
+    const reading r = {"GET", target, NULL, NULL, true};
+    bench_reply begun = bench_expect(202, send(b, &r, true));
+    snprintf(path, PATH, "%s", bench_header(&begun, "Location"));
+    bench_done(begun);
+}
+
+static void a_read_that_waits_is_no_job(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    static const char *const patient[] = {"Prefer", "respond-async, wait=5", NULL};
+    bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/content", patient, NULL)));
+    static const char *const async[] = {"Prefer", "respond-async", NULL};
+    bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/faces/1", async, NULL)));
+    bench_free(b);
+}
+
+static void what_is_wrong_with_a_body_is_said_before_there_is_a_job(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    static const char *const async[] = {"Prefer", "respond-async", NULL};
+    bench_done(bench_expect(400, bench_send(b, "POST", "/v1/meshes/m/query", async, "{")));
+    bench_done(bench_expect(404, bench_send(b, "GET", "/v1/meshes/none/geometry", async, NULL)));
+    bench_done(bench_expect(400, bench_send(b, "GET", "/v1/meshes/m?none=1", async, NULL)));
+    bench_free(b);
+}
+
+static void expect_no_result(api_bench *b, const char *path, const char *why)
+{
+    char link[PATH + 8];
+    snprintf(link, sizeof link, "%s/result", path);
+    bench_reply r = bench_expect(404, bench_get(b, link));
+    char told[PATH];
+    get_string(&r, "code", told);
+    assert_string_equal(told, "no_such_result");
+    get_string(&r, "detail", told);
+    assert_non_null(strstr(told, why));
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, path));
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(r.json, "result_link")));
+    bench_done(r);
+}
+
+static void a_job_without_an_answer_has_no_result(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    char failed[PATH], cancelled[PATH];
+    begin(b, "/v1/meshes/m/geometry?since=1", failed);
+    begin(b, "/v1/meshes/m/geometry", cancelled);
+    bench_done(bench_expect(202, bench_send(b, "DELETE", cancelled, NULL, NULL)));
+    bench_run_jobs(b, 2);
+    expect_no_result(b, failed, "failed");
+    expect_no_result(b, cancelled, "cancelled");
+    bench_done(bench_expect(404, bench_get(b, "/v1/jobs/none/result")));
+    bench_free(b);
+}
+
+static void a_result_that_the_client_has_is_not_sent_again(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    char path[PATH], link[PATH + 8], tag[PATH];
+    begin(b, "/v1/meshes/m/content?format=obj", path);
+    bench_run_jobs(b, 1);
+    snprintf(link, sizeof link, "%s/result", path);
+    bench_reply r = bench_expect(200, bench_get(b, link));
+    snprintf(tag, sizeof tag, "%s", bench_header(&r, "ETag"));
+    bench_done(r);
+    const char *const known[] = {"If-None-Match", tag, NULL};
+    bench_done(bench_expect(304, bench_send(b, "GET", link, known, NULL)));
+    bench_free(b);
+}
+
+/* The reader of a result has it for as long as it reads, whatever becomes of the job. */
+static void a_result_outlives_its_job_while_it_is_read(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    char path[PATH], link[PATH + 8];
+    begin(b, "/v1/meshes/m/content?format=obj", path);
+    bench_run_jobs(b, 1);
+    snprintf(link, sizeof link, "%s/result", path);
+    api_step step;
+    const api_request request = {.method = "GET", .path = link, .query = "", .request_id = "r"};
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    assert_non_null(x);
+    assert_int_equal(api_end(x), API_READY);
+    bench_done(bench_expect(204, bench_send(b, "DELETE", path, NULL, NULL)));
+    bench_done(bench_expect(404, bench_get(b, link)));
+    const api_answer *answer = api_answer_of(x);
+    bench_reply wanted = bench_expect(200, bench_get(b, "/v1/meshes/m/content?format=obj"));
+    assert_int_equal(answer->length, wanted.length);
+    assert_memory_equal(answer->bytes, wanted.body, wanted.length);
+    bench_done(wanted);
+    api_free(x);
+    bench_free(b);
+}
+
+/* --- memory --- */
+
+static struct {
+    long calls, at; /* the request that fails, 0: none */
+} memory;
+
+static void *resize(void *context, void *block, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(block);
+        return NULL;
+    }
+    return ++memory.calls == memory.at ? NULL : realloc(block, size);
+}
+
+static void a_starved_job_has_failed_or_its_whole_answer(void **state)
+{
+    (void)state;
+    static const he_mem_hook hook = {resize, NULL};
+    he_mem_set_hook(&hook);
+    api_bench *b = bench_of_sphere();
+    bench_reply wanted = bench_expect(200, bench_get(b, "/v1/meshes/m/content?format=obj"));
+    bool done = false;
+    for (long n = 1; !done; n++) {
+        char path[PATH], link[PATH + 8];
+        begin(b, "/v1/meshes/m/content?format=obj", path);
+        memory.calls = 0;
+        memory.at = n;
+        bench_run_jobs(b, 1);
+        memory.at = 0;
+        done = memory.calls < n;
+        snprintf(link, sizeof link, "%s/result", path);
+        bench_reply r = bench_get(b, link);
+        assert_true(r.status == 200 || (!done && r.status == 404));
+        if (r.status == 200) {
+            assert_int_equal(r.length, wanted.length);
+            assert_memory_equal(r.body, wanted.body, wanted.length);
+        }
+        bench_done(r);
+        bench_done(bench_expect(204, bench_send(b, "DELETE", path, NULL, NULL)));
+    }
+    bench_done(wanted);
+    bench_free(b);
+    he_mem_set_hook(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_long_read_can_be_a_job_with_the_answer_it_would_have_given),
+        cmocka_unit_test(a_read_that_waits_is_no_job),
+        cmocka_unit_test(what_is_wrong_with_a_body_is_said_before_there_is_a_job),
+        cmocka_unit_test(a_job_without_an_answer_has_no_result),
+        cmocka_unit_test(a_result_that_the_client_has_is_not_sent_again),
+        cmocka_unit_test(a_result_outlives_its_job_while_it_is_read),
+        cmocka_unit_test(a_starved_job_has_failed_or_its_whole_answer),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
