@@ -1,6 +1,7 @@
 #include "server/http/http_answer.h"
 
 #include "server/http/http_buffer.h"
+#include "server/http/http_recv.h"
 #include "server/http/http_request.h"
 #include "server/http/http_wire.h"
 #include "system/clock.h"
@@ -118,7 +119,7 @@ static void describe(srv_request *r, srv_wire *wire)
     if (r->cors != NULL) {
         srv_wire_cors(wire, r->cors, r->preflight);
     }
-    wire->close = wire->close || atomic_load(&r->http->stopping);
+    wire->close = wire->close || atomic_load(&r->http->stopping) || srv_recv_has_ended(r->socket);
 }
 
 static bool is_live(const srv_request *r)

@@ -170,12 +170,13 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
                                    info.tcpi_bytes_acked, now);
 }
 
-/* Has the client closed before its body was complete? Seen twice without a move in between: what
+/* Has the client closed before its request was complete? Seen twice without a move in between: what
  * was read together with the end may still be on its way through the handler. */
-static bool is_body_cut(srv_connection *c)
+static bool is_request_cut(srv_connection *c)
 {
     char byte;
-    if (atomic_load_explicit(&c->stage, memory_order_acquire) != SRV_STAGE_BODY ||
+    int stage = atomic_load_explicit(&c->stage, memory_order_acquire);
+    if ((stage != SRV_STAGE_HEAD && stage != SRV_STAGE_BODY) ||
         recv(c->socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT) != 0) {
         c->closed = 0;
         return false;
@@ -199,7 +200,7 @@ static void sweep(srv_deadlines *d)
             struct linger reset = {.l_onoff = 1, .l_linger = 0};
             setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
             shutdown(c->socket, SHUT_RDWR);
-        } else if (srv_connection_is_late(c, &d->options, crowded, now) || is_body_cut(c)) {
+        } else if (srv_connection_is_late(c, &d->options, crowded, now) || is_request_cut(c)) {
             shutdown(c->socket, SHUT_RDWR);
         }
     }

@@ -4,14 +4,15 @@
  * thread of this module looks at every connection twice a second and shuts down the socket of one
  * that outstays its stage; libmicrohttpd then sees the end and cleans up.
  *
- *     IDLE    --request line-->  HEAD  --headers-->  BODY  --all of it-->  WORK  --queued--> ANSWER
+ *     IDLE    --first byte-->  HEAD  --headers-->  BODY  --all of it-->  WORK  --queued--> ANSWER
  *       ^                                                                                       |
  *       +---------------------------------- completed ------------------------------------------+
  *
  *     IDLE    idle seconds; a short while only when there are too many connections
  *     HEAD    head seconds
- *     BODY    `total` seconds, and after `grace` seconds min_rate bytes a second on average; not at
- *             all when the client has closed its side, which libmicrohttpd leaves to time out
+ *     BODY    `total` seconds, and after `grace` seconds min_rate bytes a second on average. Like
+ *             HEAD not at all when the client has closed its side, which libmicrohttpd leaves to
+ *             time out
  *     WORK    not limited here: the client is waiting for us. Who works asks whether it still does:
  *             work for a client that was reset ends at once, for one that closed its side after a
  *             second, before which it gets its answer
@@ -62,7 +63,9 @@ typedef struct srv_connection {
     uint32_t buffer;        /* http_buffer.h */
     /* The worker's own. */
     srv_syntax syntax;
-    uint64_t requests; /* begun so far, as libmicrohttpd sees it */
+    uint64_t requests;   /* begun so far, as libmicrohttpd sees it */
+    bool tells_end;      /* the kernel says with what is read whether there is more: http_recv.h */
+    bool may_have_ended; /* it said so of what was read last */
     /* The thread's own. */
     uint64_t window, window_acked; /* since when it measures an answer, 0: not */
     uint64_t taken;                /* `since` of the IDLE stage in which no byte waited, 0: none */

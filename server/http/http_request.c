@@ -34,7 +34,6 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
     r->socket = socket;
     r->number = socket->requests;
     r->started = st_clock_micros();
-    srv_connection_enter(r->socket, SRV_STAGE_HEAD, r->started);
     srv_buffer_use(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer);
     return r;
 }
@@ -83,7 +82,9 @@ void srv_request_end(srv_request *r)
 {
     srv_http *http = r->http;
     uint64_t now = st_clock_micros();
-    srv_connection_enter(r->socket, SRV_STAGE_IDLE, now);
+    /* What has come of the next request waits in libmicrohttpd's buffer. */
+    bool begun = r->socket != NULL && r->socket->syntax.requests > r->socket->requests;
+    srv_connection_enter(r->socket, begun ? SRV_STAGE_HEAD : SRV_STAGE_IDLE, now);
     srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
     if (r->counted && http->options.log != NULL) {
         write_log(r, now);

@@ -511,6 +511,56 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     start(state);
 }
 
+/* All that is sent, and the end of it, in one segment: the server is told of both at once. */
+static void send_with_end(int fd, const char *text)
+{
+    assert_int_equal(send(fd, text, strlen(text), MSG_MORE | MSG_NOSIGNAL), strlen(text));
+    assert_int_equal(shutdown(fd, SHUT_WR), 0);
+}
+
+static void read_to_end(int fd, char *text, size_t size)
+{
+    size_t got = 0;
+    for (ssize_t more = 1; more > 0 && got<size - 1; got += more> 0 ? (size_t)more : 0) {
+        more = recv(fd, text + got, size - 1 - got, 0);
+        assert_true(more >= 0);
+    }
+    text[got] = '\0';
+}
+
+static size_t count_of(const char *text, const char *part)
+{
+    size_t count = 0;
+    for (const char *at = text; (at = strstr(at, part)) != NULL; at++) {
+        count++;
+    }
+    return count;
+}
+
+#define LIVE "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n"
+
+static void a_client_that_ends_with_its_request_is_answered_and_closed(void **state)
+{
+    (void)state;
+    static const char *const sent[] = {LIVE, LIVE LIVE, LIVE "\r\n"};
+    static const size_t answers[] = {1, 2, 1};
+    char text[4096];
+    for (size_t i = 0; i < sizeof sent / sizeof *sent; i++) {
+        int fd = connect_client();
+        send_with_end(fd, sent[i]);
+        read_to_end(fd, text, sizeof text);
+        close(fd);
+        assert_int_equal(count_of(text, "HTTP/1.1 200"), answers[i]);
+        /* The last of them says that it is. */
+        assert_int_equal(count_of(text, "Connection: close"), 1);
+        const char *last = text;
+        for (const char *at = text; (at = strstr(at, "HTTP/1.1 200")) != NULL; at++) {
+            last = at;
+        }
+        assert_non_null(strstr(last, "Connection: close"));
+    }
+}
+
 static void test_too_many_connections(void **state)
 {
     (void)state;
@@ -609,6 +659,7 @@ int main(void)
         TEST(test_a_stop_after_a_working_client_hung_up),
         TEST(test_work_of_who_hung_up_is_given_up),
         TEST(test_full_queue_is_503),
+        TEST(a_client_that_ends_with_its_request_is_answered_and_closed),
         TEST(a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one),
         TEST(test_too_many_connections),
         TEST(test_refused_bodies),

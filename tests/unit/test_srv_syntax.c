@@ -165,14 +165,15 @@ static void requests_are_counted(void **state)
 /* --- recv() --- */
 
 static int pair[2];
-static srv_syntax watched;
+static srv_connection watched;
 
 static int open_pair(void **state)
 {
     (void)state;
-    watched = (srv_syntax){0};
-    return socketpair(AF_UNIX, SOCK_STREAM, 0, pair) != 0 ||
-           fcntl(pair[0], F_SETFL, O_NONBLOCK) != 0 || !srv_recv_watch(pair[0], &watched);
+    bool open =
+        socketpair(AF_UNIX, SOCK_STREAM, 0, pair) == 0 && fcntl(pair[0], F_SETFL, O_NONBLOCK) == 0;
+    watched = (srv_connection){.socket = pair[0]};
+    return !open || !srv_recv_watch(&watched);
 }
 
 static int close_pair(void **state)
@@ -211,7 +212,7 @@ static void a_watched_socket_is_read_up_to_its_fault(void **state)
     expect_nothing();
     say("GET / HTTP/1.1\r\nHost: a\r\n\r\n");
     expect_nothing();
-    assert_true(srv_syntax_fault(&watched, 2, NULL));
+    assert_true(srv_syntax_fault(&watched.syntax, 2, NULL));
 }
 
 static void the_end_of_a_fault_comes_in_pieces(void **state)
@@ -231,8 +232,8 @@ static void a_call_with_flags_is_not_looked_at(void **state)
     say("\n\n");
     assert_int_equal(recv(pair[0], buffer, sizeof buffer, MSG_PEEK), 2);
     assert_int_equal(recv(pair[0], buffer, sizeof buffer, MSG_DONTWAIT), 2);
-    assert_false(srv_syntax_is_faulty(&watched));
-    assert_int_equal(watched.state, 0);
+    assert_false(srv_syntax_is_faulty(&watched.syntax));
+    assert_int_equal(watched.syntax.state, 0);
 }
 
 static void another_socket_is_not_looked_at(void **state)
@@ -243,12 +244,13 @@ static void another_socket_is_not_looked_at(void **state)
     say("\n\n");
     assert_int_equal(recv(pair[0], buffer, sizeof buffer, 0), 2);
     assert_memory_equal(buffer, "\n\n", 2);
-    assert_false(srv_syntax_is_faulty(&watched));
+    assert_false(srv_syntax_is_faulty(&watched.syntax));
     errno = 0;
     assert_int_equal(recv(-1, buffer, sizeof buffer, 0), -1);
     assert_int_equal(errno, EBADF);
-    assert_false(srv_recv_watch(SRV_MAX_DESCRIPTORS, &watched));
-    assert_false(srv_recv_watch(-1, &watched));
+    srv_connection beyond[] = {{.socket = SRV_MAX_DESCRIPTORS}, {.socket = -1}};
+    assert_false(srv_recv_watch(&beyond[0]));
+    assert_false(srv_recv_watch(&beyond[1]));
 }
 
 static void the_end_of_a_socket_is_passed_on(void **state)
@@ -258,6 +260,25 @@ static void the_end_of_a_socket_is_passed_on(void **state)
     expect_nothing();
     assert_int_equal(shutdown(pair[1], SHUT_WR), 0);
     assert_int_equal(recv(pair[0], &byte, 1, 0), 0);
+}
+
+/* What comes byte by byte has no longer for its head than what comes at once. */
+static void a_head_begins_with_its_first_byte(void **state)
+{
+    (void)state;
+    assert_int_equal(watched.stage, SRV_STAGE_IDLE);
+    say("\r\n");
+    expect_read(256, "\r\n");
+    assert_int_equal(watched.stage, SRV_STAGE_IDLE);
+    say("G");
+    expect_read(256, "G");
+    assert_int_equal(watched.stage, SRV_STAGE_HEAD);
+    uint64_t since = watched.since;
+    assert_true(since > 0);
+    say("ET / HTTP/1.1\r\nHo");
+    expect_read(256, "ET / HTTP/1.1\r\nHo");
+    assert_int_equal(watched.stage, SRV_STAGE_HEAD);
+    assert_true(watched.since == since);
 }
 
 static int setup(void **state)
@@ -286,6 +307,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_case_is_the_same_wherever_it_is_cut, setup, teardown),
         cmocka_unit_test_setup_teardown(no_byte_after_a_fault_is_passed_on, setup, teardown),
         cmocka_unit_test_setup_teardown(requests_are_counted, setup, teardown),
+        cmocka_unit_test_setup_teardown(a_head_begins_with_its_first_byte, open_pair, close_pair),
         cmocka_unit_test_setup_teardown(a_watched_socket_is_read_up_to_its_fault, open_pair,
                                         close_pair),
         cmocka_unit_test_setup_teardown(the_end_of_a_fault_comes_in_pieces, open_pair, close_pair),
