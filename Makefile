@@ -203,6 +203,9 @@ $(BUILD)/tests/api/test_snapshots: private LDFLAGS += $(call wrap,st_snapshot_ta
 $(BUILD)/tests/api/test_space_threads: private LDFLAGS += \
     $(call wrap,st_derived_begin st_derived_end st_derived_wait)
 
+$(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
+    $(call wrap,pthread_mutex_lock shutdown)
+
 $(PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/libsupport.a $(LIBRARIES) | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "LD $@"

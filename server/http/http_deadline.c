@@ -21,6 +21,7 @@
 
 enum {
     SWEEP_MILLIS = 500,
+    PAUSE_MILLIS = 10, /* after SRV_CLOSES */
     CROWDED_SECONDS = 2,
     DRAINS = 64,          /* sockets drained at once; further ones are just closed */
     DRAIN_BYTES = 1 << 20 /* of one socket */
@@ -39,12 +40,16 @@ struct srv_deadlines {
     srv_deadline_options options;
     pthread_mutex_t lock; /* of the list, the drains and `ending` */
     srv_connection *first;
+    srv_connection *next; /* the sweep goes on with it; NULL: none is under way */
     _Atomic size_t count;
     drain drains[DRAINS];
     size_t drain_count;
     bool ending;
     int wake; /* eventfd */
     pthread_t thread;
+    /* The thread's own. */
+    uint64_t swept;  /* when the last sweep began */
+    uint64_t paused; /* until when none is closed */
 };
 
 void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)
@@ -189,21 +194,49 @@ static bool is_request_cut(srv_connection *c)
     return again;
 }
 
-/* While the lock is held no socket of the list is closed, so none can be another's by now. */
-static void sweep(srv_deadlines *d)
+/* Has the connection to be closed? Then it is. */
+static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t now)
+{
+    bool stuck = is_answer_stuck(c, &d->options, now);
+    if (stuck) {
+        /* Without this the system goes on sending what is in its buffer. */
+        struct linger reset = {.l_onoff = 1, .l_linger = 0};
+        setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+    } else if (!srv_connection_is_late(c, &d->options, crowded, now) && !is_request_cut(c)) {
+        return false;
+    }
+    shutdown(c->socket, SHUT_RDWR);
+    return true;
+}
+
+/* Begins a sweep when it is time for one, and goes on with the one that is under way. While the
+ * lock is held no socket of the list is closed, so none can be another's by now. Returns how many
+ * milliseconds there is nothing to do. */
+static int sweep(srv_deadlines *d)
 {
     uint64_t now = st_clock_micros();
-    bool crowded = srv_deadlines_count(d) > d->options.max_connections;
-    for (srv_connection *c = d->first; c != NULL; c = c->next) {
-        if (is_answer_stuck(c, &d->options, now)) {
-            /* Without this the system goes on sending what is in its buffer. */
-            struct linger reset = {.l_onoff = 1, .l_linger = 0};
-            setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
-            shutdown(c->socket, SHUT_RDWR);
-        } else if (srv_connection_is_late(c, &d->options, crowded, now) || is_request_cut(c)) {
-            shutdown(c->socket, SHUT_RDWR);
-        }
+    if (d->next == NULL && now - d->swept >= SWEEP_MILLIS * SECOND / 1000) {
+        d->swept = now;
+        d->next = d->first;
     }
+    if (d->next == NULL) {
+        return SWEEP_MILLIS;
+    }
+    if (now < d->paused) {
+        return PAUSE_MILLIS;
+    }
+    bool crowded = srv_deadlines_count(d) > d->options.max_connections;
+    int closes = 0;
+    for (int looks = 0; d->next != NULL && looks < SRV_LOOKS && closes < SRV_CLOSES; looks++) {
+        srv_connection *c = d->next;
+        d->next = c->next;
+        closes += look_at(d, c, crowded, now);
+    }
+    if (closes == SRV_CLOSES) {
+        d->paused = now + PAUSE_MILLIS * SECOND / 1000;
+        return PAUSE_MILLIS;
+    }
+    return d->next == NULL ? SWEEP_MILLIS : 0;
 }
 
 /* True when there is nothing more to wait for. */
@@ -239,8 +272,9 @@ static void drain_all(srv_deadlines *d)
 static void *run(void *context)
 {
     srv_deadlines *d = context;
-    uint64_t swept = st_clock_micros();
+    int timeout = SWEEP_MILLIS;
     pthread_mutex_lock(&d->lock);
+    d->swept = st_clock_micros();
     while (!d->ending) {
         struct pollfd polls[DRAINS + 1] = {{.fd = d->wake, .events = POLLIN}};
         nfds_t count = 1;
@@ -248,18 +282,14 @@ static void *run(void *context)
             polls[count++] = (struct pollfd){.fd = d->drains[i].socket, .events = POLLIN};
         }
         pthread_mutex_unlock(&d->lock);
-        poll(polls, count, SWEEP_MILLIS);
+        poll(polls, count, timeout);
         uint64_t ignored;
         if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
             /* Somebody else's wake: the list is looked at anyway. */
         }
         pthread_mutex_lock(&d->lock);
         drain_all(d);
-        uint64_t now = st_clock_micros();
-        if (now - swept >= SWEEP_MILLIS * SECOND / 1000) {
-            swept = now;
-            sweep(d);
-        }
+        timeout = sweep(d);
     }
     pthread_mutex_unlock(&d->lock);
     return NULL;
@@ -362,6 +392,9 @@ void srv_deadlines_remove(srv_deadlines *d, srv_connection *c)
     }
     if (c->next != NULL) {
         c->next->previous = c->previous;
+    }
+    if (d->next == c) {
+        d->next = c->next;
     }
     count_kept(c, 0);
     if (c->drain) {

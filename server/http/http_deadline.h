@@ -22,6 +22,11 @@
  *     LIVE    an answer that goes on (http_live.h), in place of ANSWER: while bytes wait to be
  *             taken, one a second over `total` seconds
  *
+ * Closing costs the workers, who clean up, and the clients' side. So that a thousand slow clients
+ * who came together do not keep others waiting when they are closed together, at most SRV_CLOSES
+ * are closed at once, and the next a hundredth of a second later. The lock of the list is held for
+ * as many, or for SRV_LOOKS looks.
+ *
  * It also drains connections that were answered before their body was read: closing a socket with
  * unread data resets it, and a reset can take the answer away before the client has read it. */
 #ifndef HE_SERVER_HTTP_HTTP_DEADLINE_H
@@ -51,6 +56,8 @@ typedef struct srv_deadline_options {
 } srv_deadline_options;
 
 typedef struct srv_deadlines srv_deadlines;
+
+enum { SRV_CLOSES = 16, SRV_LOOKS = 64 };
 
 /* One open socket. Its stage is set by the worker that serves it and read by the thread. */
 typedef struct srv_connection {
