@@ -352,8 +352,8 @@ bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## requests 
 bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listeners: memory, and time to reach them all
 	@sh tests/bench/events.sh $(HEDGED) $(BUILD)/tests/bench/http/listeners
 
-bench-slow: $(HEDGED) | $(INSTALLED) ## a thousand clients who read slowly: what others wait for, and when those are closed
-	@sh tests/bench/slow.sh $(HEDGED)
+bench-slow: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## a thousand clients who read slowly: what others wait for, and when those are closed
+	@sh tests/bench/slow.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
 
 bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)

@@ -2,12 +2,16 @@
 # A thousand clients who take an answer at 6 bytes a second (slowhttptest -X): what others wait for
 # beside them, what they make the daemon hold, and when the last of them is closed.
 #
-#   slow.sh HEDGED [CLIENTS [SIDE]]
+#   slow.sh HEDGED BARE [CLIENTS [SIDE]]
 #
 # They ask for SIDE x SIDE quads as OBJ: 200 is more than a socket keeps, 30 is less. Others read a
-# vertex through 8 connections. The first row is of the daemon alone.
+# vertex through 8 connections. The first row is of the daemon alone. In the next ones the same clients
+# are at BARE, a program that does nothing but libmicrohttpd's work: what others wait for then is the
+# share of the clients themselves, who take a processor from the daemon. BARE keeps them until it ends,
+# which closes them all at once. Each wait is told as a multiple of that alone, and at the end that
+# beside the daemon's clients as a multiple of that beside BARE's, for the three stages of their life.
 set -eu
-hedged=$1 clients=${2:-1000} side=${3:-200}
+hedged=$1 bare=$2 clients=${3:-1000} side=${4:-200}
 for program in slowhttptest wrk curl ss; do
     command -v $program >/dev/null || { echo "slow.sh: $program is not installed" >&2; exit 1; }
 done
@@ -15,24 +19,86 @@ done
 daemon_start "$hedged" --log off
 curl -s -o "$work/made" -X PUT -H 'Content-Type: application/json' \
     -d "{\"shape\":\"grid\",\"columns\":$side,\"rows\":$side}" "$base/v1/meshes/m"
+port=${base##*:}
 
+mkfifo "$work/stdin" "$work/port"
+"$bare" 2 "$(head -c 100000 /dev/zero | tr '\0' x)" <"$work/stdin" >"$work/port" &
+others=$!
+exec 3>"$work/stdin"
+read -r bare_port <"$work/port"
+
+connected() {
+    ss -tnH state established "( sport = :$1 )" | wc -l
+}
+
+# row WHERE SECONDS PORT: a row, and $open connections at PORT after it. Its stage is told by how many
+# were open before and after.
 row() {
+    before=$open
     wrk -t1 -c8 -d2s --latency "$base/v1/meshes/m/vertices/0" >"$work/wrk"
-    open=$(ss -tnH state established "( sport = :${base##*:} )" | wc -l)
+    open=$(connected "$3")
     memory=$(curl -s "$base/v1/meshes" | sed 's/.*"memory_bytes":\([0-9]*\).*/\1/')
-    awk -v seconds="$1" -v open="$open" -v memory="$memory" '
-        /99%/ { p99 = $2 } /Requests\/sec/ { rate = $2 }
-        END { printf "%7s %6d %10s %10d %8.1f\n", seconds, open, p99, rate, memory / 1048576 }
+    stage=reading
+    [ "$before" -ge "$open" ] || stage=connecting
+    [ "$before" -le "$open" ] || stage=closing
+    [ "$1" != alone ] || stage=alone
+    awk -v where="$1" -v seconds="$2" -v open="$open" -v memory="$memory" -v stage="$stage" \
+        -v rows="$work/rows" '
+        function ms(text) { return text ~ /us$/ ? text / 1000 : text ~ /ms$/ ? text + 0 : text * 1000 }
+        /99%/ { p99 = ms($2) } /Requests\/sec/ { rate = $2 }
+        END {
+            alone = p99
+            while ((getline line < rows) > 0) { split(line, f); if (f[1] == "alone") alone = f[3] }
+            printf "%-7s %7s %-10s %6d %8.2f %7.1f %10d %8.1f\n", where, seconds, stage, open, p99,
+                p99 / alone, rate, memory / 1048576
+            print where, stage, p99 >> rows
+        }
     ' "$work/wrk"
 }
 
-printf '%7s %6s %10s %10s %8s\n' seconds open p99 requests/s MiB
-row alone
-slowhttptest -X -c "$clients" -r "$clients" -w 512 -y 1024 -n 5 -z 32 -l 20 -p 3 \
-    -u "$base/v1/meshes/m/content?format=obj" >"$work/slow" 2>&1 &
-others=$!
-began=$(date +%s)
-open=1
-until [ "$open" -eq 0 ]; do
-    row $(($(date +%s) - began))
+# slow_clients ADDRESS
+slow_clients() {
+    slowhttptest -X -c "$clients" -r "$clients" -w 512 -y 1024 -n 5 -z 32 -l 20 -p 3 \
+        -u "$1" >"$work/slow" 2>&1 3>&- &
+    slow=$!
+    others="$others $slow"
+    began=$(date +%s)
+}
+since() { echo $(($(date +%s) - began)); }
+
+: >"$work/rows"
+open=0
+printf '%-7s %7s %-10s %6s %8s %7s %10s %8s\n' clients seconds stage open 'p99 ms' 'x alone' \
+    requests/s MiB
+row alone - "$port"
+
+open=0
+slow_clients "http://127.0.0.1:$bare_port/"
+for _ in 1 2 3; do
+    row bare "$(since)" "$bare_port"
 done
+exec 3>&-
+row bare "$(since)" "$bare_port"
+kill "$slow" 2>/dev/null || :
+wait "$slow" 2>/dev/null || :
+
+open=0
+slow_clients "$base/v1/meshes/m/content?format=obj"
+row hedged "$(since)" "$port"
+until [ "$open" -eq 0 ]; do
+    row hedged "$(since)" "$port"
+done
+
+# The greatest of each stage.
+awk '
+    { if ($3 > most[$1, $2]) most[$1, $2] = $3 }
+    END {
+        n = split("connecting reading closing", stages)
+        for (i = 1; i <= n; i++) {
+            ours = most["hedged", stages[i]]; theirs = most["bare", stages[i]]
+            if (ours > 0 && theirs > 0)
+                printf "%-10s p99 %8.2f ms beside the clients of hedged, %8.2f beside those of bare: %.2f x\n",
+                    stages[i], ours, theirs, ours / theirs
+        }
+    }
+' "$work/rows"
