@@ -259,8 +259,11 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410},
      .response = "document",
      .summary = "Export a mesh",
-     .doc = "In the format that `format` or Accept asks for. What the format cannot carry is named "
-            "in the header Export-Warnings."},
+     .doc =
+         "In the format that `format` or Accept asks for. What the format cannot carry is named "
+         "in the header Export-Warnings. A mesh holds texture coordinates `uv` with v upward, as "
+         "OBJ, PLY and OFF do (glTF's runs down), and colours `color` of 0 to 1, which are bytes "
+         "in PLY; reading and writing convert both."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "geometry_get",

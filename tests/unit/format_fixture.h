@@ -197,6 +197,28 @@ static inline void expect_doubles(const he_import *import, he_kind domain, const
     assert_memory_equal(column->data, values, rows * components * sizeof *values);
 }
 
+/* Colours that are what bytes say, in the precision of their type. */
+static inline void expect_bytes(const he_import *import, he_kind domain, uint32_t components,
+                                const unsigned char *values, size_t rows)
+{
+    const he_column *column = find_column(import, domain, "color");
+    assert_non_null(column);
+    assert_true(column->type == HE_FLOAT || column->type == HE_DOUBLE);
+    assert_int_equal(column->components, components);
+    assert_int_equal(column->rows, rows);
+    for (size_t i = 0; i < rows * components; i++) {
+        double value;
+        float single;
+        if (column->type == HE_DOUBLE) {
+            memcpy(&value, column->data + i * sizeof value, sizeof value);
+            assert_true(value == values[i] / 255.0);
+        } else {
+            memcpy(&single, column->data + i * sizeof single, sizeof single);
+            assert_true(single == (float)(values[i] / 255.0));
+        }
+    }
+}
+
 static inline void expect_u32s(const he_import *import, he_kind domain, const char *name,
                                uint32_t components, const uint32_t *values, size_t rows)
 {

@@ -19,7 +19,7 @@ typedef struct attribute {
     he_kind domain;
     he_type type;
     uint32_t components;
-    uint32_t below; /* of whole numbers, 0 for all */
+    uint32_t below; /* of whole numbers, 0 for all; of fractions, that are k / (below - 1) then */
 } attribute;
 
 static void random_number(md_random *random, const attribute *a, unsigned char *at)
@@ -27,6 +27,12 @@ static void random_number(md_random *random, const attribute *a, unsigned char *
     uint32_t word = (uint32_t)md_bits(random), bits;
     uint64_t wide = md_bits(random);
     word = a->below != 0 ? word % a->below : word;
+    double fraction = a->below == 0 ? 0 : word / (a->below - 1.0);
+    if (a->below != 0 && (a->type == HE_FLOAT || a->type == HE_DOUBLE)) {
+        float narrow = (float)fraction;
+        memcpy(at, a->type == HE_FLOAT ? (void *)&narrow : &fraction, he_type_bytes(a->type));
+        return;
+    }
     switch (a->type) {
     case HE_INT32:
     case HE_UINT32:
@@ -167,10 +173,10 @@ static void ply_keeps_the_attributes_of_vertices_and_faces(void **state)
 {
     (void)state;
     static const attribute attributes[] = {
-        {"normal", HE_VERTEX, HE_FLOAT, 3, 0},  {"color", HE_VERTEX, HE_UINT32, 4, 256},
+        {"normal", HE_VERTEX, HE_FLOAT, 3, 0},  {"color", HE_VERTEX, HE_FLOAT, 4, 256},
         {"uv", HE_VERTEX, HE_DOUBLE, 2, 0},     {"charge", HE_VERTEX, HE_INT32, 1, 0},
         {"weight", HE_VERTEX, HE_DOUBLE, 1, 0}, {"normal", HE_FACE, HE_DOUBLE, 3, 0},
-        {"color", HE_FACE, HE_FLOAT, 3, 0},     {"part", HE_FACE, HE_UINT32, 1, 0},
+        {"color", HE_FACE, HE_FLOAT, 3, 256},   {"part", HE_FACE, HE_UINT32, 1, 0},
         {"heat", HE_FACE, HE_FLOAT, 1, 0},
     };
     static const char *const encodings[] = {"ascii", "binary", "binary_big_endian"};
@@ -196,9 +202,9 @@ static void off_keeps_normals_colors_and_texture(void **state)
     (void)state;
     static const attribute attributes[] = {
         {"normal", HE_VERTEX, HE_DOUBLE, 3, 0},
-        {"color", HE_VERTEX, HE_UINT32, 4, 256},
+        {"color", HE_VERTEX, HE_DOUBLE, 4, 256},
         {"uv", HE_VERTEX, HE_DOUBLE, 2, 0},
-        {"color", HE_FACE, HE_UINT32, 3, 256},
+        {"color", HE_FACE, HE_DOUBLE, 3, 256},
     };
     round_trip("off", "ascii", attributes, sizeof attributes / sizeof *attributes);
 }
@@ -207,8 +213,8 @@ static void glb_keeps_them_all(void **state)
 {
     (void)state;
     static const attribute attributes[] = {
-        {"normal", HE_VERTEX, HE_FLOAT, 3, 0},      {"color", HE_VERTEX, HE_UINT32, 4, 256},
-        {"color1", HE_VERTEX, HE_UINT32, 3, 0},     {"uv", HE_VERTEX, HE_DOUBLE, 2, 0},
+        {"normal", HE_VERTEX, HE_FLOAT, 3, 0},      {"color", HE_VERTEX, HE_FLOAT, 4, 256},
+        {"color1", HE_VERTEX, HE_FLOAT, 3, 0},      {"uv", HE_VERTEX, HE_DOUBLE, 2, 0},
         {"uv1", HE_VERTEX, HE_FLOAT, 2, 0},         {"uv3", HE_VERTEX, HE_FLOAT, 2, 0},
         {"charge", HE_VERTEX, HE_INT32, 1, 0},      {"weight", HE_VERTEX, HE_DOUBLE, 1, 0},
         {"_under", HE_VERTEX, HE_FLOAT, 4, 0},      {"frame", HE_VERTEX, HE_FLOAT, 16, 0},

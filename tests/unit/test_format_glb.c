@@ -311,12 +311,12 @@ static void numbers_that_are_not_aligned(void **state)
 static void attributes_of_vertices(void **state)
 {
     (void)state;
-    static const uint32_t colors[] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
+    static const unsigned char colors[] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
     he_import import = square_import(
         "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':0,'COLOR_0':4,"
         "'_HEAT':3,'_':3,'other':3,'TEXCOORD_0':0,'COLOR_1':0,'COLOR_01':0,'TANGENT':0,"
         "'_position':0,'JOINTS_0':4,'_any\\u0041':4},'indices':1}]}]}");
-    expect_u32s(&import, HE_VERTEX, "color", 3, colors, 4);
+    expect_bytes(&import, HE_VERTEX, 3, colors, 4);
     expect_u32s(&import, HE_VERTEX, "HEAT", 1, (uint32_t[]){0, 1, 2, 3}, 4);
     const he_column *normal = find_column(&import, HE_VERTEX, "normal");
     assert_int_equal(normal->type, HE_FLOAT);
@@ -371,13 +371,13 @@ static void attributes_of_some_primitives(void **state)
     (void)state;
     he_import import = square_import(
         "{" DATA ",'meshes':[{'primitives':[" PRIMITIVE ",{'attributes':{'POSITION':0,"
-        "'COLOR_0':4},'indices':1}," PRIMITIVE ",{'attributes':{'POSITION':0,'COLOR_0':0},"
-        "'indices':1}]}]}");
-    static const uint32_t colors[24] = {0,   0, 0, 0, 0,   0, 0, 0, 0,   0,  0,   0,
-                                        255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
-    expect_u32s(&import, HE_VERTEX, "color", 3, colors, 8);
+        "'COLOR_0':4,'_HEAT':3},'indices':1}," PRIMITIVE ",{'attributes':{'POSITION':0,"
+        "'_HEAT':0},'indices':1}]}]}");
+    static const unsigned char colors[24] = {0,   0, 0, 0, 0,   0, 0, 0, 0,   0,  0,   0,
+                                             255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
+    expect_bytes(&import, HE_VERTEX, 3, colors, 8);
     assert_int_equal(find_note(&import.notes, "vertices_without", "color")->count, 12);
-    assert_int_equal(find_note(&import.notes, "attribute_types", "COLOR_0")->count, 1);
+    assert_int_equal(find_note(&import.notes, "attribute_types", "_HEAT")->count, 1);
     he_import_clear(&import);
 }
 

@@ -87,9 +87,15 @@ static void vertex_forms(void **state)
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0 255 0 7 128\nv 0 0 0 0 1 0\nv 0 0 0\n");
-    expect_doubles(&import, HE_VERTEX, "color", 4,
-                   (double[]){255, 0, 7, 128, 0, 1, 0, 1, 0, 0, 0, 0}, 3);
+    expect_bytes(&import, HE_VERTEX, 4,
+                 (const unsigned char[]){255, 0, 7, 128, 0, 1, 0, 255, 0, 0, 0, 0}, 3);
+    expect_note(&import, "byte_colors", "", 2, 0);
     expect_note(&import, "vertices_without_color", "", 1, 0);
+    he_import_clear(&import);
+
+    import = read_text("obj", "v 0 0 0 1.5 0 1 1\nv 0 0 0 0 2 1 1\n");
+    expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){1.5, 0, 1, 0, 2, 1}, 2);
+    assert_int_equal(import.notes.count, 0);
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0\nv 0 0 0\nv 0 0 0 1 1 1\n");
@@ -372,7 +378,7 @@ static void more_numbers_than_a_vertex_has(void **state)
     assert_int_equal(find_note(&import.notes, "extra_numbers", "")->count, 2);
     assert_int_equal(find_note(&import.notes, "not_finite", "")->at, 3);
     assert_int_equal(find_note(&import.notes, "vertices_without_color", "")->count, 2);
-    expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){0, 0, 0, 0, 0, 0, 0, 5, 6}, 3);
+    expect_bytes(&import, HE_VERTEX, 3, (const unsigned char[]){0, 0, 0, 0, 0, 0, 0, 5, 6}, 3);
     he_import_clear(&import);
 }
 

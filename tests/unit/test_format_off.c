@@ -105,22 +105,33 @@ static void vertex_data_in_every_mix(void **state)
     }
 }
 
-static void integer_colors_stay_integers(void **state)
+static void integer_colors_are_bytes(void **state)
 {
     (void)state;
     /* the texture coordinates are no colours and do not decide */
     he_import import = read_text("off", "STCOFF\n3 0 0\n0 0 0 255 0 7 0.5 0.25\n"
                                         "0 0 0 1 2 3 128 0 0\n0 0 0 0 0 0 0 0\n");
-    expect_u32s(&import, HE_VERTEX, "color", 4,
-                (uint32_t[]){255, 0, 7, 255, 1, 2, 3, 128, 0, 0, 0, 255}, 3);
+    expect_bytes(&import, HE_VERTEX, 4,
+                 (const unsigned char[]){255, 0, 7, 255, 1, 2, 3, 128, 0, 0, 0, 255}, 3);
+    assert_int_equal(import.notes.count, 0);
     he_import_clear(&import);
-    static const char *const fractions[] = {"0 0 0 255 0 1.0", "0 0 0 255 0 -1", "0 0 0 255 0 1e1",
-                                            "0 0 0 255 0 4294967296"};
-    for (size_t i = 0; i < sizeof fractions / sizeof *fractions; i++) {
+    static const struct {
+        const char *vertex;
+        double color[3];
+        bool bytes; /* that is told */
+    } rows[] = {
+        {"1 0 1", {1 / 255.0, 0, 1 / 255.0}, false}, {"1 0 1.0", {1, 0, 1}, false},
+        {"255 0 1e1", {1, 0, 10 / 255.0}, true},     {"255 0 .5", {255, 0, .5}, false},
+        {"700 0 4294967296", {1, 0, 1}, true},       {"700 0 1", {1, 0, 1 / 255.0}, false},
+        {"2 0 -1", {2 / 255.0, 0, 0}, true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char text[200];
-        snprintf(text, sizeof text, "COFF\n2 0 0\n0 0 0 1 2 3\n%s\n", fractions[i]);
+        snprintf(text, sizeof text, "COFF\n1 0 0\n0 0 0 %s 1\n", rows[i].vertex);
         import = read_text("off", text);
-        assert_int_equal(find_column(&import, HE_VERTEX, "color")->type, HE_DOUBLE);
+        const he_column *column = find_column(&import, HE_VERTEX, "color");
+        assert_memory_equal(he_column_value(column, 0), rows[i].color, sizeof rows[i].color);
+        assert_int_equal(import.notes.count, rows[i].bytes);
         he_import_clear(&import);
     }
 }
@@ -151,8 +162,8 @@ static void vertices_without_what_is_announced(void **state)
     }
     import = read_text("off", "CNOFF\n4 0 0\n0 0 0 0 0 1\n1 0 0 0 0 1 7 8 9\n1 1 0\n"
                               "1 1 1 0 1 0 3\n");
-    expect_u32s(&import, HE_VERTEX, "color", 3, (uint32_t[]){0, 0, 0, 7, 8, 9, 0, 0, 0, 0, 0, 0},
-                4);
+    expect_bytes(&import, HE_VERTEX, 3, (const unsigned char[]){0, 0, 0, 7, 8, 9, 0, 0, 0, 0, 0, 0},
+                 4);
     expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0},
                    4);
     expect_note(&import, "missing_numbers", "", 2, 3);
@@ -177,8 +188,8 @@ static void face_colors(void **state)
     char text[400];
     snprintf(text, sizeof text, "%s3 0 1 2 255 0 7\n3 0 2 3 1 2 3 128\n3 3 2 1\n", start);
     he_import import = read_text("off", text);
-    expect_u32s(&import, HE_FACE, "color", 4,
-                (uint32_t[]){255, 0, 7, 255, 1, 2, 3, 128, 0, 0, 0, 0}, 3);
+    expect_bytes(&import, HE_FACE, 4,
+                 (const unsigned char[]){255, 0, 7, 255, 1, 2, 3, 128, 0, 0, 0, 0}, 3);
     he_import_clear(&import);
 
     snprintf(text, sizeof text, "%s3 0 1 2\n3 0 2 3 1 .5 0 # c\n3 3 2 1 0 0 1\n", start);
@@ -345,7 +356,7 @@ int main(void)
         cmocka_unit_test(plain_files),
         cmocka_unit_test(polygons_and_lines),
         cmocka_unit_test(vertex_data_in_every_mix),
-        cmocka_unit_test(integer_colors_stay_integers),
+        cmocka_unit_test(integer_colors_are_bytes),
         cmocka_unit_test(vertices_without_what_is_announced),
         cmocka_unit_test(face_colors),
         cmocka_unit_test(wrong_text_names_its_line),

@@ -164,7 +164,7 @@ static void properties_become_attributes(void **state)
 {
     (void)state;
     static const double points[2][3] = {{1, 2, 3}, {4, 5, 6}};
-    static const uint32_t colors[] = {255, 0, 7, 128, 0, 1, 2, 3}, faces[] = {9, 8, 7};
+    static const unsigned char colors[] = {255, 0, 7, 128, 0, 1, 2, 3}, faces[] = {9, 8, 7};
     static const float normals[] = {0, 0, 1, 0, 1, 0}, uvs[] = {0.25f, 0.5f, 0.75f, 1};
     static const double qualities[] = {0.1, -1e300};
     static const int32_t marks[] = {-5, 5};
@@ -179,8 +179,8 @@ static void properties_become_attributes(void **state)
                                "1 2 3 0 0 1 255 0 7 128 .25 .5 .1 -5 1\n"
                                "4 5 6 0 1 0 0 1 2 3 .75 1 -1e300 5 2\n3 0 1 0 9 8 7\n");
     expect_points(&import, points, 2);
-    expect_u32s(&import, HE_VERTEX, "color", 4, colors, 2);
-    expect_u32s(&import, HE_FACE, "color", 3, faces, 1);
+    expect_bytes(&import, HE_VERTEX, 4, colors, 2);
+    expect_bytes(&import, HE_FACE, 3, faces, 1);
     expect_doubles(&import, HE_VERTEX, "quality", 1, qualities, 2);
     const he_column *column = find_column(&import, HE_VERTEX, "normal");
     assert_int_equal(column->type, HE_FLOAT);
@@ -206,9 +206,9 @@ static void groups_have_several_spellings(void **state)
         uint32_t components;
         he_type type;
     } rows[] = {
-        {"property uchar r\nproperty uchar g\nproperty uchar b\n", "color", 3, HE_UINT32},
+        {"property uchar r\nproperty uchar g\nproperty uchar b\n", "color", 3, HE_FLOAT},
         {"property uchar b\nproperty uchar g\nproperty uchar r\nproperty uchar a\n", "color", 4,
-         HE_UINT32},
+         HE_FLOAT},
         {"property float red\nproperty float green\nproperty float blue\n", "color", 3, HE_FLOAT},
         {"property float u\nproperty float v\n", "uv", 2, HE_FLOAT},
         {"property double texture_u\nproperty float texture_v\n", "uv", 2, HE_DOUBLE},
@@ -228,6 +228,39 @@ static void groups_have_several_spellings(void **state)
         assert_int_equal(column->type, rows[i].type);
         he_import_clear(&import);
     }
+}
+
+/* 1 is full in a mesh: 255 of bytes and whole numbers, 65535 of ushort, 1 of fractions. */
+static void colors_of_every_type_are_fractions(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *type, *values;
+        double first; /* of the colour */
+    } rows[] = {{"uchar", "51 0 255", 0.2}, {"ushort", "13107 0 65535", 0.2},
+                {"int", "51 0 255", 0.2},   {"float", "0.2 0 1", 0.2},
+                {"double", "0.2 0 1", 0.2}, {"float", "1.5 0 1", 1.5}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 ASCII "element vertex 1\n" XYZ "property %s red\nproperty %s green\n"
+                       "property %s blue\nend_header\n0 0 0 %s\n",
+                 rows[i].type, rows[i].type, rows[i].type, rows[i].values);
+        he_import import = read_text("ply", text);
+        const he_column *column = find_column(&import, HE_VERTEX, "color");
+        bool wide = strcmp(rows[i].type, "double") == 0;
+        assert_int_equal(column->type, wide ? HE_DOUBLE : HE_FLOAT);
+        if (wide) {
+            assert_memory_equal(column->data, ((double[]){rows[i].first, 0, 1}), 24);
+        } else {
+            assert_memory_equal(column->data, ((float[]){(float)rows[i].first, 0, 1}), 12);
+        }
+        he_import_clear(&import);
+    }
+    expect_refused("ply",
+                   ASCII "element vertex 1\n" XYZ "property uchar red\nproperty uchar green\n"
+                         "property uchar blue\nend_header\n0 0 0 1 .5 1\n",
+                   HE_BAD_VALUE, 11, "a value of property 'green' is not of its type uchar");
 }
 
 static void what_is_left_out_is_noted(void **state)
@@ -483,6 +516,7 @@ int main(void)
         cmocka_unit_test(elements_and_properties_in_any_order),
         cmocka_unit_test(properties_become_attributes),
         cmocka_unit_test(groups_have_several_spellings),
+        cmocka_unit_test(colors_of_every_type_are_fractions),
         cmocka_unit_test(what_is_left_out_is_noted),
         cmocka_unit_test(values_that_are_not_finite),
         cmocka_unit_test(lines_that_end_in_returns),

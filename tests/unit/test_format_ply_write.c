@@ -12,12 +12,12 @@ static he_mesh *colored_square(void)
                      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                      "property uchar alpha\nproperty double s\nproperty double t\n"
                      "property int mark\nelement face 2\n" CORNER
-                     "property float red\nproperty float green\nproperty float blue\n"
+                     "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                      "property uint group\nend_header\n"
                      "0 0 0.1 0 0 1 255 0 7 128 .25 .1 -5\n1 0 1e-7 0 0 1 0 0 0 255 0 0 6\n"
                      "1 1 -0 0 0 1 1 2 3 4 1 1 7\n0 1 5e-324 0 .6 .8 0 0 0 0 0 1 -2147483648\n"
                      "9 9 1e300 0 0 1 9 9 9 9 0 0 0\n"
-                     "3 0 1 2 .1 .2 .3 4294967295\n3 0 2 3 1 0 1 0\n");
+                     "3 0 1 2 10 20 30 4294967295\n3 0 2 3 1 0 1 0\n");
 }
 
 static void text_is_as_expected(void **state)
@@ -33,12 +33,12 @@ static void text_is_as_expected(void **state)
                     "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                     "property uchar alpha\nproperty double s\nproperty double t\n"
                     "property int mark\nelement face 2\n" CORNER
-                    "property float red\nproperty float green\nproperty float blue\n"
+                    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                     "property uint group\nend_header\n"
                     "0 0 0.1 0 0 1 255 0 7 128 0.25 0.1 -5\n1 0 1e-7 0 0 1 0 0 0 255 0 0 6\n"
                     "1 1 -0 0 0 1 1 2 3 4 1 1 7\n0 1 5e-324 0 0.6 0.8 0 0 0 0 0 1 -2147483648\n"
                     "9 9 1e300 0 0 1 9 9 9 9 0 0 0\n"
-                    "3 0 1 2 0.1 0.2 0.3 4294967295\n3 0 2 3 1 0 1 0\n");
+                    "3 0 1 2 10 20 30 4294967295\n3 0 2 3 1 0 1 0\n");
     assert_int_equal(notes.count, 0);
     free(text);
     he_mesh_free(mesh);
@@ -134,6 +134,21 @@ static void add_column(he_soup *soup, const char *name, he_kind domain, he_type 
     memset(column->data, 1, rows * column->row_bytes);
 }
 
+static void colors_between_bytes_are_rounded_and_counted(void **state)
+{
+    (void)state;
+    he_mesh *mesh = mesh_of_text("obj", "v 0 0 0 0.5 0 1\nv 1 0 0 1.5 -1 0.2\nv 0 1 0 0 1 0.2\n"
+                                        "f 1 2 3\n");
+    he_notes notes;
+    size_t length;
+    char *text = write_bytes("ply", "ascii", mesh, &notes, &length);
+    assert_non_null(strstr(text, "end_header\n0 0 0 128 0 255\n1 0 0 255 0 51\n0 1 0 0 255 51\n"));
+    assert_int_equal(find_note(&notes, "rounded_colors", "")->count, 2);
+    assert_int_equal(notes.count, 1);
+    free(text);
+    he_mesh_free(mesh);
+}
+
 static void what_is_lost_is_named(void **state)
 {
     (void)state;
@@ -144,7 +159,8 @@ static void what_is_lost_is_named(void **state)
     add_column(&soup, "two words", HE_VERTEX, HE_FLOAT, 1, 4);
     add_column(&soup, "pair", HE_VERTEX, HE_FLOAT, 2, 4);
     add_column(&soup, "flag", HE_VERTEX, HE_BOOL, 1, 4);
-    add_column(&soup, "color", HE_VERTEX, HE_UINT32, 3, 4);
+    add_column(&soup, "color", HE_VERTEX, HE_DOUBLE, 3, 4);
+    add_column(&soup, "color", HE_FACE, HE_UINT32, 3, 1);
     add_column(&soup, "red", HE_VERTEX, HE_INT32, 1, 4);
     add_column(&soup, "uv", HE_HALFEDGE, HE_FLOAT, 2, 6);
     add_column(&soup, "mark", HE_FACE, HE_INT32, 1, 1);
@@ -152,13 +168,13 @@ static void what_is_lost_is_named(void **state)
     he_notes notes;
     size_t length;
     char *text = write_bytes("ply", "ascii", mesh, &notes, &length);
-    static const char *const lost[] = {"vertex x", "vertex two words", "vertex pair", "vertex red",
-                                       "halfedge uv"};
+    static const char *const lost[] = {"vertex x",   "vertex two words", "vertex pair",
+                                       "vertex red", "halfedge uv",      "face color"};
     for (size_t i = 0; i < sizeof lost / sizeof *lost; i++) {
         assert_non_null(find_note(&notes, "attribute_lost", lost[i]));
     }
-    assert_int_equal(notes.count, 5);
-    assert_non_null(strstr(text, "property uint red\nproperty uint green\nproperty uint blue\n"
+    assert_int_equal(notes.count, 6);
+    assert_non_null(strstr(text, "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                                  "property uchar flag\nelement face"));
     assert_non_null(strstr(text, "3 0 1 2 16843009\n3 0 2 3 0\n"));
     free(text);
@@ -173,6 +189,7 @@ int main(void)
         cmocka_unit_test(all_encodings_round_trip),
         cmocka_unit_test(positions_are_floats_where_that_is_exact),
         cmocka_unit_test(large_faces_are_counted_in_more_than_a_byte),
+        cmocka_unit_test(colors_between_bytes_are_rounded_and_counted),
         cmocka_unit_test(what_is_lost_is_named),
     };
     return cmocka_run_group_tests_name("format_ply_write", tests, NULL, NULL);

@@ -1,7 +1,6 @@
 #include "format/gltf/glb_parts.h"
 
-#include "format/gltf/gltf_attribute.h"
-#include "format/io/export.h"
+#include "format/io/colors.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -60,28 +59,31 @@ static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsi
 }
 
 /* The type of a column under a semantic, or 0. */
-static unsigned type_of(const he_column *column, const he_gltf_semantic *s)
+static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf_semantic *s)
 {
-    if (strcmp(s->attribute, "joints") == 0) {
+    uint64_t lost;
+    if (s->role == HE_GLTF_JOINTS) {
         return column->type == HE_UINT32 && all_below(column, 65536) ? HE_GLTF_UINT16 : 0;
     }
-    if (strcmp(s->attribute, "color") == 0 && column->type == HE_UINT32) {
-        return all_below(column, 256) ? HE_GLTF_UINT8 : 0;
+    if (column->type != HE_FLOAT && column->type != HE_DOUBLE) {
+        return 0;
     }
-    return column->type == HE_FLOAT || column->type == HE_DOUBLE ? HE_GLTF_FLOAT : 0;
+    bool bytes = s->role == HE_GLTF_COLOR && he_colors_are_bytes(m, column, &lost);
+    return bytes ? HE_GLTF_UINT8 : HE_GLTF_FLOAT;
 }
 
 /* The type as the attribute of this number, or 0. */
-static unsigned type_as(const he_column *column, const he_gltf_semantic *s, unsigned number)
+static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf_semantic *s,
+                        unsigned number)
 {
-    return column->labels == NULL && is_numbered(column, s, number) ? type_of(column, s) : 0;
+    return column->labels == NULL && is_numbered(column, s, number) ? type_of(m, column, s) : 0;
 }
 
 static bool has_number(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
 {
     for (size_t i = 0; i < he_mesh_columns(m); i++) {
         const he_column *column = he_mesh_column(m, i);
-        if (column != NULL && column->domain == HE_VERTEX && type_as(column, s, number) != 0) {
+        if (column != NULL && column->domain == HE_VERTEX && type_as(m, column, s, number) != 0) {
             return true;
         }
     }
@@ -112,19 +114,21 @@ static bool is_printable(const char *name)
 
 /* What is beyond the numbers of its semantic has a name of its own, as _uv1, and so the same name
  * when it is read back; joints, which are whole, are in extras. */
-static bool find_semantic(const unsigned counts[HE_GLTF_SEMANTICS], const he_column *column,
-                          he_glb_part *part)
+static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANTICS],
+                          const he_column *column, he_glb_part *part)
 {
+    part->role = HE_GLTF_SEMANTICS;
     for (size_t i = 0; i < HE_GLTF_SEMANTICS; i++) {
         const he_gltf_semantic *s = &he_gltf_semantics[i];
         unsigned n = 0;
-        while (n < MOST_NUMBERS && type_as(column, s, n) == 0) {
+        while (n < MOST_NUMBERS && type_as(m, column, s, n) == 0) {
             n++;
         }
         if (n == MOST_NUMBERS || n >= counts[i]) {
             continue;
         }
-        part->type = type_of(column, s);
+        part->role = s->role;
+        part->type = type_of(m, column, s);
         part->normalized = part->type == HE_GLTF_UINT8;
         snprintf(part->semantic, sizeof part->semantic, s->numbered ? "%s%u" : "%s", s->semantic,
                  n);
@@ -139,14 +143,33 @@ static bool find_semantic(const unsigned counts[HE_GLTF_SEMANTICS], const he_col
     return true;
 }
 
+/* Does what is written of each row come back to the same bits? */
+static bool comes_back(const he_mesh *m, const he_glb_part *part)
+{
+    const he_column *column = part->column;
+    for (uint32_t row = 0; row < m->c.vertices.issued; row++) {
+        for (uint32_t i = 0; i < column->components; i++) {
+            double value = he_export_number(column, row, i);
+            double other = he_narrow(he_gltf_convert(part->role, i, value));
+            if (he_vertex_is_live(m, (he_vertex){row}) &&
+                he_gltf_convert(part->role, i, other) != value) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 /* Does the reader make the same column of it? */
-static bool is_exact(const he_glb_part *part)
+static bool is_exact(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
     if (part->type == HE_GLTF_UINT16) {
         return column->rule == HE_COPY;
     }
-    return column->type != HE_DOUBLE && column->rule == HE_INTERPOLATE;
+    he_type type = part->role == HE_GLTF_UV ? HE_DOUBLE : HE_FLOAT;
+    return column->type == type && column->rule == HE_INTERPOLATE &&
+           (part->role != HE_GLTF_UV || comes_back(m, part));
 }
 
 /* --- choosing --- */
@@ -197,7 +220,7 @@ static void add_values(he_glb_parts *g, const he_column **used, he_notes *notes)
         he_glb_part part = {.content = HE_GLB_VALUES, .column = column};
         if (column == NULL || column->domain != HE_VERTEX ||
             he_export_find(m, HE_VERTEX, column->name, 1, HE_COLUMN_COMPONENTS, notes) == NULL ||
-            !find_semantic(counts, column, &part)) {
+            !find_semantic(m, counts, column, &part)) {
             continue;
         }
         part.components = column->components;
@@ -205,7 +228,7 @@ static void add_values(he_glb_parts *g, const he_column **used, he_notes *notes)
         part.stride = part.type == HE_GLTF_UINT8    ? 4
                       : part.type == HE_GLTF_UINT16 ? 8
                                                     : 4 * column->components;
-        used[i] = is_exact(&part) ? column : NULL;
+        used[i] = is_exact(m, &part) ? column : NULL;
         add(g, part);
     }
 }

@@ -3,8 +3,8 @@
 #ifndef HE_FORMAT_GLTF_GLB_PARTS_H
 #define HE_FORMAT_GLTF_GLB_PARTS_H
 
+#include "format/gltf/gltf_attribute.h"
 #include "format/io/cuts.h"
-#include "format/io/format.h"
 
 typedef enum he_glb_content {
     HE_GLB_POSITIONS, /* three floats a vertex */
@@ -22,9 +22,10 @@ typedef struct he_glb_part {
     unsigned type;                     /* the componentType */
     uint32_t components;               /* of an element of the accessor */
     bool normalized;
-    uint64_t count;  /* elements of the accessor */
-    uint32_t stride; /* bytes from one to the next */
-    uint64_t offset; /* in the buffer, a multiple of 4 */
+    he_gltf_role role; /* of values; HE_GLTF_SEMANTICS without one */
+    uint64_t count;    /* elements of the accessor */
+    uint32_t stride;   /* bytes from one to the next */
+    uint64_t offset;   /* in the buffer, a multiple of 4 */
 } he_glb_part;
 
 /* {0} is empty. */

@@ -6,10 +6,18 @@
 #include <string.h>
 
 const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS] = {
-    {"NORMAL", "normal", 3, 3, false, 0}, {"TANGENT", "tangent", 4, 4, false, 1},
-    {"TEXCOORD_", "uv", 2, 2, true, 2},   {"COLOR_", "color", 3, 4, true, 3},
-    {"JOINTS_", "joints", 4, 4, true, 5}, {"WEIGHTS_", "weights", 4, 4, true, 4},
+    {"NORMAL", "normal", 3, 3, false, HE_GLTF_NORMAL, HE_GLTF_NORMAL},
+    {"TANGENT", "tangent", 4, 4, false, HE_GLTF_TANGENT, HE_GLTF_TANGENT},
+    {"TEXCOORD_", "uv", 2, 2, true, HE_GLTF_UV, HE_GLTF_UV},
+    {"COLOR_", "color", 3, 4, true, HE_GLTF_COLOR, HE_GLTF_COLOR},
+    {"JOINTS_", "joints", 4, 4, true, HE_GLTF_JOINTS, HE_GLTF_WEIGHTS},
+    {"WEIGHTS_", "weights", 4, 4, true, HE_GLTF_WEIGHTS, HE_GLTF_JOINTS},
 };
+
+static he_gltf_role role_of(const he_gltf_semantic *known)
+{
+    return known == NULL ? HE_GLTF_SEMANTICS : known->role;
+}
 
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name)
 {
@@ -76,16 +84,10 @@ static bool name_attribute(const char *semantic, char name[HE_COLUMN_NAME],
     return true;
 }
 
-static bool is_bytes(const he_gltf_accessor *a, const he_gltf_semantic *known)
-{
-    return known != NULL && strcmp(known->attribute, "color") == 0 && a->type == HE_GLTF_UINT8 &&
-           a->normalized;
-}
-
 static he_type column_type(const he_gltf_accessor *a, const he_gltf_semantic *known)
 {
-    if (is_bytes(a, known)) {
-        return HE_UINT32;
+    if (role_of(known) == HE_GLTF_UV) {
+        return HE_DOUBLE;
     }
     if (a->normalized || a->type == HE_GLTF_FLOAT) {
         return HE_FLOAT;
@@ -123,9 +125,10 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
                     uint64_t place)
 {
     unsigned char *at = he_column_row(column, row);
-    for (uint32_t i = 0; i < column->components; i++, at += 4) {
+    bool fraction = column->type == HE_FLOAT || column->type == HE_DOUBLE;
+    for (uint32_t i = 0; i < column->components; i++, at += he_type_bytes(column->type)) {
         double value = values[i];
-        if (!(fabs(value) <= (double)FLT_MAX) && column->type == HE_FLOAT) {
+        if (!(fabs(value) <= (double)FLT_MAX) && fraction) {
             he_notes_add(&s->asset->into->notes, "not_finite",
                          "set to 0: values that are not finite of", column->name,
                          strlen(column->name), HE_PLACE_BYTE, place);
@@ -134,6 +137,8 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
         if (column->type == HE_FLOAT) {
             float number = (float)value;
             memcpy(at, &number, sizeof number);
+        } else if (column->type == HE_DOUBLE) {
+            memcpy(at, &value, sizeof value);
         } else if (column->type == HE_INT32) {
             int32_t number = (int32_t)value;
             memcpy(at, &number, sizeof number);
@@ -147,9 +152,8 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
 static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const he_gltf_accessor *a,
                           const he_gltf_semantic *known, const he_column *column, he_error *err)
 {
-    bool normal = known != NULL && strcmp(known->attribute, "normal") == 0;
-    bool tangent = known != NULL && strcmp(known->attribute, "tangent") == 0;
-    double factor = is_bytes(a, known) ? 255 : 1;
+    he_gltf_role role = role_of(known);
+    bool normal = role == HE_GLTF_NORMAL, tangent = role == HE_GLTF_TANGENT;
     uint64_t place =
         a->place == HE_GLTF_NOWHERE ? he_json_place(&s->asset->json, a->value) : a->place;
     he_gltf_walk walk = {.accessor = a};
@@ -158,8 +162,7 @@ static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const 
         const unsigned char *at = he_gltf_next(&walk);
         double values[HE_COLUMN_COMPONENTS] = {0};
         for (uint32_t k = 0; k < a->components; k++) {
-            values[k] = he_gltf_number(a, at, k);
-            values[k] = factor == 1 ? values[k] : nearbyint(values[k] * factor);
+            values[k] = he_gltf_convert(role, k, he_gltf_number(a, at, k));
         }
         if ((normal || tangent) && !p->still) {
             turn(p, normal, values);
@@ -182,8 +185,7 @@ static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
 
 static bool is_direction(const he_gltf_semantic *known)
 {
-    return known != NULL &&
-           (strcmp(known->attribute, "normal") == 0 || strcmp(known->attribute, "tangent") == 0);
+    return role_of(known) == HE_GLTF_NORMAL || role_of(known) == HE_GLTF_TANGENT;
 }
 
 /* Directions are floats, or what the extension has for them. */
@@ -236,8 +238,7 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
         return he_json_fail(&s->asset->json, value, err, HE_LIMIT, "more than %d attributes",
                             (int)HE_GLTF_ATTRIBUTES);
     }
-    bool color = *known != NULL && strcmp((*known)->attribute, "color") == 0;
-    he_rule rule = type == HE_FLOAT || color ? HE_INTERPOLATE : HE_COPY;
+    he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
     return he_soup_column(soup, name, HE_VERTEX, type, a->components, rule, out, err);
 }
 

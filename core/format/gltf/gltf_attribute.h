@@ -1,13 +1,14 @@
 /* gltf_attribute.h - the attributes of a primitive as those of vertices.
  *
  *     NORMAL, TANGENT      normal, tangent, turned as their node turns them
- *     TEXCOORD_0, _1 ...   uv, uv1 ...
- *     COLOR_0, _1 ...      color, color1 ...: bytes as uint32 from 0 to 255, others as fractions
+ *     TEXCOORD_0, _1 ...   uv, uv1 ...: v runs down in glTF and up in a mesh, so that it is 1 - v
+ *     COLOR_0, _1 ...      color, color1 ...: fractions, also where they are normalized integers
  *     JOINTS_0, _1 ...     joints, joints1 ...
  *     WEIGHTS_0, _1 ...    weights, weights1 ...
  *     _ANY                 ANY
  *
- * Floats stay float, normalized integers become it, others are int32 or uint32. */
+ * Floats stay float, normalized integers become it, others are int32 or uint32. Only uv is double:
+ * there 1 - v takes nothing from a float, so that it comes back as it was. */
 #ifndef HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
 #define HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
 
@@ -42,14 +43,31 @@ he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *
 HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,
                                       size_t end, he_error *err);
 
-/* What the writer calls an attribute, and the reader takes for it. */
+typedef enum he_gltf_role {
+    HE_GLTF_NORMAL, /* turned by nodes */
+    HE_GLTF_TANGENT,
+    HE_GLTF_UV,    /* its second component is 1 - v */
+    HE_GLTF_COLOR, /* bytes where they say all of it */
+    HE_GLTF_JOINTS,
+    HE_GLTF_WEIGHTS,
+    HE_GLTF_SEMANTICS
+} he_gltf_role;
+
+/* What the writer calls an attribute, and the reader takes for it: a row of he_gltf_semantics, at
+ * its role. */
 typedef struct he_gltf_semantic {
     const char *semantic, *attribute;
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
-    unsigned partner;     /* the one without which it may not be, itself where there is none */
+    he_gltf_role role;
+    he_gltf_role partner; /* the one without which it may not be, itself where there is none */
 } he_gltf_semantic;
-extern const he_gltf_semantic he_gltf_semantics[];
-enum { HE_GLTF_SEMANTICS = 6 };
+extern const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS];
+
+/* Component i of a value, from a mesh to glTF or back. */
+static inline double he_gltf_convert(he_gltf_role role, uint32_t i, double value)
+{
+    return role == HE_GLTF_UV && i == 1 ? 1 - value : value;
+}
 
 #endif

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#define FULL_BYTE 255.0
+
 void he_colors_clear(he_colors *colors)
 {
     he_mem_free(colors->rows);
@@ -21,30 +23,44 @@ he_status he_colors_add(he_colors *colors, size_t element, const double *values,
         colors->rows = rows;
         colors->capacity = capacity;
     }
-    memset(colors->rows + colors->count, 0, (element - colors->count) * sizeof *colors->rows);
+    for (size_t i = colors->count; i < element; i++) {
+        memcpy(colors->rows[i], (double[]){0, 0, 0, (double)INFINITY}, sizeof *colors->rows);
+    }
     double *row = colors->rows[element];
     memcpy(row, values, count * sizeof *row);
-    if (count == 4) {
-        colors->alpha = true;
-    } else {
-        row[3] = (double)NAN; /* not given: what is read is finite */
+    if (count == 3) {
+        row[3] = (double)NAN; /* not given, as infinite where there is no colour at all */
+    }
+    for (size_t i = 0; i < 3; i++) {
+        colors->broken = colors->broken || values[i] != floor(values[i]);
+        colors->highest = fmax(colors->highest, values[i]);
     }
     colors->count = element + 1;
     colors->given++;
     return HE_OK;
 }
 
-he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_kind domain, size_t elements,
-                           he_error *err)
+static bool is_opaque(const he_colors *colors, double full)
+{
+    size_t i = 0;
+    while (i < colors->count && (!isfinite(colors->rows[i][3]) || colors->rows[i][3] == full)) {
+        i++;
+    }
+    return i == colors->count;
+}
+
+he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_notes *notes, he_kind domain,
+                           size_t elements, he_error *err)
 {
     if (colors->given == 0) {
         return HE_OK;
     }
+    bool above = colors->fractions && !colors->broken && colors->highest > 1;
+    double full = above || !colors->fractions ? FULL_BYTE : 1;
+    uint32_t components = is_opaque(colors, full) ? 3 : 4;
     he_column *column;
-    size_t components = colors->alpha ? 4 : 3;
     he_status status =
-        he_soup_column(soup, "color", domain, colors->fractions ? HE_DOUBLE : HE_UINT32,
-                       (uint32_t)components, HE_INTERPOLATE, &column, err);
+        he_soup_column(soup, "color", domain, HE_DOUBLE, components, HE_INTERPOLATE, &column, err);
     if (status == HE_OK) {
         status = he_column_extend(column, elements, err);
     }
@@ -53,16 +69,50 @@ he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_kind domai
     }
     for (size_t i = 0; i < colors->count; i++) {
         double row[4];
-        uint32_t whole[4];
-        memcpy(row, colors->rows[i], sizeof row);
-        if (isnan(row[3])) {
-            row[3] = colors->fractions ? 1 : 255;
-        }
         for (size_t k = 0; k < 4; k++) {
-            whole[k] = colors->fractions ? 0 : (uint32_t)row[k];
+            double value = colors->rows[i][k];
+            row[k] = isnan(value)        ? 1
+                     : isinf(value)      ? 0
+                     : full == FULL_BYTE ? fmin(fmax(value / full, 0), 1)
+                                         : value;
         }
-        memcpy(he_column_row(column, i), colors->fractions ? (const void *)row : whole,
-               column->row_bytes);
+        memcpy(he_column_row(column, i), row, column->row_bytes);
+    }
+    if (above) {
+        he_notes_add_count(notes, "byte_colors",
+                           "read as 0 to 255, being whole and above 1: colours", colors->given);
     }
     return HE_OK;
+}
+
+/* --- writing --- */
+
+const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_notes *notes)
+{
+    const he_column *column = he_mesh_find_column(mesh, domain, "color");
+    bool fraction = column != NULL && (column->type == HE_FLOAT || column->type == HE_DOUBLE);
+    return fraction ? he_export_find(mesh, domain, "color", 3, 4, notes) : NULL;
+}
+
+uint32_t he_color_byte(double component)
+{
+    return (uint32_t)floor(fmin(fmax(component, 0), 1) * FULL_BYTE + 0.5);
+}
+
+bool he_color_is_byte(double component)
+{
+    return he_narrow(he_color_byte(component) / FULL_BYTE) == he_narrow(component);
+}
+
+bool he_colors_are_bytes(const he_mesh *mesh, const he_column *column, uint64_t *lost)
+{
+    *lost = 0;
+    for (uint32_t row = 0; row < he_mesh_issued(mesh, column->domain); row++) {
+        bool bytes = true;
+        for (uint32_t i = 0; i < column->components; i++) {
+            bytes = bytes && he_color_is_byte(he_export_number(column, row, i));
+        }
+        *lost += !bytes && he_mesh_is_live(mesh, column->domain, row);
+    }
+    return *lost == 0;
 }

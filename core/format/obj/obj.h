@@ -3,9 +3,9 @@
  * Read                      as
  *   v x y z                   a vertex
  *   v x y z w                 the same; a weight w other than 1 is noted and left out
- *   v x y z r g b [a]         with the vertex attribute "color", numbers as written
- *   vt u [v [w]]              half-edge attribute "uv": two doubles, or three if a corner has a w
- *                             other than 0
+ *   v x y z r g b [a]         with the vertex attribute "color" (colors.h)
+ *   vt u [v [w]]              half-edge attribute "uv", v upward: two doubles, or three if a corner
+ *                             has a w other than 0
  *   vn x y z                  half-edge attribute "normal"
  *   f, fo                     a face; corners v, v/vt, v//vn, v/vt/vn, also mixed and with a slash
  *                             at the end; negative indices count back from the last element so
@@ -20,8 +20,9 @@
  * texture coordinate or normal, where others have one, get zeros and a note. A file in which no
  * line was understood is HE_SYNTAX, a file of comments an empty mesh.
  *
- * Written: v, vt, vn (bit-equal values of corners once), then faces, with o, g, usemtl and s
- * where they change. */
+ * Written: v, with three numbers of a colour where there is one, vt, vn (bit-equal values of
+ * corners once), then faces, with o, g, usemtl and s where they change. A line of v never has seven
+ * numbers, which other programs refuse. */
 #ifndef HE_FORMAT_OBJ_OBJ_H
 #define HE_FORMAT_OBJ_OBJ_H
 

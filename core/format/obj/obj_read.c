@@ -450,7 +450,8 @@ static he_status obj_finish(void *state, he_error *err)
         status = he_pool_finish(&o->normal, soup, "normal", 3, err);
     }
     if (status == HE_OK) {
-        status = he_colors_finish(&o->colors, soup, HE_VERTEX, soup->vertex_count, err);
+        status =
+            he_colors_finish(&o->colors, soup, &o->into->notes, HE_VERTEX, soup->vertex_count, err);
     }
     if (status == HE_OK) {
         status = he_spans_finish(&o->object, soup, "object", err);

@@ -1,6 +1,6 @@
 #include "format/obj/obj.h"
 
-#include "format/io/export.h"
+#include "format/io/colors.h"
 #include "format/text/number.h"
 
 #include <string.h>
@@ -112,7 +112,11 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         obj_close(w);
         return status;
     }
-    w->color = he_export_find(mesh, HE_VERTEX, "color", 3, 4, notes);
+    w->color = he_colors_find(mesh, HE_VERTEX, notes);
+    if (w->color != NULL && w->color->components == 4) {
+        he_notes_add(notes, "alpha_lost", "not carried: the fourth component of", "vertex color",
+                     strlen("vertex color"), HE_PLACE_NONE, 0);
+    }
     const he_column *used[SPANS + 3] = {w->color, w->uv.column, w->normal.column};
     for (size_t i = 0; i < SPANS; i++) {
         const he_column *column = he_mesh_find_column(mesh, HE_FACE, spans[i].attribute);
@@ -147,8 +151,9 @@ static char *write_vertex(const obj_writer *w, uint32_t v, char *p)
         *p++ = ' ';
         p += he_double_print(position[i], p);
     }
-    if (w->color != NULL) {
-        p = he_export_row(w->color, v, p);
+    for (uint32_t i = 0; w->color != NULL && i < 3; i++) {
+        *p++ = ' ';
+        p = he_export_value(w->color, v, i, p);
     }
     *p++ = '\n';
     return p;

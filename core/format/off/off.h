@@ -8,10 +8,10 @@
  * Comments run from # to the end of the line, anywhere. A face may go on on the next line, and a
  * vertex whose position does. A vertex that ends with its position, or its normal, is read without
  * the rest, with a note, in files where none goes on. Colours have 3 or 4 numbers; they become the
- * attribute "color" of vertices and faces, as uint32 when all of a kind were written as integers,
- * else as double. Normals and texture coordinates become the vertex attributes "normal" and "uv". A
- * single number in place of a colour (an index into a colour map) and numbers the header does not
- * announce are noted and left out.
+ * attribute "color" of vertices and faces: integers count from 0 to 255 where all of a kind are
+ * written so (colors.h). They are written as four fractions. Normals and texture coordinates become
+ * the vertex attributes "normal" and "uv", v upward. A single number in place of a colour (an index
+ * into a colour map) and numbers the header does not announce are noted and left out.
  *
  * HE_SYNTAX: fewer vertices or faces than announced, or anything after the last face: a count
  * that lies would lose faces. HE_BAD_INDEX: a corner below 0 or not below V. HE_BAD_VALUE: a

@@ -573,9 +573,11 @@ static he_status finish(off *o, he_error *err)
     if (soup->face_count - o->open < o->faces) {
         return too_short(last_line, "faces", soup->face_count - o->open, o->faces, err);
     }
-    status = he_colors_finish(&o->vertex_colors, soup, HE_VERTEX, soup->vertex_count, err);
+    status = he_colors_finish(&o->vertex_colors, soup, &o->into->notes, HE_VERTEX,
+                              soup->vertex_count, err);
     if (status == HE_OK) {
-        status = he_colors_finish(&o->face_colors, soup, HE_FACE, soup->face_count, err);
+        status = he_colors_finish(&o->face_colors, soup, &o->into->notes, HE_FACE, soup->face_count,
+                                  err);
     }
     return status;
 }

@@ -1,6 +1,6 @@
 #include "format/off/off.h"
 
-#include "format/io/export.h"
+#include "format/io/colors.h"
 #include "format/text/number.h"
 
 #include <string.h>
@@ -40,9 +40,9 @@ static he_status off_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         return status;
     }
     w->normal = he_export_find(mesh, HE_VERTEX, "normal", 3, 3, notes);
-    w->color = he_export_find(mesh, HE_VERTEX, "color", 3, 4, notes);
+    w->color = he_colors_find(mesh, HE_VERTEX, notes);
     w->uv = he_export_find(mesh, HE_VERTEX, "uv", 2, 2, notes);
-    w->face_color = he_export_find(mesh, HE_FACE, "color", 3, 4, notes);
+    w->face_color = he_colors_find(mesh, HE_FACE, notes);
     const he_column *used[] = {w->normal, w->color, w->uv, w->face_color};
     he_export_note_lost(mesh, used, sizeof used / sizeof *used, notes);
     *state = w;
@@ -64,16 +64,16 @@ static char *write_header(const off_writer *w, char *p)
     return p;
 }
 
-/* Readers tell colours of 0 to 1 from those of 0 to 255 by the point: a fraction always gets one.
- */
+/* Four numbers, which readers expect of vertices. They tell colours of 0 to 1 from those of 0 to
+ * 255 by the point: each number gets one. */
 static char *write_color(const he_column *column, size_t row, char *p)
 {
-    bool fraction = column->type == HE_FLOAT || column->type == HE_DOUBLE;
-    for (uint32_t i = 0; i < column->components; i++) {
+    for (uint32_t i = 0; i < 4; i++) {
         *p++ = ' ';
-        char *end = he_export_value(column, row, i, p);
+        char *end =
+            i < column->components ? he_export_value(column, row, i, p) : he_export_text("1", p);
         size_t length = (size_t)(end - p);
-        if (fraction && memchr(p, '.', length) == NULL && memchr(p, 'e', length) == NULL) {
+        if (memchr(p, '.', length) == NULL && memchr(p, 'e', length) == NULL) {
             end = he_export_text(".0", end);
         }
         p = end;

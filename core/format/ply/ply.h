@@ -11,13 +11,11 @@
  * are the position; of "face", the list vertex_indices or vertex_index has the corners; of
  * "tristrips", the same list has strips of triangles, each begun by -1, with every second triangle
  * turned round. Such a list may be of floats or doubles that are whole, with a note. Other numbers
- * of vertices and faces become attributes of that name, these together:
+ * of vertices and faces become attributes of that name; those of a normal, a colour and a texture
+ * coordinate become one together (ply_groups.h).
  *
- *     nx ny nz                                          normal
- *     red green blue [alpha], r g b [a]                 color
- *     s t, u v, texture_u texture_v, texture_s texture_t     uv
- *
- * Whole numbers are int32 or uint32, others keep their type; a group of several types is double.
+ * Whole numbers are int32 or uint32, those of a colour floats of 0 to 1, others keep their type; a
+ * group of several types is double.
  * Values that are not finite are set to 0 and noted, in a position refused. Other lists, elements
  * of other names, numbers behind a row and bytes behind the last row are noted and left out;
  * comments, obj_info and lines that begin with # are passed over. In ascii each row is a line, and
@@ -30,8 +28,8 @@
  * those in binary a byte.
  *
  * WRITING. Positions are float where each is one exactly, else double; so they read back to the
- * same bits. Colours of whole numbers up to 255 are uchar. Attributes of one component keep their
- * name; of several only normal, color and uv (as s, t) have one. */
+ * same bits. Colours are uchar, and a note counts those that lie between two bytes. Attributes of
+ * one component keep their name; of several only normal, color and uv (as s, t) have one. */
 #ifndef HE_FORMAT_PLY_PLY_H
 #define HE_FORMAT_PLY_PLY_H
 

@@ -1,26 +1,10 @@
 #include "format/ply/ply_rows.h"
 
+#include "format/ply/ply_groups.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-enum { GROUP = 4 };
-
-/* Properties that are one attribute. The first of an attribute's groups that an element has all
- * needed members of is it. */
-static const struct {
-    const char *attribute;
-    size_t least;
-    const char *names[GROUP];
-} groups[] = {
-    {"normal", 3, {"nx", "ny", "nz"}},
-    {"color", 3, {"red", "green", "blue", "alpha"}},
-    {"color", 3, {"r", "g", "b", "a"}},
-    {"uv", 2, {"s", "t"}},
-    {"uv", 2, {"u", "v"}},
-    {"uv", 2, {"texture_u", "texture_v"}},
-    {"uv", 2, {"texture_s", "texture_t"}},
-};
 
 static he_status at_place(const he_ply_rows *rows, he_status status, he_error *err)
 {
@@ -50,30 +34,43 @@ static bool has_column(const he_soup *soup, he_kind domain, const char *name)
     return false;
 }
 
-static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind domain, size_t group,
-                           he_error *err)
+/* The type that holds all values of the members found; colours are fractions. */
+static he_type type_of_group(const he_ply_property *properties, const size_t *found, size_t count,
+                             bool color)
+{
+    he_type type = HE_TYPE_COUNT;
+    for (size_t i = 0; i < count; i++) {
+        he_type own = he_ply_type_column(properties[found[i]].type);
+        own = color && own != HE_DOUBLE ? HE_FLOAT : own;
+        type = i == 0 || own == type ? own : HE_DOUBLE;
+    }
+    return type;
+}
+
+/* The first of an attribute's groups that an element has all needed members of is it. */
+static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind domain,
+                           const he_ply_group *group, he_error *err)
 {
     const he_ply_property *properties = rows->header->properties + e->first;
-    size_t found[GROUP], count = 0;
-    he_type type = HE_TYPE_COUNT;
-    while (count < GROUP && groups[group].names[count] != NULL) {
-        size_t k = he_ply_find(rows->header, e, groups[group].names[count]);
+    size_t found[HE_PLY_GROUP], count = 0;
+    while (count < group->most) {
+        size_t k = he_ply_find(rows->header, e, group->names[count]);
         if (k == e->properties || properties[k].list) {
             break;
         }
-        he_type own = he_ply_type_column(properties[k].type);
-        type = count == 0 || own == type ? own : HE_DOUBLE;
         found[count++] = k;
     }
-    if (count < groups[group].least ||
-        has_column(&rows->into->soup, domain, groups[group].attribute)) {
+    if (count < group->least || has_column(&rows->into->soup, domain, group->attribute)) {
         return HE_OK;
     }
     he_column *column;
-    he_status status = he_soup_column(&rows->into->soup, groups[group].attribute, domain, type,
+    he_type type = type_of_group(properties, found, count, group->color);
+    he_status status = he_soup_column(&rows->into->soup, group->attribute, domain, type,
                                       (uint32_t)count, HE_INTERPOLATE, &column, err);
     for (size_t i = 0; i < count && status == HE_OK; i++) {
-        rows->targets[e->first + found[i]] = (he_ply_target){HE_PLY_ATTRIBUTE, (uint32_t)i, column};
+        double full = group->color ? he_ply_full_color(properties[found[i]].type) : 1;
+        rows->targets[e->first + found[i]] =
+            (he_ply_target){HE_PLY_ATTRIBUTE, (uint32_t)i, full, column};
     }
     return status;
 }
@@ -100,6 +97,7 @@ static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind do
             return status;
         }
         target->role = HE_PLY_ATTRIBUTE;
+        target->full = 1;
     }
     return HE_OK;
 }
@@ -108,8 +106,8 @@ static he_status map_attributes(he_ply_rows *rows, const he_ply_element *e, he_k
                                 he_error *err)
 {
     he_status status = HE_OK;
-    for (size_t i = 0; i < sizeof groups / sizeof *groups && status == HE_OK; i++) {
-        status = map_group(rows, e, domain, i, err);
+    for (size_t i = 0; i < HE_PLY_GROUPS && status == HE_OK; i++) {
+        status = map_group(rows, e, domain, &he_ply_groups[i], err);
     }
     return status == HE_OK ? map_rest(rows, e, domain, err) : status;
 }
@@ -123,7 +121,7 @@ static he_status map_position(he_ply_rows *rows, const he_ply_element *e, he_err
             return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, e->line,
                               "vertices have no property '%s'", names[i]);
         }
-        rows->targets[e->first + k] = (he_ply_target){HE_PLY_POSITION, i, NULL};
+        rows->targets[e->first + k] = (he_ply_target){HE_PLY_POSITION, i, 1, NULL};
     }
     return HE_OK;
 }
@@ -302,6 +300,12 @@ he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he
         he_notes_add(&rows->into->notes, "not_finite", "set to 0: values that are not finite of",
                      column->name, strlen(column->name), rows->unit, rows->at);
         value = 0;
+    }
+    if (target->full != 1) {
+        if (!is_whole(value, INT32_MIN, UINT32_MAX)) {
+            return refuse_value(rows, property, err);
+        }
+        value /= target->full;
     }
     unsigned char *at = he_column_row(column, rows->row);
     at += target->component * he_type_bytes(column->type);

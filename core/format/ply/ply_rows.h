@@ -28,6 +28,7 @@ typedef enum he_ply_role {
 typedef struct he_ply_target {
     he_ply_role role;
     uint32_t component;
+    double full; /* what stands for 1 */
     he_column *column;
 } he_ply_target;
 

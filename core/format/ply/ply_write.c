@@ -1,7 +1,7 @@
 #include "format/ply/ply.h"
 
-#include "format/io/export.h"
-#include "format/ply/ply_header.h"
+#include "format/io/colors.h"
+#include "format/ply/ply_groups.h"
 #include "format/text/number.h"
 
 #include <string.h>
@@ -18,6 +18,7 @@ typedef struct output {
     const he_column *column; /* NULL: the position */
     uint32_t component;
     he_ply_type type;
+    bool color; /* a byte of it */
 } output;
 
 typedef struct ply_writer {
@@ -67,18 +68,6 @@ static he_ply_type type_of_degree(const he_mesh *mesh)
     return HE_PLY_UINT8;
 }
 
-static bool is_bytes(const he_column *column)
-{
-    for (size_t row = 0; row <= column->rows; row++) { /* the last one is the default */
-        for (uint32_t i = 0; i < column->components; i++) {
-            if (he_export_number(column, row, i) > UINT8_MAX) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
 static he_ply_type type_of(const he_column *column)
 {
     switch (column->type) {
@@ -87,8 +76,7 @@ static he_ply_type type_of(const he_column *column)
     case HE_INT32:
         return HE_PLY_INT32;
     case HE_UINT32:
-        return strcmp(column->name, "color") == 0 && is_bytes(column) ? HE_PLY_UINT8
-                                                                      : HE_PLY_UINT32;
+        return HE_PLY_UINT32;
     case HE_FLOAT:
         return HE_PLY_FLOAT;
     case HE_DOUBLE:
@@ -101,7 +89,22 @@ static he_ply_type type_of(const he_column *column)
 static void add(ply_writer *w, const char *name, const he_column *column, uint32_t component,
                 he_ply_type type)
 {
-    w->outputs[w->count++] = (output){name, column, component, type};
+    w->outputs[w->count++] = (output){name, column, component, type, false};
+}
+
+static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain, he_notes *notes)
+{
+    const he_column *column = group->color ? he_colors_find(w->mesh, domain, notes)
+                                           : he_export_find(w->mesh, domain, group->attribute,
+                                                            group->least, group->most, notes);
+    uint64_t lost = 0;
+    for (uint32_t i = 0; column != NULL && i < column->components; i++) {
+        add(w, group->names[i], column, i, group->color ? HE_PLY_UINT8 : type_of(column));
+        w->outputs[w->count - 1].color = group->color;
+    }
+    if (column != NULL && group->color && !he_colors_are_bytes(w->mesh, column, &lost)) {
+        he_notes_add_count(notes, "rounded_colors", "rounded to bytes: a colour", lost);
+    }
 }
 
 static bool is_taken(const ply_writer *w, size_t first, const char *name)
@@ -133,19 +136,10 @@ static bool is_word(const char *name)
 
 static void add_attributes(ply_writer *w, he_kind domain, const he_column **used, he_notes *notes)
 {
-    static const struct {
-        const char *attribute;
-        uint32_t least, most;
-        const char *names[4];
-    } groups[] = {{"normal", 3, 3, {"nx", "ny", "nz"}},
-                  {"color", 3, 4, {"red", "green", "blue", "alpha"}},
-                  {"uv", 2, 2, {"s", "t"}}};
     size_t first = w->count;
-    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
-        const he_column *column = he_export_find(w->mesh, domain, groups[g].attribute,
-                                                 groups[g].least, groups[g].most, notes);
-        for (uint32_t i = 0; column != NULL && i < column->components; i++) {
-            add(w, groups[g].names[i], column, i, type_of(column));
+    for (size_t g = 0; g < HE_PLY_GROUPS; g++) {
+        if (he_ply_groups[g].written) {
+            add_group(w, &he_ply_groups[g], domain, notes);
         }
     }
     for (size_t i = 0; i < he_mesh_columns(w->mesh); i++) {
@@ -243,20 +237,6 @@ static char *put_value(double value, he_ply_type type, bool big, char *p)
     return put_whole(half, he_ply_type_bytes(type), big, p);
 }
 
-static char *write_output(const ply_writer *w, const output *o, bool first, char *p)
-{
-    double value = o->column != NULL ? he_export_number(o->column, w->row, o->component)
-                                     : (&w->mesh->c.position[w->row].x)[o->component];
-    if (w->encoding != HE_PLY_ASCII) {
-        return put_value(value, o->type, w->encoding == HE_PLY_BIG_ENDIAN, p);
-    }
-    if (!first) {
-        *p++ = ' ';
-    }
-    return o->column != NULL ? he_export_value(o->column, w->row, o->component, p)
-                             : p + he_double_print(value, p);
-}
-
 static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, bool first, char *p)
 {
     if (w->encoding != HE_PLY_ASCII) {
@@ -266,6 +246,23 @@ static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, 
         *p++ = ' ';
     }
     return p + he_u32_print(value, p);
+}
+
+static char *write_output(const ply_writer *w, const output *o, bool first, char *p)
+{
+    double value = o->column != NULL ? he_export_number(o->column, w->row, o->component)
+                                     : (&w->mesh->c.position[w->row].x)[o->component];
+    if (o->color) {
+        return write_whole(w, he_color_byte(value), HE_PLY_UINT8, first, p);
+    }
+    if (w->encoding != HE_PLY_ASCII) {
+        return put_value(value, o->type, w->encoding == HE_PLY_BIG_ENDIAN, p);
+    }
+    if (!first) {
+        *p++ = ' ';
+    }
+    return o->column != NULL ? he_export_value(o->column, w->row, o->component, p)
+                             : p + he_double_print(value, p);
 }
 
 static char *write_element(const char *name, uint32_t count, char *p)
