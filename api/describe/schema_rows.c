@@ -98,6 +98,8 @@ const api_member api_answer_members[] = {
     {"repair", "parents", "#parents", OPTIONAL, "split: the first 100."},
     {"repair", "left", "count", OPTIONAL, "fill: boundary loops that stay."},
     {"repair", "tolerance", "number", OPTIONAL, "weld: the one that was used."},
+    {"repair", "moved", "count", OPTIONAL,
+     "weld: values of vertices that went to corners, being different."},
     {"repair", "hole_edges", "count", OPTIONAL, "fill: the one that was used."},
 
     {"imported", "import", "#import", REQUIRED, "What was read and repaired."},

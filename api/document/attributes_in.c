@@ -522,7 +522,7 @@ bool api_attributes_in_feed(api_attributes_in *in, const char **at, const char *
 
 static bool goes_with_edges(const item *one)
 {
-    he_kind domain = one->column->domain;
+    he_kind domain = one->column == NULL ? HE_VERTEX : one->column->domain;
     return one->has_values && (domain == HE_EDGE || domain == HE_HALFEDGE);
 }
 
@@ -535,50 +535,51 @@ bool api_attributes_in_has_edges(const api_attributes_in *in)
     return i < in->count;
 }
 
-/* from[i] is the row of the document that row i of the mesh has. */
-static bool gather(item *one, const uint32_t *from, size_t count)
+static bool check_count(const item *one, size_t i, size_t count, api_problem *problem)
 {
-    size_t size = one->column->row_bytes;
-    unsigned char *values = he_mem_array(NULL, count, size);
-    if (values == NULL) {
-        return false;
+    if (one->count == count) {
+        return true;
     }
-    for (size_t i = 0; i < count; i++) {
-        memcpy(values + i * size, one->values + from[i] * size, size);
-    }
-    he_mem_free(one->values);
-    one->values = values;
-    one->count = count;
-    return true;
+    api_problem_set(problem, HE_BAD_VALUE, "%zu values are given for %zu %s", one->count, count,
+                    he_kind_plural(one->column->domain));
+    problem->status = 422;
+    api_problem_set_pointer(problem, "/attributes/%zu/values", i);
+    return false;
 }
 
-bool api_attributes_in_repair(api_attributes_in *in, const he_repaired *done, size_t vertices,
-                              size_t faces, api_problem *problem)
+bool api_attributes_in_to_soup(api_attributes_in *in, he_soup *soup, api_problem *problem)
 {
     for (size_t i = 0; i < in->count; i++) {
         item *one = &in->items[i];
+        he_error err = {0};
         bool of_faces = one->column->domain == HE_FACE;
-        const uint32_t *from = of_faces ? done->face_from : done->vertex_from;
-        size_t count = of_faces ? faces : vertices;
+        if (!one->has_values || (!of_faces && one->column->domain != HE_VERTEX)) {
+            continue;
+        }
+        if (!check_count(one, i, of_faces ? soup->face_count : soup->vertex_count, problem)) {
+            return false;
+        }
+        one->column->data = one->values;
+        one->column->rows = one->column->capacity = one->count;
+        one->values = NULL;
+        if (he_soup_take_column(soup, one->column, &err) != HE_OK) {
+            return api_problem_set_core(problem, &err);
+        }
+        one->column = NULL;
+    }
+    return true;
+}
+
+bool api_attributes_in_repaired(const api_attributes_in *in, api_problem *problem)
+{
+    for (size_t i = 0; i < in->count; i++) {
+        const item *one = &in->items[i];
         if (goes_with_edges(one)) {
             api_problem_set(problem, HE_UNSUPPORTED,
                             "values of %s go with edges that the repairs change",
                             he_kind_plural(one->column->domain));
             api_problem_set_pointer(problem, "/attributes/%zu/values", i);
             return false;
-        }
-        if (!one->has_values || one->column->domain == HE_MESH_KIND) {
-            continue;
-        }
-        if (one->count != count) {
-            api_problem_set(problem, HE_BAD_VALUE, "%zu values are given for %zu %s", one->count,
-                            count, he_kind_plural(one->column->domain));
-            problem->status = 422;
-            api_problem_set_pointer(problem, "/attributes/%zu/values", i);
-            return false;
-        }
-        if (from != NULL && !gather(one, from, of_faces ? done->faces : done->vertices)) {
-            return api_problem_set(problem, HE_NO_MEMORY, "no memory for the attributes");
         }
     }
     return true;
@@ -590,6 +591,9 @@ bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *
         item *one = &in->items[i];
         he_error err = {0};
         he_status status = HE_OK;
+        if (one->column == NULL) {
+            continue; /* the soup's */
+        }
         if (one->has_values) {
             status = he_attribute_fill(mesh, one->column, one->values, one->count, &err);
         }

@@ -16,7 +16,7 @@
 #define HE_API_DOCUMENT_ATTRIBUTES_IN_H
 
 #include "api/json/json_in.h"
-#include "repair/repair.h"
+#include "build/build.h"
 
 typedef struct api_attributes_in api_attributes_in;
 
@@ -29,10 +29,12 @@ bool api_attributes_in_feed(api_attributes_in *in, const char **at, const char *
                             api_problem *problem);
 /* Are there values of edges or half-edges? */
 bool api_attributes_in_has_edges(const api_attributes_in *in);
-/* The document of `vertices` and `faces` was repaired before it was built: so are the values of
- * these. Those of edges and half-edges are refused, for they go with edges that are no longer. */
-bool api_attributes_in_repair(api_attributes_in *in, const he_repaired *done, size_t vertices,
-                              size_t faces, api_problem *problem);
+/* The document is to be repaired before it is built: its soup takes the values of vertices and
+ * faces, so that they are repaired with it. */
+bool api_attributes_in_to_soup(api_attributes_in *in, he_soup *soup, api_problem *problem);
+/* It was repaired: values of edges and half-edges are refused, for they go with edges that are no
+ * longer. */
+bool api_attributes_in_repaired(const api_attributes_in *in, api_problem *problem);
 /* Add what was read to the mesh, after a good end. */
 bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *problem);
 

@@ -665,14 +665,18 @@ bool api_document_in_has_faces(const api_document_in *in)
 {
     return in->has_faces;
 }
-bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, const he_repaired *done,
-                                size_t vertices, size_t faces, api_problem *problem)
+bool api_document_in_lend(api_document_in *in, api_problem *problem)
+{
+    return in->attributes == NULL ||
+           api_attributes_in_to_soup(in->attributes, api_document_in_soup(in), problem);
+}
+bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, bool repaired,
+                                api_problem *problem)
 {
     if (in->attributes == NULL) {
         return true;
     }
-    return (!he_repaired_soup(done) ||
-            api_attributes_in_repair(in->attributes, done, vertices, faces, problem)) &&
+    return (!repaired || api_attributes_in_repaired(in->attributes, problem)) &&
            api_attributes_in_apply(in->attributes, mesh, problem);
 }
 bool api_document_in_has_edges(const api_document_in *in)

@@ -19,7 +19,6 @@
 
 #include "api/json/json_in.h"
 #include "build/build.h"
-#include "repair/repair.h"
 
 typedef struct api_document_in api_document_in;
 
@@ -37,10 +36,11 @@ bool api_document_in_end(api_document_in *in, api_problem *problem);
 he_soup *api_document_in_soup(api_document_in *in);
 bool api_document_in_has_vertices(const api_document_in *in);
 bool api_document_in_has_faces(const api_document_in *in);
-/* Add the attributes to the mesh the document made. Where its soup was repaired first, it had so
- * many vertices and faces before. */
-bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, const he_repaired *done,
-                                size_t vertices, size_t faces, api_problem *problem);
+/* Before the soup is repaired: it takes the attributes of vertices and faces. */
+bool api_document_in_lend(api_document_in *in, api_problem *problem);
+/* Add the other attributes to the mesh the document made, whose soup may have been `repaired`. */
+bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, bool repaired,
+                                api_problem *problem);
 /* Are there attributes that no repaired document can keep? */
 bool api_document_in_has_edges(const api_document_in *in);
 /* The other members as one object; valid until the reader is freed. Their refusals go to the

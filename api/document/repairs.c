@@ -94,6 +94,7 @@ static void write_one(api_out *out, he_repair repair, const he_repair_plan *plan
         write_ids(out, "gone", account, FIRST);
         write_ids(out, "into", account, SECOND);
         write_places(out, account, import == NULL ? NULL : &import->vertices);
+        api_out_key_u64(out, "moved", account->moved);
         break;
     case HE_REPAIR_DROP_DEGENERATE:
         write_ids(out, "gone", account, FIRST);

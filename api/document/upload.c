@@ -5,6 +5,7 @@
 #include "api/document/repairs.h"
 #include "format/io/format.h"
 #include "mesh/walk.h"
+#include "query/open_seams.h"
 #include "query/topology.h"
 
 #include <stdio.h>
@@ -48,6 +49,7 @@ typedef struct upload {
     attribute *attributes;
     size_t attribute_count;
     he_ids bowties;
+    uint64_t seams;      /* edges that a weld would make */
     uint64_t isolated;   /* vertices */
     he_ids isolated_ids; /* the first */
 } upload;
@@ -404,8 +406,9 @@ static void note_edges(upload *u, const he_mesh *mesh)
 static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
 {
     he_error err = {0};
-    if (u->document != NULL && !api_document_in_attributes(u->document, mesh, &u->repaired,
-                                                           u->vertices, u->faces, &x->problem)) {
+    if (u->document != NULL &&
+        !api_document_in_attributes(u->document, mesh, he_repaired_soup(&u->repaired),
+                                    &x->problem)) {
         return false;
     }
     he_mesh_watch(mesh, &x->watch);
@@ -416,6 +419,9 @@ static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
     }
     if (status == HE_OK) {
         status = find_isolated(u, mesh, &err);
+    }
+    if (status == HE_OK) {
+        status = he_open_seams_count(mesh, &u->seams, &err);
     }
     if (status == HE_OK) {
         status = name_attributes(u, mesh, &err);
@@ -451,6 +457,9 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     u->faces = soup->face_count;
     he_status status = HE_OK;
     if (u->plan.which != 0) {
+        if (u->document != NULL && !api_document_in_lend(u->document, &x->problem)) {
+            return false;
+        }
         he_watch_span(&x->watch, REPAIR_SHARE);
         status = he_repair_soup(soup, &u->plan, &u->repaired, &err);
     }
@@ -527,6 +536,22 @@ static void write_vertices(api_out *out, const upload *u, const char *code, cons
     api_out_object_end(out);
 }
 
+/* Other programs write a vertex for each corner whose values differ. */
+static void write_seams(api_out *out, const upload *u)
+{
+    if (u->seams == 0) {
+        return;
+    }
+    api_out_object_begin(out);
+    api_out_key_string(out, "code", "open_seams");
+    api_out_key_string(
+        out, "detail",
+        "faces lie apart though their edges coincide: repair=weld sews them and keeps "
+        "what their corners say");
+    api_out_key_u64(out, "count", u->seams);
+    api_out_object_end(out);
+}
+
 static void write_attributes(api_out *out, const upload *u)
 {
     if (u->attribute_count == 0) {
@@ -566,6 +591,7 @@ void api_upload_write_report(api_exchange *x)
                    u->bowties.count, &u->bowties);
     write_vertices(out, u, "isolated_vertices", "no face has these vertices", u->isolated,
                    &u->isolated_ids);
+    write_seams(out, u);
     api_out_array_end(out);
     if (u->has_import && u->import.notes.more > 0) {
         api_out_key_u64(out, "more_warnings", u->import.notes.more);

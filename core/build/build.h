@@ -50,6 +50,8 @@ uint32_t he_soup_face_of(const he_soup *soup, size_t corner);
 HE_NODISCARD he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
                                       uint32_t components, he_rule rule, he_column **out,
                                       he_error *err);
+/* The column is the soup's from success on; there is none of its domain and name. */
+HE_NODISCARD he_status he_soup_take_column(he_soup *soup, he_column *takes, he_error *err);
 
 /* One thing the structure cannot hold. `reason` is HE_TOO_FEW_CORNERS, HE_BAD_INDEX,
  * HE_REPEATED_CORNER (face, vertex), HE_NONMANIFOLD_EDGE, HE_ORIENTATION (face, and the edge as

@@ -138,6 +138,21 @@ uint32_t he_soup_face_of(const he_soup *soup, size_t corner)
     return (uint32_t)low;
 }
 
+he_status he_soup_take_column(he_soup *soup, he_column *takes, he_error *err)
+{
+    if (soup->column_count == soup->column_capacity) {
+        size_t capacity = he_mem_grown(soup->column_capacity, soup->column_count + 1);
+        he_column **columns = he_mem_array(soup->columns, capacity, sizeof(he_column *));
+        if (columns == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for another attribute");
+        }
+        soup->columns = columns;
+        soup->column_capacity = capacity;
+    }
+    soup->columns[soup->column_count++] = takes;
+    return HE_OK;
+}
+
 he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
                          uint32_t components, he_rule rule, he_column **out, he_error *err)
 {
@@ -152,19 +167,14 @@ he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_typ
             return HE_OK;
         }
     }
-    if (soup->column_count == soup->column_capacity) {
-        size_t capacity = he_mem_grown(soup->column_capacity, soup->column_count + 1);
-        he_column **columns = he_mem_array(soup->columns, capacity, sizeof(he_column *));
-        if (columns == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory for another attribute");
-        }
-        soup->columns = columns;
-        soup->column_capacity = capacity;
-    }
     he_column *column;
     he_status status = he_column_new(name, domain, type, components, rule, &column, err);
     if (status == HE_OK) {
-        soup->columns[soup->column_count++] = column;
+        status = he_soup_take_column(soup, column, err);
+        if (status != HE_OK) {
+            he_column_free(column);
+            return status;
+        }
         *out = column;
     }
     return status;

@@ -1,5 +1,6 @@
 #include "mesh/column.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const struct {
@@ -150,4 +151,45 @@ bool he_column_same_kind(const he_column *a, const he_column *b)
     return strcmp(a->name, b->name) == 0 && a->domain == b->domain && a->type == b->type &&
            a->rule == b->rule && a->components == b->components && a->labels == b->labels &&
            memcmp(a->fallback, b->fallback, a->row_bytes) == 0;
+}
+
+bool he_column_same_values(const he_column *a, const he_column *b)
+{
+    return a->type == b->type && a->components == b->components && a->labels == b->labels;
+}
+
+he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
+                                he_column **out, he_error *err)
+{
+    he_column *made;
+    he_status status = he_column_new(name, HE_HALFEDGE, column->type, column->components,
+                                     column->rule, &made, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    memcpy(made->fallback, column->fallback, column->row_bytes);
+    made->labels = he_labels_retain(column->labels);
+    status = he_column_extend(made, rows, err);
+    if (status != HE_OK) {
+        he_column_free(made);
+        return status;
+    }
+    *out = made;
+    return HE_OK;
+}
+
+/* A name is cut between letters: not inside the bytes of one. */
+void he_column_number_name(const char *name, unsigned number, char out[HE_COLUMN_NAME])
+{
+    char digits[16] = "";
+    if (number > 1) {
+        snprintf(digits, sizeof digits, "_%u", number);
+    }
+    size_t length = strlen(name), most = HE_COLUMN_NAME - 1 - strlen(digits);
+    length = length < most ? length : most;
+    while (name[length] != '\0' && ((unsigned char)name[length] & 0xC0) == 0x80) {
+        length--;
+    }
+    memcpy(out, name, length);
+    memcpy(out + length, digits, strlen(digits) + 1);
 }

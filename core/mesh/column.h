@@ -70,6 +70,13 @@ static inline unsigned char *he_column_row(const he_column *column, size_t row)
 }
 size_t he_column_bytes(const he_column *column);
 bool he_column_same_kind(const he_column *a, const he_column *b); /* all but the rows */
+/* Do rows of one mean the same in the other: type, components, labels? */
+bool he_column_same_values(const he_column *a, const he_column *b);
+/* One of corners under another name that is else of the kind of `column`, with so many rows. */
+HE_NODISCARD he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
+                                             he_column **out, he_error *err);
+/* NAME for number 1, else NAME_2 and so on, the name cut where that is too long. */
+void he_column_number_name(const char *name, unsigned number, char out[HE_COLUMN_NAME]);
 
 he_labels *he_labels_new(void); /* one reference; NULL when memory is out */
 he_labels *he_labels_retain(he_labels *labels);

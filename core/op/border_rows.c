@@ -25,10 +25,12 @@ static he_status run_edge_cut(he_mesh *m, const he_arg *args, he_results *out, h
 
 static he_status run_edge_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    he_status status =
-        he_edge_weld(m, (he_edge){args[0].id}, (he_edge){args[1].id}, (he_keep)args[2].choice, err);
+    uint64_t moved = 0;
+    he_status status = he_edge_weld(m, (he_edge){args[0].id}, (he_edge){args[1].id},
+                                    (he_keep)args[2].choice, &moved, err);
     if (status == HE_OK) {
         he_give(out, 0, args[0].id);
+        he_give_number(out, 1, (double)moved);
     }
     return status;
 }
@@ -106,7 +108,10 @@ const he_op he_border_rows[] = {
                     .type = HE_PARAM_CHOICE,
                     .choices = keeps,
                     .doc = "Where the ends lie: half-way between, or where those of a or b did."}},
-        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The edge that stays."}},
+        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The edge that stays."},
+                    {"moved", HE_RESULT_NUMBER, 0,
+                     "How many values of vertices went to corners, since they differ from those of "
+                     "the vertex that stays."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
                      HE_REPEATED_CORNER, HE_DOUBLED_EDGE, HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, -1, 0},

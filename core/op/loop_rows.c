@@ -19,8 +19,13 @@ static he_status run_loop_bridge(he_mesh *m, const he_arg *args, he_results *out
 
 static he_status run_loop_join(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    (void)out;
-    return he_loop_join(m, (he_halfedge){args[0].id}, (he_halfedge){args[1].id}, err);
+    uint64_t moved = 0;
+    he_status status =
+        he_loop_join(m, (he_halfedge){args[0].id}, (he_halfedge){args[1].id}, &moved, err);
+    if (status == HE_OK) {
+        he_give_number(out, 0, (double)moved);
+    }
+    return status;
 }
 
 static he_status run_loop_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
@@ -85,6 +90,9 @@ const he_op he_loop_rows[] = {
                     .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
                     .doc = "The other, by the edge that becomes one with that of `a`: its target "
                            "is merged into the origin of `a`."}},
+        .results = {{"moved", HE_RESULT_NUMBER, 0,
+                     "How many values of vertices went to corners, since they differ from those of "
+                     "the vertex that stays."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_LOOP, HE_LOOP_LENGTH,
                      HE_REPEATED_CORNER, HE_SHARED_VERTEX, HE_BOUNDARY_EDGE, HE_DOUBLED_EDGE,
                      HE_LOCKED_ELEMENT},

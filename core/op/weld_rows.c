@@ -6,26 +6,41 @@
 
 static const char *const positions[] = {"mean", "lowest", NULL};
 
+static he_status weld_near(he_mesh *m, double tolerance, he_merge_place place, he_results *out,
+                           he_error *err)
+{
+    uint64_t moved = 0;
+    he_status status = he_weld_near(m, tolerance, place, &out->list[0], &moved, err);
+    if (status == HE_OK) {
+        he_give_number(out, 1, (double)moved);
+    }
+    return status;
+}
+
 static he_status run_vertex_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_merge_place place = args[2].choice == 0 ? HE_MERGE_MEAN : HE_MERGE_INTO;
+    uint64_t moved = 0;
     if (!args[0].given) {
-        return he_weld_near(m, args[1].number, place, &out->list[0], err);
+        return weld_near(m, args[1].number, place, out, err);
     }
     he_vertex into;
     he_status status = he_give_room(out, 0, 1, err);
     if (status == HE_OK) {
-        status = he_vertex_weld(m, args[0].ids, args[0].count, place, &into, err);
+        status = he_vertex_weld(m, args[0].ids, args[0].count, place, &into, &moved, err);
     }
     if (status == HE_OK && args[0].count > 1) {
         he_give_add(out, 0, into.i);
+    }
+    if (status == HE_OK) {
+        he_give_number(out, 1, (double)moved);
     }
     return status;
 }
 
 static he_status run_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    return he_weld_near(m, args[0].number, HE_MERGE_MEAN, &out->list[0], err);
+    return weld_near(m, args[0].number, HE_MERGE_MEAN, out, err);
 }
 
 static he_status run_vertex_separate(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
@@ -70,7 +85,10 @@ const he_op he_weld_rows[] = {
                     .type = HE_PARAM_CHOICE,
                     .choices = positions,
                     .doc = "Where it lies then: at the mean, or where the lowest was."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."},
+                    {"moved", HE_RESULT_NUMBER, 0,
+                     "How many values of vertices went to corners, since they differ from those of "
+                     "the vertex that stays."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN,
                      HE_LOCKED_ELEMENT},
@@ -105,7 +123,10 @@ const he_op he_weld_rows[] = {
                     .flags = HE_REQUIRED,
                     .doc = "Each vertex joins the lowest one no farther away than this that has "
                            "not joined another; 0 for equal positions."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."},
+                    {"moved", HE_RESULT_NUMBER, 0,
+                     "How many values of vertices went to corners, since they differ from those of "
+                     "the vertex that stays."}},
         .refusals = {HE_BAD_VALUE, HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION,
                      HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},

@@ -23,6 +23,7 @@ static inline uint32_t he_mend_input(const uint32_t *from, uint32_t i)
 }
 /* A list 0, 1, 2... of `count`, with room for `room`. NULL when memory is out. */
 uint32_t *he_mend_same(size_t count, size_t room);
+bool he_mend_has_corner_values(const he_soup *soup);
 /* Make sure that there is m->corner_from, if it is wanted. */
 HE_NODISCARD he_status he_mend_corners(he_mend *m, he_error *err);
 /* Does a corner name no vertex? */

@@ -57,6 +57,15 @@ uint32_t *he_mend_same(size_t count, size_t room)
     return list;
 }
 
+bool he_mend_has_corner_values(const he_soup *soup)
+{
+    size_t i = 0;
+    while (i < soup->column_count && soup->columns[i]->domain != HE_HALFEDGE) {
+        i++;
+    }
+    return i < soup->column_count;
+}
+
 he_status he_mend_corners(he_mend *m, he_error *err)
 {
     if (!m->has_corner_values || m->corner_from != NULL) {
@@ -162,9 +171,7 @@ he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan, he_repaired 
     if (he_mend_has_bad_index(soup)) {
         return HE_OK;
     }
-    for (size_t i = 0; i < soup->column_count; i++) {
-        m.has_corner_values = m.has_corner_values || soup->columns[i]->domain == HE_HALFEDGE;
-    }
+    m.has_corner_values = he_mend_has_corner_values(soup);
     bool goes_on = true;
     for (he_repair r = HE_REPAIR_WELD; r < HE_REPAIR_FILL && status == HE_OK && goes_on; r++) {
         if ((plan->which & he_repair_bit(r)) == 0) {

@@ -7,7 +7,9 @@
  * weld: vertices at most `tolerance` apart become one. In the order of their numbers, each joins
  * the first of those kept so far that is near enough, or is kept. So none moves further than the
  * tolerance, kept ones are further apart than that, and chains do not creep. With tolerance 0 only
- * equal positions meet (-0 is 0).
+ * equal positions meet (-0 is 0). An attribute of vertices that differs between some that become
+ * one becomes an attribute of corners, so that seams of texture and sharp edges stay
+ * (build/keep.h).
  *
  * drop_degenerate: faces of less than three corners, or with two at one vertex, are left out.
  *
@@ -34,8 +36,8 @@
  * fill: holes of at most `hole_edges` edges are closed by one polygon each. Those that pass a
  * vertex twice, and the rim of a single face, are left.
  *
- * Vertices and faces keep their order. Attributes go with their elements: those of the vertex or
- * face that is kept, its parent's with a copy, those of corners with the corners. Every repair
+ * Vertices and faces keep their order. Other attributes go with their elements: those of the vertex
+ * or face that is kept, its parent's with a copy, those of corners with the corners. Every repair
  * takes time linear in the soup, and a few numbers of memory for each corner. */
 #ifndef HE_REPAIR_REPAIR_H
 #define HE_REPAIR_REPAIR_H
@@ -80,8 +82,9 @@ typedef struct he_repair_account {
     uint64_t count; /* weld: vertices gone; drop_*: faces gone; orient: faces turned; split:
                        vertices made; fill: faces made */
     uint64_t
-        parts;     /* orient: components with turned faces; split: vertices that had several fans */
-    uint64_t left; /* orient: components that cannot be oriented; fill: holes left open */
+        parts; /* orient: components with turned faces; split: vertices that had several fans */
+    uint64_t moved; /* weld: values of vertices that went to corners, being different */
+    uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
     /* weld: gone, the one it joined; drop_degenerate: gone, HE_NONE; drop_duplicates: gone, the
      * one kept; orient: turned face, HE_NONE; split: made, its parent; fill: face, its corners */
     he_repair_pair pairs[HE_REPAIR_NAMED];

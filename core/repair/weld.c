@@ -1,4 +1,5 @@
 /* weld: vertices that are near one another become one. */
+#include "build/keep.h"
 #include "geometry/near.h"
 #include "repair/mend.h"
 
@@ -44,6 +45,11 @@ he_status he_mend_weld(he_mend *m, double tolerance, he_error *err)
                           soup->limits.watch, err);
     if (status == HE_OK) {
         status = find_kept(m, &near, into, from, &kept, err);
+    }
+    if (status == HE_OK && kept < soup->vertex_count) {
+        status =
+            he_soup_keep_values(soup, into, from, &m->out->accounts[HE_REPAIR_WELD].moved, err);
+        m->has_corner_values = he_mend_has_corner_values(soup);
     }
     if (status == HE_OK && kept < soup->vertex_count) {
         for (size_t c = 0; c < soup->corner_count; c++) {

@@ -572,9 +572,13 @@ static void attributes_of_a_document_go_with_their_elements(void **state)
     api_bench *b = bench_new();
     bench_reply r =
         expect(201, post_json(b, "?id=a&repair=weld,drop_degenerate,drop_duplicates", document));
+    expect_member(repair_at(&r, 0, "weld"), "moved", "1");
     bench_reply_free(&r);
-    r = expect(200, bench_send(b, "GET", "/v1/meshes/a/attributes/vertices/v", NULL, NULL));
-    expect_member(r.json, "values", "[10,12,13]");
+    /* 11 was another vertex than 10, and its corner says so still */
+    r = expect(200, bench_send(b, "GET", "/v1/meshes/a/attributes/halfedges/v", NULL, NULL));
+    expect_member(r.json, "values", "[11,0,12,0,13,0]");
+    bench_reply_free(&r);
+    r = expect(404, bench_send(b, "GET", "/v1/meshes/a/attributes/vertices/v", NULL, NULL));
     bench_reply_free(&r);
     r = expect(200, bench_send(b, "GET", "/v1/meshes/a/attributes/faces/f", NULL, NULL));
     expect_member(r.json, "values", "[[2,3]]");
@@ -585,6 +589,31 @@ static void attributes_of_a_document_go_with_their_elements(void **state)
     r = expect(422, post_json(b, "?repair=weld,drop_degenerate,drop_duplicates", wrong));
     expect_member(r.json, "pointer", "\"/attributes/0/values\"");
     bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* Other programs write a vertex for each corner whose values differ: the faces then lie apart, and
+ * the report says how they come together. */
+static void faces_apart_along_coinciding_edges_are_told(void **state)
+{
+    (void)state;
+    static const char document[] =
+        "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,1,0],[1,0,0]],"
+        "\"faces\":[[0,1,2],[3,4,5]]}";
+    api_bench *b = bench_new();
+    for (int welded = 0; welded < 2; welded++) {
+        bench_reply r = expect(201, post_json(b, welded ? "?repair=weld" : "", document));
+        const cJSON *import = cJSON_GetObjectItem(r.json, "import");
+        const cJSON *warning = cJSON_GetArrayItem(cJSON_GetObjectItem(import, "warnings"), 0);
+        assert_int_equal(warning != NULL, !welded);
+        if (!welded) {
+            expect_member(warning, "code", "\"open_seams\"");
+            expect_member(warning, "count", "1");
+            assert_non_null(
+                strstr(cJSON_GetObjectItem(warning, "detail")->valuestring, "repair=weld"));
+        }
+        bench_reply_free(&r);
+    }
     bench_free(b);
 }
 
@@ -684,6 +713,7 @@ int main(void)
         cmocka_unit_test(the_order_in_the_query_does_not_matter),
         cmocka_unit_test(warnings_name_every_place),
         cmocka_unit_test(attributes_of_a_document_go_with_their_elements),
+        cmocka_unit_test(faces_apart_along_coinciding_edges_are_told),
         cmocka_unit_test(values_of_edges_are_not_guessed),
         cmocka_unit_test(wrong_parameters),
         cmocka_unit_test(a_put_and_a_job_repair_too),

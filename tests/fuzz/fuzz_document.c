@@ -8,6 +8,7 @@
 #include "mesh/column.h"
 #include "model/random.h"
 #include "unit/fixture.h"
+#include "repair/repair.h"
 
 /* In pieces of up to `most` bytes, each in a block of its own; 0: whole. NULL when refused. */
 static api_document_in *feed(const char *bytes, size_t size, uint32_t most, md_random *random,
@@ -59,18 +60,21 @@ static he_mesh *make(api_document_in *in, unsigned which, unsigned *advised)
 {
     he_repair_plan plan = {.which = which, .hole_edges = 6};
     he_soup *soup = api_document_in_soup(in);
-    size_t vertices = soup->vertex_count, faces = soup->face_count;
     he_repaired done = {0};
     he_mesh *mesh = NULL;
     api_problem problem = {0};
     *advised = 0;
+    if (which != 0 && !api_document_in_lend(in, &problem)) {
+        assert_true(problem.code != HE_OK && problem.code != HE_NO_MEMORY);
+        return NULL;
+    }
     he_status status = he_repair_soup(soup, &plan, &done, NULL);
     if (status == HE_OK) {
         status = he_build(soup, HE_BUILD_TAKE, &mesh, NULL, NULL);
     }
     if (status != HE_OK) {
         assert_int_equal(he_repair_advise(soup, which, advised, NULL), HE_OK);
-    } else if (!api_document_in_attributes(in, mesh, &done, vertices, faces, &problem)) {
+    } else if (!api_document_in_attributes(in, mesh, he_repaired_soup(&done), &problem)) {
         assert_true(problem.code != HE_OK && problem.code != HE_NO_MEMORY);
         he_mesh_free(mesh);
         mesh = NULL;

@@ -5,6 +5,7 @@
 #include "api/limits.h"
 #include "fixture.h"
 #include "mesh/compact.h"
+#include "repair/repair.h"
 
 #include <stdint.h>
 
@@ -270,14 +271,16 @@ static he_mesh *make_attributed(api_problem *problem)
     if (api_document_in_feed(in, attributed, sizeof attributed - 1, problem) &&
         api_document_in_end(in, problem)) {
         he_soup *soup = api_document_in_soup(in);
-        size_t vertices = soup->vertex_count, faces = soup->face_count;
-        he_status status = he_repair_soup(soup, &plan, &done, NULL);
+        he_status status = HE_NO_MEMORY;
+        if (api_document_in_lend(in, problem)) {
+            status = he_repair_soup(soup, &plan, &done, NULL);
+        }
         if (status == HE_OK) {
             status = he_build(soup, HE_BUILD_TAKE, &mesh, NULL, NULL);
         }
         problem->code = (int)status;
         if (status == HE_OK &&
-            !api_document_in_attributes(in, mesh, &done, vertices, faces, problem)) {
+            !api_document_in_attributes(in, mesh, he_repaired_soup(&done), problem)) {
             he_mesh_free(mesh);
             mesh = NULL;
         }

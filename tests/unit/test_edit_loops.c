@@ -168,7 +168,7 @@ static void test_split_then_join(void **state)
         he_halfedge there = he_edge_halfedge(a, 1), other = he_edge_halfedge(parts.edges[0], 0);
         assert_int_equal(he_face_of(m, there).i, parts.faces[0].i);
         assert_int_equal(he_face_of(m, other).i, parts.faces[1].i);
-        assert_int_equal(he_loop_join(m, there, other, NULL), HE_OK);
+        assert_int_equal(he_loop_join(m, there, other, NULL, NULL), HE_OK);
         assert_valid(m);
         /* Faces may store another of their half-edges, and corners hold the same values. */
         for (uint32_t f = 0; f < he_mesh_issued(before, HE_FACE); f++) {

@@ -183,7 +183,7 @@ static double weld_pairs(const void *context, size_t count)
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
     double from = pace_seconds();
-    assert_int_equal(he_weld_near(mesh, 0, HE_MERGE_MEAN, &into, NULL), HE_OK);
+    assert_int_equal(he_weld_near(mesh, 0, HE_MERGE_MEAN, &into, NULL, NULL), HE_OK);
     double seconds = pace_seconds() - from;
     assert_int_equal(he_mesh_edges(mesh), 5 * count);
     he_ids_clear(&into);

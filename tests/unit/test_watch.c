@@ -268,7 +268,7 @@ static he_status run_compact(he_mesh *m)
 
 static he_status run_weld(he_mesh *m)
 {
-    return he_weld_near(m, 0.01, HE_MERGE_MEAN, NULL, NULL);
+    return he_weld_near(m, 0.01, HE_MERGE_MEAN, NULL, NULL, NULL);
 }
 
 static he_status run_separate_bowties(he_mesh *m)

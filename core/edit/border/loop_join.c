@@ -1,5 +1,6 @@
 #include "edit/border/loop_join.h"
 
+#include "edit/piece/keep.h"
 #include "edit/piece/point.h"
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
@@ -232,7 +233,7 @@ static he_status reserve(const plan *p, he_error *err)
         need.links += he_vertex_degree(p->m, goes(p, i));
     }
     need.positions = n;
-    need.attributes = 3 * n;
+    need.attributes = n;
     need.lineage = 2 * n;
     return he_reserve(p->m, need, err);
 }
@@ -285,8 +286,6 @@ static void commit(const plan *p)
         he_vertex into = stays(p, i), gone = goes(p, i);
         he_edge kept = he_edge_of(side_of_a(p, i)), dropped = he_edge_of(side_of_b(p, i));
         he_set_position(m, into, place(p, i));
-        he_carry_merge(m, HE_VERTEX, into.i, gone.i, 0.5);
-        he_carry_merge(m, HE_EDGE, kept.i, dropped.i, 0.5);
         he_note_merged(m, HE_VERTEX, gone.i, into.i);
         he_note_merged(m, HE_EDGE, dropped.i, kept.i);
         he_delete_vertex(m, gone);
@@ -326,16 +325,40 @@ static he_status check(plan *p, he_halfedge a, he_halfedge b, he_error *err)
     return status == HE_OK ? check_marks(p, err) : status;
 }
 
-he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, he_error *err)
+/* What the vertices say goes to corners first, and back with a failure. */
+static he_status write(plan *p, uint64_t *moved, he_error *err)
+{
+    const uint32_t *ids = p->vertices.ids.ids;
+    const he_keep_pairs pairs = {ids, ids + p->n, p->n};
+    uint64_t kept = he_keep_count(p->m, &pairs);
+    he_bracket bracket;
+    he_status status = HE_OK;
+    if (kept > 0) {
+        status = he_edit_begin(p->m, &bracket, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        status = he_keep_values(p->m, &pairs, err);
+    }
+    if (status == HE_OK) {
+        status = reserve(p, err);
+    }
+    if (status == HE_OK) {
+        /* Nothing below can fail. */
+        commit(p);
+    }
+    if (status == HE_OK && moved != NULL) {
+        *moved = kept;
+    }
+    return kept > 0 ? he_edit_end(p->m, &bracket, status) : status;
+}
+
+he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, uint64_t *moved, he_error *err)
 {
     plan p = {.m = m};
     he_status status = check(&p, a, b, err);
     if (status == HE_OK) {
-        status = reserve(&p, err);
-    }
-    if (status == HE_OK) {
-        /* Nothing below can fail. */
-        commit(&p);
+        status = write(&p, moved, err);
     }
     clear(&p);
     return status;

@@ -18,8 +18,9 @@
  *         /     \                      /     \
  *
  * A loop that is a face's is taken away first, so that it is a hole. The vertices and edges of a
- * stay, those of b are merged into them. A vertex comes to lie half-way between the two, and
- * interpolated values of vertices and edges are the mean. Corner values follow their half-edges.
+ * stay, those of b are merged into them. A vertex comes to lie half-way between the two.
+ * What it says goes to its corners where the two differ (keep.h), and is counted in `moved`, which
+ * may be NULL. Corner values follow their half-edges.
  *
  * No fan closes beside another: the ring about a joined vertex is the two rings one after the
  * other.
@@ -30,6 +31,7 @@
  * HE_DOUBLED_EDGE when two other edges would join the same vertices; HE_LOCKED_ELEMENT for what
  * goes, a vertex that would move, and edges and faces at the vertices of b, which get another
  * (marks.h). HE_NO_MEMORY. Costs what is about the vertices of both loops. */
-HE_NODISCARD he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, he_error *err);
+HE_NODISCARD he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, uint64_t *moved,
+                                    he_error *err);
 
 #endif

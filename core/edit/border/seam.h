@@ -59,15 +59,17 @@ typedef enum he_keep { HE_KEEP_MEAN, HE_KEEP_A, HE_KEEP_B } he_keep;
  *        o-------p s-------o            o-------p-------o
  *
  * r is merged into q and s into p, b into a: a's ids stay. They lie half-way between, or where they
- * did with HE_KEEP_A, or where those of b did with HE_KEEP_B; interpolated values follow. An end in
- * common stays as it is. At a bow-tie the chain of fans is rearranged where others lie between a
- * and b (ring.h).
+ * did with HE_KEEP_A, or where those of b did with HE_KEEP_B. What the ends say goes to their
+ * corners where it differs (keep.h), and is counted in `moved`, which may be NULL; edge a keeps its
+ * values. An end in common stays as it is. At a bow-tie the chain of fans is rearranged where
+ * others lie between a and b (ring.h).
  *
  * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_REPEATED_ELEMENT when a = b; HE_NOT_BOUNDARY;
  * HE_REPEATED_CORNER when a face has two corners that would become one; HE_DOUBLED_EDGE when other
  * edges would join the same two vertices; HE_CLOSED_FAN when the fan at the common end would close
  * beside another; HE_LOCKED_ELEMENT for what would go, move, or get another end or corner
  * (marks.h). HE_NO_MEMORY. Costs the faces about the ends of b. */
-HE_NODISCARD he_status he_edge_weld(he_mesh *m, he_edge a, he_edge b, he_keep keep, he_error *err);
+HE_NODISCARD he_status he_edge_weld(he_mesh *m, he_edge a, he_edge b, he_keep keep, uint64_t *moved,
+                                    he_error *err);
 
 #endif

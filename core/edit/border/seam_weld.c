@@ -1,6 +1,7 @@
 /* The closing half of seam.h. */
 #include "edit/border/seam.h"
 #include "edit/local/cut.h"
+#include "edit/piece/keep.h"
 #include "edit/piece/point.h"
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
@@ -129,10 +130,6 @@ static void merge(he_mesh *m, const pair *end, he_keep keep)
         h = next;
     } while (h.i != first.i);
     he_set_position(m, end->stays, place_of(m, end, keep));
-    he_carry_merge(m, HE_VERTEX, end->stays.i, end->goes.i,
-                   keep == HE_KEEP_A   ? 1
-                   : keep == HE_KEEP_B ? 0
-                                       : 0.5);
     he_note_merged(m, HE_VERTEX, end->goes.i, end->stays.i);
 }
 
@@ -161,7 +158,6 @@ static void commit(he_mesh *m, he_edge a, he_edge b, he_keep keep, const pair en
         he_set_face_halfedge(m, f, h);
     }
     he_carry_move(m, HE_HALFEDGE, h.i, k.i);
-    he_carry_merge(m, HE_EDGE, a.i, b.i, keep == HE_KEEP_A ? 1 : keep == HE_KEEP_B ? 0 : 0.5);
     he_note_merged(m, HE_EDGE, b.i, a.i);
     he_delete_edge(m, b);
     for (unsigned i = 0; i < 2; i++) {
@@ -173,14 +169,9 @@ static void commit(he_mesh *m, he_edge a, he_edge b, he_keep keep, const pair en
     he_ring_settle(m, ends[1].stays, h);
 }
 
-he_status he_edge_weld(he_mesh *m, he_edge a, he_edge b, he_keep keep, he_error *err)
+static he_status reserve(he_mesh *m, const pair ends[2], he_error *err)
 {
-    pair ends[2];
-    he_status status = check(m, a, b, keep, ends, err);
-    if (status != HE_OK) {
-        return status;
-    }
-    he_need need = {.deleted_edges = 1, .lineage = 3, .attributes = 4};
+    he_need need = {.deleted_edges = 1, .lineage = 3, .attributes = 1};
     need.links = 10 + 2 * (HE_GAP_LINKS + HE_SETTLE_LINKS);
     for (unsigned i = 0; i < 2; i++) {
         if (ends[i].stays.i != ends[i].goes.i) {
@@ -189,10 +180,38 @@ he_status he_edge_weld(he_mesh *m, he_edge a, he_edge b, he_keep keep, he_error 
             need.links += he_vertex_degree(m, ends[i].goes);
         }
     }
-    status = he_reserve(m, need, err);
+    return he_reserve(m, need, err);
+}
+
+he_status he_edge_weld(he_mesh *m, he_edge a, he_edge b, he_keep keep, uint64_t *moved,
+                       he_error *err)
+{
+    pair ends[2];
+    he_bracket bracket;
+    he_status status = check(m, a, b, keep, ends, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    const uint32_t gone[2] = {ends[0].goes.i, ends[1].goes.i};
+    const uint32_t into[2] = {ends[0].stays.i, ends[1].stays.i};
+    const he_keep_pairs pairs = {gone, into, 2};
+    uint64_t kept = he_keep_count(m, &pairs);
+    if (kept > 0) {
+        status = he_edit_begin(m, &bracket, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        status = he_keep_values(m, &pairs, err);
+    }
+    if (status == HE_OK) {
+        status = reserve(m, ends, err);
+    }
     if (status == HE_OK) {
         /* Nothing below can fail. */
         commit(m, a, b, keep, ends);
     }
-    return status;
+    if (status == HE_OK && moved != NULL) {
+        *moved = kept;
+    }
+    return kept > 0 ? he_edit_end(m, &bracket, status) : status;
 }

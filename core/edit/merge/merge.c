@@ -1,6 +1,7 @@
 #include "edit/merge/merge.h"
 
 #include "edit/merge/merge_plan.h"
+#include "edit/piece/keep.h"
 #include "edit/piece/point.h"
 #include "mesh/marks.h"
 
@@ -131,27 +132,12 @@ static void relink_face(const he_merge_plan *p, he_face f)
     }
 }
 
-/* The means of all that became one, one after another. */
-static void carry_vertices(const he_merge_plan *p, uint32_t i)
-{
-    double count = 1;
-    if (p->how->place == HE_MERGE_INTO) {
-        return;
-    }
-    for (uint32_t v = p->next[i]; v != HE_NONE; v = p->next[he_merge_index(&p->group, v)]) {
-        he_carry_merge(p->m, HE_VERTEX, p->group.ids[i], v, count / (count + 1));
-        count++;
-    }
-}
-
 static void write_vertices(const he_merge_plan *p)
 {
     he_mesh *m = p->m;
     for (uint32_t i = 0; i < p->group.count; i++) {
         if (p->rep[i] == p->group.ids[i]) {
-            he_vertex v = {p->group.ids[i]};
-            he_set_position(m, v, place(p, i));
-            carry_vertices(p, i);
+            he_set_position(m, (he_vertex){p->group.ids[i]}, place(p, i));
         }
     }
     for (size_t i = 0; i < p->rim.count; i++) {
@@ -174,7 +160,7 @@ static void write_edges(const he_merge_plan *p)
     he_mesh *m = p->m;
     for (size_t i = 0; i < p->edges.count; i++) {
         he_edge e = {p->edges.ids[i]};
-        he_merge_fate *f = &p->fates[i];
+        const he_merge_fate *f = &p->fates[i];
         he_halfedge h = he_edge_halfedge(e, 0);
         if (he_merge_stays(p, h)) {
             for (unsigned side = 0; side < 2; side++) {
@@ -190,9 +176,6 @@ static void write_edges(const he_merge_plan *p)
             continue;
         }
         if (f->into != HE_NONE && f->into != e.i && he_merge_stays(p, he_merge_heir(p, h))) {
-            he_merge_fate *to = &p->fates[he_merge_index(&p->edges, f->into)];
-            double taken = to->taken++;
-            he_carry_merge(m, HE_EDGE, f->into, e.i, taken / (taken + 1));
             he_note_merged(m, HE_EDGE, e.i, f->into);
         }
     }
@@ -227,7 +210,30 @@ static void commit(const he_merge_plan *p)
     write_vertices(p);
 }
 
-he_status he_merge_vertices(he_mesh *m, const he_merge *how, he_error *err)
+/* What the vertices say goes to corners first, and back with a failure. */
+static he_status write(he_merge_plan *p, uint64_t kept, he_error *err)
+{
+    const he_keep_pairs pairs = {p->how->gone, p->how->into, p->how->count};
+    he_bracket bracket;
+    he_status status = HE_OK;
+    if (kept > 0) {
+        status = he_edit_begin(p->m, &bracket, err);
+        if (status != HE_OK) {
+            return status;
+        }
+        status = he_keep_values(p->m, &pairs, err);
+    }
+    if (status == HE_OK) {
+        status = reserve(p, err);
+    }
+    if (status == HE_OK) {
+        /* Nothing below can fail. */
+        commit(p);
+    }
+    return kept > 0 ? he_edit_end(p->m, &bracket, status) : status;
+}
+
+he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved, he_error *err)
 {
     static const struct {
         he_status (*run)(he_merge_plan *p, he_error *err);
@@ -241,9 +247,9 @@ he_status he_merge_vertices(he_mesh *m, const he_merge *how, he_error *err)
         {he_merge_claim_edges, "checking edges", 0.8},
         {he_merge_find_fans, "checking fans", 0.9},
         {check_marks, "checking marks", 0.92},
-        {reserve, "merging", 1},
     };
     he_merge_plan p = {.m = m, .how = how};
+    uint64_t kept = 0;
     he_status status = HE_OK;
     for (size_t i = 0; status == HE_OK && i < sizeof parts / sizeof *parts; i++) {
         status = he_watch_phase(m->watch, parts[i].phase, parts[i].to, err);
@@ -252,8 +258,14 @@ he_status he_merge_vertices(he_mesh *m, const he_merge *how, he_error *err)
         }
     }
     if (status == HE_OK) {
-        /* Nothing below can fail. */
-        commit(&p);
+        status = he_watch_phase(m->watch, "merging", 1, err);
+    }
+    if (status == HE_OK) {
+        kept = he_keep_count(m, &(he_keep_pairs){how->gone, how->into, how->count});
+        status = write(&p, kept, err);
+    }
+    if (status == HE_OK && moved != NULL) {
+        *moved = kept;
     }
     clear(&p);
     return status;

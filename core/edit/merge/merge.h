@@ -14,9 +14,9 @@
  *  - Edges without a face go; so do vertices left without an edge, but for those that took in
  *    others.
  *
- * Corner values follow their half-edges; interpolated attributes of vertices and edges become the
- * mean of all that became one, those of vertices by `place`. Noted as merged: vertices, edges, and
- * faces that were the same as another. */
+ * Corner values follow their half-edges. What vertices say that become one goes to their corners
+ * where it differs (keep.h); an edge that takes in others keeps its values. Noted as merged:
+ * vertices, edges, and faces that were the same as another. */
 #ifndef HE_EDIT_MERGE_MERGE_H
 #define HE_EDIT_MERGE_MERGE_H
 
@@ -36,7 +36,8 @@ typedef struct he_merge {
     he_merge_place place;
 } he_merge;
 
-/* V - count, less what goes besides; nothing at all when count is 0.
+/* V - count, less what goes besides; nothing at all when count is 0. `moved`, which may be NULL, is
+ * he_keep_count of what became one.
  *
  * Refused: HE_REPEATED_CORNER when a face would pass a vertex twice; HE_NONMANIFOLD_EDGE when more
  * than two faces would meet at an edge; HE_ORIENTATION when two would run along it in one
@@ -46,6 +47,7 @@ typedef struct he_merge {
  *
  * Costs what is about the vertices, and about the neighbours of those, times the logarithm of
  * that. */
-HE_NODISCARD he_status he_merge_vertices(he_mesh *m, const he_merge *how, he_error *err);
+HE_NODISCARD he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved,
+                                         he_error *err);
 
 #endif

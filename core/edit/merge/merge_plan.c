@@ -211,7 +211,7 @@ he_status he_merge_pair_edges(he_merge_plan *p, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu edges", count);
     }
     for (size_t i = 0; i < count; i++) {
-        p->fates[i] = (he_merge_fate){.claim = {HE_NONE, HE_NONE}, .taken = 1};
+        p->fates[i] = (he_merge_fate){.claim = {HE_NONE, HE_NONE}};
     }
     for (uint32_t i = 0; i < count; i++) {
         enter(p, i);

@@ -12,7 +12,6 @@ typedef struct he_merge_fate {
     uint32_t turned;   /* 1 when half-edge 2e takes the place of 2 * into + 1 */
     uint32_t claim[2]; /* of one that stays: the old half-edge that runs there with its face now */
     uint32_t uses[2];  /* how many faces run along either side */
-    uint32_t taken;    /* how many became one with it */
 } he_merge_fate;
 
 /* Lists of ids are sorted unless they say otherwise, and arrays run along with them. */

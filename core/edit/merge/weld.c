@@ -5,7 +5,7 @@
 #include "mesh/walk.h"
 
 he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count, he_merge_place place,
-                         he_vertex *into, he_error *err)
+                         he_vertex *into, uint64_t *moved, he_error *err)
 {
     he_ids gone = {0}, to = {0};
     he_status status = he_list_require(m, HE_VERTEX, vertices, count, HE_REPEATED_ELEMENT, err);
@@ -23,7 +23,7 @@ he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count, he_
     }
     if (status == HE_OK && gone.count > 0) {
         const he_merge how = {gone.ids, to.ids, gone.count, place};
-        status = he_merge_vertices(m, &how, err);
+        status = he_merge_vertices(m, &how, moved, err);
     }
     he_ids_clear(&gone);
     he_ids_clear(&to);
@@ -64,7 +64,7 @@ static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he
 }
 
 he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place, he_ids *into,
-                       he_error *err)
+                       uint64_t *moved, he_error *err)
 {
     he_ids gone = {0}, to = {0}, stay = {0};
     if (!(tolerance >= 0)) {
@@ -85,7 +85,7 @@ he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place, he_id
     }
     if (status == HE_OK && gone.count > 0) {
         const he_merge how = {gone.ids, to.ids, gone.count, place};
-        status = he_merge_vertices(m, &how, err);
+        status = he_merge_vertices(m, &how, moved, err);
     }
     for (size_t i = 0; status == HE_OK && into != NULL && i < stay.count; i++) {
         into->ids[into->count++] = stay.ids[i];
