@@ -63,7 +63,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     srv_http *http = context;
     if (what == MHD_CONNECTION_NOTIFY_STARTED) {
         int fd = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-        const int most = SRV_SEND_BUFFER;
+        const int most = SRV_FIRST_SEND_BUFFER;
         setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
         const struct sockaddr *peer =
             MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;

@@ -4,8 +4,10 @@
 
 #include <string.h>
 
-/* Some milliseconds of coding, and more than a socket takes at once. */
-enum { PIECE = 128 * 1024 };
+/* A full piece is some milliseconds of coding, and more than a socket takes at once. The first is
+ * smaller, and each is twice as long as the one before: for a client that takes nothing little is
+ * made in vain. */
+enum { PIECE = 128 * 1024, FIRST_PIECE = 16 * 1024 };
 
 void srv_ahead_clear(srv_ahead *ahead)
 {
@@ -31,12 +33,15 @@ int64_t srv_ahead_take(srv_ahead *ahead, char *buffer, size_t size)
 static void make(void *context)
 {
     srv_ahead *ahead = context;
-    if (ahead->piece == NULL) {
-        ahead->piece = he_mem_alloc(PIECE);
+    size_t size = ahead->size == 0 ? FIRST_PIECE : ahead->size < PIECE ? 2 * ahead->size : PIECE;
+    if (size != ahead->size) {
+        he_mem_free(ahead->piece);
+        ahead->piece = he_mem_alloc(size);
+        ahead->size = size;
     }
     ahead->begun = true;
     if (ahead->piece != NULL) {
-        ahead->last = ahead->read(ahead->context, ahead->piece, PIECE);
+        ahead->last = ahead->read(ahead->context, ahead->piece, ahead->size);
         ahead->from = 0;
         ahead->to = ahead->last > 0 ? (size_t)ahead->last : 0;
     }

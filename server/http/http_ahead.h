@@ -23,6 +23,7 @@ typedef struct srv_ahead {
     int64_t (*read)(void *context, char *buffer, size_t size); /* as in api_answer */
     void *context;
     void (*resume)(struct srv_ahead *ahead);
+    size_t size; /* of the piece that was made last, 0: none was */
     char *piece; /* NULL without memory: then it is made as it is taken */
     size_t from, to;
     int64_t last; /* of read: 0 or -1 when there is no more */

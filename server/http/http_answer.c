@@ -4,10 +4,12 @@
 #include "server/http/http_recv.h"
 #include "server/http/http_request.h"
 #include "server/http/http_wire.h"
+#include "server/http/limits.h"
 #include "system/clock.h"
 #include "system/memory.h"
 
 #include <string.h>
+#include <sys/socket.h>
 
 enum {
     ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once, into memory of libmicrohttpd */
@@ -31,10 +33,28 @@ static ssize_t pulled(srv_request *r, int64_t got)
     return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
 }
 
+static void widen(srv_request *r)
+{
+    const int most = SRV_SEND_BUFFER;
+    if (r->socket != NULL && !r->socket->widened) {
+        r->socket->widened =
+            setsockopt(r->socket->socket, SOL_SOCKET, SO_SNDBUF, &most, sizeof most) == 0;
+    }
+}
+
+/* A client that was sent so much has taken some of it: this is more than waits for one that takes
+ * nothing. */
+static void widen_after(srv_request *r, uint64_t position)
+{
+    if (position >= SRV_SEND_BUFFER) {
+        widen(r);
+    }
+}
+
 static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
 {
-    (void)position;
     srv_request *r = context;
+    widen_after(r, position);
     const api_answer *answer = api_answer_of(r->exchange);
     return pulled(r, answer->read(answer->context, buffer, size));
 }
@@ -48,8 +68,8 @@ static void resume_ahead(srv_ahead *ahead)
 /* Takes what another thread makes. */
 static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
 {
-    (void)position;
     srv_request *r = context;
+    widen_after(r, position);
     const api_answer *answer = api_answer_of(r->exchange);
     srv_request_resumed(r);
     r->ahead.read = answer->read;
@@ -191,6 +211,9 @@ bool srv_answer_send(srv_request *r)
     if (is_live(r)) {
         /* Its silence is no fault; the connection is closed after it. */
         MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
+    }
+    if (is_live(r) || (!is_streamed(r) && wire.length > SRV_FIRST_SEND_BUFFER)) {
+        widen(r); /* nothing is saved by not sending it */
     }
     if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;

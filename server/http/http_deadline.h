@@ -71,6 +71,7 @@ typedef struct srv_connection {
     /* The worker's own. */
     srv_syntax syntax;
     uint64_t requests;   /* begun so far, as libmicrohttpd sees it */
+    bool widened;        /* the socket has SRV_SEND_BUFFER, not SRV_FIRST_SEND_BUFFER */
     bool tells_end;      /* the kernel says with what is read whether there is more: http_recv.h */
     bool may_have_ended; /* it said so of what was read last */
     /* The thread's own. */
