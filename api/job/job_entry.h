@@ -3,7 +3,6 @@
 #define HE_API_JOB_JOB_ENTRY_H
 
 #include "api/job/job_table.h"
-#include "store/durability_wait.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -2,6 +2,7 @@
 
 #include "api/job/job_entry.h"
 #include "api/job/job_out.h"
+#include "api/json/problem.h"
 #include "base/mem.h"
 #include "store/followers.h"
 #include "system/clock.h"
@@ -205,24 +206,35 @@ static void end(api_job_entry *j)
     st_release(about);
 }
 
-/* Nobody is told that something was done which the journal may never have. */
-static void lose_answer(api_job_entry *j)
+/* In place of an answer that says that something was done which the journal may never have.
+ * Without memory only the status is left. */
+static void answer_lost(api_job_entry *j)
 {
+    api_problem problem = {0};
+    api_text text = {0};
+    api_problem_set_lost(&problem, j->wait.reason);
+    api_problem_write(&problem, "", &text);
     pthread_mutex_lock(&j->table->lock);
     he_mem_free(j->body);
-    j->body = NULL;
-    j->facts.body = NULL;
-    j->facts.length = 0;
+    j->body = text.failed ? NULL : text.bytes;
+    j->facts.body = j->body;
+    j->facts.length = text.failed ? 0 : text.length;
+    j->facts.shown = true;
+    memset(j->facts.headers, 0, sizeof j->facts.headers);
+    j->facts.headers[0] = "application/problem+json"; /* Content-Type */
     j->facts.location[0] = '\0';
-    j->facts.status = 503;
+    j->facts.status = api_problem_http(&problem);
     pthread_mutex_unlock(&j->table->lock);
+    if (text.failed) {
+        api_text_clear(&text);
+    }
 }
 
 static void resume(st_wait *wait)
 {
     api_job_entry *j = (api_job_entry *)((char *)wait - offsetof(api_job_entry, wait));
-    if (wait->abandoned) {
-        lose_answer(j);
+    if (wait->end != ST_WAIT_DURABLE) {
+        answer_lost(j);
     }
     end(j);
 }
@@ -230,16 +242,14 @@ static void resume(st_wait *wait)
 /* D1: the end is not shown before it is durable. */
 static void end_when_durable(api_job_entry *j, const api_job_outcome *outcome)
 {
-    st_store *store = j->table->options.store;
-    if (outcome->mesh != NULL && !st_store_is_durable(store, outcome->mesh, outcome->record)) {
+    st_waits *waits = st_store_waits(j->table->options.store);
+    j->wait = (st_wait){.shown = outcome->awaits, .resume = resume};
+    if (!st_waits_is_durable(waits, &outcome->awaits)) {
         atomic_store(&j->phase, "storing");
-        j->wait = (st_wait){.mesh = outcome->mesh, .record = outcome->record, .resume = resume};
-        if (!st_waits_add(st_store_waits(store), &j->wait)) {
-            resume(&j->wait);
-        }
-        return;
     }
-    end(j);
+    if (!st_waits_add(waits, &j->wait)) {
+        resume(&j->wait);
+    }
 }
 
 static void run(void *context)

@@ -57,8 +57,7 @@ typedef struct api_job_outcome {
     size_t length;
     bool shown;                           /* as in api_job */
     const char *headers[API_JOB_HEADERS]; /* NULL where it has none */
-    st_mesh *mesh; /* the end shows when this mesh is durable up to `record`; NULL: at once */
-    uint64_t record;
+    st_shown awaits;                      /* the end shows when that is durable */
 } api_job_outcome;
 
 /* Called with the phase and how much of it is done, 0 to 1; false: the work is to end. */

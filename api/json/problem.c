@@ -163,6 +163,15 @@ bool api_problem_set(api_problem *problem, int code, const char *format, ...)
     return false;
 }
 
+bool api_problem_set_lost(api_problem *problem, const char *reason)
+{
+    if (reason == NULL) {
+        return api_problem_set(problem, API_NOT_READY,
+                               "the server stopped before the change was durable");
+    }
+    return api_problem_set(problem, API_STORE_FAILED, "the change was lost: %s", reason);
+}
+
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
 {
     va_list arguments;

@@ -160,6 +160,9 @@
       "respond-async. What all elements of a mesh are read for takes that header.")                \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
+    X(STORE_FAILED, "store_failed", 503, "A change could not be kept",                             \
+      "The answer would show a change that the server could not make durable, this request's or "  \
+      "an earlier one's. The change is lost; the detail gives the reason.")                        \
     X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \
       "HTTP/1.1 and HTTP/1.0 are. The connection is closed.")                                      \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
@@ -213,6 +216,9 @@ bool api_problem_set(api_problem *problem, int code, const char *format, ...)
 bool api_problem_set_core(api_problem *problem, const he_error *err);
 /* The same about the path: elements that do not live are 404 and 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
+/* Of an answer that shows a change which is not durable: it was lost for `reason`, or, NULL, the
+ * server stopped before that was known. */
+bool api_problem_set_lost(api_problem *problem, const char *reason);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

@@ -19,7 +19,7 @@
  *           |
  *       api_free
  *
- * The server must not send the answer before api_answer's `mesh` is durable up to `record`.
+ * The server must not send the answer before what api_answer's `shown` says is durable.
  * api_handle does all of it at once on bytes in memory: tests live on that. */
 #ifndef HE_API_REQUEST_API_H
 #define HE_API_REQUEST_API_H
@@ -82,11 +82,8 @@ typedef struct api_answer {
      * NULL: it is none. */
     const api_source *live;
     const char *idle;
-    bool close; /* the connection must not be used again */
-    /* Hold the answer until this mesh is durable up to this record (st_mesh_info); mesh NULL: do
-     * not. */
-    st_mesh *mesh;
-    uint64_t record;
+    bool close;        /* the connection must not be used again */
+    st_shown shown;    /* the answer waits until that is durable (durability_wait.h) */
     const char *route; /* template for logs and metrics, "-" when none matched */
 } api_answer;
 

@@ -123,6 +123,7 @@ bool api_fail_path(api_exchange *x, const he_error *err)
 
 bool api_fail_store(api_exchange *x, st_status status)
 {
+    x->shows_all |= status == ST_ABSENT || status == ST_TAKEN || status == ST_TOO_MANY;
     switch (status) {
     case ST_OK:
         break;

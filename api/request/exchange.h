@@ -94,7 +94,9 @@ struct api_exchange {
     st_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
     st_mesh_info info; /* filled by read_begin, write_begin and what the handler passes on */
     bool has_info;
-    bool claimed;      /* x->mesh is, by this exchange: see st_claim */
+    bool shows_all; /* the answer may show more of the store than `info`: see api_answer's shown */
+    uint64_t since; /* all records up to here were durable when the exchange began */
+    bool claimed;   /* x->mesh is, by this exchange: see st_claim */
     st_snapshot *past; /* the earlier revision the request is about; NULL: the present, or taken */
 
     /* --- the handler's own, freed by `free_state` with the exchange --- */

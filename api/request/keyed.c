@@ -44,33 +44,12 @@ void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
-/* Hold the answer until what it shows is durable. A mesh that is gone shows nothing. */
-static void find_shown(api_exchange *x, const st_kept *kept)
-{
-    st_mesh_info info = {.incarnation = 0};
-    if (x->mesh != NULL && !(x->route->flags & API_KEYED_NEW)) {
-        x->info.record = kept->record;
-        x->has_info = true;
-        return;
-    }
-    if (x->mesh != NULL) {
-        st_release(x->mesh);
-        x->mesh = NULL;
-    }
-    if (st_find(x->store, kept->id, &x->mesh) != ST_OK) {
-        x->mesh = NULL;
-        return;
-    }
-    st_read_begin(x->mesh, &info);
-    st_read_end(x->mesh);
-    x->has_info = info.incarnation == kept->incarnation;
-    x->info.record = kept->record;
-}
-
 static void replay(api_exchange *x)
 {
     const st_kept *kept = st_keyed_answer(x->claim);
-    find_shown(x, kept);
+    x->info.position = kept->position;
+    x->info.incarnation = kept->incarnation;
+    x->has_info = true;
     api_answer_header(x, "Idempotency-Replayed", "true");
     if (kept->etag[0] != '\0') {
         api_answer_header(x, "ETag", kept->etag);
@@ -131,7 +110,7 @@ void api_keyed_settle(api_exchange *x)
         st_kept kept = {.status = answer->status,
                         .changed = x->published != 0,
                         .incarnation = x->info.incarnation,
-                        .record = x->info.record,
+                        .position = x->info.position,
                         .body = answer->bytes,
                         .length = (size_t)answer->length};
         const char *etag = header_of_answer(x, "ETag");

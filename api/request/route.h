@@ -52,6 +52,8 @@ enum {
     API_LONG = 128,       /* may become a job: Prefer is read, and 202 may be the answer */
     API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
     API_REHEARSED = 512,  /* takes `dry_run`: an answer may be about nothing that is */
+    API_STORELESS = 2048, /* answers show nothing that is stored, and wait for no journal; so do
+                             those of API_FIXED */
     API_EXPENSIVE = 1024  /* a read that costs the mesh: refused to pages of other sites, which need
                              not be able to read the answer to make us work */
 };

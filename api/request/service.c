@@ -136,6 +136,16 @@ static void end_given_up(api_exchange *x)
     }
 }
 
+/* What the answer waits for. One that is not about one mesh alone may show that others are there or
+ * not, and so do refusals. */
+static st_shown shown(const api_exchange *x)
+{
+    if (x->route == NULL || (x->route->flags & (API_FIXED | API_STORELESS))) {
+        return (st_shown){.position = 0};
+    }
+    return x->has_info && !x->shows_all ? st_shown_of(&x->info) : st_shown_all(x->store, x->since);
+}
+
 static api_step finish(api_exchange *x)
 {
     end_claim(x);
@@ -161,10 +171,7 @@ static api_step finish(api_exchange *x)
     } else if (varies(x->route)) {
         put_header(x, "Vary", "Accept");
     }
-    if (x->has_info && x->mesh != NULL) {
-        x->answer.mesh = x->mesh;
-        x->answer.record = x->info.record;
-    }
+    x->answer.shown = shown(x);
     api_keyed_settle(x);
     if (x->phase != API_PHASE_JOB) {
         api_coded_answer(x); /* what is kept of the answer, here or of a job, is plain */
@@ -276,6 +283,7 @@ static api_exchange *exchange_new(api_service *service, const api_request *reque
     }
     x->service = service;
     x->store = service->store;
+    x->since = st_waits_durable(st_store_waits(x->store));
     x->kind = HE_KIND_COUNT;
     x->answer.route = "-";
     x->coding_in = API_IDENTITY;
@@ -347,8 +355,7 @@ static void run_job(void *self, api_job_progress *progress, void *context, api_j
         (api_media_is(type, "application/json") || api_media_is(type, "application/problem+json"));
     out->length = (size_t)answer->length;
     out->body = take_bytes(x);
-    out->mesh = answer->mesh;
-    out->record = answer->record;
+    out->awaits = answer->shown;
 }
 
 static void free_job(void *self)

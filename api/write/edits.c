@@ -567,7 +567,7 @@ void api_edits_post(api_exchange *x)
     x->free_state = free_edits;
     e->growth = 1;
     api_names_init(&e->names, st_secret(x->store));
-    api_others_init(&e->others, x->store);
+    api_others_init(&e->others, x);
     api_out_init(&e->out, &e->results);
     if (!read_request(x, e)) {
         return;

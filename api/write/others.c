@@ -14,6 +14,7 @@ static bool refuse_absent(const api_in *at, const char *id)
 static bool find(void *context, const api_in *at, const char *id, const he_mesh **out)
 {
     api_others *o = context;
+    o->asker->shows_all = true;
     for (size_t i = 0; i < o->count; i++) {
         if (strcmp(o->other[i].id, id) == 0) {
             *out = o->other[i].content;
@@ -25,7 +26,7 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
                            (int)API_MAX_OTHERS);
     }
     api_other *other = &o->other[o->count];
-    if (!api_path_is_mesh_id(id) || st_find(o->store, id, &other->mesh) != 0) {
+    if (!api_path_is_mesh_id(id) || st_find(o->asker->store, id, &other->mesh) != 0) {
         return refuse_absent(at, id);
     }
     memcpy(other->id, id, strlen(id) + 1);
@@ -36,10 +37,10 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
     return true;
 }
 
-void api_others_init(api_others *o, st_store *store)
+void api_others_init(api_others *o, api_exchange *asker)
 {
     o->meshes = (api_meshes){find, o};
-    o->store = store;
+    o->asker = asker;
     o->count = 0;
 }
 

@@ -18,14 +18,14 @@ typedef struct api_other {
 
 typedef struct api_others {
     api_meshes meshes; /* give this to api_decode_op */
-    st_store *store;
+    api_exchange *asker;
     api_other other[API_MAX_OTHERS];
     size_t count;
 } api_others;
 
 /* The first named one counts; naming more than API_MAX_OTHERS is refused as they are found, and so
  * is one that does not exist. */
-void api_others_init(api_others *others, st_store *store);
+void api_others_init(api_others *others, api_exchange *asker);
 /* Of all of them now, for choosing where the work is done. */
 uint64_t api_others_elements(const api_others *others);
 /* Take snapshots; false with x->problem filled. They are given back by release, and the references

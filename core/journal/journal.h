@@ -1,12 +1,14 @@
 /* journal.h - where changes are made durable.
  *
  * The store hands each change of a mesh to the journal in order, under the mesh's write lock, and
- * goes on: writers build on the head. Changes are revisions, renames and the removal, numbered
- * together without a gap. An answer that shows a change is held back until the journal says that
- * the change is durable (D1: no answer shows a change that a crash could lose). The removal of a
- * mesh comes before the first record of another one of its id. A journal may be far behind, and
- * says so each time it gets further by calling the listener, from any thread and without holding a
- * lock that `append` or `durable` take. */
+ * goes on: writers build on the head. Changes are revisions, renames and the removal. A record is
+ * numbered twice: by its mesh, from 1 without a gap, and by the journal, which gives it a position
+ * in the order of all records of the store, from 1. The removal of a mesh comes before the first
+ * record of another one of its id.
+ *
+ * An answer that shows a record is held back until the journal says that all records up to its
+ * position are durable (D1: no answer shows a change that a crash could lose). A journal may be far
+ * behind; whenever it gets further it calls its listener. */
 #ifndef HE_JOURNAL_JOURNAL_H
 #define HE_JOURNAL_JOURNAL_H
 
@@ -65,15 +67,29 @@ typedef struct st_record {
     const st_keyed *keyed;
 } st_record;
 
+/* Records that will never be durable: those of one mesh, or of all, within an interval of
+ * positions. What is lost of a mesh are its last records: those it appends later are lost too. */
+typedef struct st_loss {
+    uint64_t incarnation; /* of the mesh; 0: of all meshes */
+    uint64_t from, to;    /* both are lost */
+    const char *reason;   /* a literal, such as "the disk refused a write" */
+} st_loss;
+
+/* Called from any thread, without a lock that `append` takes. */
+typedef struct st_journal_listener {
+    void *context;
+    /* Every record up to `position`, which never falls, is durable or was told as lost before. */
+    void (*moved)(void *context, uint64_t position);
+    void (*lost)(void *context, const st_loss *loss);
+} st_journal_listener;
+
 typedef struct st_journal {
     void *self;
-    /* Takes note of a change. Neither fails nor waits. */
-    void (*append)(void *self, const st_record *record);
-    /* The number of the last durable record of a mesh; UINT64_MAX when every one is. */
-    uint64_t (*durable)(void *self, const char *id, uint64_t incarnation);
-    /* Call `notify` whenever a mesh became durable further. NULL stops; once it returned, no call
-     * is under way. */
-    void (*listen)(void *self, void (*notify)(void *context), void *context);
+    /* Takes note of a change, and returns its position. Neither fails nor waits. */
+    uint64_t (*append)(void *self, const st_record *record);
+    /* Sets the one listener, and tells it how far the journal is if that is beyond 0. NULL stops;
+     * once it returned, no call is under way. */
+    void (*listen)(void *self, const st_journal_listener *listener);
     void (*close)(void *self);
 } st_journal;
 

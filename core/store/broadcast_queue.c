@@ -222,10 +222,18 @@ uint64_t st_queue_newest(st_queue *queue)
 void st_queue_allow(st_queue *queue, uint64_t stamp)
 {
     pthread_mutex_lock(&queue->lock);
-    if (stamp > queue->allowed) {
+    if (stamp > queue->allowed && !queue->lost) {
         queue->allowed = stamp;
         wake_all(queue);
     }
+    pthread_mutex_unlock(&queue->lock);
+}
+
+void st_queue_lose(st_queue *queue)
+{
+    pthread_mutex_lock(&queue->lock);
+    queue->lost = true;
+    wake_all(queue);
     pthread_mutex_unlock(&queue->lock);
 }
 
@@ -349,6 +357,8 @@ st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, 
     }
     if (used > 0) {
         step = ST_QUEUE_GOT;
+    } else if (step == ST_QUEUE_WAIT && queue->lost) {
+        step = ST_QUEUE_ENDED;
     } else if (step == ST_QUEUE_WAIT) {
         begin_waiting(queue, listener);
     }

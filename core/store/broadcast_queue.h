@@ -56,6 +56,7 @@ typedef struct st_queue {
     uint64_t floor_number;  /* the ring holds those after it, up to the newest */
     uint64_t allowed;       /* stamps up to here may be read */
     bool ended;             /* nothing comes after `newest` */
+    bool lost;              /* nothing more will be allowed */
     size_t listeners;
     uint64_t left; /* when the last listener went, 0: there was none */
     st_listener *waiting;
@@ -76,6 +77,8 @@ void st_queue_add_beside(st_queue *queue, const char *bytes, size_t length);
 uint64_t st_queue_newest(st_queue *queue);
 /* Messages up to this stamp may be read: wakes who waits. */
 void st_queue_allow(st_queue *queue, uint64_t stamp);
+/* What is not allowed by now never will be: listeners that come to it are at the end. */
+void st_queue_lose(st_queue *queue);
 /* Nothing will be added any more. */
 void st_queue_end(st_queue *queue);
 /* Forget the messages if nobody listens. */

@@ -3,98 +3,226 @@
 #include "base/mem.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 
 struct st_waits {
-    st_store *store;
+    const st_journal *journal;
+    _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
-    st_wait *first;
-    bool abandoned;
+    st_wait *top; /* of the heap */
+    st_loss *losses;
+    size_t loss_count, loss_capacity;
+    _Atomic bool has_losses;
+    st_loss rest; /* stands for losses that found no memory; from > to: there were none */
+    bool stopped;
 };
 
-static bool is_over(const st_waits *waits, const st_wait *wait)
+static void raise_to(_Atomic uint64_t *number, uint64_t to)
 {
-    return waits->abandoned || st_store_is_durable(waits->store, wait->mesh, wait->record);
+    uint64_t before = atomic_load(number);
+    while (before < to && !atomic_compare_exchange_weak(number, &before, to)) {
+    }
 }
 
-/* Unlinked first: resume may end the wait's life. */
-static void resume_all(st_waits *waits)
+/* --- the heap: a pairing heap (Fredman, Sedgewick, Sleator, Tarjan 1986), under the lock --- */
+
+static st_wait *meld(st_wait *a, st_wait *b)
 {
-    st_wait *over = NULL;
+    if (a == NULL || b == NULL) {
+        return a == NULL ? b : a;
+    }
+    if (b->shown.position < a->shown.position) {
+        st_wait *c = a;
+        a = b;
+        b = c;
+    }
+    b->beside = a->child;
+    a->child = b;
+    return a;
+}
+
+/* The children are melded in pairs, and the pairs from the last to the first. */
+static st_wait *without_top(st_wait *top)
+{
+    st_wait *pairs = NULL, *left = top->child, *all = NULL;
+    while (left != NULL) {
+        st_wait *a = left, *b = a->beside;
+        left = b == NULL ? NULL : b->beside;
+        st_wait *pair = meld(a, b);
+        pair->beside = pairs;
+        pairs = pair;
+    }
+    while (pairs != NULL) {
+        st_wait *next = pairs->beside;
+        pairs->beside = NULL;
+        all = meld(all, pairs);
+        pairs = next;
+    }
+    return all;
+}
+
+/* --- losses, under the lock --- */
+
+static bool concerns(const st_loss *loss, const st_shown *shown)
+{
+    bool same = loss->incarnation == 0 || shown->incarnation == 0 ||
+                loss->incarnation == shown->incarnation;
+    return same && loss->from <= shown->position && loss->to > shown->since;
+}
+
+static const st_loss *find_loss(const st_waits *waits, const st_shown *shown)
+{
+    for (size_t i = 0; i < waits->loss_count; i++) {
+        if (concerns(&waits->losses[i], shown)) {
+            return &waits->losses[i];
+        }
+    }
+    return concerns(&waits->rest, shown) ? &waits->rest : NULL;
+}
+
+static bool reserve_loss(st_waits *waits)
+{
+    if (waits->loss_count < waits->loss_capacity) {
+        return true;
+    }
+    size_t capacity = he_mem_grown(waits->loss_capacity, waits->loss_count + 1);
+    st_loss *losses = he_mem_array(waits->losses, capacity, sizeof *losses);
+    if (losses == NULL) {
+        return false;
+    }
+    waits->losses = losses;
+    waits->loss_capacity = capacity;
+    return true;
+}
+
+/* Without memory everything from the loss on counts as lost: too much rather than too little. */
+static void lost(void *context, const st_loss *loss)
+{
+    st_waits *waits = context;
     pthread_mutex_lock(&waits->lock);
-    for (st_wait *wait = waits->first, *next; wait != NULL; wait = next) {
-        next = wait->next;
-        if (!is_over(waits, wait)) {
-            continue;
-        }
-        if (wait->previous != NULL) {
-            wait->previous->next = next;
-        } else {
-            waits->first = next;
-        }
-        if (next != NULL) {
-            next->previous = wait->previous;
-        }
-        wait->abandoned = waits->abandoned;
-        wait->next = over;
-        over = wait;
+    if (reserve_loss(waits)) {
+        waits->losses[waits->loss_count++] = *loss;
+    } else if (loss->from < waits->rest.from) {
+        waits->rest = (st_loss){.from = loss->from, .to = UINT64_MAX, .reason = loss->reason};
     }
+    atomic_store(&waits->has_losses, true);
     pthread_mutex_unlock(&waits->lock);
-    while (over != NULL) {
-        st_wait *next = over->next;
-        over->resume(over);
-        over = next;
+}
+
+/* --- waiting --- */
+
+/* Under the lock: is the wait over, and how? */
+static bool is_over(const st_waits *waits, st_wait *wait)
+{
+    const st_shown *shown = &wait->shown;
+    bool durable = shown->position <= atomic_load(&waits->durable);
+    const st_loss *loss = durable ? find_loss(waits, shown) : NULL;
+    wait->end = loss != NULL ? ST_WAIT_LOST : durable ? ST_WAIT_DURABLE : ST_WAIT_STOPPED;
+    wait->reason = loss == NULL ? NULL : loss->reason;
+    return durable || waits->stopped;
+}
+
+/* Taken off the heap first, in the order of positions: resume may end the wait's life. */
+static void resume_those_over(st_waits *waits)
+{
+    st_wait *first = NULL, **end = &first;
+    pthread_mutex_lock(&waits->lock);
+    while (waits->top != NULL && is_over(waits, waits->top)) {
+        st_wait *wait = waits->top;
+        waits->top = without_top(wait);
+        *end = wait;
+        end = &wait->beside;
+    }
+    *end = NULL;
+    pthread_mutex_unlock(&waits->lock);
+    while (first != NULL) {
+        st_wait *next = first->beside;
+        first->resume(first);
+        first = next;
     }
 }
 
-static void notified(void *context)
+static void moved(void *context, uint64_t position)
 {
-    resume_all(context);
+    st_waits *waits = context;
+    raise_to(&waits->durable, position);
+    resume_those_over(waits);
 }
 
-st_waits *st_waits_new(st_store *store)
+st_waits *st_waits_new(const st_journal *journal)
 {
     st_waits *waits = he_mem_zero(1, sizeof *waits);
     if (waits == NULL) {
         return NULL;
     }
-    waits->store = store;
+    waits->journal = journal;
+    waits->rest = (st_loss){.from = UINT64_MAX};
     pthread_mutex_init(&waits->lock, NULL);
-    st_store_listen(store, notified, waits);
+    const st_journal_listener listener = {waits, moved, lost};
+    journal->listen(journal->self, &listener);
     return waits;
 }
 
 void st_waits_free(st_waits *waits)
 {
     if (waits != NULL) {
-        st_store_listen(waits->store, NULL, NULL);
+        waits->journal->listen(waits->journal->self, NULL);
         pthread_mutex_destroy(&waits->lock);
+        he_mem_free(waits->losses);
         he_mem_free(waits);
     }
 }
 
-/* Asked once more under the lock: a notice that came since the caller asked has found nothing, and
- * one that comes later finds the wait. */
+void st_waits_appended(st_waits *waits, uint64_t position)
+{
+    raise_to(&waits->newest, position);
+}
+
+uint64_t st_waits_newest(const st_waits *waits)
+{
+    return atomic_load(&waits->newest);
+}
+
+uint64_t st_waits_durable(const st_waits *waits)
+{
+    return atomic_load(&waits->durable);
+}
+
+bool st_waits_is_lost(st_waits *waits, const st_shown *shown)
+{
+    if (!atomic_load(&waits->has_losses)) {
+        return false;
+    }
+    pthread_mutex_lock(&waits->lock);
+    bool found = find_loss(waits, shown) != NULL;
+    pthread_mutex_unlock(&waits->lock);
+    return found;
+}
+
+/* A loss is told before the journal moves past it, so that it is looked for after. */
+bool st_waits_is_durable(st_waits *waits, const st_shown *shown)
+{
+    return shown->position <= atomic_load(&waits->durable) && !st_waits_is_lost(waits, shown);
+}
+
+/* Looked at once more under the lock: a notice that came since the caller looked has not found the
+ * wait, and one that comes later will. */
 bool st_waits_add(st_waits *waits, st_wait *wait)
 {
     pthread_mutex_lock(&waits->lock);
     bool over = is_over(waits, wait);
-    wait->abandoned = waits->abandoned;
     if (!over) {
-        wait->previous = NULL;
-        wait->next = waits->first;
-        if (wait->next != NULL) {
-            wait->next->previous = wait;
-        }
-        waits->first = wait;
+        wait->child = wait->beside = NULL;
+        waits->top = meld(waits->top, wait);
     }
     pthread_mutex_unlock(&waits->lock);
     return !over;
 }
 
-void st_waits_abandon(st_waits *waits)
+void st_waits_stop(st_waits *waits)
 {
     pthread_mutex_lock(&waits->lock);
-    waits->abandoned = true;
+    waits->stopped = true;
     pthread_mutex_unlock(&waits->lock);
-    resume_all(waits);
+    resume_those_over(waits);
 }

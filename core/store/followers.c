@@ -5,15 +5,18 @@
 
 #include <stddef.h>
 
-static void became_durable(st_wait *wait);
+static void is_known(st_wait *wait);
+static bool end_wait(st_mesh *mesh);
 
 /* Lets what is durable be read. One wait at a time is for the journal: a thread that finds it
- * waiting leaves its message to became_durable, which looks for newer ones after it has let go. */
+ * waiting leaves its message to is_known, which looks for newer ones after the wait has ended. */
 static void allow(st_mesh *mesh)
 {
+    st_waits *waits = mesh->followers->waits;
     for (;;) {
         uint64_t newest = st_queue_newest(&mesh->queue);
-        if (st_store_is_durable(mesh->store, mesh, newest)) {
+        const st_shown shown = {newest, newest - 1, mesh->info.incarnation};
+        if (st_waits_is_durable(waits, &shown)) {
             st_queue_allow(&mesh->queue, newest);
             return;
         }
@@ -21,27 +24,33 @@ static void allow(st_mesh *mesh)
             return;
         }
         st_hold(mesh);
-        mesh->wait = (st_wait){.mesh = mesh, .record = newest, .resume = became_durable};
-        if (st_waits_add(mesh->followers->waits, &mesh->wait)) {
-            return;
-        }
-        bool abandoned = mesh->wait.abandoned;
-        atomic_store(&mesh->waiting, false);
-        st_release(mesh);
-        if (abandoned) {
+        mesh->wait = (st_wait){.shown = shown, .resume = is_known};
+        if (st_waits_add(waits, &mesh->wait) || !end_wait(mesh)) {
             return;
         }
     }
 }
 
-static void became_durable(st_wait *wait)
+/* True where there may be more to allow. */
+static bool end_wait(st_mesh *mesh)
+{
+    const st_wait wait = mesh->wait;
+    bool durable = wait.end == ST_WAIT_DURABLE;
+    if (durable) {
+        st_queue_allow(&mesh->queue, wait.shown.position);
+    } else if (wait.end == ST_WAIT_LOST) {
+        st_queue_lose(&mesh->queue);
+    }
+    atomic_store(&mesh->waiting, false);
+    st_release(mesh);
+    return durable;
+}
+
+static void is_known(st_wait *wait)
 {
     st_mesh *mesh = (st_mesh *)((char *)wait - offsetof(st_mesh, wait));
-    bool abandoned = wait->abandoned;
-    uint64_t record = wait->record;
-    atomic_store(&mesh->waiting, false);
-    if (!abandoned) {
-        st_queue_allow(&mesh->queue, record);
+    st_hold(mesh);
+    if (end_wait(mesh)) {
         allow(mesh);
     }
     st_release(mesh);
@@ -49,7 +58,7 @@ static void became_durable(st_wait *wait)
 
 void st_mesh_tell(st_mesh *mesh, const st_record *record)
 {
-    st_place place = {.stamp = record->number, .key = record->revision};
+    st_place place = {.stamp = mesh->info.position, .key = record->revision};
     bool followed = st_queue_is_followed(&mesh->queue);
     char *bytes = NULL;
     size_t length = 0;

@@ -1,9 +1,9 @@
 /* followers.h - what happens to a mesh, told to those who listen.
  *
  * Each change is rendered once (st_render), under the mesh's write lock, when it gets its number,
- * and put into the mesh's queue under that number; listeners get it when the journal has it (D1).
- * While nobody listens nothing is rendered. Messages that are no change, such as the news of a job,
- * are put beside the changes, and are not in the history. */
+ * and put into the mesh's queue under its position; listeners get it when that is durable (D1), and
+ * are cut off where it is lost. While nobody listens nothing is rendered. Messages that are no
+ * change, such as the news of a job, are put beside the changes, and are not in the history. */
 #ifndef HE_STORE_FOLLOWERS_H
 #define HE_STORE_FOLLOWERS_H
 

@@ -180,6 +180,17 @@ void st_keyed_end(st_keyed *keyed)
     pthread_mutex_unlock(&keys->lock);
 }
 
+void st_keys_forget(st_keyed *keyed)
+{
+    st_keys *keys = keyed->keys;
+    pthread_mutex_lock(&keys->lock);
+    if (keyed->listed) {
+        forget(keys, keyed);
+    }
+    release(keyed);
+    pthread_mutex_unlock(&keys->lock);
+}
+
 void st_keys_shed(st_keys *keys)
 {
     pthread_mutex_lock(&keys->lock);

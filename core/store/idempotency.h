@@ -49,9 +49,11 @@ struct st_keyed {
 };
 
 void st_keys_init(st_keys *keys, const uint64_t secret[2]);
-void st_keys_clear(st_keys *keys); /* nothing may be claimed */
+void st_keys_clear(st_keys *keys); /* no request may be under way */
 /* `now` in seconds since 1970. */
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out);
+/* Forgets a kept answer that was lent with ST_KEYED_KEPT, in place of st_keyed_end. */
+void st_keys_forget(st_keyed *keyed);
 /* Free the bodies nobody reads. */
 void st_keys_shed(st_keys *keys);
 

@@ -1,6 +1,5 @@
 #include "store/store.h"
 
-#include "store/durability_wait.h"
 #include "store/followers.h"
 #include "store/stored_mesh.h"
 #include "system/clock.h"
@@ -44,7 +43,7 @@ st_store *st_store_new(const st_store_options *options)
         .render = options->render,
         .most = options->listeners,
         .most_of_mesh = options->mesh_listeners,
-        .waits = st_waits_new(store),
+        .waits = st_waits_new(&store->journal),
     };
     if (store->followers.waits == NULL) {
         pthread_rwlock_destroy(&store->lock);
@@ -151,21 +150,18 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
     if (mesh == NULL) {
         return ST_NO_MEMORY;
     }
-    /* Whoever finds it waits until the journal has its first record. */
-    pthread_rwlock_wrlock(&mesh->lock);
+    /* A thread that finds the mesh, or the id taken, finds its first record appended. */
     pthread_rwlock_wrlock(&store->lock);
     st_status status = insert(store, mesh);
-    pthread_rwlock_unlock(&store->lock);
     if (status == ST_OK) {
         *out = st_hold(mesh);
         mesh->keyed = keyed;
         st_mesh_append(mesh, ST_REPLACE, NULL, false);
         mesh->keyed = NULL;
-    } else {
-        mesh->content = NULL; /* still the caller's */
     }
-    pthread_rwlock_unlock(&mesh->lock);
+    pthread_rwlock_unlock(&store->lock);
     if (status != ST_OK) {
+        mesh->content = NULL; /* still the caller's */
         st_release(mesh);
     }
     return status;
@@ -229,10 +225,21 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
     return given;
 }
 
+/* What was answered, but was lost, is not answered again: the request is tried anew. */
+static bool is_lost(const st_store *store, const st_kept *kept)
+{
+    const st_shown shown = {kept->position, kept->position - 1, kept->incarnation};
+    return kept->position != 0 && st_waits_is_lost(store->followers.waits, &shown);
+}
+
 st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key, st_keyed **out)
 {
     st_keys *keys = mesh == NULL ? &store->keys : &mesh->keys;
     st_keyed_status status = st_keys_begin(keys, key, st_clock_utc(), out);
+    if (status == ST_KEYED_KEPT && is_lost(store, &(*out)->answer)) {
+        st_keys_forget(*out);
+        status = st_keys_begin(keys, key, st_clock_utc(), out);
+    }
     if (status == ST_KEYED_NEW) {
         (*out)->of_store = mesh == NULL;
     }
@@ -249,20 +256,19 @@ const uint64_t *st_secret(const st_store *store)
     return store->secret;
 }
 
-bool st_store_is_durable(const st_store *store, const st_mesh *mesh, uint64_t record)
-{
-    const st_journal *journal = &store->journal;
-    return journal->durable(journal->self, mesh->info.id, mesh->info.incarnation) >= record;
-}
-
-void st_store_listen(st_store *store, void (*notify)(void *context), void *context)
-{
-    store->journal.listen(store->journal.self, notify, context);
-}
-
 st_waits *st_store_waits(st_store *store)
 {
     return store->followers.waits;
+}
+
+st_shown st_shown_of(const st_mesh_info *info)
+{
+    return (st_shown){info->position, info->position - 1, info->incarnation};
+}
+
+st_shown st_shown_all(st_store *store, uint64_t since)
+{
+    return (st_shown){.position = st_waits_newest(store->followers.waits), .since = since};
 }
 
 size_t st_store_count(st_store *store)

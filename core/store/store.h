@@ -22,7 +22,7 @@
 #ifndef HE_STORE_STORE_H
 #define HE_STORE_STORE_H
 
-#include "journal/journal.h"
+#include "store/durability_wait.h"
 
 typedef struct st_store st_store;
 typedef struct st_mesh st_mesh;         /* a stored mesh */
@@ -36,6 +36,7 @@ typedef struct st_mesh_info {
     uint64_t metadata;           /* counts changes of name and metadata, from 1 */
     uint64_t revision;           /* of the content, from 1 */
     uint64_t record;             /* counts every change: revisions, metadata, the removal */
+    uint64_t position;           /* of the last of them in the order of all records */
     double created, modified;    /* seconds since 1970 UTC */
     uint32_t undo, redo;         /* steps on the stacks */
     bool removed;
@@ -69,12 +70,13 @@ size_t st_store_count(st_store *store);
  * meshes. Called without a lock. */
 void st_store_shed(st_store *store);
 
-/* May an answer that shows the mesh at this record be sent? */
-bool st_store_is_durable(const st_store *store, const st_mesh *mesh, uint64_t record);
-/* Calls `notify` whenever that may have become true for some mesh; see journal.h. */
-void st_store_listen(st_store *store, void (*notify)(void *context), void *context);
-/* Where to wait for that. */
-struct st_waits *st_store_waits(st_store *store);
+/* Where answers wait until what they show is durable. */
+st_waits *st_store_waits(st_store *store);
+/* What an answer shows that shows one mesh with these facts. */
+st_shown st_shown_of(const st_mesh_info *info);
+/* What an answer shows that was begun when all up to `since` was durable (st_waits_durable), and
+ * may show any mesh, or that there is none. */
+st_shown st_shown_all(st_store *store, uint64_t since);
 
 /* --- the collection --- */
 
@@ -215,7 +217,7 @@ typedef struct st_kept {
     bool changed; /* something: then it is kept even where there is no room for its body */
     char etag[ST_KEPT_TAG];  /* "" for none */
     char id[ST_MESH_ID + 1]; /* of the mesh it shows, which Location names with 201 */
-    uint64_t incarnation, record;
+    uint64_t incarnation, position;
     const char *body; /* JSON; NULL with a length: left out */
     size_t length;
 } st_kept;

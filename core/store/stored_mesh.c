@@ -61,7 +61,7 @@ st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char 
     mesh->info.modified = mesh->info.created;
     mesh->content = content;
     st_log_init(&mesh->log, options->undo_budget, mesh->info.revision, content, mesh->info.created);
-    st_queue_init(&mesh->queue, (st_place){.stamp = mesh->info.record, .key = mesh->info.revision});
+    st_queue_init(&mesh->queue, (st_place){.key = mesh->info.revision});
     return mesh;
 }
 
@@ -131,7 +131,8 @@ void st_mesh_append(st_mesh *mesh, st_action action, const he_delta *delta, bool
         .content = mesh->info.removed ? NULL : mesh->content,
         .keyed = mesh->keyed,
     };
-    mesh->journal->append(mesh->journal->self, &record);
+    mesh->info.position = mesh->journal->append(mesh->journal->self, &record);
+    st_waits_appended(mesh->followers->waits, mesh->info.position);
     st_mesh_tell(mesh, &record);
 }
 

@@ -3,7 +3,6 @@
 #define HE_STORE_STORED_MESH_H
 
 #include "store/broadcast_queue.h"
-#include "store/durability_wait.h"
 #include "store/idempotency.h"
 #include "store/revision_log.h"
 
@@ -35,7 +34,7 @@ struct st_mesh {
 
     /* See followers.h. */
     st_queue queue;
-    st_wait wait; /* until the newest message is durable */
+    st_wait wait; /* until the newest change is durable */
     _Atomic bool waiting;
 
     pthread_mutex_t snapshot_lock;

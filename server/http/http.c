@@ -183,7 +183,7 @@ bool srv_http_stop(srv_http *http, unsigned millis)
      * takes the listening socket out of the workers' epoll sets while they may do so themselves,
      * and the library aborts where both try. */
     atomic_store(&http->stopping, true);
-    st_waits_abandon(st_store_waits(http->options.store));
+    st_waits_stop(st_store_waits(http->options.store));
     srv_live_stop(http->live);
     /* At the deadline only those that are suspended still count. */
     if (!srv_gate_close(&http->gate, millis)) {

@@ -47,15 +47,15 @@ static bool give_way(srv_request *r)
 static bool answer_when_durable(srv_request *r)
 {
     const api_answer *answer = r->exchange == NULL ? NULL : api_answer_of(r->exchange);
-    if (answer == NULL || answer->mesh == NULL ||
-        st_store_is_durable(r->http->options.store, answer->mesh, answer->record)) {
+    st_waits *waits = st_store_waits(r->http->options.store);
+    if (answer == NULL || st_waits_is_durable(waits, &answer->shown)) {
         return srv_answer_send(r);
     }
-    r->hold = (st_wait){.mesh = answer->mesh, .record = answer->record, .resume = resume_held};
+    r->hold = (st_wait){.shown = answer->shown, .resume = resume_held};
     if (!begin_wait(r, SRV_HELD)) {
         return false;
     }
-    if (!st_waits_add(st_store_waits(r->http->options.store), &r->hold)) {
+    if (!st_waits_add(waits, &r->hold)) {
         MHD_resume_connection(r->connection);
     }
     return true;
@@ -63,9 +63,11 @@ static bool answer_when_durable(srv_request *r)
 
 static bool answer_held(srv_request *r)
 {
-    if (r->hold.abandoned) {
-        srv_answer_refuse(r, API_NOT_READY, "the server stopped before the change was durable");
-        r->close = true;
+    if (r->hold.end != ST_WAIT_DURABLE) {
+        api_problem problem = {0};
+        api_problem_set_lost(&problem, r->hold.reason);
+        srv_answer_refuse(r, problem.code, problem.detail);
+        r->close = r->close || r->hold.end == ST_WAIT_STOPPED;
     }
     return srv_answer_send(r);
 }

@@ -1,5 +1,6 @@
 /* The board of jobs with real threads: memory comes back when a job is cancelled, an end is shown
  * when it is durable, and a stop ends everything. */
+#include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
 #include "api/describe/routes.h"
@@ -18,43 +19,9 @@
 #define HUGE_TORUS "{\"shape\":\"torus\",\"major_segments\":3500,\"minor_segments\":3500}"
 #define CUBE       "{\"shape\":\"cube\"}"
 
-/* --- a journal that is behind while a test says so --- */
-
-static struct {
-    _Atomic bool behind;
-    char key[16]; /* of the newest record */
-    void (*notify)(void *context);
-    void *context;
-} slow;
-
-static void slow_append(void *self, const st_record *record)
-{
-    (void)self;
-    snprintf(slow.key, sizeof slow.key, "%s", record->keyed == NULL ? "" : record->keyed->key);
-}
-
-static uint64_t slow_durable(void *self, const char *id, uint64_t incarnation)
-{
-    (void)self;
-    (void)id;
-    (void)incarnation;
-    return slow.behind ? 0 : UINT64_MAX;
-}
-
-static void slow_listen(void *self, void (*notify)(void *context), void *context)
-{
-    (void)self;
-    slow.notify = notify;
-    slow.context = context;
-}
-
-static void slow_close(void *self)
-{
-    (void)self;
-}
-
 /* --- the server --- */
 
+static slow_journal slow;
 static st_store *store;
 static st_pool *pool;
 static api_job_table *jobs;
@@ -69,12 +36,11 @@ static bool submit(void *context, const st_task *task)
 
 static int start_keeping(double keep)
 {
-    slow.behind = false;
     pool = st_pool_new("test", 2, 4);
     store = st_store_new(&(st_store_options){
         .undo_budget = 64 << 20,
         .max_meshes = 100,
-        .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
+        .journal = slow_journal_open(&slow),
     });
     jobs = api_job_table_new(
         &(api_job_table_options){.store = store, .submit = submit, .pool = pool, .keep = keep});
@@ -83,6 +49,15 @@ static int start_keeping(double keep)
 }
 
 static int start(void **state)
+{
+    (void)state;
+    start_keeping(API_JOB_SECONDS);
+    slow_journal_advance(&slow, UINT64_MAX);
+    return 0;
+}
+
+/* Nothing becomes durable before the test says so. */
+static int start_behind(void **state)
 {
     (void)state;
     return start_keeping(API_JOB_SECONDS);
@@ -235,41 +210,64 @@ static void an_end_is_shown_when_it_is_durable(void **state)
 {
     (void)state;
     char first[API_JOB_ID + 1], second[API_JOB_ID + 1];
-    slow.behind = true;
     assert_int_equal(post("/v1/meshes", CUBE, first), 202);
     api_job job;
     do {
         job = look(first);
     } while (job.state != API_JOB_RUNNING || strcmp(job.phase, "storing") != 0);
-    /* A problem shows no change, and so does not wait. */
+    /* A refusal may be about what is not durable: it waits like any answer. */
     assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", second), 202);
-    assert_int_equal(wait_for(second, API_JOB_DONE).state, API_JOB_FAILED);
+    while (strcmp(look(second).phase, "storing") != 0) {
+    }
     assert_int_equal(look(first).state, API_JOB_RUNNING);
-    slow.behind = false;
-    do {
-        slow.notify(slow.context); /* again where the hold came after it */
-    } while (look(first).state != API_JOB_DONE);
-    assert_int_equal(look(first).status, 201);
+    slow_journal_advance(&slow, UINT64_MAX);
+    assert_int_equal(wait_for(first, API_JOB_DONE).status, 201);
+    assert_int_equal(wait_for(second, API_JOB_DONE).state, API_JOB_FAILED);
+    assert_int_equal(look(second).status, 422);
 }
 
 static void what_is_never_durable_was_not_done(void **state)
 {
     (void)state;
     char id[API_JOB_ID + 1], late[API_JOB_ID + 1];
-    slow.behind = true;
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     while (strcmp(look(id).phase, "storing") != 0) {
     }
-    st_waits_abandon(st_store_waits(store));
+    st_waits_stop(st_store_waits(store));
     assert_int_equal(post("/v1/meshes", CUBE, late), 202);
     const char *const ids[] = {id, late};
     for (int i = 0; i < 2; i++) {
         api_job job = wait_for(ids[i], API_JOB_DONE);
         assert_int_equal(job.state, API_JOB_FAILED);
         assert_int_equal(job.status, 503);
-        assert_null(job.body);
+        assert_true(job.length > 0);
         assert_string_equal(job.location, "");
     }
+}
+
+static void copy_body(void *context, const api_job *job)
+{
+    snprintf(context, 1000, "%.*s", (int)job->length, job->body == NULL ? "" : job->body);
+}
+
+static void a_job_whose_record_is_lost_has_failed_for_that_reason(void **state)
+{
+    (void)state;
+    char id[API_JOB_ID + 1], body[1000];
+    assert_int_equal(post("/v1/meshes", CUBE, id), 202);
+    while (strcmp(look(id).phase, "storing") != 0) {
+    }
+    const st_loss loss = {.from = 1, .to = 1, .reason = "the disk refused a write"};
+    slow_journal_lose(&slow, &loss);
+    assert_int_equal(look(id).state, API_JOB_RUNNING);
+    slow_journal_advance(&slow, 1);
+    api_job job = wait_for(id, API_JOB_DONE);
+    assert_int_equal(job.state, API_JOB_FAILED);
+    assert_int_equal(job.status, 503);
+    assert_string_equal(job.location, "");
+    assert_true(api_job_find(jobs, id, copy_body, body));
+    assert_non_null(strstr(body, "\"code\":\"store_failed\""));
+    assert_non_null(strstr(body, loss.reason));
 }
 
 static void the_record_of_a_job_carries_its_key(void **state)
@@ -338,6 +336,7 @@ static void what_ended_is_forgotten_in_time(void **state)
     char id[API_JOB_ID + 1];
     api_job job;
     start_keeping(0);
+    slow_journal_advance(&slow, UINT64_MAX);
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     while (api_job_find(jobs, id, take_facts, &job)) {
         assert_true(job.state <= API_JOB_RUNNING);
@@ -383,8 +382,10 @@ int main(void)
         BOARD_TEST(progress_is_seen_and_never_falls),
         BOARD_TEST(cancelling_gives_the_memory_back),
         BOARD_TEST(beyond_the_queue_jobs_are_refused),
-        BOARD_TEST(an_end_is_shown_when_it_is_durable),
-        BOARD_TEST(what_is_never_durable_was_not_done),
+        cmocka_unit_test_setup_teardown(an_end_is_shown_when_it_is_durable, start_behind, stop),
+        cmocka_unit_test_setup_teardown(what_is_never_durable_was_not_done, start_behind, stop),
+        cmocka_unit_test_setup_teardown(a_job_whose_record_is_lost_has_failed_for_that_reason,
+                                        start_behind, stop),
         BOARD_TEST(the_record_of_a_job_carries_its_key),
         BOARD_TEST(a_mesh_may_go_while_a_job_changes_it),
         BOARD_TEST(only_so_many_are_kept),

@@ -1,5 +1,6 @@
 /* The real server in this process, over real sockets: answers wait for a journal that is slow on
  * purpose (D1), a full job queue and too many connections are 503, a stop ends everything. */
+#include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
 #include "api/describe/routes.h"
@@ -14,65 +15,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* --- a journal that makes durable only what the test tells it to --- */
-
-static struct {
-    pthread_mutex_t lock;
-    pthread_cond_t changed;
-    uint64_t appended, durable; /* records, of whatever mesh */
-    void (*notify)(void *context);
-    void *context;
-} slow = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
-
-static void slow_append(void *self, const st_record *record)
-{
-    (void)self;
-    pthread_mutex_lock(&slow.lock);
-    slow.appended = record->number;
-    pthread_cond_broadcast(&slow.changed);
-    pthread_mutex_unlock(&slow.lock);
-}
-
-static uint64_t slow_durable(void *self, const char *id, uint64_t incarnation)
-{
-    (void)self;
-    (void)id;
-    (void)incarnation;
-    pthread_mutex_lock(&slow.lock);
-    uint64_t durable = slow.durable;
-    pthread_mutex_unlock(&slow.lock);
-    return durable;
-}
-
-static void slow_listen(void *self, void (*notify)(void *context), void *context)
-{
-    (void)self;
-    slow.notify = notify;
-    slow.context = context;
-}
-
-static void slow_close(void *self)
-{
-    (void)self;
-}
-
-static void slow_wait(uint64_t revision)
-{
-    pthread_mutex_lock(&slow.lock);
-    while (slow.appended < revision) {
-        pthread_cond_wait(&slow.changed, &slow.lock);
-    }
-    pthread_mutex_unlock(&slow.lock);
-}
-
-static void slow_advance(uint64_t revision)
-{
-    pthread_mutex_lock(&slow.lock);
-    slow.durable = revision;
-    pthread_mutex_unlock(&slow.lock);
-    slow.notify(slow.context);
-}
-
 /* --- the server --- */
 
 enum { CONNECTIONS = 20 };
@@ -82,6 +24,7 @@ static bool submit_job(void *pool, const st_task *task)
     return st_pool_submit(pool, task);
 }
 
+static slow_journal slow;
 static st_store *store;
 static api_job_table *table;
 static api_service *service;
@@ -93,14 +36,12 @@ static const srv_policy policy;
 static int start(void **state)
 {
     (void)state;
-    slow.appended = 0;
-    slow.durable = 0;
     jobs = st_pool_new("test", 1, 1);
     makers = st_pool_new("test", 1, 1);
     store = st_store_new(&(st_store_options){
         .undo_budget = 1 << 20,
         .max_meshes = 100,
-        .journal = {NULL, slow_append, slow_durable, slow_listen, slow_close},
+        .journal = slow_journal_open(&slow),
         .listeners = 10,
         .mesh_listeners = 10,
         .render = api_event_render,
@@ -225,22 +166,22 @@ static void test_answers_wait_until_durable(void **state)
     char text[8192];
     int writer = connect_client(), reader = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
-    slow_wait(1);
+    slow_journal_wait(&slow, 1);
     assert_held(writer);
     /* A read of what is not durable waits too. */
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_held(reader);
-    slow_advance(1);
+    slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     assert_int_equal(answer(reader, text, sizeof text), 200);
 
     /* The same connections, a second revision: only who saw it waits. */
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"tetrahedron\"}");
-    slow_wait(2);
+    slow_journal_wait(&slow, 2);
     assert_held(writer);
-    slow_advance(1);
+    slow_journal_advance(&slow, 1);
     assert_held(writer);
-    slow_advance(2);
+    slow_journal_advance(&slow, 2);
     assert_int_equal(answer(writer, text, sizeof text), 200);
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_int_equal(answer(reader, text, sizeof text), 200);
@@ -248,17 +189,17 @@ static void test_answers_wait_until_durable(void **state)
 
     /* What makes no revision could be lost as well. */
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
-    slow_wait(3);
+    slow_journal_wait(&slow, 3);
     assert_held(writer);
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_held(reader);
-    slow_advance(3);
+    slow_journal_advance(&slow, 3);
     assert_int_equal(answer(writer, text, sizeof text), 200);
     assert_int_equal(answer(reader, text, sizeof text), 200);
     ask(writer, "DELETE", "/v1/meshes/m", "");
-    slow_wait(4);
+    slow_journal_wait(&slow, 4);
     assert_held(writer);
-    slow_advance(4);
+    slow_journal_advance(&slow, 4);
     assert_int_equal(answer(writer, text, sizeof text), 204);
     close(writer);
     close(reader);
@@ -278,37 +219,191 @@ static void read_until(int fd, const char *text)
     } while (strstr(all, text) == NULL);
 }
 
+/* D1 where no mesh is at hand: what is there, and what is not there any more. */
+static void lists_and_absence_wait_until_durable(void **state)
+{
+    (void)state;
+    static const char undo[] = "POST /v1/meshes/m/undo HTTP/1.1\r\nHost: localhost\r\n"
+                               "Content-Length: 0\r\n\r\n";
+    enum { LIST, ABSENT, ELEMENT, WRITE, PUT, JOBS, ASKED };
+    char text[8192];
+    int fds[ASKED], writer = connect_client(), early = connect_client();
+    for (int i = 0; i < ASKED; i++) {
+        fds[i] = connect_client();
+    }
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    slow_journal_wait(&slow, 1);
+    ask(early, "GET", "/v1/meshes", "");
+    ask(fds[PUT], "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
+    assert_held(early);
+    assert_held(fds[PUT]);
+    slow_journal_advance(&slow, 1);
+    assert_int_equal(answer(writer, text, sizeof text), 201);
+    assert_int_equal(answer(early, text, sizeof text), 200);
+    assert_non_null(strstr(text, "\"id\":\"m\""));
+    assert_int_equal(answer(fds[PUT], text, sizeof text), 409);
+
+    ask(writer, "DELETE", "/v1/meshes/m", "");
+    slow_journal_wait(&slow, 2);
+    ask(fds[LIST], "GET", "/v1/meshes", "");
+    ask(fds[ABSENT], "GET", "/v1/meshes/m", "");
+    ask(fds[ELEMENT], "GET", "/v1/meshes/m/vertices/0", "");
+    assert_int_equal(send(fds[WRITE], undo, sizeof undo - 1, MSG_NOSIGNAL), sizeof undo - 1);
+    ask(fds[JOBS], "GET", "/v1/jobs", "");
+    assert_held(writer);
+    for (int i = 0; i < ASKED; i++) {
+        if (i != PUT) {
+            assert_held(fds[i]);
+        }
+    }
+    /* What shows nothing that is stored waits for no journal. */
+    static const char *const free_of_it[] = {
+        "/livez", "/readyz", "/version", "/v1/operations", "/v1/openapi.json", "/problems/stale"};
+    for (size_t i = 0; i < sizeof free_of_it / sizeof *free_of_it; i++) {
+        assert_true(round_trip("GET", free_of_it[i], "") != 0);
+    }
+    assert_int_equal(round_trip("GET", "/v1/nothing", ""), 404);
+    slow_journal_advance(&slow, 2);
+    assert_int_equal(answer(writer, text, sizeof text), 204);
+    assert_int_equal(answer(fds[LIST], text, sizeof text), 200);
+    assert_non_null(strstr(text, "\"items\":[]"));
+    assert_int_equal(answer(fds[ABSENT], text, sizeof text), 404);
+    assert_int_equal(answer(fds[ELEMENT], text, sizeof text), 404);
+    assert_int_equal(answer(fds[WRITE], text, sizeof text), 404);
+    assert_int_equal(answer(fds[JOBS], text, sizeof text), 200);
+    for (int i = 0; i < ASKED; i++) {
+        close(fds[i]);
+    }
+    close(writer);
+    close(early);
+}
+
+/* A mesh that nobody changes is read at once, however far behind the journal is with others. */
+static void an_idle_mesh_never_waits(void **state)
+{
+    (void)state;
+    char text[8192];
+    int writer = connect_client(), reader = connect_client();
+    ask(writer, "PUT", "/v1/meshes/idle", "{\"shape\":\"cube\"}");
+    slow_journal_wait(&slow, 1);
+    slow_journal_advance(&slow, 1);
+    assert_int_equal(answer(writer, text, sizeof text), 201);
+    ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
+    slow_journal_wait(&slow, 2);
+    ask(reader, "GET", "/v1/meshes/idle", "");
+    assert_int_equal(answer(reader, text, sizeof text), 200);
+    assert_held(writer);
+    close(writer);
+    close(reader);
+    slow_journal_advance(&slow, 2);
+}
+
+/* Not modified, gone, stale, refused, rehearsed: all of them show what the mesh is. */
+static void every_kind_of_answer_waits(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *method, *path, *body;
+        int status;
+    } rows[] = {
+        {"GET", "/v1/meshes/m/vertices/3", "", 410},
+        {"GET", "/v1/meshes/m/vertices/99", "", 404},
+        {"POST", "/v1/meshes/m/edits", "{\"op\":\"vertex_add\",\"position\":[0,0,0],\"at\":1}",
+         400},
+        {"POST", "/v1/meshes/m/edits", "{\"op\":\"edge_flip\",\"edge\":99}", 422},
+        {"POST", "/v1/meshes/m/undo", "{\"expected_revision\":9}", 412},
+        {"POST", "/v1/meshes/m/edits", "{\"op\":\"append\",\"mesh\":\"other\",\"dry_run\":true}",
+         422},
+        {"POST", "/v1/meshes/m/edits",
+         "{\"op\":\"vertex_add\",\"position\":[0,0,0],\"dry_run\":true}", 200},
+    };
+    enum { ROWS = sizeof rows / sizeof *rows };
+    char text[8192];
+    int fds[ROWS], writer = connect_client();
+    slow_journal_advance(&slow, 1);
+    assert_int_equal(round_trip("PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}"), 201);
+    ask(writer, "POST", "/v1/meshes/m/edits", "{\"op\":\"vertex_delete\",\"vertex\":3}");
+    slow_journal_wait(&slow, 2);
+    for (int i = 0; i < ROWS; i++) {
+        fds[i] = connect_client();
+        ask(fds[i], rows[i].method, rows[i].path, rows[i].body);
+        assert_held(fds[i]);
+    }
+    slow_journal_advance(&slow, 2);
+    assert_int_equal(answer(writer, text, sizeof text), 200);
+    for (int i = 0; i < ROWS; i++) {
+        assert_int_equal(answer(fds[i], text, sizeof text), rows[i].status);
+        close(fds[i]);
+    }
+    close(writer);
+}
+
+/* Told before its answer is held, and after: a lost change is nobody's success. */
+static void an_answer_that_shows_what_was_lost_is_503(void **state)
+{
+    (void)state;
+    char text[8192];
+    int writer = connect_client(), listener = connect_client();
+    slow_journal_advance(&slow, 1);
+    assert_int_equal(round_trip("PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}"), 201);
+    ask(listener, "GET", "/v1/meshes/m/events", "");
+    read_until(listener, ".1\n\n");
+    ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
+    slow_journal_wait(&slow, 2);
+    const st_loss loss = {.from = 2, .to = 2, .reason = "the disk refused a write"};
+    slow_journal_lose(&slow, &loss);
+    assert_held(writer);
+    slow_journal_advance(&slow, 2);
+    assert_int_equal(answer(writer, text, sizeof text), 503);
+    assert_non_null(strstr(text, "\"code\":\"store_failed\""));
+    assert_non_null(strstr(text, loss.reason));
+    assert_non_null(strstr(text, "Retry-After: "));
+    /* The connection goes on, and a reader of the lost state hears the same. */
+    ask(writer, "GET", "/v1/meshes/m", "");
+    assert_int_equal(answer(writer, text, sizeof text), 503);
+    assert_non_null(strstr(text, "\"code\":\"store_failed\""));
+    /* Its event is told to nobody. */
+    assert_int_equal(answer(listener, text, sizeof text), 0);
+    assert_null(strstr(text, "other"));
+    /* Others lost nothing. */
+    slow_journal_advance(&slow, 3);
+    assert_int_equal(round_trip("PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
+    assert_int_equal(round_trip("GET", "/v1/meshes/n", ""), 200);
+    close(writer);
+    close(listener);
+}
+
 static void test_events_wait_until_durable(void **state)
 {
     char text[8192];
     int writer = connect_client(), listener = connect_client(), late = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
-    slow_wait(1);
+    slow_journal_wait(&slow, 1);
     ask(listener, "GET", "/v1/meshes/m/events", "");
     assert_held(listener); /* where it begins is not durable itself */
-    slow_advance(1);
+    slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     read_until(listener, ".1\n\n");
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"first\"}");
-    slow_wait(2);
+    slow_journal_wait(&slow, 2);
     assert_held(listener);
     /* The next one is added while the first still waits. */
     int other = connect_client();
     ask(other, "PATCH", "/v1/meshes/m", "{\"name\":\"second\"}");
-    slow_wait(3);
+    slow_journal_wait(&slow, 3);
     assert_held(listener);
     ask(late, "GET", "/v1/meshes/m/events", "");
     assert_held(late);
-    slow_advance(2);
+    slow_journal_advance(&slow, 2);
     read_until(listener, "\"first\"");
     assert_held(listener);
-    slow_advance(3);
+    slow_journal_advance(&slow, 3);
     read_until(listener, "\"second\"");
     read_until(late, ".1\n\n");
     assert_int_equal(answer(writer, text, sizeof text), 200);
     assert_int_equal(answer(other, text, sizeof text), 200);
     ask(writer, "DELETE", "/v1/meshes/m", "");
-    slow_wait(4);
+    slow_journal_wait(&slow, 4);
     assert_held(listener);
     /* What was not durable is not told at the end either. */
     assert_int_equal(stop(state), 0);
@@ -331,10 +426,10 @@ static void test_early_refusals_wait_too(void **state)
     char text[4096];
     int writer = connect_client(), other = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
-    slow_wait(1);
+    slow_journal_wait(&slow, 1);
     assert_int_equal(send(other, put, sizeof put - 1, MSG_NOSIGNAL), sizeof put - 1);
     assert_held(other);
-    slow_advance(1);
+    slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     assert_int_equal(answer(other, text, sizeof text), 412);
     close(writer);
@@ -346,7 +441,7 @@ static void test_a_stop_ends_what_waits(void **state)
     char text[8192];
     int writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
-    slow_wait(1);
+    slow_journal_wait(&slow, 1);
     assert_held(writer);
     assert_int_equal(stop(state), 0);
     assert_int_equal(answer(writer, text, sizeof text), 503);
@@ -395,7 +490,7 @@ static void open_gate(void)
 static void test_full_queue_is_503(void **state)
 {
     (void)state;
-    slow_advance(UINT64_MAX);
+    slow_journal_advance(&slow, UINT64_MAX);
     shut_gate();
     assert_true(st_pool_submit(jobs, &(st_task){.work = wait_at_gate}));
     assert_false(st_pool_submit(jobs, &(st_task){.work = wait_at_gate}));
@@ -432,10 +527,10 @@ static void test_a_stop_after_a_held_client_hung_up(void **state)
 {
     int writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
-    slow_wait(1);
+    slow_journal_wait(&slow, 1);
     assert_held(writer);
     hang_up(writer);
-    slow_advance(1);
+    slow_journal_advance(&slow, 1);
     assert_int_equal(round_trip("GET", "/v1/meshes/m", ""), 200);
     assert_int_equal(stop(state), 0);
     start(state);
@@ -443,7 +538,7 @@ static void test_a_stop_after_a_held_client_hung_up(void **state)
 
 static void test_a_stop_after_a_working_client_hung_up(void **state)
 {
-    slow_advance(UINT64_MAX);
+    slow_journal_advance(&slow, UINT64_MAX);
     shut_gate();
     int writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
@@ -459,7 +554,7 @@ static void test_work_of_who_hung_up_is_given_up(void **state)
 {
     (void)state;
     static const char large[] = "{\"shape\":\"icosphere\",\"subdivisions\":6}";
-    slow_advance(UINT64_MAX);
+    slow_journal_advance(&slow, UINT64_MAX);
     shut_gate();
     int writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", large);
@@ -488,7 +583,7 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     stop(state);
     read_seconds = 0;
     start(state);
-    slow_advance(UINT64_MAX);
+    slow_journal_advance(&slow, UINT64_MAX);
     /* Large enough that the read is not a worker's. Imports and edits have no such limit. */
     int fd = connect_client();
     ask(fd, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
@@ -607,7 +702,7 @@ static void test_refused_bodies(void **state)
     static const char chunked[] = "POST /v1/meshes/m/edits HTTP/1.1\r\nHost: localhost\r\n"
                                   "Content-Type: application/json\r\n"
                                   "Transfer-Encoding: chunked\r\n\r\n";
-    slow_advance(UINT64_MAX);
+    slow_journal_advance(&slow, UINT64_MAX);
     assert_int_equal(round_trip("PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}"), 201);
     assert_true(send(fd, chunked, sizeof chunked - 1, MSG_NOSIGNAL) > 0);
     for (size_t sent = 0; sent < 4 * (size_t)LARGE; sent += sizeof piece) {
@@ -653,6 +748,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_answers_wait_until_durable),
         TEST(test_early_refusals_wait_too),
+        TEST(lists_and_absence_wait_until_durable),
+        TEST(an_idle_mesh_never_waits),
+        TEST(every_kind_of_answer_waits),
+        TEST(an_answer_that_shows_what_was_lost_is_503),
         TEST(test_events_wait_until_durable),
         TEST(test_a_stop_ends_what_waits),
         TEST(test_a_stop_after_a_held_client_hung_up),

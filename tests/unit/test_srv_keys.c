@@ -38,7 +38,7 @@ static st_keyed_status claim(const char *text, uint64_t digest, double now, st_k
 static void keep(st_keyed *c, const char *body, size_t length, bool changed)
 {
     st_kept answer = {
-        .status = 200, .changed = changed, .record = 5, .body = body, .length = length};
+        .status = 200, .changed = changed, .position = 5, .body = body, .length = length};
     memcpy(answer.etag, "\"tag\"", sizeof "\"tag\"");
     st_keyed_keep(c, &answer);
     st_keyed_end(c);
@@ -72,7 +72,7 @@ static void the_first_answer_is_given_again(void **state)
     assert_int_equal(claim("a", 1, 1, &again), ST_KEYED_KEPT);
     assert_int_equal(again->answer.status, 200);
     assert_string_equal(again->answer.etag, "\"tag\"");
-    assert_true(again->answer.record == 5);
+    assert_true(again->answer.position == 5);
     assert_memory_equal(again->answer.body, "body", 4);
     st_keyed_end(again);
 }

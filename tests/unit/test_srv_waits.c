@@ -1,0 +1,159 @@
+/* Waits for what is durable: each ends once, in the order of positions, as durable, lost or
+ * stopped. */
+#include "tests/slow_journal.h"
+#include "tests/unit/fixture.h"
+
+#include "store/durability_wait.h"
+#include "tests/seed.h"
+
+enum { MANY = 1000 };
+
+static slow_journal slow;
+static st_journal journal;
+static st_waits *waits;
+static st_wait all[MANY];
+static size_t resumed;
+static uint64_t last; /* position that was resumed last */
+static bool in_order;
+
+static int setup(void **state)
+{
+    (void)state;
+    journal = slow_journal_open(&slow);
+    waits = st_waits_new(&journal);
+    resumed = 0;
+    last = 0;
+    in_order = true;
+    return waits == NULL;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    st_waits_free(waits);
+    journal.close(journal.self);
+    return 0;
+}
+
+static void count(st_wait *wait)
+{
+    in_order = in_order && wait->shown.position >= last;
+    last = wait->shown.position;
+    resumed++;
+    wait->resume = NULL; /* a second call would crash */
+}
+
+/* False when it is over already. */
+static bool add(st_wait *wait, uint64_t position, uint64_t incarnation)
+{
+    uint64_t since = incarnation == 0 ? 0 : position - 1;
+    *wait = (st_wait){.shown = {position, since, incarnation}, .resume = count};
+    return st_waits_add(waits, wait);
+}
+
+static void one_notice_releases_a_thousand(void **state)
+{
+    (void)state;
+    uint64_t random = seed_of_run();
+    for (size_t i = 0; i < MANY; i++) {
+        random = random * 6364136223846793005U + 1442695040888963407U;
+        assert_true(add(&all[i], 1 + (random >> 33) % 500, 7));
+    }
+    slow_journal_advance(&slow, 0);
+    assert_int_equal(resumed, 0);
+    slow_journal_advance(&slow, 250);
+    size_t early = 0;
+    for (size_t i = 0; i < MANY; i++) {
+        assert_int_equal(all[i].resume == NULL, all[i].shown.position <= 250);
+        early += all[i].resume == NULL;
+    }
+    assert_int_equal(resumed, early);
+    /* Those that come between have their place in the order. */
+    st_wait late, past;
+    assert_true(add(&late, 251, 7));
+    assert_false(add(&past, 250, 7));
+    assert_int_equal(past.end, ST_WAIT_DURABLE);
+    slow_journal_advance(&slow, 500);
+    assert_int_equal(resumed, MANY + 1);
+    assert_true(in_order);
+    for (size_t i = 0; i < MANY; i++) {
+        assert_int_equal(all[i].end, ST_WAIT_DURABLE);
+    }
+}
+
+/* Of an interval both ends are lost, and of the mesh that is named alone. */
+static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
+{
+    (void)state;
+    enum { BEFORE, FIRST, OTHER, LAST, AFTER, LIST, SAMPLE };
+    static const struct {
+        uint64_t position, incarnation;
+        st_wait_end end;
+    } rows[SAMPLE] = {
+        [BEFORE] = {3, 7, ST_WAIT_DURABLE}, [FIRST] = {4, 7, ST_WAIT_LOST},
+        [OTHER] = {5, 8, ST_WAIT_DURABLE},  [LAST] = {6, 7, ST_WAIT_LOST},
+        [AFTER] = {7, 7, ST_WAIT_DURABLE},  [LIST] = {7, 0, ST_WAIT_LOST},
+    };
+    static const char reason[] = "the disk is full";
+    for (size_t i = 0; i < SAMPLE; i++) {
+        assert_true(add(&all[i], rows[i].position, rows[i].incarnation));
+    }
+    slow_journal_lose(&slow, &(st_loss){.incarnation = 7, .from = 4, .to = 6, .reason = reason});
+    assert_int_equal(resumed, 0);
+    slow_journal_advance(&slow, 7);
+    assert_int_equal(resumed, SAMPLE);
+    for (int again = 0; again < 2; again++) {
+        for (size_t i = 0; i < SAMPLE; i++) {
+            assert_int_equal(all[i].end, rows[i].end);
+            assert_ptr_equal(all[i].reason, rows[i].end == ST_WAIT_LOST ? reason : NULL);
+            assert_int_equal(st_waits_is_durable(waits, &all[i].shown),
+                             rows[i].end == ST_WAIT_DURABLE);
+            assert_false(add(&all[i], rows[i].position, rows[i].incarnation));
+        }
+    }
+    /* A list that was begun after the loss does not show it. */
+    const st_shown later = {.position = 7, .since = 6};
+    assert_true(st_waits_is_durable(waits, &later));
+}
+
+static void a_loss_without_memory_takes_too_much_rather_than_too_little(void **state)
+{
+    (void)state;
+    const st_loss loss = {.incarnation = 7, .from = 4, .to = 4, .reason = "no room"};
+    fixture_fail_at(1);
+    slow_journal_lose(&slow, &loss);
+    fixture_memory_back();
+    slow_journal_advance(&slow, 9);
+    assert_false(add(&all[0], 3, 7));
+    assert_int_equal(all[0].end, ST_WAIT_DURABLE);
+    assert_false(add(&all[0], 4, 7));
+    assert_int_equal(all[0].end, ST_WAIT_LOST);
+    assert_false(add(&all[0], 9, 8));
+    assert_int_equal(all[0].end, ST_WAIT_LOST);
+}
+
+static void a_stop_ends_what_is_not_known(void **state)
+{
+    (void)state;
+    slow_journal_advance(&slow, 2);
+    assert_true(add(&all[0], 3, 7));
+    st_waits_stop(waits);
+    assert_int_equal(resumed, 1);
+    assert_int_equal(all[0].end, ST_WAIT_STOPPED);
+    assert_false(add(&all[0], 4, 7));
+    assert_int_equal(all[0].end, ST_WAIT_STOPPED);
+    assert_false(add(&all[0], 2, 7));
+    assert_int_equal(all[0].end, ST_WAIT_DURABLE);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
+    const struct CMUnitTest tests[] = {
+        TEST(one_notice_releases_a_thousand),
+        TEST(a_lost_position_ends_as_lost_whenever_it_is_added),
+        TEST(a_loss_without_memory_takes_too_much_rather_than_too_little),
+        TEST(a_stop_ends_what_is_not_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
