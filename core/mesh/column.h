@@ -7,8 +7,9 @@
  *
  * Its rule says what an edit gives to elements it makes:
  *   copy         the parent's value (the face that was split, the edge that was cut)
- *   interpolate  linear between the two ends at a split, the mean at a merge
- *   default      the column's default */
+ *   interpolate  linear between the two ends at a split, the mean at a collapse
+ *   default      the column's default
+ * A weld takes no mean, whatever the rule: what differs goes to corners (edit/piece/keep.h). */
 #ifndef HE_MESH_COLUMN_H
 #define HE_MESH_COLUMN_H
 

@@ -4,12 +4,13 @@
     run.py --hedged PROGRAM --peers PROGRAM [--corpus DIR] [--files N] [--only obj,off] [--keep DIR]
 
 readers.py compares it with the reference reader of the corpus, where the corpus lies beside the
-project; peers.py with assimp, OpenMesh and CGAL. The last line is `N passed, M failed`."""
+project; peers.py with assimp, OpenMesh and CGAL; meaning.py what corners say with assimp. The last line is `N passed, M failed`."""
 import argparse
 import os
 import sys
 import tempfile
 
+import meaning
 import peers
 import readers
 from daemon import Daemon
@@ -38,6 +39,11 @@ def main():
             print('note: there is no corpus, and so no reference reader')
         p, f = peers.run(daemon, reference, a.peers, folder)
         passed, failed = passed + p, failed + f
+        tally = peers.Tally()
+        meaning.run(daemon, folder, tally)
+        print('note: corners in files of the daemon and of assimp: %d agree, %d do not' %
+              (tally.passed, tally.failed))
+        passed, failed = passed + tally.passed, failed + tally.failed
     failed += daemon.status != 0
     print('%d passed, %d failed' % (passed, failed))
     sys.exit(failed > 0)

@@ -271,7 +271,7 @@ static void what_is_left_out_is_noted(void **state)
         begin(&f, e,
               "element material 2\nproperty float shine\nproperty int number\n"
               "element vertex 3\n" XYZ "property list uchar float weights\n"
-              "element face 1\n" CORNER "property list int double texcoord\n"
+              "element face 1\n" CORNER "property list int double heights\n"
               "element strange 2\nproperty list uchar ushort pairs\nproperty uchar last\n"
               "end_header\n");
         for (size_t k = 0; k < 2; k++) {
@@ -309,7 +309,7 @@ static void what_is_left_out_is_noted(void **state)
         expect_points(&import, square, 3);
         expect_note(&import, "ignored_element", "material", 1, 3);
         expect_note(&import, "ignored_list", "weights", 1, 10);
-        expect_note(&import, "ignored_list", "texcoord", 1, 13);
+        expect_note(&import, "ignored_list", "heights", 1, 13);
         expect_note(&import, "ignored_element", "strange", 1, 14);
         assert_int_equal(import.notes.count, 4);
         assert_int_equal(import.soup.column_count, 0);

@@ -162,14 +162,14 @@ static void what_is_lost_is_named(void **state)
     add_column(&soup, "color", HE_VERTEX, HE_DOUBLE, 3, 4);
     add_column(&soup, "color", HE_FACE, HE_UINT32, 3, 1);
     add_column(&soup, "red", HE_VERTEX, HE_INT32, 1, 4);
-    add_column(&soup, "uv", HE_HALFEDGE, HE_FLOAT, 2, 6);
+    add_column(&soup, "heat", HE_HALFEDGE, HE_FLOAT, 2, 6);
     add_column(&soup, "mark", HE_FACE, HE_INT32, 1, 1);
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
     he_notes notes;
     size_t length;
     char *text = write_bytes("ply", "ascii", mesh, &notes, &length);
     static const char *const lost[] = {"vertex x",   "vertex two words", "vertex pair",
-                                       "vertex red", "halfedge uv",      "face color"};
+                                       "vertex red", "halfedge heat",    "face color"};
     for (size_t i = 0; i < sizeof lost / sizeof *lost; i++) {
         assert_non_null(find_note(&notes, "attribute_lost", lost[i]));
     }

@@ -110,16 +110,25 @@ static void put_extras(text *t, const he_glb_parts *g)
     size_t degrees, corners;
     bool polygons = find_part(g, HE_GLB_DEGREES, &degrees) != NULL &&
                     find_part(g, HE_GLB_CORNERS, &corners) != NULL;
+    size_t copies;
+    const char *between = "";
     put_text(t, ",\"extras\":{\"hedge\":{");
+    if (find_part(g, HE_GLB_COPIES, &copies) != NULL) {
+        put_number(t, "\"copies\":", copies);
+        between = ",";
+    }
     if (polygons) {
+        put_text(t, between);
         put_number(t, "\"polygons\":{\"degrees\":", degrees);
         put_number(t, ",\"corners\":", corners);
         put_text(t, "}");
+        between = ",";
     }
     size_t columns = 0;
     for (size_t i = 0; i < g->count; i++) {
         if (g->parts[i].content == HE_GLB_WORDS) {
-            put_text(t, columns > 0 ? "," : polygons ? ",\"columns\":[" : "\"columns\":[");
+            put_text(t, columns > 0 ? "," : between);
+            put_text(t, columns > 0 ? "" : "\"columns\":[");
             put_column(t, g->parts[i].column, i);
             columns++;
         }

@@ -17,6 +17,8 @@ uint64_t he_glb_part_bytes(const he_glb_part *part)
 
 void he_glb_parts_clear(he_glb_parts *parts)
 {
+    he_mem_free(parts->numbers);
+    he_splits_clear(&parts->splits);
     he_cuts_clear(&parts->cuts);
     he_mem_free(parts->parts);
     he_mem_free(parts->json);
@@ -79,15 +81,21 @@ static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf
     return column->labels == NULL && is_numbered(column, s, number) ? type_of(m, column, s) : 0;
 }
 
-static bool has_number(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
+/* The column that is written as the attribute of this number, NULL where there is none. What
+ * corners say comes before what vertices do. */
+static const he_column *find_shown(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
 {
-    for (size_t i = 0; i < he_mesh_columns(m); i++) {
-        const he_column *column = he_mesh_column(m, i);
-        if (column != NULL && column->domain == HE_VERTEX && type_as(m, column, s, number) != 0) {
-            return true;
+    static const he_kind domains[] = {HE_HALFEDGE, HE_VERTEX};
+    for (size_t k = m->c.faces.live > 0 ? 0 : 1; k < 2; k++) {
+        for (size_t i = 0; i < he_mesh_columns(m); i++) {
+            const he_column *column = he_mesh_column(m, i);
+            if (column != NULL && column->domain == domains[k] &&
+                type_as(m, column, s, number) != 0) {
+                return column;
+            }
         }
     }
-    return false;
+    return NULL;
 }
 
 /* How many numbers of a semantic can be written: without a gap, and with their partners. */
@@ -95,8 +103,8 @@ static unsigned count_numbers(const he_mesh *m, const he_gltf_semantic *s)
 {
     const he_gltf_semantic *partner = &he_gltf_semantics[s->partner];
     unsigned most = s->numbered ? MOST_NUMBERS : 1, count = 0;
-    while (count < most && has_number(m, s, count) &&
-           (partner == s || has_number(m, partner, count))) {
+    while (count < most && find_shown(m, s, count) != NULL &&
+           (partner == s || find_shown(m, partner, count) != NULL)) {
         count++;
     }
     return count;
@@ -112,6 +120,11 @@ static bool is_printable(const char *name)
     return strcmp(name, "position") != 0;
 }
 
+static bool has_corner_namesake(const he_mesh *m, const he_column *column)
+{
+    return he_mesh_find_column(m, HE_HALFEDGE, column->name) != NULL;
+}
+
 /* What is beyond the numbers of its semantic has a name of its own, as _uv1, and so the same name
  * when it is read back; joints, which are whole, are in extras. */
 static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANTICS],
@@ -124,7 +137,7 @@ static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANT
         while (n < MOST_NUMBERS && type_as(m, column, s, n) == 0) {
             n++;
         }
-        if (n == MOST_NUMBERS || n >= counts[i]) {
+        if (n == MOST_NUMBERS || n >= counts[i] || find_shown(m, s, n) != column) {
             continue;
         }
         part->role = s->role;
@@ -135,7 +148,8 @@ static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANT
         return true;
     }
     bool fraction = column->type == HE_FLOAT || column->type == HE_DOUBLE;
-    if (!fraction || column->components > 4 || !is_printable(column->name)) {
+    if (!fraction || column->components > 4 || !is_printable(column->name) ||
+        column->domain != HE_VERTEX || has_corner_namesake(m, column)) {
         return false;
     }
     part->type = HE_GLTF_FLOAT;
@@ -164,6 +178,9 @@ static bool comes_back(const he_mesh *m, const he_glb_part *part)
 static bool is_exact(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
+    if (column->domain != HE_VERTEX) {
+        return false;
+    }
     if (part->type == HE_GLTF_UINT16) {
         return column->rule == HE_COPY;
     }
@@ -191,6 +208,15 @@ static uint64_t rows_of(const he_mesh *m, he_kind domain)
     return 0;
 }
 
+static bool is_shown(const he_glb_parts *g, const he_column *column)
+{
+    size_t i = 0;
+    while (i < g->count && (g->parts[i].content != HE_GLB_VALUES || g->parts[i].column != column)) {
+        i++;
+    }
+    return i < g->count;
+}
+
 static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
 {
     uint32_t words = column->components * (column->type == HE_DOUBLE ? 2 : 1);
@@ -203,12 +229,15 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
                          .components = 1,
                          .count = rows_of(g->mesh, column->domain) * words,
                          .stride = 4});
+    if (column->domain == HE_HALFEDGE && is_shown(g, column)) {
+        return; /* others see it too */
+    }
     he_notes_add(notes, "in_extras", "kept where only hedge looks: attribute", subject,
                  (size_t)length, HE_PLACE_NONE, 0);
 }
 
 /* What is seen by all, then, behind the triangles, the rest. */
-static void add_values(he_glb_parts *g, const he_column **used, he_notes *notes)
+static void add_values(he_glb_parts *g, he_notes *notes)
 {
     const he_mesh *m = g->mesh;
     unsigned counts[HE_GLTF_SEMANTICS];
@@ -218,19 +247,32 @@ static void add_values(he_glb_parts *g, const he_column **used, he_notes *notes)
     for (size_t i = 0; i < he_mesh_columns(m); i++) {
         const he_column *column = he_mesh_column(m, i);
         he_glb_part part = {.content = HE_GLB_VALUES, .column = column};
-        if (column == NULL || column->domain != HE_VERTEX ||
-            he_export_find(m, HE_VERTEX, column->name, 1, HE_COLUMN_COMPONENTS, notes) == NULL ||
+        if (column == NULL || (column->domain != HE_VERTEX && column->domain != HE_HALFEDGE) ||
+            he_export_find(m, column->domain, column->name, 1, HE_COLUMN_COMPONENTS, notes) ==
+                NULL ||
             !find_semantic(m, counts, column, &part)) {
             continue;
         }
         part.components = column->components;
-        part.count = m->c.vertices.live;
         part.stride = part.type == HE_GLTF_UINT8    ? 4
                       : part.type == HE_GLTF_UINT16 ? 8
                                                     : 4 * column->components;
-        used[i] = is_exact(m, &part) ? column : NULL;
         add(g, part);
     }
+}
+
+/* Split vertices where corners say different things of what is seen. */
+static he_status split(he_glb_parts *g, he_error *err)
+{
+    const he_column *columns[HE_GLTF_SEMANTICS * MOST_NUMBERS];
+    size_t count = 0;
+    for (size_t i = 0; i < g->count; i++) {
+        if (g->parts[i].column->domain == HE_HALFEDGE) {
+            columns[count++] = g->parts[i].column;
+        }
+    }
+    return count == 0 ? HE_OK
+                      : he_splits_make(g->mesh, g->numbers, columns, count, &g->splits, err);
 }
 
 static void add_rest(he_glb_parts *g, const he_column **used, he_notes *notes)
@@ -245,18 +287,37 @@ static void add_rest(he_glb_parts *g, const he_column **used, he_notes *notes)
     }
 }
 
-static void add_parts(he_glb_parts *g, const he_column **used, he_notes *notes)
+/* Positions come first, and each part has an element for each vertex and copy. */
+static void place_values(he_glb_parts *g, const he_column **used)
 {
     const he_mesh *m = g->mesh;
-    uint64_t vertices = m->c.vertices.live, faces = m->c.faces.live;
-    bool few = vertices <= SHORT_VERTICES;
-    add(g, (he_glb_part){.content = HE_GLB_POSITIONS,
-                         .semantic = "POSITION",
-                         .type = HE_GLTF_FLOAT,
-                         .components = 3,
-                         .count = vertices,
-                         .stride = 12});
-    add_values(g, used, notes);
+    size_t values = g->count;
+    uint64_t vertices = m->c.vertices.live + g->splits.copies.count;
+    memmove(g->parts + 1, g->parts, values * sizeof *g->parts);
+    g->parts[0] = (he_glb_part){.content = HE_GLB_POSITIONS,
+                                .semantic = "POSITION",
+                                .type = HE_GLTF_FLOAT,
+                                .components = 3,
+                                .stride = 12};
+    g->count = 0;
+    g->bytes = 0;
+    for (size_t i = 0; i <= values; i++) {
+        he_glb_part part = g->parts[i];
+        part.count = vertices;
+        for (size_t k = 0; k < he_mesh_columns(m) && i > 0; k++) {
+            if (he_mesh_column(m, k) == part.column && is_exact(m, &part)) {
+                used[k] = part.column;
+            }
+        }
+        add(g, part);
+    }
+}
+
+static void add_rest_of_geometry(he_glb_parts *g)
+{
+    const he_mesh *m = g->mesh;
+    uint64_t faces = m->c.faces.live, copies = g->splits.copies.count;
+    bool few = m->c.vertices.live + copies <= SHORT_VERTICES;
     if (faces > 0) {
         add(g, (he_glb_part){.content = HE_GLB_TRIANGLES,
                              .type = few ? HE_GLTF_UINT16 : HE_GLTF_UINT32,
@@ -265,6 +326,11 @@ static void add_parts(he_glb_parts *g, const he_column **used, he_notes *notes)
                              .stride = few ? 2 : 4});
     }
     he_glb_part words = {.type = HE_GLTF_UINT32, .components = 1, .stride = 4};
+    if (copies > 0) {
+        words.content = HE_GLB_COPIES;
+        words.count = copies;
+        add(g, words);
+    }
     if (g->cuts.polygons > 0) {
         words.content = HE_GLB_DEGREES;
         words.count = faces;
@@ -273,7 +339,18 @@ static void add_parts(he_glb_parts *g, const he_column **used, he_notes *notes)
         words.count = corner_count(m);
         add(g, words);
     }
-    add_rest(g, used, notes);
+}
+
+static he_status add_parts(he_glb_parts *g, const he_column **used, he_notes *notes, he_error *err)
+{
+    add_values(g, notes);
+    he_status status = split(g, err);
+    if (status == HE_OK) {
+        place_values(g, used);
+        add_rest_of_geometry(g);
+        add_rest(g, used, notes);
+    }
+    return status;
 }
 
 static void note_geometry(const he_glb_parts *g, he_notes *notes)
@@ -289,6 +366,10 @@ static void note_geometry(const he_glb_parts *g, he_notes *notes)
     he_notes_add_count(notes, "triangulated",
                        "cut into triangles for other programs, and kept for hedge: a face",
                        g->cuts.polygons);
+    he_notes_add_count(
+        notes, "split_vertices",
+        "made for other programs where corners differ, and joined by hedge: a vertex",
+        g->splits.copies.count);
     he_notes_add_count(notes, "turned_triangles",
                        "cut into triangles some of which have no area or are turned over: a face",
                        g->cuts.turned);
@@ -298,10 +379,13 @@ static he_status make(he_glb_parts *g, he_notes *notes, he_error *err)
 {
     size_t columns = he_mesh_columns(g->mesh);
     he_status status = he_cuts_make(g->mesh, &g->cuts, err);
+    if (status == HE_OK) {
+        status = he_export_numbers(g->mesh, &g->numbers, err);
+    }
     if (status != HE_OK) {
         return status;
     }
-    g->capacity = 4 + 2 * columns;
+    g->capacity = 5 + 2 * columns;
     g->parts = he_mem_array(NULL, g->capacity, sizeof *g->parts);
     const he_column **used = he_mem_zero(columns + 1, sizeof *used);
     if (g->parts == NULL || used == NULL) {
@@ -309,11 +393,14 @@ static he_status make(he_glb_parts *g, he_notes *notes, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu attributes", columns);
     }
     if (g->mesh->c.vertices.live > 0) {
-        add_parts(g, used, notes);
+        status = add_parts(g, used, notes, err);
     }
     note_geometry(g, notes);
     he_export_note_lost(g->mesh, used, columns, notes);
     he_mem_free(used);
+    if (status != HE_OK) {
+        return status;
+    }
     status = he_glb_describe(g, err);
     if (status == HE_OK && g->bytes + g->json_length > UINT32_MAX - 64) {
         return he_fail_plain(err, HE_LIMIT, "a GLB file has less than 4 GiB, not %llu bytes",

@@ -5,11 +5,13 @@
 
 #include "format/gltf/gltf_attribute.h"
 #include "format/io/cuts.h"
+#include "format/io/splits.h"
 
 typedef enum he_glb_content {
     HE_GLB_POSITIONS, /* three floats a vertex */
-    HE_GLB_VALUES,    /* an attribute of vertices in a type of glTF */
+    HE_GLB_VALUES,    /* an attribute of vertices or corners in a type of glTF */
     HE_GLB_TRIANGLES,
+    HE_GLB_COPIES,  /* of each copy the vertex that it is one of (splits.h) */
     HE_GLB_DEGREES, /* of faces */
     HE_GLB_CORNERS, /* vertices of faces */
     HE_GLB_WORDS    /* an attribute as it is in memory, a bool as a word */
@@ -31,6 +33,8 @@ typedef struct he_glb_part {
 /* {0} is empty. */
 typedef struct he_glb_parts {
     const he_mesh *mesh;
+    uint32_t *numbers; /* of vertices, NULL where those are their ids */
+    he_splits splits;  /* where corners say more than their vertices can */
     he_cuts cuts;
     he_glb_part *parts;
     size_t count, capacity;

@@ -27,8 +27,10 @@
  *
  * WRITING. One mesh of one primitive: all vertices, in the order of ids, as floats, and triangles.
  * normal, tangent, uv, color, joints and weights of vertices and other attributes of floats are
- * glTF attributes as they are read; they and all others, those of faces and corners too, are also
- * in extras unless that is the same. So are polygons. Numbers have no gaps and joints come with
+ * glTF attributes as they are read. Of corners those of that list are, before those of vertices of
+ * the same name: where corners of a vertex differ, there are copies of it behind all vertices
+ * (splits.h). All others, those of faces and corners too, are also in extras unless that is the
+ * same. So are polygons, and which vertices are copies. Numbers have no gaps and joints come with
  * weights; what cannot has a name of its own, as _uv1 where there is no uv. Other programs ignore
  * extras, so this program reads back all but the positions' last digits, attributes of edges and of
  * the mesh. */

@@ -158,7 +158,7 @@ static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const 
         a->place == HE_GLTF_NOWHERE ? he_json_place(&s->asset->json, a->value) : a->place;
     he_gltf_walk walk = {.accessor = a};
     he_status status = HE_OK;
-    for (uint64_t i = 0; i < a->count && status == HE_OK; i++) {
+    for (uint64_t i = 0; i < p->vertices && status == HE_OK; i++) {
         const unsigned char *at = he_gltf_next(&walk);
         double values[HE_COLUMN_COMPONENTS] = {0};
         for (uint32_t k = 0; k < a->components; k++) {
@@ -223,6 +223,10 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
     }
     he_type type = column_type(a, *known);
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
+    const he_column *corners = he_gltf_find_column(soup, HE_HALFEDGE, name);
+    if (p->exact && corners != NULL && corners->rows > p->first_corner) {
+        return HE_OK; /* it is what vertices and their copies say of them */
+    }
     if (column != NULL && column->rows > p->first_vertex) {
         if (!p->exact) {
             note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
@@ -269,13 +273,13 @@ static he_status add_attribute(he_gltf_surface *s, const he_gltf_primitive *p, u
     if (status == HE_OK) {
         status = open_column(s, p, semantic, &a, &known, &column, err);
     }
-    size_t end = p->first_vertex + (size_t)p->positions.count;
+    size_t end = p->first_vertex + (size_t)p->vertices;
     if (status != HE_OK || column == NULL) {
         return status;
     }
     status = he_gltf_extend(s, value, column, end, err);
     if (status == HE_OK) {
-        s->given[number_of(&s->asset->into->soup, column)] += a.count;
+        s->given[number_of(&s->asset->into->soup, column)] += p->vertices;
         status = put_rows(s, p, &a, known, column, err);
     }
     return status;

@@ -23,12 +23,23 @@ typedef struct he_gltf_primitive {
     bool indexed;
     uint64_t mode;
     he_gltf_accessor positions, indices;
-    uint64_t faces; /* triangles */
-    bool exact;     /* what was read from extras comes before attributes */
-    bool polygons;  /* and its polygons before the triangles */
+    uint64_t faces;    /* triangles */
+    uint64_t vertices; /* of the soup: the first ones of positions, the others are copies of them */
+    he_gltf_accessor copies; /* the vertex that each is a copy of, where there are any */
+    bool private;            /* extras fit so far */
+    bool exact;              /* what was read from extras comes before attributes */
+    bool polygons;           /* and its polygons before the triangles */
     uint32_t first_vertex, first_face, first_corner; /* in the soup */
 } he_gltf_primitive;
 
+/* The vertex that an index names, which is below the count of positions. */
+static inline uint32_t he_gltf_vertex(const he_gltf_primitive *p, uint32_t index)
+{
+    return index < p->vertices
+               ? index
+               : he_gltf_whole(HE_GLTF_UINT32,
+                               p->copies.bytes + (index - p->vertices) * p->copies.stride);
+}
 /* Place of element i in the input; where its bytes are not in the file, that of `value`. */
 uint64_t he_gltf_element_place(const he_gltf *asset, const he_gltf_accessor *a, uint32_t value,
                                uint64_t i);

@@ -76,7 +76,7 @@ static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, cons
         for (uint64_t k = 0; k < degree && status == HE_OK; k++) {
             uint32_t corner = next_word(&corners);
             status = he_gltf_poll(asset, err);
-            if (corner >= p->positions.count || marks[corner] == i + 1) {
+            if (corner >= p->vertices || marks[corner] == i + 1) {
                 return HE_OK;
             }
             marks[corner] = (uint32_t)i + 1;
@@ -84,7 +84,7 @@ static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, cons
         for (uint64_t k = 0; k < 3 * (degree - 2) && status == HE_OK; k++) {
             uint32_t corner = he_gltf_whole(p->indices.type, he_gltf_next(&triangles));
             status = he_gltf_poll(asset, err);
-            if (corner >= p->positions.count || marks[corner] != i + 1) {
+            if (corner >= p->positions.count || marks[he_gltf_vertex(p, corner)] != i + 1) {
                 return HE_OK;
             }
         }
@@ -135,14 +135,14 @@ static he_status read_polygons(he_gltf_surface *s, he_gltf_primitive *p, uint32_
         status = get_words(s->asset, object, "corners", &g.corners, &fits, err);
     }
     if (status == HE_OK && fits) {
-        uint64_t words = g.degrees.count * 5 + g.corners.count + p->positions.count;
+        uint64_t words = g.degrees.count * 5 + g.corners.count + p->vertices;
         status = he_gltf_spend(s->asset, object, words * sizeof(uint32_t), err);
     }
     if (status != HE_OK) {
         return status;
     }
     if (fits) {
-        uint32_t *marks = he_mem_zero((size_t)p->positions.count, sizeof *marks);
+        uint32_t *marks = he_mem_zero((size_t)p->vertices, sizeof *marks);
         if (marks == NULL) {
             return he_fail_plain(err, HE_NO_MEMORY, "no memory to check polygons");
         }
@@ -402,8 +402,7 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     uint32_t domain = he_json_find(json, object, "domain");
     description d = {.domain = HE_KIND_COUNT};
     if (he_json_is(json, domain, "vertex")) {
-        d = (description){
-            .domain = HE_VERTEX, .rows = p->positions.count, .first = p->first_vertex};
+        d = (description){.domain = HE_VERTEX, .rows = p->vertices, .first = p->first_vertex};
     } else if (he_json_is(json, domain, "face")) {
         d = (description){.domain = HE_FACE, .rows = faces, .first = p->first_face};
     } else if (he_json_is(json, domain, "halfedge")) {
@@ -433,6 +432,58 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     return status;
 }
 
+/* --- copies --- */
+
+static const unsigned char *position_at(const he_gltf_primitive *p, uint64_t i)
+{
+    return p->positions.bytes + i * p->positions.stride;
+}
+
+/* Does each copy lie where its vertex does? Fails as the watch does. */
+static he_status check_copies(he_gltf *asset, const he_gltf_primitive *p,
+                              const he_gltf_accessor *copies, bool *fits, he_error *err)
+{
+    uint64_t vertices = p->positions.count - copies->count;
+    size_t bytes = 3 * he_gltf_type_bytes(p->positions.type);
+    he_gltf_walk walk = {.accessor = copies};
+    he_status status = HE_OK;
+    for (uint64_t i = vertices; i < p->positions.count && status == HE_OK && *fits; i++) {
+        uint32_t vertex = next_word(&walk);
+        *fits = vertex < vertices && memcmp(position_at(p, i), position_at(p, vertex), bytes) == 0;
+        status = he_gltf_poll(asset, err);
+    }
+    return status;
+}
+
+he_status he_gltf_open_private(he_gltf_surface *s, he_gltf_primitive *p, he_error *err)
+{
+    const he_json *json = &s->asset->json;
+    uint32_t private = find_private(s->asset, p->value);
+    bool fits = p->still && (p->faces == 0 || (p->indexed && p->indices.count == 3 * p->faces));
+    he_gltf_accessor copies;
+    he_status status = HE_OK;
+    if (fits && he_json_find(json, private, "copies") != HE_NONE) {
+        status = get_words(s->asset, private, "copies", &copies, &fits, err);
+        fits = fits && copies.changed == 0 && copies.count < p->positions.count &&
+               p->positions.bytes != NULL && p->positions.changed == 0;
+        if (status == HE_OK && fits) {
+            status = he_gltf_spend(s->asset, private, copies.count * sizeof(uint32_t), err);
+        }
+        if (status == HE_OK && fits) {
+            status = check_copies(s->asset, p, &copies, &fits, err);
+        }
+        if (status == HE_OK && fits) {
+            p->copies = copies;
+            p->vertices = p->positions.count - copies.count;
+        }
+    }
+    p->private = fits;
+    if (status == HE_OK && !fits) {
+        note_stale(s, private);
+    }
+    return status;
+}
+
 he_status he_gltf_read_private(he_gltf_surface *s, he_gltf_primitive *p, he_error *err)
 {
     const he_json *json = &s->asset->json;
@@ -441,10 +492,6 @@ he_status he_gltf_read_private(he_gltf_surface *s, he_gltf_primitive *p, he_erro
     uint32_t columns = he_json_find(json, private, "columns");
     uint64_t faces = p->faces, corners = 3 * p->faces;
     he_status status = HE_OK;
-    if (!p->still || (p->faces > 0 && (!p->indexed || p->indices.count != corners))) {
-        note_stale(s, private);
-        return HE_OK;
-    }
     if (list != HE_NONE) {
         status = read_polygons(s, p, list, &faces, &corners, err);
         if (status != HE_OK || !p->polygons) {

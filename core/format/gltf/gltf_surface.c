@@ -129,7 +129,7 @@ static he_status spend(he_gltf_surface *s, const he_gltf_primitive *p, he_error 
     uint64_t vertex = sizeof(he_vec3), face = 4 * sizeof(uint32_t);
     vertex += into->vertices.step == vertex_step ? 0 : sizeof(he_place_run);
     face += into->faces.step == face_step ? 0 : sizeof(he_place_run);
-    return he_gltf_spend(s->asset, p->value, p->positions.count * vertex + p->faces * face, err);
+    return he_gltf_spend(s->asset, p->value, p->vertices * vertex + p->faces * face, err);
 }
 
 static he_vec3 place_point(const he_gltf_frame *frame, he_vec3 p)
@@ -147,7 +147,7 @@ static he_status add_vertices(he_gltf_surface *s, const he_gltf_primitive *p, he
     he_import *into = s->asset->into;
     he_gltf_walk walk = {.accessor = &p->positions};
     he_status status = HE_OK;
-    for (uint64_t i = 0; i < p->positions.count && status == HE_OK; i++) {
+    for (uint64_t i = 0; i < p->vertices && status == HE_OK; i++) {
         const unsigned char *at = he_gltf_next(&walk);
         uint64_t place = he_gltf_element_place(s->asset, &p->positions, p->value, i);
         double n[3];
@@ -223,7 +223,7 @@ static he_status add_faces(he_gltf_surface *s, const he_gltf_primitive *p, he_er
         if (index >= p->positions.count) {
             return bad_index(s, p, i, index, err);
         }
-        index += p->first_vertex;
+        index = he_gltf_vertex(p, index) + p->first_vertex;
         held[0] = i == 0 ? index : held[0];
         held[1] = held[2];
         held[2] = held[3];
@@ -350,7 +350,11 @@ static he_status add_primitive(he_gltf_surface *s, uint32_t value, uint32_t name
     if (he_json_first(json, he_json_find(json, value, "targets")) != HE_NONE) {
         note(asset, value, "ignored_targets", "ignored: morph targets of a primitive");
     }
-    status = spend(s, &p, err);
+    p.vertices = p.positions.count;
+    status = he_gltf_has_private(asset, value) ? he_gltf_open_private(s, &p, err) : HE_OK;
+    if (status == HE_OK) {
+        status = spend(s, &p, err);
+    }
     if (status == HE_OK) {
         status = set_object(s, &p, name, err);
     }
@@ -360,7 +364,7 @@ static he_status add_primitive(he_gltf_surface *s, uint32_t value, uint32_t name
     if (status == HE_OK) {
         status = add_vertices(s, &p, err);
     }
-    if (status == HE_OK && he_gltf_has_private(asset, value)) {
+    if (status == HE_OK && p.private) {
         status = he_gltf_read_private(s, &p, err);
     }
     if (status == HE_OK && p.mode >= TRIANGLES && !p.polygons) {

@@ -14,12 +14,14 @@ enum { ELEMENT_ROOM = 128 };
 
 typedef struct glb_writer {
     he_glb_parts g;
-    uint32_t *numbers; /* of vertices */
+    uint32_t
+        *at; /* where vertices are split: of each vertex the number in the face that is written */
     stage stage;
     size_t json;       /* next byte */
     size_t part;       /* that is being written */
     uint32_t row;      /* next vertex or face */
     uint32_t halfedge; /* next corner of the face, or HE_NONE */
+    size_t copy;       /* next */
     he_cut_walk walk;
     uint64_t written; /* bytes of the part */
 } glb_writer;
@@ -28,7 +30,7 @@ static void glb_close(void *state)
 {
     glb_writer *w = state;
     he_glb_parts_clear(&w->g);
-    he_mem_free(w->numbers);
+    he_mem_free(w->at);
     he_mem_free(w);
 }
 
@@ -41,9 +43,12 @@ static he_status glb_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
     }
     w->halfedge = HE_NONE;
-    he_status status = he_export_numbers(mesh, &w->numbers, err);
-    if (status == HE_OK) {
-        status = he_glb_parts_make(mesh, notes, &w->g, err);
+    he_status status = he_glb_parts_make(mesh, notes, &w->g, err);
+    if (status == HE_OK && w->g.splits.copies.count > 0) {
+        w->at = he_mem_array(NULL, mesh->c.vertices.issued, sizeof *w->at);
+        if (w->at == NULL) {
+            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        }
     }
     if (status != HE_OK) {
         glb_close(w);
@@ -109,10 +114,16 @@ static char *put_words(const he_column *column, uint32_t id, char *p)
 
 static uint32_t number_of(const glb_writer *w, uint32_t vertex)
 {
-    return w->numbers != NULL ? w->numbers[vertex] : vertex;
+    return w->g.numbers != NULL ? w->g.numbers[vertex] : vertex;
 }
 
 /* --- walks over the elements of a part; HE_NONE after the last --- */
+
+/* Copies follow the vertices: a half-edge each. */
+static uint32_t next_copy(glb_writer *w)
+{
+    return w->copy < w->g.splits.copies.count ? w->g.splits.copies.ids[w->copy++] : HE_NONE;
+}
 
 static uint32_t next_vertex(glb_writer *w)
 {
@@ -152,15 +163,58 @@ static uint32_t next_row(glb_writer *w, he_kind domain)
     return domain == HE_VERTEX ? next_vertex(w) : domain == HE_FACE ? next_face(w) : next_corner(w);
 }
 
+/* The numbers that vertices have in a face, where they are split. */
+static void enter_face(const glb_writer *w, uint32_t face)
+{
+    const he_content *c = &w->g.mesh->c;
+    uint32_t h = c->face_halfedge[face];
+    do {
+        w->at[c->origin[h]] = w->g.splits.number[h];
+        h = c->next[h];
+    } while (h != c->face_halfedge[face]);
+}
+
 static char *put_triangle(glb_writer *w, const he_glb_part *part, char *p)
 {
     uint32_t v[3];
+    bool begins = w->walk.left == 0;
     if (he_cuts_next(&w->g.cuts, &w->walk, v)) {
+        if (w->at != NULL && begins) {
+            enter_face(w, w->walk.face - (w->walk.left == 0));
+        }
         for (size_t i = 0; i < 3; i++) {
-            p = put_word(number_of(w, v[i]), part->stride, p);
+            p = put_word(w->at != NULL ? w->at[v[i]] : number_of(w, v[i]), part->stride, p);
         }
     }
     return p;
+}
+
+static char *put_position(const glb_writer *w, uint32_t vertex, char *p)
+{
+    for (size_t i = 0; i < 3; i++) {
+        p = put_float((&w->g.mesh->c.position[vertex].x)[i], p);
+    }
+    return p;
+}
+
+/* Of a vertex, or of a copy. What corners say is that of the one it stands for. */
+static char *put_vertex(glb_writer *w, const he_glb_part *part, char *p)
+{
+    const he_content *c = &w->g.mesh->c;
+    uint32_t id = next_vertex(w), h = HE_NONE;
+    if (id == HE_NONE) {
+        h = next_copy(w);
+        if (h == HE_NONE) {
+            return p;
+        }
+        id = c->origin[h];
+    } else if (w->g.splits.own != NULL) {
+        h = w->g.splits.own[id];
+    }
+    if (part->content == HE_GLB_POSITIONS) {
+        return put_position(w, id, p);
+    }
+    return put_value(part, part->column->domain == HE_HALFEDGE ? h : id, p);
 }
 
 /* The next of a part; nothing after the last. */
@@ -172,14 +226,11 @@ static char *put_element(glb_writer *w, const he_glb_part *part, char *p)
     case HE_GLB_TRIANGLES:
         return put_triangle(w, part, p);
     case HE_GLB_POSITIONS:
-        id = next_vertex(w);
-        for (size_t i = 0; i < 3 && id != HE_NONE; i++) {
-            p = put_float((&m->c.position[id].x)[i], p);
-        }
-        return p;
     case HE_GLB_VALUES:
-        id = next_vertex(w);
-        return id == HE_NONE ? p : put_value(part, id, p);
+        return put_vertex(w, part, p);
+    case HE_GLB_COPIES:
+        id = next_copy(w);
+        return id == HE_NONE ? p : put_word(number_of(w, m->c.origin[id]), 4, p);
     case HE_GLB_DEGREES:
         id = next_face(w);
         return id == HE_NONE ? p : put_word(he_face_degree(m, (he_face){id}), 4, p);
@@ -229,6 +280,7 @@ static char *write_parts(glb_writer *w, char *p, const char *end)
             }
             w->part++;
             w->row = 0;
+            w->copy = 0;
             w->written = 0;
             if (w->part == w->g.count) {
                 w->stage = END;

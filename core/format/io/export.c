@@ -130,35 +130,52 @@ char *he_export_row(const he_column *column, size_t row, char *to)
 }
 
 /* Nobody who does not know the seed can choose many values of hashes that lie together. */
-static size_t hash(uint64_t seed, const unsigned char *row, size_t bytes)
+static uint64_t hash(uint64_t h, const void *bytes, size_t length)
 {
-    uint64_t h = seed * 0x94D049BB133111EB;
-    while (bytes > 0) {
+    const unsigned char *p = bytes;
+    while (length > 0) {
         uint64_t word = 0;
-        size_t n = bytes < sizeof word ? bytes : sizeof word;
-        memcpy(&word, row, n);
+        size_t n = length < sizeof word ? length : sizeof word;
+        memcpy(&word, p, n);
         h = (h ^ word) * 0x9E3779B97F4A7C15;
         h ^= h >> 32;
-        row += n;
-        bytes -= n;
+        p += n;
+        length -= n;
     }
-    return (size_t)(h * 0xBF58476D1CE4E5B9 >> 16);
+    return h;
 }
 
 typedef struct table {
-    const he_column *column;
+    const he_mesh *mesh;
+    const he_column *const *columns;
+    size_t count;
+    bool apart;
     uint32_t *slots; /* a number + 1, or 0 */
     size_t mask;
 } table;
 
-/* The slot of the value of half-edge h, or the free one where it belongs. */
+static bool say_the_same(const table *t, uint32_t h, uint32_t k)
+{
+    bool same = !t->apart || t->mesh->c.origin[h] == t->mesh->c.origin[k];
+    for (size_t i = 0; i < t->count && same; i++) {
+        same = memcmp(he_column_value(t->columns[i], h), he_column_value(t->columns[i], k),
+                      t->columns[i]->row_bytes) == 0;
+    }
+    return same;
+}
+
+/* The slot of what half-edge h says, or the free one where it belongs. */
 static size_t slot_of(const table *t, const he_ids *first, uint32_t h)
 {
-    const unsigned char *row = he_column_value(t->column, h);
-    size_t bytes = t->column->row_bytes;
-    size_t slot = hash((uintptr_t)t->slots, row, bytes) & t->mask;
-    while (t->slots[slot] != 0 &&
-           memcmp(he_column_value(t->column, first->ids[t->slots[slot] - 1]), row, bytes) != 0) {
+    uint64_t sum = (uint64_t)(uintptr_t)t->slots * 0x94D049BB133111EB;
+    if (t->apart) {
+        sum = hash(sum, &t->mesh->c.origin[h], sizeof(uint32_t));
+    }
+    for (size_t i = 0; i < t->count; i++) {
+        sum = hash(sum, he_column_value(t->columns[i], h), t->columns[i]->row_bytes);
+    }
+    size_t slot = (size_t)(sum * 0xBF58476D1CE4E5B9 >> 16) & t->mask;
+    while (t->slots[slot] != 0 && !say_the_same(t, first->ids[t->slots[slot] - 1], h)) {
         slot = (slot + 1) & t->mask;
     }
     return slot;
@@ -180,11 +197,11 @@ static he_status widen(table *t, const he_ids *first, he_error *err)
     return HE_OK;
 }
 
-he_status he_distinct_make(const he_mesh *mesh, const he_column *column, he_distinct *out,
-                           he_error *err)
+he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns, size_t count,
+                           bool apart, he_distinct *out, he_error *err)
 {
     he_distinct made = {0};
-    table t = {.column = column};
+    table t = {.mesh = mesh, .columns = columns, .count = count, .apart = apart};
     he_status status = HE_OK;
     made.number = he_mem_array(NULL, 2 * (size_t)mesh->c.edges.issued, sizeof *made.number);
     if (made.number == NULL) {

@@ -42,15 +42,16 @@ char *he_export_value(const he_column *column, size_t row, uint32_t component, c
 /* a blank and a value for each component. */
 char *he_export_row(const he_column *column, size_t row, char *to);
 
-/* Corner values that are equal bit by bit, told apart and numbered in the order of faces, so that
- * each is written once. */
+/* What corners say, told apart bit by bit and numbered in the order of faces, so that each is
+ * written once. */
 typedef struct he_distinct {
     uint32_t *number; /* of the value of each half-edge that has a face */
     he_ids first;     /* for each number, a half-edge that has it */
 } he_distinct;
 
-HE_NODISCARD he_status he_distinct_make(const he_mesh *mesh, const he_column *column,
-                                        he_distinct *out, he_error *err);
+/* They say what all of the `count` columns have; with `apart` also at which vertex they are. */
+HE_NODISCARD he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns,
+                                        size_t count, bool apart, he_distinct *out, he_error *err);
 void he_distinct_clear(he_distinct *distinct);
 
 #endif

@@ -75,7 +75,7 @@ static he_status find_values(values *v, const he_mesh *mesh, const char *name, c
     v->column = he_export_find(mesh, HE_HALFEDGE, name, least, 3, notes);
     if (v->column != NULL) {
         v->of_corners = true;
-        return he_distinct_make(mesh, v->column, &v->distinct, err);
+        return he_distinct_make(mesh, &v->column, 1, false, &v->distinct, err);
     }
     v->column = he_export_find(mesh, HE_VERTEX, name, least, 3, notes);
     return HE_OK;

@@ -15,11 +15,12 @@
  * coordinate become one together (ply_groups.h).
  *
  * Whole numbers are int32 or uint32, those of a colour floats of 0 to 1, others keep their type; a
- * group of several types is double.
- * Values that are not finite are set to 0 and noted, in a position refused. Other lists, elements
- * of other names, numbers behind a row and bytes behind the last row are noted and left out;
- * comments, obj_info and lines that begin with # are passed over. In ascii each row is a line, and
- * positions have the digits that are written, whatever the property's type says.
+ * group of several types is double. A list "texcoord" of faces, of two floats or doubles a corner,
+ * is the half-edge attribute uv. Values that are not finite are set to 0 and noted, in a position
+ * refused. Other lists, elements of other names, numbers behind a row and bytes behind the last row
+ * are noted and left out; comments, obj_info and lines that begin with # are passed over. In ascii
+ * each row is a line, and positions have the digits that are written, whatever the property's type
+ * says.
  *
  * HE_SYNTAX: fewer rows than announced; rows without properties, which would take no bytes;
  * vertices without a position, faces without corners. HE_BAD_INDEX: a corner below 0 or not below
@@ -29,7 +30,8 @@
  *
  * WRITING. Positions are float where each is one exactly, else double; so they read back to the
  * same bits. Colours are uchar, and a note counts those that lie between two bytes. Attributes of
- * one component keep their name; of several only normal, color and uv (as s, t) have one. */
+ * one component keep their name; of several only normal, color and uv (as s, t) have one. Those
+ * of corners come before those of vertices, with marks that bring them back (ply_groups.h). */
 #ifndef HE_FORMAT_PLY_PLY_H
 #define HE_FORMAT_PLY_PLY_H
 

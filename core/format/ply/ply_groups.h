@@ -11,6 +11,17 @@
 
 #include "format/ply/ply_header.h"
 
+/* WHAT CORNERS SAY is written as other programs have it, with vertices that are split
+ * (io/splits.h). A comment and a property of vertices tell it to be of corners:
+ *
+ *     comment hedge corners normal uv        these attributes are of corners
+ *     property uint hedge_vertex             of a copy the row of its vertex; of others their own
+ *
+ * Faces have "texcoord" lists besides, two numbers a corner, for programs that look there. */
+#define HE_PLY_CORNERS_MARK "hedge corners"
+#define HE_PLY_VERTEX_MARK  "hedge_vertex"
+#define HE_PLY_TEXCOORD     "texcoord"
+
 enum { HE_PLY_GROUPS = 7, HE_PLY_GROUP = 4 };
 
 typedef struct he_ply_group {

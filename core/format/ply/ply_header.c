@@ -242,6 +242,14 @@ static he_status end_header(he_ply_header *h, const he_line *line, const char *p
     return HE_OK;
 }
 
+static void read_comment(he_ply_header *h, const he_line *line, const char *p)
+{
+    word first = next_word(line, &p), second = next_word(line, &p);
+    if (is(first, "hedge") && is(second, "corners")) {
+        he_quote(p, line->end, h->corners, sizeof h->corners);
+    }
+}
+
 he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *err)
 {
     const char *p = line->begin;
@@ -266,7 +274,11 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
     if (is(w, "end_header")) {
         return end_header(h, line, p, err);
     }
-    if (is(w, "comment") || is(w, "obj_info")) {
+    if (is(w, "comment")) {
+        read_comment(h, line, p);
+        return HE_OK;
+    }
+    if (is(w, "obj_info")) {
         return HE_OK;
     }
     return refuse(err, HE_SYNTAX, line, w, "does not begin a line of a PLY header");

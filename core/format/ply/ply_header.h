@@ -54,6 +54,7 @@ typedef struct he_ply_element {
 /* {0} is empty. */
 typedef struct he_ply_header {
     bool begun, ended;
+    char corners[HE_NOTE_SUBJECT]; /* the words of a comment that begins "hedge corners" */
     he_ply_encoding encoding;
     he_ply_element *elements;
     size_t count, capacity;

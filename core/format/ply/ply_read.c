@@ -1,5 +1,6 @@
 #include "format/ply/ply.h"
 
+#include "format/ply/ply_join.h"
 #include "format/ply/ply_rows.h"
 #include "format/text/number.h"
 
@@ -542,7 +543,7 @@ static he_status ply_finish(void *state, he_error *err)
             "the file ends after %llu of the %llu rows of element '%s'",
             (unsigned long long)(e->rows - rows->left), (unsigned long long)e->rows, e->name);
     }
-    return HE_OK;
+    return he_ply_join(o->into, &o->header, err);
 }
 
 const he_reading he_ply_reading = {ply_open, ply_feed, ply_finish, ply_close, false};

@@ -1,6 +1,7 @@
 #include "format/ply/ply_rows.h"
 
 #include "format/ply/ply_groups.h"
+#include "format/ply/ply_join.h"
 
 #include <float.h>
 #include <math.h>
@@ -149,6 +150,23 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
     return HE_OK;
 }
 
+/* Two numbers a corner, which are its texture coordinate. A file of ours has them at its vertices
+ * too, where they are exact. */
+static he_status map_uvs(he_ply_rows *rows, const he_ply_element *e, he_error *err)
+{
+    he_soup *soup = &rows->into->soup;
+    size_t k = he_ply_find(rows->header, e, HE_PLY_TEXCOORD);
+    const he_ply_property *property = &rows->header->properties[e->first + k];
+    if (k == e->properties || !property->list || property->type < HE_PLY_FLOAT) {
+        return HE_OK;
+    }
+    rows->targets[e->first + k].role = HE_PLY_UVS;
+    return he_ply_is_of_corners(rows->header, "uv") && has_column(soup, HE_VERTEX, "uv")
+               ? HE_OK
+               : he_soup_column(soup, "uv", HE_HALFEDGE, he_ply_type_column(property->type), 2,
+                                HE_INTERPOLATE, &rows->uv, err);
+}
+
 static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_error *err)
 {
     he_status status = HE_OK;
@@ -159,6 +177,9 @@ static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_erro
     }
     if (strcmp(e->name, "face") == 0) {
         status = map_corners(rows, e, HE_PLY_CORNERS, err);
+        if (status == HE_OK) {
+            status = map_uvs(rows, e, err);
+        }
         return status == HE_OK ? map_attributes(rows, e, HE_FACE, err) : status;
     }
     if (strcmp(e->name, "tristrips") != 0) {
@@ -205,7 +226,9 @@ he_status he_ply_rows_open(he_ply_rows *out, he_import *into, const he_ply_heade
 void he_ply_rows_clear(he_ply_rows *rows)
 {
     he_mem_free(rows->targets);
+    he_mem_free(rows->uvs);
     rows->targets = NULL;
+    rows->uvs = NULL;
 }
 
 void he_ply_rows_next(he_ply_rows *rows)
@@ -237,18 +260,18 @@ static he_status add_place(const he_ply_rows *rows, he_places *places, size_t el
     return he_places_add(places, (uint32_t)element, rows->at, err);
 }
 
-static he_status extend(const he_ply_rows *rows, const he_ply_target *target, he_error *err)
+/* Rows up to `end`. */
+static he_status extend(const he_ply_rows *rows, he_column *column, size_t end, he_error *err)
 {
-    he_column *column = target->column;
-    if (column->rows > rows->row) {
+    if (column->rows >= end) {
         return HE_OK;
     }
     uint64_t limit = rows->into->soup.limits.bytes;
-    if (limit != 0 && (rows->row + 1) * (uint64_t)column->row_bytes > limit) {
+    if (limit != 0 && end * (uint64_t)column->row_bytes > limit) {
         return he_fail_plain(err, HE_LIMIT, "attribute %s needs more than %llu bytes of memory",
                              column->name, (unsigned long long)limit);
     }
-    return he_column_extend(column, rows->row + 1 - column->rows, err);
+    return he_column_extend(column, end - column->rows, err);
 }
 
 he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err)
@@ -263,7 +286,7 @@ he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err)
     for (size_t k = 0; k < e->properties && status == HE_OK; k++) {
         const he_ply_target *target = &rows->targets[e->first + k];
         if (target->role == HE_PLY_ATTRIBUTE && target->component == 0) {
-            status = extend(rows, target, err);
+            status = extend(rows, target->column, rows->row + 1, err);
         }
     }
     return at_place(rows, status, err);
@@ -363,6 +386,7 @@ he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int64_t count, he
     case HE_PLY_IGNORED:
     case HE_PLY_POSITION:
     case HE_PLY_ATTRIBUTE:
+    case HE_PLY_UVS:
         break;
     }
     return HE_OK;
@@ -429,9 +453,64 @@ he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value, he
                     err);
 }
 
+static he_status add_uv(he_ply_rows *rows, double value, he_error *err)
+{
+    if (rows->uv_count == rows->uv_capacity) {
+        size_t capacity = he_mem_grown(rows->uv_capacity, rows->uv_count + 1);
+        double *uvs = he_mem_array(rows->uvs, capacity, sizeof *uvs);
+        if (uvs == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu texture coordinates",
+                                 capacity);
+        }
+        rows->uvs = uvs;
+        rows->uv_capacity = capacity;
+    }
+    rows->uvs[rows->uv_count++] = value;
+    return HE_OK;
+}
+
+static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double value)
+{
+    unsigned char *at = he_column_row(rows->uv, corner);
+    if (!(fabs(value) <= (rows->uv->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
+        he_notes_add(&rows->into->notes, "not_finite", "set to 0: values that are not finite of",
+                     "uv", strlen("uv"), rows->unit, rows->at);
+        value = 0;
+    }
+    float narrow = (float)value;
+    memcpy(at + component * he_type_bytes(rows->uv->type),
+           rows->uv->type == HE_FLOAT ? (const void *)&narrow : &value,
+           he_type_bytes(rows->uv->type));
+}
+
+/* The texture coordinates of the face that has ended go to its corners. */
+static he_status end_uvs(he_ply_rows *rows, he_error *err)
+{
+    const he_soup *soup = &rows->into->soup;
+    size_t first = soup->starts[soup->face_count - 1], corners = soup->corner_count - first;
+    size_t count = rows->uv_count;
+    rows->uv_count = 0;
+    if (count != 2 * corners) {
+        he_notes_add(&rows->into->notes, count == 0 ? "faces_without_uv" : "texcoord_count",
+                     count == 0 ? "set to 0: texture coordinates of a face without any"
+                                : "set to 0: texture coordinates of a face that are not two a "
+                                  "corner",
+                     NULL, 0, rows->unit, rows->at);
+        return HE_OK;
+    }
+    he_status status = extend(rows, rows->uv, first + corners, err);
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        put_uv(rows, first + i / 2, (uint32_t)i % 2, rows->uvs[i]);
+    }
+    return status;
+}
+
 he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value, he_error *err)
 {
     const he_ply_property *p = &rows->header->properties[rows->element->first + property];
+    if (he_ply_rows_role(rows, property) == HE_PLY_UVS) {
+        return rows->uv == NULL ? HE_OK : at_place(rows, add_uv(rows, value, err), err);
+    }
     double most = p->type == HE_PLY_FLOAT ? FLOAT_WHOLE : DOUBLE_WHOLE;
     if (!is_whole(value, -most, most)) {
         return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
@@ -446,6 +525,8 @@ he_status he_ply_rows_end(he_ply_rows *rows, he_error *err)
     he_status status = HE_OK;
     if (rows->vertex) {
         status = he_soup_add_vertex(&rows->into->soup, (he_vec3){p[0], p[1], p[2]}, err);
+    } else if (rows->uv != NULL && strcmp(rows->element->name, "face") == 0) {
+        status = end_uvs(rows, err);
     }
     rows->left--;
     return at_place(rows, status, err);

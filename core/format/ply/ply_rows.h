@@ -21,7 +21,8 @@ typedef enum he_ply_role {
     HE_PLY_POSITION,
     HE_PLY_ATTRIBUTE,
     HE_PLY_CORNERS,
-    HE_PLY_STRIP
+    HE_PLY_STRIP,
+    HE_PLY_UVS
 } he_ply_role;
 
 /* Where the values of a property go. */
@@ -49,6 +50,9 @@ typedef struct he_ply_rows {
     uint32_t strip[2]; /* the last two corners */
     bool turned;       /* the next triangle of the strip is */
     unsigned strip_length;
+    he_column *uv; /* of corners, from lists of faces; NULL without any */
+    double *uvs;   /* the row's, two a corner */
+    size_t uv_count, uv_capacity;
 } he_ply_rows;
 
 /* Makes the attributes. HE_SYNTAX, HE_NO_MEMORY. */
@@ -74,7 +78,7 @@ HE_NODISCARD he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int6
 HE_NODISCARD he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value,
                                         he_error *err);
 /* The same of a list of floats or doubles: one that is not whole, or so large that its neighbours
- * are not in its type, names no vertex. */
+ * are not in its type, names no vertex. Or a texture coordinate, which may be anything. */
 HE_NODISCARD he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value,
                                             he_error *err);
 /* All of a row that is nothing but a list of corners, `vertices` of this file. False, and nothing

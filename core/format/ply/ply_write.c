@@ -1,13 +1,14 @@
 #include "format/ply/ply.h"
 
 #include "format/io/colors.h"
+#include "format/io/splits.h"
 #include "format/ply/ply_groups.h"
 #include "format/text/number.h"
 
 #include <string.h>
 
 /* What is written, in this order. */
-typedef enum part { HEADER, VERTICES, FACES, END } part;
+typedef enum part { HEADER, VERTICES, COPIES, FACES, END } part;
 
 /* Room for one value, or one line of the header. */
 enum { VALUE_ROOM = 160 };
@@ -15,23 +16,30 @@ enum { VALUE_ROOM = 160 };
 /* One number of a row. */
 typedef struct output {
     const char *name;
-    const he_column *column; /* NULL: the position */
+    const he_column *column; /* NULL: the position, or where `own` the number of the vertex */
     uint32_t component;
     he_ply_type type;
     bool color; /* a byte of it */
+    bool own;
 } output;
 
 typedef struct ply_writer {
     const he_mesh *mesh;
-    uint32_t *numbers; /* of vertices */
+    uint32_t *numbers;                       /* of vertices */
+    he_splits splits;                        /* where corners say more than their vertices can */
+    const he_column *corners[HE_PLY_GROUPS]; /* that are written with vertices */
+    size_t corner_count;
+    const he_column *texcoord; /* of them that which faces have as a list */
     he_ply_encoding encoding;
     output *outputs; /* of vertices, then of faces */
     size_t vertex_outputs, count;
-    he_ply_type degree; /* of the count of a face's corners */
+    he_ply_type degree; /* of the count of a face's corners, */
+    he_ply_type list;   /* and of twice as many */
     part part;
     size_t line;       /* next output in the header */
-    uint32_t row;      /* next vertex or face */
+    uint32_t row;      /* next vertex, copy or face */
     size_t output;     /* next of the row */
+    bool in_list;      /* the row's texture coordinates have begun */
     bool in_face;      /* the row's corners have begun */
     uint32_t halfedge; /* next corner of the face that is being written, or HE_NONE */
 } ply_writer;
@@ -40,6 +48,7 @@ static void ply_close(void *state)
 {
     ply_writer *w = state;
     he_mem_free(w->numbers);
+    he_splits_clear(&w->splits);
     he_mem_free(w->outputs);
     he_mem_free(w);
 }
@@ -58,10 +67,12 @@ static bool positions_are_floats(const he_mesh *mesh)
     return true;
 }
 
-static he_ply_type type_of_degree(const he_mesh *mesh)
+/* For lists of so many numbers a corner. */
+static he_ply_type type_of_degree(const he_mesh *mesh, uint32_t numbers)
 {
     for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
-        if (he_face_is_live(mesh, (he_face){f}) && he_face_degree(mesh, (he_face){f}) > UINT8_MAX) {
+        if (he_face_is_live(mesh, (he_face){f}) &&
+            he_face_degree(mesh, (he_face){f}) > UINT8_MAX / numbers) {
             return HE_PLY_UINT32;
         }
     }
@@ -89,15 +100,31 @@ static he_ply_type type_of(const he_column *column)
 static void add(ply_writer *w, const char *name, const he_column *column, uint32_t component,
                 he_ply_type type)
 {
-    w->outputs[w->count++] = (output){name, column, component, type, false};
+    w->outputs[w->count++] =
+        (output){.name = name, .column = column, .component = component, .type = type};
 }
 
+static const he_column *find_group(const ply_writer *w, const he_ply_group *group, he_kind domain,
+                                   he_notes *notes)
+{
+    return group->color ? he_colors_find(w->mesh, domain, notes)
+                        : he_export_find(w->mesh, domain, group->attribute, group->least,
+                                         group->most, notes);
+}
+
+/* What corners say comes before what vertices do. */
 static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain, he_notes *notes)
 {
-    const he_column *column = group->color ? he_colors_find(w->mesh, domain, notes)
-                                           : he_export_find(w->mesh, domain, group->attribute,
-                                                            group->least, group->most, notes);
+    const he_column *column = NULL;
     uint64_t lost = 0;
+    if (domain == HE_VERTEX && he_mesh_faces(w->mesh) > 0) {
+        column = find_group(w, group, HE_HALFEDGE, notes);
+        if (column != NULL) {
+            w->corners[w->corner_count++] = column;
+            w->texcoord = strcmp(group->attribute, "uv") == 0 ? column : w->texcoord;
+        }
+    }
+    column = column != NULL ? column : find_group(w, group, domain, notes);
     for (uint32_t i = 0; column != NULL && i < column->components; i++) {
         add(w, group->names[i], column, i, group->color ? HE_PLY_UINT8 : type_of(column));
         w->outputs[w->count - 1].color = group->color;
@@ -109,7 +136,8 @@ static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain, 
 
 static bool is_taken(const ply_writer *w, size_t first, const char *name)
 {
-    static const char *const own[] = {"vertex_indices", "vertex_index", "x", "y", "z"};
+    static const char *const own[] = {"vertex_indices",   "vertex_index", "x", "y", "z",
+                                      HE_PLY_VERTEX_MARK, HE_PLY_TEXCOORD};
     for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
         if (strcmp(own[i], name) == 0) {
             return true;
@@ -155,9 +183,27 @@ static void add_attributes(ply_writer *w, he_kind domain, const he_column **used
     }
 }
 
+static he_status split(ply_writer *w, he_notes *notes, he_error *err)
+{
+    if (w->corner_count == 0) {
+        return HE_OK;
+    }
+    he_status status =
+        he_splits_make(w->mesh, w->numbers, w->corners, w->corner_count, &w->splits, err);
+    if (status == HE_OK && w->splits.copies.count > 0) {
+        add(w, HE_PLY_VERTEX_MARK, NULL, 0, HE_PLY_UINT32);
+        w->outputs[w->count - 1].own = true;
+        he_notes_add_count(notes, "split_vertices",
+                           "made for other programs where corners differ, and joined by hedge: "
+                           "a vertex",
+                           w->splits.copies.count);
+    }
+    return status;
+}
+
 static he_status choose_outputs(ply_writer *w, he_notes *notes, he_error *err)
 {
-    size_t most = 3;
+    size_t most = 4;
     for (size_t i = 0; i < he_mesh_columns(w->mesh); i++) {
         const he_column *column = he_mesh_column(w->mesh, i);
         most += column == NULL ? 0 : column->components;
@@ -175,11 +221,13 @@ static he_status choose_outputs(ply_writer *w, he_notes *notes, he_error *err)
         add(w, names[i], NULL, i, type);
     }
     add_attributes(w, HE_VERTEX, used, notes);
+    used[w->count] = NULL;
+    he_status status = split(w, notes, err);
     w->vertex_outputs = w->count;
     add_attributes(w, HE_FACE, used, notes);
     he_export_note_lost(w->mesh, used, w->count, notes);
     he_mem_free(used);
-    return HE_OK;
+    return status;
 }
 
 static he_status ply_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
@@ -203,7 +251,8 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         ply_close(w);
         return status;
     }
-    w->degree = type_of_degree(mesh);
+    w->degree = type_of_degree(mesh, 1);
+    w->list = type_of_degree(mesh, 2);
     *state = w;
     return HE_OK;
 }
@@ -229,7 +278,7 @@ static char *put_value(double value, he_ply_type type, bool big, char *p)
         return put_whole((uint32_t)(big ? bits : bits >> 32), 4, big, p);
     }
     if (type == HE_PLY_FLOAT) {
-        float number = (float)value;
+        float number = he_narrow(value);
         memcpy(&half, &number, sizeof half);
     } else {
         half = (uint32_t)(int64_t)value;
@@ -248,10 +297,16 @@ static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, 
     return p + he_u32_print(value, p);
 }
 
-static char *write_output(const ply_writer *w, const output *o, bool first, char *p)
+/* `row` is of the vertex or face; `corner` says what those of corners say. */
+static char *write_output(const ply_writer *w, const output *o, uint32_t row, uint32_t corner,
+                          bool first, char *p)
 {
-    double value = o->column != NULL ? he_export_number(o->column, w->row, o->component)
-                                     : (&w->mesh->c.position[w->row].x)[o->component];
+    if (o->own) {
+        return write_whole(w, w->numbers != NULL ? w->numbers[row] : row, o->type, first, p);
+    }
+    size_t at = o->column != NULL && o->column->domain == HE_HALFEDGE ? corner : row;
+    double value = o->column != NULL ? he_export_number(o->column, at, o->component)
+                                     : (&w->mesh->c.position[row].x)[o->component];
     if (o->color) {
         return write_whole(w, he_color_byte(value), HE_PLY_UINT8, first, p);
     }
@@ -261,7 +316,7 @@ static char *write_output(const ply_writer *w, const output *o, bool first, char
     if (!first) {
         *p++ = ' ';
     }
-    return o->column != NULL ? he_export_value(o->column, w->row, o->component, p)
+    return o->column != NULL ? he_export_value(o->column, at, o->component, p)
                              : p + he_double_print(value, p);
 }
 
@@ -271,6 +326,19 @@ static char *write_element(const char *name, uint32_t count, char *p)
     *p++ = ' ';
     p += he_u32_print(count, p);
     *p++ = '\n';
+    return p;
+}
+
+static char *write_mark(const ply_writer *w, char *p)
+{
+    for (size_t i = 0; i < w->corner_count; i++) {
+        p = i > 0 ? p : he_export_text("comment " HE_PLY_CORNERS_MARK, p);
+        *p++ = ' ';
+        p = he_export_text(w->corners[i]->name, p);
+    }
+    if (w->corner_count > 0) {
+        *p++ = '\n';
+    }
     return p;
 }
 
@@ -285,12 +353,18 @@ static char *write_header(ply_writer *w, char *p)
     if (w->line == 0) {
         p = he_export_text(" 1.0\n",
                            he_export_text(names[w->encoding], he_export_text("ply\nformat ", p)));
-        p = write_element("vertex", he_mesh_vertices(w->mesh), p);
+        p = write_mark(w, p);
+        p = write_element("vertex", he_mesh_vertices(w->mesh) + (uint32_t)w->splits.copies.count,
+                          p);
     }
     if (w->line == w->vertex_outputs) {
         p = write_element("face", he_mesh_faces(w->mesh), p);
         p = he_export_text(he_ply_type_name(w->degree), he_export_text("property list ", p));
         p = he_export_text(" int vertex_indices\n", p);
+        if (w->texcoord != NULL) {
+            p = he_export_text(he_ply_type_name(w->list), he_export_text("property list ", p));
+            p = he_export_text(" float " HE_PLY_TEXCOORD "\n", p);
+        }
     }
     if (w->line == w->count) {
         w->part = VERTICES;
@@ -322,7 +396,8 @@ static char *write_vertices(ply_writer *w, char *p, const char *end)
             w->row++;
             continue;
         }
-        p = write_output(w, &w->outputs[w->output], w->output == 0, p);
+        uint32_t corner = w->splits.own != NULL ? w->splits.own[w->row] : HE_NONE;
+        p = write_output(w, &w->outputs[w->output], w->row, corner, w->output == 0, p);
         w->output++;
         if (w->output == w->vertex_outputs) {
             p = end_row(w, 0, p);
@@ -330,8 +405,70 @@ static char *write_vertices(ply_writer *w, char *p, const char *end)
     }
     if (w->row == issued) {
         w->row = 0;
+        w->part = COPIES;
+    }
+    return p;
+}
+
+static char *write_copies(ply_writer *w, char *p, const char *end)
+{
+    const he_ids *copies = &w->splits.copies;
+    while (w->row < copies->count && end - p >= VALUE_ROOM) {
+        uint32_t corner = copies->ids[w->row], vertex = w->mesh->c.origin[corner];
+        p = write_output(w, &w->outputs[w->output], vertex, corner, w->output == 0, p);
+        w->output++;
+        if (w->output == w->vertex_outputs) {
+            p = end_row(w, 0, p);
+        }
+    }
+    if (w->row == copies->count) {
+        w->row = 0;
         w->output = w->vertex_outputs;
         w->part = FACES;
+    }
+    return p;
+}
+
+static char *write_corner(const ply_writer *w, uint32_t h, char *p)
+{
+    uint32_t id = w->mesh->c.origin[h];
+    uint32_t number = w->splits.number != NULL ? w->splits.number[h]
+                      : w->numbers != NULL     ? w->numbers[id]
+                                               : id;
+    return write_whole(w, number, HE_PLY_INT32, false, p);
+}
+
+static char *write_texcoord(const ply_writer *w, uint32_t h, char *p)
+{
+    for (uint32_t i = 0; i < 2; i++) {
+        double value = he_export_number(w->texcoord, h, i);
+        if (w->encoding != HE_PLY_ASCII) {
+            p = put_value(value, HE_PLY_FLOAT, w->encoding == HE_PLY_BIG_ENDIAN, p);
+        } else {
+            *p++ = ' ';
+            p += he_float_print(he_narrow(value), p);
+        }
+    }
+    return p;
+}
+
+static char *begin_list(ply_writer *w, uint32_t numbers, he_ply_type type, char *p)
+{
+    uint32_t degree = he_face_degree(w->mesh, (he_face){w->row});
+    w->halfedge = w->mesh->c.face_halfedge[w->row];
+    w->in_list = numbers > 1;
+    return write_whole(w, numbers * degree, type, !w->in_list, p);
+}
+
+/* The list that has begun, corner by corner; behind the corners that of texture coordinates. */
+static char *write_list(ply_writer *w, char *p)
+{
+    const he_content *c = &w->mesh->c;
+    uint32_t h = w->halfedge;
+    p = w->in_list ? write_texcoord(w, h, p) : write_corner(w, h, p);
+    w->halfedge = c->next[h] == c->face_halfedge[w->row] ? HE_NONE : c->next[h];
+    if (w->halfedge == HE_NONE && w->texcoord != NULL && !w->in_list) {
+        p = begin_list(w, 2, w->list, p);
     }
     return p;
 }
@@ -341,12 +478,9 @@ static char *write_faces(ply_writer *w, char *p, const char *end)
     const he_content *c = &w->mesh->c;
     while (end - p >= VALUE_ROOM) {
         if (w->halfedge != HE_NONE) {
-            uint32_t id = c->origin[w->halfedge];
-            p = write_whole(w, w->numbers != NULL ? w->numbers[id] : id, HE_PLY_INT32, false, p);
-            w->halfedge = c->next[w->halfedge];
-            w->halfedge = w->halfedge == c->face_halfedge[w->row] ? HE_NONE : w->halfedge;
+            p = write_list(w, p);
         } else if (w->in_face && w->output < w->count) {
-            p = write_output(w, &w->outputs[w->output++], false, p);
+            p = write_output(w, &w->outputs[w->output++], w->row, HE_NONE, false, p);
         } else if (w->in_face) {
             p = end_row(w, w->vertex_outputs, p);
             w->in_face = false;
@@ -356,9 +490,8 @@ static char *write_faces(ply_writer *w, char *p, const char *end)
         } else if (c->face_halfedge[w->row] == HE_DEAD) {
             w->row++;
         } else {
-            p = write_whole(w, he_face_degree(w->mesh, (he_face){w->row}), w->degree, true, p);
-            w->halfedge = c->face_halfedge[w->row];
             w->in_face = true;
+            p = begin_list(w, 1, w->degree, p);
         }
     }
     return p;
@@ -373,6 +506,9 @@ static bool ply_step(void *state, char **p, const char *end)
         break;
     case VERTICES:
         *p = write_vertices(w, *p, end);
+        break;
+    case COPIES:
+        *p = write_copies(w, *p, end);
         break;
     case FACES:
         *p = write_faces(w, *p, end);

@@ -1,0 +1,120 @@
+"""meaning.py - what corners of a file say is the same to the daemon and to assimp.
+
+A grid whose texture has seams, whose normals have creases and whose vertices have colours is exported
+in every format; assimp makes an OBJ of each, in which every corner of a face must have the place,
+texture coordinate, normal and colour that it has in the mesh, as far as the format holds them. What
+assimp writes is read by the daemon, welded, and must say the same. assimp makes vertices of its own
+and cuts polygons, so that corners are compared as a set, and faces are triangles."""
+import os
+import subprocess
+
+SIDE = 6
+
+
+def grid(normals, colors):
+    """As OBJ: uv per cell of 2 x 2, so that each has a seam about it; normals likewise."""
+    lines = []
+    for i in range((SIDE + 1) ** 2):
+        x, y = i % (SIDE + 1), i // (SIDE + 1)
+        color = ' %r %r %r' % (x * 36 / 255, y * 36 / 255, (i * 5 % 256) / 255) if colors else ''
+        lines.append('v %d %d %d%s' % (x, y, x * y % 3, color))
+    faces, vt, vn = [], [], []
+    for i in range(SIDE * SIDE):
+        x, y = i % SIDE, i // SIDE
+        cell = x // 2 + 3 * (y // 2)
+        a = y * (SIDE + 1) + x
+        quad = [(a, x, y), (a + 1, x + 1, y), (a + SIDE + 2, x + 1, y + 1), (a + SIDE + 1, x, y + 1)]
+        vn.append((0, 0.6, 0.8) if cell % 2 else (0, 0, 1))
+        corners = []
+        for v, u, w in quad:
+            vt.append(((u + cell) / 16, (w + 2 * cell) / 32))
+            corners.append((v + 1, len(vt), len(vn)))
+        faces += [corners[:3], [corners[0], corners[2], corners[3]]]
+    lines += ['vt %r %r' % p for p in vt]
+    if normals:
+        lines += ['vn %r %r %r' % p for p in vn]
+    for f in faces:
+        lines.append('f ' + ' '.join('%d/%d' % c[:2] + ('/%d' % c[2] if normals else '') for c in f))
+    return '\n'.join(lines) + '\n'
+
+
+def corners_of(text, parts):
+    """Of an OBJ: the corners as (place, uv, normal, colour), those not in `parts` left out."""
+    v, vt, vn, out = [], [], [], set()
+    for line in text.splitlines():
+        words = line.split()
+        if words[:1] == ['v']:
+            v.append(tuple(map(float, words[1:])))
+        elif words[:1] == ['vt']:
+            vt.append(tuple(map(float, words[1:3])))
+        elif words[:1] == ['vn']:
+            vn.append(tuple(map(float, words[1:])))
+        elif words[:1] == ['f']:
+            for corner in words[1:]:
+                i = [int(x) if x else 0 for x in (corner + '//').split('/')[:3]]
+                p = v[i[0] - 1]
+                said = {'uv': vt[i[1] - 1] if i[1] else None, 'normal': vn[i[2] - 1] if i[2] else None,
+                        'color': p[3:6] or None}
+                out.add((p[:3],) + tuple(tuple(round(x, 4) for x in said[k]) if said[k] else None
+                                         for k in parts))
+    return out
+
+
+def run_assimp(form, path, out):
+    subprocess.run(['assimp', 'export', path, out, '-f' + form], capture_output=True)
+    return os.path.exists(out)
+
+
+# What each format holds of corners, colours being those of vertices.
+EXPORTS = [('obj', '', ('uv', 'normal', 'color')), ('glb', '', ('uv', 'normal', 'color')),
+           ('ply', '', ('uv', 'normal', 'color')), ('ply', 'ascii', ('uv', 'normal', 'color')),
+           ('ply', 'binary_big_endian', ('uv', 'normal', 'color')), ('off', '', ('color',))]
+THEIRS = [('obj', 'obj'), ('glb2', 'glb'), ('ply', 'ply'), ('plyb', 'ply')]
+
+
+def export(daemon, mesh, kind, encoding=''):
+    query = '?format=' + kind + ('&encoding=' + encoding if encoding else '')
+    return daemon.send('GET', '/v1/meshes/%s/content%s' % (mesh, query))[1]
+
+
+def check_ours(tally, daemon, folder, mesh, name, text, kept):
+    for kind, encoding, held in EXPORTS:
+        parts = [k for k in held if k in kept]
+        path = os.path.join(folder, '%s-%s.%s' % (name, encoding, kind))
+        with open(path, 'wb') as f:
+            f.write(export(daemon, mesh, kind, encoding))
+        out = path + '.out.obj'
+        said = corners_of(open(out).read(), parts) if run_assimp('obj', path, out) else None
+        tally.check('corners by assimp of ' + path, corners_of(text, parts), said)
+
+
+def check_theirs(tally, daemon, folder, name, text, kept):
+    source = os.path.join(folder, name + '.obj')
+    with open(source, 'w') as f:
+        f.write(text)
+    for form, kind in THEIRS:
+        if form == 'plyb' and 'color' in kept:
+            continue  # assimp 5.2 writes floats for colours that its header says are bytes
+        path = os.path.join(folder, '%s-assimp-%s.%s' % (name, form, kind))
+        if not run_assimp(form, source, path):
+            tally.check('assimp writes ' + path, True, False)
+            continue
+        status, answer = daemon.create(kind, open(path, 'rb').read(), ['weld'])
+        tally.check('daemon of ' + path, (201, (SIDE + 1) ** 2),
+                    (status, answer.get('counts', {}).get('vertices')))
+        if status == 201:
+            said = corners_of(export(daemon, answer['id'], 'obj').decode(), kept)
+            # a weld leaves colours at corners only where they differ, and OBJ has none there
+            tally.check('corners of ' + path, corners_of(text, kept), said)
+            daemon.delete(answer['id'])
+
+
+def run(daemon, folder, tally):
+    for name, normals, colors in (('seams', True, False), ('colors', False, True), ('all', True, True)):
+        text = grid(normals, colors)
+        kept = ['uv'] + ['normal'] * normals + ['color'] * colors
+        status, answer = daemon.create('obj', text.encode())
+        tally.check('creating ' + name, 201, status)
+        check_ours(tally, daemon, folder, answer['id'], name, text, kept)
+        check_theirs(tally, daemon, folder, name, text, kept)
+        daemon.delete(answer['id'])
