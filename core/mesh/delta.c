@@ -153,7 +153,7 @@ he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta)
 
 static void undo_to(he_delta *d, he_mesh *mesh, size_t to)
 {
-    he_content_apply(&mesh->c, d, to, true, d->objects);
+    he_content_apply(&mesh->c, d, to, d->count, true, d->objects);
 }
 
 void he_delta_undo(he_delta *delta, he_mesh *mesh)
@@ -163,7 +163,13 @@ void he_delta_undo(he_delta *delta, he_mesh *mesh)
 
 void he_delta_redo(he_delta *delta, he_mesh *mesh)
 {
-    he_content_apply(&mesh->c, delta, 0, false, delta->objects);
+    he_content_apply(&mesh->c, delta, 0, delta->count, false, delta->objects);
+}
+
+he_status he_delta_forward(he_delta *delta, he_mesh *mesh, const uint32_t issued[HE_KIND_COUNT],
+                           size_t *refused, he_error *err)
+{
+    return he_content_forward(&mesh->c, delta, delta->objects, issued, refused, err);
 }
 
 he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err)

@@ -82,6 +82,16 @@ he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
 void he_delta_undo(he_delta *delta, he_mesh *mesh);
 void he_delta_redo(he_delta *delta, he_mesh *mesh);
 
+/* Bring a mesh forward over a delta that was made on a mesh like it: one that was loaded, say, and
+ * has not issued the rows of the delta. The delta holds what its edit brought in (columns, a
+ * content), as one that was undone does; afterwards it holds what the edit took out, the mesh has
+ * the high-water marks `issued`, indexed by kind, and undo and redo go on from there. HE_CORRUPT
+ * when the mesh is not what the edit was made on; *refused, which may be NULL, is then the index of
+ * the first record that shows it. HE_NO_MEMORY. After either the mesh is as it was. */
+HE_NODISCARD he_status he_delta_forward(he_delta *delta, he_mesh *mesh,
+                                        const uint32_t issued[HE_KIND_COUNT], size_t *refused,
+                                        he_error *err);
+
 /* Before undoing or redoing a delta that replaced the content: give the other side the ids that
  * `mesh` has issued meanwhile, as dead ones, so that they are not issued again. Without, the ids
  * are as far as they were. HE_NO_MEMORY. */

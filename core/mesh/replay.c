@@ -3,6 +3,8 @@
 #include "mesh/content.h"
 #include "mesh/long_faces.h"
 
+#include <assert.h>
+
 /* What one delta's crossing took out of the copy, in the order of the delta's objects. */
 typedef struct other_side {
     uint64_t key;
@@ -184,23 +186,29 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     return HE_OK;
 }
 
+/* A content that is brought in has the marks it had when it was taken out. */
+static he_status back(he_content *c, const he_crossing *crossing, void **objects, he_error *err)
+{
+    he_content_apply(c, crossing->delta, 0, crossing->delta->count, true, objects);
+    he_status status = he_content_issue(c, crossing->issued, err);
+    if (status == HE_OK) {
+        he_content_withdraw(c, crossing->issued);
+    }
+    return status;
+}
+
 he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_error *err)
 {
     he_content *c = &replay->mesh->c;
     void **objects;
     he_long_faces_forget(replay->mesh);
     he_status status = require_side(replay, crossing, &objects, err);
-    if (status == HE_OK && !crossing->undo) {
-        status = he_content_issue(c, crossing->issued, err);
-    }
     if (status != HE_OK) {
         return status;
     }
-    he_content_apply(c, crossing->delta, 0, crossing->undo, objects);
-    /* A content that was brought in has the marks it had when it was taken out. */
-    status = he_content_issue(c, crossing->issued, err);
-    if (status == HE_OK) {
-        he_content_withdraw(c, crossing->issued);
-    }
+    status = crossing->undo
+                 ? back(c, crossing, objects, err)
+                 : he_content_forward(c, crossing->delta, objects, crossing->issued, NULL, err);
+    assert(status != HE_CORRUPT); /* the log knows where the copy is */
     return status;
 }
