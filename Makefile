@@ -292,7 +292,7 @@ hostile: $(HEDGED) | $(INSTALLED) ## files and requests made to be slow: what ea
 
 # `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
 FUZZ_SECONDS ?= 20
-fuzz: | $(INSTALLED) ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits, requests and HTTP
+fuzz: | $(INSTALLED) ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits, stored meshes, requests and HTTP
 	+$(MAKE) CONFIG=fuzz targets
 	@sh tests/fuzz/run.sh $(FUZZ_SECONDS)
 

@@ -149,7 +149,8 @@ size_t he_column_bytes(const he_column *column)
 bool he_column_same_kind(const he_column *a, const he_column *b)
 {
     return strcmp(a->name, b->name) == 0 && a->domain == b->domain && a->type == b->type &&
-           a->rule == b->rule && a->components == b->components && a->labels == b->labels &&
+           a->rule == b->rule && a->components == b->components &&
+           he_labels_equal(a->labels, b->labels) &&
            memcmp(a->fallback, b->fallback, a->row_bytes) == 0;
 }
 

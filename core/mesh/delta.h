@@ -43,7 +43,7 @@ typedef struct he_record {
     uint32_t before, after;
 } he_record;
 
-/* Open for reading; only write.h and delta.c write it. */
+/* Open for reading; only write.h, delta.c and core/stored write it. */
 struct he_delta {
     he_record *records;
     size_t count, capacity;

@@ -61,6 +61,13 @@ static size_t length_of(const he_labels *labels, size_t i)
     return end - labels->starts[i] - 1;
 }
 
+bool he_labels_equal(const he_labels *a, const he_labels *b)
+{
+    return a == b ||
+           (a != NULL && b != NULL && a->count == b->count && a->text_length == b->text_length &&
+            (a->text_length == 0 || memcmp(a->text, b->text, a->text_length) == 0));
+}
+
 /* The slot that holds the string, or the free one where it belongs. */
 static size_t slot_of(const he_labels *labels, const char *text, size_t length)
 {

@@ -119,6 +119,19 @@ const memory = (meter, title, ours, more) => ({
     ...more,
 });
 
+// The mesh and its edits as bytes, of ours alone: the bounds are of the design of the store where they
+// are of edits.
+const stored = (title, ours, unit, per, limit) => ({
+    title: `stored: ${title}`,
+    ours,
+    unit,
+    per,
+    less: true,
+    runs: 3,
+    limit,
+    guard: true,
+});
+
 // Ours on two threads, beside ours on one; a third more is the least that pays.
 const scaling = (input, order, rows, why, more) => ({
     part: 'scaling',
@@ -459,4 +472,21 @@ export const parts = [
         'sums at vertices stay with one thread: their order is part of the result',
         { side: 400 },
     ),
+    {
+        part: 'stored',
+        input: 'torus',
+        order: 'natural',
+        sides: [],
+        rows: [
+            stored('bytes a vertex moved', 'stored_move', 'bytes', 1, 68),
+            stored('bytes an edge flipped', 'stored_flip', 'bytes', 1, 130),
+            stored('bytes a face poked', 'stored_poke', 'bytes', 1, 378),
+            stored('bytes an edge split', 'stored_split', 'bytes', 1, 507),
+            stored('bytes an edge collapsed', 'stored_collapse', 'bytes', 1, 509),
+            stored('bytes a face of a whole mesh', 'content_bytes', 'bytes', 1, 50),
+            stored('a split read and applied', 'stored_forward', 'µs', 1e-6, 6),
+            stored('a megabyte of mesh written', 'content_write', 'µs', 1e-6, 1300),
+            stored('a megabyte of mesh read', 'content_read', 'µs', 1e-6, 1800),
+        ],
+    },
 ];

@@ -4,6 +4,7 @@
 #include "edit_script.h"
 #include "giants.h"
 #include "scenarios.h"
+#include "stored_trip.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -435,6 +436,7 @@ static void run_recorded(const scenario *s, bool columns)
         check_change(s, before, m);
         he_mesh *after = copy_of(m);
         he_mesh_record(m, NULL);
+        stored_trip(before, delta, after);
         he_delta_undo(delta, m);
         assert_valid(m);
         assert_true(he_mesh_equal_live(m, before));

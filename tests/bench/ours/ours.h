@@ -18,6 +18,7 @@ extern const bench_row bench_scaling_rows[];
 extern const bench_row bench_subdivide_rows[];
 extern const bench_row bench_memory_rows[];
 extern const bench_row bench_growth_rows[];
+extern const bench_row bench_stored_rows[];
 
 /* Ends the program with the status' title unless it is HE_OK. */
 void bench_require(he_status status);

@@ -1,0 +1,378 @@
+/* Parts become a mesh: he_stored_reader of stored.h. Bytes go to where they belong as they come: to
+ * the header, and once that is whole to the arrays that it asks for. */
+#include "mesh/content.h"
+#include "stored/attribute_code.h"
+#include "stored/content_code.h"
+#include "stored/stored.h"
+
+struct he_stored_reader {
+    uint64_t most, total; /* bytes of the content: at most; in truth, once the header is there */
+    uint64_t at;          /* bytes that have come */
+    unsigned char *header;
+    size_t header_size, header_room; /* as much as has come */
+    uint64_t header_wanted;
+    he_content c;
+    size_t array;      /* the one that is being filled; after those of links, slots */
+    unsigned char *to; /* what is left of it */
+    size_t left;
+    he_links links;
+    uint32_t row;  /* of the next link */
+    uint32_t last; /* the link before it, */
+    bool has_last; /* if there is one in the part */
+};
+
+he_status he_stored_reader_new(uint64_t most, he_stored_reader **out, he_error *err)
+{
+    he_stored_reader *r = he_mem_zero(1, sizeof *r);
+    if (r == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to read a mesh");
+    }
+    r->most = most;
+    r->total = UINT64_MAX;
+    r->header_wanted = HE_CONTENT_START;
+    *out = r;
+    return HE_OK;
+}
+
+void he_stored_reader_free(he_stored_reader *r)
+{
+    if (r != NULL) {
+        he_content_clear(&r->c);
+        he_mem_free(r->header);
+        he_mem_free(r);
+    }
+}
+
+static he_status refuse(const he_stored_reader *r, he_error *err, const char *what)
+{
+    return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, r->at, "%s", what);
+}
+
+/* The first bytes say how many the header has. */
+static he_status read_start(he_stored_reader *r, he_error *err)
+{
+    he_cursor c = he_cursor_over(r->header, r->header_size);
+    uint32_t magic = 0, version = 0;
+    uint64_t bytes = 0;
+    bool taken = he_take_u32(&c, &magic) && he_take_u32(&c, &version) && he_take_u64(&c, &bytes);
+    if (!taken || magic != HE_CONTENT_MAGIC) {
+        return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0, "this is no stored mesh");
+    }
+    if (version != HE_STORED_VERSION) {
+        return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
+                          HE_PLACE_BYTE, 4, "the mesh has version %u, this release reads %u",
+                          version, (unsigned)HE_STORED_VERSION);
+    }
+    if (bytes < HE_CONTENT_HEADER || bytes % 8 != 0 || bytes > r->most) {
+        return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 8, "the header cannot have %llu bytes",
+                          (unsigned long long)bytes);
+    }
+    r->header_wanted = bytes;
+    return HE_OK;
+}
+
+/* One slot; memory for its rows is taken when all slots are known. */
+static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size_t *rows,
+                           he_error *err)
+{
+    unsigned char kind;
+    uint64_t length, count;
+    uint32_t name;
+    if (!he_take_bytes(c, 1, &kind) || !he_take_u64(c, &length) || length > he_left(c)) {
+        return he_refuse_at(c, err, "the header ends in an attribute");
+    }
+    if (kind > HE_SLOT_ATTRIBUTE || (kind == HE_SLOT_EMPTY && length > 0)) {
+        return he_refuse_at(c, err, "there is no such kind of attribute");
+    }
+    if (kind == HE_SLOT_EMPTY) {
+        *out = NULL;
+        return HE_OK;
+    }
+    he_cursor slot = *c;
+    c->at += length;
+    slot.end = c->at;
+    he_column *column = NULL;
+    he_status status = he_head_take(&slot, &column, err);
+    if (status == HE_OK) {
+        status = he_labels_take(&slot, &column->labels, err);
+    }
+    if (status == HE_OK &&
+        (!he_take_varint(&slot, 2 * (uint64_t)HE_MAX_ROWS, &count) || he_left(&slot) > 0)) {
+        status = he_refuse_at(&slot, err, "the rows of an attribute are not told");
+    }
+    if (status == HE_OK) {
+        char text[1 + HE_COLUMN_NAME];
+        size_t size = strlen(column->name), known = he_labels_count(names);
+        text[0] = (char)('0' + column->domain);
+        memcpy(text + 1, column->name, size);
+        status = he_labels_add(names, text, 1 + size, &name, err);
+        if (status == HE_OK && name != known) {
+            status = he_refuse_at(&slot, err, "two attributes have one name");
+        }
+    }
+    if (status != HE_OK) {
+        he_column_free(column);
+        return status;
+    }
+    *out = column;
+    *rows = (size_t)count;
+    return HE_OK;
+}
+
+/* The slots; sets each column's rows, for which no memory is there yet, and adds up their bytes. */
+static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, uint64_t *bytes,
+                            he_error *err)
+{
+    he_labels *names = he_labels_new();
+    r->c.columns = slots == 0 ? NULL : he_mem_zero(slots, sizeof *r->c.columns);
+    if (names == NULL || (slots > 0 && r->c.columns == NULL)) {
+        he_labels_release(names);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for attributes");
+    }
+    r->c.column_capacity = slots;
+    he_status status = HE_OK;
+    for (uint32_t i = 0; i < slots && status == HE_OK; i++) {
+        size_t rows = 0;
+        status = read_slot(c, names, &r->c.columns[i], &rows, err);
+        if (status != HE_OK) {
+            break;
+        }
+        r->c.column_count++;
+        he_column *column = r->c.columns[i];
+        if (column != NULL) {
+            column->rows = rows;
+            *bytes += (uint64_t)rows * column->row_bytes;
+            if (rows > he_content_issued(&r->c, column->domain)) {
+                status = he_refuse_at(c, err, "an attribute has rows without elements");
+            }
+        }
+    }
+    he_labels_release(names);
+    return status;
+}
+
+static bool read_rows(he_cursor *c, he_content *content, uint32_t *slots)
+{
+    he_rows *const tables[] = {&content->vertices, &content->edges, &content->faces};
+    bool good = true;
+    for (size_t i = 0; i < 3; i++) {
+        good = good && he_take_u32(c, &tables[i]->issued) && tables[i]->issued <= HE_MAX_ROWS;
+    }
+    for (size_t i = 0; i < 3; i++) {
+        good = good && he_take_u32(c, &tables[i]->live) && tables[i]->live <= tables[i]->issued;
+    }
+    return good && he_take_u32(c, &content->boundary_halfedges) && he_take_u32(c, slots);
+}
+
+/* Room for all arrays, now that they are known to come. */
+static he_status make_room(he_content *c, he_error *err)
+{
+    he_rows rows[3] = {c->vertices, c->edges, c->faces};
+    c->vertices.issued = c->edges.issued = c->faces.issued = 0;
+    he_status status = he_content_reserve_vertices(c, rows[0].issued, err);
+    if (status == HE_OK) {
+        status = he_content_reserve_edges(c, rows[1].issued, err);
+    }
+    if (status == HE_OK) {
+        status = he_content_reserve_faces(c, rows[2].issued, err);
+    }
+    c->vertices.issued = rows[0].issued;
+    c->edges.issued = rows[1].issued;
+    c->faces.issued = rows[2].issued;
+    for (size_t i = 0; i < c->column_count && status == HE_OK; i++) {
+        he_column *column = c->columns[i];
+        if (column != NULL) {
+            size_t stored = column->rows;
+            column->rows = 0;
+            status = he_column_reserve(column, stored, err);
+            column->rows = stored;
+        }
+    }
+    return status;
+}
+
+/* The next array that has bytes; none at the end. */
+static void next_array(he_stored_reader *r)
+{
+    r->left = 0;
+    for (; r->left == 0 && r->array < HE_CONTENT_ARRAYS + r->c.column_count; r->array++) {
+        if (r->array < HE_CONTENT_ARRAYS) {
+            he_content_array array = he_content_array_at(&r->c, r->array);
+            r->to = array.bytes;
+            r->left = array.size;
+            r->links = array.links;
+            r->row = 0;
+            r->has_last = false;
+        } else {
+            he_column *column = r->c.columns[r->array - HE_CONTENT_ARRAYS];
+            r->to = column == NULL ? NULL : column->data;
+            r->left = column == NULL ? 0 : column->rows * column->row_bytes;
+            r->links = HE_NO_LINKS;
+        }
+    }
+}
+
+static he_status read_header(he_stored_reader *r, he_error *err)
+{
+    he_cursor c = he_cursor_over(r->header, r->header_size);
+    uint32_t slots = 0;
+    uint64_t bytes = 0;
+    c.at += HE_CONTENT_START;
+    if (!read_rows(&c, &r->c, &slots) || slots > he_left(&c) / HE_CONTENT_SLOT) {
+        return he_refuse_at(&c, err, "the counts of the mesh cannot be");
+    }
+    he_status status = read_slots(r, &c, slots, &bytes, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    bool zeros = he_left(&c) < 8;
+    for (; zeros && he_left(&c) > 0; c.at++) {
+        zeros = *c.at == 0;
+    }
+    if (!zeros) {
+        return he_refuse_at(&c, err, "zeros end the header, as many as are needed");
+    }
+    r->total = r->header_size + he_content_array_bytes(&r->c) + bytes;
+    if (r->total > r->most) {
+        return he_refuse_at(&c, err, "the mesh is longer than its parts");
+    }
+    status = make_room(&r->c, err);
+    if (status == HE_OK) {
+        next_array(r);
+    }
+    return status;
+}
+
+/* More of the header; *taken is how much of the bytes that was. */
+static he_status take_header(he_stored_reader *r, const unsigned char *bytes, size_t size,
+                             size_t *taken, he_error *err)
+{
+    uint64_t left = r->header_wanted - r->header_size;
+    size_t now = size < left ? size : (size_t)left;
+    if (now > r->header_room - r->header_size) {
+        size_t room = he_mem_grown(r->header_room, r->header_size + now);
+        unsigned char *grown = he_mem_resize(r->header, room);
+        if (grown == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for the header of a mesh");
+        }
+        r->header = grown;
+        r->header_room = room;
+    }
+    memcpy(r->header + r->header_size, bytes, now);
+    r->header_size += now;
+    r->at += now;
+    *taken = now;
+    if (r->header_size < r->header_wanted) {
+        return HE_OK;
+    }
+    return r->header_size == HE_CONTENT_START ? read_start(r, err) : read_header(r, err);
+}
+
+/* More of the array at hand, of the bytes at the cursor: at most `room` of the content. */
+static he_status take_array(he_stored_reader *r, bool as_links, size_t room, he_cursor *c,
+                            he_error *err)
+{
+    size_t most = r->left < room ? r->left : room, done = 0;
+    if (as_links && r->links != HE_NO_LINKS) {
+        for (uint32_t link; done < most && he_left(c) > 0; done += sizeof link) {
+            bool by_last = r->has_last && r->links == HE_LINKS_BY_LAST;
+            if (!he_take_link(c, by_last ? r->last : r->row, &link)) {
+                return refuse(r, err, "a link is none");
+            }
+            memcpy(r->to + done, &link, sizeof link);
+            if (link < HE_DEAD) {
+                r->last = link;
+                r->has_last = true;
+            }
+            r->row++;
+        }
+    } else {
+        done = most < he_left(c) ? most : he_left(c);
+        memcpy(r->to, c->at, done);
+        c->at += done;
+        r->row += (uint32_t)(done / sizeof(uint32_t));
+    }
+    r->to += done;
+    r->left -= done;
+    r->at += done;
+    if (r->left == 0) {
+        next_array(r);
+    }
+    return HE_OK;
+}
+
+he_status he_stored_reader_part(he_stored_reader *r, unsigned coding, const unsigned char *bytes,
+                                size_t size, he_error *err)
+{
+    if (coding > HE_CODING_LINKS) {
+        return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_BYTE, r->at,
+                          "a part has coding %u, this release reads up to %u", coding,
+                          (unsigned)HE_CODING_LINKS);
+    }
+    he_cursor c = he_cursor_over(bytes, size);
+    uint64_t from = r->at;
+    r->has_last = false;
+    while (he_left(&c) > 0) {
+        size_t room = HE_STORED_PART - (size_t)(r->at - from), taken = 0;
+        if (room == 0 || r->at == r->total) {
+            return refuse(r, err, "a part is longer than it can be");
+        }
+        he_status status;
+        if (r->header_size < r->header_wanted) {
+            size_t size_now = he_left(&c) < room ? he_left(&c) : room;
+            status = take_header(r, c.at, size_now, &taken, err);
+            c.at += taken;
+        } else {
+            status = take_array(r, coding == HE_CODING_LINKS, room, &c, err);
+        }
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    if (size == 0 || (r->at - from != HE_STORED_PART && r->at != r->total)) {
+        return refuse(r, err, "a part is shorter than it must be");
+    }
+    return HE_OK;
+}
+
+he_status he_stored_reader_end(he_stored_reader *r, he_mesh **out, he_error *err)
+{
+    if (r->at != r->total) {
+        return refuse(r, err, "parts of the mesh are missing");
+    }
+    he_mesh *mesh = he_mesh_new();
+    if (mesh == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a mesh");
+    }
+    mesh->c = r->c;
+    r->c = (he_content){0};
+    *out = mesh;
+    return HE_OK;
+}
+
+he_status he_stored_content_read(const unsigned char *bytes, size_t size, he_mesh **out,
+                                 he_error *err)
+{
+    he_stored_reader *r;
+    he_cursor c = he_cursor_over(bytes, size);
+    /* A link takes a byte at least. */
+    he_status status = he_stored_reader_new(sizeof(uint32_t) * (uint64_t)size, &r, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    while (status == HE_OK && he_left(&c) > 0) {
+        unsigned char coding;
+        uint32_t length;
+        if (!he_take_bytes(&c, 1, &coding) || !he_take_u32(&c, &length) || length > he_left(&c)) {
+            status = he_refuse_at(&c, err, "a part is longer than the block");
+        } else {
+            status = he_stored_reader_part(r, coding, c.at, length, err);
+            c.at += length;
+        }
+    }
+    if (status == HE_OK) {
+        status = he_stored_reader_end(r, out, err);
+    }
+    he_stored_reader_free(r);
+    return status;
+}

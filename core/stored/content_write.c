@@ -1,0 +1,283 @@
+/* A mesh becomes a content: he_stored_writer of stored.h. The bytes are made piece by piece (a
+ * head, a label, an array), and parts are cut out of them without regard to pieces. */
+#include "mesh/layout.h"
+#include "stored/attribute_code.h"
+#include "stored/content_code.h"
+#include "stored/stored.h"
+
+/* What the piece at hand is. */
+enum stage {
+    HEADER,
+    SLOT,
+    LABELS,
+    LABEL,
+    LABEL_TEXT,
+    ROWS,
+    PADDING,
+    ARRAYS, /* one stage each */
+    COLUMNS = ARRAYS + HE_CONTENT_ARRAYS,
+    DONE
+};
+
+static const he_column *slot_of(const he_stored_writer *w)
+{
+    return w->mesh->c.columns[w->slot];
+}
+
+/* Bytes after the kind and length of a slot. */
+static uint64_t slot_bytes(const he_column *column)
+{
+    return column == NULL ? 0
+                          : he_head_bytes(column) + he_labels_bytes(column->labels) +
+                                he_varint_bytes(column->rows);
+}
+
+static uint64_t header_bytes(const he_content *c)
+{
+    uint64_t bytes = HE_CONTENT_HEADER;
+    for (size_t i = 0; i < c->column_count; i++) {
+        bytes += HE_CONTENT_SLOT + slot_bytes(c->columns[i]);
+    }
+    return (bytes + 7) / 8 * 8;
+}
+
+void he_stored_writer_init(he_stored_writer *w, const he_mesh *mesh)
+{
+    memset(w, 0, sizeof *w);
+    w->mesh = mesh;
+    w->header = header_bytes(&mesh->c);
+}
+
+uint64_t he_stored_parts(const he_mesh *mesh)
+{
+    uint64_t bytes = header_bytes(&mesh->c) + he_content_array_bytes(&mesh->c);
+    for (size_t i = 0; i < mesh->c.column_count; i++) {
+        const he_column *column = mesh->c.columns[i];
+        bytes += column == NULL ? 0 : (uint64_t)column->rows * column->row_bytes;
+    }
+    return (bytes + HE_STORED_PART - 1) / HE_STORED_PART;
+}
+
+static void set_piece(he_stored_writer *w, const void *from, size_t bytes)
+{
+    w->from = from;
+    w->left = bytes;
+    w->links = HE_NO_LINKS;
+}
+
+static void set_scratch(he_stored_writer *w, const unsigned char *end)
+{
+    set_piece(w, w->scratch, (size_t)(end - w->scratch));
+}
+
+static void make_header(he_stored_writer *w)
+{
+    const he_content *c = &w->mesh->c;
+    const uint32_t words[] = {
+        c->vertices.issued, c->edges.issued, c->faces.issued,       c->vertices.live,
+        c->edges.live,      c->faces.live,   c->boundary_halfedges, (uint32_t)c->column_count,
+    };
+    unsigned char *to = he_put_u32(w->scratch, HE_CONTENT_MAGIC);
+    to = he_put_u64(he_put_u32(to, HE_STORED_VERSION), w->header);
+    set_scratch(w, he_put_bytes(to, words, sizeof words));
+    w->stage = c->column_count > 0 ? SLOT : PADDING;
+}
+
+static void next_slot(he_stored_writer *w)
+{
+    w->slot++;
+    w->stage = w->slot < w->mesh->c.column_count ? SLOT : PADDING;
+}
+
+static void make_slot(he_stored_writer *w)
+{
+    const he_column *column = slot_of(w);
+    unsigned char *to = he_put_byte(w->scratch, column == NULL ? HE_SLOT_EMPTY : HE_SLOT_ATTRIBUTE);
+    to = he_put_u64(to, slot_bytes(column));
+    if (column == NULL) {
+        set_scratch(w, to);
+        next_slot(w);
+        return;
+    }
+    set_scratch(w, he_head_put(to, column));
+    w->stage = LABELS;
+}
+
+static void make_labels(he_stored_writer *w)
+{
+    const he_labels *labels = slot_of(w)->labels;
+    size_t count = labels == NULL ? 0 : he_labels_count(labels);
+    set_scratch(w, he_put_varint(w->scratch, labels == NULL ? 0 : (uint64_t)count + 1));
+    w->label = 0;
+    w->stage = count > 0 ? LABEL : ROWS;
+}
+
+static void make_label(he_stored_writer *w)
+{
+    set_scratch(w, he_put_varint(w->scratch, strlen(he_labels_get(slot_of(w)->labels, w->label))));
+    w->stage = LABEL_TEXT;
+}
+
+static void make_label_text(he_stored_writer *w)
+{
+    const he_labels *labels = slot_of(w)->labels;
+    const char *text = he_labels_get(labels, w->label);
+    set_piece(w, text, strlen(text));
+    w->label++;
+    w->stage = w->label < he_labels_count(labels) ? LABEL : ROWS;
+}
+
+static void make_rows(he_stored_writer *w)
+{
+    set_scratch(w, he_put_varint(w->scratch, slot_of(w)->rows));
+    next_slot(w);
+}
+
+static void make_padding(he_stored_writer *w)
+{
+    memset(w->scratch, 0, 8);
+    set_piece(w, w->scratch, (size_t)(w->header - w->done));
+    w->stage = ARRAYS;
+}
+
+static void make_array(he_stored_writer *w)
+{
+    he_content c = w->mesh->c;
+    he_content_array array = he_content_array_at(&c, w->stage - ARRAYS);
+    set_piece(w, array.bytes, array.size);
+    w->links = array.links;
+    w->row = 0;
+    w->has_last = false;
+    w->stage++;
+    w->slot = 0;
+}
+
+static void make_column(he_stored_writer *w)
+{
+    const he_content *c = &w->mesh->c;
+    if (w->slot == c->column_count) {
+        w->stage = DONE;
+        return;
+    }
+    const he_column *column = slot_of(w);
+    if (column != NULL) {
+        set_piece(w, column->data, column->rows * column->row_bytes);
+    }
+    w->slot++;
+}
+
+/* Goes on to the next piece that is not empty; false after the last. */
+static bool has_piece(he_stored_writer *w)
+{
+    while (w->left == 0 && w->stage != DONE) {
+        switch (w->stage) {
+        case HEADER:
+            make_header(w);
+            break;
+        case SLOT:
+            make_slot(w);
+            break;
+        case LABELS:
+            make_labels(w);
+            break;
+        case LABEL:
+            make_label(w);
+            break;
+        case LABEL_TEXT:
+            make_label_text(w);
+            break;
+        case ROWS:
+            make_rows(w);
+            break;
+        case PADDING:
+            make_padding(w);
+            break;
+        case COLUMNS:
+            make_column(w);
+            break;
+        default:
+            make_array(w);
+            break;
+        }
+        w->done += w->left;
+    }
+    return w->left > 0;
+}
+
+/* So many bytes of links from the piece at hand, each as a varint. */
+static unsigned char *put_links(he_stored_writer *w, size_t bytes, unsigned char *to)
+{
+    for (size_t i = 0; i < bytes; i += sizeof(uint32_t)) {
+        uint32_t link;
+        memcpy(&link, w->from + i, sizeof link);
+        bool by_last = w->has_last && w->links == HE_LINKS_BY_LAST;
+        to = he_put_varint(to, he_link_code(link, by_last ? w->last : w->row));
+        if (link < HE_DEAD) {
+            w->last = link;
+            w->has_last = true;
+        }
+        w->row++;
+    }
+    return to;
+}
+
+/* A part in one of the codings; SIZE_MAX when it would be longer than it is plain. */
+static size_t make_part(he_stored_writer *w, unsigned coding, unsigned char *to, bool *has_links)
+{
+    enum { STRIDE = 4096 };
+    unsigned char *at = to;
+    size_t taken = 0;
+    w->has_last = false;
+    while (taken < HE_STORED_PART && has_piece(w)) {
+        size_t room = HE_STORED_PART - taken, bytes = w->left < room ? w->left : room;
+        if (w->links != HE_NO_LINKS && coding == HE_CODING_LINKS) {
+            bytes = bytes < STRIDE ? bytes : STRIDE;
+            if ((size_t)(at - to) + bytes / sizeof(uint32_t) * HE_LINK_BYTES > HE_STORED_PART) {
+                return SIZE_MAX;
+            }
+            at = put_links(w, bytes, at);
+        } else {
+            at = he_put_bytes(at, w->from, bytes);
+            w->row += w->links != HE_NO_LINKS ? (uint32_t)(bytes / sizeof(uint32_t)) : 0;
+        }
+        *has_links |= w->links != HE_NO_LINKS;
+        w->from += bytes;
+        w->left -= bytes;
+        taken += bytes;
+    }
+    return (size_t)(at - to);
+}
+
+size_t he_stored_writer_next(he_stored_writer *w, unsigned char *to, unsigned *coding)
+{
+    he_stored_writer from = *w;
+    bool links = false;
+    size_t size = make_part(w, HE_CODING_LINKS, to, &links);
+    if (size == SIZE_MAX) {
+        *w = from;
+        links = false;
+        size = make_part(w, HE_CODING_PLAIN, to, &links);
+        links = false;
+    }
+    *coding = links ? HE_CODING_LINKS : HE_CODING_PLAIN;
+    return size;
+}
+
+size_t he_stored_content_bound(const he_mesh *mesh)
+{
+    return (size_t)he_stored_parts(mesh) * (HE_PART_HEAD + HE_STORED_PART);
+}
+
+size_t he_stored_content_write(const he_mesh *mesh, unsigned char *to)
+{
+    he_stored_writer w;
+    unsigned char *at = to;
+    unsigned coding;
+    size_t size;
+    he_stored_writer_init(&w, mesh);
+    while ((size = he_stored_writer_next(&w, at + HE_PART_HEAD, &coding)) > 0) {
+        (void)he_put_u32(he_put_byte(at, coding), (uint32_t)size);
+        at += HE_PART_HEAD + size;
+    }
+    return (size_t)(at - to);
+}

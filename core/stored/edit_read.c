@@ -1,0 +1,407 @@
+/* The bytes of a coded edit become a delta, over which a mesh goes forward. */
+#include "mesh/content.h"
+#include "stored/attribute_code.h"
+#include "stored/edit_code.h"
+#include "stored/stored.h"
+
+static const he_col columns[] = {
+    [HE_CODE_NEXT] = HE_COL_NEXT,
+    [HE_CODE_PREV] = HE_COL_PREV,
+    [HE_CODE_ORIGIN] = HE_COL_ORIGIN,
+    [HE_CODE_FACE] = HE_COL_FACE,
+    [HE_CODE_VERTEX_HALFEDGE] = HE_COL_VERTEX_HALFEDGE,
+    [HE_CODE_FACE_HALFEDGE] = HE_COL_FACE_HALFEDGE,
+    [HE_CODE_POSITION] = HE_COL_POSITION,
+    [HE_CODE_PARENT] = HE_COL_PARENT,
+    [HE_CODE_MERGED] = HE_COL_MERGED,
+    [HE_CODE_ATTRIBUTE] = HE_COL_ATTRIBUTE,
+};
+
+/* The most slots that a record can name: its column has 24 bits. */
+enum { MOST_SLOTS = (1 << 24) - HE_COL_ATTRIBUTE };
+
+typedef struct edit_reader {
+    he_cursor c;
+    uint64_t changes; /* not read yet */
+    he_code code;
+    uint64_t run;  /* changes left in the run */
+    uint32_t slot; /* of a run of attributes */
+    uint32_t last[HE_CODE_COUNT];
+    he_object kind;   /* of an object */
+    he_cursor object; /* its bytes */
+} edit_reader;
+
+static he_status begin(edit_reader *r, const unsigned char *bytes, size_t size, he_error *err)
+{
+    *r = (edit_reader){.c = he_cursor_over(bytes, size)};
+    unsigned char version;
+    if (!he_take_bytes(&r->c, 1, &version)) {
+        return he_refuse_at(&r->c, err, "an edit of no bytes");
+    }
+    if (version != HE_STORED_VERSION) {
+        return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
+                          HE_PLACE_BYTE, 0, "the edit has version %u, this release reads %u",
+                          version, (unsigned)HE_STORED_VERSION);
+    }
+    if (!he_take_varint(&r->c, he_left(&r->c) / HE_CHANGE_LEAST, &r->changes)) {
+        return he_refuse_at(&r->c, err, "there are more changes than bytes");
+    }
+    return HE_OK;
+}
+
+static he_status begin_object(edit_reader *r, he_error *err)
+{
+    unsigned char kind;
+    uint64_t length;
+    if (!he_take_bytes(&r->c, 1, &kind) || !he_take_u64(&r->c, &length) ||
+        length > he_left(&r->c)) {
+        return he_refuse_at(&r->c, err, "an object is longer than the edit");
+    }
+    if (kind < HE_OBJECT_ADDED || kind > HE_OBJECT_REPLACED) {
+        return he_refuse_at(&r->c, err, "there is no such kind of object");
+    }
+    r->kind = (he_object)kind;
+    r->object = r->c;
+    r->c.at += length;
+    r->object.end = r->c.at;
+    return HE_OK;
+}
+
+static he_status begin_run(edit_reader *r, he_error *err)
+{
+    uint64_t tag, slot;
+    if (!he_take_varint(&r->c, UINT64_MAX, &tag)) {
+        return he_refuse_at(&r->c, err, "the bytes end between changes");
+    }
+    if (tag % 16 >= HE_CODE_COUNT || tag / 16 >= r->changes) {
+        return he_refuse_at(&r->c, err, "there is no such kind of change, or not so many");
+    }
+    r->code = (he_code)(tag % 16);
+    r->run = tag / 16 + 1;
+    if (r->code == HE_CODE_ATTRIBUTE) {
+        if (!he_take_varint(&r->c, MOST_SLOTS - 1, &slot)) {
+            return he_refuse_at(&r->c, err, "there is no such slot of attributes");
+        }
+        r->slot = (uint32_t)slot;
+    }
+    if (r->code == HE_CODE_OBJECT && r->run > 1) {
+        return he_refuse_at(&r->c, err, "objects come one by one");
+    }
+    return r->code == HE_CODE_OBJECT ? begin_object(r, err) : HE_OK;
+}
+
+static bool take_lineage(edit_reader *r, he_record *out)
+{
+    unsigned char kind;
+    uint32_t other;
+    if (!he_take_bytes(&r->c, 1, &kind) || kind >= HE_CODE_KINDS ||
+        !he_take_difference(&r->c, out->row, &other)) {
+        return false;
+    }
+    out->word = he_code_kinds[kind];
+    out->before = other;
+    return true;
+}
+
+static bool take_values(edit_reader *r, he_record *out)
+{
+    unsigned char word;
+    uint32_t before, after;
+    if (!he_take_bytes(&r->c, 1, &word) || !he_take_u32(&r->c, &before) ||
+        !he_take_u32(&r->c, &after)) {
+        return false;
+    }
+    out->word = word;
+    out->before = before;
+    out->after = after;
+    return true;
+}
+
+static bool take_links(edit_reader *r, he_record *out)
+{
+    uint32_t before, after;
+    if (!he_take_link(&r->c, out->row, &before) || !he_take_link(&r->c, out->row, &after)) {
+        return false;
+    }
+    out->before = before;
+    out->after = after;
+    return true;
+}
+
+/* The next change; of one with an object, only that it is one. */
+static he_status next(edit_reader *r, he_record *out, he_error *err)
+{
+    if (r->run == 0) {
+        he_status status = begin_run(r, err);
+        if (status != HE_OK) {
+            return status;
+        }
+    }
+    r->run--;
+    r->changes--;
+    *out = (he_record){0};
+    if (r->code == HE_CODE_OBJECT) {
+        return HE_OK;
+    }
+    uint32_t row;
+    bool taken = he_take_difference(&r->c, r->last[r->code], &row);
+    if (taken) {
+        out->row = r->last[r->code] = row;
+        bool lineage = r->code == HE_CODE_PARENT || r->code == HE_CODE_MERGED;
+        bool values = r->code == HE_CODE_POSITION || r->code == HE_CODE_ATTRIBUTE;
+        uint32_t column = (uint32_t)columns[r->code] + (r->code == HE_CODE_ATTRIBUTE ? r->slot : 0);
+        out->column = column & 0xFFFFFFu;
+        taken = lineage ? take_lineage(r, out) : values ? take_values(r, out) : take_links(r, out);
+    }
+    return taken ? HE_OK : he_refuse_at(&r->c, err, "a change ends too soon, or its link is none");
+}
+
+static he_status take_slot(he_cursor *c, uint32_t *slot, he_error *err)
+{
+    uint64_t value;
+    if (!he_take_varint(c, MOST_SLOTS - 1, &value)) {
+        return he_refuse_at(c, err, "there is no such slot of attributes");
+    }
+    *slot = (uint32_t)value;
+    return HE_OK;
+}
+
+/* Values of all rows, up to the end of the bytes. */
+static he_status take_rows(he_cursor *c, he_column *column, he_error *err)
+{
+    uint64_t rows;
+    if (!he_take_varint(c, 2 * (uint64_t)HE_MAX_ROWS, &rows) ||
+        rows * column->row_bytes != he_left(c)) {
+        return he_refuse_at(c, err, "the values of an attribute are not as many as it says");
+    }
+    he_status status = he_column_reserve(column, (size_t)rows, err);
+    if (status == HE_OK) {
+        (void)he_take_bytes(c, he_left(c), column->data);
+        column->rows = (size_t)rows;
+    }
+    return status;
+}
+
+static he_status take_added(he_cursor *c, uint32_t *slot, he_column **out, he_error *err)
+{
+    he_column *column = NULL;
+    he_status status = take_slot(c, slot, err);
+    if (status == HE_OK) {
+        status = he_head_take(c, &column, err);
+    }
+    if (status == HE_OK) {
+        status = he_labels_take(c, &column->labels, err);
+    }
+    if (status == HE_OK) {
+        status = take_rows(c, column, err);
+    }
+    if (status != HE_OK) {
+        he_column_free(column);
+        return status;
+    }
+    *out = column;
+    return HE_OK;
+}
+
+static bool same_head(const he_column *a, const he_column *b)
+{
+    return strcmp(a->name, b->name) == 0 && a->domain == b->domain && a->type == b->type &&
+           a->rule == b->rule && a->components == b->components &&
+           memcmp(a->fallback, b->fallback, a->row_bytes) == 0;
+}
+
+/* A column that the mesh has is the one that was dropped, unless the edit itself put it there:
+ * `named` has a bit for each slot of the mesh that it has named so far. */
+static he_status take_dropped(he_cursor *c, const he_mesh *mesh, const uint64_t *named,
+                              uint32_t *slot, he_error *err)
+{
+    he_column *column = NULL;
+    he_status status = take_slot(c, slot, err);
+    if (status == HE_OK) {
+        status = he_head_take(c, &column, err);
+    }
+    if (status == HE_OK && he_left(c) > 0) {
+        status = he_refuse_at(c, err, "an object is longer than what it holds");
+    }
+    if (status == HE_OK && *slot < he_mesh_columns(mesh) && !he_bits_get(named, *slot)) {
+        const he_column *there = he_mesh_column(mesh, *slot);
+        if (there == NULL || !same_head(there, column)) {
+            status = he_refuse_at(c, err, "the mesh has another attribute than was dropped");
+        }
+    }
+    he_column_free(column);
+    return status;
+}
+
+static he_status take_replaced(he_cursor *c, he_record *out, he_content **content, he_error *err)
+{
+    unsigned char renumbers;
+    he_mesh *mesh;
+    if (!he_take_bytes(c, 1, &renumbers) || renumbers > 1) {
+        return he_refuse_at(c, err, "a replace keeps ids (0) or renumbers (1)");
+    }
+    he_content *taken = he_mem_alloc(sizeof *taken);
+    he_status status = taken == NULL
+                           ? he_fail_plain(err, HE_NO_MEMORY, "no memory for the content after")
+                           : he_stored_content_read(c->at, he_left(c), &mesh, err);
+    if (status != HE_OK) {
+        he_mem_free(taken);
+        return status;
+    }
+    *taken = mesh->c;
+    mesh->c = (he_content){0};
+    he_mesh_free(mesh);
+    *content = taken;
+    out->row = renumbers;
+    return HE_OK;
+}
+
+/* The object at hand, into the delta as the next of its objects. */
+static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *named, he_delta *delta,
+                             he_record *out, he_error *err)
+{
+    he_column *column = NULL;
+    he_content *content = NULL;
+    uint32_t slot = 0;
+    he_status status = he_delta_reserve(delta, 0, 1, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    switch (r->kind) {
+    case HE_OBJECT_ADDED:
+        out->column = HE_COL_COLUMN_ADDED;
+        status = take_added(&r->object, &slot, &column, err);
+        break;
+    case HE_OBJECT_DROPPED:
+        out->column = HE_COL_COLUMN_DROPPED;
+        status = take_dropped(&r->object, mesh, named, &slot, err);
+        break;
+    case HE_OBJECT_REPLACED:
+        out->column = HE_COL_REPLACED;
+        status = delta->count > 0 || r->changes > 0
+                     ? he_refuse_at(&r->object, err, "a replace is the only change of its edit")
+                     : take_replaced(&r->object, out, &content, err);
+        break;
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    if (r->kind != HE_OBJECT_REPLACED) {
+        out->row = slot;
+        if (slot < he_mesh_columns(mesh)) {
+            he_bits_set(named, slot);
+        }
+    }
+    out->before = (uint32_t)delta->object_count;
+    delta->objects[delta->object_count++] = content != NULL ? (void *)content : (void *)column;
+    return HE_OK;
+}
+
+static he_status take_changes(edit_reader *r, const he_mesh *mesh, he_delta *delta, he_error *err)
+{
+    uint64_t *named = he_bits_new(he_mesh_columns(mesh));
+    he_status status = named == NULL ? he_fail_plain(err, HE_NO_MEMORY, "no memory to read an edit")
+                                     : he_delta_reserve(delta, (size_t)r->changes, 0, err);
+    while (status == HE_OK && r->changes > 0) {
+        he_record record;
+        status = next(r, &record, err);
+        if (status == HE_OK && r->code == HE_CODE_OBJECT) {
+            status = take_object(r, mesh, named, delta, &record, err);
+        }
+        if (status == HE_OK) {
+            delta->records[delta->count++] = record;
+        }
+    }
+    if (status == HE_OK && he_left(&r->c) > 0) {
+        status = he_refuse_at(&r->c, err, "bytes follow the last change");
+    }
+    he_mem_free(named);
+    return status;
+}
+
+/* An attribute that comes has no more rows than its domain will have. */
+static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
+{
+    switch (column->domain) {
+    case HE_VERTEX:
+    case HE_EDGE:
+    case HE_FACE:
+        return column->rows <= issued[column->domain];
+    case HE_HALFEDGE:
+        return column->rows <= 2 * (size_t)issued[HE_EDGE];
+    case HE_MESH_KIND:
+    case HE_KIND_COUNT:
+        break;
+    }
+    return column->rows <= 1;
+}
+
+/* High-water marks only rise, by rows that the edit writes; a content has its own. */
+static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
+                             const uint32_t issued[HE_KIND_COUNT], he_error *err)
+{
+    static const he_kind tables[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    bool whole = delta->count > 0 && delta->records[0].column == HE_COL_REPLACED;
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+        uint32_t mark = issued[tables[i]], now = he_mesh_issued(mesh, tables[i]);
+        bool good = whole ? mark == he_content_issued(delta->objects[0], tables[i])
+                          : mark >= now && mark - now <= delta->count && mark <= HE_MAX_ROWS;
+        if (!good) {
+            return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0,
+                              "an edit of %zu changes issues no %s up to %u", delta->count,
+                              he_kind_plural(tables[i]), mark);
+        }
+    }
+    for (size_t i = 0; i < delta->count && delta->object_count > 0; i++) {
+        const he_record *r = &delta->records[i];
+        if (r->column == HE_COL_COLUMN_ADDED && !fits(delta->objects[r->before], issued)) {
+            return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0,
+                              "the attribute that change %zu adds has rows without elements", i);
+        }
+    }
+    return HE_OK;
+}
+
+/* Where the bytes of a change begin, in an edit that was read without a fault. */
+static uint64_t place_of(const unsigned char *bytes, size_t size, size_t change)
+{
+    edit_reader r;
+    he_record record;
+    he_status status = begin(&r, bytes, size, NULL);
+    for (size_t i = 0; i < change && status == HE_OK; i++) {
+        status = next(&r, &record, NULL);
+    }
+    return (uint64_t)(r.c.at - bytes);
+}
+
+he_status he_stored_edit_forward(const unsigned char *bytes, size_t size,
+                                 const uint32_t issued[HE_KIND_COUNT], he_mesh *mesh,
+                                 he_delta **out, he_error *err)
+{
+    edit_reader r;
+    size_t refused = SIZE_MAX;
+    he_status status = begin(&r, bytes, size, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    he_delta *delta = he_delta_new();
+    status = delta == NULL ? he_fail_plain(err, HE_NO_MEMORY, "no memory to read an edit")
+                           : take_changes(&r, mesh, delta, err);
+    if (status == HE_OK) {
+        status = check_marks(delta, mesh, issued, err);
+    }
+    if (status == HE_OK) {
+        status = he_delta_forward(delta, mesh, issued, &refused, err);
+    }
+    if (status != HE_OK) {
+        if (refused != SIZE_MAX && err != NULL) {
+            err->place = HE_PLACE_BYTE;
+            err->at = place_of(bytes, size, refused);
+        }
+        he_delta_free(delta);
+        return status;
+    }
+    he_delta_trim(delta);
+    *out = delta;
+    return HE_OK;
+}

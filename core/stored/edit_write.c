@@ -1,0 +1,210 @@
+/* A delta becomes the bytes of stored.h. */
+#include "mesh/content.h"
+#include "stored/attribute_code.h"
+#include "stored/edit_code.h"
+#include "stored/stored.h"
+
+#include <assert.h>
+
+static he_code code_of(const he_record *r)
+{
+    switch ((he_col)r->column) {
+    case HE_COL_NEXT:
+        return HE_CODE_NEXT;
+    case HE_COL_PREV:
+        return HE_CODE_PREV;
+    case HE_COL_ORIGIN:
+        return HE_CODE_ORIGIN;
+    case HE_COL_FACE:
+        return HE_CODE_FACE;
+    case HE_COL_VERTEX_HALFEDGE:
+        return HE_CODE_VERTEX_HALFEDGE;
+    case HE_COL_FACE_HALFEDGE:
+        return HE_CODE_FACE_HALFEDGE;
+    case HE_COL_POSITION:
+        return HE_CODE_POSITION;
+    case HE_COL_PARENT:
+        return HE_CODE_PARENT;
+    case HE_COL_MERGED:
+        return HE_CODE_MERGED;
+    case HE_COL_COLUMN_ADDED:
+    case HE_COL_COLUMN_DROPPED:
+    case HE_COL_REPLACED:
+        return HE_CODE_OBJECT;
+    case HE_COL_ATTRIBUTE:
+        break;
+    }
+    return HE_CODE_ATTRIBUTE;
+}
+
+/* Does a record of the delta replace the content? And do ids change their meaning? */
+static bool replaces(const he_delta *delta, bool *renumbers)
+{
+    bool found = false;
+    *renumbers = false;
+    for (size_t i = 0; i < delta->count && delta->object_count > 0; i++) {
+        if (delta->records[i].column == HE_COL_REPLACED) {
+            found = true;
+            *renumbers |= delta->records[i].row != 0;
+        }
+    }
+    return found;
+}
+
+/* The record after i that adds or drops the same slot's column, or the end. */
+static size_t next_of_slot(const he_delta *delta, size_t i)
+{
+    uint32_t slot = delta->records[i].row;
+    size_t k = i + 1;
+    while (k < delta->count && !(delta->records[k].row == slot &&
+                                 (delta->records[k].column == HE_COL_COLUMN_ADDED ||
+                                  delta->records[k].column == HE_COL_COLUMN_DROPPED))) {
+        k++;
+    }
+    return k;
+}
+
+/* The column that record i added: in the mesh, or in the record that dropped it again. */
+static const he_column *added_column(const he_delta *delta, size_t i, size_t next,
+                                     const he_mesh *after)
+{
+    return next == delta->count ? he_mesh_column(after, delta->records[i].row)
+                                : delta->objects[delta->records[next].before];
+}
+
+static size_t object_room(const he_delta *delta, size_t i, const he_mesh *after)
+{
+    const he_record *r = &delta->records[i];
+    if (r->column == HE_COL_COLUMN_DROPPED) {
+        return HE_OBJECT_HEAD + HE_SLOT_ROOM + HE_HEAD_ROOM;
+    }
+    const he_column *column = added_column(delta, i, next_of_slot(delta, i), after);
+    return HE_OBJECT_HEAD + HE_SLOT_ROOM + HE_HEAD_ROOM + he_labels_bytes(column->labels) +
+           HE_VARINT_BYTES + column->rows * column->row_bytes;
+}
+
+size_t he_stored_edit_bound(const he_delta *delta, const he_mesh *after)
+{
+    bool renumbers;
+    if (replaces(delta, &renumbers)) {
+        return HE_EDIT_HEAD + HE_OBJECT_HEAD + 1 + he_stored_content_bound(after);
+    }
+    size_t bytes = HE_EDIT_HEAD + HE_CHANGE_ROOM * delta->count;
+    for (size_t i = 0; i < delta->count && delta->object_count > 0; i++) {
+        if (code_of(&delta->records[i]) == HE_CODE_OBJECT) {
+            bytes += object_room(delta, i, after);
+        }
+    }
+    return bytes;
+}
+
+static unsigned char *put_tag(unsigned char *to, he_code code, size_t count)
+{
+    return he_put_varint(to, 16 * ((uint64_t)count - 1) + code);
+}
+
+static unsigned char *begin_object(unsigned char *to, he_object kind)
+{
+    to = he_put_byte(put_tag(to, HE_CODE_OBJECT, 1), kind);
+    return he_put_u64(to, 0);
+}
+
+/* Its length is known now. */
+static unsigned char *end_object(unsigned char *from, unsigned char *to)
+{
+    (void)he_put_u64(from - 8, (uint64_t)(to - from));
+    return to;
+}
+
+static unsigned char *put_dropped(unsigned char *to, const he_delta *delta, const he_record *r)
+{
+    unsigned char *from = begin_object(to, HE_OBJECT_DROPPED);
+    to = he_put_varint(from, r->row);
+    return end_object(from, he_head_put(to, delta->objects[r->before]));
+}
+
+/* Values are coded as they were when the column came: what was written to them later in the same
+ * delta follows as changes, and is taken back here. */
+static unsigned char *put_added(unsigned char *to, const he_delta *delta, size_t i,
+                                const he_mesh *after)
+{
+    size_t next = next_of_slot(delta, i);
+    const he_column *column = added_column(delta, i, next, after);
+    unsigned char *from = begin_object(to, HE_OBJECT_ADDED);
+    to = he_put_varint(from, delta->records[i].row);
+    to = he_labels_put(he_head_put(to, column), column->labels);
+    to = he_put_varint(to, column->rows);
+    unsigned char *rows = to;
+    to = he_put_bytes(to, column->data, column->rows * column->row_bytes);
+    for (size_t k = next; k > i + 1; k--) {
+        const he_record *r = &delta->records[k - 1];
+        if (r->column == HE_COL_ATTRIBUTE + delta->records[i].row) {
+            size_t rest = column->row_bytes - 4 * (size_t)r->word;
+            memcpy(rows + (size_t)r->row * column->row_bytes + 4 * (size_t)r->word, &r->before,
+                   rest < 4 ? rest : 4);
+        }
+    }
+    return end_object(from, to);
+}
+
+static unsigned char *put_change(unsigned char *to, he_code code, uint32_t last, const he_record *r)
+{
+    to = he_put_varint(to, he_difference(r->row, last));
+    if (code == HE_CODE_POSITION || code == HE_CODE_ATTRIBUTE) {
+        to = he_put_byte(to, r->word);
+        return he_put_u32(he_put_u32(to, r->before), r->after);
+    }
+    if (code == HE_CODE_PARENT || code == HE_CODE_MERGED) {
+        unsigned kind = 0;
+        while (he_code_kinds[kind] != (he_kind)r->word) {
+            kind++;
+            assert(kind < HE_CODE_KINDS);
+        }
+        return he_put_varint(he_put_byte(to, kind), he_difference(r->before, r->row));
+    }
+    to = he_put_varint(to, he_link_code(r->before, r->row));
+    return he_put_varint(to, he_link_code(r->after, r->row));
+}
+
+static unsigned char *put_changes(unsigned char *to, const he_delta *delta, const he_mesh *after)
+{
+    uint32_t last[HE_CODE_COUNT] = {0};
+    for (size_t i = 0; i < delta->count;) {
+        const he_record *r = &delta->records[i];
+        he_code code = code_of(r);
+        if (code == HE_CODE_OBJECT) {
+            to = r->column == HE_COL_COLUMN_ADDED ? put_added(to, delta, i, after)
+                                                  : put_dropped(to, delta, r);
+            i++;
+            continue;
+        }
+        size_t end = i + 1;
+        while (end < delta->count && delta->records[end].column == r->column) {
+            end++;
+        }
+        to = put_tag(to, code, end - i);
+        if (code == HE_CODE_ATTRIBUTE) {
+            to = he_put_varint(to, r->column - HE_COL_ATTRIBUTE);
+        }
+        for (; i < end; i++) {
+            to = put_change(to, code, last[code], &delta->records[i]);
+            last[code] = delta->records[i].row;
+        }
+    }
+    return to;
+}
+
+size_t he_stored_edit_write(const he_delta *delta, const he_mesh *after, unsigned char *to)
+{
+    bool renumbers, whole = replaces(delta, &renumbers);
+    unsigned char *at = he_put_byte(to, HE_STORED_VERSION);
+    at = he_put_varint(at, whole ? 1 : delta->count);
+    if (whole) {
+        unsigned char *from = begin_object(at, HE_OBJECT_REPLACED);
+        at = he_put_byte(from, renumbers);
+        at = end_object(from, at + he_stored_content_write(after, at));
+    } else {
+        at = put_changes(at, delta, after);
+    }
+    return (size_t)(at - to);
+}
