@@ -4,11 +4,13 @@
 
 #include <stdio.h>
 
-static uint64_t append(void *self, const st_record *record)
+static uint64_t append(void *self, const st_record *records, size_t count)
 {
     slow_journal *journal = self;
     pthread_mutex_lock(&journal->lock);
-    uint64_t position = ++journal->newest;
+    const st_record *record = &records[count - 1];
+    uint64_t position = journal->newest += count;
+    journal->groups++;
     snprintf(journal->key, sizeof journal->key, "%s",
              record->keyed == NULL ? "" : record->keyed->key);
     pthread_cond_broadcast(&journal->changed);

@@ -12,6 +12,7 @@ typedef struct slow_journal {
     pthread_cond_t changed;  /* a record was appended */
     uint64_t newest;         /* position */
     uint64_t durable;        /* told last; UINT64_MAX: nothing waits */
+    uint64_t groups;         /* that were appended */
     char key[32];            /* Idempotency-Key of the newest record's request */
     pthread_mutex_t telling; /* held while the listener is called */
     bool is_heard;

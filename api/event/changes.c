@@ -83,18 +83,6 @@ void api_write_changes(api_out *out, const he_changes *changes)
     }
 }
 
-st_tally api_changes_tally(const he_changes *changes)
-{
-    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
-    st_tally tally = {.known = !changes->replaced};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        tally.created[i] = (uint32_t)changes->created[kinds[i]].count;
-        tally.deleted[i] = (uint32_t)changes->deleted[kinds[i]].count;
-        tally.modified[i] = (uint32_t)changes->modified[kinds[i]].count;
-    }
-    return tally;
-}
-
 const char *api_action_name(st_action action)
 {
     static const char *const names[] = {

@@ -15,9 +15,6 @@ void api_write_results(api_out *out, const he_op *op, const he_results *results)
  * "replaced":true where the content was changed as a whole and the sets are empty. */
 void api_write_changes(api_out *out, const he_changes *changes);
 
-/* How many of each, for the history; not known where the content was changed as a whole. */
-st_tally api_changes_tally(const he_changes *changes);
-
 /* "edit", "undo", "redo", "replace". */
 const char *api_action_name(st_action action);
 

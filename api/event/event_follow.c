@@ -14,7 +14,7 @@ static void render(const st_mesh_info *info, const st_record *record, api_text *
     } else if (record->delta == NULL) {
         api_event_metadata(text, info);
     } else {
-        api_event_edit(text, info, record->action, record->content, record->delta, record->undone);
+        api_event_edit(text, info, record);
     }
 }
 

@@ -78,16 +78,15 @@ static void begin_edit(api_out *out, const st_mesh_info *info)
 }
 
 /* False when it cannot be said: it would be too long, or memory is out. */
-static bool write_edit(api_text *data, const st_mesh_info *info, st_action action,
-                       const he_mesh *content, const he_delta *delta, const he_changes *changes,
-                       bool undone)
+static bool write_edit(api_text *data, const st_mesh_info *info, const st_record *record,
+                       const he_changes *changes)
 {
     api_out out;
     api_out_init(&out, data);
     begin_edit(&out, info);
-    api_out_key_string(&out, "action", api_action_name(action));
+    api_out_key_string(&out, "action", api_action_name(record->action));
     api_write_changes(&out, changes);
-    if (api_write_values(&out, content, delta, undone, NULL) != HE_OK) {
+    if (api_write_values(&out, record->content, record->delta, record->undone, NULL) != HE_OK) {
         return false;
     }
     api_out_object_end(&out);
@@ -118,22 +117,34 @@ void api_event_stale(api_text *text, const st_mesh_info *info)
     api_text_clear(&data);
 }
 
-void api_event_edit(api_text *text, const st_mesh_info *info, st_action action,
-                    const he_mesh *content, const he_delta *delta, bool undone)
+/* What the record's delta comes to; NULL where that cannot be said. */
+static const he_changes *changes_of(const st_record *record, he_changes *found)
+{
+    if (record->delta->count > API_MAX_EVENT_ROWS) {
+        return NULL;
+    }
+    if (record->changes != NULL) {
+        return record->changes;
+    }
+    he_status status = he_changes_find(record->content, record->delta, 0, record->delta->count,
+                                       record->undone, found, NULL);
+    return status == HE_OK ? found : NULL;
+}
+
+void api_event_edit(api_text *text, const st_mesh_info *info, const st_record *record)
 {
     api_text data = {.maximum = API_MAX_EVENT};
-    he_changes changes = {0};
-    bool found = delta->count <= API_MAX_EVENT_ROWS &&
-                 he_changes_find(content, delta, 0, delta->count, undone, &changes, NULL) == HE_OK;
-    if (found && changes.replaced) {
+    he_changes found = {0};
+    const he_changes *changes = changes_of(record, &found);
+    if (changes != NULL && changes->replaced) {
         api_event_resync(text, info->incarnation, info->revision, "replaced");
     } else {
-        if (!found || !write_edit(&data, info, action, content, delta, &changes, undone)) {
+        if (changes == NULL || !write_edit(&data, info, record, changes)) {
             write_stale(&data, info);
         }
         add_edit(text, info, &data);
     }
-    he_changes_clear(&changes);
+    he_changes_clear(&found);
     api_text_clear(&data);
 }
 

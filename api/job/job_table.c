@@ -5,6 +5,7 @@
 #include "api/json/problem.h"
 #include "base/mem.h"
 #include "store/followers.h"
+#include "store/write.h"
 #include "system/clock.h"
 #include "system/random.h"
 

@@ -70,7 +70,7 @@ typedef struct api_job_work {
     void (*free)(void *self);
     double seconds; /* about how long it takes */
     st_mesh *about; /* whose listeners are told, held by the work; NULL: none */
-    bool claims;    /* the work has claimed that mesh: see st_claim */
+    bool claims;    /* the work has claimed that mesh: store/write.h */
 } api_job_work;
 
 /* Takes `work` and fills in what is known of the job; or ST_TOO_MANY when too many wait,

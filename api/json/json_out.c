@@ -162,6 +162,26 @@ void api_out_u64(api_out *out, uint64_t value)
     }
 }
 
+size_t api_out_later(api_out *out)
+{
+    begin_value(out);
+    size_t at = out->text->length;
+    char *room = api_text_room(out->text, HE_NUMBER_TEXT);
+    if (room != NULL) {
+        memset(room, ' ', HE_NUMBER_TEXT);
+        out->text->length += HE_NUMBER_TEXT;
+    }
+    return at;
+}
+
+void api_out_fill(api_text *text, size_t at, uint64_t value)
+{
+    assert(!text->failed && at + HE_NUMBER_TEXT <= text->length);
+    size_t end = at + HE_NUMBER_TEXT, used = he_u64_print(value, text->bytes + at);
+    memmove(text->bytes + at + used, text->bytes + end, text->length - end);
+    text->length -= HE_NUMBER_TEXT - used;
+}
+
 void api_out_i64(api_out *out, int64_t value)
 {
     begin_value(out);

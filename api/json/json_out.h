@@ -55,6 +55,10 @@ void api_out_pairs(api_out *out, const uint32_t *ids, size_t count);
 void api_out_vec3(api_out *out, he_vec3 value);
 /* Seconds since 1970 UTC as "2026-01-31T12:00:00.000Z". */
 void api_out_time(api_out *out, double seconds);
+/* Leaves a place for a whole number that is known later, and returns where it is. Each is filled,
+ * the last one first, after which the text may be sent; filling cannot fail. */
+size_t api_out_later(api_out *out);
+void api_out_fill(api_text *text, size_t at, uint64_t value);
 /* One whole JSON value that is text already. */
 void api_out_raw(api_out *out, const char *json, size_t length);
 

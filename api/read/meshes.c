@@ -108,15 +108,16 @@ void api_mesh_patch(api_exchange *x)
             return;
         }
     }
-    he_delta *delta;
-    if (api_write_begin(x, NULL, &delta) == NULL) {
+    if (!api_write_begin(x, NULL)) {
         return;
     }
     if (name != NULL && strcmp(name, x->info.name) != 0) {
-        st_write_rename(x->mesh, name, &x->info);
+        st_write_rename(&x->write, name);
+        (void)api_write_commit(x, NULL);
+    } else {
+        st_write_abort(&x->write);
+        api_publish(x, 204);
     }
-    st_write_end(x->mesh);
-    api_publish(x, 204);
     api_answer_etag(x, "summary");
     if (!api_answer_minimal(x)) {
         api_answer_summary(x);
@@ -126,17 +127,12 @@ void api_mesh_patch(api_exchange *x)
 void api_mesh_delete(api_exchange *x)
 {
     /* The preconditions are those of any write. */
-    he_delta *delta;
-    if (api_write_begin(x, NULL, &delta) == NULL) {
+    if (!api_write_begin(x, NULL)) {
         return;
     }
-    st_status status = st_remove(x->mesh, &x->info);
-    st_write_end(x->mesh);
-    if (status == ST_OK) {
-        api_answer_empty(x, 204);
-    } else {
-        api_fail_store(x, status);
-    }
+    st_write_remove(&x->write);
+    (void)api_write_commit(x, NULL);
+    api_answer_empty(x, 204);
 }
 
 static const char *const copy_members[] = {"id", "name", NULL};
@@ -198,7 +194,7 @@ static void copy(api_exchange *x)
     }
     he_mesh_watch(fresh, NULL);
     st_status stored = st_create(x->store, r->id, r->name != NULL ? r->name : x->info.name, fresh,
-                                 x->claim, &made);
+                                 x->keyed, &made);
     if (stored != ST_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);

@@ -227,31 +227,56 @@ bool api_preconditions_hold(api_exchange *x, const uint64_t *expected)
     return true;
 }
 
-he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **delta)
+static bool read_expected(const api_in *expected, uint64_t *revision)
+{
+    return expected == NULL || api_in_u64(expected, 1, (uint64_t)1 << 53, revision);
+}
+
+/* A refusal, too, shows the state it was found in. */
+static bool write_began(api_exchange *x, st_status status)
+{
+    x->info = x->write.info;
+    x->has_info = status != ST_ABSENT;
+    if (status == ST_OK && x->info.busy && !(x->route->flags & API_INTERRUPTS)) {
+        st_write_abort(&x->write);
+        status = ST_BUSY;
+    }
+    return status == ST_OK || api_fail_store(x, status);
+}
+
+bool api_write_begin(api_exchange *x, const api_in *expected)
 {
     uint64_t revision = 0;
-    if (expected != NULL && !api_in_u64(expected, 1, (uint64_t)1 << 53, &revision)) {
-        return NULL;
+    if (!read_expected(expected, &revision) ||
+        !write_began(x, st_write_begin(x->mesh, x->keyed, &x->write))) {
+        return false;
     }
-    he_mesh *mesh = st_write_begin(x->mesh, &x->info, delta);
-    if (mesh == NULL) {
-        api_fail_memory(x);
-        return NULL;
+    if (api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
+        return true;
     }
-    /* A refusal, too, shows the state it was found in. */
-    x->has_info = !x->info.removed;
-    bool good = x->has_info || api_fail_store(x, ST_ABSENT);
-    if (good && x->info.busy && !(x->route->flags & API_INTERRUPTS)) {
-        good = api_fail_store(x, ST_BUSY);
+    st_write_abort(&x->write);
+    return false;
+}
+
+bool api_write_claim(api_exchange *x, const api_in *expected)
+{
+    uint64_t revision = 0;
+    return read_expected(expected, &revision) &&
+           write_began(x, st_write_claim(x->mesh, x->keyed, &x->write)) &&
+           /* They hold until the claim ends: no other write can change the mesh. */
+           api_preconditions_hold(x, expected == NULL ? NULL : &revision);
+}
+
+bool api_write_commit(api_exchange *x, const char *ops)
+{
+    st_status status = st_write_commit(&x->write, ops);
+    if (status != ST_OK) {
+        x->has_info = false;
+        return api_fail_store(x, status);
     }
-    if (good && api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
-        if (x->claim != NULL) {
-            st_write_keyed(x->mesh, x->claim);
-        }
-        return mesh;
-    }
-    st_write_end(x->mesh);
-    return NULL;
+    x->info = x->write.info;
+    api_publish(x, 204);
+    return true;
 }
 
 /* Of the present, with x->info; NULL with the problem filled. */

@@ -36,6 +36,7 @@
 #include "api/request/api.h"
 #include "api/request/route.h"
 #include "base/siphash.h"
+#include "store/write.h"
 
 struct api_service {
     st_store *store;
@@ -76,7 +77,7 @@ struct api_exchange {
     char allow[API_ALLOW]; /* methods of a path that does not take this one */
     const char *key;       /* Idempotency-Key, NULL without one or where the row takes none */
     he_siphash hash;       /* of a keyed request */
-    st_keyed *claim;       /* on the key; NULL: none, or it was settled */
+    st_keyed *keyed;       /* the request with its key; NULL: none, or it was settled */
     api_coding coding_in;  /* of the body */
     api_codings codings;   /* the answer may have */
 
@@ -96,7 +97,7 @@ struct api_exchange {
     bool has_info;
     bool shows_all; /* the answer may show more of the store than `info`: see api_answer's shown */
     uint64_t since; /* all records up to here were durable when the exchange began */
-    bool claimed;   /* x->mesh is, by this exchange: see st_claim */
+    st_write write; /* of the mesh; a claim outlives the handler that began it */
     st_snapshot *past; /* the earlier revision the request is about; NULL: the present, or taken */
 
     /* --- the handler's own, freed by `free_state` with the exchange --- */
@@ -143,10 +144,16 @@ const char *api_header_of(const api_exchange *x, const char *name);
  * has to run again in api_work. */
 const he_mesh *api_read_begin(api_exchange *x);
 void api_read_end(api_exchange *x);
-/* The same for writing: exclusive, preconditions checked (If-Match, If-None-Match). `expected` is
- * a cursor at the body's expected_revision or NULL. On NULL the problem is filled and no lock is
- * held. Ended by the store's write_commit, write_abort or write_end. */
-he_mesh *api_write_begin(api_exchange *x, const api_in *expected, he_delta **delta);
+/* Begins x->write, with x->info filled and preconditions checked (If-Match, If-None-Match).
+ * `expected` is a cursor at the body's expected_revision or NULL. On false the problem is filled
+ * and no lock is held. Ended by api_write_commit or st_write_abort. */
+bool api_write_begin(api_exchange *x, const api_in *expected);
+/* The same of a claim, for a long edit that works without the lock (store/write.h): it is ended
+ * with the exchange if not before. */
+bool api_write_claim(api_exchange *x, const api_in *expected);
+/* Commits x->write and publishes (api_publish) 204. False, with the problem filled, where a claimed
+ * mesh was removed meanwhile. */
+bool api_write_commit(api_exchange *x, const char *ops);
 /* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
 /* An immutable copy of the present revision, or of the one api_read_begin would give, with x->info

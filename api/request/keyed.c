@@ -46,7 +46,7 @@ void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
 
 static void replay(api_exchange *x)
 {
-    const st_kept *kept = st_keyed_answer(x->claim);
+    const st_kept *kept = st_keyed_answer(x->keyed);
     x->info.position = kept->position;
     x->info.incarnation = kept->incarnation;
     x->has_info = true;
@@ -64,7 +64,7 @@ static void replay(api_exchange *x)
     }
 }
 
-bool api_keyed_claim(api_exchange *x)
+bool api_keyed_find(api_exchange *x)
 {
     if (x->key == NULL) {
         return true;
@@ -72,7 +72,7 @@ bool api_keyed_claim(api_exchange *x)
     st_key key = {.text = x->key};
     he_siphash_end(&x->hash, key.digest);
     st_mesh *mesh = x->route->flags & API_KEYED_NEW ? NULL : x->mesh;
-    switch (st_keyed_begin(x->store, mesh, &key, &x->claim)) {
+    switch (st_keyed_begin(x->store, mesh, &key, &x->keyed)) {
     case ST_KEYED_NEW:
         return true;
     case ST_KEYED_KEPT:
@@ -103,7 +103,7 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
 void api_keyed_settle(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
-    if (x->claim == NULL || st_keyed_answer(x->claim)->status != 0) {
+    if (x->keyed == NULL || st_keyed_answer(x->keyed)->status != 0) {
         return; /* without a key, or a replay, whose answer is lent until the end */
     }
     if (answer->status < 300) {
@@ -118,8 +118,8 @@ void api_keyed_settle(api_exchange *x)
             memcpy(kept.etag, etag, strlen(etag) + 1);
         }
         memcpy(kept.id, x->info.id, sizeof kept.id);
-        st_keyed_keep(x->claim, &kept);
+        st_keyed_keep(x->keyed, &kept);
     }
-    st_keyed_end(x->claim);
-    x->claim = NULL;
+    st_keyed_end(x->keyed);
+    x->keyed = NULL;
 }

@@ -19,7 +19,7 @@
 bool api_keyed_begin(api_exchange *x);
 void api_keyed_body(api_exchange *x, const char *bytes, size_t length);
 /* Before the handler. False when it must not run: the first answer was given again, or refused. */
-bool api_keyed_claim(api_exchange *x);
+bool api_keyed_find(api_exchange *x);
 /* The answer is complete: keep it, or let the key be used again. */
 void api_keyed_settle(api_exchange *x);
 

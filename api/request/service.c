@@ -116,12 +116,11 @@ static bool varies(const api_route *route)
            !(route->flags & API_FIXED);
 }
 
-/* Whoever has the answer in hand may write at once. */
+/* A client that has the answer may write at once. */
 static void end_claim(api_exchange *x)
 {
-    if (x->claimed) {
-        st_unclaim(x->mesh);
-        x->claimed = false;
+    if (x->write.claimed) {
+        st_write_abort(&x->write);
     }
 }
 
@@ -383,7 +382,7 @@ api_exchange *api_detach(api_exchange *x)
                                .free = free_job,
                                .seconds = api_load_of(x).seconds,
                                .about = x->mesh,
-                               .claims = x->claimed};
+                               .claims = x->write.claimed};
     const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
     st_status status = api_job_submit(jobs, &work, x->route->name, mesh == NULL ? "" : mesh, &job);
     if (status == ST_OK) {
@@ -573,7 +572,7 @@ api_step api_end(api_exchange *x)
     if (x->phase != API_PHASE_BODY) {
         return API_READY;
     }
-    if (!end_coding(x) || !api_keyed_claim(x)) {
+    if (!end_coding(x) || !api_keyed_find(x)) {
         return finish(x);
     }
     /* Reading a large document takes its time too. */
@@ -628,8 +627,8 @@ void api_free(api_exchange *x)
     if (x->past != NULL) {
         st_snapshot_release(x->past);
     }
-    if (x->claim != NULL) {
-        st_keyed_end(x->claim);
+    if (x->keyed != NULL) {
+        st_keyed_end(x->keyed);
     }
     if (x->mesh != NULL) {
         st_release(x->mesh);

@@ -21,6 +21,8 @@ typedef struct writing {
     bool same; /* one value for all */
     api_in at; /* where a refusal about the values points */
     bool has_at;
+    bool effect;        /* the values differ from those there were */
+    size_t revision_at; /* in the answer, which is told by the commit */
 } writing;
 
 static void free_writing(void *state)
@@ -48,14 +50,16 @@ static writing *begin(api_exchange *x)
 
 /* --- publishing --- */
 
-/* The whole answer is written before anything is published, so that no failure follows it. */
-static bool write_answer(api_exchange *x, const writing *w, const he_mesh *mesh,
-                         const he_changes *changes, uint64_t revision, bool undoable)
+/* The whole answer is written before anything is published, so that no failure follows it; but the
+ * revision, which the commit tells. */
+static bool write_answer(api_exchange *x, writing *w)
 {
+    const he_mesh *mesh = x->write.content;
     const he_column *column = he_mesh_find_column(mesh, x->kind, x->attribute);
     api_out *out = &x->out;
     api_out_object_begin(out);
-    api_out_key_u64(out, "revision", revision);
+    api_out_key(out, "revision");
+    w->revision_at = api_out_later(out);
     if (w->dry_run) {
         api_out_key_bool(out, "dry_run", true);
     }
@@ -65,40 +69,34 @@ static bool write_answer(api_exchange *x, const writing *w, const he_mesh *mesh,
         api_write_column(out, mesh, column);
         api_out_object_end(out);
     }
-    api_write_changes(out, changes);
-    if (!undoable) {
+    api_write_changes(out, &x->write.changes);
+    if (w->effect && !st_write_undoable(&x->write)) {
         api_out_key_bool(out, "undoable", false);
     }
     api_out_object_end(out);
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* End what api_write_begin began, after `good` work. */
-static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, const he_delta *delta,
-                    const char *op, int status, bool good)
+/* Ends what api_write_begin began, after `good` work. */
+static void publish(api_exchange *x, writing *w, const char *op, int status, bool good)
 {
-    he_changes changes = {0};
     he_error err = {0};
-    if (good && he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
+    if (good && st_write_changes(&x->write, &err) != HE_OK) {
         good = api_fail_core(x, &err);
     }
-    bool effect = good && !he_changes_none(&changes);
-    bool undoable = !effect || st_write_undoable(x->mesh);
-    good =
-        good && write_answer(x, w, mesh, &changes, x->info.revision + (effect ? 1 : 0), undoable);
-    if (good && effect && !w->dry_run) {
-        st_tally tally = api_changes_tally(&changes);
-        st_write_tally(x->mesh, &tally);
-        st_write_commit(x->mesh, op, false, &x->info);
+    w->effect = good && !he_changes_none(&x->write.changes);
+    good = good && write_answer(x, w);
+    if (good && w->effect && !w->dry_run) {
+        (void)api_write_commit(x, op);
         api_publish(x, status == 201 ? 201 : 204);
         api_attribute_path(x, x->location);
     } else {
-        st_write_abort(x->mesh);
+        st_write_abort(&x->write);
     }
-    he_changes_clear(&changes);
     if (!good) {
         return;
     }
+    api_out_fill(&x->text, w->revision_at, x->info.revision + (w->dry_run && w->effect ? 1 : 0));
     if (!w->dry_run) {
         api_answer_etag(x, "attribute");
         if (status == 201) {
@@ -110,9 +108,9 @@ static void publish(api_exchange *x, const writing *w, const he_mesh *mesh, cons
     }
 }
 
-static he_mesh *write_begin(api_exchange *x, writing *w, he_delta **delta)
+static he_mesh *write_begin(api_exchange *x, writing *w)
 {
-    return api_write_begin(x, w->has_expected ? &w->expected : NULL, delta);
+    return api_write_begin(x, w->has_expected ? &w->expected : NULL) ? x->write.content : NULL;
 }
 
 /* A refusal about the values: 422, since it takes this mesh to see it. */
@@ -325,11 +323,10 @@ static size_t count_columns(const he_mesh *mesh)
 void api_attribute_put(api_exchange *x)
 {
     writing *w = x->state;
-    he_delta *delta = NULL;
     if (!(w->octets ? decode_octets(x, w) : decode_json(x, w))) {
         return;
     }
-    he_mesh *mesh = write_begin(x, w, &delta);
+    he_mesh *mesh = write_begin(x, w);
     if (mesh == NULL) {
         return;
     }
@@ -345,8 +342,7 @@ void api_attribute_put(api_exchange *x)
     if (good) {
         w->column = NULL;
     }
-    publish(x, w, mesh, delta, is_new ? "attribute_create" : "attribute_replace",
-            is_new ? 201 : 200, good);
+    publish(x, w, is_new ? "attribute_create" : "attribute_replace", is_new ? 201 : 200, good);
 }
 
 /* --- PATCH --- */
@@ -426,14 +422,13 @@ void api_attribute_patch(api_exchange *x)
     static const char *const members[] = {"ids", "values", "value", "dry_run", "expected_revision",
                                           NULL};
     writing *w = begin(x);
-    he_delta *delta = NULL;
     if (w == NULL || !api_in_only(&x->root, members) || !read_common(w, &x->root)) {
         return;
     }
-    he_mesh *mesh = write_begin(x, w, &delta);
+    he_mesh *mesh = write_begin(x, w);
     if (mesh != NULL) {
         bool good = patch(x, w, mesh);
-        publish(x, w, mesh, delta, "attribute_write", 200, good);
+        publish(x, w, "attribute_write", 200, good);
     }
 }
 
@@ -442,8 +437,7 @@ void api_attribute_patch(api_exchange *x)
 void api_attribute_delete(api_exchange *x)
 {
     writing *w = begin(x);
-    he_delta *delta = NULL;
-    he_mesh *mesh = w == NULL ? NULL : write_begin(x, w, &delta);
+    he_mesh *mesh = w == NULL ? NULL : write_begin(x, w);
     if (mesh == NULL) {
         return;
     }
@@ -451,5 +445,5 @@ void api_attribute_delete(api_exchange *x)
     const he_column *column = api_attribute_find(x, mesh);
     bool good = column != NULL &&
                 (he_attribute_drop(mesh, column, &err) == HE_OK || api_fail_core(x, &err));
-    publish(x, w, mesh, delta, "attribute_delete", 200, good);
+    publish(x, w, "attribute_delete", 200, good);
 }

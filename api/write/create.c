@@ -84,7 +84,7 @@ static bool build(api_exchange *x, made *out)
 static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
     const char *name = api_upload_name(x);
-    return st_create(x->store, id, name == NULL ? "" : name, mesh, x->claim, &x->mesh);
+    return st_create(x->store, id, name == NULL ? "" : name, mesh, x->keyed, &x->mesh);
 }
 
 static void create(api_exchange *x)
@@ -106,8 +106,7 @@ static void create(api_exchange *x)
 /* False, with nothing done, where the mesh was removed meanwhile. */
 static bool replace(api_exchange *x, const made *m)
 {
-    he_delta *delta;
-    if (api_write_begin(x, NULL, &delta) == NULL) {
+    if (!api_write_begin(x, NULL)) {
         bool removed = x->problem.code == API_NO_SUCH_MESH;
         if (!removed) {
             he_mesh_free(m->mesh);
@@ -115,12 +114,11 @@ static bool replace(api_exchange *x, const made *m)
         return !removed;
     }
     const char *name = api_upload_name(x);
-    st_write_replace(x->mesh, m->mesh, &x->info);
+    st_write_replace(&x->write, m->mesh);
     if (name != NULL) {
-        st_write_rename(x->mesh, name, &x->info);
+        st_write_rename(&x->write, name);
     }
-    st_write_end(x->mesh);
-    api_publish(x, 204);
+    (void)api_write_commit(x, NULL);
     api_answer_etag(x, "summary");
     if (!api_answer_minimal(x)) {
         api_answer_stored(x, 200, &m->summary, api_upload_write_report);

@@ -38,9 +38,8 @@ typedef struct edits {
     api_text results;  /* objects of `results`, comma-separated */
     api_out out;       /* writes them */
     char ops[ST_ENTRY_OPS];
-    /* of a claim */
-    const he_mesh *content;
-    he_delta *delta;
+    bool effect;        /* the operations came to something */
+    size_t revision_at; /* in the answer, which is told by the commit */
 } edits;
 
 /* Of a long edit: the copy, then the operations, then what they changed; and the answer. */
@@ -282,27 +281,31 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
     return true;
 }
 
-/* The whole answer is written before anything is published, so that no failure follows it. */
-static void write_answer(api_exchange *x, const edits *e, const he_changes *changes,
-                         uint64_t revision, bool undoable)
+/* The whole answer is written before anything is published, so that no failure follows it; but the
+ * revision, which the commit tells. */
+static bool write_answer(api_exchange *x, edits *e)
 {
     api_out *out = &x->out;
     api_out_object_begin(out);
-    api_out_key_u64(out, "revision", revision);
+    api_out_key(out, "revision");
+    e->revision_at = api_out_later(out);
     if (e->dry_run) {
         api_out_key_bool(out, "dry_run", true);
     }
     api_out_key(out, "results");
     api_out_raw(out, e->results.bytes, e->results.length);
-    api_write_changes(out, changes);
-    if (!undoable) {
+    api_write_changes(out, &x->write.changes);
+    if (e->effect && !st_write_undoable(&x->write)) {
         api_out_key_bool(out, "undoable", false);
     }
     api_out_object_end(out);
+    return !x->text.failed || api_fail_memory(x);
 }
 
+/* A rehearsal tells the revision that there would be. */
 static void answer(api_exchange *x, const edits *e)
 {
+    api_out_fill(&x->text, e->revision_at, x->info.revision + (e->dry_run && e->effect ? 1 : 0));
     if (!e->dry_run) {
         api_answer_etag(x, "edits");
     }
@@ -311,14 +314,13 @@ static void answer(api_exchange *x, const edits *e)
     }
 }
 
-/* What the operations make of the mesh. True when that is to be published, with the answer written;
- * `*barrier` says whether it ends the undo stack. */
-static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta, bool *barrier)
+/* What the operations make of x->write.content. True when that is to be committed. */
+static bool edit(api_exchange *x, edits *e)
 {
-    he_changes changes = {0};
+    he_mesh *mesh = x->write.content;
+    const he_delta *delta = x->write.delta;
     he_error err = {0};
     uint64_t ids = issued(mesh);
-    bool publish = false;
     api_out_array_begin(&e->out);
     if (!run_ops(x, e, mesh, delta)) {
         return false;
@@ -329,25 +331,12 @@ static bool edit(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta
     }
     e->paid = UINT64_MAX; /* what follows depends on the rows of the delta, which were counted */
     he_watch_span(&x->watch, CHANGES_SHARE);
-    if (he_changes_find(mesh, delta, 0, delta->count, false, &changes, &err) != HE_OK) {
+    if (st_write_changes(&x->write, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
     /* An edit without effect makes no revision, unless it used up ids that its answer names. */
-    bool effect = !he_changes_none(&changes) || issued(mesh) != ids;
-    bool undoable = !changes.renumbered && st_write_undoable(x->mesh);
-    write_answer(x, e, &changes, x->info.revision + (effect ? 1 : 0), undoable || !effect);
-    if (x->text.failed) {
-        api_fail_memory(x);
-    } else {
-        publish = effect && !e->dry_run;
-    }
-    if (publish) {
-        st_tally tally = api_changes_tally(&changes);
-        st_write_tally(x->mesh, &tally);
-    }
-    *barrier = changes.renumbered;
-    he_changes_clear(&changes);
-    return publish;
+    e->effect = !he_changes_none(&x->write.changes) || issued(mesh) != ids;
+    return write_answer(x, e) && e->effect && !e->dry_run;
 }
 
 /* --- work that turns out to be long --- */
@@ -412,7 +401,7 @@ static bool foresee(api_exchange *x, edits *e)
         !decode(e, in, NULL, &call)) {
         return false;
     }
-    if (he_op_foresee(call.op, e->content, call.args, &err) == HE_OK) {
+    if (he_op_foresee(call.op, st_write_claimed(&x->write), call.args, &err) == HE_OK) {
         return true;
     }
     api_fail_core(x, &err);
@@ -425,63 +414,46 @@ static bool foresee(api_exchange *x, edits *e)
 /* Before the client is answered, so that it knows whether the mesh is its own. */
 static bool claim(api_exchange *x, edits *e)
 {
-    uint64_t expected = 0;
-    if (e->has_expected && !api_in_u64(&e->expected, 1, (uint64_t)1 << 53, &expected)) {
-        return false;
-    }
-    st_status status = st_claim(x->mesh, &e->content, &e->delta, &x->info);
-    x->has_info = status != ST_ABSENT;
-    if (status != ST_OK) {
-        return api_fail_store(x, status);
-    }
-    x->claimed = true;
-    /* They hold until the claim ends: nobody else can change the mesh. */
-    return api_preconditions_hold(x, e->has_expected ? &expected : NULL) && foresee(x, e);
+    return api_write_claim(x, e->has_expected ? &e->expected : NULL) && foresee(x, e);
 }
 
-static bool publish_copy(api_exchange *x, const edits *e, he_mesh *copy, bool barrier)
+/* Ends what limit_work began; `good`: the write is to be committed. */
+static void end_edit(api_exchange *x, edits *e, bool good)
 {
-    st_status status = st_publish(x->mesh, copy, e->ops, barrier, x->claim, &x->info);
-    x->claimed = false;
-    if (status != ST_OK) {
-        x->has_info = false;
-        return api_fail_store(x, status);
+    if (good) {
+        (void)api_write_commit(x, e->ops);
+    } else if (!x->write.claimed) {
+        st_write_abort(&x->write);
+    } else {
+        st_write_discard_copy(&x->write);
     }
-    api_publish(x, 204);
-    return true;
+    api_others_release(&e->others);
+    if (e->exceeded && !good) {
+        go_on_elsewhere(x, e);
+    } else if (x->problem.code == HE_OK) {
+        answer(x, e);
+    }
 }
 
 static void run_claimed(api_exchange *x)
 {
     edits *e = x->state;
-    he_mesh *copy = NULL;
     he_error err = {0};
-    bool barrier = false;
     /* There is no better place than a job, and none where the client would rather wait. */
     e->unlimited = e->unlimited || x->phase == API_PHASE_JOB || x->prefer.wait >= 0;
     he_watch_span(&x->watch, COPY_SHARE);
     if (!api_others_take(x, &e->others)) {
         return;
     }
-    if (he_mesh_copy_watched(e->content, &x->watch, &copy, &err) != HE_OK) {
+    if (st_write_copy(&x->write, &x->watch, &err) != HE_OK) {
         api_fail_core(x, &err);
         return;
     }
-    he_mesh_expend(copy);
-    he_mesh_record(copy, e->delta);
     limit_work(x, e);
-    bool publish = edit(x, e, copy, e->delta, &barrier);
+    bool good = edit(x, e);
     unlimit_work(x, e);
-    he_mesh_watch(copy, NULL);
-    if (!publish || !publish_copy(x, e, copy, barrier)) {
-        he_mesh_free(copy);
-    }
-    api_others_release(&e->others);
-    if (e->exceeded && !publish) {
-        go_on_elsewhere(x, e);
-    } else if (x->problem.code == HE_OK) {
-        answer(x, e);
-    }
+    he_mesh_watch(x->write.content, NULL);
+    end_edit(x, e, good);
 }
 
 /* From a worker to the pool, from there to a job. */
@@ -492,8 +464,7 @@ static void go_on_elsewhere(api_exchange *x, edits *e)
     start_over(e);
     if (on_worker) {
         api_run_long(x, run, true, 0);
-    } else if (x->claimed || claim(x, e)) {
-        he_delta_empty(e->delta); /* of what was recorded in a copy that is gone */
+    } else if (x->write.claimed || claim(x, e)) {
         e->unlimited = true;
         api_run_long(x, run_claimed, true, 2 * API_PATIENCE);
     }
@@ -502,32 +473,16 @@ static void go_on_elsewhere(api_exchange *x, edits *e)
 static void run(api_exchange *x)
 {
     edits *e = x->state;
-    he_delta *delta = NULL;
-    bool barrier = false;
-    if (!api_others_take(x, &e->others)) {
-        return;
-    }
-    he_mesh *mesh = api_write_begin(x, e->has_expected ? &e->expected : NULL, &delta);
-    if (mesh == NULL) {
+    if (!api_others_take(x, &e->others) ||
+        !api_write_begin(x, e->has_expected ? &e->expected : NULL)) {
         return;
     }
     limit_work(x, e);
-    he_mesh_watch(mesh, &x->watch);
-    bool publish = edit(x, e, mesh, delta, &barrier);
-    he_mesh_watch(mesh, NULL);
+    he_mesh_watch(x->write.content, &x->watch);
+    bool good = edit(x, e);
+    he_mesh_watch(x->write.content, NULL);
     unlimit_work(x, e);
-    if (publish) {
-        st_write_commit(x->mesh, e->ops, barrier, &x->info);
-        api_publish(x, 204);
-    } else {
-        st_write_abort(x->mesh);
-    }
-    api_others_release(&e->others);
-    if (e->exceeded && !publish) {
-        go_on_elsewhere(x, e);
-    } else if (x->problem.code == HE_OK) {
-        answer(x, e);
-    }
+    end_edit(x, e, good);
 }
 
 /* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a

@@ -10,6 +10,7 @@ typedef struct steps {
     bool has_expected;
     uint64_t revision; /* to that of `to`; 0: by count */
     uint32_t count;
+    size_t revision_at, undo_at, redo_at; /* in the answer */
 } steps;
 
 static const char *const members[] = {"expected_revision", "steps", "to_revision", NULL};
@@ -81,71 +82,61 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     api_fail_store(x, status);
 }
 
-/* What all steps come to; none when there are none. */
-static void write_answer(api_exchange *x, const he_changes *changes)
+/* What all steps come to; none when there are none. Written before they are committed, so that no
+ * failure follows; but the numbers that the commit tells. */
+static bool write_answer(api_exchange *x, steps *s)
 {
     api_out *out = &x->out;
     api_out_object_begin(out);
-    api_out_key_u64(out, "revision", x->info.revision);
+    api_out_key(out, "revision");
+    s->revision_at = api_out_later(out);
     api_out_key(out, "results");
     api_out_array_begin(out);
     api_out_array_end(out);
-    api_write_changes(out, changes);
-    api_out_key_u64(out, "undo", x->info.undo);
-    api_out_key_u64(out, "redo", x->info.redo);
+    api_write_changes(out, &x->write.changes);
+    api_out_key(out, "undo");
+    s->undo_at = api_out_later(out);
+    api_out_key(out, "redo");
+    s->redo_at = api_out_later(out);
     api_out_object_end(out);
+    return !x->text.failed || api_fail_memory(x);
 }
 
-/* Take `count` steps and write the answer. */
-static void take(api_exchange *x, const steps *s, const he_mesh *mesh, uint32_t count)
+/* Takes `count` steps and writes the answer. False with the problem filled. */
+static bool take(api_exchange *x, steps *s, uint32_t count)
 {
-    const he_delta **deltas = api_arena_array(&x->arena, count + 1u, sizeof *deltas);
-    he_change_part *parts = api_arena_array(&x->arena, count + 1u, sizeof *parts);
-    he_changes changes = {0};
-    he_error err = {0};
-    if (deltas == NULL || parts == NULL) {
-        api_fail_memory(x);
-        return;
+    st_status status = count == 0 ? ST_OK : st_write_step(&x->write, s->which, count);
+    if (status != ST_OK) {
+        refuse(x, s, status);
+        return false;
     }
-    if (count > 0) {
-        st_status status = st_write_step(x->mesh, s->which, count, deltas, &x->info);
-        if (status != ST_OK) {
-            refuse(x, s, status);
-            return;
-        }
-        api_publish(x, 204);
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        parts[i] = (he_change_part){deltas[i], 0, deltas[i]->count, s->which == ST_UNDO};
-    }
-    if (he_changes_sum(mesh, parts, count, &changes, &err) == HE_OK) {
-        write_answer(x, &changes);
-        he_changes_clear(&changes);
-    } else {
-        api_fail_core(x, &err);
-    }
+    return write_answer(x, s);
 }
 
 static void run(api_exchange *x)
 {
-    const steps *s = x->state;
-    he_delta *recording;
-    he_mesh *mesh = api_write_begin(x, s->has_expected ? &s->expected : NULL, &recording);
-    if (mesh == NULL) {
+    steps *s = x->state;
+    if (!api_write_begin(x, s->has_expected ? &s->expected : NULL)) {
         return;
     }
     uint32_t count = s->count;
     uint64_t bytes;
     st_status status = st_steps_to(x->mesh, s->which, s->revision, &count, &bytes);
-    if (status == ST_OK) {
-        take(x, s, mesh, count);
-    } else {
+    if (status != ST_OK) {
         refuse(x, s, status);
     }
-    st_write_end(x->mesh);
-    if (x->problem.code != HE_OK) {
+    bool good = status == ST_OK && take(x, s, count);
+    if (good && count > 0) {
+        (void)api_write_commit(x, NULL);
+    } else {
+        st_write_abort(&x->write);
+    }
+    if (!good) {
         return;
     }
+    api_out_fill(&x->text, s->redo_at, x->info.redo);
+    api_out_fill(&x->text, s->undo_at, x->info.undo);
+    api_out_fill(&x->text, s->revision_at, x->info.revision);
     api_answer_etag(x, "edits");
     if (!api_answer_minimal(x)) {
         api_answer_json(x, 200);

@@ -54,11 +54,12 @@ typedef struct st_record {
     uint64_t number;   /* of the record, from 1 for each incarnation */
     uint64_t revision; /* the first of a mesh is 1; a rename and the removal repeat the last */
     const char *name;
-    st_action action;       /* ST_REPLACE: `content` holds it all */
-    const he_delta *delta;  /* NULL with ST_REPLACE and for a rename */
-    bool undone;            /* the delta was applied backwards */
-    bool removed;           /* the mesh was deleted; nothing follows */
-    const he_mesh *content; /* the mesh after it, NULL when removed */
+    st_action action;          /* ST_REPLACE: `content` holds it all */
+    const he_delta *delta;     /* NULL with ST_REPLACE and for a rename */
+    bool undone;               /* the delta was applied backwards */
+    const he_changes *changes; /* what the delta comes to; NULL: that was not found */
+    bool removed;              /* the mesh was deleted; nothing follows */
+    const he_mesh *content;    /* the mesh after the group of records, NULL when removed */
     /* The keyed request that made the change, NULL without a key: its key, digest, time, and
      * whether the key is the store's. The answer is written after the change is published; a
      * journal that brings a key back answers what is kept without a body, 201 or 204, with the
@@ -85,8 +86,9 @@ typedef struct st_journal_listener {
 
 typedef struct st_journal {
     void *self;
-    /* Takes note of a change, and returns its position. Neither fails nor waits. */
-    uint64_t (*append)(void *self, const st_record *record);
+    /* Takes a group of records of one mesh, at least one, which become durable together or not at
+     * all. They get positions without a gap; returns the last one's. Neither fails nor waits. */
+    uint64_t (*append)(void *self, const st_record *records, size_t count);
     /* Sets the one listener, and tells it how far the journal is if that is beyond 0. NULL stops;
      * once it returned, no call is under way. */
     void (*listen)(void *self, const st_journal_listener *listener);

@@ -190,7 +190,7 @@ void st_queue_add(st_queue *queue, st_place place, const char *bytes, size_t len
 {
     st_message *message = message_new(bytes, length);
     pthread_mutex_lock(&queue->lock);
-    assert(place.stamp > queue->newest.stamp && !queue->ended);
+    assert(place.stamp >= queue->newest.stamp && !queue->ended);
     queue->newest = place;
     append(queue, message);
     pthread_mutex_unlock(&queue->lock);

@@ -2,7 +2,7 @@
  *
  * A queue is bounded; any number of listeners read its messages, each at its own pace.
  * Messages are bytes; what they mean is their maker's business. Each has a place: a stamp, which
- * grows with every message of a change, and a key, which need not. What is no change is put beside
+ * never falls, and a key, which may. What is no change is put beside
  * the newest one, at its place. Listeners go by numbers, which have no gaps.
  *
  *        floor                                     newest

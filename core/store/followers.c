@@ -56,19 +56,32 @@ static void is_known(st_wait *wait)
     st_release(mesh);
 }
 
-void st_mesh_tell(st_mesh *mesh, const st_record *record)
+void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_record *record,
+                    st_event *out)
 {
-    st_place place = {.stamp = mesh->info.position, .key = record->revision};
-    bool followed = st_queue_is_followed(&mesh->queue);
-    char *bytes = NULL;
-    size_t length = 0;
-    if (followed && !mesh->followers->render(&mesh->info, record, &bytes, &length)) {
-        bytes = NULL;
+    if (!mesh->followers->render(info, record, &out->bytes, &out->length)) {
+        *out = (st_event){NULL, 0};
     }
-    st_queue_add(&mesh->queue, place, bytes, length);
-    he_mem_free(bytes);
-    if (record->removed) {
-        st_queue_end(&mesh->queue);
+}
+
+/* Records of one request are durable together, so that their events have one place. */
+void st_mesh_tell(st_mesh *mesh, const st_record *records, size_t count, st_event *events)
+{
+    bool followed = st_queue_is_followed(&mesh->queue);
+    for (size_t i = 0; i < count; i++) {
+        st_event event = {NULL, 0};
+        if (events != NULL) {
+            event = events[i];
+            events[i] = (st_event){NULL, 0};
+        } else if (followed) {
+            st_event_write(mesh, &mesh->info, &records[i], &event);
+        }
+        st_place place = {.stamp = mesh->info.position, .key = records[i].revision};
+        st_queue_add(&mesh->queue, place, event.bytes, event.length);
+        he_mem_free(event.bytes);
+        if (records[i].removed) {
+            st_queue_end(&mesh->queue);
+        }
     }
     if (followed) {
         allow(mesh);

@@ -1,98 +1,66 @@
-#include "store/stored_mesh.h"
+/* Beginning a write, preparing what it commits, and taking it back. */
+#include "store/mesh_commit.h"
 
-#include "system/clock.h"
 #include "system/memory.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
-he_mesh *st_write_begin(st_mesh *mesh, st_mesh_info *info, he_delta **delta)
+static void begin_recording(st_write *w)
+{
+    st_mesh *mesh = w->mesh;
+    w->delta = st_log_reserve(&mesh->log);
+    if (w->delta != NULL && !w->claimed) {
+        w->content = mesh->content;
+        he_mesh_record(mesh->content, w->delta);
+        w->mark = he_delta_mark(mesh->content);
+    }
+}
+
+/* Under the lock. */
+static st_status begin(st_write *w)
+{
+    const st_mesh *mesh = w->mesh;
+    st_mesh_facts(mesh, &w->info);
+    if (w->info.removed) {
+        return ST_ABSENT;
+    }
+    if (!mesh->claimed) {
+        begin_recording(w);
+        return w->delta != NULL ? ST_OK : ST_NO_MEMORY;
+    }
+    w->content = mesh->content;
+    return w->claimed ? ST_BUSY : ST_OK;
+}
+
+st_status st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out)
 {
     /* What is only kept for later makes room for what is done now. */
     if (st_memory_is_full()) {
         st_store_shed(mesh->store);
     }
+    *out = (st_write){.mesh = mesh, .keyed = keyed};
     pthread_rwlock_wrlock(&mesh->lock);
-    /* Of a claimed mesh nothing is written, so there is nothing to record. */
-    he_delta *recording = mesh->claimed ? NULL : st_log_reserve(&mesh->log);
-    if (recording == NULL && !mesh->claimed) {
+    st_status status = begin(out);
+    if (status != ST_OK) {
         pthread_rwlock_unlock(&mesh->lock);
-        return NULL;
+        out->mesh = NULL;
     }
-    if (recording != NULL) {
-        he_mesh_record(mesh->content, recording);
-        mesh->mark = he_delta_mark(mesh->content);
-    }
-    if (info != NULL) {
-        st_mesh_facts(mesh, info);
-    }
-    if (delta != NULL) {
-        *delta = recording;
-    }
-    return mesh->content;
+    return status;
 }
 
-void st_write_keyed(st_mesh *mesh, const st_keyed *keyed)
+st_status st_write_claim(st_mesh *mesh, const st_keyed *keyed, st_write *out)
 {
-    mesh->keyed = keyed;
-}
-
-static void unlock(st_mesh *mesh)
-{
-    mesh->keyed = NULL;
-    he_mesh *discard = mesh->discard;
-    mesh->discard = NULL;
-    pthread_rwlock_unlock(&mesh->lock);
-    he_mesh_free(discard);
-}
-
-static double revise(st_mesh *mesh)
-{
-    mesh->info.revision++;
-    mesh->info.modified = st_clock_utc();
-    return mesh->info.modified;
-}
-
-/* The content is what the reserved delta leads to. */
-static void commit(st_mesh *mesh, const he_delta *delta, const char *ops, bool barrier,
-                   st_mesh_info *info)
-{
-    double now = revise(mesh);
-    st_mesh_append(mesh, barrier ? ST_REPLACE : ST_EDIT, barrier ? NULL : delta, false);
-    if (barrier) {
-        st_log_add_barrier(&mesh->log, mesh->info.revision, ST_EDIT, ops, now, mesh->content);
-    } else {
-        st_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content);
-    }
-    if (info != NULL) {
-        st_mesh_facts(mesh, info);
-    }
-    unlock(mesh);
-    if (barrier) {
-        st_mesh_shed(mesh);
-    }
-}
-
-void st_write_commit(st_mesh *mesh, const char *ops, bool barrier, st_mesh_info *info)
-{
-    he_delta *delta = he_mesh_record(mesh->content, NULL);
-    commit(mesh, delta, ops, barrier, info);
-}
-
-st_status st_claim(st_mesh *mesh, const he_mesh **content, he_delta **delta, st_mesh_info *info)
-{
+    *out = (st_write){.mesh = mesh, .keyed = keyed, .claimed = true};
     pthread_rwlock_wrlock(&mesh->lock);
-    st_status status = mesh->info.removed ? ST_ABSENT : ST_OK;
-    if (status == ST_OK && mesh->claimed) {
-        status = ST_BUSY;
-    }
-    st_mesh_facts(mesh, info);
+    st_status status = begin(out);
     if (status == ST_OK) {
-        *content = mesh->content;
-        *delta = st_log_reserve(&mesh->log);
-        mesh->claimed = *delta != NULL;
-        status = mesh->claimed ? ST_OK : ST_NO_MEMORY;
+        mesh->claimed = true;
+    } else {
+        out->mesh = NULL;
+        out->claimed = false;
+        out->content = NULL;
     }
     pthread_rwlock_unlock(&mesh->lock);
     return status;
@@ -107,69 +75,62 @@ void st_claimed_by(st_mesh *mesh, const char *id)
     pthread_rwlock_unlock(&mesh->lock);
 }
 
-static void forget_claim(st_mesh *mesh)
+/* Other writes change the mesh only when the claim has ended. */
+const he_mesh *st_write_claimed(const st_write *w)
 {
-    mesh->claimed = false;
-    mesh->info.job[0] = '\0';
+    assert(w->claimed);
+    return w->mesh->content;
 }
 
-/* Under the lock. Objects in the reserved delta are the copy's old side. */
-static void end_claim(st_mesh *mesh)
+he_status st_write_copy(st_write *w, he_watch *watch, he_error *err)
 {
-    forget_claim(mesh);
-    he_delta_empty(st_log_reserve(&mesh->log));
-    st_log_unreserve(&mesh->log);
-}
-
-st_status st_publish(st_mesh *mesh, he_mesh *content, const char *ops, bool barrier,
-                     const st_keyed *keyed, st_mesh_info *info)
-{
-    pthread_rwlock_wrlock(&mesh->lock);
-    if (mesh->info.removed) {
-        end_claim(mesh);
-        unlock(mesh);
-        return ST_ABSENT;
+    st_write_discard_copy(w);
+    he_status status = he_mesh_copy_watched(st_write_claimed(w), watch, &w->content, err);
+    if (status == HE_OK) {
+        he_mesh_expend(w->content);
+        he_mesh_record(w->content, w->delta);
     }
-    he_delta *delta = he_mesh_record(content, NULL);
-    assert(mesh->claimed && mesh->discard == NULL);
-    forget_claim(mesh);
-    mesh->keyed = keyed;
-    mesh->discard = mesh->content;
-    mesh->content = content;
-    commit(mesh, delta, ops, barrier, info);
-    return ST_OK;
+    return status;
 }
 
-void st_unclaim(st_mesh *mesh)
+/* Objects in the delta are the copy's old side. */
+void st_write_discard_copy(st_write *w)
 {
-    pthread_rwlock_wrlock(&mesh->lock);
-    end_claim(mesh);
-    unlock(mesh);
+    assert(w->claimed);
+    he_mesh_free(w->content);
+    w->content = NULL;
+    he_delta_empty(w->delta);
+    he_changes_clear(&w->changes);
+    w->found = false;
 }
 
-/* Back to where the writer began; what it recorded is forgotten. */
-static void roll_back(st_mesh *mesh)
+he_status st_write_changes(st_write *w, he_error *err)
 {
-    he_delta_rollback(mesh->content, mesh->mark);
-    he_mesh_record(mesh->content, NULL);
-    st_log_unreserve(&mesh->log);
+    assert(w->kind == ST_WRITE_EDIT && !w->found);
+    he_status status =
+        he_changes_find(w->content, w->delta, 0, w->delta->count, false, &w->changes, err);
+    w->found = status == HE_OK;
+    return status;
 }
 
-void st_write_abort(st_mesh *mesh)
+bool st_write_undoable(const st_write *w)
 {
-    roll_back(mesh);
-    unlock(mesh);
+    assert(w->found);
+    return !w->changes.renumbered && st_log_fits(&w->mesh->log);
 }
 
-void st_write_tally(st_mesh *mesh, const st_tally *tally)
+/* Back to where the writer began; what it recorded is forgotten, and nothing records any more. */
+static void roll_back(st_write *w)
 {
-    mesh->log.tally = *tally;
+    if (w->delta != NULL) {
+        he_delta_rollback(w->content, w->mark);
+        he_mesh_record(w->content, NULL);
+        st_log_unreserve(&w->mesh->log);
+        w->delta = NULL;
+    }
 }
 
-bool st_write_undoable(st_mesh *mesh)
-{
-    return st_log_fits(&mesh->log);
-}
+/* --- steps --- */
 
 st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,
                       uint64_t *bytes)
@@ -187,83 +148,184 @@ st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_
     return status;
 }
 
-static const he_delta *take_step(st_mesh *mesh, st_action which)
+static void apply(st_write *w, uint32_t i, bool back)
 {
-    he_delta *delta = st_log_next(&mesh->log, which);
-    if (which == ST_UNDO) {
-        he_delta_undo(delta, mesh->content);
+    he_delta *delta = w->deltas[i];
+    if ((w->which == ST_UNDO) != back) {
+        he_delta_undo(delta, w->content);
     } else {
-        he_delta_redo(delta, mesh->content);
+        he_delta_redo(delta, w->content);
     }
-    double now = revise(mesh);
-    st_log_add_step(&mesh->log, mesh->info.revision, which, now, mesh->content);
-    st_mesh_append(mesh, which, delta, which == ST_UNDO);
-    return delta;
 }
 
-st_status st_write_step(st_mesh *mesh, st_action which, uint32_t steps, const he_delta **deltas,
-                        st_mesh_info *info)
+static void free_steps(st_write *w)
 {
-    assert((which == ST_UNDO || which == ST_REDO) && steps > 0);
-    if (steps > (which == ST_UNDO ? mesh->log.undo_count : mesh->log.redo_count)) {
+    for (uint32_t i = 0; i < w->steps && w->events != NULL; i++) {
+        he_mem_free(w->events[i].bytes);
+    }
+    he_mem_free(w->deltas);
+    he_mem_free(w->events);
+    he_mem_free(w->records);
+    w->deltas = NULL;
+    w->events = NULL;
+    w->records = NULL;
+}
+
+static bool reserve_steps(st_write *w)
+{
+    st_revision_log *log = &w->mesh->log;
+    w->deltas = he_mem_zero(w->steps, sizeof(he_delta *));
+    w->events = he_mem_zero(w->steps, sizeof *w->events);
+    w->records = he_mem_zero(w->steps, sizeof *w->records);
+    if (w->deltas == NULL || w->events == NULL || w->records == NULL ||
+        !st_log_reserve_steps(log, w->which, w->steps, w->content)) {
+        return false;
+    }
+    st_log_deltas(log, w->which, w->steps, w->deltas);
+    return true;
+}
+
+/* The event shows values as they are after this step, so that it is written now. One step comes to
+ * what is found for the answer. */
+static void write_event(st_write *w, uint32_t i)
+{
+    const st_mesh *mesh = w->mesh;
+    st_mesh_info info = mesh->info;
+    info.revision += i + 1;
+    const st_record record = {
+        .action = w->which,
+        .delta = w->deltas[i],
+        .undone = w->which == ST_UNDO,
+        .content = w->content,
+        .changes = w->steps == 1 ? &w->changes : NULL,
+    };
+    st_event_write(mesh, &info, &record, &w->events[i]);
+}
+
+/* What all steps come to. */
+static bool find_sum(st_write *w)
+{
+    he_change_part *parts = he_mem_array(NULL, w->steps, sizeof *parts);
+    if (parts == NULL) {
+        return false;
+    }
+    for (uint32_t i = 0; i < w->steps; i++) {
+        const he_delta *delta = w->deltas[i];
+        parts[i] = (he_change_part){delta, 0, delta->count, w->which == ST_UNDO};
+    }
+    w->found = he_changes_sum(w->content, parts, w->steps, &w->changes, NULL) == HE_OK;
+    he_mem_free(parts);
+    return w->found;
+}
+
+static void take_back(st_write *w)
+{
+    for (uint32_t i = w->steps; i > 0; i--) {
+        apply(w, i - 1, true);
+    }
+    st_log_unreserve_steps(&w->mesh->log);
+    free_steps(w);
+}
+
+st_status st_write_step(st_write *w, st_action which, uint32_t steps)
+{
+    const st_revision_log *log = &w->mesh->log;
+    assert(w->kind == ST_WRITE_EDIT && (which == ST_UNDO || which == ST_REDO) && steps > 0);
+    if (steps > (which == ST_UNDO ? log->undo_count : log->redo_count)) {
         return ST_NOTHING;
     }
-    if (!st_log_reserve_steps(&mesh->log, which, steps, mesh->content)) {
+    /* A step makes a revision by itself: it may not be recorded into another. */
+    roll_back(w);
+    w->which = which;
+    w->steps = steps;
+    if (!reserve_steps(w)) {
+        free_steps(w);
         return ST_NO_MEMORY;
     }
-    /* A step makes a revision by itself: it may not be recorded into another. */
-    roll_back(mesh);
+    bool followed = st_queue_is_followed(&w->mesh->queue);
     for (uint32_t i = 0; i < steps; i++) {
-        deltas[i] = take_step(mesh, which);
+        apply(w, i, false);
+        if (followed && steps > 1) {
+            write_event(w, i);
+        }
     }
-    /* Before anybody is told what is left to undo and redo. */
-    st_log_settle(&mesh->log);
-    if (info != NULL) {
-        st_mesh_facts(mesh, info);
+    if (!find_sum(w)) {
+        take_back(w);
+        return ST_NO_MEMORY;
     }
+    if (followed && steps == 1) {
+        write_event(w, 0);
+    }
+    w->kind = ST_WRITE_STEP;
     return ST_OK;
 }
 
-void st_write_replace(st_mesh *mesh, he_mesh *content, st_mesh_info *info)
+/* --- the rest --- */
+
+void st_write_replace(st_write *w, he_mesh *takes)
 {
-    roll_back(mesh);
-    assert(mesh->discard == NULL);
-    mesh->discard = mesh->content;
-    mesh->content = content;
-    he_mesh_record(content, NULL);
-    double now = revise(mesh);
-    st_log_add_barrier(&mesh->log, mesh->info.revision, ST_REPLACE, "replace", now, content);
-    st_mesh_append(mesh, ST_REPLACE, NULL, false);
-    if (info != NULL) {
-        st_mesh_facts(mesh, info);
-    }
+    assert(w->kind == ST_WRITE_EDIT && w->delta != NULL);
+    roll_back(w);
+    he_mesh_record(takes, NULL);
+    w->kind = ST_WRITE_REPLACE;
+    w->content = takes;
 }
 
-void st_write_rename(st_mesh *mesh, const char *name, st_mesh_info *info)
+void st_write_rename(st_write *w, const char *name)
 {
-    size_t length = strnlen(name, ST_MESH_NAME);
-    memcpy(mesh->info.name, name, length);
-    mesh->info.name[length] = '\0';
-    mesh->info.metadata++;
-    mesh->info.modified = st_clock_utc();
-    st_mesh_append(mesh, ST_EDIT, NULL, false);
-    if (info != NULL) {
-        st_mesh_facts(mesh, info);
+    assert(w->kind == ST_WRITE_EDIT || w->kind == ST_WRITE_REPLACE);
+    if (w->kind == ST_WRITE_EDIT) {
+        roll_back(w);
+        w->kind = ST_WRITE_RENAME;
     }
+    w->name = name;
 }
 
-void st_write_end(st_mesh *mesh)
+void st_write_remove(st_write *w)
 {
-    /* After a step or replace nothing records any more. */
-    he_delta *recording = he_mesh_record(mesh->content, NULL);
-    if (recording != NULL) {
-        he_mesh_record(mesh->content, recording);
-        roll_back(mesh);
+    assert(w->kind == ST_WRITE_EDIT && !w->claimed);
+    roll_back(w);
+    w->kind = ST_WRITE_REMOVE;
+}
+
+static void end_claim(st_write *w)
+{
+    st_write_discard_copy(w);
+    st_log_unreserve(&w->mesh->log);
+    st_mesh_unclaim(w->mesh);
+}
+
+void st_write_end(st_write *w, he_mesh *discard)
+{
+    st_mesh *mesh = w->mesh;
+    free_steps(w);
+    he_changes_clear(&w->changes);
+    w->mesh = NULL;
+    w->content = NULL;
+    w->claimed = false;
+    pthread_rwlock_unlock(&mesh->lock);
+    he_mesh_free(discard);
+}
+
+void st_write_give_up(st_write *w)
+{
+    he_mesh *discard = NULL;
+    if (w->claimed) {
+        end_claim(w);
+    } else if (w->kind == ST_WRITE_STEP) {
+        take_back(w);
+    } else if (w->kind == ST_WRITE_REPLACE) {
+        discard = w->content;
+    } else {
+        roll_back(w);
     }
-    bool cut_off = mesh->discard != NULL;
-    unlock(mesh);
-    /* No copy can travel across a replace. */
-    if (cut_off) {
-        st_mesh_shed(mesh);
+    st_write_end(w, discard);
+}
+
+void st_write_abort(st_write *w)
+{
+    if (w->claimed) {
+        pthread_rwlock_wrlock(&w->mesh->lock);
     }
+    st_write_give_up(w);
 }

@@ -227,7 +227,7 @@ static void drop_spare_step(st_revision_log *log)
     }
 }
 
-static void drop_step_entries(st_revision_log *log)
+void st_log_unreserve_steps(st_revision_log *log)
 {
     while (log->steps != NULL) {
         st_revision *entry = log->steps;
@@ -246,7 +246,7 @@ void st_log_clear(st_revision_log *log)
     }
     he_mem_free(log->ring);
     he_mem_free(log->spare);
-    drop_step_entries(log);
+    st_log_unreserve_steps(log);
     drop_spare_step(log);
     *log = (st_revision_log){0};
 }
@@ -285,7 +285,6 @@ void st_log_unreserve(st_revision_log *log)
     if (log->spare_step != NULL && he_delta_bytes(log->spare_step->delta) > SPARE_BYTES) {
         drop_spare_step(log);
     }
-    log->tally = (st_tally){0};
 }
 
 /* Bytes of the step that the reserved delta would become. */
@@ -339,10 +338,9 @@ static st_revision *add_spare(st_revision_log *log, uint64_t revision, st_action
     st_revision *entry = log->spare;
     assert(entry != NULL);
     log->spare = NULL;
-    *entry = (st_revision){.action = action, .forward = true, .tally = log->tally};
+    *entry = (st_revision){.action = action, .forward = true};
     entry->point = (st_point){.revision = revision, .state = revision, .time = time};
     note_marks(&entry->point, content);
-    log->tally = (st_tally){0};
     copy_ops(entry->ops, ops);
     entry->size = entry_size(strlen(entry->ops));
     st_revision *shrunk = he_mem_resize(entry, sizeof *entry + strlen(entry->ops) + 1);
@@ -353,11 +351,18 @@ static st_revision *add_spare(st_revision_log *log, uint64_t revision, st_action
     return entry;
 }
 
+st_step *st_log_hold_reserved(const st_revision_log *log)
+{
+    atomic_fetch_add_explicit(&log->spare_step->holders, 1, memory_order_relaxed);
+    return log->spare_step;
+}
+
 void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, double time,
-                     const he_mesh *content)
+                     const he_mesh *content, const st_tally *tally)
 {
     bool fits = st_log_fits(log);
     st_revision *entry = add_spare(log, revision, ST_EDIT, ops, time, content);
+    entry->tally = *tally;
     st_step *step = log->spare_step;
     log->spare_step = NULL;
     he_delta_trim(step->delta);
@@ -395,10 +400,12 @@ void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action actio
     st_log_settle(log);
 }
 
-he_delta *st_log_next(const st_revision_log *log, st_action which)
+void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, he_delta **out)
 {
     const st_step *step = which == ST_UNDO ? log->undo_top : log->redo_top;
-    return step == NULL ? NULL : step->delta;
+    for (uint32_t i = 0; i < steps; i++, step = step->below) {
+        out[i] = step->delta;
+    }
 }
 
 /* What an undo created is what the edit deleted, and the other way round. */
@@ -439,7 +446,7 @@ bool st_log_reserve_steps(st_revision_log *log, st_action which, uint32_t steps,
         end = *end != NULL ? &(*end)->next : end;
     }
     if (!reserved) {
-        drop_step_entries(log);
+        st_log_unreserve_steps(log);
     }
     return reserved;
 }

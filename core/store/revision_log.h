@@ -59,7 +59,6 @@ typedef struct st_revision_log {
     st_revision *spare;
     st_step *spare_step; /* with an empty delta */
     st_revision *steps;  /* reserved by st_log_reserve_steps, in the order of their use */
-    st_tally tally;      /* of the next edit */
 } st_revision_log;
 
 /* The history of a mesh that begins with this revision and content. */
@@ -78,7 +77,9 @@ bool st_log_fits(const st_revision_log *log);
 /* Add the reserved delta as an edit, with one step on the undo stack. `content` is the mesh after
  * it. */
 void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, double time,
-                     const he_mesh *content);
+                     const he_mesh *content, const st_tally *tally);
+/* The step that the reserved delta is to become, held: it outlives the log until it is released. */
+st_step *st_log_hold_reserved(const st_revision_log *log);
 /* Add an edit that cannot be undone (a barrier) or a replace: no delta is kept before or with it,
  * and both stacks end. */
 void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action action, const char *ops,
@@ -95,9 +96,10 @@ uint64_t st_log_steps_bytes(const st_revision_log *log, st_action which, uint32_
  * memory is out; nothing is reserved then. `content` is what they will be taken on. */
 bool st_log_reserve_steps(st_revision_log *log, st_action which, uint32_t steps,
                           const he_mesh *content);
-/* The delta that undo or redo would apply, NULL when there is none. */
-he_delta *st_log_next(const st_revision_log *log, st_action which);
-/* It was applied: move its step to the other stack and add the entry. */
+void st_log_unreserve_steps(st_revision_log *log);
+/* The deltas that so many steps, which the stack has, apply, in their order. */
+void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, he_delta **out);
+/* The next of them was applied: move its step to the other stack and add the entry. */
 void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, double time,
                      const he_mesh *content);
 /* Bring the log back within its budget after steps were added. Their deltas stay valid until the

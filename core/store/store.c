@@ -155,9 +155,8 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
     st_status status = insert(store, mesh);
     if (status == ST_OK) {
         *out = st_hold(mesh);
-        mesh->keyed = keyed;
-        st_mesh_append(mesh, ST_REPLACE, NULL, false);
-        mesh->keyed = NULL;
+        const st_record record = st_mesh_record(mesh, ST_REPLACE, keyed);
+        st_mesh_publish(mesh, &record, 1, NULL);
     }
     pthread_rwlock_unlock(&store->lock);
     if (status != ST_OK) {
@@ -188,18 +187,8 @@ st_status st_create(st_store *store, const char *id, const char *name, he_mesh *
     return status;
 }
 
-st_status st_remove(st_mesh *mesh, st_mesh_info *info)
+void st_store_take_out(st_store *store, st_mesh *mesh)
 {
-    st_store *store = mesh->store;
-    if (mesh->info.removed) {
-        return ST_ABSENT;
-    }
-    mesh->info.removed = true;
-    st_mesh_append(mesh, ST_REPLACE, NULL, false);
-    if (info != NULL) {
-        st_mesh_facts(mesh, info);
-    }
-    /* Only now may the id be another's. */
     bool found;
     pthread_rwlock_wrlock(&store->lock);
     size_t place = position_of(store, mesh->info.id, &found);
@@ -209,7 +198,6 @@ st_status st_remove(st_mesh *mesh, st_mesh_info *info)
             (store->count - place) * sizeof(st_mesh *));
     pthread_rwlock_unlock(&store->lock);
     st_release(mesh);
-    return ST_OK;
 }
 
 size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)

@@ -1,4 +1,5 @@
-/* store.h - the meshes a daemon holds: by id, locked, revised, and durable.
+/* store.h - the meshes a daemon holds: by id, locked, revised, and durable. They are changed by
+ * what write.h declares.
  *
  * A handle is a counted reference to a stored mesh; it stays valid after the mesh was removed from
  * the store, reading `removed` true, and is given back by st_release. A mesh is freed with its last
@@ -40,7 +41,7 @@ typedef struct st_mesh_info {
     double created, modified;    /* seconds since 1970 UTC */
     uint32_t undo, redo;         /* steps on the stacks */
     bool removed;
-    bool busy;               /* a long edit has claimed it, see st_claim */
+    bool busy;               /* a long edit has claimed it: write.h */
     char job[ST_JOB_ID + 1]; /* the job whose edit that is, "" when it is none */
 } st_mesh_info;
 
@@ -88,8 +89,6 @@ void st_release(st_mesh *mesh);  /* takes NULL */
  * record of the new mesh. ST_TAKEN, ST_TOO_MANY, ST_BUDGET, ST_NO_MEMORY. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_keyed *keyed, st_mesh **out);
-/* Under the write lock, so that what the caller looked at is what goes. ST_ABSENT. */
-st_status st_remove(st_mesh *mesh, st_mesh_info *info);
 /* Up to `limit` meshes with ids after `after` ("" from the start), in the order of ids, each with a
  * reference. */
 size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit);
@@ -141,58 +140,6 @@ void st_derived_wait(st_mesh *mesh, st_derived_kind kind);
 /* What the revision changed, in either direction; NULL when that is not kept. Under the read
  * lock. */
 const he_delta *st_revision_delta(st_mesh *mesh, uint64_t revision);
-
-/* --- writing --- */
-
-/* Takes the exclusive lock with a recording delta attached, which is lent through `delta` for
- * he_changes_find. NULL when memory is out. Every begin is ended by exactly one of st_write_commit,
- * st_write_abort and st_write_end, which give the lock back. Where info->busy only st_remove may be
- * called, and st_write_end. */
-he_mesh *st_write_begin(st_mesh *mesh, st_mesh_info *info, he_delta **delta);
-/* What follows, up to the end of writing, is done for this request: its record carries the key. */
-void st_write_keyed(st_mesh *mesh, const st_keyed *keyed);
-/* Makes what was recorded a revision with one undo step. `ops` names the operations for the
- * history. `barrier` ends the undo stack (compact). The new facts go to `info`. Cannot fail: what
- * it needs was reserved by st_write_begin. */
-void st_write_commit(st_mesh *mesh, const char *ops, bool barrier, st_mesh_info *info);
-void st_write_abort(st_mesh *mesh); /* rolls back */
-/* Tells the history what the change did that will be committed; without it the history has no
- * counts. */
-void st_write_tally(st_mesh *mesh, const st_tally *tally);
-/* Could what was recorded so far be undone if it were committed? False when it is larger than the
- * undo budget: committing it ends the history. */
-bool st_write_undoable(st_mesh *mesh);
-/* How many steps undo (redo) takes to the content of a revision, 0 when it is there, and the bytes
- * of all their deltas. `revision` 0: for that many `steps`, which is read. Under either lock.
- * ST_NOTHING when the stack has fewer steps; ST_AHEAD, ST_GONE, ST_ELSEWHERE. */
-st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,
-                      uint64_t *bytes);
-/* Takes that many steps, at least one, back or forward, under the write lock: each applies an
- * inverse as a new revision. Their deltas are lent until st_write_end through `deltas`, which has a
- * place for each, in the order they were applied. ST_NOTHING or ST_NO_MEMORY, and nothing has
- * changed. */
-st_status st_write_step(st_mesh *mesh, st_action which, uint32_t steps, const he_delta **deltas,
-                        st_mesh_info *info);
-/* After st_write_step, st_write_replace, st_write_rename, st_remove or nothing. */
-void st_write_end(st_mesh *mesh);
-/* PUT and PATCH, under the write lock. st_write_replace takes `content`. */
-void st_write_replace(st_mesh *mesh, he_mesh *content, st_mesh_info *info);
-void st_write_rename(st_mesh *mesh, const char *name, st_mesh_info *info);
-
-/* --- a long edit --- works without a lock on a copy of its own, which takes the place of the
- * content at once. Before that it claims the mesh: until the claim ends nobody else can write, so
- * that the content stands still and is lent, to be copied. `delta` is for all that is then done to
- * the copy. ST_BUSY, ST_ABSENT, ST_NO_MEMORY. */
-st_status st_claim(st_mesh *mesh, const he_mesh **content, he_delta **delta, st_mesh_info *info);
-/* Ends the claim as st_write_commit does, with the copy as the content: it is taken. `keyed` is the
- * keyed request the edit is made for, or NULL. Or ends it with ST_ABSENT, where the mesh was
- * removed meanwhile: the copy is not taken. */
-st_status st_publish(st_mesh *mesh, he_mesh *takes, const char *ops, bool barrier,
-                     const st_keyed *keyed, st_mesh_info *info);
-/* Ends the claim with nothing done; what was recorded is forgotten. */
-void st_unclaim(st_mesh *mesh);
-/* Names the job that has claimed the mesh, for those who find it busy. Without a lock. */
-void st_claimed_by(st_mesh *mesh, const char *id);
 
 /* --- keyed requests --- (idempotency.h) */
 

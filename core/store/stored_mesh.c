@@ -115,25 +115,27 @@ void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out)
     out->busy = mesh->claimed;
 }
 
-void st_mesh_append(st_mesh *mesh, st_action action, const he_delta *delta, bool undone)
+st_record st_mesh_record(st_mesh *mesh, st_action action, const st_keyed *keyed)
 {
     mesh->info.record++;
-    st_record record = {
+    return (st_record){
         .id = mesh->info.id,
         .incarnation = mesh->info.incarnation,
         .number = mesh->info.record,
         .revision = mesh->info.revision,
         .name = mesh->info.name,
         .action = action,
-        .delta = delta,
-        .undone = undone,
         .removed = mesh->info.removed,
         .content = mesh->info.removed ? NULL : mesh->content,
-        .keyed = mesh->keyed,
+        .keyed = keyed,
     };
-    mesh->info.position = mesh->journal->append(mesh->journal->self, &record);
+}
+
+void st_mesh_publish(st_mesh *mesh, const st_record *records, size_t count, st_event *events)
+{
+    mesh->info.position = mesh->journal->append(mesh->journal->self, records, count);
     st_waits_appended(mesh->followers->waits, mesh->info.position);
-    st_mesh_tell(mesh, &record);
+    st_mesh_tell(mesh, records, count, events);
 }
 
 const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info)

@@ -27,10 +27,7 @@ struct st_mesh {
     st_mesh_info info;     /* but for undo and redo, which the log has */
     he_mesh *content;
     st_revision_log log;
-    he_savepoint mark;     /* where the writer began */
-    he_mesh *discard;      /* freed when the writer has given the lock back */
-    const st_keyed *keyed; /* the request the writer works for, NULL: none with a key */
-    bool claimed;          /* the log's reserve is lent to a long edit */
+    bool claimed; /* the log's reserve is lent to a long edit */
 
     /* See followers.h. */
     st_queue queue;
@@ -81,11 +78,23 @@ void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
 /* Frees the cached copies and the bodies of kept answers, unless somebody reads them, and what was
  * derived. */
 void st_mesh_shed(st_mesh *mesh);
-/* Under the exclusive lock: numbers a change that was made and tells the journal and the listeners
- * about it. */
-void st_mesh_append(st_mesh *mesh, st_action action, const he_delta *delta, bool undone);
-/* Under the exclusive lock: renders a change for those who listen. */
-void st_mesh_tell(st_mesh *mesh, const st_record *record);
+/* A change as it is told to listeners. */
+typedef struct st_event {
+    char *bytes; /* NULL: nobody listens, or memory is out */
+    size_t length;
+} st_event;
+
+/* Under the exclusive lock: the next record of the mesh, of what it is now. */
+st_record st_mesh_record(st_mesh *mesh, st_action action, const st_keyed *keyed);
+/* Under the exclusive lock: hands a group of records to the journal and tells the listeners.
+ * `events` has one for each record, whose bytes are taken; NULL: they are to be written. */
+void st_mesh_publish(st_mesh *mesh, const st_record *records, size_t count, st_event *events);
+/* What st_mesh_publish does for the listeners, when the position is known. */
+void st_mesh_tell(st_mesh *mesh, const st_record *records, size_t count, st_event *events);
+void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_record *record,
+                    st_event *out);
+/* Under the mesh's exclusive lock: the store has it no more. */
+void st_store_take_out(st_store *store, st_mesh *mesh);
 
 void st_copy_release(st_copy *copy);
 /* Frees the cached copy, unless somebody reads it. */

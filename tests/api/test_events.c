@@ -2,6 +2,7 @@
  * feed and from the history, whatever memory does. */
 #include "tests/api/stream.h"
 #include "tests/random_edit.h"
+#include "tests/writing.h"
 
 #include "api/event/events.h"
 #include "api/limits.h"
@@ -120,6 +121,58 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
     bench_free(b);
 }
 
+/* The linker gives calls of these functions to the wrappers (Makefile). */
+static unsigned finds;
+
+he_status __real_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
+                                 bool undone, he_changes *out, he_error *err);
+he_status __wrap_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
+                                 bool undone, he_changes *out, he_error *err);
+he_status __real_he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_t count,
+                                he_changes *out, he_error *err);
+he_status __wrap_he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_t count,
+                                he_changes *out, he_error *err);
+
+he_status __wrap_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
+                                 bool undone, he_changes *out, he_error *err)
+{
+    finds++;
+    return __real_he_changes_find(mesh, delta, from, to, undone, out, err);
+}
+
+he_status __wrap_he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_t count,
+                                he_changes *out, he_error *err)
+{
+    finds++;
+    return __real_he_changes_sum(mesh, parts, count, out, err);
+}
+
+/* For the answer, the history and the listeners together. */
+static void what_a_request_changes_is_found_once(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *method, *path, *body;
+    } rows[] = {
+        {"POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}"},
+        {"PUT", "/v1/meshes/m/attributes/faces/group", "{\"type\":\"int32\",\"value\":1}"},
+        {"POST", "/v1/meshes/m/undo", NULL},
+        {"POST", "/v1/meshes/m/redo", NULL},
+    };
+    api_bench *b = bench_new();
+    put_mesh(b);
+    listener *l = stream_open(b, "/v1/meshes/m/events", "", NULL);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        finds = 0;
+        int status = send(b, rows[i].method, rows[i].path, rows[i].body);
+        assert_true(status == 200 || status == 201);
+        assert_int_equal(finds, 1);
+        assert_string_equal(stream_next(l, false), "edit");
+    }
+    stream_close(l);
+    bench_free(b);
+}
+
 /* Through the store, as no request makes columns. */
 static void columns_that_come_and_go_are_told(void **state)
 {
@@ -131,7 +184,8 @@ static void columns_that_come_and_go_are_told(void **state)
     stream_dump(b, &copy);
     size_t before = copy.column_count;
     st_mesh *stored = stream_mesh(b);
-    he_mesh *mesh = st_write_begin(stored, NULL, NULL);
+    st_write w;
+    he_mesh *mesh = writing_begin(stored, &w);
     he_column *weight = NULL;
     assert_int_equal(he_column_new("weight", HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE, &weight, NULL),
                      HE_OK);
@@ -140,7 +194,7 @@ static void columns_that_come_and_go_are_told(void **state)
     memcpy(he_column_row(weight, 3), value, sizeof value);
     assert_int_equal(he_mesh_add_column(mesh, weight, NULL), HE_OK);
     assert_int_equal(he_mesh_drop_column(mesh, 0, NULL), HE_OK);
-    st_write_commit(stored, "attributes", false, NULL);
+    assert_true(writing_commit(&w, "attributes", NULL));
     st_release(stored);
     assert_string_equal(stream_next(l, false), "edit");
     assert_non_null(cJSON_GetObjectItem(l->data, "attributes_added"));
@@ -573,6 +627,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_operation_undo_and_redo_is_told_exactly),
+        cmocka_unit_test(what_a_request_changes_is_found_once),
         cmocka_unit_test(columns_that_come_and_go_are_told),
         cmocka_unit_test(a_column_written_over_is_told),
         cmocka_unit_test(what_is_no_edit_has_events_of_its_own),

@@ -2,6 +2,7 @@
  *
  * EDITS (3000) and SEED (from the clock) come from the environment. */
 #include "tests/api/arrays.h"
+#include "tests/writing.h"
 
 #include "draw/drawing.h"
 #include "mesh/walk.h"
@@ -145,50 +146,32 @@ static bool run_one(world *w, he_mesh *m, bool *barrier)
     return status == HE_OK;
 }
 
-/* As a long edit begins. */
-static he_mesh *claim(world *w, he_delta **delta)
-{
-    st_mesh_info info;
-    const he_mesh *content;
-    he_mesh *copy = NULL;
-    assert_int_equal(st_claim(w->mesh, &content, delta, &info), ST_OK);
-    assert_int_equal(he_mesh_copy(content, &copy, NULL), HE_OK);
-    he_mesh_record(copy, *delta);
-    return copy;
-}
-
 static void edit(world *w)
 {
     bool barrier = false, claimed = md_chance(&w->r, 20);
-    he_delta *delta = NULL;
-    he_mesh *m = claimed ? claim(w, &delta) : st_write_begin(w->mesh, NULL, &delta);
-    assert_non_null(m);
+    st_write write;
+    if (claimed) {
+        assert_int_equal(st_write_claim(w->mesh, NULL, &write), ST_OK);
+        assert_int_equal(st_write_copy(&write, NULL, NULL), HE_OK);
+    } else {
+        assert_int_equal(st_write_begin(w->mesh, NULL, &write), ST_OK);
+    }
     uint32_t batch = md_chance(&w->r, 70) ? 1 : md_from(&w->r, 2, 6);
     for (uint32_t i = 0; i < batch && !barrier; i++) {
-        bool good = run_one(w, m, &barrier);
+        bool good = run_one(w, write.content, &barrier);
         w->done += good;
         w->refused += !good;
     }
-    if (claimed && delta->count == 0) {
-        st_unclaim(w->mesh);
-        he_mesh_free(m);
-    } else if (claimed) {
-        st_mesh_info info;
-        assert_int_equal(st_publish(w->mesh, m, "random", barrier, NULL, &info), ST_OK);
-    } else if (delta->count == 0) {
-        st_write_abort(w->mesh);
+    if (write.delta->count == 0) {
+        st_write_abort(&write);
     } else {
-        st_write_commit(w->mesh, "random", barrier, NULL);
+        assert_true(writing_commit(&write, "random", NULL));
     }
 }
 
 static void step(world *w, st_action which)
 {
-    he_delta *delta = NULL;
-    assert_non_null(st_write_begin(w->mesh, NULL, &delta));
-    const he_delta *deltas[1];
-    w->stepped += st_write_step(w->mesh, which, 1, deltas, NULL) == ST_OK;
-    st_write_end(w->mesh);
+    w->stepped += writing_step(w->mesh, which, 1) == ST_OK;
 }
 
 static void put(api_bench *b, const char *body)

@@ -1,6 +1,7 @@
 /* Writes: whole or not at all whatever memory there is, refused before they cost too much, and
  * answered by what became of them. */
 #include "tests/api/request.h"
+#include "store/write.h"
 
 #include "api/json/text.h"
 #include "api/limits.h"
@@ -267,29 +268,37 @@ static void writes_are_whole_or_not_at_all(void **state)
 /* The linker gives calls of these functions to the wrappers (Makefile). */
 static bool writing, removed_under_lock;
 
-he_mesh *__real_st_write_begin(st_mesh *mesh, st_mesh_info *info, he_delta **delta);
-he_mesh *__wrap_st_write_begin(st_mesh *mesh, st_mesh_info *info, he_delta **delta);
-void __real_st_write_end(st_mesh *mesh);
-void __wrap_st_write_end(st_mesh *mesh);
-st_status __real_st_remove(st_mesh *mesh, st_mesh_info *info);
-st_status __wrap_st_remove(st_mesh *mesh, st_mesh_info *info);
+st_status __real_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
+st_status __wrap_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
+st_status __real_st_write_commit(st_write *w, const char *ops);
+st_status __wrap_st_write_commit(st_write *w, const char *ops);
+void __real_st_write_abort(st_write *w);
+void __wrap_st_write_abort(st_write *w);
+void __real_st_write_remove(st_write *w);
+void __wrap_st_write_remove(st_write *w);
 
-he_mesh *__wrap_st_write_begin(st_mesh *mesh, st_mesh_info *info, he_delta **delta)
+st_status __wrap_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out)
 {
     writing = true;
-    return __real_st_write_begin(mesh, info, delta);
+    return __real_st_write_begin(mesh, keyed, out);
 }
 
-void __wrap_st_write_end(st_mesh *mesh)
+st_status __wrap_st_write_commit(st_write *w, const char *ops)
 {
     writing = false;
-    __real_st_write_end(mesh);
+    return __real_st_write_commit(w, ops);
 }
 
-st_status __wrap_st_remove(st_mesh *mesh, st_mesh_info *info)
+void __wrap_st_write_abort(st_write *w)
+{
+    writing = false;
+    __real_st_write_abort(w);
+}
+
+void __wrap_st_write_remove(st_write *w)
 {
     removed_under_lock = writing;
-    return __real_st_remove(mesh, info);
+    __real_st_write_remove(w);
 }
 
 static void nothing_comes_between_if_match_and_delete(void **state)

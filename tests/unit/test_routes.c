@@ -3,6 +3,7 @@
 #include "api/request/exchange.h"
 
 #include "fixture.h"
+#include "tests/writing.h"
 
 static bool find_asset(void *context, const char *path, const char **bytes, size_t *length,
                        const char **type, const char **etag, bool *immutable)
@@ -419,9 +420,7 @@ static void costly_work_leaves_the_worker(void **state)
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &large, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    assert_non_null(st_write_begin(only, NULL, NULL));
-    st_write_replace(only, large, &info);
-    st_write_end(only);
+    assert_int_equal(writing_replace(only, large, NULL, &info), ST_OK);
     api_request request = {.method = "GET", .path = "/v1/meshes/m", .query = "", .request_id = "r"};
     api_step step;
     api_exchange *x = api_begin(service, &request, &step);
@@ -432,9 +431,7 @@ static void costly_work_leaves_the_worker(void **state)
     assert_int_equal(api_answer_of(x)->shown.incarnation, info.incarnation);
     assert_int_equal(api_answer_of(x)->shown.position, info.position);
     api_free(x);
-    assert_non_null(st_write_begin(only, NULL, NULL));
-    st_write_replace(only, fixture_mesh("012"), NULL);
-    st_write_end(only);
+    assert_int_equal(writing_replace(only, fixture_mesh("012"), NULL, NULL), ST_OK);
 }
 
 static void a_large_document_is_read_off_the_worker(void **state)

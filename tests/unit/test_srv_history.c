@@ -2,6 +2,7 @@
  * columns that came and went included, within the budget, while others write. */
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
+#include "tests/writing.h"
 
 #include "mesh/write.h"
 #include "store/history_cursor.h"
@@ -63,8 +64,8 @@ static void drop_column(he_mesh *m)
 static void edit(st_mesh *mesh, md_random *random, unsigned serial)
 {
     char text[96];
-    he_delta *delta;
-    he_mesh *m = st_write_begin(mesh, NULL, &delta);
+    st_write w;
+    he_mesh *m = writing_begin(mesh, &w);
     assert_non_null(m);
     switch (md_below(random, 7)) {
     case 0:
@@ -88,20 +89,16 @@ static void edit(st_mesh *mesh, md_random *random, unsigned serial)
         (void)script_run(m, text, NULL, NULL);
         break;
     }
-    if (delta->count > 0) {
-        st_write_commit(mesh, "some", false, NULL);
+    if (w.delta->count > 0) {
+        assert_true(writing_commit(&w, "some", NULL));
     } else {
-        st_write_abort(mesh);
+        st_write_abort(&w);
     }
 }
 
 static st_status step(st_mesh *mesh, st_action which, uint32_t steps)
 {
-    const he_delta *deltas[8];
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_status status = st_write_step(mesh, which, steps, deltas, NULL);
-    st_write_end(mesh);
-    return status;
+    return writing_step(mesh, which, steps);
 }
 
 static void change(st_mesh *mesh, md_random *random, unsigned serial)
@@ -197,9 +194,7 @@ static void snapshots_of_earlier_revisions(void **state)
     }
     st_snapshot_release(held);
     assert_int_equal(st_snapshot_at(mesh, pictures.head + 1, &none), ST_AHEAD);
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_write_replace(mesh, fixture_mesh("012"), NULL);
-    st_write_end(mesh);
+    assert_int_equal(writing_replace(mesh, fixture_mesh("012"), NULL, NULL), ST_OK);
     assert_int_equal(st_snapshot_at(mesh, pictures.head, &none), ST_GONE);
     clear_album(&pictures);
     close_mesh(mesh);
@@ -285,9 +280,7 @@ static void a_walk_is_told_that_the_history_was_cut(void **state)
     st_cursor_end(walk);
     assert_int_equal(st_cursor_begin(mesh, 2, &walk), ST_GONE);
     assert_int_equal(st_cursor_begin(mesh, head_of(mesh, NULL), &walk), ST_OK);
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_write_replace(mesh, fixture_mesh("012"), NULL);
-    st_write_end(mesh);
+    assert_int_equal(writing_replace(mesh, fixture_mesh("012"), NULL, NULL), ST_OK);
     assert_int_equal(st_cursor_next(walk, &at), ST_GONE);
     st_cursor_end(walk);
     close_mesh(mesh);
@@ -329,11 +322,12 @@ static void what_the_log_frees_is_free(void **state)
     uint64_t before = st_memory_used();
     st_mesh *mesh = open_mesh(BUDGET);
     for (unsigned i = 0; i < 20000; i++) {
-        he_mesh *m = st_write_begin(mesh, NULL, NULL);
+        st_write w;
+        he_mesh *m = writing_begin(mesh, &w);
         char text[64];
         snprintf(text, sizeof text, "vertex_move vertex=%u to=%u,1,2", md_below(&random, 6), i);
         assert_int_equal(script_run(m, text, NULL, NULL), HE_OK);
-        st_write_commit(mesh, "vertex_move", false, NULL);
+        assert_true(writing_commit(&w, "vertex_move", NULL));
     }
     st_history facts;
     st_history_reach(mesh, &facts);
@@ -361,12 +355,16 @@ static void every_allocation_may_fail(void **state)
             take_picture(&pictures, mesh);
         }
         uint64_t head = pictures.head;
-        const he_delta *deltas[8];
-        assert_non_null(st_write_begin(mesh, NULL, NULL));
+        st_write w;
+        assert_non_null(writing_begin(mesh, &w));
         fail_allocation(n);
-        st_status status = st_write_step(mesh, ST_UNDO, 7, deltas, NULL);
+        st_status status = st_write_step(&w, ST_UNDO, 7);
         bool step_failed = allocation_failed();
-        st_write_end(mesh);
+        if (status == ST_OK) {
+            assert_int_equal(st_write_commit(&w, NULL), ST_OK);
+        } else {
+            st_write_abort(&w);
+        }
         st_snapshot *snapshot = NULL;
         st_cursor *walk = NULL;
         st_cursor_step at;
@@ -416,9 +414,10 @@ static void *write_on(void *context)
             continue;
         }
         char text[96];
-        st_mesh_info info;
-        he_mesh *m = st_write_begin(mesh, &info, NULL);
-        snprintf(text, sizeof text, "vertex_move vertex=0,1 to=%" PRIu64 ",0,0", info.revision + 1);
+        st_write w;
+        he_mesh *m = writing_begin(mesh, &w);
+        snprintf(text, sizeof text, "vertex_move vertex=0,1 to=%" PRIu64 ",0,0",
+                 w.info.revision + 1);
         bool good = m != NULL && script_run(m, text, NULL, NULL) == HE_OK;
         if (good && i % 7 == 0) {
             add_column(m, i);
@@ -427,7 +426,9 @@ static void *write_on(void *context)
             atomic_store(&broken, true);
             break;
         }
-        st_write_commit(mesh, "vertex_move", false, NULL);
+        if (!writing_commit(&w, "vertex_move", NULL)) {
+            atomic_store(&broken, true);
+        }
     }
     atomic_store(&writing, false);
     return NULL;
@@ -494,12 +495,13 @@ static void readers_of_the_past_and_a_writer(void **state)
 {
     (void)state;
     st_mesh *mesh = open_mesh(64 * 1024);
-    he_mesh *m = st_write_begin(mesh, NULL, NULL);
+    st_write w;
+    he_mesh *m = writing_begin(mesh, &w);
     he_vec3 point = {2, 0, 0};
     assert_int_equal(he_reserve(m, (he_need){.positions = 2}, NULL), HE_OK);
     he_set_position(m, (he_vertex){0}, point);
     he_set_position(m, (he_vertex){1}, point);
-    st_write_commit(mesh, "vertex_move", false, NULL);
+    assert_true(writing_commit(&w, "vertex_move", NULL));
     pthread_t threads[THREADS];
     atomic_store(&writing, true);
     assert_int_equal(pthread_create(&threads[0], NULL, read_back, mesh), 0);

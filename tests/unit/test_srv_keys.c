@@ -29,7 +29,7 @@ static int teardown(void **state)
     return 0;
 }
 
-static st_keyed_status claim(const char *text, uint64_t digest, double now, st_keyed **out)
+static st_keyed_status begin_keyed(const char *text, uint64_t digest, double now, st_keyed **out)
 {
     st_key key = {.text = text, .digest = {digest, 7}};
     return st_keys_begin(&keys, &key, now, out);
@@ -48,14 +48,14 @@ static void keep(st_keyed *c, const char *body, size_t length, bool changed)
 static void put(const char *text, const char *body, size_t length, double now)
 {
     st_keyed *c = NULL;
-    assert_int_equal(claim(text, 1, now, &c), ST_KEYED_NEW);
+    assert_int_equal(begin_keyed(text, 1, now, &c), ST_KEYED_NEW);
     keep(c, body, length, true);
 }
 
 static bool is_kept(const char *text, double now)
 {
     st_keyed *c = NULL;
-    st_keyed_status status = claim(text, 1, now, &c);
+    st_keyed_status status = begin_keyed(text, 1, now, &c);
     st_keyed_end(c);
     return status == ST_KEYED_KEPT;
 }
@@ -64,12 +64,12 @@ static void the_first_answer_is_given_again(void **state)
 {
     (void)state;
     st_keyed *first = NULL, *again = NULL;
-    assert_int_equal(claim("a", 1, 0, &first), ST_KEYED_NEW);
-    assert_int_equal(claim("a", 1, 1, &again), ST_KEYED_BUSY);
-    assert_int_equal(claim("a", 2, 1, &again), ST_KEYED_OTHER);
+    assert_int_equal(begin_keyed("a", 1, 0, &first), ST_KEYED_NEW);
+    assert_int_equal(begin_keyed("a", 1, 1, &again), ST_KEYED_BUSY);
+    assert_int_equal(begin_keyed("a", 2, 1, &again), ST_KEYED_OTHER);
     keep(first, "body", 4, true);
-    assert_int_equal(claim("a", 2, 1, &again), ST_KEYED_OTHER);
-    assert_int_equal(claim("a", 1, 1, &again), ST_KEYED_KEPT);
+    assert_int_equal(begin_keyed("a", 2, 1, &again), ST_KEYED_OTHER);
+    assert_int_equal(begin_keyed("a", 1, 1, &again), ST_KEYED_KEPT);
     assert_int_equal(again->answer.status, 200);
     assert_string_equal(again->answer.etag, "\"tag\"");
     assert_true(again->answer.position == 5);
@@ -81,9 +81,9 @@ static void a_claim_without_an_answer_is_forgotten(void **state)
 {
     (void)state;
     st_keyed *c = NULL;
-    assert_int_equal(claim("a", 1, 0, &c), ST_KEYED_NEW);
+    assert_int_equal(begin_keyed("a", 1, 0, &c), ST_KEYED_NEW);
     st_keyed_end(c);
-    assert_int_equal(claim("a", 2, 0, &c), ST_KEYED_NEW);
+    assert_int_equal(begin_keyed("a", 2, 0, &c), ST_KEYED_NEW);
     st_keyed_end(c);
     assert_int_equal(keys.count, 0);
 }
@@ -125,15 +125,15 @@ static void bytes_are_bounded(void **state)
 
     put("large", body, ST_KEPT_BODY + 1, 10);
     st_keyed *c = NULL;
-    assert_int_equal(claim("large", 1, 10, &c), ST_KEYED_KEPT);
+    assert_int_equal(begin_keyed("large", 1, 10, &c), ST_KEYED_KEPT);
     assert_null(c->answer.body);
     assert_int_equal(c->answer.length, ST_KEPT_BODY + 1);
     st_keyed_end(c);
 
     /* What changed nothing is better tried again than answered without its body. */
-    assert_int_equal(claim("dry", 1, 10, &c), ST_KEYED_NEW);
+    assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);
     keep(c, body, ST_KEPT_BODY + 1, false);
-    assert_int_equal(claim("dry", 1, 10, &c), ST_KEYED_NEW);
+    assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);
     st_keyed_end(c);
     free(body);
 }
@@ -143,7 +143,7 @@ static void an_answer_that_is_read_outlives_its_place(void **state)
     (void)state;
     st_keyed *c = NULL;
     put("a", "body", 4, 0);
-    assert_int_equal(claim("a", 1, 1, &c), ST_KEYED_KEPT);
+    assert_int_equal(begin_keyed("a", 1, 1, &c), ST_KEYED_KEPT);
     assert_false(is_kept("a", ST_KEPT_SECONDS));
     assert_memory_equal(c->answer.body, "body", 4);
     st_keyed_end(c);
@@ -155,13 +155,13 @@ static void bodies_go_when_memory_is_short(void **state)
     st_keyed *read = NULL, *c = NULL;
     put("a", "body", 4, 0);
     put("b", "body", 4, 0);
-    assert_int_equal(claim("a", 1, 1, &read), ST_KEYED_KEPT);
+    assert_int_equal(begin_keyed("a", 1, 1, &read), ST_KEYED_KEPT);
     uint64_t bytes = keys.bytes;
     st_keys_shed(&keys);
     assert_true(keys.bytes == bytes - 4);
     assert_memory_equal(read->answer.body, "body", 4);
     st_keyed_end(read);
-    assert_int_equal(claim("b", 1, 1, &c), ST_KEYED_KEPT);
+    assert_int_equal(begin_keyed("b", 1, 1, &c), ST_KEYED_KEPT);
     assert_null(c->answer.body);
     st_keyed_end(c);
 }
@@ -187,10 +187,10 @@ static void keeping_cannot_fail(void **state)
         char text[32];
         snprintf(text, sizeof text, "%ld", n);
         left = n;
-        st_keyed_status status = claim(text, 1, 0, &c);
+        st_keyed_status status = begin_keyed(text, 1, 0, &c);
         if (status == ST_KEYED_NEW) {
             keep(c, "body", 4, true);
-            assert_int_equal(claim(text, 1, 0, &c), ST_KEYED_KEPT);
+            assert_int_equal(begin_keyed(text, 1, 0, &c), ST_KEYED_KEPT);
             assert_true(c->answer.body == NULL || memcmp(c->answer.body, "body", 4) == 0);
             st_keyed_end(c);
         } else {

@@ -1,5 +1,8 @@
 /* The store: ids, revisions, undo and redo within a budget, snapshots, caches, threads. */
 #include "tests/unit/fixture.h"
+#include "tests/writing.h"
+
+#include "mesh/compact.h"
 
 #include "edit/local/vertex.h"
 #include "store/store.h"
@@ -45,15 +48,18 @@ static st_mesh *create(const char *id)
 /* Moves vertex 0 to x: one edit, one step. */
 static void move(st_mesh *mesh, double x, bool barrier, st_mesh_info *info)
 {
-    he_delta *delta = NULL;
-    he_mesh *content = st_write_begin(mesh, NULL, &delta);
+    st_write w;
+    he_mesh *content = writing_begin(mesh, &w);
     assert_non_null(content);
-    assert_int_equal(delta->count, 0);
+    assert_int_equal(w.delta->count, 0);
     he_vec3 point = {x, 0, 0};
     uint32_t vertex = 0;
     assert_int_equal(he_vertex_move(content, &vertex, 1, HE_MOVE_TO, &point, 1, NULL), HE_OK);
-    assert_true(delta->count > 0);
-    st_write_commit(mesh, "vertex_move", barrier, info);
+    assert_true(w.delta->count > 0);
+    if (barrier) {
+        assert_int_equal(he_compact(content, NULL, NULL), HE_OK);
+    }
+    assert_true(writing_commit(&w, "vertex_move", info));
 }
 
 static double x_of(st_mesh *mesh)
@@ -74,22 +80,12 @@ static st_mesh_info info_of(st_mesh *mesh)
 
 static st_status take_away(st_mesh *mesh)
 {
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_status status = st_remove(mesh, NULL);
-    st_write_end(mesh);
-    return status;
+    return writing_remove(mesh);
 }
 
 static st_status step(st_mesh *mesh, st_action which)
 {
-    const he_delta *delta = NULL;
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_status status = st_write_step(mesh, which, 1, &delta, NULL);
-    if (status == ST_OK) {
-        assert_true(delta->count > 0);
-    }
-    st_write_end(mesh);
-    return status;
+    return writing_step(mesh, which, 1);
 }
 
 static void test_ids(void **state)
@@ -226,14 +222,14 @@ static void test_abort_leaves_nothing(void **state)
     assert_int_equal(he_mesh_copy(content, &before, NULL), HE_OK);
     st_read_end(mesh);
     for (int end = 0; end < 2; end++) {
-        he_mesh *writing = st_write_begin(mesh, NULL, NULL);
+        st_write w;
         he_vertex made;
-        assert_int_equal(he_vertex_add(writing, (he_vec3){1, 2, 3}, &made, NULL), HE_OK);
-        if (end == 0) {
-            st_write_abort(mesh);
-        } else {
-            st_write_end(mesh);
+        assert_int_equal(he_vertex_add(writing_begin(mesh, &w), (he_vec3){1, 2, 3}, &made, NULL),
+                         HE_OK);
+        if (end > 0) {
+            assert_int_equal(st_write_changes(&w, NULL), HE_OK);
         }
+        st_write_abort(&w);
         content = st_read_begin(mesh, NULL);
         assert_true(he_mesh_equal(content, before));
         st_read_end(mesh);
@@ -255,9 +251,7 @@ static void test_barrier_and_replace_end_undo(void **state)
     move(mesh, 3, false, NULL);
     assert_int_equal(step(mesh, ST_UNDO), ST_OK);
 
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_write_replace(mesh, fixture_mesh("012"), &info);
-    st_write_end(mesh);
+    assert_int_equal(writing_replace(mesh, fixture_mesh("012"), NULL, &info), ST_OK);
     assert_int_equal(info.undo, 0);
     assert_int_equal(info.redo, 0);
     assert_int_equal(info.revision, 6);
@@ -269,9 +263,11 @@ static void test_barrier_and_replace_end_undo(void **state)
     assert_false(entry.undoable);
     st_read_end(mesh);
 
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_write_rename(mesh, "other", &info);
-    st_write_end(mesh);
+    st_write w;
+    assert_non_null(writing_begin(mesh, &w));
+    st_write_rename(&w, "other");
+    assert_int_equal(st_write_commit(&w, NULL), ST_OK);
+    info = w.info;
     assert_string_equal(info.name, "other");
     assert_int_equal(info.metadata, 2);
     assert_int_equal(info.revision, 6);
@@ -301,12 +297,13 @@ static void test_undo_budget(void **state)
     assert_true(x_of(mesh) < EDITS - 2);
 
     /* One edit beyond the budget: applied, but it cannot be undone, nor can what came before. */
-    he_mesh *content = st_write_begin(mesh, NULL, NULL);
+    st_write w;
+    he_mesh *content = writing_begin(mesh, &w);
     for (int i = 0; i < EDITS; i++) {
         he_vertex made;
         assert_int_equal(he_vertex_add(content, (he_vec3){1, 2, 3}, &made, NULL), HE_OK);
     }
-    st_write_commit(mesh, "vertex_add", false, &info);
+    assert_true(writing_commit(&w, "vertex_add", &info));
     assert_int_equal(info.undo, 0);
     assert_int_equal(info.redo, 0);
     st_entry entry;
@@ -327,10 +324,11 @@ static void test_long_names_of_operations_are_cut(void **state)
         at += (size_t)snprintf(ops + at, sizeof ops - at, "%svertex_move", at == 0 ? "" : ",");
     }
     st_mesh *mesh = create("m");
-    he_mesh *content = st_write_begin(mesh, NULL, NULL);
+    st_write w;
+    he_mesh *content = writing_begin(mesh, &w);
     he_vertex made;
     assert_int_equal(he_vertex_add(content, (he_vec3){0}, &made, NULL), HE_OK);
-    st_write_commit(mesh, ops, false, NULL);
+    assert_true(writing_commit(&w, ops, NULL));
     st_entry entry;
     st_read_begin(mesh, NULL);
     assert_true(st_history_entry(mesh, 0, &entry));
@@ -370,10 +368,11 @@ static void test_snapshots(void **state)
         if (round == 1) {
             assert_int_equal(step(mesh, ST_UNDO), ST_OK);
         } else if (round == 2) {
-            he_mesh *content = st_write_begin(mesh, NULL, NULL);
+            st_write w;
+            he_mesh *content = writing_begin(mesh, &w);
             he_vertex made;
             assert_int_equal(he_vertex_add(content, (he_vec3){7, 8, 9}, &made, NULL), HE_OK);
-            st_write_commit(mesh, "vertex_add", false, NULL);
+            assert_true(writing_commit(&w, "vertex_add", NULL));
         } else {
             move(mesh, 10 + round, false, NULL);
         }
@@ -429,14 +428,15 @@ static void test_every_allocation_may_fail(void **state)
             assert_int_equal(status, ST_NO_MEMORY);
             all = false;
         }
-        he_mesh *writing = st_write_begin(mesh, NULL, NULL);
+        st_write w;
+        he_mesh *writing = writing_begin(mesh, &w);
         if (writing != NULL) {
             uint32_t vertex = 0;
             he_vec3 point = {(double)n, 0, 0};
             if (he_vertex_move(writing, &vertex, 1, HE_MOVE_TO, &point, 1, NULL) == HE_OK) {
-                st_write_commit(mesh, "vertex_move", false, NULL);
+                all = writing_commit(&w, "vertex_move", NULL) && all;
             } else {
-                st_write_abort(mesh);
+                st_write_abort(&w);
                 all = false;
             }
         } else {
@@ -490,8 +490,9 @@ static void test_memory_budget(void **state)
     uint64_t with_copy = st_memory_used();
     st_memory_set_budget(with_copy + with_copy / 32);
     assert_true(st_memory_is_full());
-    assert_non_null(st_write_begin(mesh, NULL, NULL));
-    st_write_abort(mesh);
+    st_write w;
+    assert_non_null(writing_begin(mesh, &w));
+    st_write_abort(&w);
     uint64_t without = st_memory_used();
     st_store_shed(store);
     assert_true(st_memory_used() == without);
@@ -588,7 +589,8 @@ static void *write_some(void *context)
 {
     st_mesh *mesh = context;
     for (int i = 0; i < ROUNDS; i++) {
-        he_mesh *content = st_write_begin(mesh, NULL, NULL);
+        st_write w;
+        he_mesh *content = writing_begin(mesh, &w);
         uint32_t vertices[] = {0, 1};
         he_vec3 point = {i, i, i};
         if (content == NULL) {
@@ -596,17 +598,18 @@ static void *write_some(void *context)
             break;
         }
         if (i % 7 == 3) {
-            const he_delta *lent;
-            st_status status = st_write_step(mesh, i % 2 ? ST_UNDO : ST_REDO, 1, &lent, NULL);
-            (void)status;
-            st_write_end(mesh);
+            if (st_write_step(&w, i % 2 ? ST_UNDO : ST_REDO, 1) == ST_OK) {
+                (void)st_write_commit(&w, NULL);
+            } else {
+                st_write_abort(&w);
+            }
         } else if (he_vertex_move(content, vertices, 2, HE_MOVE_TO, &point, 1, NULL) != HE_OK) {
             atomic_store(&broken, true);
-            st_write_abort(mesh);
+            st_write_abort(&w);
         } else if (i % 5 == 0) {
-            st_write_abort(mesh);
-        } else {
-            st_write_commit(mesh, "vertex_move", false, NULL);
+            st_write_abort(&w);
+        } else if (!writing_commit(&w, "vertex_move", NULL)) {
+            atomic_store(&broken, true);
         }
     }
     return NULL;
@@ -669,11 +672,13 @@ static void test_threads(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
-    he_mesh *content = st_write_begin(mesh, NULL, NULL);
+    st_write w;
+    he_mesh *content = writing_begin(mesh, &w);
     uint32_t vertices[] = {0, 1};
     he_vec3 point = {0, 0, 0};
     assert_int_equal(he_vertex_move(content, vertices, 2, HE_MOVE_TO, &point, 1, NULL), HE_OK);
-    st_write_commit(mesh, "vertex_move", true, NULL);
+    assert_int_equal(he_compact(content, NULL, NULL), HE_OK);
+    assert_true(writing_commit(&w, "vertex_move", NULL));
     pthread_t threads[WRITERS + READERS + 2];
     size_t count = 0;
     for (int i = 0; i < WRITERS; i++) {

@@ -2,6 +2,9 @@
  * stopped. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
+#include "tests/writing.h"
+
+#include "edit/local/vertex.h"
 
 #include "store/durability_wait.h"
 #include "tests/seed.h"
@@ -146,6 +149,42 @@ static void a_stop_ends_what_is_not_known(void **state)
     assert_int_equal(all[0].end, ST_WAIT_DURABLE);
 }
 
+/* What one request does is one group of records, so that a crash leaves all of it or nothing. */
+static void a_request_is_one_group_of_records(void **state)
+{
+    (void)state;
+    static slow_journal log;
+    st_store *store = st_store_new(&(st_store_options){
+        .undo_budget = 1 << 16, .max_meshes = 1, .journal = slow_journal_open(&log)});
+    st_mesh *mesh = NULL;
+    st_mesh_info info;
+    assert_int_equal(st_create(store, "m", NULL, fixture_mesh("012"), NULL, &mesh), ST_OK);
+    for (uint32_t i = 1; i <= 3; i++) {
+        st_write w;
+        uint32_t vertex = 0;
+        he_vec3 point = {i, 0, 0};
+        he_mesh *content = writing_begin(mesh, &w);
+        assert_int_equal(he_vertex_move(content, &vertex, 1, HE_MOVE_TO, &point, 1, NULL), HE_OK);
+        assert_true(writing_commit(&w, "vertex_move", &info));
+        assert_int_equal(info.position, 1 + i);
+    }
+    assert_int_equal(log.groups, 4);
+    assert_int_equal(writing_step(mesh, ST_UNDO, 3), ST_OK);
+    assert_int_equal(log.newest, 7);
+    assert_int_equal(log.groups, 5);
+    assert_int_equal(writing_step(mesh, ST_REDO, 2), ST_OK);
+    assert_int_equal(log.newest, 9);
+    assert_int_equal(log.groups, 6);
+    assert_int_equal(writing_replace(mesh, fixture_mesh("012,023"), "name", &info), ST_OK);
+    assert_string_equal(info.name, "name");
+    assert_int_equal(info.revision, 10);
+    assert_int_equal(info.position, 11);
+    assert_int_equal(info.record, 11);
+    assert_int_equal(log.groups, 7);
+    st_release(mesh);
+    st_store_free(store);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
@@ -154,6 +193,7 @@ int main(void)
         TEST(a_lost_position_ends_as_lost_whenever_it_is_added),
         TEST(a_loss_without_memory_takes_too_much_rather_than_too_little),
         TEST(a_stop_ends_what_is_not_known),
+        cmocka_unit_test(a_request_is_one_group_of_records),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

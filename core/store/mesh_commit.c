@@ -1,0 +1,157 @@
+/* The kinds of commit: an edit, which may be of a claim's copy, steps, replace, rename, removal.
+ * Each goes into the history first, then to the journal and the listeners. */
+#include "store/mesh_commit.h"
+
+#include "system/clock.h"
+
+#include <assert.h>
+#include <string.h>
+
+void st_mesh_unclaim(st_mesh *mesh)
+{
+    mesh->claimed = false;
+    mesh->info.job[0] = '\0';
+}
+
+static double revise(st_mesh *mesh)
+{
+    mesh->info.revision++;
+    mesh->info.modified = st_clock_utc();
+    return mesh->info.modified;
+}
+
+/* Not known where the content was changed as a whole. */
+static st_tally tally_of(const he_changes *changes)
+{
+    static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
+    st_tally tally = {.known = !changes->replaced};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        tally.created[i] = (uint32_t)changes->created[kinds[i]].count;
+        tally.deleted[i] = (uint32_t)changes->deleted[kinds[i]].count;
+        tally.modified[i] = (uint32_t)changes->modified[kinds[i]].count;
+    }
+    return tally;
+}
+
+/* Its delta stays until it was published, whatever the history keeps of it. */
+static void commit_edit(st_write *w, const char *ops)
+{
+    st_mesh *mesh = w->mesh;
+    const st_tally tally = tally_of(&w->changes);
+    const bool barrier = w->changes.renumbered;
+    st_step *step = barrier ? NULL : st_log_hold_reserved(&mesh->log);
+    double now = revise(mesh);
+    if (barrier) {
+        st_log_add_barrier(&mesh->log, mesh->info.revision, ST_EDIT, ops, now, mesh->content);
+    } else {
+        st_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content, &tally);
+    }
+    st_record record = st_mesh_record(mesh, barrier ? ST_REPLACE : ST_EDIT, w->keyed);
+    if (!barrier) {
+        record.delta = st_step_delta(step);
+        record.changes = &w->changes;
+    }
+    st_mesh_publish(mesh, &record, 1, NULL);
+    st_step_release(step);
+}
+
+static void commit_steps(st_write *w)
+{
+    st_mesh *mesh = w->mesh;
+    for (uint32_t i = 0; i < w->steps; i++) {
+        double now = revise(mesh);
+        st_log_add_step(&mesh->log, mesh->info.revision, w->which, now, mesh->content);
+        w->records[i] = st_mesh_record(mesh, w->which, w->keyed);
+        w->records[i].delta = w->deltas[i];
+        w->records[i].undone = w->which == ST_UNDO;
+    }
+    st_mesh_publish(mesh, w->records, w->steps, w->events);
+    st_log_settle(&mesh->log);
+}
+
+static void rename_mesh(st_mesh *mesh, const char *name)
+{
+    size_t length = strnlen(name, ST_MESH_NAME);
+    memcpy(mesh->info.name, name, length);
+    mesh->info.name[length] = '\0';
+    mesh->info.metadata++;
+    mesh->info.modified = st_clock_utc();
+}
+
+/* A replacement with a name is two records that belong together. */
+static void commit_facts(st_write *w)
+{
+    st_mesh *mesh = w->mesh;
+    st_record records[2];
+    size_t count = 0;
+    if (w->kind == ST_WRITE_REPLACE) {
+        double now = revise(mesh);
+        st_log_add_barrier(&mesh->log, mesh->info.revision, ST_REPLACE, "replace", now,
+                           mesh->content);
+        records[count++] = st_mesh_record(mesh, ST_REPLACE, w->keyed);
+    }
+    if (w->name != NULL) {
+        rename_mesh(mesh, w->name);
+        records[count++] = st_mesh_record(mesh, ST_EDIT, w->keyed);
+    }
+    if (w->kind == ST_WRITE_REMOVE) {
+        mesh->info.removed = true;
+        records[count++] = st_mesh_record(mesh, ST_REPLACE, w->keyed);
+    }
+    st_mesh_publish(mesh, records, count, NULL);
+}
+
+/* Puts in what the write made; what it takes the place of is the caller's to free. */
+static he_mesh *exchange_content(st_write *w)
+{
+    st_mesh *mesh = w->mesh;
+    if (w->kind == ST_WRITE_EDIT) {
+        he_mesh_record(w->content, NULL);
+    }
+    if (w->claimed) {
+        st_mesh_unclaim(mesh);
+    }
+    he_mesh *before = mesh->content;
+    mesh->content = w->content;
+    return before == w->content ? NULL : before;
+}
+
+st_status st_write_commit(st_write *w, const char *ops)
+{
+    st_mesh *mesh = w->mesh;
+    if (w->claimed) {
+        pthread_rwlock_wrlock(&mesh->lock);
+        if (mesh->info.removed) {
+            st_write_give_up(w);
+            return ST_ABSENT;
+        }
+    }
+    assert(w->found || w->kind >= ST_WRITE_REPLACE);
+    he_mesh *discard = exchange_content(w);
+    bool cut_off = w->kind == ST_WRITE_REPLACE || w->changes.renumbered;
+    bool removed = w->kind == ST_WRITE_REMOVE;
+    switch (w->kind) {
+    case ST_WRITE_EDIT:
+        commit_edit(w, ops);
+        break;
+    case ST_WRITE_STEP:
+        commit_steps(w);
+        break;
+    case ST_WRITE_REPLACE:
+    case ST_WRITE_RENAME:
+    case ST_WRITE_REMOVE:
+        commit_facts(w);
+        break;
+    }
+    st_mesh_facts(mesh, &w->info);
+    if (removed) {
+        /* Only now may the id be another's. */
+        st_store_take_out(mesh->store, mesh);
+    }
+    st_write_end(w, discard);
+    /* No copy can travel across a replacement. */
+    if (cut_off) {
+        st_mesh_shed(mesh);
+    }
+    return ST_OK;
+}

@@ -1,0 +1,497 @@
+/* Writers, readers and listeners of a few meshes that come and go, over a journal that lags:
+ * nothing is shown before the journal has it, groups of records are whole, and what is lost is not
+ * shown. */
+#include "tests/seed.h"
+#include "tests/unit/fixture.h"
+#include "tests/writing.h"
+
+#include "edit/local/vertex.h"
+#include "model/random.h"
+#include "store/followers.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+
+enum {
+    MESHES = 3,
+    WRITERS = 3,
+    READERS = 2,
+    LISTENERS = 2,
+    ROUNDS = 3000,
+    MOST_STEPS = 4,
+    NOTES = WRITERS * ROUNDS * MOST_STEPS
+};
+
+static const char *const ids[MESHES] = {"a", "b", "c"};
+
+/* --- the journal --- */
+
+/* A record at its position, which is its place here. */
+typedef struct note {
+    uint64_t incarnation, number, revision;
+    uint64_t group; /* position of the last record of its group */
+} note;
+
+static struct {
+    pthread_mutex_t lock;
+    note notes[NOTES + 1];
+    uint64_t newest;
+    uint64_t removed[MESHES]; /* position of the last removal of an id */
+    _Atomic uint64_t durable;
+    st_journal_listener listener;
+} journal = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static _Atomic bool broken, writing;
+
+static void expect(bool good)
+{
+    if (!good) {
+        atomic_store(&broken, true);
+    }
+}
+
+static uint64_t append(void *self, const st_record *records, size_t count)
+{
+    (void)self;
+    pthread_mutex_lock(&journal.lock);
+    uint64_t last = journal.newest + count;
+    for (size_t i = 0; i < count && last <= NOTES; i++) {
+        journal.notes[++journal.newest] = (note){.incarnation = records[i].incarnation,
+                                                 .number = records[i].number,
+                                                 .revision = records[i].revision,
+                                                 .group = last};
+        if (records[i].removed) {
+            journal.removed[records[i].id[0] - 'a'] = journal.newest;
+        }
+    }
+    pthread_mutex_unlock(&journal.lock);
+    expect(last <= NOTES);
+    return last;
+}
+
+static void listen_to(void *self, const st_journal_listener *listener)
+{
+    (void)self;
+    if (listener != NULL) {
+        journal.listener = *listener;
+    }
+}
+
+static void close_journal(void *self)
+{
+    (void)self;
+}
+
+static void advance(uint64_t position)
+{
+    atomic_store(&journal.durable, position);
+    journal.listener.moved(journal.listener.context, position);
+}
+
+/* Groups become durable whole. */
+static void *lag_behind(void *context)
+{
+    md_random *random = context;
+    uint64_t at = 0;
+    while (atomic_load(&writing)) {
+        pthread_mutex_lock(&journal.lock);
+        uint64_t newest = journal.newest, to = at;
+        if (newest > at) {
+            to = at + 1 + md_below(random, (uint32_t)(newest - at));
+            to = journal.notes[to].group == to ? to : at;
+        }
+        pthread_mutex_unlock(&journal.lock);
+        if (to > at && md_chance(random, 30)) {
+            at = to;
+            advance(at);
+        } else {
+            sched_yield();
+        }
+    }
+    return NULL;
+}
+
+/* --- what must be durable, by the journal's own notes --- */
+
+static uint64_t position_of_record(uint64_t incarnation, uint64_t number)
+{
+    pthread_mutex_lock(&journal.lock);
+    uint64_t at = journal.newest;
+    while (at > 0 &&
+           (journal.notes[at].incarnation != incarnation || journal.notes[at].number != number)) {
+        at--;
+    }
+    pthread_mutex_unlock(&journal.lock);
+    expect(at > 0);
+    return at;
+}
+
+static uint64_t position_of_revision(uint64_t incarnation, uint64_t revision)
+{
+    pthread_mutex_lock(&journal.lock);
+    uint64_t at = journal.newest, found = 0;
+    for (; at > 0; at--) {
+        const note *n = &journal.notes[at];
+        if (n->incarnation == incarnation && n->revision <= revision) {
+            found = n->revision == revision ? at : found;
+            if (n->revision < revision) {
+                break;
+            }
+        }
+    }
+    pthread_mutex_unlock(&journal.lock);
+    expect(found > 0);
+    return found;
+}
+
+/* --- answers --- */
+
+typedef struct answer {
+    st_wait wait;
+    uint64_t need; /* what it shows is at this position, or before */
+    _Atomic bool over;
+} answer;
+
+static _Atomic size_t sent, lost;
+
+static void end(answer *a)
+{
+    bool durable = a->wait.end == ST_WAIT_DURABLE;
+    expect(!durable || a->need <= atomic_load(&journal.durable));
+    expect(a->wait.end != ST_WAIT_STOPPED && !atomic_load(&a->over));
+    atomic_store(&a->over, true);
+    atomic_fetch_add(durable ? &sent : &lost, 1);
+}
+
+static void resume(st_wait *wait)
+{
+    end((answer *)wait);
+}
+
+static void send_when_durable(st_store *store, answer *a, st_shown shown, uint64_t need)
+{
+    *a = (answer){.wait = {.shown = shown, .resume = resume}, .need = need};
+    expect(shown.position >= need);
+    if (!st_waits_add(st_store_waits(store), &a->wait)) {
+        end(a);
+    }
+}
+
+static void show_mesh(st_store *store, answer *a, const st_mesh_info *info)
+{
+    send_when_durable(store, a, st_shown_of(info),
+                      position_of_record(info->incarnation, info->record));
+}
+
+/* --- threads --- */
+
+typedef struct worker {
+    pthread_t thread;
+    st_store *store;
+    md_random random;
+    answer *answers;
+    size_t made;
+} worker;
+
+static void create(worker *w, const char *id)
+{
+    st_mesh *mesh = NULL;
+    he_mesh *content = fixture_mesh("012,023");
+    st_status status = st_create(w->store, id, "new", content, NULL, &mesh);
+    if (status == ST_OK) {
+        st_mesh_info info;
+        st_read_begin(mesh, &info);
+        st_read_end(mesh);
+        show_mesh(w->store, &w->answers[w->made++], &info);
+        st_release(mesh);
+    } else {
+        expect(status == ST_TAKEN);
+        he_mesh_free(content);
+    }
+}
+
+static bool edit(worker *w, st_write *write)
+{
+    uint32_t vertex = md_below(&w->random, 4);
+    he_vec3 by = {1, md_unit(&w->random), 0};
+    return he_vertex_move(write->content, &vertex, 1, HE_MOVE_BY, &by, 1, NULL) == HE_OK &&
+           st_write_changes(write, NULL) == HE_OK;
+}
+
+static bool prepare(worker *w, st_write *write)
+{
+    switch (md_below(&w->random, 16)) {
+    case 0:
+        st_write_remove(write);
+        return true;
+    case 1:
+        st_write_replace(write, fixture_mesh("012,023,034"));
+        st_write_rename(write, "replaced");
+        return true;
+    case 2:
+        st_write_rename(write, "renamed");
+        return true;
+    case 3:
+    case 4:
+    case 5:
+    case 6:
+        return st_write_step(write, md_chance(&w->random, 60) ? ST_UNDO : ST_REDO,
+                             md_from(&w->random, 1, MOST_STEPS)) == ST_OK;
+    default:
+        return edit(w, write) && !md_chance(&w->random, 10);
+    }
+}
+
+static void *write_some(void *context)
+{
+    worker *w = context;
+    for (int i = 0; i < ROUNDS; i++) {
+        const char *id = ids[md_below(&w->random, MESHES)];
+        st_mesh *mesh = NULL;
+        st_write write;
+        if (st_find(w->store, id, &mesh) != ST_OK) {
+            create(w, id);
+            continue;
+        }
+        bool claims = md_chance(&w->random, 10);
+        st_status status =
+            claims ? st_write_claim(mesh, NULL, &write) : st_write_begin(mesh, NULL, &write);
+        expect(status == ST_OK || status == ST_ABSENT || (claims && status == ST_BUSY));
+        if (status == ST_OK && claims) {
+            expect(st_write_copy(&write, NULL, NULL) == HE_OK && edit(w, &write));
+            sched_yield();
+            status = st_write_commit(&write, "vertex_move");
+            expect(status == ST_OK || status == ST_ABSENT);
+        } else if (status == ST_OK && (write.info.busy || !prepare(w, &write))) {
+            st_write_abort(&write);
+            status = ST_BUSY;
+        } else if (status == ST_OK) {
+            expect(st_write_commit(&write, "vertex_move") == ST_OK);
+        }
+        if (status == ST_OK) {
+            show_mesh(w->store, &w->answers[w->made++], &write.info);
+        }
+        st_release(mesh);
+    }
+    return NULL;
+}
+
+static void read_list(worker *w)
+{
+    uint64_t since = st_waits_durable(st_store_waits(w->store)), need = 0;
+    st_mesh *meshes[MESHES];
+    size_t count = st_list(w->store, "", meshes, MESHES);
+    for (size_t i = 0; i < count; i++) {
+        st_mesh_info info;
+        st_read_begin(meshes[i], &info);
+        st_read_end(meshes[i]);
+        uint64_t at = position_of_record(info.incarnation, info.record);
+        need = at > need ? at : need;
+        st_release(meshes[i]);
+    }
+    send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), need);
+}
+
+static void read_one(worker *w)
+{
+    uint32_t i = md_below(&w->random, MESHES);
+    uint64_t since = st_waits_durable(st_store_waits(w->store));
+    pthread_mutex_lock(&journal.lock);
+    uint64_t removed = journal.removed[i];
+    pthread_mutex_unlock(&journal.lock);
+    st_mesh *mesh = NULL;
+    st_mesh_info info = {.removed = true};
+    if (st_find(w->store, ids[i], &mesh) == ST_OK) {
+        st_read_begin(mesh, &info);
+        st_read_end(mesh);
+        st_release(mesh);
+    }
+    if (!info.removed) {
+        show_mesh(w->store, &w->answers[w->made++], &info);
+    } else if (mesh == NULL) {
+        /* The last removal before the search is what it shows, or a later one. */
+        send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since),
+                          removed < st_waits_newest(st_store_waits(w->store)) ? removed : 0);
+    }
+}
+
+static void *read_some(void *context)
+{
+    worker *w = context;
+    for (int i = 0; i < ROUNDS && atomic_load(&writing); i++) {
+        if (md_chance(&w->random, 30)) {
+            read_list(w);
+        } else {
+            read_one(w);
+        }
+        sched_yield();
+    }
+    return NULL;
+}
+
+typedef struct told {
+    uint64_t incarnation, revision;
+} told;
+
+static bool render(const st_mesh_info *info, const st_record *record, char **bytes, size_t *length)
+{
+    const told event = {info->incarnation, info->revision};
+    (void)record;
+    *bytes = he_mem_alloc(sizeof event);
+    *length = sizeof event;
+    if (*bytes != NULL) {
+        memcpy(*bytes, &event, sizeof event);
+    }
+    return *bytes != NULL;
+}
+
+static void wake(void *context)
+{
+    (void)context;
+}
+
+static _Atomic size_t events;
+
+/* Until the mesh is removed, or the run ends; false where there is nothing to read now. */
+static bool hear(st_listener *listener, bool *ended)
+{
+    told event;
+    size_t got = 0;
+    switch (st_queue_read(listener, (char *)&event, sizeof event, &got)) {
+    case ST_QUEUE_GOT:
+        expect(got == sizeof event);
+        expect(position_of_revision(event.incarnation, event.revision) <=
+               atomic_load(&journal.durable));
+        atomic_fetch_add(&events, 1);
+        return true;
+    case ST_QUEUE_WAIT:
+        return false;
+    case ST_QUEUE_BEHIND:
+        (void)st_queue_skip(listener);
+        return true;
+    case ST_QUEUE_ENDED:
+        break;
+    }
+    *ended = true;
+    return false;
+}
+
+static void *listen_some(void *context)
+{
+    worker *w = context;
+    while (atomic_load(&writing)) {
+        st_mesh *mesh = NULL;
+        st_listener listener;
+        st_missed missed;
+        st_mesh_info info;
+        if (st_find(w->store, ids[md_below(&w->random, MESHES)], &mesh) != ST_OK) {
+            sched_yield();
+            continue;
+        }
+        const st_since since = {.given = false};
+        if (st_follow(mesh, &listener, &since, &missed, &info) == ST_OK) {
+            bool ended = false;
+            st_queue_wake(&listener, wake, NULL);
+            while (!ended && atomic_load(&writing)) {
+                if (!hear(&listener, &ended)) {
+                    sched_yield();
+                }
+            }
+            st_unfollow(mesh, &listener);
+        }
+        st_release(mesh);
+    }
+    return NULL;
+}
+
+/* --- the run --- */
+
+/* A mesh's records are numbered without a gap in the order of positions. */
+static void expect_order(void)
+{
+    for (uint64_t at = 1; at <= journal.newest; at++) {
+        const note *n = &journal.notes[at];
+        uint64_t before = at - 1;
+        while (before > 0 && journal.notes[before].incarnation != n->incarnation) {
+            before--;
+        }
+        assert_int_equal(n->number, before == 0 ? 1 : journal.notes[before].number + 1);
+    }
+}
+
+static void start(worker *w, void *(*run)(void *context), st_store *store, md_random *random)
+{
+    w->store = store;
+    w->random = (md_random){md_bits(random)};
+    w->answers = calloc(ROUNDS, sizeof *w->answers);
+    assert_non_null(w->answers);
+    assert_int_equal(pthread_create(&w->thread, NULL, run, w), 0);
+}
+
+static void nothing_is_shown_before_it_is_durable(void **state)
+{
+    (void)state;
+    md_random random = {seed_of_run()}, lag = {md_bits(&random)};
+    st_store *store = st_store_new(&(st_store_options){
+        .undo_budget = 1 << 16,
+        .max_meshes = MESHES,
+        .journal = {NULL, append, listen_to, close_journal},
+        .render = render,
+        .listeners = LISTENERS,
+        .mesh_listeners = LISTENERS,
+    });
+    static worker workers[WRITERS + READERS + LISTENERS];
+    pthread_t lagging;
+    atomic_store(&writing, true);
+    for (int i = 0; i < WRITERS + READERS + LISTENERS; i++) {
+        start(&workers[i],
+              i < WRITERS             ? write_some
+              : i < WRITERS + READERS ? read_some
+                                      : listen_some,
+              store, &random);
+    }
+    assert_int_equal(pthread_create(&lagging, NULL, lag_behind, &lag), 0);
+    for (int i = 0; i < WRITERS; i++) {
+        pthread_join(workers[i].thread, NULL);
+    }
+    atomic_store(&writing, false);
+    for (int i = WRITERS; i < WRITERS + READERS + LISTENERS; i++) {
+        pthread_join(workers[i].thread, NULL);
+    }
+    pthread_join(lagging, NULL);
+
+    /* The rest is lost, and what showed it was not sent. */
+    uint64_t cut = atomic_load(&journal.durable);
+    const st_loss loss = {.from = cut + 1, .to = journal.newest, .reason = "the end of the test"};
+    if (cut < journal.newest) {
+        journal.listener.lost(journal.listener.context, &loss);
+    }
+    advance(journal.newest);
+    size_t made = 0;
+    for (int i = 0; i < WRITERS + READERS + LISTENERS; i++) {
+        for (size_t k = 0; k < workers[i].made; k++) {
+            const answer *a = &workers[i].answers[k];
+            assert_true(atomic_load(&a->over));
+            assert_int_equal(a->wait.end,
+                             a->wait.shown.position > cut ? ST_WAIT_LOST : ST_WAIT_DURABLE);
+        }
+        made += workers[i].made;
+        free(workers[i].answers);
+    }
+    assert_false(atomic_load(&broken));
+    assert_int_equal(atomic_load(&sent) + atomic_load(&lost), made);
+    expect_order();
+    printf("note: %llu records, %zu answers sent, %zu lost, %zu events\n",
+           (unsigned long long)journal.newest, atomic_load(&sent), atomic_load(&lost),
+           atomic_load(&events));
+    st_store_free(store);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_shown_before_it_is_durable),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
