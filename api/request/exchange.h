@@ -93,7 +93,7 @@ struct api_exchange {
 
     /* --- the mesh --- */
     st_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
-    st_mesh_info info; /* filled by read_begin, write_begin and what the handler passes on */
+    st_mesh_info info; /* filled by read_begin, write_begin and write_commit */
     bool has_info;
     bool shows_all; /* the answer may show more of the store than `info`: see api_answer's shown */
     uint64_t since; /* all records up to here were durable when the exchange began */
@@ -148,8 +148,8 @@ void api_read_end(api_exchange *x);
  * `expected` is a cursor at the body's expected_revision or NULL. On false the problem is filled
  * and no lock is held. Ended by api_write_commit or st_write_abort. */
 bool api_write_begin(api_exchange *x, const api_in *expected);
-/* The same of a claim, for a long edit that works without the lock (store/write.h): it is ended
- * with the exchange if not before. */
+/* Begins a claim as x->write, for a long edit that works without the lock (store/write.h). It is
+ * ended with the exchange if not before. */
 bool api_write_claim(api_exchange *x, const api_in *expected);
 /* Commits x->write and publishes (api_publish) 204. False, with the problem filled, where a claimed
  * mesh was removed meanwhile. */

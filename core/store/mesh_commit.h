@@ -7,7 +7,7 @@
 
 /* Under the lock: forgets the claim. */
 void st_mesh_unclaim(st_mesh *mesh);
-/* Under the lock: abort. */
+/* Under the lock: what st_write_abort does. */
 void st_write_give_up(st_write *write);
 /* Gives the lock back and frees `discard` and what the write held. */
 void st_write_end(st_write *write, he_mesh *discard);

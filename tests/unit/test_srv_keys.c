@@ -44,7 +44,7 @@ static void keep(st_keyed *c, const char *body, size_t length, bool changed)
     st_keyed_end(c);
 }
 
-/* Claim and keep at once. */
+/* Begins and keeps at once. */
 static void put(const char *text, const char *body, size_t length, double now)
 {
     st_keyed *c = NULL;
@@ -77,7 +77,7 @@ static void the_first_answer_is_given_again(void **state)
     st_keyed_end(again);
 }
 
-static void a_claim_without_an_answer_is_forgotten(void **state)
+static void a_request_without_an_answer_is_forgotten(void **state)
 {
     (void)state;
     st_keyed *c = NULL;
@@ -208,7 +208,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = {
         TEST(the_first_answer_is_given_again),
-        TEST(a_claim_without_an_answer_is_forgotten),
+        TEST(a_request_without_an_answer_is_forgotten),
         TEST(answers_last_a_day),
         TEST(the_oldest_go_when_there_are_too_many),
         TEST(bytes_are_bounded),

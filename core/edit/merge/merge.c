@@ -169,7 +169,7 @@ static void write_edges(const he_merge_plan *p)
                 if (v.i != he_origin(m, k).i) {
                     he_set_origin(m, k, v);
                 }
-                if (f->claim[side] == HE_NONE && !he_is_boundary_halfedge(m, k)) {
+                if (f->occupant[side] == HE_NONE && !he_is_boundary_halfedge(m, k)) {
                     he_set_face(m, k, (he_face){HE_NONE});
                 }
             }
@@ -244,7 +244,7 @@ he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved, he
         {he_merge_find_rings, "finding faces", 0.55},
         {he_merge_find_faces, "measuring faces", 0.65},
         {he_merge_pair_edges, "pairing edges", 0.7},
-        {he_merge_claim_edges, "checking edges", 0.8},
+        {he_merge_occupy_edges, "checking edges", 0.8},
         {he_merge_find_fans, "checking fans", 0.9},
         {check_marks, "checking marks", 0.92},
     };

@@ -13,11 +13,11 @@ static he_halfedge before(const he_merge_plan *p, he_halfedge h)
 }
 
 /* The old half-edge whose face runs along h afterwards, HE_NONE at a boundary. */
-static he_halfedge claimant(const he_merge_plan *p, he_halfedge h)
+static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
     if (i != HE_NONE) {
-        return (he_halfedge){p->fates[i].claim[h.i & 1]};
+        return (he_halfedge){p->fates[i].occupant[h.i & 1]};
     }
     return he_is_boundary_halfedge(p->m, h) ? (he_halfedge){HE_NONE} : h;
 }
@@ -25,7 +25,7 @@ static he_halfedge claimant(const he_merge_plan *p, he_halfedge h)
 /* he_turn_ccw as it will be, for a half-edge with a face. */
 static he_halfedge turn(const he_merge_plan *p, he_halfedge h)
 {
-    return he_twin(he_merge_heir(p, before(p, claimant(p, h))));
+    return he_twin(he_merge_heir(p, before(p, occupant_of(p, h))));
 }
 
 static uint32_t *new_list(size_t count, he_error *err)
@@ -211,7 +211,7 @@ he_status he_merge_pair_edges(he_merge_plan *p, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu edges", count);
     }
     for (size_t i = 0; i < count; i++) {
-        p->fates[i] = (he_merge_fate){.claim = {HE_NONE, HE_NONE}};
+        p->fates[i] = (he_merge_fate){.occupant = {HE_NONE, HE_NONE}};
     }
     for (uint32_t i = 0; i < count; i++) {
         enter(p, i);
@@ -235,27 +235,27 @@ static bool is_same_face(const he_merge_plan *p, he_halfedge a, he_halfedge b)
     return h.i == a.i && k.i == b.i;
 }
 
-static void claim(const he_merge_plan *p, he_halfedge old)
+static void occupy(const he_merge_plan *p, he_halfedge old)
 {
     he_halfedge h = he_merge_heir(p, old);
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
     if (i != HE_NONE) {
         he_merge_fate *to = &p->fates[i];
         to->uses[h.i & 1]++;
-        if (to->claim[h.i & 1] == HE_NONE) {
-            to->claim[h.i & 1] = old.i;
+        if (to->occupant[h.i & 1] == HE_NONE) {
+            to->occupant[h.i & 1] = old.i;
         }
     }
 }
 
-static void claim_face(const he_merge_plan *p, size_t i)
+static void occupy_face(const he_merge_plan *p, size_t i)
 {
     he_halfedge first = he_face_halfedge(p->m, (he_face){p->faces.ids[i]});
     first = he_merge_shrinks(p, first) ? he_merge_after(p, first) : first;
     /* Any half-edge of a face that is the same as another is one with a side of that. */
     uint32_t at = he_merge_index(&p->edges, he_edge_of(he_merge_heir(p, first)).i);
-    if (at != HE_NONE && p->fates[at].claim[he_merge_heir(p, first).i & 1] != HE_NONE) {
-        he_halfedge other = {p->fates[at].claim[he_merge_heir(p, first).i & 1]};
+    if (at != HE_NONE && p->fates[at].occupant[he_merge_heir(p, first).i & 1] != HE_NONE) {
+        he_halfedge other = {p->fates[at].occupant[he_merge_heir(p, first).i & 1]};
         if (is_same_face(p, first, other)) {
             p->goes[i] = he_face_of(p->m, other).i;
             return;
@@ -263,12 +263,12 @@ static void claim_face(const he_merge_plan *p, size_t i)
     }
     he_halfedge h = first;
     do {
-        claim(p, h);
+        occupy(p, h);
         h = he_merge_after(p, h);
     } while (h.i != first.i);
 }
 
-he_status he_merge_claim_edges(he_merge_plan *p, he_error *err)
+he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
 {
     const he_mesh *m = p->m;
     for (size_t i = 0; i < p->faces.count; i++) {
@@ -277,7 +277,7 @@ he_status he_merge_claim_edges(he_merge_plan *p, he_error *err)
             return status;
         }
         if (p->goes[i] == HE_NONE) {
-            claim_face(p, i);
+            occupy_face(p, i);
         }
     }
     for (size_t i = 0; i < p->edges.count; i++) {
@@ -288,7 +288,7 @@ he_status he_merge_claim_edges(he_merge_plan *p, he_error *err)
             he_halfedge h = he_edge_halfedge((he_edge){e}, side);
             if (!he_is_boundary_halfedge(m, h) &&
                 he_merge_index(&p->faces, he_face_of(m, h).i) == HE_NONE) {
-                f->claim[side] = h.i;
+                f->occupant[side] = h.i;
                 f->uses[side]++;
             }
         }
@@ -354,7 +354,7 @@ static he_status find_ring(const he_merge_plan *p, he_vertex v, he_ids *ring, he
 
 static bool is_boundary(const he_merge_plan *p, he_halfedge h)
 {
-    return claimant(p, h).i == HE_NONE;
+    return occupant_of(p, h).i == HE_NONE;
 }
 
 /* Link the fans about rim vertex i, and choose what it stores. */

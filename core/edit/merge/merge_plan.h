@@ -8,10 +8,11 @@
 
 /* What becomes of an edge with an end in a merge, or beside a face that goes. */
 typedef struct he_merge_fate {
-    uint32_t into;     /* the edge that takes its place, itself, or HE_NONE when its ends are one */
-    uint32_t turned;   /* 1 when half-edge 2e takes the place of 2 * into + 1 */
-    uint32_t claim[2]; /* of one that stays: the old half-edge that runs there with its face now */
-    uint32_t uses[2];  /* how many faces run along either side */
+    uint32_t into;   /* the edge that takes its place, itself, or HE_NONE when its ends are one */
+    uint32_t turned; /* 1 when half-edge 2e takes the place of 2 * into + 1 */
+    uint32_t
+        occupant[2];  /* of one that stays: the old half-edge that runs there with its face now */
+    uint32_t uses[2]; /* how many faces run along either side */
 } he_merge_fate;
 
 /* Lists of ids are sorted unless they say otherwise, and arrays run along with them. */
@@ -82,8 +83,9 @@ static inline he_halfedge he_merge_heir(const he_merge_plan *p, he_halfedge h)
 static inline bool he_merge_stays(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
-    return i == HE_NONE || (p->fates[i].into == he_edge_of(h).i &&
-                            (p->fates[i].claim[0] != HE_NONE || p->fates[i].claim[1] != HE_NONE));
+    return i == HE_NONE ||
+           (p->fates[i].into == he_edge_of(h).i &&
+            (p->fates[i].occupant[0] != HE_NONE || p->fates[i].occupant[1] != HE_NONE));
 }
 
 /* CHECK, in this order; each uses what those before it found. Errors are those of merge.h. */
@@ -91,7 +93,7 @@ HE_NODISCARD he_status he_merge_find_group(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_find_rings(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_find_faces(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_pair_edges(he_merge_plan *p, he_error *err);
-HE_NODISCARD he_status he_merge_claim_edges(he_merge_plan *p, he_error *err);
+HE_NODISCARD he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_find_fans(he_merge_plan *p, he_error *err);
 
 #endif
