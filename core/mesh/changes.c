@@ -182,10 +182,17 @@ static void words_clear(words *w)
     he_ids_clear(&w->slots);
 }
 
-static he_status gather_part(const he_change_part *part, words *w, he_changes *found, he_error *err)
+static he_status gather_part(const he_change_part *part, words *w, he_changes *found,
+                             he_watch *watch, he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
+        if (i % HE_WATCH_STRIDE == 0) {
+            status = he_watch_step(watch, 0, 1, err);
+            if (status != HE_OK) {
+                break;
+            }
+        }
         const he_record *r =
             &part->delta->records[part->undone ? part->to - 1 - (i - part->from) : i];
         if (is_word(r)) {
@@ -215,7 +222,7 @@ static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t
     }
     he_status status = HE_OK;
     for (size_t i = 0; i < part_count && status == HE_OK; i++) {
-        status = gather_part(&parts[i], w, found, err);
+        status = gather_part(&parts[i], w, found, mesh->watch, err);
     }
     if (status == HE_OK) {
         status = he_ids_sort(&w->slots, err);
@@ -264,10 +271,17 @@ static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
     list->count = kept;
 }
 
-static he_status note_lineage(const he_change_part *part, he_changes *out, he_error *err)
+static he_status note_lineage(const he_change_part *part, he_changes *out, he_watch *watch,
+                              he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
+        if (i % HE_WATCH_STRIDE == 0) {
+            status = he_watch_step(watch, 1, 1, err);
+            if (status != HE_OK) {
+                break;
+            }
+        }
         const he_record *r = &part->delta->records[i];
         he_kind kind = (he_kind)r->word;
         he_ids *pairs = NULL;
@@ -310,7 +324,10 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
     status = note_all(mesh, &w, &found, err);
     for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
         he_kind kind = published[i];
-        status = he_ids_sort(&found.created[kind], err);
+        status = he_watch_step(mesh->watch, 1, 1, err);
+        if (status == HE_OK) {
+            status = he_ids_sort(&found.created[kind], err);
+        }
         if (status == HE_OK) {
             status = he_ids_sort(&found.deleted[kind], err);
         }
@@ -323,7 +340,7 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
     }
     for (size_t i = 0; i < part_count && status == HE_OK; i++) {
         if (!parts[i].undone) {
-            status = note_lineage(&parts[i], &found, err);
+            status = note_lineage(&parts[i], &found, mesh->watch, err);
         }
     }
 out:

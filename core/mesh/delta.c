@@ -83,8 +83,11 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
+/* Records between two looks at the watch; each takes a few misses of the cache. */
+enum { FOLD_STRIDE = 16 * HE_WATCH_STRIDE };
+
 /* Open addressing; a place holds one more than the index of a record, 0 when it is free. */
-he_status he_delta_fold(he_delta *d, size_t from, he_error *err)
+he_status he_delta_fold(he_delta *d, size_t from, he_watch *watch, he_error *err)
 {
     uint32_t bits = 4;
     while ((size_t)1 << bits < 2 * (d->count - from)) {
@@ -95,7 +98,15 @@ he_status he_delta_fold(he_delta *d, size_t from, he_error *err)
     if (table == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to fold %zu records", d->count - from);
     }
-    for (size_t i = from; i < d->count; i++) {
+    he_status status = HE_OK;
+    size_t i = from;
+    for (; i < d->count; i++) {
+        if ((i - from) % FOLD_STRIDE == 0) {
+            status = he_watch_step(watch, 0, 1, err);
+            if (status != HE_OK) {
+                break;
+            }
+        }
         he_record r = d->records[i];
         if (r.column >= HE_COL_PARENT && r.column < HE_COL_ATTRIBUTE) {
             d->records[kept++] = r;
@@ -116,9 +127,11 @@ he_status he_delta_fold(he_delta *d, size_t from, he_error *err)
             table[at] = kept;
         }
     }
-    d->count = kept;
+    /* What was not reached follows what was. */
+    memmove(d->records + kept, d->records + i, (d->count - i) * sizeof *d->records);
+    d->count -= i - kept;
     he_mem_free(table);
-    return HE_OK;
+    return status;
 }
 
 he_status he_delta_reserve(he_delta *d, size_t records, size_t objects, he_error *err)

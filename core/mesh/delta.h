@@ -71,8 +71,9 @@ void he_delta_trim(he_delta *delta);
 /* Keep of the records from `from` on one for each word, from what it was before the first to what
  * it became by the last; notes of lineage stay. For edits that write the same words many times:
  * the delta is then no longer than what they touched. No savepoint after `from` may be gone back
- * to, and no column or content was replaced since. HE_NO_MEMORY leaves the records as they are. */
-HE_NODISCARD he_status he_delta_fold(he_delta *delta, size_t from, he_error *err);
+ * to, and no column or content was replaced since. HE_NO_MEMORY leaves the records as they are;
+ * HE_CANCELLED leaves some of them folded, which lead to the same states. */
+HE_NODISCARD he_status he_delta_fold(he_delta *delta, size_t from, he_watch *watch, he_error *err);
 
 /* Record all writes to `mesh` in `delta` from here on; NULL stops. Returns what was there. */
 he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);

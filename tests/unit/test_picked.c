@@ -134,7 +134,7 @@ static double fold_rows(const void *context, size_t count)
         delta->records[delta->count++] = (he_record){.row = rows[i], .column = HE_COL_NEXT};
     }
     double from = pace_seconds();
-    assert_int_equal(he_delta_fold(delta, 0, NULL), HE_OK);
+    assert_int_equal(he_delta_fold(delta, 0, NULL, NULL), HE_OK);
     double seconds = pace_seconds() - from;
     assert_int_equal(delta->count, count);
     he_delta_free(delta);

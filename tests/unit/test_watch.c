@@ -426,6 +426,51 @@ static void a_cancelled_edit_of_an_expendable_mesh_is_left_half_done(void **stat
     he_mesh_free(mesh);
 }
 
+enum { WORDS = 5000, WRITES = 400000 };
+
+/* Writes to `words` all over the place, recorded. */
+static he_delta *write_words(uint32_t *words)
+{
+    he_delta *delta = he_delta_new();
+    assert_non_null(delta);
+    assert_int_equal(he_delta_reserve(delta, WRITES, 0, NULL), HE_OK);
+    for (uint32_t i = 0; i < WRITES; i++) {
+        uint32_t row = i * 2654435761U % WORDS;
+        delta->records[delta->count++] =
+            (he_record){.column = HE_COL_NEXT, .row = row, .before = words[row], .after = i};
+        words[row] = i;
+    }
+    return delta;
+}
+
+static void a_fold_that_is_given_up_leads_to_the_states_it_led_to(void **state)
+{
+    (void)state;
+    static uint32_t words[WORDS];
+    he_status status = HE_CANCELLED;
+    long n = 1;
+    for (; status == HE_CANCELLED; n++) {
+        he_watch watch;
+        listener l = {.give_up_at = n};
+        memset(words, 255, sizeof words);
+        he_delta *delta = write_words(words);
+        he_watch_init(&watch, hear, &l);
+        status = he_delta_fold(delta, 0, &watch, NULL);
+        assert_true(status == HE_OK ? delta->count == WORDS : status == HE_CANCELLED);
+        for (size_t i = delta->count; i-- > 0;) {
+            const he_record *r = &delta->records[i];
+            assert_int_equal(words[r->row], r->after);
+            words[r->row] = r->before;
+        }
+        for (size_t row = 0; row < WORDS; row++) {
+            assert_int_equal(words[row], UINT32_MAX);
+        }
+        he_delta_free(delta);
+    }
+    assert_int_equal(status, HE_OK);
+    assert_true(n > 4);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -434,6 +479,7 @@ int main(void)
         cmocka_unit_test(a_file_that_is_read_at_its_end_is_given_up_anywhere),
         cmocka_unit_test(an_operation_is_given_up_and_the_mesh_is_as_it_was),
         cmocka_unit_test(a_cancelled_edit_of_an_expendable_mesh_is_left_half_done),
+        cmocka_unit_test(a_fold_that_is_given_up_leads_to_the_states_it_led_to),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

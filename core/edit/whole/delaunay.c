@@ -24,8 +24,7 @@ typedef struct flipper {
     size_t from, fold_at; /* records before this call, and how many are folded next */
 } flipper;
 
-/* Records for each edge before they are folded: fewer than it has words, since folding cannot be
- * given up half-way. */
+/* Records for each edge before they are folded: fewer than it has words. */
 enum { RECORDS_OF_EDGE = 4 };
 
 static void enqueue(flipper *q, he_edge e)
@@ -94,7 +93,7 @@ static he_status fold(flipper *q, he_error *err)
     if (delta->count < q->fold_at) {
         return HE_OK;
     }
-    he_status status = he_delta_fold(delta, q->from, err);
+    he_status status = he_delta_fold(delta, q->from, q->m->watch, err);
     size_t left = delta->count - q->from;
     q->fold_at = delta->count + left + RECORDS_OF_EDGE * (size_t)q->m->c.edges.live;
     return status;
@@ -174,13 +173,16 @@ static he_status begin(flipper *q, const uint32_t *edges, size_t count, he_error
     if (q->queue == NULL || q->queued == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a queue of %zu edges", q->room);
     }
-    for (size_t i = 0; i < (edges != NULL ? count : q->room); i++) {
+    size_t first = edges != NULL ? count : q->room;
+    he_status status = he_watch_phase(m->watch, "flipping", 1, err);
+    for (size_t i = 0; i < first && status == HE_OK; i++) {
+        status = i % HE_WATCH_STRIDE == 0 ? he_watch_step(m->watch, 0, 1, err) : HE_OK;
         he_edge e = {edges != NULL ? edges[i] : (uint32_t)i};
         if (he_edge_is_live(m, e)) {
             enqueue(q, e);
         }
     }
-    return HE_OK;
+    return status;
 }
 
 he_status he_delaunay(he_mesh *m, const uint32_t *edges, size_t count, he_ids *flips, he_error *err)
@@ -202,7 +204,6 @@ he_status he_delaunay(he_mesh *m, const uint32_t *edges, size_t count, he_ids *f
     }
     q.from = bracket.mark.records;
     q.fold_at = q.from + RECORDS_OF_EDGE * (size_t)m->c.edges.live;
-    status = he_watch_phase(m->watch, "flipping", 1, err);
     while (status == HE_OK && q.waiting > 0) {
         status = empty_queue(&q, err);
         try_again(&q);
