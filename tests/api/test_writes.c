@@ -564,7 +564,7 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
     api_bench *b = bench_new();
     bench_done(bench_expect(
         201, bench_post(b, "/v1/meshes?id=d", "{\"shape\":\"disk\",\"segments\":3000}")));
-    put_rows(b, 650);
+    put_rows(b, 100);
     assert_int_equal(step_of(b, "/v1/meshes/d/edits", "{\"op\":\"delaunay\",\"dry_run\":true}"),
                      API_READY);
     assert_int_equal(step_of(b, "/v1/meshes/rows/edits", "{\"op\":\"delaunay\",\"dry_run\":true}"),

@@ -21,11 +21,16 @@ typedef struct flipper {
     he_ids flips;
     uint64_t steps, limit;
     uint64_t dequeued;
+    uint64_t work;        /* since the last look at the watch */
     size_t from, fold_at; /* records before this call, and how many are folded next */
 } flipper;
 
 /* Records for each edge before they are folded: fewer than it has words. */
 enum { RECORDS_OF_EDGE = 4 };
+
+/* Work between two looks at the watch: an edge that is looked at takes as long as a few elements
+ * that others look at, and as WORK_OF_EDGE steps about a vertex. */
+enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_WATCH_STRIDE / 2 };
 
 static void enqueue(flipper *q, he_edge e)
 {
@@ -109,7 +114,9 @@ static he_status flip(flipper *q, he_edge e, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    q->steps += search_steps(m, e);
+    uint32_t search = search_steps(m, e);
+    q->steps += search;
+    q->work += search;
     status = he_edge_flip(q->m, e, NULL);
     if (status == HE_NO_MEMORY) {
         return he_fail(err, status, HE_EDGE, e.i, "no memory to flip edge %u", e.i);
@@ -127,14 +134,24 @@ static he_status flip(flipper *q, he_edge e, he_error *err)
     return fold(q, err);
 }
 
+/* Flips spread, so the end is not known: what is done beside what waits only comes near. */
+static he_status look(flipper *q, he_error *err)
+{
+    q->work += WORK_OF_EDGE;
+    if (q->work < WORK_PER_LOOK) {
+        return HE_OK;
+    }
+    q->work = 0;
+    return he_watch_step(q->m->watch, q->dequeued, q->dequeued + q->waiting, err);
+}
+
 static he_status empty_queue(flipper *q, he_error *err)
 {
     he_status status = HE_OK;
     while (status == HE_OK && q->waiting > 0) {
         he_edge e = dequeue(q);
         q->dequeued++;
-        /* Flips spread, so the end is not known: what is done beside what waits only comes near. */
-        status = he_watch_at(q->m->watch, q->dequeued, q->dequeued + q->waiting, err);
+        status = look(q, err);
         if (status != HE_OK) {
             return status;
         }
