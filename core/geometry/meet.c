@@ -73,14 +73,84 @@ static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axi
            segments_meet(a, b, c[1], c[2]) || segments_meet(a, b, c[2], c[0]);
 }
 
+/* Two triangles, seen along an axis along which a has area. So has b if it lies in the same plane.
+ */
+typedef struct flat_pair {
+    he_vec2 a[3], b[3];
+} flat_pair;
+
+static flat_pair flatten(const he_vec3 a[3], const he_vec3 b[3], int axis)
+{
+    return (flat_pair){{flat(a[0], axis), flat(a[1], axis), flat(a[2], axis)},
+                       {flat(b[0], axis), flat(b[1], axis), flat(b[2], axis)}};
+}
+
+/* Do all corners of u lie beyond the line of the side of t that begins at corner i? Not if t has no
+ * area. */
+static bool is_beyond_side(const he_vec2 t[3], int i, const he_vec2 u[3])
+{
+    he_vec2 p = t[i], q = t[(i + 1) % 3];
+    int beyond = -he_orient2(p, q, t[(i + 2) % 3]);
+    return beyond != 0 && he_orient2(p, q, u[0]) == beyond && he_orient2(p, q, u[1]) == beyond &&
+           he_orient2(p, q, u[2]) == beyond;
+}
+
+/* Triangles in one plane share no point exactly where one lies beyond some side of the other: the
+ * differences of their points fill a convex polygon, whose sides are sides of theirs. */
+static bool flat_meet(const flat_pair *f)
+{
+    for (int i = 0; i < 3; i++) {
+        if (is_beyond_side(f->a, i, f->b) || is_beyond_side(f->b, i, f->a)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The sector of t at its corner `at` lies on one side of the line through its ray to corner `to`.
+ * Does the sector of u at its corner `of`, which is in the same place, lie on the other side, with
+ * none of it on that ray? */
+static bool is_beyond_ray(const he_vec2 t[3], int at, int to, const he_vec2 u[3], int of)
+{
+    he_vec2 apex = t[at], ray = t[to];
+    int beyond = -he_orient2(apex, ray, t[3 - at - to]);
+    for (int k = 1; k < 3; k++) {
+        he_vec2 other = u[(of + k) % 3];
+        int turn = he_orient2(apex, ray, other);
+        if (turn != beyond && (turn != 0 || !between(ray, other, apex))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Triangles in one plane that share a corner share points beyond it exactly where their sectors at
+ * it share a ray. Where they share none, the line through one of their four rays parts them. */
+static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
+{
+    for (int k = 1; k < 3; k++) {
+        if (is_beyond_ray(f->a, at_a, (at_a + k) % 3, f->b, at_b) ||
+            is_beyond_ray(f->b, at_b, (at_b + k) % 3, f->a, at_a)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Triangles in one plane that share the side opposite to corners i and k lie on one another when
+ * they are on the same side of it. */
+static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
+{
+    he_vec2 p = f->a[(i + 1) % 3], q = f->a[(i + 2) % 3];
+    return he_orient2(p, q, f->a[i]) == he_orient2(p, q, f->b[k]);
+}
+
 /* --- in space --- */
 
-/* Two triangles, the sides of each one's plane that the other's corners lie on, and an axis along
- * which both are seen with area where they lie in one plane, else -1. */
+/* Two triangles, and the sides of each one's plane that the other's corners lie on. */
 typedef struct meeting {
     const he_vec3 *t[2];
     int side[2][3]; /* of the corners of t[0], as seen from t[1], and the other way */
-    int axis;
 } meeting;
 
 /* Does the side that begins at corner i of one triangle meet the other one? */
@@ -89,9 +159,6 @@ static bool side_meets(const meeting *m, int of, int i)
     const he_vec3 *t = m->t[1 - of];
     int k = (i + 1) % 3, at_p = m->side[of][i], at_q = m->side[of][k];
     he_vec3 p = m->t[of][i], q = m->t[of][k];
-    if (m->axis >= 0) {
-        return flat_segment_meets(p, q, t, m->axis);
-    }
     if (at_p == 0 && at_q == 0) {
         return flat_segment_meets(p, q, t, open_axis(t));
     }
@@ -136,15 +203,6 @@ static bool same(he_vec3 p, he_vec3 q)
     return p.x == q.x && p.y == q.y && p.z == q.z;
 }
 
-/* Triangles in one plane that share the side opposite to corners i and k lie on one another when
- * they are on the same side of it. */
-static bool meet_beyond_side(const meeting *m, int i, int k)
-{
-    const he_vec3 *a = m->t[0], *b = m->t[1];
-    he_vec2 p = flat(a[(i + 1) % 3], m->axis), q = flat(a[(i + 2) % 3], m->axis);
-    return he_orient2(p, q, flat(a[i], m->axis)) == he_orient2(p, q, flat(b[k], m->axis));
-}
-
 bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
 {
     int shared = 0, at_a = 0, at_b = 0, sum_a = 0, sum_b = 0;
@@ -162,7 +220,7 @@ bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
             }
         }
     }
-    meeting m = {.t = {a, b}, .axis = -1};
+    meeting m = {.t = {a, b}};
     if (is_beside(&m, 1, of_b)) {
         return false;
     }
@@ -170,17 +228,24 @@ bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
     if ((!flat && is_beside(&m, 0, of_a)) || !he_triangle_has_area(a) || !he_triangle_has_area(b)) {
         return false;
     }
-    m.axis = flat ? open_axis(a) : -1;
+    if (shared == 3) {
+        return true;
+    }
+    if (flat) {
+        const flat_pair f = flatten(a, b, open_axis(a));
+        return shared == 0   ? flat_meet(&f)
+               : shared == 1 ? flat_meet_beyond_corner(&f, at_a, at_b)
+                             : flat_meet_beyond_side(&f, 3 - sum_a, 3 - sum_b);
+    }
     if (shared == 1) {
         /* What leaves a shared corner on both triangles ends on the side opposite to it of one,
          * which the other then meets. */
         return side_meets(&m, 0, (at_a + 1) % 3) || side_meets(&m, 1, (at_b + 1) % 3);
     }
-    if (shared == 2) {
-        return meet_beyond_side(&m, 3 - sum_a, 3 - sum_b);
-    }
-    if (shared == 3) {
-        return true;
+    /* What is apart as it is seen along an axis is apart; this takes less than what follows. */
+    const flat_pair seen = flatten(a, b, likely_axis(a));
+    if (!flat_meet(&seen)) {
+        return false;
     }
     for (int i = 0; i < 3; i++) {
         if (side_meets(&m, 0, i) || side_meets(&m, 1, i)) {

@@ -180,6 +180,11 @@ ROWS = [
     Row('two hubs and 60,000 quads', lambda: meshes.lantern(60000),
         [*LISTED_FACES, edit('triangulate', ENDS), Ask('undo', 'POST', '/undo', statuses=(200, 409)),
          edit('dual', ENDS), *MEASURES]),
+    *[Row(f'two hubs on one rim, {where}', lambda right=right, z=z: meshes.two_hubs(24000, right, z),
+          [CHECK, CROSSINGS, CROSS_OFTEN])
+      for where, right, z in (('beside it', 30000, 0), ('one over the other', -20000, 0),
+                              ('one above the other', -20000, 5))],
+    Row('a book of 20,000 loose pages', lambda: meshes.loose_book(20000), [CHECK, CROSSINGS, CROSS]),
     Row('pyramid of 50,000', lambda: meshes.pyramid(50000), [*FACETS, *MEASURES]),
     Row('prism of 30,000', lambda: meshes.prism(30000), [*FACETS, *MEASURES]),
     Row('230 stars of 256', lambda: meshes.stars(230, 256),

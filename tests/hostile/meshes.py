@@ -101,6 +101,21 @@ def lantern(count):
                [(0, 2 + i, 1, 2 + (i + 1) % count) for i in range(count)], 'short')
 
 
+def two_hubs(count, right, z):
+    """Two fans on one straight rim: the boxes of all triangles of one meet those of the other."""
+    rim = [(0, i - count // 2, 0) for i in range(count)]
+    faces = [face for i in range(count - 1) for face in ((0, 1 + i, 2 + i),
+                                                         (count + 1, 2 + i, 1 + i))]
+    return ply([(-30000, 0, 0)] + rim + [(right, 0, z)], faces, 'short')
+
+
+def loose_book(pages):
+    """Triangles that share no vertex and have one edge in one place."""
+    points = [point for x, y, _ in circle(pages, 30000)
+              for point in ((0, 0, 0), (0, 0, 9000), (round(x), round(y), 4000))]
+    return ply(points, [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(pages)], 'short')
+
+
 def pyramid(count):
     """A cone closed by one face below: each edge of the rim lies beside it."""
     rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
