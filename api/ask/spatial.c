@@ -128,12 +128,9 @@ bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
         HE_OK) {
         return api_asker_refuse(a, in, &err);
     }
-    if (budget.left == 0 && !*complete) {
-        return api_asker_exceed(a, in);
-    }
     a->budget.left = budget.left < left ? budget.left : left;
     a->has_met = true;
-    return true;
+    return budget.left > 0 || *complete || api_asker_exceed(a, in);
 }
 
 bool api_self_intersections_ask(api_asker *a, const api_in *question)

@@ -119,6 +119,24 @@ static void many_searches_in_one_request_are_refused_by_the_limit(void **state)
     bench_free(b);
 }
 
+static void a_search_that_was_refused_has_used_up_the_steps_of_its_request(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    put_fan(b, "/v1/meshes/m", 3001, 1201);
+    bench_reply r =
+        bench_expect(200, bench_post(b, QUERY,
+                                     "{\"queries\":[{\"self_intersections\":{}},"
+                                     "{\"self_intersections\":{}},{\"closest\":[0,0,1]}]}"));
+    const cJSON *result;
+    cJSON_ArrayForEach(result, in(r.json, "results"))
+    {
+        assert_string_equal(in(result, "code")->valuestring, "limit_exceeded");
+    }
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -126,6 +144,7 @@ int main(void)
         cmocka_unit_test(a_check_beyond_its_steps_is_refused_and_names_the_limit_and_a_job),
         cmocka_unit_test(a_check_beyond_its_steps_is_a_job_where_the_client_takes_one),
         cmocka_unit_test(many_searches_in_one_request_are_refused_by_the_limit),
+        cmocka_unit_test(a_search_that_was_refused_has_used_up_the_steps_of_its_request),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
