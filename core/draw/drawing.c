@@ -1,6 +1,7 @@
 #include "draw/drawing.h"
 
 #include "geometry/geometry.h"
+#include "geometry/scale.h"
 #include "geometry/triangulation.h"
 
 #include <assert.h>
@@ -25,18 +26,52 @@ static double snapped(double x, int exponent)
     return own > exponent + 52 ? x : ldexp(rint(ldexp(x, -exponent)), exponent);
 }
 
+/* Isolated vertices are in the frame up to so many times as far from its middle as the surface is.
+ */
+static const double FAR = 4096;
+
+static void include(he_box *box, he_vec3 p)
+{
+    box->min = (he_vec3){fmin(box->min.x, p.x), fmin(box->min.y, p.y), fmin(box->min.z, p.z)};
+    box->max = (he_vec3){fmax(box->max.x, p.x), fmax(box->max.y, p.y), fmax(box->max.z, p.z)};
+}
+
+/* Halves, since the sum or difference of two large doubles may be infinite. */
+static he_vec3 half_way(he_vec3 from, he_vec3 to)
+{
+    return he_vec3_sub(he_vec3_scale(to, 0.5), he_vec3_scale(from, 0.5));
+}
+
+/* The box of what the frame is to hold. False when there are no vertices. */
+static bool find_box(const he_mesh *m, he_box *out)
+{
+    he_box box;
+    double half = he_surface_box(m, &box) ? he_vec3_extent(half_way(box.min, box.max)) : 0;
+    if (!(half > 0)) {
+        return he_mesh_box(m, out);
+    }
+    *out = box;
+    he_vec3 center = he_vec3_add(he_vec3_scale(box.min, 0.5), he_vec3_scale(box.max, 0.5));
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        he_vec3 p = m->c.position[v];
+        if (m->c.vertex_halfedge[v] == HE_NONE &&
+            he_vec3_extent(half_way(center, p)) <= 0.5 * FAR * half) {
+            include(out, p);
+        }
+    }
+    return true;
+}
+
 /* With half the box at most 2^e and the origin at most 2^(e - 3) from its centre on each axis, what
  * is scaled by 2^-(e + 1) is within 9/16 on each axis and so within the unit ball. */
 he_frame he_frame_of(const he_mesh *m)
 {
     he_box box;
-    if (!he_mesh_box(m, &box)) {
+    if (!find_box(m, &box)) {
         return (he_frame){{0, 0, 0}, 1};
     }
-    /* Halves first: the sum or difference of two large doubles may be infinite. */
-    he_vec3 low = he_vec3_scale(box.min, 0.5), high = he_vec3_scale(box.max, 0.5);
-    he_vec3 center = he_vec3_add(low, high);
-    double half = he_vec3_extent(he_vec3_sub(high, low));
+    he_vec3 center = he_vec3_add(he_vec3_scale(box.min, 0.5), he_vec3_scale(box.max, 0.5));
+    double half = he_vec3_extent(half_way(box.min, box.max));
     if (!(half > 0)) {
         return (he_frame){box.min, 1};
     }
@@ -250,6 +285,9 @@ void he_drawing_vertex(const he_drawing *d, uint32_t id, float out[HE_DRAWN_ROW]
     }
     he_vec3 p = he_vec3_sub(he_vec3_scale(d->mesh->c.position[id], d->frame.scale),
                             he_vec3_scale(d->frame.origin, d->frame.scale));
+    if (!(he_vec3_dot(p, p) <= 1)) {
+        he_vec3_normalise(half_way(d->frame.origin, d->mesh->c.position[id]), &p);
+    }
     out[0] = (float)p.x;
     out[1] = (float)p.y;
     out[2] = (float)p.z;

@@ -26,10 +26,13 @@
 #include "mesh/mesh.h"
 
 /* Where positions are moved to before they become floats: (p - origin) * scale lies within the unit
- * ball for every live vertex. The scale is a power of two and the origin a multiple of an eighth of
- * its inverse: an edit that hardly changes the mesh's box leaves the frame alone, and with it the
- * rows of what did not move. A box below 2^-1021, or 2^-900 of its largest coordinate, is drawn
- * smaller than the ball. */
+ * ball for every vertex that has edges, and for isolated ones that are not farther from the middle
+ * of the box of those than 4,096 times half of its longest side. Isolated vertices that lie beyond
+ * would leave floats no digits for what else there is: their rows say where the way to them leaves
+ * the ball, which is not where they are. Where no vertex has edges the ball holds all. The scale is
+ * a power of two and the origin a multiple of an eighth of its inverse: an edit that hardly changes
+ * the box leaves the frame alone, and with it the rows of what did not move. A box below 2^-1021,
+ * or 2^-900 of its largest coordinate, is drawn smaller than the ball. */
 typedef struct he_frame {
     he_vec3 origin;
     double scale;
@@ -49,8 +52,8 @@ typedef struct he_drawing {
 } he_drawing;
 
 /* Prepare to draw all faces. Borrows the mesh, which must not change while it is drawn, and whose
- * live vertices `frame` must keep in the ball. HE_NO_MEMORY; HE_IDS_EXHAUSTED where a face's id
- * does not fit its bits. he_drawing_clear frees. */
+ * vertices with edges `frame` must keep in the ball. HE_NO_MEMORY; HE_IDS_EXHAUSTED where a face's
+ * id does not fit its bits. he_drawing_clear frees. */
 HE_NODISCARD he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, const he_frame *frame,
                                        he_error *err);
 /* Prepares, as he_drawing_init does, to draw some live faces only, in rising order. Returns

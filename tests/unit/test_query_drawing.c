@@ -2,6 +2,7 @@
 #include "query_specimens.h"
 
 #include "draw/drawing.h"
+#include "edit/local/vertex.h"
 #include "geometry/geometry.h"
 #include "geometry/triangulation.h"
 
@@ -147,6 +148,53 @@ static void check_vertices(const he_mesh *m)
         assert_true(r2 <= 1);
     }
     he_drawing_clear(&d);
+}
+
+static void add_vertex(he_mesh *m, he_vec3 at)
+{
+    he_vertex v;
+    assert_int_equal(he_vertex_add(m, at, &v, NULL), HE_OK);
+}
+
+static void a_far_isolated_vertex_leaves_the_frame_alone(void **state)
+{
+    (void)state;
+    static const he_vec3 far[] = {{1e100, 0, 0}, {-1.7e308, 1.7e308, 0}, {0, 0, -1e6}};
+    he_mesh *m = fixture_mesh(query_specimens[2]);
+    const he_frame own = he_frame_of(m);
+    uint32_t first = m->c.vertices.issued;
+    for (size_t i = 0; i < sizeof far / sizeof *far; i++) {
+        add_vertex(m, far[i]);
+    }
+    const he_frame with = he_frame_of(m);
+    assert_memory_equal(&with, &own, sizeof own);
+    he_drawing d;
+    assert_int_equal(he_drawing_init(&d, m, &own, NULL), HE_OK);
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        float drawn[HE_DRAWN_ROW];
+        he_drawing_vertex(&d, v, drawn);
+        double length = sqrt((double)drawn[0] * drawn[0] + (double)drawn[1] * drawn[1] +
+                             (double)drawn[2] * drawn[2]);
+        assert_true(v < first ? length <= 1 : fabs(length - 1) < 1e-6);
+        assert_true(v < first || drawn[3] == HE_DRAWN_ISOLATED);
+    }
+    float drawn[HE_DRAWN_ROW];
+    he_drawing_vertex(&d, first + 1, drawn);
+    assert_true(drawn[0] < -0.7F && drawn[1] > 0.7F);
+    he_drawing_clear(&d);
+    he_mesh_free(m);
+}
+
+static void an_isolated_vertex_that_is_near_is_drawn_where_it_is(void **state)
+{
+    (void)state;
+    he_mesh *m = fixture_mesh(query_specimens[2]);
+    he_box box;
+    assert_true(he_surface_box(m, &box));
+    double side = he_vec3_extent(he_vec3_sub(box.max, box.min));
+    add_vertex(m, he_vec3_add(box.max, (he_vec3){500 * side, 0, 0}));
+    check_vertices(m);
+    he_mesh_free(m);
 }
 
 static void test_specimens(void **state)
@@ -435,6 +483,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_specimens),
+        cmocka_unit_test(a_far_isolated_vertex_leaves_the_frame_alone),
+        cmocka_unit_test(an_isolated_vertex_that_is_near_is_drawn_where_it_is),
         cmocka_unit_test(test_shapes_are_covered),
         cmocka_unit_test(test_concave_faces_from_every_corner),
         cmocka_unit_test(test_random_polygons),
