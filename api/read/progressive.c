@@ -72,14 +72,11 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     return api_progressive_write(p, &x->watch, &err) == HE_OK || api_fail_core(x, &err);
 }
 
-void api_progressive_get(api_exchange *x)
+static void answer(api_exchange *x)
 {
     char representation[REPRESENTATION];
     const he_mesh *mesh;
     name_representation(x, representation);
-    if (api_not_modified_yet(x, representation)) {
-        return;
-    }
     st_snapshot *snapshot = api_snapshot_of(x, &mesh);
     if (snapshot == NULL) {
         return;
@@ -96,4 +93,28 @@ void api_progressive_get(api_exchange *x)
         }
     }
     st_snapshot_release(snapshot);
+}
+
+/* What has other faces than triangles is refused without much work. */
+static bool may_be_triangles(const he_mesh *mesh)
+{
+    uint64_t corners = 2 * (uint64_t)he_mesh_edges(mesh) - he_mesh_boundary_halfedges(mesh);
+    return corners == 3 * (uint64_t)he_mesh_faces(mesh);
+}
+
+void api_progressive_get(api_exchange *x)
+{
+    char representation[REPRESENTATION];
+    name_representation(x, representation);
+    if (api_not_modified_yet(x, representation)) {
+        return;
+    }
+    const he_mesh *mesh = api_read_begin(x);
+    if (mesh == NULL) {
+        return;
+    }
+    uint64_t elements = api_elements_of(mesh);
+    double work = may_be_triangles(mesh) ? (double)elements : 0;
+    api_read_end(x);
+    api_run_long(x, answer, elements > API_COSTLY_ELEMENTS, work / API_PROGRESSIVE_PER_SECOND);
 }

@@ -341,6 +341,25 @@ static void the_mesh_is_not_changed(void **state)
     bench_free(b);
 }
 
+static void a_large_mesh_is_decimated_in_a_job(void **state)
+{
+    (void)state;
+    static const char *const patient[] = {"Prefer", "wait=60", NULL};
+    api_bench *b = bench_new();
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", patient,
+                                            "{\"shape\":\"icosphere\",\"subdivisions\":7}")));
+    bench_reply r = bench_expect(202, bench_get(b, "/v1/meshes/m/progressive"));
+    char path[128];
+    snprintf(path, sizeof path, "%s", bench_header(&r, "Location"));
+    bench_reply_free(&r);
+    bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/progressive", patient, NULL)));
+    bench_run_jobs(b, 1);
+    r = bench_expect(200, bench_get(b, path));
+    assert_string_equal(cJSON_GetObjectItem(r.json, "state")->valuestring, "done");
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 /* --- given up, short of memory, and what it holds --- */
 
 #define LARGE "{\"shape\":\"icosphere\",\"subdivisions\":4}"
@@ -526,6 +545,7 @@ int main(void)
         cmocka_unit_test(ids_that_are_not_in_order_come_back),
         cmocka_unit_test(a_base_and_a_number_of_splits_can_be_chosen),
         cmocka_unit_test(the_mesh_is_not_changed),
+        cmocka_unit_test(a_large_mesh_is_decimated_in_a_job),
         cmocka_unit_test(it_can_be_given_up_at_any_time),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(an_answer_holds_little_more_than_its_bytes),

@@ -195,7 +195,9 @@ async function readArrays(path, onProgress, signal) {
 
 // The mesh from coarse to fine: `onBytes` gets what comes as it comes, see progressive.js.
 export async function getProgressive(mesh, onBytes, signal) {
-    const answer = await request(`${meshPath(mesh)}/progressive`, { signal });
+    // As bytes, however long they take to make: not as a job.
+    const headers = { Prefer: 'wait=30' };
+    const answer = await request(`${meshPath(mesh)}/progressive`, { signal, headers });
     const reader = answer.body.getReader();
     for (let part = await readOn(reader); !part.done; part = await readOn(reader)) {
         onBytes(part.value);
