@@ -172,7 +172,8 @@ const he_op he_mesh_rows[] = {
     {
         .name = "delaunay",
         .doc = "Flip edges between triangles while the angles opposite to them sum to more than "
-               "pi.",
+               "pi; flips may grow with the square of the edges, and what takes more than 512 "
+               "steps for each edge of the mesh is refused.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "edge",
                     .plural = "edges",

@@ -68,7 +68,8 @@ const he_op he_whole_rows[] = {
     },
     {
         .name = "dual",
-        .doc = "Put a vertex in the place of each face and a face in that of each vertex.",
+        .doc = "Put a vertex in the place of each face and a face in that of each vertex; a mesh "
+               "of more than about 200,000 faces makes it a job.",
         .size = HE_OP_WHOLE,
         .refusals = {HE_BOUNDARY_EDGE, HE_ISOLATED_VERTEX, HE_TOO_FEW_CORNERS, HE_DOUBLED_EDGE,
                      HE_LOCKED_ELEMENT},
