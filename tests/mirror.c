@@ -111,13 +111,13 @@ static const double *value_at(const mirror_column *c, size_t row)
 
 static double *value_of(mirror_column *c, size_t row)
 {
-    if (row >= c->rows) {
-        c->values = realloc(c->values, (row + 1) * c->components * sizeof *c->values);
+    if (row >= c->capacity) {
+        c->capacity = 2 * row + 16;
+        c->values = realloc(c->values, c->capacity * c->components * sizeof *c->values);
         assert_non_null(c->values);
-        for (; c->rows <= row; c->rows++) {
-            memcpy(c->values + c->rows * c->components, c->fallback,
-                   c->components * sizeof *c->values);
-        }
+    }
+    for (; c->rows <= row; c->rows++) {
+        memcpy(c->values + c->rows * c->components, c->fallback, c->components * sizeof *c->values);
     }
     return c->values + row * c->components;
 }

@@ -28,7 +28,8 @@ typedef struct mirror_column {
     size_t components, rows;
     bool single; /* numbers are floats */
     double fallback[MIRROR_COMPONENTS];
-    double *values; /* of rows; beyond them the default */
+    double *values;  /* of rows; beyond them the default */
+    size_t capacity; /* rows that there is room for */
 } mirror_column;
 
 typedef struct mirror {

@@ -161,11 +161,15 @@ static void read_live(api_bench *b, const api_source *live, bench_reply *r)
 {
     signal woken = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
     bool finished = false;
+    size_t capacity = 0;
     int64_t got;
     live->start(live->self, set_signal, &woken);
     do {
-        r->body = realloc(r->body, r->length + 4097);
-        assert_non_null(r->body);
+        if (capacity < r->length + 4096) {
+            capacity = 2 * r->length + 4096;
+            r->body = realloc(r->body, capacity + 1);
+            assert_non_null(r->body);
+        }
         got = live->read(live->self, r->body + r->length, 4096);
         r->length += got > 0 ? (size_t)got : 0;
         if (got == API_READ_WAIT) {
