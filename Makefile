@@ -26,7 +26,9 @@ CC       := $(if $(filter fuzz,$(CONFIG)),clang,gcc)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes \
             -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
-CFLAGS   := -std=c11 -pthread -g $(WARNINGS) $(EXTRA_CFLAGS)
+# Line tables are all of it that a sanitizer's report names.
+DEBUG    := $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
+CFLAGS   := -std=c11 -pthread $(DEBUG) $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
 # Lazy: evaluated when a program is linked, after .ci/deps has run.
 DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd) -lm
@@ -93,7 +95,7 @@ PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs test lint format asan tsan coverage crosscheck proof soak \
+.PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak \
         hostile fuzz targets bench bench-http bench-events bench-slow bench-large bench-space container fresh \
         screenshot \
         install clean
@@ -121,6 +123,8 @@ NEEDS.all          := build
 NEEDS.run          := build web
 NEEDS.page         := web
 NEEDS.programs     := build test
+NEEDS.built         = $(NEEDS.test)
+NEEDS.ready         = $(NEEDS.test) lint crosscheck fuzz
 NEEDS.test          = build test $(if $(WITH_WEB)$(WITH_INSTALL),web browser) \
                       $(if $(WITH_SOAK),node) $(if $(WITH_HOSTILE),hostile)
 NEEDS.asan         := build test
@@ -129,7 +133,7 @@ NEEDS.coverage     := build test coverage
 NEEDS.lint         := build test web lint
 NEEDS.format       := format
 NEEDS.crosscheck   := build crosscheck
-NEEDS.proof        := build test node
+NEEDS.proof        := build test web browser
 NEEDS.soak         := build node
 NEEDS.hostile      := build hostile
 NEEDS.fuzz         := build test fuzz
@@ -172,6 +176,11 @@ run: $(HEDGED) page ## build the daemon and its page, then serve sample meshes
 	exec $(HEDGED) --samples $(RUN_FLAGS)
 
 # --- compiling -----------------------------------------------------------------------------
+
+# A test's own lines run a few times: to optimize them as the daemon's takes longer than it saves. The
+# oracle and the models beside it run millions of times.
+PLAIN := $(patsubst %,$(BUILD)/obj/tests/%/test_%.o,unit api e2e)
+$(PLAIN): private CFLAGS += $(if $(filter release,$(CONFIG)),-O1)
 
 $(BUILD)/obj/%.o: %.c Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
@@ -239,7 +248,14 @@ TEST_NEEDS = $(if $(WITH_DAEMON)$(WITH_LINT),$(HEDGED)) $(if $(WITH_WEB)$(WITH_I
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
-test: $(CHOSEN) $(TEST_NEEDS) | $(INSTALLED) ## all tests, with their counts
+built: $(CHOSEN) $(TEST_NEEDS)
+
+ready: built $(BUILD)/tests/crosscheck/peers $(STAMPS)/openapi | $(INSTALLED) ## what .ci/run runs, without running it
+	+$(MAKE) CONFIG=asan TESTS="$(ASAN_TESTS)" built
+	+$(MAKE) CONFIG=tsan TESTS="$(TSAN_TESTS)" built
+	+$(MAKE) CONFIG=fuzz targets
+
+test: built | $(INSTALLED) ## all tests, with their counts
 	@BUILD=$(BUILD) HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
 	    sh .ci/run-tests $(BUILD)/logs $(if $(filter web,$(TESTS)),--web) \
 	    $(if $(WITH_TRAFFIC),--traffic) $(CHOSEN) $(filter tests/web/%,$(TESTS)) \
@@ -247,19 +263,21 @@ test: $(CHOSEN) $(TEST_NEEDS) | $(INSTALLED) ## all tests, with their counts
 	    $(if $(WITH_LINT),tests/lint.sh) \
 	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh)
 
+ASAN_TESTS = $(filter-out web tests/web/% install soak hostile lint,$(TESTS))
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
-	+$(MAKE) CONFIG=asan TESTS="$(filter-out web tests/web/% install soak hostile lint,$(TESTS))" test
+	+$(MAKE) CONFIG=asan TESTS="$(ASAN_TESTS)" test
 
 # The kernel has no threads, and most of tests/api does one thing after the other: only what begins
 # jobs or threads, and the daemon itself, is worth the time here.
 THREADED_C  = $(shell grep -lE 'pthread_create|bench_run_jobs' tests/api/test_*.c) \
               $(wildcard tests/unit/test_srv_*.c)
+TSAN_TESTS  = e2e $(THREADED_C)
 tsan: ## the threaded tests with ThreadSanitizer
-	+$(MAKE) CONFIG=tsan TESTS="e2e $(THREADED_C)" test
+	+$(MAKE) CONFIG=tsan TESTS="$(TSAN_TESTS)" test
 
 coverage: | $(INSTALLED) ## line and branch coverage of the C tests
 	find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	+$(MAKE) CONFIG=coverage TESTS="$(filter-out web tests/web/% install soak hostile lint,$(TESTS))" test
+	+$(MAKE) CONFIG=coverage TESTS="$(ASAN_TESTS)" test
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
@@ -275,8 +293,9 @@ $(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(INSTALLED)
 
 # The long versions of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another.
 ROUNDS ?= 10
-proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once; as many minutes of soak
-	+$(MAKE) $(HEDGED) $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers
+proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once; a copy and a page beside them; as many minutes of soak
+	+$(MAKE) $(HEDGED) page $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers \
+	    $(BUILD)/tests/e2e/test_events
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)
 
