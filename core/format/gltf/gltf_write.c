@@ -81,10 +81,12 @@ static char *put_value(const he_glb_part *part, uint32_t id, char *p)
     char *end = p + part->stride;
     for (uint32_t i = 0; i < part->components; i++) {
         double value = he_gltf_convert(part->role, i, he_export_number(part->column, id, i));
-        uint32_t whole = part->normalized ? he_color_byte(value) : (uint32_t)fmax(value, 0);
-        p = part->type == HE_GLTF_FLOAT
-                ? put_float(value, p)
-                : put_word(whole, he_gltf_type_bytes((he_gltf_type)part->type), p);
+        if (part->type == HE_GLTF_FLOAT) {
+            p = put_float(value, p);
+            continue;
+        }
+        uint32_t whole = part->normalized ? he_color_byte(value) : (uint32_t)value;
+        p = put_word(whole, he_gltf_type_bytes((he_gltf_type)part->type), p);
     }
     while (p < end) {
         *p++ = 0;
