@@ -177,11 +177,6 @@ run: $(HEDGED) page ## build the daemon and its page, then serve sample meshes
 
 # --- compiling -----------------------------------------------------------------------------
 
-# A test's own lines run a few times: to optimize them as the daemon's takes longer than it saves. The
-# oracle and the models beside it run millions of times.
-PLAIN := $(patsubst %,$(BUILD)/obj/tests/%/test_%.o,unit api e2e)
-$(PLAIN): private CFLAGS += $(if $(filter release,$(CONFIG)),-O1)
-
 $(BUILD)/obj/%.o: %.c Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "CC $<"
