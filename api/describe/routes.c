@@ -1,12 +1,7 @@
 #include "api/describe/routes.h"
 
-#include "algo/decimate.h"
-#include "api/json/attribute_value.h"
+#include "api/describe/parameters.h"
 #include "api/request/handlers.h"
-#include "repair/repair.h"
-
-#include <float.h>
-#include <string.h>
 
 /* --- media types --- */
 
@@ -39,124 +34,6 @@ static const char *const anything[] = {"text/html",
                                        "application/octet-stream",
                                        NULL};
 
-/* --- query parameters --- */
-
-static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "gltf", "json", NULL};
-static const char *const encodings[] = {"ascii", "binary", "binary_big_endian", NULL};
-static const char *const connections[] = {"vertex", "edge", NULL};
-
-static const api_parameter limit = {
-    "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "How many items a page has at most."};
-static const api_parameter cursor = {
-    "cursor", API_PARAM_TEXT, 0, API_MAX_URI, NULL, "Where to go on: `next` of the page before."};
-static const api_parameter revision = {
-    "revision", API_PARAM_U64, 1,
-    0x1p53,     NULL,          "An earlier revision that the history still holds."};
-static const api_parameter since = {"since", API_PARAM_U64, 1,
-                                    0x1p53,  NULL,          "Only what came after this revision."};
-static const api_parameter drawn = {
-    "since", API_PARAM_U64,
-    1,       API_MAX_EXACT,
-    NULL,    "The revision of the arrays there are: send what changed. With `layout`."};
-static const api_parameter base_faces = {
-    "faces", API_PARAM_U64,
-    0,       HE_MAX_ROWS,
-    NULL,    "Faces of the base, or more where that few cannot be had; 0 when not given."};
-static const api_parameter most_error = {
-    "max_error", API_PARAM_NUMBER,
-    0,           DBL_MAX,
-    NULL,        "Of the base, as decimate means it; no limit if not said."};
-static const api_parameter boundary_weight = {"boundary_weight",
-                                              API_PARAM_NUMBER,
-                                              0,
-                                              HE_BOUNDARY_WEIGHT_MAX,
-                                              NULL,
-                                              "As decimate means it; its default if not said."};
-static const api_parameter most_splits = {
-    "splits", API_PARAM_U64, 0, HE_MAX_ROWS, NULL, "Send no more vertex splits than these."};
-static const api_parameter layout = {
-    "layout", API_PARAM_U64, 1, API_MAX_EXACT, NULL, "The layout of the arrays there are."};
-static const api_parameter turning = {
-    "cw", API_PARAM_FLAG, 0,
-    0,    NULL,           "Clockwise: the same first element, then the rest backwards."};
-static const api_parameter last_seen = {
-    "since", API_PARAM_TEXT, 0, 64, NULL, "Go on after this: an event's id, or a revision."};
-static const api_parameter format = {
-    "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
-static const api_parameter encoding = {
-    "encoding", API_PARAM_CHOICE, 0,
-    0,          encodings,        "Text or binary, where a format has both; binary if not said."};
-static const api_parameter name = {
-    "name", API_PARAM_TEXT, 0, ST_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
-static const api_parameter repair = {
-    "repair",
-    API_PARAM_CHOICES,
-    0,
-    0,
-    he_repair_names,
-    "What may be done to what the structure cannot hold: these repairs in this order, whatever the "
-    "order here. weld makes vertices within the tolerance one; drop_degenerate leaves out faces "
-    "without three different corners, drop_duplicates those with the corners of an earlier face; "
-    "orient turns faces so that neighbours agree; split gives every fan of faces a vertex of its "
-    "own; fill closes small holes."};
-static const api_parameter tolerance = {
-    "tolerance", API_PARAM_NUMBER,
-    0,           DBL_MAX,
-    NULL,        "How far apart the vertices may be that weld makes one; 0 if not said."};
-static const api_parameter hole_edges = {
-    "hole_edges",  API_PARAM_U64, 3,
-    API_MAX_EXACT, NULL,          "The most edges of a hole that fill closes; 16 if not said."};
-static const api_parameter identity = {
-    "id",        API_PARAM_TEXT, 0,
-    API_MAX_URI, NULL,           "Id of the mesh to be made; the server chooses without."};
-static const api_parameter by = {
-    "by", API_PARAM_CHOICE, 0,
-    0,    connections,      "Faces are connected across edges, or already by a shared vertex."};
-
-static const api_parameter ids = {"ids",       API_PARAM_TEXT, 1,
-                                  API_MAX_URI, NULL,           "Ids joined by commas."};
-static const api_parameter type = {
-    "type", API_PARAM_CHOICE, 0,
-    0,      api_type_names,   "Type of the numbers, where the body is octets."};
-static const api_parameter components = {
-    "components", API_PARAM_U64, 1,
-    16,           NULL,          "Numbers of one value, where the body is octets; 1 if not said."};
-static const api_parameter meets = {"self_intersections",
-                                    API_PARAM_FLAG,
-                                    0,
-                                    0,
-                                    NULL,
-                                    "Look for faces that meet where they should not, too."};
-static const api_parameter merge = {
-    "merge",
-    API_PARAM_NUMBER,
-    0,
-    DBL_MAX,
-    NULL,
-    "Vertices no farther apart are in one place, edges no longer have no length, faces no wider "
-    "have no area; 1e-9 of the diagonal of the box around the edges if not said."};
-static const api_parameter flat = {
-    "flat",
-    API_PARAM_NUMBER,
-    0,
-    DBL_MAX,
-    NULL,
-    "A corner farther from the plane of its face makes that nonplanar; 1e-4 of the diagonal of "
-    "the box around the edges if not said."};
-static const api_parameter small = {
-    "small",
-    API_PARAM_NUMBER,
-    0,
-    DBL_MAX,
-    NULL,
-    "Components in boxes whose diagonal is no longer are small; 1e-2 of the diagonal of the "
-    "box around the edges if not said."};
-static const api_parameter dry_run = {
-    "dry_run", API_PARAM_FLAG, 0, 0, NULL, "Do nothing, and answer as if; members say it in JSON."};
-static const api_parameter rule = {
-    "rule", API_PARAM_CHOICE, 0,
-    0,      api_rule_names,   "What edits give to new elements, where the body is octets."};
-
 /* --- headers --- */
 
 static const api_told_header next_page = {"Link", "The next page, where there is one."};
@@ -172,7 +49,7 @@ static const api_route routes[] = {
      .name = "meshes_list",
      .run = api_meshes_list,
      .produces = json,
-     .parameters = {&limit, &cursor},
+     .parameters = {&api_parameter_limit, &api_parameter_cursor},
      .headers = {&next_page},
      .statuses = {200},
      .response = "mesh_page",
@@ -188,7 +65,8 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
-     .parameters = {&format, &name, &identity, &repair, &tolerance, &hole_edges},
+     .parameters = {&api_parameter_format, &api_parameter_name, &api_parameter_identity,
+                    &api_parameter_repair, &api_parameter_tolerance, &api_parameter_hole_edges},
      .statuses = {201, 202, 409, 413, 415, 422},
      .request = "create",
      .response = "created",
@@ -203,7 +81,7 @@ static const api_route routes[] = {
      .run = api_mesh_get,
      .flags = API_EXPENSIVE | API_LONG,
      .produces = json,
-     .parameters = {&revision},
+     .parameters = {&api_parameter_revision},
      .statuses = {200, 202, 304, 410},
      .response = "summary",
      .summary = "Summary of a mesh",
@@ -232,7 +110,8 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
      .produces = json,
-     .parameters = {&format, &name, &repair, &tolerance, &hole_edges},
+     .parameters = {&api_parameter_format, &api_parameter_name, &api_parameter_repair,
+                    &api_parameter_tolerance, &api_parameter_hole_edges},
      .statuses = {200, 201, 202, 204, 409, 412, 413, 415, 422},
      .request = "create",
      .response = "created",
@@ -254,7 +133,7 @@ static const api_route routes[] = {
      .run = api_content_get,
      .flags = API_EXPENSIVE | API_COSTLY | API_OWN_ACCEPT | API_LONG,
      .produces = mesh_out,
-     .parameters = {&revision, &format, &encoding},
+     .parameters = {&api_parameter_revision, &api_parameter_format, &api_parameter_encoding},
      .headers = {&warnings},
      .statuses = {200, 202, 304, 410},
      .response = "document",
@@ -270,7 +149,7 @@ static const api_route routes[] = {
      .run = api_geometry_get,
      .flags = API_EXPENSIVE | API_LONG,
      .produces = octets,
-     .parameters = {&drawn, &layout},
+     .parameters = {&api_parameter_drawn, &api_parameter_layout},
      .statuses = {200, 202, 304},
      .summary = "Arrays to draw a mesh from",
      .doc =
@@ -291,7 +170,8 @@ static const api_route routes[] = {
      .run = api_progressive_get,
      .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
      .produces = octets,
-     .parameters = {&revision, &base_faces, &most_error, &boundary_weight, &most_splits},
+     .parameters = {&api_parameter_revision, &api_parameter_base_faces, &api_parameter_most_error,
+                    &api_parameter_boundary_weight, &api_parameter_most_splits},
      .statuses = {200, 202, 304, 410, 422},
      .summary = "A mesh from coarse to fine",
      .doc =
@@ -314,7 +194,7 @@ static const api_route routes[] = {
      .body_kind = API_BODY_OPTION,
      .consumes = json,
      .produces = json,
-     .parameters = {&revision},
+     .parameters = {&api_parameter_revision},
      .statuses = {201, 202, 409, 410, 412, 413, 415, 422},
      .request = "copy",
      .response = "summary",
@@ -329,7 +209,7 @@ static const api_route routes[] = {
      .run = api_elements_list,
      .flags = API_EXPENSIVE | API_LONG,
      .produces = lines_too,
-     .parameters = {&revision, &limit, &cursor},
+     .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},
      .headers = {&next_page},
      .statuses = {200, 202, 304, 410},
      .response = "element_page",
@@ -343,7 +223,7 @@ static const api_route routes[] = {
      .name = "element_get",
      .run = api_element_get,
      .produces = json,
-     .parameters = {&revision},
+     .parameters = {&api_parameter_revision},
      .statuses = {200, 304, 410},
      .response = "element",
      .summary = "One element with all its links",
@@ -353,7 +233,7 @@ static const api_route routes[] = {
      .name = "relation_get",
      .run = api_relation_get,
      .produces = json,
-     .parameters = {&revision, &turning},
+     .parameters = {&api_parameter_revision, &api_parameter_turning},
      .statuses = {200, 304, 410},
      .response = "adjacency",
      .summary = "What is adjacent to an element",
@@ -365,7 +245,7 @@ static const api_route routes[] = {
      .name = "attributes_list",
      .run = api_attributes_list,
      .produces = json,
-     .parameters = {&revision},
+     .parameters = {&api_parameter_revision},
      .statuses = {200, 304, 410},
      .response = "attribute_list",
      .summary = "List the attributes",
@@ -376,7 +256,8 @@ static const api_route routes[] = {
      .run = api_attribute_get,
      .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
      .produces = octets_too,
-     .parameters = {&revision, &limit, &cursor, &ids},
+     .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor,
+                    &api_parameter_ids},
      .headers = {&next_page},
      .statuses = {200, 202, 304, 410},
      .response = "attribute_values",
@@ -394,7 +275,8 @@ static const api_route routes[] = {
      .body_kind = API_BODY_UPLOAD,
      .consumes = octets_too,
      .produces = json,
-     .parameters = {&type, &components, &rule, &dry_run},
+     .parameters = {&api_parameter_type, &api_parameter_components, &api_parameter_rule,
+                    &api_parameter_dry_run},
      .statuses = {200, 201, 204, 409, 412, 413, 415, 422},
      .request = "attribute",
      .response = "attribute_written",
@@ -422,7 +304,7 @@ static const api_route routes[] = {
      .run = api_attribute_delete,
      .flags = API_WRITES | API_REHEARSED,
      .produces = json,
-     .parameters = {&dry_run},
+     .parameters = {&api_parameter_dry_run},
      .statuses = {200, 204, 409, 412},
      .response = "attribute_written",
      .summary = "Delete an attribute",
@@ -437,7 +319,7 @@ static const api_route routes[] = {
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
      .produces = octets_too,
-     .parameters = {&revision},
+     .parameters = {&api_parameter_revision},
      .statuses = {200, 202, 410, 413, 415, 422},
      .request = "query",
      .response = "query_results",
@@ -455,7 +337,7 @@ static const api_route routes[] = {
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
      .produces = json,
-     .parameters = {&revision},
+     .parameters = {&api_parameter_revision},
      .statuses = {200, 202, 410, 413, 415, 422},
      .request = "walk",
      .response = "walked",
@@ -467,7 +349,7 @@ static const api_route routes[] = {
      .run = api_boundaries_get,
      .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
      .produces = json,
-     .parameters = {&revision},
+     .parameters = {&api_parameter_revision},
      .statuses = {200, 202, 304, 410},
      .response = "boundaries",
      .summary = "Boundary loops",
@@ -478,7 +360,7 @@ static const api_route routes[] = {
      .run = api_components_get,
      .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
      .produces = json,
-     .parameters = {&revision, &by},
+     .parameters = {&api_parameter_revision, &api_parameter_by},
      .statuses = {200, 202, 304, 410},
      .response = "components",
      .summary = "Connected components",
@@ -489,7 +371,8 @@ static const api_route routes[] = {
      .run = api_check_get,
      .flags = API_EXPENSIVE | API_LONG,
      .produces = json,
-     .parameters = {&revision, &meets, &merge, &flat, &small},
+     .parameters = {&api_parameter_revision, &api_parameter_meets, &api_parameter_merge,
+                    &api_parameter_flat, &api_parameter_small},
      .statuses = {200, 202, 304, 410, 413},
      .response = "check",
      .summary = "Check a mesh",
@@ -521,7 +404,7 @@ static const api_route routes[] = {
      .name = "edits_list",
      .run = api_edits_list,
      .produces = json,
-     .parameters = {&limit, &cursor, &since},
+     .parameters = {&api_parameter_limit, &api_parameter_cursor, &api_parameter_since},
      .headers = {&next_page},
      .statuses = {200, 304, 410},
      .response = "history",
@@ -567,7 +450,7 @@ static const api_route routes[] = {
      .name = "events_get",
      .run = api_events_get,
      .produces = event_stream,
-     .parameters = {&last_seen},
+     .parameters = {&api_parameter_last_seen},
      .statuses = {200},
      .summary = "Every change as it happens",
      .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
@@ -582,7 +465,7 @@ static const api_route routes[] = {
      .name = "jobs_list",
      .run = api_jobs_list,
      .produces = json,
-     .parameters = {&limit, &cursor},
+     .parameters = {&api_parameter_limit, &api_parameter_cursor},
      .headers = {&next_page},
      .statuses = {200},
      .response = "job_page",
