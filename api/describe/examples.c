@@ -147,7 +147,7 @@ static const api_example examples[] = {
                  "0]},\"area\":1,\"volume\":null,\"memory_bytes\":408,"
                  "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000"
                  "Z\"}"},
-    {.route = "elements_list",
+    {.route = "vertices_list",
      .target = "/v1/meshes/kite/vertices",
      .status = 200,
      .produces = "application/json",
@@ -157,7 +157,7 @@ static const api_example examples[] = {
                  "\"position\":[1,1,0],\"halfedge\":3,\"degree\":3,\"boundary\":true,"
                  "\"isolated\":false},{\"id\":3,\"position\":[0,1,0],\"halfedge\":7,\"degree\":2,"
                  "\"boundary\":true,\"isolated\":false}],\"next\":null}"},
-    {.route = "elements_list",
+    {.route = "edges_list",
      .target = "/v1/meshes/kite/edges",
      .status = 200,
      .produces = "application/x-ndjson",
@@ -170,17 +170,146 @@ static const api_example examples[] = {
                  "\"boundary\":true}\n{\"id\":4,\"halfedges\":[8,9],\"vertices\":[3,0],"
                  "\"faces\":[1,null],\"length\":1,\"boundary\":true}\n{\"end\":true,"
                  "\"count\":5}\n"},
-    {.route = "element_get",
+    {.route = "halfedges_list",
+     .target = "/v1/meshes/kite/halfedges",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"items\":[{\"id\":0,\"twin\":1,\"next\":2,\"prev\":4,"
+                 "\"origin\":0,\"target\":1,\"edge\":0,\"face\":0,\"boundary\":false},{\"id\":1,"
+                 "\"twin\":0,\"next\":9,\"prev\":3,\"origin\":1,\"target\":0,\"edge\":0,"
+                 "\"face\":null,\"boundary\":true},{\"id\":2,\"twin\":3,\"next\":4,\"prev\":0,"
+                 "\"origin\":1,\"target\":2,\"edge\":1,\"face\":0,\"boundary\":false},{\"id\":3,"
+                 "\"twin\":2,\"next\":1,\"prev\":7,\"origin\":2,\"target\":1,\"edge\":1,"
+                 "\"face\":null,\"boundary\":true},{\"id\":4,\"twin\":5,\"next\":0,\"prev\":2,"
+                 "\"origin\":2,\"target\":0,\"edge\":2,\"face\":0,\"boundary\":false},{\"id\":5,"
+                 "\"twin\":4,\"next\":6,\"prev\":8,\"origin\":0,\"target\":2,\"edge\":2,"
+                 "\"face\":1,\"boundary\":false},{\"id\":6,\"twin\":7,\"next\":8,\"prev\":5,"
+                 "\"origin\":2,\"target\":3,\"edge\":3,\"face\":1,\"boundary\":false},{\"id\":7,"
+                 "\"twin\":6,\"next\":3,\"prev\":9,\"origin\":3,\"target\":2,\"edge\":3,"
+                 "\"face\":null,\"boundary\":true},{\"id\":8,\"twin\":9,\"next\":5,\"prev\":6,"
+                 "\"origin\":3,\"target\":0,\"edge\":4,\"face\":1,\"boundary\":false},{\"id\":9,"
+                 "\"twin\":8,\"next\":7,\"prev\":1,\"origin\":0,\"target\":3,\"edge\":4,"
+                 "\"face\":null,\"boundary\":true}],\"next\":null}"},
+    {.route = "edges_list",
+     .target = "/v1/meshes/kite/edges",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"items\":[{\"id\":0,\"halfedges\":[0,1],\"vertices\":[0,1],"
+                 "\"faces\":[0,null],\"length\":1,\"boundary\":true},{\"id\":1,\"halfedges\":[2,"
+                 "3],\"vertices\":[1,2],\"faces\":[0,null],\"length\":1,\"boundary\":true},"
+                 "{\"id\":2,\"halfedges\":[4,5],\"vertices\":[2,0],\"faces\":[0,1],"
+                 "\"length\":1.4142135623730951,\"boundary\":false},{\"id\":3,\"halfedges\":[6,7],"
+                 "\"vertices\":[2,3],\"faces\":[1,null],\"length\":1,\"boundary\":true},{\"id\":4,"
+                 "\"halfedges\":[8,9],\"vertices\":[3,0],\"faces\":[1,null],\"length\":1,"
+                 "\"boundary\":true}],\"next\":null}"},
+    {.route = "faces_list",
+     .target = "/v1/meshes/kite/faces",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"items\":[{\"id\":0,\"halfedge\":0,\"degree\":3,"
+                 "\"vertices\":[0,1,2],\"halfedges\":[0,2,4],\"area\":0.5,\"normal\":[0,0,1],"
+                 "\"centroid\":[0.6666666666666666,0.3333333333333333,0]},{\"id\":1,"
+                 "\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,8],"
+                 "\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
+                 "0.6666666666666666,0]}],\"next\":null}"},
+    {.route = "vertex_get",
+     .target = "/v1/meshes/kite/vertices/2",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"id\":2,\"position\":[1,1,0],\"halfedge\":3,\"degree\":3,\"boundary\":true,"
+                 "\"isolated\":false}"},
+    {.route = "halfedge_get",
      .target = "/v1/meshes/kite/halfedges/0",
      .status = 200,
      .produces = "application/json",
      .response = "{\"id\":0,\"twin\":1,\"next\":2,\"prev\":4,\"origin\":0,\"target\":1,"
                  "\"edge\":0,\"face\":0,\"boundary\":false}"},
-    {.route = "relation_get",
+    {.route = "edge_get",
+     .target = "/v1/meshes/kite/edges/2",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"id\":2,\"halfedges\":[4,5],\"vertices\":[2,0],\"faces\":[0,1],"
+                 "\"length\":1.4142135623730951,\"boundary\":false}"},
+    {.route = "face_get",
+     .target = "/v1/meshes/kite/faces/1",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"id\":1,\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,"
+                 "8],\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
+                 "0.6666666666666666,0]}"},
+    {.route = "vertex_vertices",
+     .target = "/v1/meshes/kite/vertices/2/vertices",
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"vertices\",\"ids\":[1,3,0]}"},
+    {.route = "vertex_outgoing",
+     .target = "/v1/meshes/kite/vertices/2/outgoing",
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"outgoing\",\"ids\":[3,6,4]}"},
+    {.route = "vertex_incoming",
+     .target = "/v1/meshes/kite/vertices/2/incoming",
+     .status = 200,
+     .produces = "application/json",
+     .response =
+         "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"incoming\",\"ids\":[2,7,5]}"},
+    {.route = "vertex_edges",
+     .target = "/v1/meshes/kite/vertices/2/edges",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"edges\",\"ids\":[1,3,2]}"},
+    {.route = "vertex_faces",
      .target = "/v1/meshes/kite/vertices/2/faces",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"faces\",\"ids\":[1,0]}"},
+    {.route = "halfedge_loop",
+     .target = "/v1/meshes/kite/halfedges/4/loop",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"halfedge\":4},\"relation\":\"loop\",\"ids\":[4,0,2]}"},
+    {.route = "halfedge_ring",
+     .target = "/v1/meshes/kite/halfedges/4/ring",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"halfedge\":4},\"relation\":\"ring\",\"ids\":[4,3,6]}"},
+    {.route = "edge_vertices",
+     .target = "/v1/meshes/kite/edges/2/vertices",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"edge\":2},\"relation\":\"vertices\",\"ids\":[2,0]}"},
+    {.route = "edge_halfedges",
+     .target = "/v1/meshes/kite/edges/2/halfedges",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"edge\":2},\"relation\":\"halfedges\",\"ids\":[4,5]}"},
+    {.route = "edge_faces",
+     .target = "/v1/meshes/kite/edges/2/faces",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"edge\":2},\"relation\":\"faces\",\"ids\":[0,1]}"},
+    {.route = "face_vertices",
+     .target = "/v1/meshes/kite/faces/0/vertices",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"vertices\",\"ids\":[0,1,2]}"},
+    {.route = "face_halfedges",
+     .target = "/v1/meshes/kite/faces/0/halfedges",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"halfedges\",\"ids\":[0,2,4]}"},
+    {.route = "face_edges",
+     .target = "/v1/meshes/kite/faces/0/edges",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"edges\",\"ids\":[0,1,2]}"},
+    {.route = "face_faces",
+     .target = "/v1/meshes/kite/faces/0/faces",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"faces\",\"ids\":[1]}"},
     {.route = "query_post",
      .target = "/v1/meshes/kite/query",
      .consumes = "application/json",
@@ -324,7 +453,7 @@ static const api_example examples[] = {
                  "\"faces\":[]},\"deleted\":{\"vertices\":[4],\"edges\":[5,6,7],\"faces\":[2,3]},"
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{},\"merged\":{},\"undo\":0,\"redo\":1}"},
-    {.route = "relation_get",
+    {.route = "vertex_faces",
      .target = "/v1/meshes/kite/vertices/4/faces?revision=4",
      .status = 200,
      .produces = "application/json",

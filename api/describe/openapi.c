@@ -29,14 +29,6 @@ static void write_path_parameter(api_out *out, const char *name)
         api_out_key_string(out, "type", "string");
         if (strcmp(name, "mesh") == 0) {
             api_out_key_string(out, "pattern", "^[A-Za-z0-9._-]{1,64}$");
-        } else if (strcmp(name, "kind") == 0) {
-            static const char *const kinds[] = {"vertices", "halfedges", "edges", "faces", NULL};
-            api_schema_choices(out, "enum", kinds);
-        } else if (strcmp(name, "relation") == 0) {
-            static const char *const relations[] = {"vertices", "outgoing",  "incoming",
-                                                    "edges",    "halfedges", "faces",
-                                                    "loop",     "ring",      NULL};
-            api_schema_choices(out, "enum", relations);
         }
         api_out_object_end(out);
     }

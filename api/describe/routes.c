@@ -40,6 +40,42 @@ static const api_told_header next_page = {"Link", "The next page, where there is
 static const api_told_header disposition = {"Content-Disposition", "A name for a file."};
 static const api_told_header warnings = {"Export-Warnings", "What the format could not carry."};
 
+/* --- rows that differ in the kind of element ---
+ *
+ * vertices_list, vertex_get, vertex_faces: `one` and `many` are the kind's names, `what` is the
+ * name of a relation of core/query/adjacency.h. */
+
+#define ELEMENTS(of, one, many, words)                                                            \
+    {                                                                                             \
+        .method = "GET", .path = "/v1/meshes/{mesh}/" many, .name = many "_list", .kind = (of),   \
+        .run = api_elements_list, .flags = API_EXPENSIVE | API_LONG, .produces = lines_too,       \
+        .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},     \
+        .headers = {&next_page}, .statuses = {200, 202, 304, 410}, .response = one "_page",       \
+        .line = (one), .summary = "List the " words,                                              \
+        .doc = "A page in the order of ids, or all of them as lines of JSON that end in "         \
+               "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while " \
+               "the history holds it."                                                            \
+    }
+
+#define ELEMENT(of, one, many, text)                                                             \
+    {                                                                                            \
+        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}", .name = one "_get",          \
+        .kind = (of), .run = api_element_get, .produces = json,                                  \
+        .parameters = {&api_parameter_revision}, .statuses = {200, 304, 410}, .response = (one), \
+        .summary = "One " one " with all its links",                                             \
+        .doc = text " A deleted one is 410, one that never was is 404."                          \
+    }
+
+#define ADJACENCY(of, one, many, what, title, text)                                              \
+    {                                                                                            \
+        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}/" what, .name = one "_" what,  \
+        .kind = (of), .relation = (what), .run = api_relation_get, .produces = json,             \
+        .parameters = {&api_parameter_revision, &api_parameter_turning},                         \
+        .statuses = {200, 304, 410}, .response = one "_" what, .summary = (title), .doc = (text) \
+    }
+
+#define AROUND "Counter-clockwise from the stored half-edge, each once."
+
 /* --- the table --- */
 
 static const api_route routes[] = {
@@ -202,42 +238,46 @@ static const api_route routes[] = {
      .doc = "An independent mesh with the same ids and attributes and a history of its own; of an "
             "earlier revision where one is named."},
 
-    /* its elements */
-    {.method = "GET",
-     .path = "/v1/meshes/{mesh}/{kind}",
-     .name = "elements_list",
-     .run = api_elements_list,
-     .flags = API_EXPENSIVE | API_LONG,
-     .produces = lines_too,
-     .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},
-     .headers = {&next_page},
-     .statuses = {200, 202, 304, 410},
-     .response = "element_page",
-     .line = "element",
-     .summary = "List elements of a kind",
-     .doc = "A page in the order of ids, or all of them as lines of JSON that end in "
-            "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while the "
-            "history holds it."},
-    {.method = "GET",
-     .path = "/v1/meshes/{mesh}/{kind}/{id}",
-     .name = "element_get",
-     .run = api_element_get,
-     .produces = json,
-     .parameters = {&api_parameter_revision},
-     .statuses = {200, 304, 410},
-     .response = "element",
-     .summary = "One element with all its links",
-     .doc = "A deleted element is 410, one that never was is 404."},
-    {.method = "GET",
-     .path = "/v1/meshes/{mesh}/{kind}/{id}/{relation}",
-     .name = "relation_get",
-     .run = api_relation_get,
-     .produces = json,
-     .parameters = {&api_parameter_revision, &api_parameter_turning},
-     .statuses = {200, 304, 410},
-     .response = "adjacency",
-     .summary = "What is adjacent to an element",
-     .doc = "Counter-clockwise from the stored half-edge. Each element once."},
+    /* its elements: a collection, an element and what is adjacent to it, for each kind */
+    ELEMENTS(HE_VERTEX, "vertex", "vertices", "vertices"),
+    ELEMENTS(HE_HALFEDGE, "halfedge", "halfedges", "half-edges"),
+    ELEMENTS(HE_EDGE, "edge", "edges", "edges"),
+    ELEMENTS(HE_FACE, "face", "faces", "faces"),
+    ELEMENT(HE_VERTEX, "vertex", "vertices",
+            "One vertex: its position, a half-edge that leaves it, its degree."),
+    ELEMENT(HE_HALFEDGE, "halfedge", "halfedges",
+            "One half-edge: its twin, next, prev, origin, target, edge and face."),
+    ELEMENT(HE_EDGE, "edge", "edges", "One edge: its half-edges, ends, faces and length."),
+    ELEMENT(HE_FACE, "face", "faces",
+            "One face: its corners, half-edges, area, normal and centroid."),
+    ADJACENCY(HE_VERTEX, "vertex", "vertices", "vertices", "Neighbours of a vertex",
+              "The vertices at the other ends of its edges. " AROUND),
+    ADJACENCY(HE_VERTEX, "vertex", "vertices", "outgoing", "Half-edges that leave a vertex",
+              "Those that have it as their origin. " AROUND),
+    ADJACENCY(HE_VERTEX, "vertex", "vertices", "incoming", "Half-edges that arrive at a vertex",
+              "The twins of those that leave it, in their order. " AROUND),
+    ADJACENCY(HE_VERTEX, "vertex", "vertices", "edges", "Edges of a vertex",
+              "Those that end at it. " AROUND),
+    ADJACENCY(HE_VERTEX, "vertex", "vertices", "faces", "Faces around a vertex",
+              "Those left of the half-edges that leave it; holes are left out. " AROUND),
+    ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "loop", "The loop of a half-edge",
+              "The half-edges around its face or hole, from itself by next."),
+    ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "ring", "The ring of a half-edge",
+              "The half-edges that leave its origin, counter-clockwise from itself."),
+    ADJACENCY(HE_EDGE, "edge", "edges", "vertices", "Ends of an edge",
+              "Origin and target of its half-edge 2 * id."),
+    ADJACENCY(HE_EDGE, "edge", "edges", "halfedges", "Half-edges of an edge",
+              "2 * id and 2 * id + 1."),
+    ADJACENCY(HE_EDGE, "edge", "edges", "faces", "Faces beside an edge",
+              "Those left of its half-edges, each once; holes are left out."),
+    ADJACENCY(HE_FACE, "face", "faces", "vertices", "Corners of a face",
+              "The origins of its half-edges. " AROUND),
+    ADJACENCY(HE_FACE, "face", "faces", "halfedges", "Half-edges of a face",
+              "Those that have it on their left. " AROUND),
+    ADJACENCY(HE_FACE, "face", "faces", "edges", "Edges of a face",
+              "Those of its half-edges. " AROUND),
+    ADJACENCY(HE_FACE, "face", "faces", "faces", "Faces beside a face",
+              "Those across its edges; holes are left out. " AROUND),
 
     /* attributes */
     {.method = "GET",

@@ -178,9 +178,21 @@ const api_member api_answer_members[] = {
      "what "
      "came before."},
 
-    {"element_page", "revision", "count", REQUIRED, NULL},
-    {"element_page", "items", "*#element", REQUIRED, NULL},
-    {"element_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"vertex_page", "revision", "count", REQUIRED, NULL},
+    {"vertex_page", "items", "*#vertex", REQUIRED, NULL},
+    {"vertex_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+
+    {"halfedge_page", "revision", "count", REQUIRED, NULL},
+    {"halfedge_page", "items", "*#halfedge", REQUIRED, NULL},
+    {"halfedge_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+
+    {"edge_page", "revision", "count", REQUIRED, NULL},
+    {"edge_page", "items", "*#edge", REQUIRED, NULL},
+    {"edge_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+
+    {"face_page", "revision", "count", REQUIRED, NULL},
+    {"face_page", "items", "*#face", REQUIRED, NULL},
+    {"face_page", "next", "text?", REQUIRED, "The cursor of the next page."},
 
     {"adjacency", "revision", "count", OPTIONAL, "Once beside many results."},
     {"adjacency", "of", "#of", REQUIRED, NULL},

@@ -1,6 +1,7 @@
 #include "api/describe/schemas.h"
 
 #include "api/describe/schema_rows.h"
+#include "query/adjacency.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -81,7 +82,10 @@ static const struct {
                    "{\"$ref\":\"#/components/schemas/walked\"},"
                    "{\"$ref\":\"#/components/schemas/boundaries\"},"
                    "{\"$ref\":\"#/components/schemas/components\"},"
-                   "{\"$ref\":\"#/components/schemas/element_page\"},"
+                   "{\"$ref\":\"#/components/schemas/vertex_page\"},"
+                   "{\"$ref\":\"#/components/schemas/halfedge_page\"},"
+                   "{\"$ref\":\"#/components/schemas/edge_page\"},"
+                   "{\"$ref\":\"#/components/schemas/face_page\"},"
                    "{\"$ref\":\"#/components/schemas/attribute_values\"},"
                    "{\"$ref\":\"#/components/schemas/document\"}]}"},
     {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
@@ -262,6 +266,49 @@ static size_t write_schema(api_out *out, const api_member *rows, bool closed)
     return count;
 }
 
+/* An object of a member with the id of an element of this kind: of_vertex. */
+static void write_reference_schema(api_out *out, he_kind kind)
+{
+    char name[32];
+    snprintf(name, sizeof name, "of_%s", he_kind_name(kind));
+    api_out_key(out, name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "object");
+    api_out_key(out, "properties");
+    api_out_object_begin(out);
+    api_schema_ref_key(out, he_kind_name(kind), "id");
+    api_out_object_end(out);
+    api_schema_choices(out, "required", (const char *const[]){he_kind_name(kind), NULL});
+    api_out_object_end(out);
+}
+
+/* What the row of one relation answers with: vertex_faces. */
+static void write_adjacency_schema(api_out *out, const he_relation *relation)
+{
+    static const char *const required[] = {"revision", "of", "relation", "ids", NULL};
+    char name[64], text[64];
+    snprintf(name, sizeof name, "%s_%s", he_kind_name(relation->of), relation->name);
+    api_out_key(out, name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "object");
+    api_out_key(out, "properties");
+    api_out_object_begin(out);
+    api_out_key(out, "revision");
+    write_type(out, "count", strlen("count"), NULL);
+    snprintf(name, sizeof name, "of_%s", he_kind_name(relation->of));
+    api_schema_ref_key(out, "of", name);
+    api_out_key(out, "relation");
+    api_out_object_begin(out);
+    api_out_key_string(out, "const", relation->name);
+    api_out_object_end(out);
+    snprintf(text, sizeof text, "Of %s.", he_kind_plural(relation->gives));
+    api_out_key(out, "ids");
+    write_type(out, "*id", strlen("*id"), text);
+    api_out_object_end(out);
+    api_schema_choices(out, "required", required);
+    api_out_object_end(out);
+}
+
 void api_schemas_write(api_out *out)
 {
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
@@ -273,5 +320,11 @@ void api_schemas_write(api_out *out)
     }
     for (const api_member *row = api_request_members; row->schema != NULL;) {
         row += write_schema(out, row, true);
+    }
+    for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
+        write_reference_schema(out, kind);
+    }
+    for (size_t i = 0; i < he_relation_count(); i++) {
+        write_adjacency_schema(out, he_relation_at(i));
     }
 }

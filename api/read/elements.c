@@ -144,7 +144,8 @@ void api_element_get(api_exchange *x)
 
 void api_relation_get(api_exchange *x)
 {
-    const he_relation *relation = he_relation_find(x->kind, x->relation, strlen(x->relation));
+    const char *name = x->route->relation;
+    const he_relation *relation = he_relation_find(x->kind, name, strlen(name));
     const he_mesh *mesh = api_read_begin(x);
     if (mesh == NULL) {
         return;

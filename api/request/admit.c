@@ -106,22 +106,11 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
         }
         x->mesh_id = variables->mesh;
     }
-    x->kind = variables->has_kind ? variables->kind : HE_KIND_COUNT;
+    x->kind = variables->domain != HE_KIND_COUNT ? variables->domain : x->route->kind;
     if (variables->id != NULL && !api_path_id(variables->id, &x->id)) {
         api_fail(x, HE_NO_SUCH_ELEMENT, "\"%.100s\" is not the id of an element", variables->id);
         x->problem.status = 404;
         return false;
-    }
-    if (variables->relation != NULL) {
-        const char *const *relation = api_relations(x->kind);
-        while (*relation != NULL && strcmp(*relation, variables->relation) != 0) {
-            relation++;
-        }
-        if (*relation == NULL) {
-            return api_fail(x, API_NO_SUCH_ROUTE, "\"%.100s\" is not a relation of %s",
-                            variables->relation, he_kind_plural(x->kind));
-        }
-        x->relation = *relation;
     }
     x->code = variables->code;
     x->attribute = variables->name;
@@ -137,6 +126,23 @@ static bool is_of_other_site(const api_exchange *x)
     return site != NULL && !x->request.has_consent && api_equal_nocase(site, "cross-site");
 }
 
+static bool refuse_path(api_exchange *x, const api_path *path)
+{
+    char list[API_CHOICES];
+    const char *missed = api_route_choices(x->service->routes, path, list);
+    if (path->has_slash) {
+        return api_fail(x, API_BAD_PATH,
+                        "an escaped slash is taken only in the name of an attribute");
+    }
+    if (list[0] == '\0') {
+        return api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
+    }
+    if (missed == NULL) {
+        return api_fail(x, API_NO_SUCH_ROUTE, "the path goes on with one of %s", list);
+    }
+    return api_fail(x, API_NO_SUCH_ROUTE, "\"%.50s\" is none of %s", missed, list);
+}
+
 static bool find_route(api_exchange *x)
 {
     api_path path;
@@ -149,12 +155,8 @@ static bool find_route(api_exchange *x)
         return false;
     }
     x->route = api_route_find(x->service->routes, x->request.method, &path, &variables, x->allow);
-    if (x->route == NULL && x->allow[0] == '\0' && path.has_slash) {
-        return api_fail(x, API_BAD_PATH,
-                        "an escaped slash is taken only in the name of an attribute");
-    }
     if (x->route == NULL && x->allow[0] == '\0') {
-        return api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
+        return refuse_path(x, &path);
     }
     if (x->route == NULL && strcmp(x->request.method, "OPTIONS") == 0) {
         api_answer_empty(x, 204);

@@ -40,7 +40,7 @@
 
 struct api_service {
     st_store *store;
-    api_route_table routes;
+    api_route_tree *routes;
     api_options options;
     api_backfills backfills;
     api_unpack_room unpacking; /* of the decoders of bodies that are arriving */
@@ -64,9 +64,8 @@ struct api_exchange {
     const api_route *route; /* NULL where none matched */
     bool head;              /* HEAD: the server sends the headers only */
     const char *mesh_id;    /* of the path, well formed; NULL: none */
-    he_kind kind;           /* of {kind} or {domain} */
+    he_kind kind;           /* of {domain}, or the row's */
     uint32_t id;            /* of {id} */
-    const char *relation;   /* of {relation}, one of api_relations(kind) */
     const char *code;       /* of {code} */
     const char *attribute;  /* of {name} */
     const char *job_id;     /* of {job}, any text */

@@ -5,10 +5,9 @@
  * query parameters, Content-Type and Accept, the caps of bodies, the OpenAPI document, labels of
  * metrics, and the tests' duty to hit every status a row declares.
  *
- * A template is literal segments and variables. {kind} matches vertices, halfedges, edges, faces
- * and nothing else; {domain} these or mesh; {id} an element id; {name} that of an attribute; {mesh}
- * a mesh id; {relation} one of the kind's relations; {code} and {job} any segment; {asset} the rest
- * of the path. */
+ * A template is literal segments and variables. {mesh} matches a mesh id; {id} an element id;
+ * {domain} vertices, halfedges, edges, faces or mesh and nothing else; {name} that of an attribute;
+ * {code} and {job} any segment; {asset} the rest of the path. */
 #ifndef HE_API_REQUEST_ROUTE_H
 #define HE_API_REQUEST_ROUTE_H
 
@@ -66,9 +65,11 @@ typedef struct api_told_header {
 enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_HEADERS = 3, API_ROUTE_STATUSES = 20 };
 
 typedef struct api_route {
-    const char *method; /* GET rows answer HEAD too */
-    const char *path;   /* the template */
-    const char *name;   /* operationId: mesh_get is api_mesh_get() */
+    const char *method;   /* GET rows answer HEAD too */
+    const char *path;     /* the template */
+    const char *name;     /* operationId: mesh_get is api_mesh_get() */
+    he_kind kind;         /* of the elements it is about, where it is about any */
+    const char *relation; /* what lies beside them; NULL: themselves */
     /* Before the body, of uploads only: choose a reader by x->media_in. NULL: nothing to do. */
     void (*begin)(api_exchange *x);
     void (*body)(api_exchange *x, const char *bytes, size_t length);
@@ -90,21 +91,30 @@ typedef struct api_route {
 /* The set of `choices` that a list of them joined by commas names, a bit each; false where it names
  * another, one twice, or none. */
 bool api_choices_parse(const char *const *choices, const char *list, unsigned *out);
+
 /* What the segments of a path gave to the variables of its template. */
 typedef struct api_variables {
     const char *mesh; /* as decoded, not yet checked; NULL where the template has none */
-    bool has_kind;
-    he_kind kind;                                  /* of {kind} or {domain} */
-    const char *id, *relation, *code, *name, *job; /* likewise */
+    he_kind domain;   /* HE_KIND_COUNT where it has none */
+    const char *id, *code, *name, *job; /* like mesh */
 } api_variables;
 
-/* The row for a method and path. NULL when there is none: then `allow`, which has room for
- * API_ALLOW bytes, lists the methods of the path, and is "" where the path matches no template. */
-enum { API_ALLOW = 64 };
-const api_route *api_route_find(api_route_table table, const char *method, const api_path *path,
-                                api_variables *out, char allow[API_ALLOW]);
+/* The templates of a table as a tree of their segments: a request is found by the segments of its
+ * path, however many rows there are. `table` outlives it. NULL when memory is out. */
+typedef struct api_route_tree api_route_tree;
+api_route_tree *api_route_tree_new(api_route_table table);
+void api_route_tree_free(api_route_tree *tree);
 
-/* The relations of a kind, ends in NULL. */
-const char *const *api_relations(he_kind kind);
+/* The row for a method and path. NULL when there is none: then `allow` lists the methods of the
+ * path, and is "" where the path matches no template. */
+enum { API_ALLOW = 64 };
+const api_route *api_route_find(const api_route_tree *tree, const char *method,
+                                const api_path *path, api_variables *out, char allow[API_ALLOW]);
+
+/* The first segment of a path that no template has in its place, NULL when templates go on where
+ * the path ends. `list` is what templates have there, "" when that may be anything or nothing. */
+enum { API_CHOICES = 256 };
+const char *api_route_choices(const api_route_tree *tree, const api_path *path,
+                              char list[API_CHOICES]);
 
 #endif

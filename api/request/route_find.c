@@ -1,6 +1,9 @@
 /* Which row of the table answers a request, and how the values of its parameters read. */
 #include "api/request/route.h"
 
+#include "base/mem.h"
+
+#include <assert.h>
 #include <string.h>
 
 bool api_choices_parse(const char *const *choices, const char *list, unsigned *out)
@@ -23,17 +26,109 @@ bool api_choices_parse(const char *const *choices, const char *list, unsigned *o
     }
 }
 
-static bool match_variable(const char *variable, const char *segment, api_variables *out)
+/* --- the tree of templates --- */
+
+/* Rows with one path: their methods differ. */
+enum { MOST_METHODS = 5 };
+
+/* One segment of the templates, below those that come before it. The children of a node are literal
+ * segments, each another one, or a single variable. */
+typedef struct node {
+    const char *segment; /* in a template, where it ends at a slash or with the text */
+    size_t length;
+    struct node *child, *sibling;            /* the first below it, the next beside it */
+    const api_route *rows[MOST_METHODS + 1]; /* whose template ends here; ends in NULL */
+} node;
+
+struct api_route_tree {
+    size_t count;
+    node nodes[]; /* nodes[0] is before the first segment */
+};
+
+static bool is_variable(const node *n)
 {
-    switch (variable[1]) {
+    return n->segment[0] == '{';
+}
+
+/* Which variable it is: the letters after the brace differ. */
+static char letter_of(const node *n)
+{
+    return is_variable(n) ? n->segment[1] : '\0';
+}
+
+static bool is_literal(const node *n, const char *text, size_t length)
+{
+    return n->length == length && memcmp(n->segment, text, length) == 0;
+}
+
+/* The child of `parent` with this segment, which is made where there is none. */
+static node *find_or_add(api_route_tree *tree, node *parent, const char *segment)
+{
+    size_t length = strcspn(segment, "/");
+    node **last = &parent->child;
+    while (*last != NULL && !is_literal(*last, segment, length)) {
+        assert(!is_variable(*last) && segment[0] != '{');
+        last = &(*last)->sibling;
+    }
+    if (*last == NULL) {
+        *last = &tree->nodes[tree->count++];
+        (*last)->segment = segment;
+        (*last)->length = length;
+    }
+    return *last;
+}
+
+static void add_row(api_route_tree *tree, const api_route *row)
+{
+    node *at = &tree->nodes[0];
+    const char *slash = row->path;
+    while (slash != NULL && slash[1] != '\0') {
+        at = find_or_add(tree, at, slash + 1);
+        slash = strchr(slash + 1, '/');
+    }
+    size_t i = 0;
+    while (at->rows[i] != NULL) {
+        i++;
+    }
+    assert(i < MOST_METHODS);
+    at->rows[i] = row;
+}
+
+api_route_tree *api_route_tree_new(api_route_table table)
+{
+    size_t most = 1;
+    for (size_t i = 0; i < table.count; i++) {
+        for (const char *at = table.rows[i].path; *at != '\0'; at++) {
+            most += *at == '/';
+        }
+    }
+    api_route_tree *tree = he_mem_zero(1, sizeof *tree + most * sizeof(node));
+    if (tree == NULL) {
+        return NULL;
+    }
+    tree->count = 1;
+    tree->nodes[0].segment = "";
+    for (size_t i = 0; i < table.count; i++) {
+        add_row(tree, &table.rows[i]);
+    }
+    return tree;
+}
+
+void api_route_tree_free(api_route_tree *tree)
+{
+    he_mem_free(tree);
+}
+
+/* --- the way of a path through it --- */
+
+static bool take_variable(const node *n, const char *segment, api_variables *out)
+{
+    switch (letter_of(n)) {
     case 'm':
         out->mesh = segment;
         return true;
     case 'i':
         out->id = segment;
-        return true;
-    case 'r':
-        out->relation = segment;
         return true;
     case 'c':
         out->code = segment;
@@ -44,12 +139,12 @@ static bool match_variable(const char *variable, const char *segment, api_variab
     case 'n':
         out->name = segment;
         return true;
-    default: /* {kind}, {domain} */
-        for (he_kind kind = HE_VERTEX; kind <= (variable[1] == 'd' ? HE_MESH_KIND : HE_FACE);
-             kind++) {
+    case 'a':
+        return true;
+    default: /* {domain} */
+        for (he_kind kind = HE_VERTEX; kind <= HE_MESH_KIND; kind++) {
             if (strcmp(segment, he_kind_plural(kind)) == 0) {
-                out->kind = kind;
-                out->has_kind = true;
+                out->domain = kind;
                 return true;
             }
         }
@@ -57,97 +152,100 @@ static bool match_variable(const char *variable, const char *segment, api_variab
     }
 }
 
-/* Every request passes here once a row, so the first byte that differs ends it. */
-static bool match(const char *template, const api_path *path, api_variables *out)
+/* The child of `n` that takes the segment; NULL: none. */
+static const node *step(const node *n, const char *segment, api_variables *out)
 {
-    size_t i = 0;
-    bool is_name = false; /* the segment before: only a name may hold a slash */
-    *out = (api_variables){0};
-    const char *at = template[1] == '\0' ? template + 1 : template;
-    while (*at == '/') {
-        at++;
-        if (i == path->count) {
-            return false;
-        }
-        const char *segment = path->segments[i++];
-        if (*at != '{') {
-            while (*at == *segment && *at != '\0') {
-                at++;
-                segment++;
-            }
-            if (*segment != '\0' || (*at != '/' && *at != '\0')) {
-                return false;
-            }
-            is_name = false;
-        } else if (at[1] == 'a') { /* {asset} */
-            return !path->has_slash;
-        } else if (match_variable(at, segment, out)) {
-            is_name = at[1] == 'n';
-            at = strchr(at, '}') + 1;
-        } else {
-            return false;
-        }
+    size_t length = strlen(segment);
+    const node *child = n->child;
+    if (child != NULL && is_variable(child)) {
+        return take_variable(child, segment, out) ? child : NULL;
     }
-    return i == path->count && (is_name || !path->has_slash);
+    while (child != NULL && !is_literal(child, segment, length)) {
+        child = child->sibling;
+    }
+    return child;
 }
 
-static void add_method(char *allow, const char *method)
+/* As far as templates lead: `*taken` segments. */
+static const node *walk(const api_route_tree *tree, const api_path *path, api_variables *out,
+                        size_t *taken)
 {
+    const node *n = &tree->nodes[0];
+    *out = (api_variables){.domain = HE_KIND_COUNT};
+    for (*taken = 0; *taken < path->count; ++*taken) {
+        const node *next = step(n, path->segments[*taken], out);
+        if (next == NULL) {
+            return n;
+        }
+        n = next;
+        if (letter_of(n) == 'a') { /* {asset} is all that is left */
+            *taken = path->count;
+            return n;
+        }
+    }
+    return n;
+}
+
+static void add_word(char *list, size_t size, const char *word, size_t length)
+{
+    size_t used = strlen(list), comma = used > 0 ? 2 : 0;
+    if (used + comma + length < size) {
+        memcpy(list + used, ", ", comma);
+        memcpy(list + used + comma, word, length);
+        list[used + comma + length] = '\0';
+    }
+}
+
+static void list_methods(const node *n, char allow[API_ALLOW])
+{
+    for (const api_route *const *row = n->rows; *row != NULL; row++) {
+        const char *method = (*row)->method;
+        add_word(allow, API_ALLOW, method, strlen(method));
+        if (strcmp(method, "GET") == 0) {
+            add_word(allow, API_ALLOW, "HEAD", 4);
+        }
+    }
     if (allow[0] != '\0') {
-        strncat(allow, ", ", API_ALLOW - strlen(allow) - 1);
+        add_word(allow, API_ALLOW, "OPTIONS", 7);
     }
-    strncat(allow, method, API_ALLOW - strlen(allow) - 1);
 }
 
-const api_route *api_route_find(api_route_table table, const char *method, const api_path *path,
-                                api_variables *out, char allow[API_ALLOW])
+const api_route *api_route_find(const api_route_tree *tree, const char *method,
+                                const api_path *path, api_variables *out, char allow[API_ALLOW])
 {
+    size_t taken;
     const char *wanted = strcmp(method, "HEAD") == 0 ? "GET" : method;
-    const api_route *routes = table.rows;
-    size_t count = table.count;
+    const node *n = walk(tree, path, out, &taken);
     allow[0] = '\0';
-    for (size_t i = 0; i < count; i++) {
-        const api_route *route = &routes[i];
-        /* Other methods matter only to a request that finds no row: see below. */
-        if (route->method[0] == wanted[0] && strcmp(route->method, wanted) == 0 &&
-            match(route->path, path, out)) {
-            return route;
+    /* Only a name may hold a slash. */
+    if (taken < path->count || (path->has_slash && letter_of(n) != 'n')) {
+        return NULL;
+    }
+    for (const api_route *const *row = n->rows; *row != NULL; row++) {
+        if (strcmp((*row)->method, wanted) == 0) {
+            return *row;
         }
     }
-    for (size_t i = 0; i < count; i++) {
-        if (match(routes[i].path, path, out)) {
-            add_method(allow, routes[i].method);
-            if (strcmp(routes[i].method, "GET") == 0) {
-                add_method(allow, "HEAD");
-            }
-        }
-    }
-    if (allow[0] != '\0') {
-        add_method(allow, "OPTIONS");
-    }
+    list_methods(n, allow);
     return NULL;
 }
 
-const char *const *api_relations(he_kind kind)
+const char *api_route_choices(const api_route_tree *tree, const api_path *path,
+                              char list[API_CHOICES])
 {
-    static const char *const of_vertex[] = {"vertices", "outgoing", "incoming",
-                                            "edges",    "faces",    NULL};
-    static const char *const of_halfedge[] = {"loop", "ring", NULL};
-    static const char *const of_edge[] = {"vertices", "halfedges", "faces", NULL};
-    static const char *const of_face[] = {"vertices", "halfedges", "edges", "faces", NULL};
-    static const char *const of_mesh[] = {NULL};
-    switch (kind) {
-    case HE_VERTEX:
-        return of_vertex;
-    case HE_HALFEDGE:
-        return of_halfedge;
-    case HE_EDGE:
-        return of_edge;
-    case HE_FACE:
-        return of_face;
-    case HE_MESH_KIND:
-    case HE_KIND_COUNT:
-        break;
+    size_t taken;
+    api_variables unused;
+    const node *n = walk(tree, path, &unused, &taken);
+    list[0] = '\0';
+    for (const node *child = n->child; child != NULL; child = child->sibling) {
+        if (!is_variable(child)) {
+            add_word(list, API_CHOICES, child->segment, child->length);
+        } else if (letter_of(child) == 'd') {
+            for (he_kind kind = HE_VERTEX; kind <= HE_MESH_KIND; kind++) {
+                const char *domain = he_kind_plural(kind);
+                add_word(list, API_CHOICES, domain, strlen(domain));
+            }
+        }
     }
-    return of_mesh;
+    return taken < path->count ? path->segments[taken] : NULL;
 }

@@ -15,8 +15,14 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
     api_in_setup();
     api_service *service = he_mem_zero(1, sizeof *service);
     if (service != NULL) {
+        service->routes = api_route_tree_new(routes);
+    }
+    if (service != NULL && service->routes == NULL) {
+        he_mem_free(service);
+        service = NULL;
+    }
+    if (service != NULL) {
         service->store = store;
-        service->routes = routes;
         service->options = *options;
         service->backfills.pool = options->pool;
         if (service->options.max_upload == 0) {
@@ -31,6 +37,9 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
 
 void api_service_free(api_service *service)
 {
+    if (service != NULL) {
+        api_route_tree_free(service->routes);
+    }
     he_mem_free(service);
 }
 

@@ -213,6 +213,33 @@ static void test_edits_without_effect_make_no_revision(void **state)
                            "\"point\":[0,0,-9],\"normal\":[1,1,1]}]}");
 }
 
+/* What lies beside elements of a sphere of triangles whose vertices from the twelfth on have six
+ * neighbours. */
+static void expect_adjacency(const char *mesh)
+{
+    static const struct {
+        const char *path;
+        int count;
+    } rows[] = {
+        {"/vertices/100/vertices", 6}, {"/vertices/100/outgoing", 6}, {"/vertices/100/incoming", 6},
+        {"/vertices/100/edges", 6},    {"/vertices/100/faces", 6},    {"/halfedges/17/loop", 3},
+        {"/halfedges/1000/loop", 3},   {"/edges/17/vertices", 2},     {"/edges/17/halfedges", 2},
+        {"/edges/17/faces", 2},        {"/faces/17/vertices", 3},     {"/faces/17/halfedges", 3},
+        {"/faces/17/edges", 3},        {"/faces/17/faces", 3},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        reply r = reply_expect(200, client_get(http, below(mesh, rows[i].path)));
+        assert_int_equal(cJSON_GetArraySize(reply_find(&r, "ids")), rows[i].count);
+        reply_free(&r);
+    }
+    static const char *const lists[] = {"/vertices?limit=3", "/edges?limit=3"};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        reply r = reply_expect(200, client_get(http, below(mesh, lists[i])));
+        assert_int_equal(cJSON_GetArraySize(reply_find(&r, "items")), 3);
+        reply_free(&r);
+    }
+}
+
 static void test_file_in_and_out(void **state)
 {
     (void)state;
@@ -288,6 +315,7 @@ static void test_every_other_route(void **state)
     reply_done(
         reply_expect(201, client_send(http, "PUT", "/v1/meshes/new", cube, strlen(cube), absent)));
 
+    expect_adjacency(mesh);
     r = reply_expect(200, client_get(http, below(mesh, "/faces?limit=100")));
     assert_int_equal(cJSON_GetArraySize(reply_find(&r, "items")), 100);
     reply_free(&r);

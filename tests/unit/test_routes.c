@@ -1,6 +1,7 @@
 /* Dispatch and the frame about every handler, with a store that holds one mesh, "m". */
 #include "api/describe/routes.h"
 #include "api/request/exchange.h"
+#include "query/adjacency.h"
 
 #include "fixture.h"
 #include "tests/writing.h"
@@ -515,6 +516,68 @@ static void rows_are_whole(void **state)
     }
 }
 
+static const api_route *row_named(const char *name)
+{
+    for (size_t i = 0; i < api_routes().count; i++) {
+        if (strcmp(api_routes().rows[i].name, name) == 0) {
+            return &api_routes().rows[i];
+        }
+    }
+    return NULL;
+}
+
+static void each_relation_of_each_kind_has_a_row(void **state)
+{
+    (void)state;
+    size_t rows = 0;
+    for (size_t i = 0; i < api_routes().count; i++) {
+        rows += api_routes().rows[i].relation != NULL;
+        assert_null(strstr(api_routes().rows[i].path, "{kind}"));
+    }
+    assert_int_equal(rows, he_relation_count());
+    for (size_t i = 0; i < he_relation_count(); i++) {
+        const he_relation *relation = he_relation_at(i);
+        char name[64], path[100];
+        snprintf(name, sizeof name, "%s_%s", he_kind_name(relation->of), relation->name);
+        snprintf(path, sizeof path, "/v1/meshes/{mesh}/%s/{id}/%s", he_kind_plural(relation->of),
+                 relation->name);
+        const api_route *row = row_named(name);
+        assert_non_null(row);
+        assert_string_equal(row->path, path);
+        assert_string_equal(row->response, name);
+        assert_string_equal(row->relation, relation->name);
+        assert_int_equal(row->kind, relation->of);
+    }
+}
+
+static void what_is_not_there_is_refused_with_what_is(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *detail;
+    } paths[] = {
+        {"GET /v1/meshes/m/vertices/0/loop",
+         "\"loop\" is none of vertices, outgoing, incoming, edges, faces"},
+        {"POST /v1/meshes/m/edges/0/edges", "\"edges\" is none of vertices, halfedges, faces"},
+        {"GET /v1/meshes/m/attributes/corners/a",
+         "\"corners\" is none of vertices, halfedges, edges, faces, mesh"},
+        {"GET /v1/mesh", "\"mesh\" is none of meshes, jobs, operations, openapi.json"},
+        {"GET /v1", "the path goes on with one of meshes, jobs, operations, openapi.json"},
+        {"GET /v1/meshes/m/vertices/0/edges/1",
+         "there is nothing at \"/v1/meshes/m/vertices/0/edges/1\""},
+    };
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        header_list headers;
+        const sent request = {paths[i].line, NULL, NULL};
+        api_exchange *x = send_line(&request, &headers);
+        assert_non_null(x);
+        assert_int_equal(api_answer_of(x)->status, 404);
+        assert_int_equal(x->problem.code, API_NO_SUCH_ROUTE);
+        assert_string_equal(x->problem.detail, paths[i].detail);
+        api_free(x);
+    }
+}
+
 /* The answer is whole whatever allocation fails, or there is no exchange at all. */
 static void every_failed_allocation_is_answered(void **state)
 {
@@ -563,6 +626,8 @@ int main(void)
         cmocka_unit_test(a_large_document_is_read_off_the_worker),
         cmocka_unit_test(documents_of_the_tables_are_json),
         cmocka_unit_test(rows_are_whole),
+        cmocka_unit_test(each_relation_of_each_kind_has_a_row),
+        cmocka_unit_test(what_is_not_there_is_refused_with_what_is),
         cmocka_unit_test(every_failed_allocation_is_answered),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -54,6 +54,7 @@ test('a generated TypeScript client compiles and works', async (t) => {
         faces: 2,
         vertex: 4,
         ring: [0, 1, 4],
+        beside: { of: 4, faces: 4 },
         refusal: 'boundary_edge',
         element: 0,
     });

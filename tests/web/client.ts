@@ -5,13 +5,6 @@ import createClient from 'openapi-fetch';
 
 import type { components, paths } from './openapi.js';
 
-type Element = components['schemas']['element'];
-type Halfedge = components['schemas']['halfedge'];
-
-function isHalfedge(element: Element): element is Halfedge {
-    return 'twin' in element;
-}
-
 type Job = components['schemas']['job'];
 
 // 202, where an answer takes too long to wait for.
@@ -54,19 +47,29 @@ export async function tour(baseUrl: string) {
         throw new Error(edited.error?.detail);
     }
     const [vertex] = edited.data.created.vertices;
+    if (vertex === undefined) {
+        throw new Error('the edge has no new vertex');
+    }
 
     const ring: number[] = [];
     let id = 0;
     do {
-        const answer = await client.GET('/v1/meshes/{mesh}/{kind}/{id}', {
-            params: { path: { ...mesh, kind: 'halfedges', id } },
+        const answer = await client.GET('/v1/meshes/{mesh}/halfedges/{id}', {
+            params: { path: { ...mesh, id } },
         });
-        if (answer.data === undefined || !isHalfedge(answer.data)) {
-            throw new Error(answer.error?.detail ?? 'not a half-edge');
+        if (answer.data === undefined) {
+            throw new Error(answer.error?.detail);
         }
         ring.push(answer.data.origin);
         id = answer.data.next;
     } while (id !== 0);
+
+    const beside = await client.GET('/v1/meshes/{mesh}/vertices/{id}/faces', {
+        params: { path: { ...mesh, id: vertex } },
+    });
+    if (beside.data === undefined) {
+        throw new Error(beside.error?.detail);
+    }
 
     const refused = await client.POST('/v1/meshes/{mesh}/edits', {
         params: { path: mesh },
@@ -76,6 +79,7 @@ export async function tour(baseUrl: string) {
         faces: made.data.counts.faces,
         vertex,
         ring,
+        beside: { of: beside.data.of.vertex, faces: beside.data.ids.length },
         refusal: refused.error?.code,
         element: refused.error?.element?.id,
     };

@@ -252,7 +252,7 @@ test('an operation that nothing reached fails by its name', async (t) => {
     assert.equal(status, 1);
     assert.match(text, /^FAILED POST \/v1\/meshes\/\{mesh\}\/undo: no exchange reached it$/m);
     assert.doesNotMatch(text, /^FAILED GET \/v1\/meshes\/\{mesh\}[: ]/m);
-    assert.match(text, /^FAILED GET \/v1\/meshes\/\{mesh\}\/\{kind\}\/\{id\} 200$/m);
+    assert.match(text, /^FAILED GET \/v1\/meshes\/\{mesh\}\/halfedges\/\{id\} 200$/m);
     const [, passed, failed] = /^(\d+) passed, (\d+) failed$/m.exec(text);
     assert.equal(passed, '2');
     assert.equal(Number(failed), contract.operations.length - 3 + 1);
