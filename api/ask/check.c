@@ -191,9 +191,6 @@ static void write_report(api_asker *a, const report *r)
 
 static void answer(api_exchange *x, api_asker *a)
 {
-    if (api_not_modified(x, "check")) {
-        return;
-    }
     report *r = he_mem_zero(1, sizeof *r);
     if (r == NULL) {
         api_fail_memory(x);
@@ -208,23 +205,16 @@ static void answer(api_exchange *x, api_asker *a)
     he_mem_free(r);
 }
 
-static void check(api_exchange *x)
+bool api_check_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
-    api_asker_run(x, check, answer);
+    double rate =
+        api_param_flag(x, "self_intersections") ? API_MEET_PER_SECOND : API_CHECK_PER_SECOND;
+    out->elements = api_elements_of(mesh);
+    out->seconds = (double)out->elements / rate;
+    return true;
 }
 
 void api_check_get(api_exchange *x)
 {
-    if (api_not_modified_yet(x, "check")) {
-        return;
-    }
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    uint64_t elements = api_elements_of(mesh);
-    api_read_end(x);
-    double rate =
-        api_param_flag(x, "self_intersections") ? API_MEET_PER_SECOND : API_CHECK_PER_SECOND;
-    api_run_long(x, check, elements > API_COSTLY_ELEMENTS, (double)elements / rate);
+    api_asker_run(x, answer);
 }

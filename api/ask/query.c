@@ -180,5 +180,5 @@ static void answer(api_exchange *x, api_asker *a)
 
 void api_query_post(api_exchange *x)
 {
-    api_asker_run(x, api_query_post, answer);
+    api_asker_run(x, answer);
 }

@@ -26,15 +26,10 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
-                   void (*answer)(api_exchange *x, api_asker *a))
+void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a))
 {
-    api_view view;
-    if (!api_view_begin(x, &view)) {
-        return;
-    }
     api_asker a = {.x = x,
-                   .mesh = view.mesh,
+                   .mesh = x->content,
                    .revision = x->info.revision,
                    .out = &x->out,
                    .arena = &x->arena,
@@ -43,15 +38,11 @@ void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
                    .on_worker = x->phase == API_PHASE_BODY};
     a.budget.left = allowance(&a);
     answer(x, &a);
-    api_view_end(x, &view);
     he_ids_clear(&a.first);
     he_ids_clear(&a.second);
     api_tree_release(a.tree);
     if (a.spent) {
-        api_text_empty(&x->text);
-        api_out_init(&x->out, &x->text);
-        x->out.watch = &x->watch;
-        x->deferred = handler;
+        api_begin_elsewhere(x);
     }
 }
 

@@ -23,7 +23,7 @@
 #ifndef HE_API_ASK_QUESTION_H
 #define HE_API_ASK_QUESTION_H
 
-#include "api/request/view.h"
+#include "api/request/mesh_access.h"
 #include "base/budget.h"
 #include "query/adjacency.h"
 
@@ -45,9 +45,8 @@ typedef struct api_asker {
 } api_asker;
 
 /* Call `answer` with the mesh at hand; it writes onto x->out and answers, or leaves a problem or
- * `spent`. `handler` is the route's own: it is called again on the job pool. */
-void api_asker_run(api_exchange *x, void (*handler)(api_exchange *x),
-                   void (*answer)(api_exchange *x, api_asker *a));
+ * `spent`: then the request begins anew on the job pool. */
+void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
 
 /* Answer a question of any kind, or a walk only. False with nothing written and the problem filled,
  * or with a->spent. */

@@ -377,5 +377,5 @@ static void answer(api_exchange *x, api_asker *a)
 
 void api_traverse_post(api_exchange *x)
 {
-    api_asker_run(x, api_traverse_post, answer);
+    api_asker_run(x, answer);
 }

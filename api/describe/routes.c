@@ -1,7 +1,9 @@
 #include "api/describe/routes.h"
 
 #include "api/describe/parameters.h"
+#include "api/document/summary.h"
 #include "api/request/handlers.h"
+#include "api/request/mesh_access.h"
 
 /* --- media types --- */
 
@@ -48,7 +50,8 @@ static const api_told_header warnings = {"Export-Warnings", "What the format cou
 #define ELEMENTS(of, one, many, words)                                                            \
     {                                                                                             \
         .method = "GET", .path = "/v1/meshes/{mesh}/" many, .name = many "_list", .kind = (of),   \
-        .run = api_elements_list, .flags = API_EXPENSIVE | API_LONG, .produces = lines_too,       \
+        .run = api_elements_list, .reads = API_READS_LOCKED, .cost = api_elements_cost,           \
+        .flags = API_EXPENSIVE | API_LONG, .produces = lines_too,                                 \
         .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},     \
         .headers = {&next_page}, .statuses = {200, 202, 304, 410}, .response = one "_page",       \
         .line = (one), .summary = "List the " words,                                              \
@@ -60,7 +63,7 @@ static const api_told_header warnings = {"Export-Warnings", "What the format cou
 #define ELEMENT(of, one, many, text)                                                             \
     {                                                                                            \
         .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}", .name = one "_get",          \
-        .kind = (of), .run = api_element_get, .produces = json,                                  \
+        .kind = (of), .run = api_element_get, .reads = API_READS_LOCKED, .produces = json,       \
         .parameters = {&api_parameter_revision}, .statuses = {200, 304, 410}, .response = (one), \
         .summary = "One " one " with all its links",                                             \
         .doc = text " A deleted one is 410, one that never was is 404."                          \
@@ -69,8 +72,8 @@ static const api_told_header warnings = {"Export-Warnings", "What the format cou
 #define ADJACENCY(of, one, many, what, title, text)                                              \
     {                                                                                            \
         .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}/" what, .name = one "_" what,  \
-        .kind = (of), .relation = (what), .run = api_relation_get, .produces = json,             \
-        .parameters = {&api_parameter_revision, &api_parameter_turning},                         \
+        .kind = (of), .relation = (what), .run = api_relation_get, .reads = API_READS_LOCKED,    \
+        .produces = json, .parameters = {&api_parameter_revision, &api_parameter_turning},       \
         .statuses = {200, 304, 410}, .response = one "_" what, .summary = (title), .doc = (text) \
     }
 
@@ -84,6 +87,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes",
      .name = "meshes_list",
      .run = api_meshes_list,
+     .reads = API_READS_CARD,
      .produces = json,
      .parameters = {&api_parameter_limit, &api_parameter_cursor},
      .headers = {&next_page},
@@ -114,7 +118,10 @@ static const api_route routes[] = {
     {.method = "GET",
      .path = "/v1/meshes/{mesh}",
      .name = "mesh_get",
-     .run = api_mesh_get,
+     .run = api_summary_get,
+     .reads = API_READS_VIEW,
+     .cost = api_summary_cost,
+     .tag = "summary",
      .flags = API_EXPENSIVE | API_LONG,
      .produces = json,
      .parameters = {&api_parameter_revision},
@@ -158,6 +165,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}",
      .name = "mesh_delete",
      .run = api_mesh_delete,
+     .reads = API_READS_CARD,
      .flags = API_WRITES | API_INTERRUPTS,
      .produces = json,
      .statuses = {204, 412},
@@ -167,7 +175,9 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/content",
      .name = "content_get",
      .run = api_content_get,
-     .flags = API_EXPENSIVE | API_COSTLY | API_OWN_ACCEPT | API_LONG,
+     .reads = API_READS_SNAPSHOT,
+     .cost = api_content_cost,
+     .flags = API_EXPENSIVE | API_OWN_ACCEPT | API_LONG,
      .produces = mesh_out,
      .parameters = {&api_parameter_revision, &api_parameter_format, &api_parameter_encoding},
      .headers = {&warnings},
@@ -183,6 +193,8 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "geometry_get",
      .run = api_geometry_get,
+     .reads = API_READS_LOCKED,
+     .cost = api_geometry_cost,
      .flags = API_EXPENSIVE | API_LONG,
      .produces = octets,
      .parameters = {&api_parameter_drawn, &api_parameter_layout},
@@ -204,7 +216,9 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/progressive",
      .name = "progressive_get",
      .run = api_progressive_get,
-     .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
+     .reads = API_READS_SNAPSHOT,
+     .cost = api_progressive_cost,
+     .flags = API_EXPENSIVE | API_LONG,
      .produces = octets,
      .parameters = {&api_parameter_revision, &api_parameter_base_faces, &api_parameter_most_error,
                     &api_parameter_boundary_weight, &api_parameter_most_splits},
@@ -226,7 +240,9 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/copy",
      .name = "mesh_copy",
      .run = api_mesh_copy,
-     .flags = API_WRITES | API_COSTLY | API_LONG | API_KEYED_NEW,
+     .reads = API_READS_SNAPSHOT,
+     .cost = api_mesh_copy_cost,
+     .flags = API_WRITES | API_LONG | API_KEYED_NEW,
      .body_kind = API_BODY_OPTION,
      .consumes = json,
      .produces = json,
@@ -284,6 +300,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes",
      .name = "attributes_list",
      .run = api_attributes_list,
+     .reads = API_READS_LOCKED,
      .produces = json,
      .parameters = {&api_parameter_revision},
      .statuses = {200, 304, 410},
@@ -294,7 +311,9 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "attribute_get",
      .run = api_attribute_get,
-     .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
+     .reads = API_READS_LOCKED,
+     .cost = api_attribute_cost,
+     .flags = API_EXPENSIVE | API_LONG,
      .produces = octets_too,
      .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor,
                     &api_parameter_ids},
@@ -355,6 +374,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/query",
      .name = "query_post",
      .run = api_query_post,
+     .reads = API_READS_VIEW,
      .flags = API_LONG,
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
@@ -373,6 +393,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/traverse",
      .name = "traverse_post",
      .run = api_traverse_post,
+     .reads = API_READS_VIEW,
      .flags = API_LONG,
      .body_kind = API_BODY_CONTROL,
      .consumes = json,
@@ -387,7 +408,10 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/boundaries",
      .name = "boundaries_get",
      .run = api_boundaries_get,
-     .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
+     .reads = API_READS_VIEW,
+     .cost = api_cost_of_mesh,
+     .tag = "boundaries",
+     .flags = API_EXPENSIVE | API_LONG,
      .produces = json,
      .parameters = {&api_parameter_revision},
      .statuses = {200, 202, 304, 410},
@@ -398,7 +422,10 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/components",
      .name = "components_get",
      .run = api_components_get,
-     .flags = API_EXPENSIVE | API_COSTLY | API_LONG,
+     .reads = API_READS_VIEW,
+     .cost = api_cost_of_mesh,
+     .tag = "components",
+     .flags = API_EXPENSIVE | API_LONG,
      .produces = json,
      .parameters = {&api_parameter_revision, &api_parameter_by},
      .statuses = {200, 202, 304, 410},
@@ -409,6 +436,9 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/check",
      .name = "check_get",
      .run = api_check_get,
+     .reads = API_READS_VIEW,
+     .cost = api_check_cost,
+     .tag = "check",
      .flags = API_EXPENSIVE | API_LONG,
      .produces = json,
      .parameters = {&api_parameter_revision, &api_parameter_meets, &api_parameter_merge,
@@ -443,6 +473,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/edits",
      .name = "edits_list",
      .run = api_edits_list,
+     .reads = API_READS_LOCKED,
      .produces = json,
      .parameters = {&api_parameter_limit, &api_parameter_cursor, &api_parameter_since},
      .headers = {&next_page},
@@ -489,6 +520,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/events",
      .name = "events_get",
      .run = api_events_get,
+     .reads = API_READS_CARD,
      .produces = event_stream,
      .parameters = {&api_parameter_last_seen},
      .statuses = {200},

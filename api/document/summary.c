@@ -1,5 +1,7 @@
 #include "api/document/summary.h"
 
+#include "api/request/mesh_access.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -159,55 +161,42 @@ void api_answer_created(api_exchange *x, const api_summary *summary, void (*extr
     api_answer_stored(x, 201, summary, extra);
 }
 
-/* The summary of a large mesh, whose lock is not held meanwhile. */
-static void answer_from_snapshot(api_exchange *x)
+/* A summary that is kept is left in x->state, and nothing more is read. */
+bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
-    const he_mesh *mesh;
-    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
-    if (snapshot == NULL) {
-        return;
+    api_summary *kept = api_arena_array(&x->arena, 1, sizeof *kept);
+    if (kept == NULL) {
+        return api_fail_memory(x);
     }
-    api_summary summary;
-    bool found = api_summary_find(x, mesh, &summary);
-    st_snapshot_release(snapshot);
-    if (found) {
-        api_answer_stored(x, 200, &summary, NULL);
-    }
+    bool cached = x->snapshot == NULL && st_cache_get(x->mesh, kept, sizeof *kept);
+    x->state = cached ? kept : NULL;
+    x->reading.reads = cached ? API_READS_LOCKED : API_READS_VIEW;
+    out->elements = cached ? 0 : api_elements_of(mesh);
+    return true;
 }
 
-/* The answer to a write is never "not modified". */
-static bool is_known(api_exchange *x)
+void api_summary_get(api_exchange *x)
 {
-    if (!(x->route->flags & API_WRITES)) {
-        return api_not_modified(x, "summary");
+    api_summary found;
+    const api_summary *summary = x->state;
+    if (summary == NULL) {
+        if (!api_summary_find(x, x->content, &found)) {
+            return;
+        }
+        summary = &found;
+        if (x->snapshot == NULL) {
+            st_cache_put(x->mesh, summary, sizeof *summary);
+        } else {
+            keep(x, summary);
+        }
     }
     api_answer_etag(x, "summary");
-    return false;
+    write_answer(x, summary, 200, NULL);
 }
 
 void api_answer_summary(api_exchange *x)
 {
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    if (is_known(x)) {
-        api_read_end(x);
-        return;
-    }
-    api_summary summary;
-    bool past = x->past != NULL;
-    bool cached = !past && st_cache_get(x->mesh, &summary, sizeof summary);
-    if (!cached && api_is_large(x, mesh)) {
-        api_read_end(x);
-        api_defer(x, answer_from_snapshot);
-        return;
-    }
-    if (cached || api_summary_find(x, mesh, &summary)) {
-        if (!cached && !past) {
-            st_cache_put(x->mesh, &summary, sizeof summary);
-        }
-        write_answer(x, &summary, 200, NULL);
-    }
-    api_read_end(x);
+    static const api_reading reading = {
+        .reads = API_READS_VIEW, .cost = api_summary_cost, .run = api_summary_get};
+    api_read_as(x, &reading);
 }

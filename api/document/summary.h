@@ -1,7 +1,7 @@
 /* summary.h - the summary of a mesh: what it costs to know, and how it is written.
  *
  * Counting components and loops and measuring area and volume cost the mesh. They are computed once
- * a revision and kept with it (api_store.cache_get and cache_put). */
+ * a revision and kept with it (st_cache_get and st_cache_put). */
 #ifndef HE_API_DOCUMENT_SUMMARY_H
 #define HE_API_DOCUMENT_SUMMARY_H
 
@@ -31,8 +31,11 @@ void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary
 /* id, name, revision and the counts that cost nothing. */
 void api_write_brief(api_out *out, const st_mesh_info *info, const he_mesh *mesh);
 
-/* Answer 200 with the summary of x->mesh, from the cache where it has it. A large mesh is summed up
- * on the job pool from a snapshot. */
+/* GET of a mesh: 200 with the summary of the mesh at hand, from the cache where it has it, and what
+ * that costs. */
+void api_summary_get(api_exchange *x);
+bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
+/* The handler of a write goes on to that. */
 void api_answer_summary(api_exchange *x);
 /* Answer `status` with the summary of what x->info names, found before it was stored: no lock is
  * held for it. `extra` (may be NULL) writes more members before the object ends. */

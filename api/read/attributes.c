@@ -3,16 +3,14 @@
 
 #include "api/document/attribute_path.h"
 #include "api/json/attribute_value.h"
+#include "api/request/mesh_access.h"
 
 #include <stdio.h>
 #include <string.h>
 
 void api_attributes_list(api_exchange *x)
 {
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
+    const he_mesh *mesh = x->content;
     if (!api_not_modified(x, "attributes")) {
         api_out *out = &x->out;
         api_out_object_begin(out);
@@ -32,7 +30,6 @@ void api_attributes_list(api_exchange *x)
         api_out_object_end(out);
         api_answer_json(x, 200);
     }
-    api_read_end(x);
 }
 
 const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
@@ -197,17 +194,13 @@ static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *c
 /* --- as octets --- */
 
 typedef struct rows {
-    st_store *store;
-    st_snapshot *snapshot;
     const he_column *column;
     uint64_t next, end; /* bytes */
 } rows;
 
 static void free_rows(void *stream)
 {
-    rows *r = stream;
-    st_snapshot_release(r->snapshot);
-    he_mem_free(r);
+    he_mem_free(stream);
 }
 
 /* Stored rows as they are; those beyond are the default. */
@@ -231,57 +224,50 @@ static int64_t read_rows(void *stream, char *buffer, size_t size)
 
 static void answer_octets(api_exchange *x)
 {
-    const he_mesh *mesh;
-    for (size_t i = 0; i < x->query.count; i++) {
-        if (strcmp(x->query.pairs[i].name, "revision") != 0) {
-            api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: octets are all there is",
-                     x->query.pairs[i].name);
-            return;
-        }
-    }
-    mesh = api_read_begin(x);
-    if (mesh == NULL) {
+    if (api_attribute_find(x, x->content) == NULL || api_not_modified(x, "octets") ||
+        !api_keep_mesh(x)) {
         return;
     }
-    bool done = api_attribute_find(x, mesh) == NULL || api_not_modified(x, "octets");
-    api_read_end(x);
-    if (done) {
+    const he_column *column = api_attribute_find(x, x->content);
+    rows *r = he_mem_zero(1, sizeof *r);
+    if (r == NULL) {
+        api_fail_memory(x);
         return;
     }
-    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
-    if (snapshot == NULL) {
-        return;
-    }
-    const he_column *column = api_attribute_find(x, mesh);
-    rows *r = NULL;
-    if (column == NULL || api_not_modified(x, "octets") ||
-        (r = he_mem_zero(1, sizeof *r)) == NULL) {
-        st_snapshot_release(snapshot);
-        if (column != NULL && !x->answered) {
-            api_fail_memory(x);
-        }
-        return;
-    }
-    *r = (rows){.store = x->store, .snapshot = snapshot, .column = column};
-    r->end = (uint64_t)he_mesh_issued(mesh, x->kind) * column->row_bytes;
+    *r = (rows){.column = column};
+    r->end = (uint64_t)he_mesh_issued(x->content, x->kind) * column->row_bytes;
     api_answer_stream(x, 200, "application/octet-stream", (int64_t)r->end, read_rows, r, free_rows);
+}
+
+/* --- which --- */
+
+static bool wants_octets(const api_exchange *x)
+{
+    return strcmp(x->media_out, "application/octet-stream") == 0;
+}
+
+bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
+{
+    for (size_t i = 0; i < x->query.count && wants_octets(x); i++) {
+        if (strcmp(x->query.pairs[i].name, "revision") != 0) {
+            return api_fail(x, API_BAD_PARAMETER,
+                            "\"%s\" belongs to pages: octets are all there is",
+                            x->query.pairs[i].name);
+        }
+    }
+    return api_cost_of_mesh(x, mesh, out);
 }
 
 void api_attribute_get(api_exchange *x)
 {
-    if (strcmp(x->media_out, "application/octet-stream") == 0) {
+    if (wants_octets(x)) {
         answer_octets(x);
         return;
     }
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    const he_column *column = api_attribute_find(x, mesh);
+    const he_column *column = api_attribute_find(x, x->content);
     if (column != NULL && api_param_text(x, "ids") != NULL) {
-        answer_some(x, mesh, column);
+        answer_some(x, x->content, column);
     } else if (column != NULL) {
-        answer_page(x, mesh, column);
+        answer_page(x, x->content, column);
     }
-    api_read_end(x);
 }

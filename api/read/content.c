@@ -2,16 +2,15 @@
 #include "api/request/handlers.h"
 
 #include "api/document/document_out.h"
+#include "api/request/mesh_access.h"
 #include "format/io/format.h"
 #include "geometry/long_faces_keep.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* A snapshot with what writes it; freed with the exchange. */
+/* What writes the mesh, one of the two; freed with the exchange. */
 typedef struct content {
-    st_store *store;
-    st_snapshot *snapshot;
     he_writer *writer;
     api_document_out *document;
 } content;
@@ -21,9 +20,6 @@ static void free_content(void *stream)
     content *c = stream;
     he_writer_free(c->writer);
     api_document_out_free(c->document);
-    if (c->snapshot != NULL) {
-        st_snapshot_release(c->snapshot);
-    }
     he_mem_free(c);
 }
 
@@ -89,68 +85,63 @@ static void answer_losses(api_exchange *x, const he_notes *notes)
 
 enum { REPRESENTATION = 40 };
 
-static void name_representation(const he_format *format, size_t encoding, char out[REPRESENTATION])
+/* What is asked for. */
+typedef struct choice {
+    const he_format *format; /* NULL: the JSON document */
+    size_t encoding;
+    char representation[REPRESENTATION];
+} choice;
+
+bool api_content_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
-    snprintf(out, REPRESENTATION, "%s%s%s", format == NULL ? "json" : format->name,
-             encoding > 0 ? "_" : "", encoding > 0 ? format->encodings[encoding] : "");
+    choice *c = api_arena_array(&x->arena, 1, sizeof *c);
+    if (c == NULL) {
+        return api_fail_memory(x);
+    }
+    *c = (choice){.format = NULL};
+    if (!choose(x, &c->format) || !choose_encoding(x, c->format, &c->encoding)) {
+        return false;
+    }
+    snprintf(c->representation, sizeof c->representation, "%s%s%s",
+             c->format == NULL ? "json" : c->format->name, c->encoding > 0 ? "_" : "",
+             c->encoding > 0 ? c->format->encodings[c->encoding] : "");
+    x->state = c;
+    x->reading.tag = c->representation;
+    return api_cost_of_mesh(x, mesh, out);
 }
 
-static void answer(api_exchange *x, const he_format *format, size_t encoding, content *c,
-                   const he_mesh *mesh)
+static bool begin(api_exchange *x, const choice *chosen, content *c)
 {
-    char representation[REPRESENTATION];
-    const char *type = format == NULL ? "application/json" : format->media_types[0];
-    name_representation(format, encoding, representation);
-    if (api_not_modified(x, representation)) {
-        free_content(c);
-        return;
-    }
+    const he_format *format = chosen->format;
     he_error err = {0};
     if (format == NULL) {
-        c->document = api_document_out_new(mesh, x->info.name);
-        if (c->document == NULL) {
-            api_fail_memory(x);
-        }
-    } else if ((format->writing != NULL && format->writing->cuts &&
-                he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
-               he_writer_new(format, mesh, encoding, &c->writer, &err) != HE_OK) {
-        api_fail_core(x, &err);
+        c->document = api_document_out_new(x->content, x->info.name);
+        return c->document != NULL || api_fail_memory(x);
     }
-    if (x->problem.code != HE_OK) {
-        free_content(c);
-        return;
+    bool long_faces = format->writing != NULL && format->writing->cuts;
+    if ((long_faces && he_long_faces_keep(x->content, &x->watch, &err) != HE_OK) ||
+        he_writer_new(format, x->content, chosen->encoding, &c->writer, &err) != HE_OK) {
+        return api_fail_core(x, &err);
     }
-    if (format != NULL) {
-        answer_losses(x, he_writer_notes(c->writer));
-    }
-    api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s.%s\"", x->info.id,
-                             format == NULL ? "json" : format->extensions[0]);
-    api_answer_stream(x, 200, type, -1, read_content, c, free_content);
+    answer_losses(x, he_writer_notes(c->writer));
+    return true;
 }
 
 void api_content_get(api_exchange *x)
 {
-    const he_format *format = NULL;
-    const he_mesh *mesh;
-    size_t encoding;
-    if (!choose(x, &format) || !choose_encoding(x, format, &encoding)) {
-        return;
-    }
-    char representation[REPRESENTATION];
-    name_representation(format, encoding, representation);
-    if (api_not_modified_yet(x, representation)) {
-        return;
-    }
+    const choice *chosen = x->state;
+    const he_format *format = chosen->format;
     content *c = he_mem_zero(1, sizeof *c);
     if (c == NULL) {
         api_fail_memory(x);
         return;
     }
-    c->store = x->store;
-    c->snapshot = api_snapshot_of(x, &mesh);
-    if (c->snapshot == NULL) {
+    if (!api_keep_mesh(x) || !begin(x, chosen, c)) {
         free_content(c);
         return;
     }
-    answer(x, format, encoding, c, mesh);
+    api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s.%s\"", x->info.id,
+                             format == NULL ? "json" : format->extensions[0]);
+    api_answer_stream(x, 200, format == NULL ? "application/json" : format->media_types[0], -1,
+                      read_content, c, free_content);
 }

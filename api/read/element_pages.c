@@ -2,6 +2,7 @@
 #include "api/request/handlers.h"
 
 #include "api/read/elements.h"
+#include "api/request/mesh_access.h"
 
 #include <string.h>
 
@@ -27,8 +28,9 @@ static void write_next(api_exchange *x, uint32_t id)
                              x->mesh_id, collection, (unsigned long long)page_limit(x), cursor);
 }
 
-static void write_page(api_exchange *x, const he_mesh *mesh, uint64_t from)
+static void write_page(api_exchange *x, uint64_t from)
 {
+    const he_mesh *mesh = x->content;
     uint64_t limit = page_limit(x);
     api_out_object_begin(&x->out);
     api_out_key_u64(&x->out, "revision", x->info.revision);
@@ -49,16 +51,11 @@ static void answer_page(api_exchange *x)
 {
     const char *cursor = api_param_text(x, "cursor");
     uint64_t from = 0;
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
     bool good = cursor == NULL ||
                 api_cursor_read(cursor, he_kind_plural(x->kind), &x->info, &from, &x->problem);
     if (good && !api_not_modified(x, "page")) {
-        write_page(x, mesh, from);
+        write_page(x, from);
     }
-    api_read_end(x);
 }
 
 /* --- all of it, a line each --- */
@@ -67,8 +64,6 @@ static void answer_page(api_exchange *x)
 enum { LINES_BUFFER = 64 * 1024 };
 
 typedef struct lines {
-    st_store *store;
-    st_snapshot *snapshot;
     const he_mesh *mesh;
     he_kind kind;
     uint64_t next;  /* id to look at */
@@ -81,7 +76,6 @@ typedef struct lines {
 static void free_lines(void *stream)
 {
     lines *l = stream;
-    st_snapshot_release(l->snapshot);
     api_text_clear(&l->text);
     he_mem_free(l);
 }
@@ -134,48 +128,46 @@ static int64_t read_lines(void *stream, char *buffer, size_t size)
 
 static void answer_lines(api_exchange *x)
 {
-    const he_mesh *mesh;
-    if (api_not_modified_yet(x, "lines")) {
+    if (api_not_modified(x, "lines") || !api_keep_mesh(x)) {
         return;
     }
-    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
-    if (snapshot == NULL) {
+    lines *l = he_mem_zero(1, sizeof *l);
+    if (l == NULL) {
+        api_fail_memory(x);
         return;
     }
-    lines *l = NULL;
-    if (api_not_modified(x, "lines") || (l = he_mem_zero(1, sizeof *l)) == NULL) {
-        st_snapshot_release(snapshot);
-        if (!x->answered) {
-            api_fail_memory(x);
-        }
-        return;
-    }
-    *l = (lines){.store = x->store, .snapshot = snapshot, .mesh = mesh, .kind = x->kind};
+    *l = (lines){.mesh = x->content, .kind = x->kind};
     api_answer_stream(x, 200, "application/x-ndjson", -1, read_lines, l, free_lines);
+}
+
+/* --- which --- */
+
+static bool wants_lines(const api_exchange *x)
+{
+    return strcmp(x->media_out, "application/x-ndjson") == 0;
+}
+
+/* Lines copy the mesh. Writing an element costs about as much as copying twenty. */
+bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
+{
+    const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";
+    uint64_t count = he_mesh_count(mesh, x->kind);
+    if (!wants_lines(x)) {
+        out->elements = 20 * (page_limit(x) < count ? page_limit(x) : count);
+        return true;
+    }
+    out->elements =
+        (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
+    return api_param_text(x, of_pages) == NULL ||
+           api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: lines are all there is",
+                    of_pages);
 }
 
 void api_elements_list(api_exchange *x)
 {
-    bool whole = strcmp(x->media_out, "application/x-ndjson") == 0;
-    const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";
-    if (whole && api_param_text(x, of_pages) != NULL) {
-        api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: lines are all there is", of_pages);
-        return;
-    }
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    uint64_t count = he_mesh_count(mesh, x->kind);
-    uint64_t all =
-        (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
-    api_read_end(x);
-    /* Writing an element costs about as much as copying twenty. */
-    uint64_t cost = whole ? all : 20 * (page_limit(x) < count ? page_limit(x) : count);
-    void (*answer)(api_exchange *) = whole ? answer_lines : answer_page;
-    if (api_is_costly(x, cost, API_COSTLY_ELEMENTS)) {
-        api_defer(x, answer);
+    if (wants_lines(x)) {
+        answer_lines(x);
     } else {
-        answer(x);
+        answer_page(x);
     }
 }

@@ -128,41 +128,31 @@ void api_write_adjacency(api_out *out, uint64_t revision, const he_relation *rel
 
 void api_element_get(api_exchange *x)
 {
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
     he_error err = {0};
-    if (he_mesh_require(mesh, x->kind, x->id, &err) != HE_OK) {
+    if (he_mesh_require(x->content, x->kind, x->id, &err) != HE_OK) {
         api_fail_path(x, &err);
     } else if (!api_not_modified(x, "element")) {
-        api_write_element(&x->out, mesh, x->kind, x->id);
+        api_write_element(&x->out, x->content, x->kind, x->id);
         api_answer_json(x, 200);
     }
-    api_read_end(x);
 }
 
 void api_relation_get(api_exchange *x)
 {
     const char *name = x->route->relation;
     const he_relation *relation = he_relation_find(x->kind, name, strlen(name));
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
     he_ids ids = {0};
     he_error err = {0};
     unsigned flags = api_param_flag(x, "cw") ? HE_CLOCKWISE : 0;
-    if (he_mesh_require(mesh, x->kind, x->id, &err) != HE_OK) {
+    if (he_mesh_require(x->content, x->kind, x->id, &err) != HE_OK) {
         api_fail_path(x, &err);
     } else if (!api_not_modified(x, "adjacency")) {
-        if (he_relation_append(mesh, relation, x->id, flags, &ids, &err) == HE_OK) {
+        if (he_relation_append(x->content, relation, x->id, flags, &ids, &err) == HE_OK) {
             api_write_adjacency(&x->out, x->info.revision, relation, x->id, &ids);
             api_answer_json(x, 200);
         } else {
             api_fail_path(x, &err);
         }
     }
-    api_read_end(x);
     he_ids_clear(&ids);
 }

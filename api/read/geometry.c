@@ -7,20 +7,15 @@
 #include "api/request/handlers.h"
 
 #include "api/read/geometry_rows.h"
+#include "api/request/mesh_access.h"
 #include "geometry/long_faces_keep.h"
 #include "system/random.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
-/* Two who ask first at the same time both make slots, and one of them asks again; more can only
- * come of the content being replaced meanwhile. */
-enum { ATTEMPTS = 3 };
-
 typedef struct geometry {
     api_exchange *x;
-    st_store *store;
-    st_snapshot *snapshot;
     api_rows rows;
 } geometry;
 
@@ -36,9 +31,6 @@ static void free_geometry(void *stream)
 {
     geometry *g = stream;
     api_rows_clear(&g->rows);
-    if (g->snapshot != NULL) {
-        st_snapshot_release(g->snapshot);
-    }
     he_mem_free(g);
 }
 
@@ -162,19 +154,24 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
     return outcome;
 }
 
-/* Keep them, unless somebody was faster: then they are freed. */
-static bool keep(api_exchange *x, he_slots *slots)
+/* Keep new slots. Of two requests that make some at the same time the second takes those of the
+ * first, unless they are of another revision by now: then its own are not kept. */
+static geometry_step keep_or_take(geometry *g, he_slots *slots)
 {
+    api_exchange *x = g->x;
     st_derived *kept = st_derived_begin(x->mesh, ST_DERIVED_SLOTS);
-    bool first = kept->value == NULL;
-    if (first) {
+    const he_slots *first = kept->value;
+    bool fits = first != NULL && first->revision == x->info.revision;
+    geometry_step outcome = take_all(g, x->content, fits ? first : slots);
+    bool keeps = first == NULL;
+    if (keeps) {
         *kept = (st_derived){slots, free_slots};
     }
     st_derived_end(x->mesh, ST_DERIVED_SLOTS);
-    if (!first) {
+    if (!keeps) {
         he_slots_free(slots);
     }
-    return first;
+    return outcome;
 }
 
 /* --- answers --- */
@@ -188,7 +185,7 @@ static int64_t read_rows(void *stream, char *buffer, size_t size)
 static void answer_stream(api_exchange *x, geometry *g)
 {
     he_error err = {0};
-    const he_mesh *mesh = st_snapshot_content(g->snapshot, NULL);
+    const he_mesh *mesh = x->content;
     if ((g->rows.base == 0 && he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
         api_rows_draw(&g->rows, mesh, UINT64_MAX, &err) != HE_OK) {
         free_geometry(g);
@@ -225,99 +222,62 @@ static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
     return ANSWERED;
 }
 
-/* Under the read lock, which is given back. */
-static bool take_snapshot(geometry *g)
+static geometry_step make_slots(geometry *g)
 {
     api_exchange *x = g->x;
-    st_status status = st_snapshot_held(x->mesh, &g->snapshot);
-    api_read_end(x);
-    return status == ST_OK || api_fail_store(x, status);
-}
-
-/* With a snapshot: slots of its revision. False when somebody else's are kept by now. */
-static bool make_slots(geometry *g, geometry_step *outcome)
-{
-    api_exchange *x = g->x;
-    const he_mesh *mesh = st_snapshot_content(g->snapshot, NULL);
     he_error err = {0};
     he_slots *slots = NULL;
     /* A number that JSON's readers can hold. */
     uint64_t layout = st_random() >> 11 | 1;
-    if (he_slots_new(mesh, layout, x->info.revision, &slots, &err) != HE_OK) {
-        *outcome = fail(x, &err);
-        return true;
+    if (he_slots_new(x->content, layout, x->info.revision, &slots, &err) != HE_OK) {
+        return fail(x, &err);
     }
-    *outcome = take_all(g, mesh, slots);
-    return keep(x, slots);
+    return keep_or_take(g, slots);
 }
 
-/* With nothing known yet. LATER and ANSWERED leave that so; on false it is done once more. */
-static bool attempt(geometry *g, geometry_step *outcome)
+/* What few rows have changed is answered under the lock; for all else the mesh is kept. */
+static geometry_step answer_or_take(geometry *g)
 {
     api_exchange *x = g->x;
-    const he_mesh *mesh = api_read_begin(x);
-    *outcome = ANSWERED;
-    if (mesh == NULL) {
-        return true;
+    geometry_step outcome = take_kept(g, x->content);
+    if (outcome == MISSING && api_is_large(x, x->content)) {
+        outcome = LATER;
+    } else if (outcome == TAKEN && g->rows.base != 0) {
+        outcome = answer_changes(g, x->content);
+        outcome = outcome == LATER && is_working(x) ? TAKEN : outcome;
     }
-    *outcome = take_kept(g, mesh);
-    bool missing = *outcome == MISSING;
-    if (missing && api_is_large(x, mesh)) {
-        *outcome = LATER;
-    } else if (*outcome == TAKEN && g->rows.base != 0) {
-        *outcome = answer_changes(g, mesh);
-        if (*outcome == LATER && is_working(x)) {
-            *outcome = TAKEN;
-        }
+    if (outcome == LATER || outcome == ANSWERED) {
+        return outcome;
     }
-    if (*outcome == LATER || *outcome == ANSWERED) {
-        api_read_end(x);
-        return true;
+    if (!api_keep_mesh(x)) {
+        return ANSWERED;
     }
-    if (!take_snapshot(g)) {
-        *outcome = ANSWERED;
-        return true;
-    }
-    return !missing || make_slots(g, outcome);
+    return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-static geometry *geometry_new(api_exchange *x)
+bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
-    geometry *g = he_mem_zero(1, sizeof *g);
-    if (g == NULL) {
-        api_fail_memory(x);
-        return NULL;
-    }
-    g->x = x;
-    g->store = x->store;
-    return g;
+    (void)mesh;
+    (void)out; /* it depends on the slots that are kept */
+    return (api_param_text(x, "since") == NULL) == (api_param_text(x, "layout") == NULL) ||
+           api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
 }
 
 void api_geometry_get(api_exchange *x)
 {
-    if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
-        api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
+    geometry *g = he_mem_zero(1, sizeof *g);
+    if (g == NULL) {
+        api_fail_memory(x);
         return;
     }
-    geometry_step outcome = MISSING;
-    geometry *g = NULL;
-    bool done = false;
-    for (int i = 0; i < ATTEMPTS && !done; i++) {
-        if (g != NULL) {
-            free_geometry(g);
-        }
-        g = geometry_new(x);
-        if (g == NULL) {
-            return;
-        }
-        done = attempt(g, &outcome) || outcome == ANSWERED;
-    }
+    g->x = x;
+    geometry_step outcome = answer_or_take(g);
     if (outcome == TAKEN) {
         answer_stream(x, g);
         return;
     }
     free_geometry(g);
     if (outcome == LATER) {
-        api_defer(x, api_geometry_get);
+        api_begin_elsewhere(x);
     }
 }

@@ -87,11 +87,6 @@ void api_meshes_list(api_exchange *x)
     api_answer_json(x, 200);
 }
 
-void api_mesh_get(api_exchange *x)
-{
-    api_answer_summary(x);
-}
-
 static const char *const patch_members[] = {"name", NULL};
 
 /* RFC 7396: a member that is null is removed, which for a name is the empty one. */
@@ -166,33 +161,47 @@ static bool read_copy(api_exchange *x, copy_request *r)
 /* Of making the copy; what is left is its summary's. */
 static const double COPY_SHARE = 0.4;
 
-static void copy(api_exchange *x)
+bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
+{
+    copy_request *r = api_arena_array(&x->arena, 1, sizeof *r);
+    if (r == NULL) {
+        return api_fail_memory(x);
+    }
+    *r = (copy_request){NULL, NULL};
+    x->state = r;
+    out->elements = api_elements_of(mesh);
+    out->seconds = (double)out->elements / API_COPY_PER_SECOND;
+    return read_copy(x, r) && api_preconditions_hold(x, NULL);
+}
+
+/* The content with its summary, which is found before anybody can change it. */
+static bool make_copy(api_exchange *x, he_mesh **out, api_summary *summary)
+{
+    he_mesh *fresh = NULL;
+    he_error err = {0};
+    he_watch_span(&x->watch, COPY_SHARE);
+    if (he_mesh_copy_watched(x->content, &x->watch, &fresh, &err) != HE_OK) {
+        return api_fail_core(x, &err);
+    }
+    he_watch_span(&x->watch, 1);
+    if (!api_summary_find(x, fresh, summary)) {
+        he_mesh_free(fresh);
+        return false;
+    }
+    he_mesh_watch(fresh, NULL);
+    *out = fresh;
+    return true;
+}
+
+void api_mesh_copy(api_exchange *x)
 {
     const copy_request *r = x->state;
-    const he_mesh *content;
-    st_snapshot *snapshot = api_snapshot_of(x, &content);
-    if (snapshot == NULL) {
-        return;
-    }
     he_mesh *fresh = NULL;
     st_mesh *made = NULL;
     api_summary summary;
-    he_error err = {0};
-    he_watch_span(&x->watch, COPY_SHARE);
-    if (api_preconditions_hold(x, NULL) &&
-        he_mesh_copy_watched(content, &x->watch, &fresh, &err) != HE_OK) {
-        api_fail_core(x, &err);
-    }
-    st_snapshot_release(snapshot);
-    if (fresh == NULL) {
+    if (!api_preconditions_hold(x, NULL) || !make_copy(x, &fresh, &summary)) {
         return;
     }
-    he_watch_span(&x->watch, 1);
-    if (!api_summary_find(x, fresh, &summary)) {
-        he_mesh_free(fresh);
-        return;
-    }
-    he_mesh_watch(fresh, NULL);
     st_status stored = st_create(x->store, r->id, r->name != NULL ? r->name : x->info.name, fresh,
                                  x->keyed, &made);
     if (stored != ST_OK) {
@@ -203,29 +212,4 @@ static void copy(api_exchange *x)
     st_release(x->mesh);
     x->mesh = made;
     api_answer_created(x, &summary, NULL);
-}
-
-void api_mesh_copy(api_exchange *x)
-{
-    copy_request *r = api_arena_array(&x->arena, 1, sizeof *r);
-    if (r == NULL) {
-        api_fail_memory(x);
-        return;
-    }
-    *r = (copy_request){NULL, NULL};
-    x->state = r;
-    if (!read_copy(x, r)) {
-        return;
-    }
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    uint64_t elements = api_elements_of(mesh);
-    bool good = api_preconditions_hold(x, NULL);
-    api_read_end(x);
-    if (good) {
-        api_run_long(x, copy, elements > API_COSTLY_ELEMENTS,
-                     (double)elements / API_COPY_PER_SECOND);
-    }
 }

@@ -6,6 +6,7 @@
 #include "api/request/handlers.h"
 
 #include "api/read/progressive_rows.h"
+#include "api/request/mesh_access.h"
 #include "base/siphash.h"
 #include "geometry/geometry.h"
 
@@ -72,29 +73,6 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     return api_progressive_write(p, &x->watch, &err) == HE_OK || api_fail_core(x, &err);
 }
 
-static void answer(api_exchange *x)
-{
-    char representation[REPRESENTATION];
-    const he_mesh *mesh;
-    name_representation(x, representation);
-    st_snapshot *snapshot = api_snapshot_of(x, &mesh);
-    if (snapshot == NULL) {
-        return;
-    }
-    if (!api_not_modified(x, representation)) {
-        api_progressive *p = he_mem_zero(1, sizeof *p);
-        if (p == NULL) {
-            api_fail_memory(x);
-        } else if (make(x, mesh, p)) {
-            api_answer_stream(x, 200, "application/octet-stream", api_progressive_bytes(p),
-                              read_progressive, p, free_progressive);
-        } else {
-            free_progressive(p);
-        }
-    }
-    st_snapshot_release(snapshot);
-}
-
 /* What has other faces than triangles is refused without much work. */
 static bool may_be_triangles(const he_mesh *mesh)
 {
@@ -102,19 +80,29 @@ static bool may_be_triangles(const he_mesh *mesh)
     return corners == 3 * (uint64_t)he_mesh_faces(mesh);
 }
 
+bool api_progressive_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
+{
+    char *representation = api_arena_array(&x->arena, REPRESENTATION, 1);
+    if (representation == NULL) {
+        return api_fail_memory(x);
+    }
+    name_representation(x, representation);
+    x->reading.tag = representation;
+    out->elements = api_elements_of(mesh);
+    double work = may_be_triangles(mesh) ? (double)out->elements : 0;
+    out->seconds = work / API_PROGRESSIVE_PER_SECOND;
+    return true;
+}
+
 void api_progressive_get(api_exchange *x)
 {
-    char representation[REPRESENTATION];
-    name_representation(x, representation);
-    if (api_not_modified_yet(x, representation)) {
-        return;
+    api_progressive *p = he_mem_zero(1, sizeof *p);
+    if (p == NULL) {
+        api_fail_memory(x);
+    } else if (make(x, x->content, p)) {
+        api_answer_stream(x, 200, "application/octet-stream", api_progressive_bytes(p),
+                          read_progressive, p, free_progressive);
+    } else {
+        free_progressive(p);
     }
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    uint64_t elements = api_elements_of(mesh);
-    double work = may_be_triangles(mesh) ? (double)elements : 0;
-    api_read_end(x);
-    api_run_long(x, answer, elements > API_COSTLY_ELEMENTS, work / API_PROGRESSIVE_PER_SECOND);
 }

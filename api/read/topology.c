@@ -1,28 +1,19 @@
 /* The mesh as a whole: GET .../boundaries, .../components. */
 #include "api/request/handlers.h"
 
-#include "api/request/view.h"
 #include "mesh/walk.h"
 #include "query/topology.h"
 #include "query/traverse.h"
 
 /* Answer 200 with what `write` puts into an object that begins with the revision. */
-static void answer_view(api_exchange *x, const char *representation,
-                        bool (*write)(api_exchange *x, const he_mesh *mesh))
+static void answer(api_exchange *x, bool (*write)(api_exchange *x, const he_mesh *mesh))
 {
-    api_view view;
-    if (api_not_modified_yet(x, representation) || !api_view_begin(x, &view)) {
-        return;
+    api_out_object_begin(&x->out);
+    api_out_key_u64(&x->out, "revision", x->info.revision);
+    if (write(x, x->content)) {
+        api_out_object_end(&x->out);
+        api_answer_json(x, 200);
     }
-    if (!api_not_modified(x, representation)) {
-        api_out_object_begin(&x->out);
-        api_out_key_u64(&x->out, "revision", x->info.revision);
-        if (write(x, view.mesh)) {
-            api_out_object_end(&x->out);
-            api_answer_json(x, 200);
-        }
-    }
-    api_view_end(x, &view);
 }
 
 /* --- boundaries --- */
@@ -67,7 +58,7 @@ static bool write_boundaries(api_exchange *x, const he_mesh *mesh)
 
 void api_boundaries_get(api_exchange *x)
 {
-    answer_view(x, "boundaries", write_boundaries);
+    answer(x, write_boundaries);
 }
 
 /* --- components --- */
@@ -99,5 +90,5 @@ static bool write_components(api_exchange *x, const he_mesh *mesh)
 
 void api_components_get(api_exchange *x)
 {
-    answer_view(x, "components", write_components);
+    answer(x, write_components);
 }

@@ -1,7 +1,5 @@
 #include "api/request/exchange.h"
 
-#include "api/request/past.h"
-
 #include "format/text/number.h"
 
 #include <assert.h>
@@ -170,34 +168,7 @@ bool api_fail_accept(api_exchange *x)
     return false;
 }
 
-/* --- locks --- */
-
-const he_mesh *api_read_begin(api_exchange *x)
-{
-    uint64_t revision;
-    if (x->past != NULL) {
-        return st_snapshot_content(x->past, &x->info);
-    }
-    const he_mesh *mesh = st_read_begin(x->mesh, &x->info);
-    if (x->info.removed) {
-        st_read_end(x->mesh);
-        api_fail_store(x, ST_ABSENT);
-        return NULL;
-    }
-    if (api_past_wanted(x, &revision)) {
-        st_read_end(x->mesh);
-        return api_past_begin(x, revision) ? api_read_begin(x) : NULL;
-    }
-    x->has_info = true;
-    return mesh;
-}
-
-void api_read_end(api_exchange *x)
-{
-    if (x->past == NULL) {
-        st_read_end(x->mesh);
-    }
-}
+/* --- writes --- */
 
 static bool refuse_stale(api_exchange *x, const char *what)
 {
@@ -279,66 +250,6 @@ bool api_write_commit(api_exchange *x, const char *ops)
     return true;
 }
 
-/* Of the present, with x->info; NULL with the problem filled. */
-static st_snapshot *present_snapshot(api_exchange *x)
-{
-    st_snapshot *snapshot = NULL;
-    st_status status = st_snapshot_take(x->mesh, &snapshot);
-    if (status != ST_OK) {
-        api_fail_store(x, status);
-        return NULL;
-    }
-    st_snapshot_content(snapshot, &x->info);
-    if (x->info.removed) {
-        st_snapshot_release(snapshot);
-        api_fail_store(x, ST_ABSENT);
-        return NULL;
-    }
-    return snapshot;
-}
-
-/* A reader of the present looks whether it is the present it is asked about, before it copies. */
-static bool is_past(api_exchange *x)
-{
-    if (x->past == NULL && api_param_text(x, "revision") == NULL) {
-        return false;
-    }
-    if (api_read_begin(x) != NULL) {
-        api_read_end(x);
-    }
-    return x->past != NULL;
-}
-
-st_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content)
-{
-    st_snapshot *snapshot = NULL;
-    uint64_t revision;
-    if (!is_past(x)) {
-        if (x->problem.code != HE_OK || x->deferred != NULL) {
-            return NULL;
-        }
-        snapshot = present_snapshot(x);
-        if (snapshot == NULL) {
-            return NULL;
-        }
-        /* It may have moved on in between. */
-        if (api_past_wanted(x, &revision)) {
-            st_snapshot_release(snapshot);
-            snapshot = NULL;
-            if (!api_past_begin(x, revision)) {
-                return NULL;
-            }
-        }
-    }
-    if (snapshot == NULL) {
-        snapshot = x->past;
-        x->past = NULL;
-    }
-    x->has_info = true;
-    *content = st_snapshot_content(snapshot, &x->info);
-    return snapshot;
-}
-
 bool api_precondition_absent(api_exchange *x)
 {
     return api_header_of(x, "If-Match") == NULL ||
@@ -362,7 +273,7 @@ bool api_can_be_job(const api_exchange *x)
            x->phase != API_PHASE_JOB;
 }
 
-static bool wants_job(const api_exchange *x, double seconds)
+bool api_wants_job(const api_exchange *x, double seconds)
 {
     if (!api_can_be_job(x)) {
         return false;
@@ -373,15 +284,10 @@ static bool wants_job(const api_exchange *x, double seconds)
     return x->prefer.respond_async || seconds > API_PATIENCE;
 }
 
-bool api_prefers_job(const api_exchange *x)
-{
-    return wants_job(x, 0);
-}
-
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds)
 {
     assert(x->route->flags & API_LONG);
-    x->is_job = wants_job(x, seconds);
+    x->is_job = api_wants_job(x, seconds);
     x->seconds = seconds;
     if (x->is_job || (costly && x->phase == API_PHASE_BODY)) {
         x->deferred = handler;
@@ -536,17 +442,4 @@ bool api_not_modified(api_exchange *x, const char *representation)
     char etag[API_ETAG];
     api_etag_write(&x->info, representation, etag);
     return api_not_modified_since(x, etag);
-}
-
-bool api_not_modified_yet(api_exchange *x, const char *representation)
-{
-    if (api_header_of(x, "If-None-Match") == NULL) {
-        return false;
-    }
-    if (api_read_begin(x) == NULL) {
-        return true;
-    }
-    bool known = api_not_modified(x, representation);
-    api_read_end(x);
-    return known;
 }

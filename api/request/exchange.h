@@ -1,22 +1,21 @@
 /* exchange.h - one request as handlers see it. Internal to api/.
  *
  * By the time a row's `run` is called, service.c has found the route, decoded path and query,
- * checked Content-Type, Accept and the size of the body, parsed a control document, and taken a
- * reference to the mesh (or answered 404). A handler reads those, and either answers or fills
- * x->problem and returns: service.c then answers the problem. Answering nothing is a bug and
- * becomes 500. A problem that is filled wins over an answer, whose headers are then dropped.
+ * checked Content-Type, Accept and the size of the body, parsed a control document, and
+ * obtained the mesh as the row's `reads` says (or answered 404). A handler reads those, and either
+ * answers or fills x->problem and returns: service.c then answers the problem. Answering nothing is
+ * a bug and becomes 500. A problem that is filled wins over an answer, whose headers are then
+ * dropped.
  *
- *     void api_mesh_get(api_exchange *x)
+ *     void api_vertex_get(api_exchange *x)
  *     {
- *         const he_mesh *mesh = api_read_begin(x);
- *         if (mesh == NULL) {
- *             return;
- *         }
- *         if (!api_not_modified(x, "summary")) {
- *             write_summary(&x->out, mesh, &x->info);
+ *         he_error err = {0};
+ *         if (he_mesh_require(x->content, HE_VERTEX, x->id, &err) != HE_OK) {
+ *             api_fail_path(x, &err);
+ *         } else if (!api_not_modified(x, "element")) {
+ *             api_write_vertex(&x->out, x->content, (he_vertex){x->id});
  *             api_answer_json(x, 200);
  *         }
- *         api_read_end(x);
  *     }
  *
  * Everything in the arena, texts and state die with the exchange, after the answer was sent. */
@@ -97,7 +96,10 @@ struct api_exchange {
     bool shows_all; /* the answer may show more of the store than `info`: see api_answer's shown */
     uint64_t since; /* all records up to here were durable when the exchange began */
     st_write write; /* of the mesh; a claim outlives the handler that began it */
-    st_snapshot *past; /* the earlier revision the request is about; NULL: the present, or taken */
+    api_reading reading;    /* what the row says, of a handler's way to it */
+    const he_mesh *content; /* at hand while a handler runs that reads; NULL: none is */
+    st_snapshot *snapshot;  /* which `content` is of; NULL: it is under the shared lock */
+    bool keeps;             /* `snapshot` until the exchange is freed */
 
     /* --- the handler's own, freed by `free_state` with the exchange --- */
     void *state;
@@ -137,12 +139,7 @@ bool api_param_has_choice(const api_exchange *x, const char *name, const char *c
 /* A header of the request, NULL when absent. */
 const char *api_header_of(const api_exchange *x, const char *name);
 
-/* --- locks --- */
-/* Under the shared lock, with x->info filled; NULL (and 404) when the mesh was removed. Where the
- * request names an earlier revision (past.h) that one, and NULL without a problem when the handler
- * has to run again in api_work. */
-const he_mesh *api_read_begin(api_exchange *x);
-void api_read_end(api_exchange *x);
+/* --- writes --- */
 /* Begins x->write, with x->info filled and preconditions checked (If-Match, If-None-Match).
  * `expected` is a cursor at the body's expected_revision or NULL. On false the problem is filled
  * and no lock is held. Ended by api_write_commit or st_write_abort. */
@@ -155,11 +152,6 @@ bool api_write_claim(api_exchange *x, const api_in *expected);
 bool api_write_commit(api_exchange *x, const char *ops);
 /* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
-/* An immutable copy of the present revision, or of the one api_read_begin would give, with x->info
- * filled; 404, 410, 507 or no problem on NULL. Released by the caller through the store. Not on a
- * worker thread for large meshes: see api_defer. */
-st_snapshot *api_snapshot_of(api_exchange *x, const he_mesh **content);
-
 /* If-None-Match: * or If-Match while the mesh of a PUT is absent. */
 bool api_precondition_absent(api_exchange *x);
 
@@ -169,11 +161,10 @@ bool api_precondition_absent(api_exchange *x);
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
 /* The same for work that may take so long that it becomes a job: where the client prefers that, or
  * `seconds` are more than it will wait. Otherwise deferred if `costly`, or called at once. The
- * route has API_LONG. A read whose client prefers a job is one before its handler is called, so
- * that only those whose length can be told beforehand call this. */
+ * route has API_LONG. Reads leave that to mesh_access.h. */
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
-/* Does the client prefer a job to an answer that may take long? */
-bool api_prefers_job(const api_exchange *x);
+/* Is work that may take these seconds to be a job? */
+bool api_wants_job(const api_exchange *x, double seconds);
 /* Should work on this many elements (or bytes) leave the worker? False in api_work. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
 /* Vertices, half-edges and faces that were issued: what work on the whole mesh goes by. */
@@ -214,9 +205,6 @@ void api_answer_etag(api_exchange *x, const char *representation);
 bool api_not_modified(api_exchange *x, const char *representation);
 /* The same with a tag that is no mesh's. */
 bool api_not_modified_since(api_exchange *x, const char *etag);
-/* The same before a snapshot is taken, which a client with the present state does not need. True as
- * well where the mesh is gone. */
-bool api_not_modified_yet(api_exchange *x, const char *representation);
 
 /* --- refusals: fill x->problem; always false --- */
 bool api_fail(api_exchange *x, int code, const char *format, ...)

@@ -1,4 +1,5 @@
-/* handlers.h - what the rows of routes.c call. Each runs under the contract of exchange.h. */
+/* handlers.h - what the rows of routes.c call. Each runs under the contract of exchange.h; those
+ * whose row says what they cost have a second function that finds that (api_reading in route.h). */
 #ifndef HE_API_REQUEST_HANDLERS_H
 #define HE_API_REQUEST_HANDLERS_H
 
@@ -27,25 +28,30 @@ void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length);
 void api_meshes_create(api_exchange *x);
 
 /* One mesh. */
-void api_mesh_get(api_exchange *x);
 void api_mesh_patch(api_exchange *x);
 void api_mesh_put_begin(api_exchange *x);
 void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length);
 void api_mesh_put(api_exchange *x);
 void api_mesh_delete(api_exchange *x);
 void api_content_get(api_exchange *x);
+bool api_content_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_geometry_get(api_exchange *x);
+bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_progressive_get(api_exchange *x);
+bool api_progressive_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_mesh_copy(api_exchange *x);
+bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
 /* Its elements: x->kind, x->id, x->relation. */
 void api_elements_list(api_exchange *x);
+bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_element_get(api_exchange *x);
 void api_relation_get(api_exchange *x);
 
 /* Its attributes: x->kind, x->attribute. */
 void api_attributes_list(api_exchange *x);
 void api_attribute_get(api_exchange *x);
+bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_attribute_put_begin(api_exchange *x);
 void api_attribute_put_body(api_exchange *x, const char *bytes, size_t length);
 void api_attribute_put(api_exchange *x);
@@ -58,6 +64,7 @@ void api_traverse_post(api_exchange *x);
 void api_boundaries_get(api_exchange *x);
 void api_components_get(api_exchange *x);
 void api_check_get(api_exchange *x);
+bool api_check_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
 /* Edits and history. */
 void api_edits_post(api_exchange *x);

@@ -40,15 +40,44 @@ typedef struct api_parameter {
     const char *doc;
 } api_parameter;
 
+/* What a handler reads of the mesh that its path names: see mesh_access.h. */
+typedef enum api_reads {
+    API_READS_NONE,   /* nothing, or what it obtains itself to write it */
+    API_READS_CARD,   /* what is known of a mesh beside its content */
+    API_READS_LOCKED, /* the content, which nobody changes meanwhile: for what is short */
+    API_READS_VIEW, /* as LOCKED on a worker, as SNAPSHOT elsewhere, where writers need not wait */
+    API_READS_SNAPSHOT /* an immutable copy of the content */
+} api_reads;
+
+/* What reading takes: more than API_COSTLY_ELEMENTS leave the worker, and seconds that the client
+ * will not wait for make a job where the row has API_LONG. */
+typedef struct api_cost {
+    uint64_t elements;
+    double seconds; /* 0: not estimated */
+} api_cost;
+
+typedef struct api_reading {
+    api_reads reads;
+    /* What will be read of the mesh at hand, found before it is: NULL where that is little. False
+     * with the problem filled where it can be told already that the request is refused. It may
+     * change x->reading for this request. Called
+     * again where the work goes on. */
+    bool (*cost)(api_exchange *x, const he_mesh *mesh, api_cost *out);
+    /* The representation that is answered with (etag.h), where If-None-Match may be answered before
+     * the handler runs; NULL: the handler looks what it is asked for first. */
+    const char *tag;
+    void (*run)(api_exchange *x); /* the handler */
+} api_reading;
+
 enum {
-    API_WRITES = 1,       /* changes something; If-Match is read */
-    API_COSTLY = 2,       /* costs the mesh or the upload: large ones go to the job pool */
-    API_MAY_CREATE = 4,   /* the mesh need not exist */
-    API_OWN_ACCEPT = 8,   /* the handler reads Accept itself (?format= comes first) */
-    API_FIXED = 16,       /* not under /v1: the same whatever the version */
-    API_KEYED = 32,       /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
-    API_KEYED_NEW = 64,   /* the same of what makes a mesh: kept with the store */
-    API_LONG = 128,       /* may become a job: Prefer is read, and 202 may be the answer */
+    API_WRITES = 1,     /* changes something; If-Match is read */
+    API_COSTLY = 2,     /* a write that costs the mesh or the upload: large ones leave the worker */
+    API_MAY_CREATE = 4, /* the mesh need not exist */
+    API_OWN_ACCEPT = 8, /* the handler reads Accept itself (?format= comes first) */
+    API_FIXED = 16,     /* not under /v1: the same whatever the version */
+    API_KEYED = 32,     /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
+    API_KEYED_NEW = 64, /* the same of what makes a mesh: kept with the store */
+    API_LONG = 128,     /* may become a job: Prefer is read, and 202 may be the answer */
     API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
     API_REHEARSED = 512,  /* takes `dry_run`: an answer may be about nothing that is */
     API_STORELESS = 2048, /* answers show nothing that is stored, and wait for no journal; so do
@@ -67,13 +96,17 @@ enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_HEADERS = 3, API_ROUTE_STATUSES = 20 
 typedef struct api_route {
     const char *method;   /* GET rows answer HEAD too */
     const char *path;     /* the template */
-    const char *name;     /* operationId: mesh_get is api_mesh_get() */
+    const char *name;     /* operationId */
     he_kind kind;         /* of the elements it is about, where it is about any */
     const char *relation; /* what lies beside them; NULL: themselves */
     /* Before the body, of uploads only: choose a reader by x->media_in. NULL: nothing to do. */
     void (*begin)(api_exchange *x);
     void (*body)(api_exchange *x, const char *bytes, size_t length);
     void (*run)(api_exchange *x); /* in api_end, or in api_work */
+    api_reads reads;
+    bool (*cost)(api_exchange *x, const he_mesh *mesh,
+                 api_cost *out); /* like tag, see api_reading */
+    const char *tag;
     unsigned flags;
     api_body_kind body_kind;
     const char *const *consumes; /* media types of the body, NULL for none */

@@ -5,6 +5,7 @@
 #include "api/request/coded.h"
 #include "api/request/gather.h"
 #include "api/request/keyed.h"
+#include "api/request/mesh_access.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -432,6 +433,7 @@ static bool begin(api_exchange *x)
     if (!api_admit(x) || !api_keyed_begin(x)) {
         return false;
     }
+    x->reading = (api_reading){x->route->reads, x->route->cost, x->route->tag, x->route->run};
     x->prefer = api_prefer_read(api_header_of(x, "Prefer"));
     x->body.maximum = (size_t)api_body_cap(x);
     if (x->coding_in != API_IDENTITY) {
@@ -542,7 +544,7 @@ static void begin_anew(api_exchange *x)
     api_text_empty(&x->text);
     api_out_init(&x->out, &x->text);
     api_watch(x, NULL, NULL);
-    x->deferred = x->route->run;
+    x->deferred = api_read;
 }
 
 static api_step finish_or_go_on(api_exchange *x)
@@ -557,15 +559,12 @@ static api_step finish_or_go_on(api_exchange *x)
     return x->is_job ? API_JOB : API_WORK;
 }
 
-/* Where its client prefers a job, a read becomes one before it has begun. Writes decide that for
- * themselves: a refusal that can be told beforehand is answered at once. */
 static void run(api_exchange *x)
 {
-    x->is_job = !(x->route->flags & API_WRITES) && api_prefers_job(x);
-    if (x->is_job || is_costly(x)) {
-        x->deferred = x->route->run;
+    if (is_costly(x)) {
+        x->deferred = api_read;
     } else {
-        x->route->run(x);
+        api_read(x);
     }
 }
 
@@ -633,9 +632,7 @@ void api_free(api_exchange *x)
     api_text_clear(&x->body);
     api_text_clear(&x->text);
     end_claim(x);
-    if (x->past != NULL) {
-        st_snapshot_release(x->past);
-    }
+    st_snapshot_release(x->snapshot);
     if (x->keyed != NULL) {
         st_keyed_end(x->keyed);
     }

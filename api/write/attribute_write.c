@@ -1,6 +1,8 @@
 /* PUT, PATCH and DELETE .../attributes/{domain}/{name}: edits like any other. */
 #include "api/request/handlers.h"
 
+#include "api/request/mesh_access.h"
+
 #include "api/document/attribute_path.h"
 #include "api/event/changes.h"
 #include "api/json/attribute_value.h"

@@ -1,6 +1,8 @@
 /* POST /v1/meshes and PUT /v1/meshes/{mesh}: making and replacing the content of a mesh. */
 #include "api/request/handlers.h"
 
+#include "api/request/mesh_access.h"
+
 #include "api/document/summary.h"
 #include "api/document/upload.h"
 

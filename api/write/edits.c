@@ -1,6 +1,8 @@
 /* POST .../edits: one operation, or a list that is applied whole or not at all. */
 #include "api/request/handlers.h"
 
+#include "api/request/mesh_access.h"
+
 #include "api/event/changes.h"
 #include "api/write/decode_op.h"
 #include "api/write/edit_cost.h"

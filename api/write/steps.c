@@ -1,6 +1,8 @@
 /* Undo and redo: POST .../undo and .../redo. */
 #include "api/request/handlers.h"
 
+#include "api/request/mesh_access.h"
+
 #include "api/event/changes.h"
 
 /* A request between decoding and answer. */

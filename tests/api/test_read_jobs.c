@@ -184,7 +184,7 @@ static void a_job_without_an_answer_has_no_result(void **state)
     (void)state;
     api_bench *b = bench_of_sphere();
     char failed[PATH], cancelled[PATH];
-    begin(b, "/v1/meshes/m/geometry?since=1", failed);
+    begin(b, "/v1/meshes/m/attributes/faces/none", failed);
     begin(b, "/v1/meshes/m/geometry", cancelled);
     bench_done(bench_expect(202, bench_send(b, "DELETE", cancelled, NULL, NULL)));
     bench_run_jobs(b, 2);
