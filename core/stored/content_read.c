@@ -76,7 +76,7 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
                            he_error *err)
 {
     unsigned char kind;
-    uint64_t length, count;
+    uint64_t length, count = 0;
     uint32_t name;
     if (!he_take_bytes(c, 1, &kind) || !he_take_u64(c, &length) || length > he_left(c)) {
         return he_refuse_at(c, err, "the header ends in an attribute");
