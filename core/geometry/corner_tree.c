@@ -55,6 +55,11 @@ static keyed *sort(keyed *from, keyed *to, uint32_t count)
     return from;
 }
 
+static uint64_t key_of(const he_flat *f, uint32_t corner)
+{
+    return spread(on_curve(f->x[corner])) | spread(on_curve(f->y[corner])) << 1;
+}
+
 static void put(he_corner_tree *t, uint32_t place, uint32_t corner)
 {
     t->order[place] = corner;
@@ -63,8 +68,7 @@ static void put(he_corner_tree *t, uint32_t place, uint32_t corner)
 
 static bool fill_order(he_corner_tree *t, const uint32_t *corners)
 {
-    const he_flat *f = t->flat;
-    if (t->leaves == 1) {
+    if (t->leaves == 0) {
         for (uint32_t i = 0; i < t->count; i++) {
             put(t, i, corners[i]);
         }
@@ -75,8 +79,7 @@ static bool fill_order(he_corner_tree *t, const uint32_t *corners)
         return false;
     }
     for (uint32_t i = 0; i < t->count; i++) {
-        uint32_t c = corners[i];
-        block[i] = (keyed){spread(on_curve(f->x[c])) | spread(on_curve(f->y[c])) << 1, c};
+        block[i] = (keyed){key_of(t->flat, corners[i]), corners[i]};
     }
     const keyed *sorted = sort(block, block + t->count, t->count);
     for (uint32_t i = 0; i < t->count; i++) {
@@ -129,36 +132,40 @@ static bool same_box(const he_corner_box *a, const he_corner_box *b)
 
 void he_corner_tree_clear(he_corner_tree *tree)
 {
-    he_mem_free(tree->boxes);
-    *tree = (he_corner_tree){.boxes = NULL};
+    he_mem_free(tree->memory);
+    *tree = (he_corner_tree){.memory = NULL};
 }
 
 he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat, const uint32_t *corners,
                               uint32_t count, he_error *err)
 {
-    he_corner_tree t = {.flat = flat, .count = count, .leaves = 1};
+    he_corner_tree t = {.flat = flat, .count = count, .made = count};
     if (count == 0) {
         *out = t;
         return HE_OK;
     }
-    while (count > HE_CORNER_FEW && (uint64_t)t.leaves * HE_CORNER_LEAF < count) {
-        t.leaves *= 2;
+    if (count > HE_CORNER_FEW) {
+        t.leaves = 1;
+        while ((uint64_t)t.leaves * HE_CORNER_LEAF < count) {
+            t.leaves *= 2;
+        }
     }
     size_t boxes = 2 * (size_t)t.leaves, words = (size_t)flat->n + count;
-    t.boxes = he_mem_array(NULL, boxes + words / 8 + 1, sizeof *t.boxes);
-    if (t.boxes != NULL) {
+    t.memory = he_mem_array(NULL, boxes + words / 8 + 1, sizeof *t.boxes);
+    if (t.memory != NULL) {
+        t.boxes = t.memory;
         t.place = (uint32_t *)(t.boxes + boxes);
         t.order = t.place + flat->n;
         memset(t.place, 0xFF, flat->n * sizeof *t.place);
     }
-    if (t.boxes == NULL || !fill_order(&t, corners)) {
+    if (t.memory == NULL || !fill_order(&t, corners)) {
         he_corner_tree_clear(&t);
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %u corners of a loop", count);
     }
     for (uint32_t leaf = 0; leaf < t.leaves; leaf++) {
         t.boxes[t.leaves + leaf] = box_of_leaf(&t, leaf);
     }
-    for (uint32_t node = t.leaves - 1; node > 0; node--) {
+    for (uint32_t node = t.leaves; node-- > 1;) {
         t.boxes[node] = box_of_children(&t, node);
     }
     *out = t;
@@ -173,7 +180,7 @@ static uint32_t leaf_of(const he_corner_tree *t, uint32_t place)
 
 void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 {
-    if (t->leaves == 1) {
+    if (t->leaves == 0) {
         put(t, t->place[corner], t->order[--t->count]);
         t->place[corner] = HE_NONE;
         return;
@@ -211,23 +218,39 @@ typedef struct triangle {
     double slack; /* a point so far to the right of a side is not in the triangle */
 } triangle;
 
-static triangle triangle_of(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+static double least(double a, double b)
 {
-    triangle t = {.corner = {a, b, c}, .box = EMPTY};
+    return a < b ? a : b;
+}
+
+static double most(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* Around a triangle, with room for rounding. */
+static inline he_corner_box box_around(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+{
+    double left = least(least(f->x[a], f->x[b]), f->x[c]);
+    double right = most(most(f->x[a], f->x[b]), f->x[c]);
+    double low = least(least(f->y[a], f->y[b]), f->y[c]);
+    double high = most(most(f->y[a], f->y[b]), f->y[c]);
+    double about = ABOUT * ((right - left) + (high - low));
+    return (he_corner_box){{left - about, low - about}, {right + about, high + about}};
+}
+
+static inline triangle triangle_of(const he_flat *f, uint32_t a, uint32_t b, uint32_t c,
+                                   const he_corner_box *box)
+{
+    triangle t = {.corner = {a, b, c}, .box = *box};
     for (int i = 0; i < 3; i++) {
         double x = f->x[t.corner[i]], y = f->y[t.corner[i]];
         uint32_t to = t.corner[(i + 1) % 3];
         double dx = f->x[to] - x, dy = f->y[to] - y;
         t.sides[i] = (side){{x, y}, {dx, dy}, {dy<0, dx> 0}};
-        include(&t.box, &(he_corner_box){{x, y}, {x, y}});
     }
-    double width = t.box.max[0] - t.box.min[0], height = t.box.max[1] - t.box.min[1];
-    double about = ABOUT * (width + height);
-    t.slack = about * (width + height);
-    for (int k = 0; k < 2; k++) {
-        t.box.min[k] -= about;
-        t.box.max[k] += about;
-    }
+    double size = (box->max[0] - box->min[0]) + (box->max[1] - box->min[1]);
+    t.slack = ABOUT * size * size;
     return t;
 }
 
@@ -243,7 +266,7 @@ static double left_of(const side *s, double x, double y)
 }
 
 /* False only where the box has no point of the triangle. */
-static bool touches(const triangle *t, const he_corner_box *box)
+static inline bool touches(const triangle *t, const he_corner_box *box)
 {
     if (box->min[0] > t->box.max[0] || box->max[0] < t->box.min[0] || box->min[1] > t->box.max[1] ||
         box->max[1] < t->box.min[1]) {
@@ -261,8 +284,15 @@ static bool touches(const triangle *t, const he_corner_box *box)
     return true;
 }
 
+/* Has no branches between the comparisons: which of them fails cannot be foreseen. */
+static bool is_in_box(const he_corner_box *box, const he_flat *f, uint32_t p)
+{
+    double x = f->x[p], y = f->y[p];
+    return ((x >= box->min[0]) & (x <= box->max[0]) & (y >= box->min[1]) & (y <= box->max[1])) != 0;
+}
+
 /* A corner of the tree: is it in the triangle? */
-static bool holds(const triangle *t, const he_flat *f, uint32_t p)
+static inline bool holds(const triangle *t, const he_flat *f, uint32_t p)
 {
     double x = f->x[p], y = f->y[p];
     if (x < t->box.min[0] || x > t->box.max[0] || y < t->box.min[1] || y > t->box.max[1]) {
@@ -285,8 +315,8 @@ static bool holds(const triangle *t, const he_flat *f, uint32_t p)
     return true;
 }
 
-static uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, const triangle *t,
-                             uint64_t *steps)
+static inline uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, const triangle *t,
+                                    uint64_t *steps)
 {
     for (uint32_t i = leaf_start(tree, leaf); i < leaf_start(tree, leaf + 1); i++) {
         uint32_t c = tree->order[i];
@@ -298,20 +328,53 @@ static uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, const tr
     return HE_NONE;
 }
 
-uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
+/* Does corner a come before b along the curve? */
+static bool is_before(const he_flat *f, uint32_t a, uint32_t b)
+{
+    uint64_t of_a = key_of(f, a), of_b = key_of(f, b);
+    return of_a != of_b ? of_a < of_b : a < b;
+}
+
+/* Returns the first corner along the curve, which a tree would find, unless the list was short when
+ * it was made: then the first of the list. */
+static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps)
 {
-    if (tree->count == 0) {
-        return HE_NONE;
+    const he_flat *f = tree->flat;
+    const he_corner_box box = box_around(f, a, b, c);
+    triangle t;
+    uint32_t found = HE_NONE;
+    bool has_sides = false;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        uint32_t p = tree->order[i];
+        if (!is_in_box(&box, f, p) || p == a || p == c) {
+            continue;
+        }
+        /* A triangle without a corner in its box needs no sides. */
+        if (!has_sides) {
+            t = triangle_of(f, a, b, c, &box);
+            has_sides = true;
+        }
+        if (holds(&t, f, p) && (found == HE_NONE || is_before(f, p, found))) {
+            found = p;
+            if (tree->made <= HE_CORNER_UNSORTED) {
+                break;
+            }
+        }
     }
-    const triangle t = triangle_of(tree->flat, a, b, c);
+    *steps += 1 + tree->count / HE_CORNER_LEAF;
+    return found;
+}
+
+static uint32_t find_in_tree(const he_corner_tree *tree, const triangle *t, uint64_t *steps)
+{
     /* One node of each level waits, and two of the last. */
     uint32_t stack[34], depth = 0;
     stack[depth++] = 1;
     while (depth > 0) {
         uint32_t node = stack[--depth];
         *steps += 1;
-        if (!touches(&t, &tree->boxes[node])) {
+        if (!touches(t, &tree->boxes[node])) {
             continue;
         }
         if (node < tree->leaves) {
@@ -319,10 +382,24 @@ uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b,
             stack[depth++] = 2 * node;
             continue;
         }
-        uint32_t found = find_in_leaf(tree, node - tree->leaves, &t, steps);
+        uint32_t found = find_in_leaf(tree, node - tree->leaves, t, steps);
         if (found != HE_NONE) {
             return found;
         }
     }
     return HE_NONE;
+}
+
+uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
+                             uint64_t *steps)
+{
+    if (tree->count == 0) {
+        return HE_NONE;
+    }
+    if (tree->leaves == 0) {
+        return find_in_list(tree, a, b, c, steps);
+    }
+    const he_corner_box box = box_around(tree->flat, a, b, c);
+    const triangle t = triangle_of(tree->flat, a, b, c, &box);
+    return find_in_tree(tree, &t, steps);
 }

@@ -9,7 +9,13 @@
  *
  * Corners can be removed, never added; boxes shrink with them. Making the tree is linear, removing
  * a corner logarithmic. A search enters the boxes that the triangle touches: few in practice, all
- * of them at worst. What it entered is counted, so that the caller can limit it. */
+ * of them at worst. What it entered is counted, so that the caller can limit it.
+ *
+ * Up to HE_CORNER_FEW corners are a plain list instead, without sorting and without boxes: to look
+ * at all of them takes less time than to make and search the tree (`make bench-space` measures
+ * short polygons). A search of the list finds the first corner along the curve, which a search of
+ * the tree would find. Only where at most HE_CORNER_UNSORTED corners were given it is the first of
+ * the list. */
 #ifndef HE_GEOMETRY_CORNER_TREE_H
 #define HE_GEOMETRY_CORNER_TREE_H
 
@@ -17,7 +23,8 @@
 
 enum {
     HE_CORNER_LEAF = 6,
-    HE_CORNER_FEW = 16 /* up to so many corners are one leaf, in no order */
+    HE_CORNER_FEW = 128,    /* up to so many corners are a list, searched from end to end */
+    HE_CORNER_UNSORTED = 16 /* a list made of up to so many finds the first of the list */
 };
 
 /* Empty when the minimum is larger than the maximum. */
@@ -28,10 +35,14 @@ typedef struct he_corner_box {
 /* {0} holds no corners. */
 typedef struct he_corner_tree {
     const he_flat *flat;
-    he_corner_box *boxes; /* with the block of memory that holds the two arrays below */
+    void *memory; /* of the three arrays below */
+    he_corner_box *boxes;
     uint32_t *place; /* of each corner of the loop in `order`, HE_NONE when it is not in the tree */
-    uint32_t *order; /* the corners along the curve, HE_NONE where one was removed */
-    uint32_t count, leaves;
+    uint32_t *order; /* the corners along the curve, HE_NONE where one was removed. Of a list: in no
+                        order and without gaps */
+    uint32_t count;  /* places in `order` */
+    uint32_t made;   /* corners at the beginning */
+    uint32_t leaves; /* 0 for a list */
 } he_corner_tree;
 
 /* Makes a tree of some corners of a loop. Borrows `flat`, copies `corners`. Returns HE_NO_MEMORY if
@@ -51,7 +62,8 @@ void he_corner_tree_remove(he_corner_tree *tree, uint32_t corner);
 /* Returns a corner in the closed triangle a, b, c, which turns left, or HE_NONE. A corner lies in
  * it unless it is to the right of a side by more than rounding (flat.h), so that corners on a
  * straight side are in the way of it. Corners at the place of a, b or c do not count. Adds the
- * boxes and corners looked at to `steps`. */
+ * boxes and corners looked at to `steps`; HE_CORNER_LEAF corners of a list, which cost about as
+ * much as a box, count as one. */
 uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps);
 

@@ -1,6 +1,7 @@
 /* Long polygons, whatever their shape: valid triangles, none turned over, in bounded work. */
 #include "unit/fixture.h"
 
+#include "geometry/corner_tree.h"
 #include "geometry/ears.h"
 #include "geometry/long_faces_keep.h"
 #include "geometry/orient.h"
@@ -465,12 +466,52 @@ static void keeping_fails_cleanly(void **state)
     he_replay_free(replay);
 }
 
+/* A hundred corners, alone and together with three hundred that are far from all triangles: those
+ * alone are a list. */
+static void a_list_of_corners_finds_what_a_tree_finds(void **state)
+{
+    (void)state;
+    enum { NEAR = 100, ALL = 400 };
+    double x[ALL], y[ALL];
+    uint32_t corners[ALL], found = 0;
+    uint64_t seed = seed_of_run() | 1, steps = 0;
+    he_flat f = {.n = ALL, .x = x, .y = y};
+    for (uint32_t i = 0; i < ALL; i++) {
+        corners[i] = i;
+        x[i] = (i < NEAR ? 0 : 1.5) + (double)(random_bits(&seed) % 64) / 128;
+        y[i] = (double)(random_bits(&seed) % 64) / 64;
+    }
+    he_corner_tree list, tree;
+    assert_int_equal(he_corner_tree_make(&list, &f, corners, NEAR, NULL), HE_OK);
+    assert_int_equal(he_corner_tree_make(&tree, &f, corners, ALL, NULL), HE_OK);
+    assert_int_equal(list.leaves, 0);
+    assert_true(tree.leaves > 0);
+    for (unsigned round = 0; round < 4000; round++) {
+        uint32_t a = (uint32_t)(random_bits(&seed) % NEAR);
+        uint32_t b = (uint32_t)(random_bits(&seed) % NEAR);
+        uint32_t c = (uint32_t)(random_bits(&seed) % NEAR);
+        if (he_flat_turns_left(&f, a, b, c)) {
+            uint32_t one = he_corner_tree_find(&list, a, b, c, &steps);
+            assert_int_equal(one, he_corner_tree_find(&tree, a, b, c, &steps));
+            found += one != HE_NONE;
+        }
+        if (round % 50 == 0 && he_corner_tree_has(&list, a)) {
+            he_corner_tree_remove(&list, a);
+            he_corner_tree_remove(&tree, a);
+        }
+    }
+    assert_true(found > 100);
+    he_corner_tree_clear(&list);
+    he_corner_tree_clear(&tree);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_is_covered),
         cmocka_unit_test(work_grows_as_n_log_n),
         cmocka_unit_test(random_polygons_both_ways),
+        cmocka_unit_test(a_list_of_corners_finds_what_a_tree_finds),
         cmocka_unit_test(what_meets_itself_is_not_swept),
         cmocka_unit_test(avoiding_edges_changes_nothing_where_there_are_none),
         cmocka_unit_test(each_allocation_fails_cleanly),
