@@ -1,4 +1,5 @@
-/* The figures of triangulation: polygons of 10,000 to a million corners that are hard to cut.
+/* The figures of triangulation: meshes of short polygons with many reflex corners, and polygons of
+ * 10,000 to a million corners that are hard to cut.
  *
  *     build/tests/bench/polygons [CORNERS...]                                                   */
 #include "polygons.h"
@@ -18,6 +19,79 @@ static double seconds(void)
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
+
+/* --- short polygons, one after the other as an export cuts them --- */
+
+enum { SHORT_POLYGONS = 64, SHORT_ROUNDS = 200, SHORT_MOST = 256 };
+
+/* xorshift64 (Marsaglia 2003), from 0 to 1 */
+static double random_number(uint64_t *state)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return ldexp((double)(*state >> 11), -53);
+}
+
+/* Each corner has an angle of its own, so no two sides cross. */
+static void short_star(uint32_t n, uint64_t *state, he_vec3 *out)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double angle = 6.283185307179586 * (i + 0.9 * random_number(state)) / n;
+        double radius = 0.1 + random_number(state);
+        out[i] = (he_vec3){radius * cos(angle), radius * sin(angle), 0};
+    }
+}
+
+/* Teeth of random length above a straight back. */
+static void short_comb(uint32_t n, uint64_t *state, he_vec3 *out)
+{
+    out[0] = (he_vec3){0, 0, 0};
+    out[1] = (he_vec3){n, 0, 0};
+    for (uint32_t i = 2; i < n; i++) {
+        out[i] = (he_vec3){n - i, (i % 2 == 0 ? 1 : 10) + random_number(state), 0};
+    }
+}
+
+/* Adds up the time of all rounds. The sum of the corners' numbers, each times its place, tells
+ * whether the triangles of two runs are equal. */
+static void measure_short(const char *name, uint32_t n,
+                          void (*make)(uint32_t n, uint64_t *state, he_vec3 *out))
+{
+    uint64_t state = 88172645463325252u, steps = 0;
+    uint32_t sum = 0;
+    double took = 0;
+    for (unsigned p = 0; p < SHORT_POLYGONS; p++) {
+        he_vec3 points[SHORT_MOST];
+        make(n, &state, points);
+        he_mesh *m = polygon_mesh(points, n);
+        if (m == NULL) {
+            exit(1);
+        }
+        double start = seconds();
+        for (unsigned round = 0; round < SHORT_ROUNDS; round++) {
+            he_triangulation t;
+            if (he_triangulation_make(m, he_face_halfedge(m, (he_face){0}), HE_ANY_DIAGONALS, NULL,
+                                      &t, NULL) != HE_OK) {
+                exit(1);
+            }
+            for (uint32_t i = 0; i < 3 * (n - 2) && round == 0; i++) {
+                sum += (i + 1) * (t.corners[i] + 1) * (p + 1);
+            }
+            steps += t.steps;
+            he_triangulation_clear(&t);
+        }
+        took += seconds() - start;
+        he_mesh_free(m);
+    }
+    double corners = (double)SHORT_POLYGONS * SHORT_ROUNDS * n;
+    printf("%-16s %8u corners %8.2f us %7.0f ns a corner %6.1f steps a corner, triangles %08x\n",
+           name, n, 1e6 * took / (SHORT_POLYGONS * SHORT_ROUNDS), 1e9 * took / corners,
+           (double)steps / corners, sum);
+    fflush(stdout);
+}
+
+/* --- long ones --- */
 
 static void measure(const polygon_shape *shape, uint32_t n)
 {
@@ -46,6 +120,10 @@ static void measure(const polygon_shape *shape, uint32_t n)
 int main(int argc, char **argv)
 {
     static const uint32_t sizes[] = {10000, 60000, 1000000};
+    for (uint32_t n = 8; n <= SHORT_MOST && argc == 1; n *= 2) {
+        measure_short("short star", n, short_star);
+        measure_short("short comb", n, short_comb);
+    }
     for (unsigned s = 0; s < polygon_shape_count; s++) {
         for (unsigned i = 0; i < sizeof sizes / sizeof *sizes && argc == 1; i++) {
             measure(&polygon_shapes[s], sizes[i]);
