@@ -451,7 +451,9 @@ static const api_route routes[] = {
          "of several fans, without an edge or in one place with another, edges without length, "
          "faces that have no area or are not flat, components that are small or inside out. A "
          "component is inside out when it is closed and its volume negative: one that bounds a "
-         "hollow within another is listed too, though that is as it should be. Of each the first "
+         "hollow within another is listed too, though that is as it should be, and a component "
+         "more than about 1e107 times smaller than the mesh's largest coordinate never is. Of each "
+         "the first "
          "are listed and all counted."},
 
     /* edits */

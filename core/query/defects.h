@@ -15,7 +15,9 @@
  *     inside_out_component  a component by edges without a boundary whose volume, `value`, is
  *                           negative; told likewise. One that bounds a hollow within another is as
  *                           it should be, and listed all the same: which of two is the hollow one,
- *                           only the mesh's owner knows
+ *                           only the mesh's owner knows. A component more than about 1e107 times
+ *                           smaller than the mesh's largest coordinate is not listed: its volume
+ *                           is taken for 0
  *     self_intersection     a face that meets `other` where it should not: bvh.h. This is not
  *                           looked for here
  *
