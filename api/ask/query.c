@@ -167,7 +167,7 @@ static void answer(api_exchange *x, api_asker *a)
             answer_octets(x, a, &first);
             return;
         }
-        if (api_media_choose(api_header_of(x, "Accept"), json_only) < 0) {
+        if (api_media_choose(x->request.headers[API_HEADER_ACCEPT], json_only) < 0) {
             api_fail(x, API_NOT_ACCEPTABLE, "octets answer one question about many elements");
             x->problem.supported = json_only;
             return;

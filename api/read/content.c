@@ -52,7 +52,7 @@ static bool choose(api_exchange *x, const he_format **format)
 {
     const char *name = api_param_text(x, "format");
     if (name == NULL) {
-        int offer = api_media_choose(api_header_of(x, "Accept"), x->route->produces);
+        int offer = api_media_choose(x->request.headers[API_HEADER_ACCEPT], x->route->produces);
         if (offer < 0) {
             return api_fail_accept(x);
         }

@@ -9,7 +9,7 @@
  * refusal would end an EventSource for good. */
 static bool read_since(api_exchange *x, st_since *since)
 {
-    const char *last = api_header_of(x, "Last-Event-ID");
+    const char *last = x->request.headers[API_HEADER_LAST_EVENT_ID];
     const char *text = api_param_text(x, "since");
     if (last != NULL && last[0] != '\0') {
         if (!api_since_read(last, since)) {

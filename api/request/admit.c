@@ -122,7 +122,7 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
  * it would have been worked out. */
 static bool is_of_other_site(const api_exchange *x)
 {
-    const char *site = api_header_of(x, "Sec-Fetch-Site");
+    const char *site = x->request.headers[API_HEADER_SEC_FETCH_SITE];
     return site != NULL && !x->request.has_consent && api_equal_nocase(site, "cross-site");
 }
 
@@ -217,7 +217,7 @@ bool api_refuse_size(api_exchange *x)
 
 static bool check_content_type(api_exchange *x)
 {
-    const char *type = api_header_of(x, "Content-Type");
+    const char *type = x->request.headers[API_HEADER_CONTENT_TYPE];
     for (const char *const *known = x->route->consumes; type != NULL && *known != NULL; known++) {
         if (api_media_is(type, *known)) {
             x->media_in = *known;
@@ -242,7 +242,7 @@ static bool check_body(api_exchange *x)
             x->route->body_kind == API_BODY_NONE || x->route->body_kind == API_BODY_OPTION;
         /* A form may send an empty body of a type of its own: no body is not a type of body. */
         bool typed = x->route->body_kind == API_BODY_OPTION &&
-                     api_header_of(x, "Content-Type") != NULL && !check_content_type(x);
+                     x->request.headers[API_HEADER_CONTENT_TYPE] != NULL && !check_content_type(x);
         return (optional && !typed) ||
                (!typed && api_fail(x, API_MISSING_BODY, "%s needs a body here", r->method));
     }
@@ -255,7 +255,7 @@ static bool check_body(api_exchange *x)
 
 static bool check_accept(api_exchange *x)
 {
-    const char *accept = api_header_of(x, "Accept");
+    const char *accept = x->request.headers[API_HEADER_ACCEPT];
     if (accept != NULL && accept[strspn(accept, " \t")] == '\0') {
         accept = NULL;
     }

@@ -24,6 +24,7 @@
 #ifndef HE_API_REQUEST_API_H
 #define HE_API_REQUEST_API_H
 
+#include "api/header/request_header.h"
 #include "api/job/job_table.h"
 #include "api/live.h"
 #include "base/exec.h"
@@ -42,11 +43,8 @@ typedef struct api_request {
     const char *path;       /* raw, percent-encoded, begins with '/' */
     const char *query;      /* raw, without '?', "" when absent */
     const char *request_id; /* echoed; the server made one where the client sent none */
-    /* The value of a header, NULL when absent. Names are compared without case. Valid until
-     * api_free. */
-    const char *(*header)(void *context, const char *name);
-    void *context;
-    bool has_length; /* Content-Length was given */
+    const char *headers[API_REQUEST_HEADERS]; /* values, NULL where absent */
+    bool has_length;                          /* Content-Length was given */
     uint64_t length;
     bool has_body;    /* a body will follow, of known length or chunked */
     bool has_consent; /* its Origin is one that was configured: such pages may do anything */
@@ -118,7 +116,8 @@ typedef struct api_route_table {
 api_service *api_service_new(st_store *store, api_route_table routes, const api_options *options);
 void api_service_free(api_service *service);
 
-/* NULL when memory is out. `request` is copied, but for its header callback. */
+/* NULL when memory is out. `request` is copied, but for the values of its headers: the caller keeps
+ * them until api_free, or until api_detach, which copies them for the job. */
 api_exchange *api_begin(api_service *service, const api_request *request, api_step *step);
 /* `used` may be less than `length`, with API_MORE: enough was done for once. The rest is to be
  * given again, when others that wait for the thread have had their turn. */

@@ -4,7 +4,7 @@
 
 bool api_coded_body(api_exchange *x)
 {
-    const char *coding = api_header_of(x, "Content-Encoding");
+    const char *coding = x->request.headers[API_HEADER_CONTENT_ENCODING];
     if (!api_coding_of_body(coding, &x->coding_in)) {
         api_fail(x, API_UNSUPPORTED_ENCODING, "\"%.60s\" is not taken, only one of %s and identity",
                  coding, api_codings_list);
@@ -25,7 +25,7 @@ static bool is_stream(const api_route *route)
 bool api_coded_accept(api_exchange *x)
 {
     static const char *const identity[] = {"identity", NULL};
-    const char *accept = api_header_of(x, "Accept-Encoding");
+    const char *accept = x->request.headers[API_HEADER_ACCEPT_ENCODING];
     bool plain = x->service->options.plain_answers || is_stream(x->route);
     bool good = api_coding_choose(accept, &x->codings);
     if (plain) {

@@ -92,11 +92,6 @@ bool api_param_has_choice(const api_exchange *x, const char *name, const char *c
     return value != NULL && strcmp(value, choice) == 0;
 }
 
-const char *api_header_of(const api_exchange *x, const char *name)
-{
-    return x->request.header == NULL ? NULL : x->request.header(x->request.context, name);
-}
-
 /* --- refusals --- */
 
 bool api_fail(api_exchange *x, int code, const char *format, ...)
@@ -163,7 +158,7 @@ bool api_fail_memory(api_exchange *x)
 bool api_fail_accept(api_exchange *x)
 {
     api_fail(x, API_NOT_ACCEPTABLE, "\"%.100s\" allows nothing this route answers with",
-             api_header_of(x, "Accept"));
+             x->request.headers[API_HEADER_ACCEPT]);
     x->problem.supported = x->route->produces;
     return false;
 }
@@ -181,8 +176,8 @@ static bool refuse_stale(api_exchange *x, const char *what)
 
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected)
 {
-    const char *match = api_header_of(x, "If-Match");
-    const char *none = api_header_of(x, "If-None-Match");
+    const char *match = x->request.headers[API_HEADER_IF_MATCH];
+    const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
     if (match != NULL && !api_etag_is_present(match, &x->info)) {
         return refuse_stale(x, "If-Match names no present state of the mesh");
     }
@@ -252,7 +247,7 @@ bool api_write_commit(api_exchange *x, const char *ops)
 
 bool api_precondition_absent(api_exchange *x)
 {
-    return api_header_of(x, "If-Match") == NULL ||
+    return x->request.headers[API_HEADER_IF_MATCH] == NULL ||
            api_fail(x, API_PRECONDITION, "If-Match asks for a mesh that does not exist");
 }
 
@@ -426,7 +421,7 @@ bool api_not_modified_since(api_exchange *x, const char *etag)
 {
     char coded[API_ETAG];
     api_coding coding;
-    const char *none = api_header_of(x, "If-None-Match");
+    const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
     if (none == NULL || !api_etag_listed(none, etag, &x->codings, &coding)) {
         api_answer_header(x, "ETag", etag);
         return false;

@@ -49,8 +49,6 @@ struct api_service {
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
 enum { API_LOCATION = 512 }; /* a path of this API, escaped */
-/* Headers a handler may ask for when the client's connection is out of reach. */
-enum { API_KEPT_HEADERS = 3 };
 
 struct api_exchange {
     api_service *service;
@@ -109,7 +107,6 @@ struct api_exchange {
     double seconds;       /* that it may take; 0: not estimated */
     he_watch watch;       /* of the work: threads for it, and who is told */
     api_problem given_up; /* why the watch ended it; code HE_OK: no reason was given */
-    const char *kept[API_KEPT_HEADERS];
 
     /* --- the answer --- */
     int published; /* see api_publish; 0: nothing was */
@@ -135,9 +132,6 @@ int api_param_choice(const api_exchange *x, const char *name); /* index, -1 when
 /* A bit for each choice that is named. */
 unsigned api_param_choices(const api_exchange *x, const char *name);
 bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice);
-
-/* A header of the request, NULL when absent. */
-const char *api_header_of(const api_exchange *x, const char *name);
 
 /* --- writes --- */
 /* Begins x->write, with x->info filled and preconditions checked (If-Match, If-None-Match).

@@ -10,7 +10,7 @@ static void add_text(he_siphash *hash, const char *text)
 
 bool api_keyed_begin(api_exchange *x)
 {
-    const char *key = api_header_of(x, "Idempotency-Key");
+    const char *key = x->request.headers[API_HEADER_IDEMPOTENCY_KEY];
     if (key == NULL || !(x->route->flags & (API_KEYED | API_KEYED_NEW))) {
         return true;
     }

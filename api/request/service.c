@@ -216,34 +216,21 @@ static bool copy_request(api_exchange *x, const api_request *request)
 
 /* --- detaching --- */
 
-static const char *const kept_names[API_KEPT_HEADERS] = {"If-Match", "If-None-Match", "Accept"};
-
-static const char *kept_header(void *context, const char *name)
+/* Preconditions are read again when the work is published, and Accept when it is known what there
+ * is: the connection is gone by then. False, and nothing has changed, when memory is out. */
+static bool copy_headers(api_exchange *x)
 {
-    const api_exchange *x = context;
-    for (size_t i = 0; i < API_KEPT_HEADERS; i++) {
-        if (api_equal_nocase(name, kept_names[i])) {
-            return x->kept[i];
-        }
-    }
-    return NULL;
-}
-
-/* Preconditions are asked again when the work is published, and what is accepted when it is known
- * what there is: the connection is gone by then. */
-static bool keep_headers(api_exchange *x)
-{
-    for (size_t i = 0; i < API_KEPT_HEADERS; i++) {
-        const char *value = api_header_of(x, kept_names[i]);
+    const char *copies[API_REQUEST_HEADERS] = {NULL};
+    for (size_t i = 0; i < API_REQUEST_HEADERS; i++) {
+        const char *value = x->request.headers[i];
         if (value != NULL) {
-            x->kept[i] = api_arena_copy(&x->arena, value, strlen(value));
-            if (x->kept[i] == NULL) {
+            copies[i] = api_arena_copy(&x->arena, value, strlen(value));
+            if (copies[i] == NULL) {
                 return false;
             }
         }
     }
-    x->request.header = kept_header;
-    x->request.context = x;
+    memcpy(x->request.headers, copies, sizeof copies);
     return true;
 }
 
@@ -377,11 +364,11 @@ api_exchange *api_detach(api_exchange *x)
     api_job_table *jobs = x->service->options.jobs;
     assert(x->phase == API_PHASE_JOB);
     api_exchange *answer = exchange_new(x->service, &x->request);
-    if (answer == NULL || !keep_headers(x)) {
+    if (answer == NULL || !copy_headers(x)) {
         api_free(answer);
         return NULL;
     }
-    answer->request.header = NULL;
+    memset(answer->request.headers, 0, sizeof answer->request.headers);
     answer->route = x->route;
     answer->answer.route = x->answer.route;
     answer->prefer = x->prefer;
@@ -434,7 +421,7 @@ static bool begin(api_exchange *x)
         return false;
     }
     x->reading = (api_reading){x->route->reads, x->route->cost, x->route->tag, x->route->run};
-    x->prefer = api_prefer_read(api_header_of(x, "Prefer"));
+    x->prefer = api_prefer_read(x->request.headers[API_HEADER_PREFER]);
     x->body.maximum = (size_t)api_body_cap(x);
     if (x->coding_in != API_IDENTITY) {
         x->unpack = api_unpack_new(x->coding_in, &x->service->unpacking, take_body, x, &x->problem);

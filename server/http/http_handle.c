@@ -2,6 +2,7 @@
 
 #include "api/limits.h"
 #include "server/http/http_answer.h"
+#include "server/http/http_headers.h"
 #include "server/http/http_request.h"
 #include "system/clock.h"
 
@@ -168,13 +169,6 @@ static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, cons
     return MHD_YES;
 }
 
-static const char *header_value(void *context, const char *name)
-{
-    srv_request *r = context;
-    const char *list = srv_lists_find(&r->lists, name);
-    return list != NULL ? list : MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
-}
-
 /* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
 static bool admit(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
@@ -189,27 +183,26 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
         return api_problem_set(&r->refusal, API_OVERLOADED,
                                "more than %" PRIu64 " connections are open", most);
     }
-    if (!srv_lists_join(&r->lists, head)) {
-        return api_problem_set(&r->refusal, HE_NO_MEMORY, "no memory for the request");
-    }
     return srv_admit(http->options.policy, head, framing, &r->cors, &r->refusal);
 }
 
-static void begin_exchange(srv_request *r, const srv_framing *framing)
+/* The values of headers are libmicrohttpd's, which keeps them until the request has completed, or
+ * those of r->joined. The exchange is freed, or has become a job that has copies, before that. */
+static void begin_exchange(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     api_request asked = {
         .method = r->method,
         .path = r->path,
         .query = framing->query,
         .request_id = r->request_id,
-        .header = header_value,
-        .context = r,
         .has_length = framing->has_length,
         .length = framing->length,
         .has_body = framing->chunked || framing->length > 0,
         .has_consent = r->cors != NULL,
     };
-    r->exchange = api_begin(r->http->options.service, &asked, &r->step);
+    if (srv_headers_read(head, asked.headers, &r->joined)) {
+        r->exchange = api_begin(r->http->options.service, &asked, &r->step);
+    }
     if (r->exchange == NULL) {
         srv_answer_refuse(r, HE_NO_MEMORY, "no memory for the request");
     }
@@ -264,7 +257,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
         ok = false;
     }
     if (ok) {
-        begin_exchange(r, &framing);
+        begin_exchange(r, &head, &framing);
     } else {
         r->step = API_READY;
     }

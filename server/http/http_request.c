@@ -98,7 +98,7 @@ void srv_request_end(srv_request *r)
     srv_live_end(&r->stream);
     srv_ahead_clear(&r->ahead);
     api_free(r->exchange);
-    srv_lists_clear(&r->lists);
+    he_mem_free(r->joined);
     api_text_clear(&r->text);
     he_mem_free(r);
     if (counted) {

@@ -36,7 +36,6 @@
 #include "server/http/http_admit.h"
 #include "server/http/http_ahead.h"
 #include "server/http/http_gate.h"
-#include "server/http/http_lists.h"
 #include "server/http/http_live.h"
 #include "store/durability_wait.h"
 
@@ -72,7 +71,7 @@ typedef struct srv_request {
     uint64_t announced; /* Content-Length; UINT64_MAX when chunked */
     uint64_t swallowed; /* since the answer was known */
     char request_id[SRV_REQUEST_ID + 1];
-    srv_lists lists;
+    char *joined;     /* headers whose lines were joined (http_headers.h), NULL: none were */
     const char *cors; /* the origin to be named, NULL: none */
     bool close;
 

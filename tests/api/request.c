@@ -110,15 +110,14 @@ st_store *bench_store(api_bench *b)
     return b->store;
 }
 
-static const char *find_header(void *context, const char *name)
+static void read_headers(const char *const *pairs, api_request *request)
 {
-    const char *const *pairs = context;
     for (size_t i = 0; pairs != NULL && pairs[i] != NULL; i += 2) {
-        if (strcasecmp(pairs[i], name) == 0) {
-            return pairs[i + 1];
+        api_request_header header = api_request_header_find(pairs[i], strlen(pairs[i]));
+        if (header < API_REQUEST_HEADERS && request->headers[header] == NULL) {
+            request->headers[header] = pairs[i + 1];
         }
     }
-    return NULL;
 }
 
 typedef struct signal {
@@ -215,15 +214,6 @@ static void read_all(api_bench *b, const api_answer *answer, bench_reply *r)
 bool bench_try(api_bench *b, const char *method, const char *target, const char *const *headers,
                const char *body, size_t length, bench_reply *out)
 {
-    static const char *const json[] = {"Content-Type", "application/json", NULL};
-    const char *pairs[32] = {NULL};
-    size_t count = 0;
-    for (; headers != NULL && headers[count] != NULL && count + 4 < 32; count++) {
-        pairs[count] = headers[count];
-    }
-    if (body != NULL && find_header(pairs, "content-type") == NULL) {
-        memcpy(pairs + count, json, 2 * sizeof *json);
-    }
     const char *mark = strchr(target, '?');
     size_t path_length = mark == NULL ? strlen(target) : (size_t)(mark - target);
     char *path = strndup(target, path_length);
@@ -232,11 +222,13 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
                            .path = path,
                            .query = mark == NULL ? "" : mark + 1,
                            .request_id = "test",
-                           .header = find_header,
-                           .context = pairs,
                            .has_length = body != NULL,
                            .length = length,
                            .has_body = body != NULL};
+    read_headers(headers, &request);
+    if (body != NULL && request.headers[API_HEADER_CONTENT_TYPE] == NULL) {
+        request.headers[API_HEADER_CONTENT_TYPE] = "application/json";
+    }
     bench_reply r = {.exchange = api_handle(b->service, &request, body, length)};
     free(path);
     if (r.exchange == NULL) {

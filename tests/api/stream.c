@@ -20,11 +20,6 @@ static void wake(void *context)
     pthread_mutex_unlock(&l->lock);
 }
 
-static const char *last_event_id(void *context, const char *name)
-{
-    return strcmp(name, "Last-Event-ID") == 0 ? context : NULL;
-}
-
 /* NULL where it is refused for want of memory; else the status is 200. */
 listener *stream_try(api_bench *b, const char *path, const char *query, const char *last)
 {
@@ -32,8 +27,7 @@ listener *stream_try(api_bench *b, const char *path, const char *query, const ch
                            .path = path,
                            .query = query,
                            .request_id = "test",
-                           .header = last_event_id,
-                           .context = (void *)(uintptr_t)last};
+                           .headers = {[API_HEADER_LAST_EVENT_ID] = last}};
     api_exchange *x = api_handle(bench_service(b), &request, NULL, 0);
     if (x == NULL || api_answer_of(x)->status != 200) {
         assert_true(x == NULL || api_answer_of(x)->status == 507);

@@ -227,11 +227,6 @@ static void tags_of_each_coding_are_good(void **state)
     bench_free(b);
 }
 
-static const char *accept_header(void *context, const char *name)
-{
-    return strcmp(name, "Accept-Encoding") == 0 ? context : NULL;
-}
-
 static void answers_may_always_be_plain(void **state)
 {
     (void)state;
@@ -244,13 +239,13 @@ static void answers_may_always_be_plain(void **state)
         api_service_new(bench_store(b), api_routes(), &(api_options){.plain_answers = true});
     assert_non_null(service);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        api_exchange *x = api_handle(service,
-                                     &(api_request){.method = "GET",
-                                                    .path = "/v1/meshes/m/boundaries",
-                                                    .query = "",
-                                                    .header = accept_header,
-                                                    .context = (void *)(uintptr_t)rows[i].accept},
-                                     NULL, 0);
+        api_exchange *x =
+            api_handle(service,
+                       &(api_request){.method = "GET",
+                                      .path = "/v1/meshes/m/boundaries",
+                                      .query = "",
+                                      .headers = {[API_HEADER_ACCEPT_ENCODING] = rows[i].accept}},
+                       NULL, 0);
         assert_non_null(x);
         const api_answer *answer = api_answer_of(x);
         assert_int_equal(answer->status, rows[i].status);
@@ -433,26 +428,19 @@ static void what_is_not_the_coding_is_refused(void **state)
     bench_free(b);
 }
 
-/* An OBJ file in zstd. */
-static const char *zstd_header(void *context, const char *name)
-{
-    (void)context;
-    return strcasecmp(name, "Content-Encoding") == 0 ? "zstd"
-           : strcasecmp(name, "Content-Type") == 0   ? "model/obj"
-                                                     : NULL;
-}
-
-/* Of a body that is to come: the frame has begun, and may look back over 8 MiB. */
+/* An OBJ file in zstd, whose body is to come: the frame has begun, and may look back over 8 MiB. */
 static api_exchange *begin_wide(api_bench *b, api_step *step)
 {
     static const char frame[] = {0x28,   (char)0xB5, 0x2F, (char)0xFD, 0,   13 << 3,
                                  2 << 3, 0,          0,    '#',        '\n'};
-    const api_request request = {.method = "POST",
-                                 .path = "/v1/meshes",
-                                 .query = "",
-                                 .request_id = "test",
-                                 .header = zstd_header,
-                                 .has_body = true};
+    const api_request request = {
+        .method = "POST",
+        .path = "/v1/meshes",
+        .query = "",
+        .request_id = "test",
+        .headers =
+            {[API_HEADER_CONTENT_ENCODING] = "zstd", [API_HEADER_CONTENT_TYPE] = "model/obj"},
+        .has_body = true};
     size_t used;
     api_exchange *x = api_begin(bench_service(b), &request, step);
     assert_non_null(x);

@@ -24,25 +24,19 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-static const char *prefer_async(void *context, const char *name)
-{
-    (void)context;
-    return strcmp(name, "Prefer") == 0         ? "respond-async"
-           : strcmp(name, "Content-Type") == 0 ? "application/json"
-                                               : NULL;
-}
-
 /* 202; the exchange is the caller's. */
 static api_exchange *submit(api_bench *b, const char *path, const char *body)
 {
-    api_request request = {.method = "POST",
-                           .path = path,
-                           .query = "",
-                           .request_id = "test",
-                           .header = prefer_async,
-                           .has_length = true,
-                           .length = strlen(body),
-                           .has_body = true};
+    api_request request = {
+        .method = "POST",
+        .path = path,
+        .query = "",
+        .request_id = "test",
+        .headers =
+            {[API_HEADER_CONTENT_TYPE] = "application/json", [API_HEADER_PREFER] = "respond-async"},
+        .has_length = true,
+        .length = strlen(body),
+        .has_body = true};
     api_exchange *x = api_handle(bench_service(b), &request, body, strlen(body));
     assert_int_equal(api_answer_of(x)->status, 202);
     return x;

@@ -101,11 +101,6 @@ static api_bench *bench_of_two_revisions(void)
     return b;
 }
 
-static const char *any_tag(void *context, const char *name)
-{
-    return context != NULL && strcmp(name, "If-None-Match") == 0 ? context : NULL;
-}
-
 /* The status; `*step` is what became of the request on the worker. */
 static int ask(api_service *service, const char *word, const char *query, const char *tag,
                api_step *step)
@@ -117,8 +112,7 @@ static int ask(api_service *service, const char *word, const char *query, const 
                                  .path = path,
                                  .query = query,
                                  .request_id = "r",
-                                 .header = any_tag,
-                                 .context = (void *)tag};
+                                 .headers = {[API_HEADER_IF_NONE_MATCH] = tag}};
     api_exchange *x = api_begin(service, &request, step);
     assert_non_null(x);
     *step = *step == API_MORE ? api_end(x) : *step;

@@ -425,14 +425,6 @@ typedef struct driven {
     size_t length;
 } driven;
 
-static const char *content_type(void *context, const char *name)
-{
-    const char *const *accept = context;
-    return strcmp(name, "Content-Type") == 0 ? "application/json"
-           : strcmp(name, "Accept") == 0     ? *accept
-                                             : NULL;
-}
-
 /* A worker that has no time at all. */
 static bool is_hurried;
 
@@ -449,15 +441,15 @@ static driven drive(api_bench *b, const char *method, const char *path, const ch
                     const char *body)
 {
     size_t length = body == NULL ? 0 : strlen(body);
-    api_request request = {.method = method,
-                           .path = path,
-                           .query = "",
-                           .request_id = "test",
-                           .header = content_type,
-                           .context = &accept,
-                           .has_length = body != NULL,
-                           .length = length,
-                           .has_body = body != NULL};
+    api_request request = {
+        .method = method,
+        .path = path,
+        .query = "",
+        .request_id = "test",
+        .headers = {[API_HEADER_ACCEPT] = accept, [API_HEADER_CONTENT_TYPE] = "application/json"},
+        .has_length = body != NULL,
+        .length = length,
+        .has_body = body != NULL};
     driven d = {.none = false};
     api_step step;
     api_exchange *x = api_begin(bench_service(b), &request, &step);

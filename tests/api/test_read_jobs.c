@@ -235,6 +235,26 @@ static void a_result_outlives_its_job_while_it_is_read(void **state)
     bench_free(b);
 }
 
+/* The job is begun when the memory of the request's headers is used for something else. */
+static void a_job_has_copies_of_its_headers(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    char accept[] = "model/stl", prefer[] = "respond-async", path[PATH], link[PATH + 8];
+    const char *const headers[] = {"Accept", accept, "Prefer", prefer, NULL};
+    bench_reply r = bench_expect(202, bench_send(b, "GET", "/v1/meshes/m/content", headers, NULL));
+    memcpy(accept, "model/obj", sizeof accept);
+    memset(prefer, '?', sizeof prefer - 1);
+    snprintf(path, sizeof path, "%s", bench_header(&r, "Location"));
+    bench_done(r);
+    bench_run_jobs(b, 1);
+    snprintf(link, sizeof link, "%s/result", path);
+    r = bench_expect(200, bench_get(b, link));
+    assert_string_equal(bench_header(&r, "Content-Type"), "model/stl");
+    bench_done(r);
+    bench_free(b);
+}
+
 /* --- memory --- */
 
 static struct {
@@ -291,6 +311,7 @@ int main(void)
         cmocka_unit_test(a_job_without_an_answer_has_no_result),
         cmocka_unit_test(a_result_that_the_client_has_is_not_sent_again),
         cmocka_unit_test(a_result_outlives_its_job_while_it_is_read),
+        cmocka_unit_test(a_job_has_copies_of_its_headers),
         cmocka_unit_test(a_starved_job_has_failed_or_its_whole_answer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -411,27 +411,20 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-static const char *find_header(void *context, const char *name)
-{
-    (void)context;
-    return strcasecmp(name, "Content-Type") == 0 ? "model/obj"
-           : strcasecmp(name, "Prefer") == 0     ? "wait=600"
-                                                 : NULL;
-}
-
 /* Upload it with the given watch; the status, and of a 422 the number of defects it tells. */
 static int upload_broken(api_bench *b, const char *text, size_t length,
                          bool (*tell)(void *context, const char *phase, double done), void *context,
                          int *total)
 {
-    const api_request request = {.method = "POST",
-                                 .path = "/v1/meshes",
-                                 .query = "",
-                                 .request_id = "test",
-                                 .header = find_header,
-                                 .has_length = true,
-                                 .length = length,
-                                 .has_body = true};
+    const api_request request = {
+        .method = "POST",
+        .path = "/v1/meshes",
+        .query = "",
+        .request_id = "test",
+        .headers = {[API_HEADER_CONTENT_TYPE] = "model/obj", [API_HEADER_PREFER] = "wait=600"},
+        .has_length = true,
+        .length = length,
+        .has_body = true};
     api_step step;
     *total = 0;
     api_exchange *x = api_begin(bench_service(b), &request, &step);

@@ -51,18 +51,6 @@ static void end(fixture *f)
     bench_free(f->bench);
 }
 
-typedef struct request_headers {
-    const char *accept, *none;
-} request_headers;
-
-static const char *find_header(void *context, const char *name)
-{
-    const request_headers *h = context;
-    return strcmp(name, "Accept") == 0          ? h->accept
-           : strcmp(name, "If-None-Match") == 0 ? h->none
-                                                : NULL;
-}
-
 static const struct {
     const char *method, *path, *accept;
     int status;
@@ -77,16 +65,15 @@ static const struct {
     {"POST", "/v1/meshes/m/copy", NULL, 201},
 };
 
-/* The request up to where a worker hands it over. */
-static api_exchange *send(fixture *f, size_t i, request_headers *headers, api_step *step)
+/* The request up to where a worker hands it over; `none` is its If-None-Match. */
+static api_exchange *send(fixture *f, size_t i, const char *none, api_step *step)
 {
-    headers->accept = cases[i].accept;
-    api_request request = {.method = cases[i].method,
-                           .path = cases[i].path,
-                           .query = "",
-                           .request_id = "r",
-                           .header = find_header,
-                           .context = headers};
+    api_request request = {
+        .method = cases[i].method,
+        .path = cases[i].path,
+        .query = "",
+        .request_id = "r",
+        .headers = {[API_HEADER_ACCEPT] = cases[i].accept, [API_HEADER_IF_NONE_MATCH] = none}};
     api_exchange *x = api_begin(f->service, &request, step);
     assert_non_null(x);
     if (*step == API_MORE) {
@@ -101,10 +88,9 @@ static void a_worker_makes_no_snapshot_of_a_large_mesh(void **state)
     fixture f;
     begin(&f, "{\"shape\":\"grid\",\"columns\":100,\"rows\":100}");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        request_headers headers = {NULL, NULL};
         api_step step;
         snapshots = 0;
-        api_exchange *x = send(&f, i, &headers, &step);
+        api_exchange *x = send(&f, i, NULL, &step);
         assert_int_equal(step, API_WORK);
         assert_int_equal(snapshots, 0);
         api_work(x);
@@ -124,19 +110,18 @@ static void nobody_makes_one_for_whom_nothing_changed(void **state)
         fixture f;
         begin(&f, shapes[s]);
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-            request_headers headers = {NULL, "*"};
             api_step step;
             if (cases[i].status != 200) {
                 continue;
             }
             /* Somebody asked before, so that all is there of which a tag is made. */
-            api_exchange *x = send(&f, i, &(request_headers){NULL, NULL}, &step);
+            api_exchange *x = send(&f, i, NULL, &step);
             if (step == API_WORK) {
                 api_work(x);
             }
             api_free(x);
             snapshots = 0;
-            x = send(&f, i, &headers, &step);
+            x = send(&f, i, "*", &step);
             if (step == API_WORK) {
                 api_work(x);
             }

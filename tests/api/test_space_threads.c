@@ -188,12 +188,6 @@ static bool give_up(void *context, const char *phase, double done)
     return *(const bool *)context || !atomic_load(&gate.making);
 }
 
-static const char *header(void *context, const char *name)
-{
-    (void)context;
-    return strcasecmp(name, "Content-Type") == 0 ? "application/json" : NULL;
-}
-
 typedef struct asker {
     api_service *service;
     bool patient, second;
@@ -208,7 +202,7 @@ static void *ask_first(void *context)
                            .path = "/v1/meshes/m/query",
                            .query = "",
                            .request_id = "test",
-                           .header = header,
+                           .headers = {[API_HEADER_CONTENT_TYPE] = "application/json"},
                            .has_length = true,
                            .length = strlen(NEAREST),
                            .has_body = true};

@@ -343,13 +343,6 @@ static void take_elements(api_bench *b)
     }
 }
 
-static const char *busy_header(void *context, const char *name)
-{
-    return strcmp(name, "Idempotency-Key") == 0 ? context
-           : strcmp(name, "Content-Type") == 0  ? "application/json"
-                                                : NULL;
-}
-
 /* The same request, with its path for a key, twice at a time, so long that it waits for a thread,
  * and then another one. */
 static void take_keyed(api_bench *b, const char *method, const char *path, const char *json)
@@ -361,15 +354,16 @@ static void take_keyed(api_bench *b, const char *method, const char *path, const
     memset(body, ' ', LONG);
     memcpy(body, json, strlen(json));
     api_step next;
-    api_request request = {.method = method,
-                           .path = path,
-                           .query = "",
-                           .request_id = "r",
-                           .header = busy_header,
-                           .context = (void *)path,
-                           .has_length = true,
-                           .length = LONG,
-                           .has_body = true};
+    api_request request = {
+        .method = method,
+        .path = path,
+        .query = "",
+        .request_id = "r",
+        .headers =
+            {[API_HEADER_CONTENT_TYPE] = "application/json", [API_HEADER_IDEMPOTENCY_KEY] = path},
+        .has_length = true,
+        .length = LONG,
+        .has_body = true};
     api_exchange *x = api_begin(bench_service(b), &request, &next);
     assert_non_null(x);
     size_t used;

@@ -320,22 +320,14 @@ static void nothing_comes_between_if_match_and_delete(void **state)
     bench_free(b);
 }
 
-static const char *one_header(void *context, const char *name)
-{
-    const char *const *pair = context;
-    return strcmp(name, pair[0]) == 0          ? pair[1]
-           : strcmp(name, "Content-Type") == 0 ? "application/json"
-                                               : NULL;
-}
-
 static void a_put_that_must_fail_needs_no_body(void **state)
 {
     (void)state;
     static const struct {
-        const char *path, *header[2];
-    } cases[] = {{"/v1/meshes/m", {"If-None-Match", "*"}},
-                 {"/v1/meshes/m", {"If-Match", "\"x\""}},
-                 {"/v1/meshes/absent", {"If-Match", "*"}}};
+        const char *path, *match, *none;
+    } cases[] = {{"/v1/meshes/m", NULL, "*"},
+                 {"/v1/meshes/m", "\"x\"", NULL},
+                 {"/v1/meshes/absent", "*", NULL}};
     api_bench *b = begin();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_step step;
@@ -343,8 +335,9 @@ static void a_put_that_must_fail_needs_no_body(void **state)
                                .path = cases[i].path,
                                .query = "",
                                .request_id = "r",
-                               .header = one_header,
-                               .context = (void *)cases[i].header,
+                               .headers = {[API_HEADER_CONTENT_TYPE] = "application/json",
+                                           [API_HEADER_IF_MATCH] = cases[i].match,
+                                           [API_HEADER_IF_NONE_MATCH] = cases[i].none},
                                .has_length = true,
                                .length = 1 << 20,
                                .has_body = true};
@@ -516,8 +509,8 @@ static api_step step_of(api_bench *b, const char *path, const char *body)
                            .path = path,
                            .query = "",
                            .request_id = "r",
-                           .header = one_header,
-                           .context = (const char *[]){"Accept", "application/json"},
+                           .headers = {[API_HEADER_ACCEPT] = "application/json",
+                                       [API_HEADER_CONTENT_TYPE] = "application/json"},
                            .has_length = true,
                            .length = strlen(body),
                            .has_body = true};

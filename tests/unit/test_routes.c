@@ -65,28 +65,25 @@ typedef struct sent {
     const char *body;    /* NULL: none */
 } sent;
 
-/* One header of the list, into a buffer of its own: values are borrowed until api_free. */
+/* The values of a list of headers; they are borrowed until api_free. */
 typedef struct header_list {
-    const char *text;
-    char value[8][256];
-    size_t used;
+    char value[API_REQUEST_HEADERS][256];
 } header_list;
 
-static const char *find_header(void *context, const char *name)
+static void read_headers(const char *text, header_list *list, api_request *request)
 {
-    header_list *list = context;
-    size_t length = strlen(name);
-    for (const char *at = list->text; at != NULL && *at != '\0';) {
-        const char *end = strchr(at, '\n');
-        size_t size = end == NULL ? strlen(at) : (size_t)(end - at);
-        if (size > length + 2 && strncmp(at, name, length) == 0 && at[length] == ':') {
-            char *value = list->value[list->used++ % 8];
-            snprintf(value, 256, "%.*s", (int)(size - length - 2), at + length + 2);
-            return value;
+    for (const char *at = text; at != NULL && *at != '\0';) {
+        size_t name = strcspn(at, ":"), size = strcspn(at, "\n");
+        assert_true(name + 2 <= size);
+        api_request_header header = api_request_header_find(at, name);
+        if (header < API_REQUEST_HEADERS) {
+            char *value = list->value[header];
+            snprintf(value, sizeof list->value[header], "%.*s", (int)(size - name - 2),
+                     at + name + 2);
+            request->headers[header] = value;
         }
-        at = end == NULL ? NULL : end + 1;
+        at += size + (at[size] == '\n');
     }
-    return NULL;
 }
 
 static api_exchange *send_line(const sent *r, header_list *headers)
@@ -97,16 +94,14 @@ static api_exchange *send_line(const sent *r, header_list *headers)
     const char *target = r->line + space + 1;
     size_t length = strcspn(target, "?");
     snprintf(path, sizeof path, "%.*s", (int)length, target);
-    *headers = (header_list){.text = r->headers};
     api_request request = {.method = method,
                            .path = path,
                            .query = target[length] == '?' ? target + length + 1 : "",
                            .request_id = "id-1",
-                           .header = find_header,
-                           .context = headers,
                            .has_body = r->body != NULL,
                            .has_length = r->body != NULL,
                            .length = r->body == NULL ? 0 : strlen(r->body)};
+    read_headers(r->headers, headers, &request);
     return api_handle(service, &request, r->body, r->body == NULL ? 0 : strlen(r->body));
 }
 
@@ -299,12 +294,6 @@ static void requests_are_answered(void **state)
     }
 }
 
-static const char *from_another_site(void *context, const char *name)
-{
-    (void)context;
-    return strcmp(name, "Sec-Fetch-Site") == 0 ? "cross-site" : NULL;
-}
-
 static void pages_of_a_configured_origin_may_ask_for_everything(void **state)
 {
     (void)state;
@@ -312,7 +301,7 @@ static void pages_of_a_configured_origin_may_ask_for_everything(void **state)
                            .path = "/v1/meshes/m",
                            .query = "",
                            .request_id = "id-1",
-                           .header = from_another_site};
+                           .headers = {[API_HEADER_SEC_FETCH_SITE] = "cross-site"}};
     for (int consent = 0; consent < 2; consent++) {
         request.has_consent = consent != 0;
         api_exchange *x = api_handle(service, &request, NULL, 0);
@@ -443,13 +432,11 @@ static void a_large_document_is_read_off_the_worker(void **state)
     assert_non_null(body);
     memset(body, ' ', length);
     memcpy(body, "{\"a\":1,\"a\":2}", 13);
-    header_list headers = {.text = JSON};
     api_request request = {.method = "POST",
                            .path = "/v1/meshes/m/query",
                            .query = "",
                            .request_id = "r",
-                           .header = find_header,
-                           .context = &headers,
+                           .headers = {[API_HEADER_CONTENT_TYPE] = "application/json"},
                            .has_body = true};
     api_step step;
     api_exchange *x = api_begin(service, &request, &step);

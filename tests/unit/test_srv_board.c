@@ -74,15 +74,6 @@ static int stop(void **state)
     return 0;
 }
 
-static const char *header(void *context, const char *name)
-{
-    (void)context;
-    return strcmp(name, "Prefer") == 0            ? "respond-async"
-           : strcmp(name, "Content-Type") == 0    ? "application/json"
-           : strcmp(name, "Idempotency-Key") == 0 ? key
-                                                  : NULL;
-}
-
 /* 202; the job's id goes to `id`. */
 static int post(const char *path, const char *body, char id[API_JOB_ID + 1])
 {
@@ -90,7 +81,9 @@ static int post(const char *path, const char *body, char id[API_JOB_ID + 1])
                            .path = path,
                            .query = "",
                            .request_id = "test",
-                           .header = header,
+                           .headers = {[API_HEADER_CONTENT_TYPE] = "application/json",
+                                       [API_HEADER_IDEMPOTENCY_KEY] = key,
+                                       [API_HEADER_PREFER] = "respond-async"},
                            .has_length = true,
                            .length = strlen(body),
                            .has_body = true};
@@ -298,7 +291,11 @@ static void the_record_of_a_job_carries_its_key(void **state)
 static int delete_mesh(const char *path)
 {
     api_request request = {
-        .method = "DELETE", .path = path, .query = "", .request_id = "test", .header = header};
+        .method = "DELETE",
+        .path = path,
+        .query = "",
+        .request_id = "test",
+        .headers = {[API_HEADER_IDEMPOTENCY_KEY] = key, [API_HEADER_PREFER] = "respond-async"}};
     api_exchange *x = api_handle(service, &request, NULL, 0);
     int status = api_answer_of(x)->status;
     api_free(x);

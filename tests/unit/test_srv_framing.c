@@ -1,8 +1,9 @@
-/* Where the target and the body of a request are, and requests that are for somebody else. What
- * makes a request ambiguous or too large is found in its bytes: test_srv_syntax.c. */
+/* Where the target, the body and the headers of a request are, and requests that are for somebody
+ * else. What makes a request ambiguous or too large is found in its bytes: test_srv_syntax.c. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/http_framing.h"
+#include "server/http/http_headers.h"
 #include "server/http/http_policy.h"
 
 static srv_head head_of(const char *target)
@@ -84,6 +85,65 @@ static void a_body_is_announced_by_a_length_or_by_chunks(void **state)
         assert_int_equal(f.has_length, rows[i].has_length);
         assert_true(f.length == rows[i].length);
     }
+}
+
+static void add_field(srv_head *head, const char *name, const char *value)
+{
+    head->fields[head->field_count++] = (srv_field){name, value, strlen(name), strlen(value)};
+}
+
+static void lines_of_a_list_are_joined_and_the_first_of_others_counts(void **state)
+{
+    (void)state;
+    srv_head head = head_of("/");
+    const char *values[API_REQUEST_HEADERS];
+    char *joined = NULL;
+    add_field(&head, "if-match", "\"a\"");
+    add_field(&head, "Content-Encoding", "gzip");
+    add_field(&head, "Content-Type", "model/obj");
+    add_field(&head, "IF-MATCH", "");
+    add_field(&head, "Accept-", "a");
+    add_field(&head, "content-type", "model/stl");
+    add_field(&head, "Content-encoding", "zstd");
+    add_field(&head, "Prefer", "wait=1");
+    add_field(&head, "If-Match", "\"b\", \"c\"");
+    add_field(&head, "Accept", "");
+    assert_true(srv_headers_read(&head, values, &joined));
+    assert_string_equal(values[API_HEADER_IF_MATCH], "\"a\",,\"b\", \"c\"");
+    assert_string_equal(values[API_HEADER_CONTENT_ENCODING], "gzip,zstd");
+    assert_string_equal(values[API_HEADER_CONTENT_TYPE], "model/obj");
+    assert_string_equal(values[API_HEADER_PREFER], "wait=1");
+    assert_string_equal(values[API_HEADER_ACCEPT], "");
+    assert_null(values[API_HEADER_ACCEPT_ENCODING]);
+    assert_null(values[API_HEADER_IF_NONE_MATCH]);
+    assert_null(values[API_HEADER_SEC_FETCH_SITE]);
+    he_mem_free(joined);
+}
+
+static void headers_ask_for_memory_only_where_lines_are_joined(void **state)
+{
+    (void)state;
+    srv_head head = head_of("/");
+    const char *values[API_REQUEST_HEADERS];
+    char *joined = NULL;
+    add_field(&head, "Accept", "text/html");
+    add_field(&head, "Idempotency-Key", "a");
+    add_field(&head, "Idempotency-Key", "b");
+    add_field(&head, "X-Other", "1");
+    add_field(&head, "X-Other", "2");
+    fixture_fail_at(1);
+    bool good = srv_headers_read(&head, values, &joined);
+    fixture_memory_back();
+    assert_true(good);
+    assert_null(joined);
+    assert_ptr_equal(values[API_HEADER_ACCEPT], head.fields[0].value);
+    assert_ptr_equal(values[API_HEADER_IDEMPOTENCY_KEY], head.fields[1].value);
+    add_field(&head, "Accept", "text/plain");
+    fixture_fail_at(1);
+    good = srv_headers_read(&head, values, &joined);
+    fixture_memory_back();
+    assert_false(good);
+    assert_null(joined);
 }
 
 static void test_hosts(void **state)
@@ -207,6 +267,8 @@ int main(void)
         cmocka_unit_test(a_target_is_a_path_or_an_address_of_this_server),
         cmocka_unit_test(a_target_is_split),
         cmocka_unit_test(a_body_is_announced_by_a_length_or_by_chunks),
+        cmocka_unit_test(lines_of_a_list_are_joined_and_the_first_of_others_counts),
+        cmocka_unit_test(headers_ask_for_memory_only_where_lines_are_joined),
         cmocka_unit_test(test_hosts),
         cmocka_unit_test(test_origins),
     };

@@ -1,0 +1,36 @@
+/* request_header.h - the headers of a request that this API reads.
+ *
+ * The server fills in an array of their values (api_request in request/api.h). A header that is not
+ * in the table is not read by any handler. */
+#ifndef HE_API_HEADER_REQUEST_HEADER_H
+#define HE_API_HEADER_REQUEST_HEADER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Constant, name, and whether it is a list, whose lines make up one value (RFC 9110 5.3). */
+#define API_REQUEST_HEADER_MAP(X)                 \
+    X(ACCEPT, "Accept", true)                     \
+    X(ACCEPT_ENCODING, "Accept-Encoding", true)   \
+    X(CONTENT_ENCODING, "Content-Encoding", true) \
+    X(CONTENT_TYPE, "Content-Type", false)        \
+    X(IDEMPOTENCY_KEY, "Idempotency-Key", false)  \
+    X(IF_MATCH, "If-Match", true)                 \
+    X(IF_NONE_MATCH, "If-None-Match", true)       \
+    X(LAST_EVENT_ID, "Last-Event-ID", false)      \
+    X(PREFER, "Prefer", true)                     \
+    X(SEC_FETCH_SITE, "Sec-Fetch-Site", false)
+
+#define API_REQUEST_HEADER_CONSTANT(constant, name, is_list) API_HEADER_##constant,
+typedef enum api_request_header {
+    API_REQUEST_HEADER_MAP(API_REQUEST_HEADER_CONSTANT) API_REQUEST_HEADERS
+} api_request_header;
+#undef API_REQUEST_HEADER_CONSTANT
+
+/* Returns the header with this name, which is compared without case, and API_REQUEST_HEADERS for a
+ * header that is not read. */
+api_request_header api_request_header_find(const char *name, size_t length);
+
+bool api_request_header_is_list(api_request_header header);
+
+#endif
