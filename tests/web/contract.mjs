@@ -404,6 +404,9 @@ function takenOf(bytes, { media, whole, bytes: answer }) {
     }
     const { queries, ...rest } = JSON.parse(utf8.decode(bytes));
     const { results } = JSON.parse(utf8.decode(answer));
+    if (results === undefined) {
+        return bytes; // they were taken as a job
+    }
     const taken = queries.filter((_, i) => !(results[i]?.status >= 400));
     return Buffer.from(JSON.stringify({ queries: taken, ...rest }));
 }

@@ -161,7 +161,7 @@ test('each file and make target it names is there', async () => {
     // And the table, which `make fresh` tries, has each target but those that only serve others.
     const [table] = /^\| command \|.*?\n\n/ms.exec(readme);
     const named = new Set([...table.matchAll(/`(?:make )?([a-z-]+)/g)].map(([, name]) => name));
-    const parts = ['help', 'page', 'programs', 'clean'];
+    const parts = ['help', 'page', 'programs', 'ready', 'clean'];
     for (const [, target] of makefile.matchAll(/^([a-z-]+):.*##/gm)) {
         assert.ok(named.has(target === 'all' ? 'make' : target) || parts.includes(target), target);
     }
