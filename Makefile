@@ -263,9 +263,10 @@ ASAN_TESTS = $(filter-out web tests/web/% install soak hostile lint,$(TESTS))
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
 	+$(MAKE) CONFIG=asan TESTS="$(ASAN_TESTS)" test
 
-# The kernel has no threads, and most of tests/api does one thing after the other: only what begins
-# jobs or threads, and the daemon itself, is worth the time here.
-THREADED_C  = $(shell grep -lE 'pthread_create|bench_run_jobs' tests/api/test_*.c) \
+# The kernel has no threads, and most of tests/api does one thing after the other, jobs included: only
+# what begins threads or reads the past of a stream, which a thread prepares, and the daemon itself are
+# worth the time here.
+THREADED_C  = $(shell grep -lE 'pthread_create|tests/api/stream.h' tests/api/test_*.c) \
               $(wildcard tests/unit/test_srv_*.c)
 TSAN_TESTS  = e2e $(THREADED_C)
 tsan: ## the threaded tests with ThreadSanitizer

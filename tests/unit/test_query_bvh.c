@@ -638,7 +638,7 @@ static bool tell(void *context, const char *phase, double done)
 static void trees_and_searches_can_be_given_up(void **state)
 {
     (void)state;
-    he_mesh *m = query_shape("torus", 150, 100, 2, 0.5);
+    he_mesh *m = query_shape("torus", 75, 50, 2, 0.5);
     long calls = 0;
     for (long most = 0; most <= calls; most++) {
         patience p = {.most = most == 0 ? LONG_MAX : most - 1};
