@@ -203,7 +203,7 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     }
     if (tagged) {
         /* A dry run made no state. Neither knows one what published, but could not say more. */
-        bool always = status != 204 && !(route->flags & API_REHEARSED);
+        bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
         write_header(out, "ETag", "Names the state that is shown.", always);
     }
     if (status == 201) {

@@ -78,12 +78,13 @@ enum {
     API_KEYED = 32,     /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
     API_KEYED_NEW = 64, /* the same of what makes a mesh: kept with the store */
     API_LONG = 128,     /* may become a job: Prefer is read, and 202 may be the answer */
-    API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
-    API_REHEARSED = 512,  /* takes `dry_run`: an answer may be about nothing that is */
-    API_STORELESS = 2048, /* answers show nothing that is stored, and wait for no journal; so do
-                             those of API_FIXED */
-    API_EXPENSIVE = 1024  /* a read that costs the mesh: refused to pages of other sites, which need
-                             not be able to read the answer to make us work */
+    API_INTERRUPTS = 256,     /* is not kept out by a long edit of the mesh */
+    API_REHEARSED = 512,      /* takes `dry_run`: an answer may be about nothing that is */
+    API_TAG_OF_OTHERS = 4096, /* the answer of another request, which need not have had a tag */
+    API_STORELESS = 2048,     /* answers show nothing that is stored, and wait for no journal; so do
+                                 those of API_FIXED */
+    API_EXPENSIVE = 1024 /* a read that costs the mesh: refused to pages of other sites, which need
+                            not be able to read the answer to make us work */
 };
 
 /* A header that only some of a route's answers with 200 have. */

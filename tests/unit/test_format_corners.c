@@ -97,9 +97,12 @@ static void others_get_the_same_values_at_the_same_corners(void **state)
             uint32_t v = soup->corners[c];
             assert_int_equal(uvs->type, HE_DOUBLE);
             memcpy(pair, he_column_value(uvs, v), sizeof pair);
-            memcpy(narrow, he_column_value(normals, v), sizeof narrow);
-            memcpy(&up, he_column_value(normals, v) + 8, sizeof up);
-            up = normals->type == HE_FLOAT ? (double)narrow[1] : up;
+            if (normals->type == HE_FLOAT) {
+                memcpy(narrow, he_column_value(normals, v), sizeof narrow);
+                up = (double)narrow[1];
+            } else {
+                memcpy(&up, he_column_value(normals, v) + sizeof up, sizeof up);
+            }
             size_t k = 0;
             while (k < 7 && (uv[k][0] != pair[0] || uv[k][1] != pair[1])) {
                 k++;
