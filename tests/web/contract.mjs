@@ -380,7 +380,7 @@ export class Contract {
     }
 }
 
-const READS_AS_JOBS = /\/(query|traverse)$/;
+const READS_AS_JOBS = /\/(query|walk)$/;
 
 // Does ?format= say that a body is of another format than its Content-Type?
 const namesFormat = (query) =>
