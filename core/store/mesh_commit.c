@@ -112,8 +112,11 @@ static he_mesh *exchange_content(st_write *w)
         st_mesh_unclaim(mesh);
     }
     he_mesh *before = mesh->content;
+    if (before == w->content) {
+        return NULL; /* not even written: a mesh may be removed beside a claim, which reads it */
+    }
     mesh->content = w->content;
-    return before == w->content ? NULL : before;
+    return before;
 }
 
 st_status st_write_commit(st_write *w, const char *ops)
