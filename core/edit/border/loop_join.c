@@ -330,27 +330,17 @@ static he_status write(plan *p, uint64_t *moved, he_error *err)
 {
     const uint32_t *ids = p->vertices.ids.ids;
     const he_keep_pairs pairs = {ids, ids + p->n, p->n};
-    uint64_t kept = he_keep_count(p->m, &pairs);
-    he_bracket bracket;
-    he_status status = HE_OK;
-    if (kept > 0) {
-        status = he_edit_begin(p->m, &bracket, err);
-        if (status != HE_OK) {
-            return status;
-        }
-        status = he_keep_values(p->m, &pairs, err);
+    he_keeping kept;
+    he_status status = he_keep_begin(p->m, &pairs, &kept, err);
+    if (status != HE_OK) {
+        return status;
     }
-    if (status == HE_OK) {
-        status = reserve(p, err);
-    }
+    status = reserve(p, err);
     if (status == HE_OK) {
         /* Nothing below can fail. */
         commit(p);
     }
-    if (status == HE_OK && moved != NULL) {
-        *moved = kept;
-    }
-    return kept > 0 ? he_edit_end(p->m, &bracket, status) : status;
+    return he_keep_end(p->m, &kept, status, moved);
 }
 
 he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, uint64_t *moved, he_error *err)

@@ -187,7 +187,6 @@ he_status he_edge_weld(he_mesh *m, he_edge a, he_edge b, he_keep keep, uint64_t 
                        he_error *err)
 {
     pair ends[2];
-    he_bracket bracket;
     he_status status = check(m, a, b, keep, ends, err);
     if (status != HE_OK) {
         return status;
@@ -195,23 +194,15 @@ he_status he_edge_weld(he_mesh *m, he_edge a, he_edge b, he_keep keep, uint64_t 
     const uint32_t gone[2] = {ends[0].goes.i, ends[1].goes.i};
     const uint32_t into[2] = {ends[0].stays.i, ends[1].stays.i};
     const he_keep_pairs pairs = {gone, into, 2};
-    uint64_t kept = he_keep_count(m, &pairs);
-    if (kept > 0) {
-        status = he_edit_begin(m, &bracket, err);
-        if (status != HE_OK) {
-            return status;
-        }
-        status = he_keep_values(m, &pairs, err);
+    he_keeping kept;
+    status = he_keep_begin(m, &pairs, &kept, err);
+    if (status != HE_OK) {
+        return status;
     }
-    if (status == HE_OK) {
-        status = reserve(m, ends, err);
-    }
+    status = reserve(m, ends, err);
     if (status == HE_OK) {
         /* Nothing below can fail. */
         commit(m, a, b, keep, ends);
     }
-    if (status == HE_OK && moved != NULL) {
-        *moved = kept;
-    }
-    return kept > 0 ? he_edit_end(m, &bracket, status) : status;
+    return he_keep_end(m, &kept, status, moved);
 }

@@ -211,26 +211,20 @@ static void commit(const he_merge_plan *p)
 }
 
 /* What the vertices say goes to corners first, and back with a failure. */
-static he_status write(he_merge_plan *p, uint64_t kept, he_error *err)
+static he_status write(he_merge_plan *p, uint64_t *moved, he_error *err)
 {
     const he_keep_pairs pairs = {p->how->gone, p->how->into, p->how->count};
-    he_bracket bracket;
-    he_status status = HE_OK;
-    if (kept > 0) {
-        status = he_edit_begin(p->m, &bracket, err);
-        if (status != HE_OK) {
-            return status;
-        }
-        status = he_keep_values(p->m, &pairs, err);
+    he_keeping kept;
+    he_status status = he_keep_begin(p->m, &pairs, &kept, err);
+    if (status != HE_OK) {
+        return status;
     }
-    if (status == HE_OK) {
-        status = reserve(p, err);
-    }
+    status = reserve(p, err);
     if (status == HE_OK) {
         /* Nothing below can fail. */
         commit(p);
     }
-    return kept > 0 ? he_edit_end(p->m, &bracket, status) : status;
+    return he_keep_end(p->m, &kept, status, moved);
 }
 
 he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved, he_error *err)
@@ -249,7 +243,6 @@ he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved, he
         {check_marks, "checking marks", 0.92},
     };
     he_merge_plan p = {.m = m, .how = how};
-    uint64_t kept = 0;
     he_status status = HE_OK;
     for (size_t i = 0; status == HE_OK && i < sizeof parts / sizeof *parts; i++) {
         status = he_watch_phase(m->watch, parts[i].phase, parts[i].to, err);
@@ -261,11 +254,7 @@ he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved, he
         status = he_watch_phase(m->watch, "merging", 1, err);
     }
     if (status == HE_OK) {
-        kept = he_keep_count(m, &(he_keep_pairs){how->gone, how->into, how->count});
-        status = write(&p, kept, err);
-    }
-    if (status == HE_OK && moved != NULL) {
-        *moved = kept;
+        status = write(&p, moved, err);
     }
     clear(&p);
     return status;

@@ -37,7 +37,7 @@ typedef struct he_merge {
 } he_merge;
 
 /* V - count, less what goes besides; nothing at all when count is 0. `moved`, which may be NULL, is
- * he_keep_count of what became one.
+ * the number of values of vertices that corners keep (edit/piece/keep.h).
  *
  * Refused: HE_REPEATED_CORNER when a face would pass a vertex twice; HE_NONMANIFOLD_EDGE when more
  * than two faces would meet at an edge; HE_ORIENTATION when two would run along it in one

@@ -1,7 +1,6 @@
 #include "edit/piece/keep.h"
 
 #include "mesh/marks.h"
-#include "mesh/write.h"
 
 static bool is_value(const he_column *column)
 {
@@ -33,7 +32,7 @@ static uint64_t count_differing(const he_mesh *m, const he_column *column,
     return count;
 }
 
-uint64_t he_keep_count(const he_mesh *m, const he_keep_pairs *pairs)
+static uint64_t count_all(const he_mesh *m, const he_keep_pairs *pairs)
 {
     uint64_t count = 0;
     for (size_t slot = 0; slot < m->c.column_count; slot++) {
@@ -136,7 +135,7 @@ static he_status keep_column(he_mesh *m, const he_column *column, const he_keep_
                : status;
 }
 
-he_status he_keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err)
+static he_status keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err)
 {
     he_status status = HE_OK;
     /* What is added on the way is of corners, and passed over. */
@@ -147,4 +146,28 @@ he_status he_keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err)
         }
     }
     return status;
+}
+
+he_status he_keep_begin(he_mesh *m, const he_keep_pairs *pairs, he_keeping *out, he_error *err)
+{
+    out->count = count_all(m, pairs);
+    if (out->count == 0) {
+        return HE_OK;
+    }
+    he_status status = he_edit_begin(m, &out->bracket, err);
+    if (status == HE_OK) {
+        status = keep_values(m, pairs, err);
+        if (status != HE_OK) {
+            he_edit_end(m, &out->bracket, status);
+        }
+    }
+    return status;
+}
+
+he_status he_keep_end(he_mesh *m, he_keeping *kept, he_status status, uint64_t *moved)
+{
+    if (status == HE_OK && moved != NULL) {
+        *moved = kept->count;
+    }
+    return kept->count > 0 ? he_edit_end(m, &kept->bracket, status) : status;
 }

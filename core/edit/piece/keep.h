@@ -1,9 +1,13 @@
 /* keep.h - values of vertices that become one, kept by their corners.
  *
- *     o---o o---o              o---o---o       Both sides have a vertex attribute "uv" of their
- * own. | 3 | | 8 |              | 3 | 8 |       As one vertex they could have one value, so that |
- * | |   |     --->     |   |   |       "uv" becomes an attribute of corners, and each keeps | 4 | |
- * 9 |              | 4 | 9 |       what it showed. o---o o---o              o---o---o
+ * Both sides have a vertex attribute "uv" of their own. As one vertex they could have one value, so
+ * that "uv" becomes an attribute of corners, and each keeps what it showed:
+ *
+ *     o---o o---o              o---o---o
+ *     | 3 | | 8 |              | 3 | 8 |
+ *     |   | |   |     --->     |   |   |
+ *     | 4 | | 9 |              | 4 | 9 |
+ *     o---o o---o              o---o---o
  *
  * A weld has means of positions and of nothing else. Where a vertex with corners goes into one with
  * another value of an attribute, all corners of the mesh get the values of their vertices, under
@@ -20,7 +24,7 @@
 #ifndef HE_EDIT_PIECE_KEEP_H
 #define HE_EDIT_PIECE_KEEP_H
 
-#include "mesh/mesh.h"
+#include "mesh/write.h"
 
 /* gone[i] becomes part of into[i]. */
 typedef struct he_keep_pairs {
@@ -28,11 +32,18 @@ typedef struct he_keep_pairs {
     size_t count;
 } he_keep_pairs;
 
-/* How many values of vertices differ from that of the one they go into: 0 where nothing is to be
- * kept. */
-uint64_t he_keep_count(const he_mesh *m, const he_keep_pairs *pairs);
-/* Between CHECK and RESERVE of an edit, inside he_edit_begin: HE_NO_MEMORY and HE_CANCELLED leave
- * what was begun to he_edit_end. */
-HE_NODISCARD he_status he_keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err);
+/* The kept values of one weld, from he_keep_begin to he_keep_end. */
+typedef struct he_keeping {
+    uint64_t count;     /* values of vertices that differ from that of the one they go into */
+    he_bracket bracket; /* begun where there are such values */
+} he_keeping;
+
+/* Keeps what would be lost, between CHECK and RESERVE of a weld. Where it fails, the mesh is as it
+ * was, and he_keep_end is not called: HE_NO_MEMORY, HE_CANCELLED. */
+HE_NODISCARD he_status he_keep_begin(he_mesh *m, const he_keep_pairs *pairs, he_keeping *out,
+                                     he_error *err);
+/* Ends the weld with its status, which is returned: a failure takes back what was kept. `moved`,
+ * where it is not NULL, gets the count of a weld that was done. */
+he_status he_keep_end(he_mesh *m, he_keeping *kept, he_status status, uint64_t *moved);
 
 #endif
