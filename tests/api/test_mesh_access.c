@@ -125,6 +125,15 @@ static int ask(api_service *service, const char *word, const char *query, const 
     return status;
 }
 
+static api_service *service_of_rows(api_bench *b)
+{
+    api_route_table table = {rows, sizeof rows / sizeof *rows};
+    api_service *service =
+        api_service_new(bench_store(b), table, &(api_options){.version = "test"});
+    assert_non_null(service);
+    return service;
+}
+
 static void a_handler_is_entered_once_with_what_its_row_asks_for(void **state)
 {
     (void)state;
@@ -144,10 +153,7 @@ static void a_handler_is_entered_once_with_what_its_row_asks_for(void **state)
         {"snapshot", "revision=2", API_PHASE_BODY, false, 2},
     };
     api_bench *b = bench_of_two_revisions();
-    api_route_table table = {rows, sizeof rows / sizeof *rows};
-    api_service *service =
-        api_service_new(bench_store(b), table, &(api_options){.version = "test"});
-    assert_non_null(service);
+    api_service *service = service_of_rows(b);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_step step;
         assert_int_equal(ask(service, cases[i].word, cases[i].query, NULL, &step), 204);
@@ -166,10 +172,7 @@ static void what_can_be_told_beforehand_enters_no_handler(void **state)
 {
     (void)state;
     api_bench *b = bench_of_two_revisions();
-    api_route_table table = {rows, sizeof rows / sizeof *rows};
-    api_service *service =
-        api_service_new(bench_store(b), table, &(api_options){.version = "test"});
-    assert_non_null(service);
+    api_service *service = service_of_rows(b);
     api_step step;
     assert_int_equal(ask(service, "card", "", NULL, &step), 204);
     assert_int_equal(seen.entered, 1);
@@ -191,10 +194,7 @@ static void a_handler_that_leaves_the_worker_is_entered_anew(void **state)
 {
     (void)state;
     api_bench *b = bench_of_two_revisions();
-    api_route_table table = {rows, sizeof rows / sizeof *rows};
-    api_service *service =
-        api_service_new(bench_store(b), table, &(api_options){.version = "test"});
-    assert_non_null(service);
+    api_service *service = service_of_rows(b);
     api_step step;
     assert_int_equal(ask(service, "leaves", "", NULL, &step), 204);
     assert_int_equal(step, API_WORK);
