@@ -216,8 +216,8 @@ bool api_problem_set(api_problem *problem, int code, const char *format, ...)
 bool api_problem_set_core(api_problem *problem, const he_error *err);
 /* The same about the path: elements that do not live are 404 and 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Of an answer that shows a change which is not durable: it was lost for `reason`, or, NULL, the
- * server stopped before that was known. */
+/* Refuses an answer whose change is not durable: it was lost for `reason`, or, where that is NULL,
+ * the server stopped before its fate was known. */
 bool api_problem_set_lost(api_problem *problem, const char *reason);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

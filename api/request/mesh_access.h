@@ -16,8 +16,8 @@
  * 507); what the client has already is answered 304; what costs too much for a worker, or is to be
  * a job, leaves this function in x->deferred. */
 void api_read(api_exchange *x);
-/* For a handler that has changed the mesh and answers with what reading it gives: read so instead
- * of as the row says. */
+/* Reads the mesh by `reading` instead of by the row of the route. A handler that has changed the
+ * mesh calls it to answer with what another route reads. */
 void api_read_as(api_exchange *x, const api_reading *reading);
 
 /* --- for handlers that read --- */

@@ -84,7 +84,7 @@ he_labels *he_labels_retain(he_labels *labels);
 void he_labels_release(he_labels *labels);
 size_t he_labels_count(const he_labels *labels);
 const char *he_labels_get(const he_labels *labels, size_t i);
-/* The same strings in the same order? NULL equals NULL alone. */
+/* Returns whether both hold equal strings in one order. NULL equals NULL alone. */
 bool he_labels_equal(const he_labels *a, const he_labels *b);
 /* The index of a string, added when new. Only while nobody else holds a reference. */
 HE_NODISCARD he_status he_labels_add(he_labels *labels, const char *text, size_t length,

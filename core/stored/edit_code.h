@@ -26,7 +26,7 @@ typedef enum he_object {
     HE_OBJECT_REPLACED = 3
 } he_object;
 
-/* Of lineage, by its number in a coded edit; vertices, edges and faces have lineage. */
+/* The kind of element that each number in a coded lineage stands for. */
 static const he_kind he_code_kinds[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
 enum { HE_CODE_KINDS = sizeof he_code_kinds / sizeof *he_code_kinds };
 

@@ -105,8 +105,8 @@ uint64_t he_stored_parts(const he_mesh *mesh);
 
 typedef struct he_stored_reader he_stored_reader;
 
-/* For a content of at most that many bytes, such as HE_STORED_PART for each part there is: one that
- * says it has more is refused before memory is taken for it. HE_NO_MEMORY. */
+/* Makes a reader of a content of at most `most` bytes, such as HE_STORED_PART for each part there
+ * is. A content that says it has more is refused before memory is taken for it. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_stored_reader_new(uint64_t most, he_stored_reader **out, he_error *err);
 void he_stored_reader_free(he_stored_reader *reader);
 /* The next part. HE_CORRUPT with the byte of the content where it shows, HE_UNSUPPORTED,

@@ -147,7 +147,7 @@ he_status __wrap_he_changes_sum(const he_mesh *mesh, const he_change_part *parts
     return __real_he_changes_sum(mesh, parts, count, out, err);
 }
 
-/* For the answer, the history and the listeners together. */
+/* The answer, the history and the listeners are served by one search. */
 static void what_a_request_changes_is_found_once(void **state)
 {
     (void)state;

@@ -113,7 +113,7 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
     he_soup_clear(&soup);
 }
 
-/* Of the 256 bytes, and through each format in turn. */
+/* Each of the 256 bytes goes through each format in turn. */
 static void bytes_of_colors_come_back_from_every_format(void **state)
 {
     (void)state;

@@ -84,7 +84,7 @@ static void one_notice_releases_a_thousand(void **state)
     }
 }
 
-/* Of an interval both ends are lost, and of the mesh that is named alone. */
+/* Both ends of a lost interval are lost, for the mesh that is named alone. */
 static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
 {
     (void)state;

@@ -199,7 +199,8 @@ static char *put_position(const glb_writer *w, uint32_t vertex, char *p)
     return p;
 }
 
-/* Of a vertex, or of a copy. What corners say is that of the one it stands for. */
+/* Writes what the part holds of the next vertex, or of the next copy of one; nothing after the
+ * last. A copy has the corner values of the corner it stands for. */
 static char *put_vertex(glb_writer *w, const he_glb_part *part, char *p)
 {
     const he_content *c = &w->g.mesh->c;

@@ -67,7 +67,8 @@ static bool positions_are_floats(const he_mesh *mesh)
     return true;
 }
 
-/* For lists of so many numbers a corner. */
+/* Returns a type that holds the length of each face's list, with so many numbers a
+ * corner. */
 static he_ply_type type_of_degree(const he_mesh *mesh, uint32_t numbers)
 {
     for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
