@@ -181,12 +181,15 @@ static const api_route routes[] = {
      .produces = mesh_out,
      .parameters = {&api_parameter_revision, &api_parameter_format, &api_parameter_encoding},
      .headers = {&warnings},
-     .statuses = {200, 202, 304, 410},
+     .statuses = {200, 202, 304, 410, 422},
      .response = "document",
      .summary = "Export a mesh",
      .doc =
          "In the format that `format` or Accept asks for. What the format cannot carry is named "
-         "in the header Export-Warnings. A mesh holds texture coordinates `uv` with v upward, as "
+         "in the header Export-Warnings, at most 1000 bytes, the rest as \"and 3 more\". A "
+         "position "
+         "beyond the range of floats is refused by glb and binary stl. A mesh holds texture "
+         "coordinates `uv` with v upward, as "
          "OBJ, PLY and OFF do (glTF's runs down), and colours `color` of 0 to 1, which are bytes "
          "in PLY; reading and writing convert both."},
     {.method = "GET",

@@ -43,6 +43,10 @@ static const struct {
                            "0."},
     [HE_UNSUPPORTED] = {422, "The file is well formed but uses a part of its format that is not "
                              "read; the detail names it."},
+    [HE_BEYOND_FLOAT] = {422,
+                         "The format holds positions as floats, and a coordinate of the mesh is "
+                         "larger than the largest one, about 3.4e38. obj, off, ply and json, "
+                         "and stl with encoding=ascii, hold it."},
     [HE_CORRUPT] = {500, "A mesh in the server breaks its own invariants. GET .../check lists "
                          "them."},
     [HE_NO_SUCH_ELEMENT] = {422, "The id was never issued in this mesh. In a path this is 404, in "

@@ -67,20 +67,29 @@ static bool choose(api_exchange *x, const he_format **format)
     return true;
 }
 
+/* Bytes of the header at most, and of its last words. */
+enum { MOST_WARNINGS = 1000, MORE_WARNINGS = 40 };
+
 /* What the file cannot carry, so that nobody finds out by losing it. */
 static void answer_losses(api_exchange *x, const he_notes *notes)
 {
-    char text[HE_ERROR_TEXT];
-    api_text losses = {.maximum = 1000};
-    for (size_t i = 0; i < notes->count && !losses.failed; i++) {
-        he_note_text(&notes->items[i], text, sizeof text);
-        api_text_add_string(&losses, i > 0 ? "; " : "");
-        api_text_add_string(&losses, text);
+    char list[MOST_WARNINGS] = "", text[HE_ERROR_TEXT], more[MORE_WARNINGS] = "";
+    size_t length = 0, said = 0;
+    for (; said < notes->count; said++) {
+        size_t size = he_note_text(&notes->items[said], text, sizeof text);
+        if (length + sizeof "; " + size + sizeof more > sizeof list) {
+            break;
+        }
+        length += (size_t)snprintf(list + length, sizeof list - length, "%s%s",
+                                   said > 0 ? "; " : "", text);
+    }
+    uint64_t left = notes->count - said + notes->more;
+    if (left > 0) {
+        snprintf(more, sizeof more, "; and %llu more", (unsigned long long)left);
     }
     if (notes->count > 0) {
-        api_answer_header_format(x, "Export-Warnings", "%.*s", (int)losses.length, losses.bytes);
+        api_answer_header_format(x, "Export-Warnings", "%s%s", list, more);
     }
-    api_text_clear(&losses);
 }
 
 enum { REPRESENTATION = 40 };

@@ -28,6 +28,7 @@
     X(NOT_FINITE, "not_finite", "A number is not finite")                                     \
     X(BAD_INDEX, "bad_index", "An index names nothing")                                       \
     X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")           \
+    X(BEYOND_FLOAT, "beyond_float", "A coordinate is beyond the floats of the format")        \
     X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                        \
     /* elements named by the caller */                                                        \
     X(NO_SUCH_ELEMENT, "no_such_element", "No such element was ever issued")                  \

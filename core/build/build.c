@@ -153,6 +153,30 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
     return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }
 
+static void clear_turns(he_turns *turns)
+{
+    he_mem_free(turns->spare);
+    he_mem_free(turns->turn);
+    he_mem_free(turns->first);
+}
+
+he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err)
+{
+    uint64_t total = 0;
+    he_corners corners = {0};
+    he_turns turns = {0};
+    he_status status = he_corners_init(soup, &corners, err);
+    if (status == HE_OK) {
+        status = he_soup_turn(&corners, &turns, NULL, &total, err);
+    }
+    he_corners_clear(&corners);
+    clear_turns(&turns);
+    if (status == HE_OK) {
+        *defects = total;
+    }
+    return status;
+}
+
 he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *report, he_error *err)
 {
     uint64_t total = 0;
@@ -196,9 +220,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
 out:
     he_mem_free(own);
     he_corners_clear(&corners);
-    he_mem_free(turns.spare);
-    he_mem_free(turns.turn);
-    he_mem_free(turns.first);
+    clear_turns(&turns);
     he_mesh_free(mesh);
     return status;
 }

@@ -76,6 +76,10 @@ void he_defect_text(const he_defect *defect, char *text, size_t size);
 /* Fail with the first of a report that has any. */
 he_status he_report_fail(const he_report *report, he_error *err);
 
+/* How many defects he_build would find in a soup; 0: it would make a mesh. HE_NO_MEMORY,
+ * HE_CANCELLED. */
+HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err);
+
 /* The mesh is the caller's. Any defect fails with the reason of the first and its element; all of
  * them are in `report` (may be NULL). HE_NO_MEMORY, HE_IDS_EXHAUSTED, HE_CANCELLED. The soup is
  * only read, save that its columns may be taken when `flags` has HE_BUILD_TAKE: then the soup is

@@ -106,6 +106,51 @@ static void each_encoding_has_its_tag(void **state)
     bench_free(b);
 }
 
+/* The header has at most 1000 bytes; 40 attributes are more, and more than notes have room for. */
+static void warnings_that_find_no_room_are_counted(void **state)
+{
+    (void)state;
+    static const char *const patch[] = {"Content-Type", "application/json", NULL};
+    enum { ATTRIBUTES = 40 };
+    api_bench *b = with_cube();
+    for (unsigned i = 0; i < ATTRIBUTES; i++) {
+        char target[100];
+        snprintf(target, sizeof target, "/v1/meshes/m/attributes/faces/attribute_%02u", i);
+        bench_reply r = bench_send(b, "PUT", target, patch, "{\"type\":\"float\"}");
+        r = bench_expect(201, r);
+        bench_reply_free(&r);
+    }
+    bench_reply r =
+        bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/content?format=obj", NULL, NULL));
+    const char *text = bench_header(&r, "Export-Warnings"), *last = strstr(text, "; and ");
+    unsigned said = 1, more = 0;
+    assert_non_null(last);
+    assert_int_equal(sscanf(last, "; and %u more", &more), 1);
+    for (const char *p = text; p < last; p++) {
+        said += *p == ';';
+    }
+    assert_int_equal(said + more, ATTRIBUTES);
+    assert_true(said > 20 && strlen(text) <= 1000);
+    assert_memory_equal(text, "not carried: attribute 'face attribute_00'; ", 44);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static void a_position_that_no_float_holds_is_named(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL,
+                               "{\"vertices\":[[0,0,0],[0,-1e39,0]],\"faces\":[]}");
+    r = bench_expect(201, r);
+    bench_reply_free(&r);
+    r = bench_expect(422, bench_send(b, "GET", "/v1/meshes/m/content?format=glb", NULL, NULL));
+    assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "beyond_float");
+    assert_non_null(strstr(r.body, "first that of vertex 1"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 static void encodings_that_do_not_exist(void **state)
 {
     (void)state;
@@ -343,6 +388,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_exported_is_read_back),
         cmocka_unit_test(each_encoding_has_its_tag),
+        cmocka_unit_test(warnings_that_find_no_room_are_counted),
+        cmocka_unit_test(a_position_that_no_float_holds_is_named),
         cmocka_unit_test(encodings_that_do_not_exist),
         cmocka_unit_test(a_wrong_file_names_its_place),
         cmocka_unit_test(gltf_is_read_and_what_is_outside_never),

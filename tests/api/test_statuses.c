@@ -64,6 +64,8 @@ static const step steps[] = {
     {"PUT", "/v1/meshes/e", 201, CUBE, {NULL}},
     {"GET", "/v1/meshes/m/content", 200, NULL, {NULL}},
     {"GET", "/v1/meshes/m/content?format=obj", 304, NULL, {ANY}},
+    {"PUT", "/v1/meshes/far", 201, "{\"vertices\":[[1e39,0,0]],\"faces\":[]}", {NULL}},
+    {"GET", "/v1/meshes/far/content?format=glb", 422, NULL, {NULL}},
     {"GET", "/v1/meshes/m/content", 406, NULL, {"Accept", "image/png"}},
     {"GET", "/v1/meshes/m/geometry", 200, NULL, {NULL}},
     {"GET", "/v1/meshes/m/geometry", 304, NULL, {ANY}},

@@ -353,16 +353,19 @@ static he_status add_parts(he_glb_parts *g, const he_column **used, he_notes *no
     return status;
 }
 
+static he_status note_positions(const he_mesh *m, he_notes *notes, he_error *err)
+{
+    he_narrowed narrowed = {0};
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        if (he_vertex_is_live(m, (he_vertex){v})) {
+            he_narrowed_add(&narrowed, v, m->c.position[v]);
+        }
+    }
+    return he_narrowed_finish(&narrowed, notes, err);
+}
+
 static void note_geometry(const he_glb_parts *g, he_notes *notes)
 {
-    const he_mesh *m = g->mesh;
-    uint64_t rounded = 0;
-    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
-        he_vec3 p = m->c.position[v];
-        rounded += he_vertex_is_live(m, (he_vertex){v}) &&
-                   !(he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z));
-    }
-    he_notes_add_count(notes, "rounded", "rounded to floats: a position", rounded);
     he_notes_add_count(notes, "triangulated",
                        "cut into triangles for other programs, and kept for hedge: a face",
                        g->cuts.polygons);
@@ -378,7 +381,10 @@ static void note_geometry(const he_glb_parts *g, he_notes *notes)
 static he_status make(he_glb_parts *g, he_notes *notes, he_error *err)
 {
     size_t columns = he_mesh_columns(g->mesh);
-    he_status status = he_cuts_make(g->mesh, &g->cuts, err);
+    he_status status = note_positions(g->mesh, notes, err);
+    if (status == HE_OK) {
+        status = he_cuts_make(g->mesh, &g->cuts, err);
+    }
     if (status == HE_OK) {
         status = he_export_numbers(g->mesh, &g->numbers, err);
     }

@@ -25,6 +25,31 @@ he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he_error *err)
     return HE_OK;
 }
 
+void he_narrowed_add(he_narrowed *narrowed, uint32_t vertex, he_vec3 position)
+{
+    if (he_are_floats(position)) {
+        return;
+    }
+    if (fmax(fabs(position.x), fmax(fabs(position.y), fabs(position.z))) > (double)FLT_MAX) {
+        narrowed->first = narrowed->beyond == 0 ? vertex : narrowed->first;
+        narrowed->beyond++;
+    } else {
+        narrowed->rounded++;
+    }
+}
+
+he_status he_narrowed_finish(const he_narrowed *narrowed, he_notes *notes, he_error *err)
+{
+    if (narrowed->beyond > 0) {
+        return he_fail(err, HE_BEYOND_FLOAT, HE_VERTEX, narrowed->first,
+                       "%llu positions have a coordinate beyond the floats of this format, first "
+                       "that of vertex %u",
+                       (unsigned long long)narrowed->beyond, narrowed->first);
+    }
+    he_notes_add_count(notes, "rounded", "rounded to floats: a position", narrowed->rounded);
+    return HE_OK;
+}
+
 static double component_of(const he_column *column, size_t row, uint32_t component)
 {
     const unsigned char *at =

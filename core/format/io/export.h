@@ -21,6 +21,21 @@ static inline bool he_is_float(double value)
 {
     return (double)he_narrow(value) == value;
 }
+static inline bool he_are_floats(he_vec3 p)
+{
+    return he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z);
+}
+
+/* What becomes of positions that are written as floats. {0} begins. */
+typedef struct he_narrowed {
+    uint64_t rounded, beyond; /* positions: not exactly floats; larger than the largest one */
+    uint32_t first;           /* vertex of those beyond */
+} he_narrowed;
+
+void he_narrowed_add(he_narrowed *narrowed, uint32_t vertex, he_vec3 position);
+/* Note what is rounded, or fail with HE_BEYOND_FLOAT and the first vertex. */
+HE_NODISCARD he_status he_narrowed_finish(const he_narrowed *narrowed, he_notes *notes,
+                                          he_error *err);
 
 /* The number of each vertex among the live ones, NULL when that is its id. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he_error *err);

@@ -81,6 +81,29 @@ static he_status find_values(values *v, const he_mesh *mesh, const char *name, c
     return HE_OK;
 }
 
+/* A vertex without a face has no corner that names its value. */
+static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; v->column != NULL && !v->of_corners && i < mesh->c.vertices.issued; i++) {
+        he_vertex vertex = {i};
+        count +=
+            he_vertex_is_live(mesh, vertex) && he_is_isolated(mesh, vertex) &&
+            memcmp(he_column_value(v->column, i), v->column->fallback, v->column->row_bytes) != 0;
+    }
+    return count;
+}
+
+static void note_unnamed(const obj_writer *w, he_notes *notes)
+{
+    he_notes_add_count(notes, "unnamed_uv",
+                       "written, but no face names them: the texture coordinates of a vertex",
+                       count_unnamed(&w->uv, w->mesh));
+    he_notes_add_count(notes, "unnamed_normal",
+                       "written, but no face names it: the normal of a vertex",
+                       count_unnamed(&w->normal, w->mesh));
+}
+
 static void obj_close(void *state)
 {
     obj_writer *w = state;
@@ -129,6 +152,7 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
             }
         }
     }
+    note_unnamed(w, notes);
     he_export_note_lost(mesh, used, SPANS + 3, notes);
     *state = w;
     return HE_OK;

@@ -58,9 +58,7 @@ static void ply_close(void *state)
 static bool positions_are_floats(const he_mesh *mesh)
 {
     for (uint32_t v = 0; v < mesh->c.vertices.issued; v++) {
-        he_vec3 p = mesh->c.position[v];
-        if (he_vertex_is_live(mesh, (he_vertex){v}) &&
-            !(he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z))) {
+        if (he_vertex_is_live(mesh, (he_vertex){v}) && !he_are_floats(mesh->c.position[v])) {
             return false;
         }
     }

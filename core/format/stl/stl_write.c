@@ -38,40 +38,88 @@ static void note_cuts(const he_cuts *cuts, he_notes *notes)
                        cuts->turned);
 }
 
-/* What becomes of vertices when there are only positions. */
-static he_status note_vertices(const stl_writer *w, he_notes *notes, he_error *err)
-{
+/* What a reader makes of the file: vertices by position, and three a facet. */
+typedef struct again {
     he_soup soup;
-    he_weld weld = {0};
+    he_weld weld;
+    uint32_t *vertex; /* of the soup, for each of the mesh */
+    uint64_t isolated, used;
+} again;
+
+static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, he_error *err)
+{
+    const he_content *c = &w->mesh->c;
+    he_narrowed narrowed = {0};
     he_status status = HE_OK;
-    uint64_t isolated = 0, rounded = 0, used = 0;
-    he_soup_init(&soup, NULL);
-    for (uint32_t v = 0; v < w->mesh->c.vertices.issued && status == HE_OK; v++) {
+    for (uint32_t v = 0; v < c->vertices.issued && status == HE_OK; v++) {
         if (!he_vertex_is_live(w->mesh, (he_vertex){v})) {
             continue;
         }
         if (he_is_isolated(w->mesh, (he_vertex){v})) {
-            isolated++;
+            a->isolated++;
             continue;
         }
-        he_vec3 p = w->mesh->c.position[v];
+        he_vec3 p = c->position[v];
         if (!w->text) {
-            rounded += !(he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z));
+            he_narrowed_add(&narrowed, v, p);
             p = (he_vec3){he_narrow(p.x), he_narrow(p.y), he_narrow(p.z)};
         }
-        uint32_t vertex;
-        used++;
-        status = he_weld_vertex(&weld, &soup, p, &vertex, err);
+        a->used++;
+        status = he_weld_vertex(&a->weld, &a->soup, p, &a->vertex[v], err);
+    }
+    return status == HE_OK ? he_narrowed_finish(&narrowed, notes, err) : status;
+}
+
+/* Facets of vertices that were made one, or diagonals of two faces between the same vertices, may
+ * be more than a mesh holds. */
+static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he_error *err)
+{
+    he_cut_walk walk = {0};
+    uint32_t v[3];
+    he_status status = HE_OK;
+    while (status == HE_OK && he_cuts_next(&w->cuts, &walk, v)) {
+        for (size_t i = 0; i < 3; i++) {
+            v[i] = a->vertex[v[i]];
+        }
+        status = he_soup_add_face(&a->soup, v, 3, err);
+    }
+    return status == HE_OK ? he_build_try(&a->soup, defects, err) : status;
+}
+
+/* Says in what the mesh that is read again will differ. */
+static he_status note_differences(const stl_writer *w, again *a, he_notes *notes, he_error *err)
+{
+    uint64_t defects = 0;
+    a->vertex = he_mem_array(NULL, w->mesh->c.vertices.issued, sizeof *a->vertex);
+    if (a->vertex == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to number %u vertices",
+                             w->mesh->c.vertices.issued);
+    }
+    he_status status = weld_vertices(w, a, notes, err);
+    uint64_t merged = a->used - a->soup.vertex_count;
+    if (status == HE_OK && (merged > 0 || w->cuts.polygons > 0)) {
+        status = try_facets(w, a, &defects, err);
     }
     if (status == HE_OK) {
         he_notes_add_count(notes, "isolated_vertices", "not carried: a vertex of no face",
-                           isolated);
-        he_notes_add_count(notes, "rounded", "rounded to floats: a position", rounded);
+                           a->isolated);
         he_notes_add_count(notes, "merged", "at the position of another, and one with it: a vertex",
-                           used - soup.vertex_count);
+                           merged);
+        he_notes_add_count(notes, "no_mesh_again",
+                           "refused without repairs when it is read again: a facet or vertex",
+                           defects);
     }
-    he_weld_clear(&weld);
-    he_soup_clear(&soup);
+    return status;
+}
+
+static he_status note_again(const stl_writer *w, he_notes *notes, he_error *err)
+{
+    again a = {.vertex = NULL};
+    he_soup_init(&a.soup, NULL);
+    he_status status = note_differences(w, &a, notes, err);
+    he_weld_clear(&a.weld);
+    he_soup_clear(&a.soup);
+    he_mem_free(a.vertex);
     return status;
 }
 
@@ -87,7 +135,7 @@ static he_status stl_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     he_status status = he_cuts_make(mesh, &w->cuts, err);
     if (status == HE_OK) {
         note_cuts(&w->cuts, notes);
-        status = note_vertices(w, notes, err);
+        status = note_again(w, notes, err);
     }
     if (status != HE_OK) {
         stl_close(w);
