@@ -26,7 +26,8 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a))
+/* Is the request to begin anew? */
+static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), bool reads_only)
 {
     api_asker a = {.x = x,
                    .mesh = x->content,
@@ -35,15 +36,27 @@ void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a
                    .arena = &x->arena,
                    .budget = {.watch = &x->watch},
                    .asked = "this",
-                   .on_worker = x->phase == API_PHASE_BODY};
+                   .on_worker = x->phase == API_PHASE_BODY,
+                   .reads_only = reads_only};
     a.budget.left = allowance(&a);
     answer(x, &a);
     he_ids_clear(&a.first);
     he_ids_clear(&a.second);
     api_tree_release(a.tree);
-    if (a.spent) {
+    return a.spent;
+}
+
+void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a))
+{
+    if (run(x, answer, false)) {
         api_begin_elsewhere(x);
     }
+}
+
+bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a))
+{
+    (void)run(x, answer, true);
+    return x->problem.code == HE_OK;
 }
 
 uint64_t api_asker_left(const api_asker *a)
@@ -281,7 +294,7 @@ static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_
 bool api_question_dense(api_asker *a, const api_in *question, he_dense *out)
 {
     asked q;
-    return read_relation(a, question, &q) && find_dense(a, question, &q, out);
+    return read_relation(a, question, &q) && (a->reads_only || find_dense(a, question, &q, out));
 }
 
 static bool ask_relation(api_asker *a, const api_in *question)

@@ -38,6 +38,7 @@ typedef struct api_asker {
     he_budget budget;  /* what may still be spent; it asks the watch of the exchange */
     const char *asked; /* the kind of question at hand, for refusals */
     bool on_worker;    /* what is not left is looked for on the job pool */
+    bool reads_only;   /* the body: nothing is looked for or written */
     bool spent;        /* the request begins anew, there or as a job */
     bool has_met;      /* the one search for intersections beside the budget is done */
     he_ids first, second;
@@ -47,8 +48,13 @@ typedef struct api_asker {
 /* Call `answer` with the mesh at hand; it writes onto x->out and answers, or leaves a problem or
  * `spent`: then the request begins anew on the job pool. */
 void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
+/* Before there is a job: call `answer` with an asker that only reads the body, so that what is
+ * wrong with it is said at once. It may look at the mesh for ids. False with the problem filled. */
+bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
 
-/* Answer a question of any kind, or a walk only. False with nothing written and the problem filled,
+/* With a->reads_only the question is read and nothing else, and true says that it is well formed.
+ *
+ * Answer a question of any kind, or a walk only. False with nothing written and the problem filled,
  * or with a->spent. */
 bool api_question_ask(api_asker *a, const api_in *question);
 bool api_walk_ask(api_asker *a, const api_in *walk);

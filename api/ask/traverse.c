@@ -126,6 +126,9 @@ static bool ask_path(api_asker *a, const api_in *walk)
     if (!read_path(a, walk, &p)) {
         return false;
     }
+    if (a->reads_only) {
+        return true;
+    }
     uint64_t limit = a->on_worker ? api_asker_left(a) : API_MAX_WALK;
     if (limit == 0 || (p.until == HE_UNTIL_COUNT && p.repeat > limit / p.count)) {
         return api_asker_exceed(a, walk);
@@ -150,6 +153,9 @@ static bool ask_loop(api_asker *a, const api_in *walk)
     if (!api_in_only(walk, members) ||
         !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &kind, &from)) {
         return false;
+    }
+    if (a->reads_only) {
+        return true;
     }
     if (he_traverse_loop(a->mesh, (he_halfedge){from}, &a->first, &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
@@ -200,8 +206,13 @@ static bool ask_rings(api_asker *a, const api_in *walk)
     uint64_t depth;
     if (!api_in_only(walk, members) ||
         !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &kind, &from) ||
-        !api_in_need(walk, "depth", &in) || !api_in_u64(&in, 0, API_MAX_WALK, &depth) ||
-        !flood(a, walk, kind, from, (uint32_t)depth, 0)) {
+        !api_in_need(walk, "depth", &in) || !api_in_u64(&in, 0, API_MAX_WALK, &depth)) {
+        return false;
+    }
+    if (a->reads_only) {
+        return true;
+    }
+    if (!flood(a, walk, kind, from, (uint32_t)depth, 0)) {
         return false;
     }
     begin_answer(a, "rings", kind, from);
@@ -235,6 +246,9 @@ static bool ask_breadth_first(api_asker *a, const api_in *walk)
     }
     if (api_in_find(walk, "limit", &in) && !api_in_u64(&in, 1, API_MAX_WALK, &limit)) {
         return false;
+    }
+    if (a->reads_only) {
+        return true;
     }
     if (!flood(a, walk, kind, from, (uint32_t)depth, (size_t)limit)) {
         return false;
@@ -285,6 +299,9 @@ static bool ask_shortest_path(api_asker *a, const api_in *walk)
     if (api_in_find(walk, "by", &in) && !api_in_choice(&in, measure_names, &by)) {
         return false;
     }
+    if (a->reads_only) {
+        return true;
+    }
     if (a->on_worker && he_mesh_count(a->mesh, HE_HALFEDGE) > api_asker_left(a)) {
         return api_asker_exceed(a, walk);
     }
@@ -321,6 +338,9 @@ static bool ask_edges(api_asker *a, const api_in *walk, const char *name,
     if (!api_in_only(walk, members) ||
         !read_end(a, walk, "from", API_KIND_BIT(HE_EDGE), &kind, &from)) {
         return false;
+    }
+    if (a->reads_only) {
+        return true;
     }
     if (find(a->mesh, (he_edge){from}, &a->first, &closed, &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
@@ -370,9 +390,16 @@ bool api_walk_ask(api_asker *a, const api_in *walk)
 
 static void answer(api_exchange *x, api_asker *a)
 {
-    if (api_walk_ask(a, &x->root)) {
+    if (api_walk_ask(a, &x->root) && !a->reads_only) {
         api_answer_json(x, 200);
     }
+}
+
+bool api_traverse_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
+{
+    (void)mesh;
+    (void)out; /* it is found on the way */
+    return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 
 void api_traverse_post(api_exchange *x)

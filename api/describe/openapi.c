@@ -333,8 +333,10 @@ static void write_header_parameters(api_out *out, const api_route *route)
                                minimal ? "respond-async: a job and 202. wait=N: the answer itself, "
                                          "if it will take N seconds at most. return=minimal: 204 "
                                          "in place of the answer."
-                                       : "respond-async: a job and 202. wait=N: the answer itself, "
-                                         "if it will take N seconds at most.");
+                                       : "respond-async: a job and 202, unless the request is "
+                                         "refused or If-None-Match names the answer, which is said "
+                                         "at once. wait=N: the answer itself, if it will take N "
+                                         "seconds at most.");
     } else if (minimal) {
         write_header_parameter(out, "Prefer", "return=minimal: 204 in place of the answer.");
     }

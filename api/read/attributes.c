@@ -106,16 +106,24 @@ static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
                              (unsigned long long)limit, cursor);
 }
 
-static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *column)
+/* Which rows are asked for. */
+typedef struct choice {
+    uint64_t from;      /* the first of a page */
+    const uint32_t *of; /* those alone; NULL: a page */
+    size_t count;
+} choice;
+
+static bool read_page(api_exchange *x, choice *out)
 {
     const char *cursor = api_param_text(x, "cursor");
-    uint64_t limit = api_param_u64(x, "limit", API_DEFAULT_PAGE), from = 0;
-    if (cursor != NULL && !api_cursor_read(cursor, "attribute", &x->info, &from, &x->problem)) {
-        return;
-    }
-    if (api_not_modified(x, "values")) {
-        return;
-    }
+    return cursor == NULL ||
+           api_cursor_read(cursor, "attribute", &x->info, &out->from, &x->problem);
+}
+
+static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *column,
+                        uint64_t from)
+{
+    uint64_t limit = api_param_u64(x, "limit", API_DEFAULT_PAGE);
     uint32_t *ids = api_arena_array(&x->arena, limit, sizeof *ids);
     if (ids == NULL) {
         api_fail_memory(x);
@@ -135,7 +143,7 @@ static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *c
 }
 
 /* "1,2,3": at most one id in two bytes of the parameter. */
-static bool read_ids(api_exchange *x, const char *text, uint32_t **out, size_t *count)
+static bool read_ids(api_exchange *x, const char *text, choice *out)
 {
     uint32_t *ids = api_arena_array(&x->arena, strlen(text) / 2 + 1, sizeof *ids);
     if (ids == NULL) {
@@ -156,36 +164,36 @@ static bool read_ids(api_exchange *x, const char *text, uint32_t **out, size_t *
         }
         text += length;
         if (*text++ == '\0') {
-            *out = ids;
-            *count = n + 1;
+            out->of = ids;
+            out->count = n + 1;
             return true;
         }
     }
 }
 
-static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *column)
+/* Elements that live. */
+static bool read_some(api_exchange *x, const he_mesh *mesh, choice *out)
 {
-    uint32_t *ids = NULL;
-    size_t count = 0;
     he_error err = {0};
     if (api_param_text(x, "cursor") != NULL || api_param_text(x, "limit") != NULL) {
-        api_fail(x, API_BAD_PARAMETER, "\"ids\" are no page: give neither cursor nor limit");
-        return;
+        return api_fail(x, API_BAD_PARAMETER, "\"ids\" are no page: give neither cursor nor limit");
     }
-    if (!read_ids(x, api_param_text(x, "ids"), &ids, &count)) {
-        return;
+    if (!read_ids(x, api_param_text(x, "ids"), out)) {
+        return false;
     }
-    for (size_t i = 0; i < count; i++) {
-        if (he_mesh_require(mesh, x->kind, ids[i], &err) != HE_OK) {
-            api_fail_path(x, &err);
-            return;
+    for (size_t i = 0; i < out->count; i++) {
+        if (he_mesh_require(mesh, x->kind, out->of[i], &err) != HE_OK) {
+            return api_fail_path(x, &err);
         }
     }
-    if (api_not_modified(x, "values")) {
-        return;
-    }
+    return true;
+}
+
+static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *column,
+                        const choice *chosen)
+{
     begin_values(x, mesh, column);
-    write_rows(&x->out, column, ids, count);
+    write_rows(&x->out, column, chosen->of, chosen->count);
     api_out_key_null(&x->out, "next");
     api_out_object_end(&x->out);
     api_answer_json(x, 200);
@@ -224,8 +232,7 @@ static int64_t read_rows(void *stream, char *buffer, size_t size)
 
 static void answer_octets(api_exchange *x)
 {
-    if (api_attribute_find(x, x->content) == NULL || api_not_modified(x, "octets") ||
-        !api_keep_mesh(x)) {
+    if (!api_keep_mesh(x)) {
         return;
     }
     const he_column *column = api_attribute_find(x, x->content);
@@ -248,6 +255,13 @@ static bool wants_octets(const api_exchange *x)
 
 bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
+    choice *chosen = api_arena_array(&x->arena, 1, sizeof *chosen);
+    if (chosen == NULL) {
+        return api_fail_memory(x);
+    }
+    *chosen = (choice){.from = 0};
+    x->state = chosen;
+    x->reading.tag = wants_octets(x) ? "octets" : "values";
     for (size_t i = 0; i < x->query.count && wants_octets(x); i++) {
         if (strcmp(x->query.pairs[i].name, "revision") != 0) {
             return api_fail(x, API_BAD_PARAMETER,
@@ -255,19 +269,23 @@ bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
                             x->query.pairs[i].name);
         }
     }
-    return api_cost_of_mesh(x, mesh, out);
+    bool some = api_param_text(x, "ids") != NULL;
+    return api_attribute_find(x, mesh) != NULL &&
+           (some ? read_some(x, mesh, chosen) : read_page(x, chosen)) &&
+           api_cost_of_mesh(x, mesh, out);
 }
 
 void api_attribute_get(api_exchange *x)
 {
+    const choice *chosen = x->state;
     if (wants_octets(x)) {
         answer_octets(x);
         return;
     }
     const he_column *column = api_attribute_find(x, x->content);
-    if (column != NULL && api_param_text(x, "ids") != NULL) {
-        answer_some(x, x->content, column);
-    } else if (column != NULL) {
-        answer_page(x, x->content, column);
+    if (chosen->of != NULL) {
+        answer_some(x, x->content, column, chosen);
+    } else {
+        answer_page(x, x->content, column, chosen->from);
     }
 }

@@ -47,13 +47,19 @@ static void write_page(api_exchange *x, uint64_t from)
     api_answer_json(x, 200);
 }
 
-static void answer_page(api_exchange *x)
+/* The first id of the page. */
+static bool read_from(api_exchange *x, uint64_t *from)
 {
     const char *cursor = api_param_text(x, "cursor");
-    uint64_t from = 0;
-    bool good = cursor == NULL ||
-                api_cursor_read(cursor, he_kind_plural(x->kind), &x->info, &from, &x->problem);
-    if (good && !api_not_modified(x, "page")) {
+    *from = 0;
+    return cursor == NULL ||
+           api_cursor_read(cursor, he_kind_plural(x->kind), &x->info, from, &x->problem);
+}
+
+static void answer_page(api_exchange *x)
+{
+    uint64_t from;
+    if (read_from(x, &from)) {
         write_page(x, from);
     }
 }
@@ -128,7 +134,7 @@ static int64_t read_lines(void *stream, char *buffer, size_t size)
 
 static void answer_lines(api_exchange *x)
 {
-    if (api_not_modified(x, "lines") || !api_keep_mesh(x)) {
+    if (!api_keep_mesh(x)) {
         return;
     }
     lines *l = he_mem_zero(1, sizeof *l);
@@ -151,10 +157,11 @@ static bool wants_lines(const api_exchange *x)
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";
-    uint64_t count = he_mesh_count(mesh, x->kind);
+    uint64_t count = he_mesh_count(mesh, x->kind), from;
+    x->reading.tag = wants_lines(x) ? "lines" : "page";
     if (!wants_lines(x)) {
         out->elements = 20 * (page_limit(x) < count ? page_limit(x) : count);
-        return true;
+        return read_from(x, &from);
     }
     out->elements =
         (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);

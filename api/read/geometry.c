@@ -74,13 +74,20 @@ static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_
     return status == HE_LIMIT && is_working(x) ? HE_UNSUPPORTED : status;
 }
 
+enum { REPRESENTATION = 64 };
+
+static void name_representation(const he_slots *slots, uint64_t base, char out[REPRESENTATION])
+{
+    int used = snprintf(out, REPRESENTATION, "geometry-%" PRIx64, slots->layout);
+    if (base != 0) {
+        snprintf(out + used, REPRESENTATION - (size_t)used, "-%" PRIu64, base);
+    }
+}
+
 static bool is_not_modified(api_exchange *x, const he_slots *slots, uint64_t base)
 {
-    char representation[64];
-    int used = snprintf(representation, sizeof representation, "geometry-%" PRIx64, slots->layout);
-    if (base != 0) {
-        snprintf(representation + used, sizeof representation - (size_t)used, "-%" PRIu64, base);
-    }
+    char representation[REPRESENTATION];
+    name_representation(slots, base, representation);
     return api_not_modified(x, representation);
 }
 
@@ -255,12 +262,32 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
+/* Before there is a job: a client that has the present arrays had them from the slots that are
+ * kept. */
+static bool name_kept(api_exchange *x)
+{
+    uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);
+    char *representation = api_arena_array(&x->arena, REPRESENTATION, 1);
+    if (representation == NULL) {
+        return api_fail_memory(x);
+    }
+    const he_slots *slots = st_derived_begin(x->mesh, ST_DERIVED_SLOTS)->value;
+    if (slots != NULL && slots->revision == x->info.revision && since <= slots->revision) {
+        name_representation(slots, layout == slots->layout ? since : 0, representation);
+        x->reading.tag = representation;
+    }
+    st_derived_end(x->mesh, ST_DERIVED_SLOTS);
+    return true;
+}
+
 bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
     (void)out; /* it depends on the slots that are kept */
-    return (api_param_text(x, "since") == NULL) == (api_param_text(x, "layout") == NULL) ||
-           api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
+    if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
+        return api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
+    }
+    return !api_wants_job(x, 0) || name_kept(x);
 }
 
 void api_geometry_get(api_exchange *x)

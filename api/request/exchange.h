@@ -195,7 +195,8 @@ void api_answer_header_format(api_exchange *x, const char *name, const char *for
     __attribute__((format(printf, 3, 4)));
 /* The ETag of x->info in this representation. */
 void api_answer_etag(api_exchange *x, const char *representation);
-/* Puts the ETag; true when If-None-Match names it, and then 304 was answered. */
+/* Puts the ETag; true when If-None-Match names it, and then 304 was answered. Never in a job: its
+ * result is what was asked for. */
 bool api_not_modified(api_exchange *x, const char *representation);
 /* The same with a tag that is no mesh's. */
 bool api_not_modified_since(api_exchange *x, const char *etag);

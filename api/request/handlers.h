@@ -60,7 +60,9 @@ void api_attribute_delete(api_exchange *x);
 
 /* Questions. */
 void api_query_post(api_exchange *x);
+bool api_query_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_traverse_post(api_exchange *x);
+bool api_traverse_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_boundaries_get(api_exchange *x);
 void api_components_get(api_exchange *x);
 void api_check_get(api_exchange *x);

@@ -53,8 +53,7 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
         return false;
     }
     if (x->phase == API_PHASE_BODY) {
-        x->is_job = api_wants_job(x, 0);
-        x->deferred = api_read; /* it may copy and replay */
+        x->deferred = api_read; /* it may copy and replay; what is refused is no job */
         return false;
     }
     if (!api_at_revision_take(x, revision, &x->snapshot)) {

@@ -64,7 +64,8 @@ typedef struct api_reading {
      * again where the work goes on. */
     bool (*cost)(api_exchange *x, const he_mesh *mesh, api_cost *out);
     /* The representation that is answered with (etag.h), where If-None-Match may be answered before
-     * the handler runs; NULL: the handler looks what it is asked for first. */
+     * the handler runs; NULL: the handler looks what it is asked for first. What may be a job has
+     * one, which `cost` may set, unless it cannot be known before. */
     const char *tag;
     void (*run)(api_exchange *x); /* the handler */
 } api_reading;

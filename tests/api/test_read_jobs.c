@@ -66,10 +66,15 @@ static const reading readings[] = {
      NULL, false},
 };
 
-static bench_reply send(api_bench *b, const reading *r, bool async)
+/* `known` is If-None-Match; NULL: none. */
+static bench_reply send_known(api_bench *b, const reading *r, bool async, const char *known)
 {
-    const char *headers[7] = {"Content-Type", "application/json"};
+    const char *headers[9] = {"Content-Type", "application/json"};
     size_t count = 2;
+    if (known != NULL) {
+        headers[count++] = "If-None-Match";
+        headers[count++] = known;
+    }
     if (r->accept != NULL) {
         headers[count++] = "Accept";
         headers[count++] = r->accept;
@@ -79,6 +84,11 @@ static bench_reply send(api_bench *b, const reading *r, bool async)
         headers[count++] = "respond-async";
     }
     return bench_send(b, r->method, r->target, headers, r->body);
+}
+
+static bench_reply send(api_bench *b, const reading *r, bool async)
+{
+    return send_known(b, r, async, NULL);
 }
 
 static void expect_same(const bench_reply *given, const bench_reply *wanted)
@@ -152,14 +162,178 @@ static void a_read_that_waits_is_no_job(void **state)
     bench_free(b);
 }
 
-static void what_is_wrong_with_a_body_is_said_before_there_is_a_job(void **state)
+static void expect_no_jobs(api_bench *b)
+{
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/jobs"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "items")), 0);
+    bench_done(r);
+}
+
+static void what_is_refused_is_refused_before_there_is_a_job(void **state)
+{
+    (void)state;
+    static const char octets[] = "application/octet-stream", lines[] = "application/x-ndjson";
+    static const struct {
+        reading read;
+        const char *said; /* by the problem */
+    } cases[] = {
+        {{"GET", "/v1/meshes/none/geometry", NULL, NULL, false}, "none"},
+        {{"GET", "/v1/meshes/m?none=1", NULL, NULL, false}, "none"},
+        {{"GET", "/v1/meshes/m?revision=9", NULL, NULL, false}, "revision"},
+        {{"GET", "/v1/meshes/m/geometry?since=1", NULL, NULL, false}, "layout"},
+        {{"GET", "/v1/meshes/m/vertices?cursor=none", NULL, NULL, false}, "cursor"},
+        {{"GET", "/v1/meshes/m/vertices?limit=2", NULL, lines, false}, "limit"},
+        {{"GET", "/v1/meshes/m/vertices?revision=1&limit=2", NULL, lines, false}, "limit"},
+        {{"GET", "/v1/meshes/m/attributes/faces/b", NULL, NULL, false}, "\\\"b\\\""},
+        {{"GET", "/v1/meshes/m/attributes/faces/b", NULL, octets, false}, "\\\"b\\\""},
+        {{"GET", "/v1/meshes/m/attributes/faces/a?revision=2", NULL, NULL, false},
+         "no_such_attribute"},
+        {{"GET", "/v1/meshes/m/attributes/faces/a?ids=0", NULL, NULL, false}, "face 0"},
+        {{"GET", "/v1/meshes/m/attributes/faces/a?ids=x", NULL, NULL, false}, "ids"},
+        {{"GET", "/v1/meshes/m/attributes/faces/a?cursor=x", NULL, NULL, false}, "cursor"},
+        {{"POST", "/v1/meshes/m/query", "{", NULL, false}, "malformed_json"},
+        {{"POST", "/v1/meshes/m/query", "{\"ask\":[]}", NULL, false}, "/ask"},
+        {{"POST", "/v1/meshes/m/query?revision=1", "{}", NULL, false}, "queries"},
+        {{"POST", "/v1/meshes/m/query", "{\"queries\":3}", NULL, false}, "/queries"},
+        {{"POST", "/v1/meshes/m/query", "{\"queries\":[{\"get\":{\"edge\":3}}]}", octets, false},
+         "not_acceptable"},
+        {{"POST", "/v1/meshes/m/query",
+          "{\"queries\":[{\"relation\":\"none\",\"of\":{\"faces\":\"all\"}}]}", octets, false},
+         "/queries/0/relation"},
+        {{"POST", "/v1/meshes/m/query",
+          "{\"queries\":[{\"measure\":\"area\",\"of\":{\"faces\":[1,0]}}]}", octets, false},
+         "/queries/0/of/faces/1"},
+        {{"POST", "/v1/meshes/m/traverse", "{\"walk\":\"away\"}", NULL, false}, "/walk"},
+        {{"POST", "/v1/meshes/m/traverse?revision=1", "{\"walk\":\"loop\"}", NULL, false}, "from"},
+        {{"POST", "/v1/meshes/m/traverse",
+          "{\"walk\":\"path\",\"from\":{\"halfedge\":3},\"path\":[\"next\",\"up\"]}", NULL, false},
+         "/path/1"},
+        {{"POST", "/v1/meshes/m/traverse", "{\"walk\":\"loop\",\"from\":{\"face\":3}}", NULL,
+          false},
+         "/from"},
+        {{"POST", "/v1/meshes/m/traverse", "{\"walk\":\"rings\",\"from\":{\"vertex\":3}}", NULL,
+          false},
+         "depth"},
+        {{"POST", "/v1/meshes/m/traverse",
+          "{\"walk\":\"breadth_first\",\"from\":{\"vertex\":3},\"limit\":0}", NULL, false},
+         "/limit"},
+        {{"POST", "/v1/meshes/m/traverse",
+          "{\"walk\":\"shortest_path\",\"from\":{\"vertex\":3},\"to\":{\"vertex\":4},"
+          "\"by\":\"air\"}",
+          NULL, false},
+         "/by"},
+        {{"POST", "/v1/meshes/m/traverse",
+          "{\"walk\":\"edge_ring\",\"from\":{\"edge\":3},\"to\":4}", NULL, false},
+         "/to"},
+        {{"POST", "/v1/meshes/m/traverse", "{\"walk\":\"edge_loop\",\"from\":{\"edge\":4000000}}",
+          NULL, false},
+         "/from/edge"},
+    };
+    api_bench *b = bench_of_sphere();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        print_message("%s %s\n", cases[i].read.target, cases[i].read.body);
+        bench_reply wanted = send(b, &cases[i].read, false);
+        assert_in_range(wanted.status, 400, 499);
+        bench_reply r = bench_expect(wanted.status, send(b, &cases[i].read, true));
+        if (strstr(r.body, cases[i].said) == NULL) {
+            fail_msg("no word of %s: %s", cases[i].said, r.body);
+        }
+        assert_string_equal(r.body, wanted.body);
+        bench_done(wanted);
+        bench_done(r);
+    }
+    expect_no_jobs(b);
+    bench_free(b);
+}
+
+/* Also where it is about an earlier revision, which is brought back first. */
+static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state)
 {
     (void)state;
     api_bench *b = bench_of_sphere();
-    static const char *const async[] = {"Prefer", "respond-async", NULL};
-    bench_done(bench_expect(400, bench_send(b, "POST", "/v1/meshes/m/query", async, "{")));
-    bench_done(bench_expect(404, bench_send(b, "GET", "/v1/meshes/none/geometry", async, NULL)));
-    bench_done(bench_expect(400, bench_send(b, "GET", "/v1/meshes/m?none=1", async, NULL)));
+    size_t told = 0;
+    for (size_t i = 0; i < sizeof readings / sizeof *readings; i++) {
+        char tag[PATH];
+        bench_reply r = bench_expect(200, send(b, &readings[i], false));
+        snprintf(tag, sizeof tag, "%s", bench_header(&r, "ETag"));
+        bench_done(r);
+        if (tag[0] != '\0') {
+            print_message("%s %s\n", readings[i].target, tag);
+            r = bench_expect(304, send_known(b, &readings[i], true, tag));
+            assert_string_equal(bench_header(&r, "ETag"), tag);
+            bench_done(r);
+            told++;
+        }
+    }
+    assert_int_equal(told, sizeof readings / sizeof *readings - 3); /* all but POST */
+    expect_no_jobs(b);
+    bench_free(b);
+}
+
+/* Drawn anew in part: `since` names another representation. */
+static void changed_rows_that_the_client_has_are_told_at_once(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    char tag[PATH], target[PATH];
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/geometry"));
+    uint64_t layout = 0;
+    for (int i = 7; i >= 0; i--) {
+        layout = layout << 8 | (unsigned char)r.body[80 + i];
+    }
+    bench_done(r);
+    bench_done(bench_expect(
+        200, bench_post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":1}")));
+    snprintf(target, sizeof target, "/v1/meshes/m/geometry?since=3&layout=%llu",
+             (unsigned long long)layout);
+    const reading changes = {"GET", target, NULL, NULL, true};
+    r = bench_expect(200, send(b, &changes, false));
+    snprintf(tag, sizeof tag, "%s", bench_header(&r, "ETag"));
+    bench_done(r);
+    assert_non_null(strstr(tag, "-3\""));
+    bench_done(bench_expect(304, send_known(b, &changes, true, tag)));
+    /* All rows are another representation, and a revision to come is refused where it is looked at.
+     */
+    bench_done(bench_expect(202, send_known(b, &readings[6], true, tag)));
+    const char *later = strchr(target, '?') + 1;
+    memcpy(target + (later - target), "since=9", 7);
+    bench_done(bench_expect(400, send_known(b, &changes, false, "*")));
+    bench_free(b);
+}
+
+/* A tag of the revision that comes while the job waits. */
+static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **state)
+{
+    (void)state;
+    api_bench *b = bench_of_sphere();
+    for (size_t i = 0; i < sizeof readings / sizeof *readings; i++) {
+        const reading *r = &readings[i];
+        char tag[PATH], path[PATH], link[PATH + 8];
+        bool present = strstr(r->target, "revision") == NULL;
+        bench_reply now = bench_expect(200, send(b, r, false));
+        snprintf(tag, sizeof tag, "%s", bench_header(&now, "ETag"));
+        bench_done(now);
+        bool slots = strstr(r->target, "geometry") != NULL; /* their number is not to be guessed */
+        if (tag[0] == '\0' || !present || slots) {
+            continue;
+        }
+        char *revision = strchr(strchr(tag, '-') + 1, '-') + 1;
+        uint64_t at = strtoull(revision, NULL, 10);
+        char next[PATH];
+        snprintf(next, sizeof next, "%.*s%llu%s", (int)(revision - tag), tag,
+                 (unsigned long long)at + 1, strchr(revision, '-'));
+        bench_reply begun = bench_expect(202, send_known(b, r, true, next));
+        snprintf(path, sizeof path, "%s", bench_header(&begun, "Location"));
+        bench_done(begun);
+        bench_done(bench_expect(
+            200, bench_post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":1}")));
+        bench_run_jobs(b, 1);
+        snprintf(link, sizeof link, "%s/result", path);
+        bench_reply given = bench_expect(200, bench_get(b, link));
+        assert_string_equal(bench_header(&given, "ETag"), next);
+        assert_true(given.length > 0);
+        bench_done(given);
+    }
     bench_free(b);
 }
 
@@ -184,7 +358,8 @@ static void a_job_without_an_answer_has_no_result(void **state)
     (void)state;
     api_bench *b = bench_of_sphere();
     char failed[PATH], cancelled[PATH];
-    begin(b, "/v1/meshes/m/attributes/faces/none", failed);
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=quads", "{\"shape\":\"cube\"}")));
+    begin(b, "/v1/meshes/quads/progressive", failed);
     begin(b, "/v1/meshes/m/geometry", cancelled);
     bench_done(bench_expect(202, bench_send(b, "DELETE", cancelled, NULL, NULL)));
     bench_run_jobs(b, 2);
@@ -307,7 +482,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_long_read_can_be_a_job_with_the_answer_it_would_have_given),
         cmocka_unit_test(a_read_that_waits_is_no_job),
-        cmocka_unit_test(what_is_wrong_with_a_body_is_said_before_there_is_a_job),
+        cmocka_unit_test(what_is_refused_is_refused_before_there_is_a_job),
+        cmocka_unit_test(what_the_client_has_is_told_at_once_instead_of_by_a_job),
+        cmocka_unit_test(changed_rows_that_the_client_has_are_told_at_once),
+        cmocka_unit_test(the_result_of_a_job_is_the_answer_though_its_tag_was_named),
         cmocka_unit_test(a_job_without_an_answer_has_no_result),
         cmocka_unit_test(a_result_that_the_client_has_is_not_sent_again),
         cmocka_unit_test(a_result_outlives_its_job_while_it_is_read),
