@@ -47,6 +47,12 @@ static he_status add(st_store *store, const char *name, he_error *err)
     case ST_AHEAD:
     case ST_GONE:
     case ST_ELSEWHERE:
+    case ST_LOST:
+    case ST_COLD:
+    case ST_DAMAGED:
+    case ST_BEHIND:
+    case ST_FULL:
+    case ST_FAILED:
         break;
     }
     he_mesh_free(content);

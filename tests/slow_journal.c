@@ -1,18 +1,30 @@
 #include "tests/slow_journal.h"
 
-#include "store/idempotency.h"
-
 #include <stdio.h>
 
-static uint64_t append(void *self, const st_record *records, size_t count)
+static st_status reserve(void *self, const st_room_need *need, st_room **out)
 {
+    (void)self;
+    (void)need;
+    *out = NULL;
+    return ST_OK;
+}
+
+static void leave(void *self, st_room *room)
+{
+    (void)self;
+    (void)room;
+}
+
+static uint64_t append(void *self, st_room *room, const st_record *records, size_t count)
+{
+    (void)room;
     slow_journal *journal = self;
     pthread_mutex_lock(&journal->lock);
     const st_record *record = &records[count - 1];
     uint64_t position = journal->newest += count;
     journal->groups++;
-    snprintf(journal->key, sizeof journal->key, "%s",
-             record->keyed == NULL ? "" : record->keyed->key);
+    snprintf(journal->key, sizeof journal->key, "%s", record->key == NULL ? "" : record->key->text);
     pthread_cond_broadcast(&journal->changed);
     pthread_mutex_unlock(&journal->lock);
     return position;
@@ -43,7 +55,13 @@ st_journal slow_journal_open(slow_journal *journal)
     pthread_mutex_init(&journal->lock, NULL);
     pthread_mutex_init(&journal->telling, NULL);
     pthread_cond_init(&journal->changed, NULL);
-    return (st_journal){journal, append, listen_to, close_journal};
+    return (st_journal){.self = journal,
+                        .secret = {1, 2},
+                        .reserve = reserve,
+                        .leave = leave,
+                        .append = append,
+                        .listen = listen_to,
+                        .close = close_journal};
 }
 
 void slow_journal_wait(slow_journal *journal, uint64_t position)

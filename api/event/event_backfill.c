@@ -85,11 +85,11 @@ static void render(api_backfill *c, const st_cursor_step *step)
     if (step->delta->object_count > 0) {
         api_event_stale(&c->text, &c->info);
     } else {
-        const st_record record = {.action = step->action,
+        const st_change change = {.action = step->action,
                                   .delta = step->delta,
                                   .undone = step->undone,
                                   .content = step->content};
-        api_event_edit(&c->text, &c->info, &record);
+        api_event_edit(&c->text, &c->info, &change);
     }
 }
 

@@ -5,24 +5,24 @@
 
 #include <string.h>
 
-static void render(const st_mesh_info *info, const st_record *record, api_text *text)
+static void render(const st_mesh_info *info, const st_change *change, api_text *text)
 {
-    if (record->removed) {
+    if (change->removed) {
         api_event_bye(text, "deleted");
-    } else if (record->action == ST_REPLACE) {
+    } else if (change->action == ST_REPLACE) {
         api_event_resync(text, info->incarnation, info->revision, "replaced");
-    } else if (record->delta == NULL) {
+    } else if (change->delta == NULL) {
         api_event_metadata(text, info);
     } else {
-        api_event_edit(text, info, record);
+        api_event_edit(text, info, change);
     }
 }
 
-bool api_event_render(const st_mesh_info *info, const st_record *record, char **bytes,
+bool api_event_render(const st_mesh_info *info, const st_change *change, char **bytes,
                       size_t *length)
 {
     api_text text = {0};
-    render(info, record, &text);
+    render(info, change, &text);
     if (text.failed) {
         api_text_clear(&text);
         return false;

@@ -11,7 +11,7 @@
 #include "store/followers.h"
 
 /* The st_render of the store: a change as an event. */
-bool api_event_render(const st_mesh_info *info, const st_record *record, char **bytes,
+bool api_event_render(const st_mesh_info *info, const st_change *change, char **bytes,
                       size_t *length);
 
 /* The changes of a mesh as messages of events.h, from after `since`, or from the present revision,

@@ -78,15 +78,15 @@ static void begin_edit(api_out *out, const st_mesh_info *info)
 }
 
 /* False when it cannot be said: it would be too long, or memory is out. */
-static bool write_edit(api_text *data, const st_mesh_info *info, const st_record *record,
+static bool write_edit(api_text *data, const st_mesh_info *info, const st_change *change,
                        const he_changes *changes)
 {
     api_out out;
     api_out_init(&out, data);
     begin_edit(&out, info);
-    api_out_key_string(&out, "action", api_action_name(record->action));
+    api_out_key_string(&out, "action", api_action_name(change->action));
     api_write_changes(&out, changes);
-    if (api_write_values(&out, record->content, record->delta, record->undone, NULL) != HE_OK) {
+    if (api_write_values(&out, change->content, change->delta, change->undone, NULL) != HE_OK) {
         return false;
     }
     api_out_object_end(&out);
@@ -117,29 +117,29 @@ void api_event_stale(api_text *text, const st_mesh_info *info)
     api_text_clear(&data);
 }
 
-/* What the record's delta comes to; NULL where that cannot be said. */
-static const he_changes *changes_of(const st_record *record, he_changes *found)
+/* What the change's delta comes to; NULL where that cannot be said. */
+static const he_changes *changes_of(const st_change *change, he_changes *found)
 {
-    if (record->delta->count > API_MAX_EVENT_ROWS) {
+    if (change->delta->count > API_MAX_EVENT_ROWS) {
         return NULL;
     }
-    if (record->changes != NULL) {
-        return record->changes;
+    if (change->changes != NULL) {
+        return change->changes;
     }
-    he_status status = he_changes_find(record->content, record->delta, 0, record->delta->count,
-                                       record->undone, found, NULL);
+    he_status status = he_changes_find(change->content, change->delta, 0, change->delta->count,
+                                       change->undone, found, NULL);
     return status == HE_OK ? found : NULL;
 }
 
-void api_event_edit(api_text *text, const st_mesh_info *info, const st_record *record)
+void api_event_edit(api_text *text, const st_mesh_info *info, const st_change *change)
 {
     api_text data = {.maximum = API_MAX_EVENT};
     he_changes found = {0};
-    const he_changes *changes = changes_of(record, &found);
+    const he_changes *changes = changes_of(change, &found);
     if (changes != NULL && changes->replaced) {
         api_event_resync(text, info->incarnation, info->revision, "replaced");
     } else {
-        if (changes == NULL || !write_edit(&data, info, record, changes)) {
+        if (changes == NULL || !write_edit(&data, info, change, changes)) {
             write_stale(&data, info);
         }
         add_edit(text, info, &data);

@@ -28,10 +28,10 @@
  * brings the id. */
 void api_event_begin(api_text *text, const st_mesh_info *info, bool place);
 
-/* What made info->revision out of the one before: of the record its action, its delta, what that
+/* What made info->revision out of the one before: of the change its action, its delta, what that
  * comes to if it was found, and the mesh after it. A delta that replaces the content becomes a
  * resync. */
-void api_event_edit(api_text *text, const st_mesh_info *info, const st_record *record);
+void api_event_edit(api_text *text, const st_mesh_info *info, const st_change *change);
 /* The same of a revision that cannot be said. */
 void api_event_stale(api_text *text, const st_mesh_info *info);
 void api_event_metadata(api_text *text, const st_mesh_info *info);

@@ -146,6 +146,13 @@ bool api_fail_store(api_exchange *x, st_status status)
         return api_fail(x, API_REVISION_GONE, "the history does not reach back to the revision");
     case ST_ELSEWHERE:
         return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
+    case ST_LOST:
+    case ST_COLD:
+    case ST_DAMAGED:
+    case ST_BEHIND:
+    case ST_FULL:
+    case ST_FAILED:
+        return api_fail(x, API_STORE_FAILED, "the store takes no changes now");
     }
     return api_fail(x, API_INTERNAL, "the store refused without a reason");
 }

@@ -79,6 +79,12 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     case ST_BUSY:
     case ST_TOO_MANY:
     case ST_LISTENERS:
+    case ST_LOST:
+    case ST_COLD:
+    case ST_DAMAGED:
+    case ST_BEHIND:
+    case ST_FULL:
+    case ST_FAILED:
         break;
     }
     api_fail_store(x, status);

@@ -1,23 +1,27 @@
 /* journal.h - where changes are made durable.
  *
  * The store hands each change of a mesh to the journal in order, under the mesh's write lock, and
- * goes on: writers build on the head. Changes are revisions, renames and the removal. A record is
- * numbered twice: by its mesh, from 1 without a gap, and by the journal, which gives it a position
- * in the order of all records of the store, from 1. The removal of a mesh comes before the first
+ * goes on: writers build on the head. Changes are revisions, renames and the removal (record.h). A
+ * record is numbered twice: by its mesh, from 1 without a gap, and by the journal, which gives it a
+ * position in the order of all records of the store. The removal of a mesh comes before the first
  * record of another one of its id.
+ *
+ *     reserve ----> room ----> append ----> queued ----> durable    moved(position)
+ *        |            +------> leave          +--------> lost       lost(interval), then moved
+ *        +-> refused: nothing was written, the change is taken back
  *
  * An answer that shows a record is held back until the journal says that all records up to its
  * position are durable (D1: no answer shows a change that a crash could lose). A journal may be far
- * behind; whenever it gets further it calls its listener. */
+ * behind; whenever it gets further it calls its listener.
+ *
+ * LOSS. When the disk is full or a sync failed, what is queued is lost, and so is each room that
+ * was reserved before: it is still appended and gets its position, but as one that is lost. Until
+ * the last of those rooms came back, and everything lost was told, nothing is admitted; so no
+ * record that can become durable builds on one that cannot. */
 #ifndef HE_JOURNAL_JOURNAL_H
 #define HE_JOURNAL_JOURNAL_H
 
-#include "mesh/delta.h"
-#include "mesh/mesh.h"
-
-#include <stdbool.h>
-
-enum { ST_MESH_ID = 64, ST_MESH_NAME = 256, ST_JOB_ID = 22 };
+#include "journal/record.h"
 
 /* How a call of the store or the journal went. */
 typedef enum st_status {
@@ -32,51 +36,40 @@ typedef enum st_status {
     ST_AHEAD,     /* no such revision yet */
     ST_GONE,      /* the revision is no longer in the history */
     ST_ELSEWHERE, /* the stack does not lead to the revision */
-    ST_BUSY       /* a long edit has claimed the mesh */
+    ST_BUSY,      /* a long edit has claimed the mesh */
+    ST_LOST,      /* the mesh stands on a change that was lost: find it anew */
+    ST_COLD,      /* the mesh is there, but not in memory */
+    ST_DAMAGED,   /* what is kept of the mesh is not whole */
+    ST_BEHIND,    /* the disk is slow: as much is queued as may be */
+    ST_FULL,      /* the disk is full */
+    ST_FAILED     /* the disk failed: no more writes until a restart */
 } st_status;
 
-/* What a revision did; kept in the log. */
-typedef enum st_action { ST_EDIT, ST_UNDO, ST_REDO, ST_REPLACE } st_action;
+/* Memory and a place in the queue for one group of records. A journal's own facts follow. */
+typedef struct st_room {
+    unsigned char *bytes; /* for bodies, which the caller writes before the group is appended */
+    size_t size;
+} st_room;
 
-/* How many elements a revision created, deleted and modified: vertices, edges, faces. */
-typedef struct st_tally {
-    bool known;
-    uint32_t created[3], deleted[3], modified[3];
-} st_tally;
+typedef struct st_room_need {
+    size_t records; /* at most, at least one */
+    size_t bytes;   /* of their bodies together, at most */
+    bool freeing;   /* a removal, which is admitted while the disk is full */
+} st_room_need;
 
-/* A request with an Idempotency-Key, from st_keyed_begin to st_keyed_end. */
-typedef struct st_keyed st_keyed;
-
-/* A change as it is published. Everything is borrowed for the call. */
-typedef struct st_record {
-    const char *id;
-    uint64_t incarnation;
-    uint64_t number;   /* of the record, from 1 for each incarnation */
-    uint64_t revision; /* the first of a mesh is 1; a rename and the removal repeat the last */
-    const char *name;
-    st_action action;          /* ST_REPLACE: `content` holds it all */
-    const he_delta *delta;     /* NULL with ST_REPLACE and for a rename */
-    bool undone;               /* the delta was applied backwards */
-    const he_changes *changes; /* what the delta comes to; NULL: that was not found */
-    bool removed;              /* the mesh was deleted; nothing follows */
-    const he_mesh *content;    /* the mesh after the group of records, NULL when removed */
-    /* The keyed request that made the change, NULL without a key: its key, digest, time, and
-     * whether the key is the store's. The answer is written after the change is published; a
-     * journal that brings a key back answers what is kept without a body, 201 or 204, with the
-     * revision's tag. The digest is good with the secret of the store only, which is to be kept
-     * beside it. */
-    const st_keyed *keyed;
-} st_record;
+typedef struct st_reader st_reader; /* of one mesh; a journal's own */
 
 /* Records that will never be durable: those of one mesh, or of all, within an interval of
  * positions. What is lost of a mesh are its last records: those it appends later are lost too. */
 typedef struct st_loss {
     uint64_t incarnation; /* of the mesh; 0: of all meshes */
     uint64_t from, to;    /* both are lost */
+    st_status status;     /* ST_FULL or ST_FAILED: what a writer is answered */
     const char *reason;   /* a literal, such as "the disk refused a write" */
 } st_loss;
 
-/* Called from any thread, without a lock that `append` takes. */
+/* Called from the journal's own thread, without a lock that `reserve` or `append` takes. `lost`
+ * waits for locks of meshes: nobody who holds one may wait for the journal. */
 typedef struct st_journal_listener {
     void *context;
     /* Every record up to `position`, which never falls, is durable or was told as lost before. */
@@ -86,12 +79,52 @@ typedef struct st_journal_listener {
 
 typedef struct st_journal {
     void *self;
-    /* Takes a group of records of one mesh, at least one, which become durable together or not at
-     * all. They get positions without a gap; returns the last one's. Neither fails nor waits. */
-    uint64_t (*append)(void *self, const st_record *records, size_t count);
+    /* Is what is appended kept beyond memory? Without it a room is NULL, so that nothing is coded,
+     * and the functions from `stage` to `count` are NULL. */
+    bool keeps;
+    /* Two random words, which are kept with the store: what is remembered of requests is hashed
+     * with them. */
+    uint64_t secret[2];
+
+    /* Never waits. ST_BEHIND: the queue is full; what is larger than the queue is admitted when it
+     * is empty. ST_FULL, ST_FAILED, ST_NO_MEMORY. */
+    st_status (*reserve)(void *self, const st_room_need *need, st_room **out);
+    void (*leave)(void *self, st_room *room); /* nothing is appended; takes NULL */
+    /* Takes the room, and a group of records of one mesh, at least one, which become durable
+     * together or not at all. They get positions without a gap; returns the last one's. Neither
+     * fails nor waits. */
+    uint64_t (*append)(void *self, st_room *room, const st_record *records, size_t count);
+
+    /* Brings a large content to the disk before it is published. Waits: only on a thread that may,
+     * without a lock, the content private or a snapshot's. ST_FULL, ST_FAILED, ST_BEHIND,
+     * ST_NO_MEMORY. */
+    st_status (*stage)(void *self, const he_mesh *content, st_stage **out);
+    void (*unstage)(void *self, st_stage *stage); /* it is not published; takes NULL */
+    /* The staged content, which it takes, is that of the mesh after the record `facts`: from now on
+     * the mesh can be loaded from it. Bases are let go, with the records before them, down to the
+     * newest whose revision is not after `needed`. */
+    void (*rebase)(void *self, st_stage *stage, const st_record *facts, uint64_t needed);
+
+    /* The mesh of an id, as the newest record left it that was appended before: waits until that is
+     * durable or lost, on a thread that may. `reader` NULL: the card alone. ST_ABSENT; ST_DAMAGED
+     * with the card filled in; ST_FAILED, ST_NO_MEMORY. */
+    st_status (*open)(void *self, const char *id, st_card *card, st_reader **reader);
+    /* The next piece. ST_DAMAGED: sums or chain are wrong, and the mesh's card says so from now
+     * on. ST_FAILED, ST_NO_MEMORY. */
+    st_status (*read)(st_reader *reader, st_piece *out);
+    void (*shut)(st_reader *reader); /* takes NULL */
+    /* The mesh was read, but it is none: its card says `damage` from now on. */
+    void (*condemn)(void *self, uint64_t incarnation, const char *damage);
+    /* Up to `limit` cards of ids after `after` ("" from the start), in the order of ids, as durable
+     * records left them; waits for the disk. ST_FAILED, ST_NO_MEMORY. */
+    st_status (*list)(void *self, const char *after, st_card *out, size_t limit, size_t *count);
+    /* How many meshes there are, with what is queued. Never waits. */
+    uint64_t (*count)(void *self);
+
     /* Sets the one listener, and tells it how far the journal is if that is beyond 0. NULL stops;
      * once it returned, no call is under way. */
     void (*listen)(void *self, const st_journal_listener *listener);
+    /* Commits what is queued. No room or reader may be out. */
     void (*close)(void *self);
 } st_journal;
 

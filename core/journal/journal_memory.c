@@ -1,13 +1,30 @@
 #include "journal/journal.h"
 
+#include "system/random.h"
+
 #include <stdatomic.h>
 
 /* Positions of all memory journals of the process, which need no order among each other. */
 static _Atomic uint64_t newest;
 
-static uint64_t append(void *self, const st_record *records, size_t count)
+static st_status reserve(void *self, const st_room_need *need, st_room **out)
 {
     (void)self;
+    (void)need;
+    *out = NULL;
+    return ST_OK;
+}
+
+static void leave(void *self, st_room *room)
+{
+    (void)self;
+    (void)room;
+}
+
+static uint64_t append(void *self, st_room *room, const st_record *records, size_t count)
+{
+    (void)self;
+    (void)room;
     (void)records;
     return atomic_fetch_add(&newest, count) + count;
 }
@@ -27,5 +44,10 @@ static void close_journal(void *self)
 
 st_journal st_journal_memory(void)
 {
-    return (st_journal){NULL, append, listen_to, close_journal};
+    return (st_journal){.secret = {st_random(), st_random()},
+                        .reserve = reserve,
+                        .leave = leave,
+                        .append = append,
+                        .listen = listen_to,
+                        .close = close_journal};
 }

@@ -56,30 +56,31 @@ static void is_known(st_wait *wait)
     st_release(mesh);
 }
 
-void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_record *record,
+void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_change *change,
                     st_event *out)
 {
-    if (!mesh->followers->render(info, record, &out->bytes, &out->length)) {
+    if (!mesh->followers->render(info, change, &out->bytes, &out->length)) {
         *out = (st_event){NULL, 0};
     }
 }
 
 /* Records of one request are durable together, so that their events have one place. */
-void st_mesh_tell(st_mesh *mesh, const st_record *records, size_t count, st_event *events)
+void st_mesh_tell(st_mesh *mesh, const st_group *group)
 {
     bool followed = st_queue_is_followed(&mesh->queue);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < group->count; i++) {
+        const st_record *record = &group->records[i];
         st_event event = {NULL, 0};
-        if (events != NULL) {
-            event = events[i];
-            events[i] = (st_event){NULL, 0};
+        if (group->events != NULL) {
+            event = group->events[i];
+            group->events[i] = (st_event){NULL, 0};
         } else if (followed) {
-            st_event_write(mesh, &mesh->info, &records[i], &event);
+            st_event_write(mesh, &mesh->info, &group->changes[i], &event);
         }
-        st_place place = {.stamp = mesh->info.position, .key = records[i].revision};
+        st_place place = {.stamp = mesh->info.position, .key = record->revision};
         st_queue_add(&mesh->queue, place, event.bytes, event.length);
         he_mem_free(event.bytes);
-        if (records[i].removed) {
+        if (record->kind == ST_RECORD_REMOVE) {
             st_queue_end(&mesh->queue);
         }
     }

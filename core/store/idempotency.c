@@ -16,7 +16,7 @@ void st_keys_init(st_keys *keys, const uint64_t secret[2])
 
 static uint64_t bytes_of(const st_keyed *keyed)
 {
-    return sizeof *keyed + strlen(keyed->key) + 1 +
+    return sizeof *keyed + strlen(keyed->text) + 1 +
            (keyed->answer.body == NULL ? 0 : keyed->answer.length);
 }
 
@@ -31,7 +31,7 @@ static void release(st_keyed *keyed)
 static st_keyed **find(const st_keys *keys, const char *key, uint64_t hash)
 {
     st_keyed **at = &keys->buckets[hash & (keys->bucket_count - 1)];
-    while (*at != NULL && ((*at)->hash != hash || strcmp((*at)->key, key) != 0)) {
+    while (*at != NULL && ((*at)->hash != hash || strcmp((*at)->text, key) != 0)) {
         at = &(*at)->next;
     }
     return at;
@@ -40,7 +40,7 @@ static st_keyed **find(const st_keys *keys, const char *key, uint64_t hash)
 /* Take it out of the table. */
 static void forget(st_keys *keys, st_keyed *keyed)
 {
-    *find(keys, keyed->key, keyed->hash) = keyed->next;
+    *find(keys, keyed->text, keyed->hash) = keyed->next;
     keys->count--;
     if (keyed->is_kept) {
         *(keyed->older == NULL ? &keys->oldest : &keyed->older->newer) = keyed->newer;
@@ -90,7 +90,7 @@ static bool reserve_bucket(st_keys *keys)
 
 static void forget_old(st_keys *keys, double now)
 {
-    while (keys->oldest != NULL && keys->oldest->time + ST_KEPT_SECONDS <= now) {
+    while (keys->oldest != NULL && keys->oldest->key.time + ST_KEPT_SECONDS <= now) {
         forget(keys, keys->oldest);
     }
 }
@@ -106,11 +106,10 @@ static st_keyed_status add(st_keys *keys, const st_key *key, uint64_t hash, doub
     keyed->keys = keys;
     keyed->uses = 2;
     keyed->listed = true;
-    keyed->time = now;
-    keyed->digest[0] = key->digest[0];
-    keyed->digest[1] = key->digest[1];
+    keyed->key = (st_record_key){
+        .text = keyed->text, .digest = {key->digest[0], key->digest[1]}, .time = now};
     keyed->hash = hash;
-    memcpy(keyed->key, key->text, length + 1);
+    memcpy(keyed->text, key->text, length + 1);
     st_keyed **at = &keys->buckets[hash & (keys->bucket_count - 1)];
     keyed->next = *at;
     *at = keyed;
@@ -128,7 +127,7 @@ st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_k
     st_keyed_status status;
     if (keyed == NULL) {
         status = add(keys, key, hash, now, out);
-    } else if (keyed->digest[0] != key->digest[0] || keyed->digest[1] != key->digest[1]) {
+    } else if (keyed->key.digest[0] != key->digest[0] || keyed->key.digest[1] != key->digest[1]) {
         status = ST_KEYED_OTHER;
     } else if (!keyed->is_kept) {
         status = ST_KEYED_BUSY;

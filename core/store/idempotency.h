@@ -40,12 +40,11 @@ struct st_keyed {
     st_keys *keys;
     unsigned uses;
     bool is_kept, listed; /* listed: the table holds it */
-    bool of_store;        /* the key is the store's, not the mesh's */
-    double time;          /* of the keyed, seconds since 1970 */
-    uint64_t digest[2], hash;
+    st_record_key key;    /* as a record carries it */
+    uint64_t hash;
     st_kept answer; /* `body` is owned */
     struct st_keyed *next, *older, *newer;
-    char key[];
+    char text[]; /* of the key */
 };
 
 void st_keys_init(st_keys *keys, const uint64_t secret[2]);

@@ -46,26 +46,28 @@ static void commit_edit(st_write *w, const char *ops)
     } else {
         st_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content, &tally);
     }
-    st_record record = st_mesh_record(mesh, barrier ? ST_REPLACE : ST_EDIT, w->keyed);
+    const st_record record = st_mesh_record(mesh, ST_RECORD_EDIT, w->keyed);
+    st_change change = {.action = ST_REPLACE, .content = mesh->content};
     if (!barrier) {
-        record.delta = st_step_delta(step);
-        record.changes = &w->changes;
+        change.action = ST_EDIT;
+        change.delta = st_step_delta(step);
+        change.changes = &w->changes;
     }
-    st_mesh_publish(mesh, &record, 1, NULL);
+    st_mesh_publish(mesh, &(st_group){.records = &record, .changes = &change, .count = 1});
     st_step_release(step);
 }
 
 static void commit_steps(st_write *w)
 {
     st_mesh *mesh = w->mesh;
+    const st_record_kind kind = w->which == ST_UNDO ? ST_RECORD_UNDO : ST_RECORD_REDO;
     for (uint32_t i = 0; i < w->steps; i++) {
         double now = revise(mesh);
         st_log_add_step(&mesh->log, mesh->info.revision, w->which, now, mesh->content);
-        w->records[i] = st_mesh_record(mesh, w->which, w->keyed);
-        w->records[i].delta = w->deltas[i];
-        w->records[i].undone = w->which == ST_UNDO;
+        w->records[i] = st_mesh_record(mesh, kind, w->keyed);
     }
-    st_mesh_publish(mesh, w->records, w->steps, w->events);
+    const st_group group = {.records = w->records, .count = w->steps, .events = w->events};
+    st_mesh_publish(mesh, &group);
     st_log_settle(&mesh->log);
 }
 
@@ -83,22 +85,26 @@ static void commit_facts(st_write *w)
 {
     st_mesh *mesh = w->mesh;
     st_record records[2];
+    st_change changes[2];
     size_t count = 0;
     if (w->kind == ST_WRITE_REPLACE) {
         double now = revise(mesh);
         st_log_add_barrier(&mesh->log, mesh->info.revision, ST_REPLACE, "replace", now,
                            mesh->content);
-        records[count++] = st_mesh_record(mesh, ST_REPLACE, w->keyed);
+        changes[count] = (st_change){.action = ST_REPLACE, .content = mesh->content};
+        records[count++] = st_mesh_record(mesh, ST_RECORD_CONTENT, w->keyed);
     }
     if (w->name != NULL) {
         rename_mesh(mesh, w->name);
-        records[count++] = st_mesh_record(mesh, ST_EDIT, w->keyed);
+        changes[count] = (st_change){.action = ST_EDIT, .content = mesh->content};
+        records[count++] = st_mesh_record(mesh, ST_RECORD_RENAME, w->keyed);
     }
     if (w->kind == ST_WRITE_REMOVE) {
         mesh->info.removed = true;
-        records[count++] = st_mesh_record(mesh, ST_REPLACE, w->keyed);
+        changes[count] = (st_change){.action = ST_REPLACE, .removed = true};
+        records[count++] = st_mesh_record(mesh, ST_RECORD_REMOVE, w->keyed);
     }
-    st_mesh_publish(mesh, records, count, NULL);
+    st_mesh_publish(mesh, &(st_group){.records = records, .changes = changes, .count = count});
 }
 
 /* Puts in what the write made; what it takes the place of is the caller's to free. */

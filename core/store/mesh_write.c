@@ -192,14 +192,14 @@ static void write_event(st_write *w, uint32_t i)
     const st_mesh *mesh = w->mesh;
     st_mesh_info info = mesh->info;
     info.revision += i + 1;
-    const st_record record = {
+    const st_change change = {
         .action = w->which,
         .delta = w->deltas[i],
         .undone = w->which == ST_UNDO,
         .content = w->content,
         .changes = w->steps == 1 ? &w->changes : NULL,
     };
-    st_event_write(mesh, &info, &record, &w->events[i]);
+    st_event_write(mesh, &info, &change, &w->events[i]);
 }
 
 /* What all steps come to. */

@@ -2,6 +2,7 @@
 #include "store/revision_entry.h"
 
 #include <assert.h>
+#include <string.h>
 
 uint64_t st_log_head(const st_revision_log *log)
 {
@@ -11,6 +12,30 @@ uint64_t st_log_head(const st_revision_log *log)
 static const st_point *point_of(const st_revision_log *log, uint64_t revision)
 {
     return revision == log->before.revision ? &log->before : &st_entry_of(log, revision)->point;
+}
+
+void st_log_fill_record(const st_revision_log *log, st_record *record)
+{
+    memcpy(record->issued, point_of(log, st_log_head(log))->issued, sizeof record->issued);
+    record->ops = "";
+    switch (record->kind) {
+    case ST_RECORD_EDIT:
+    case ST_RECORD_UNDO:
+    case ST_RECORD_REDO: {
+        const st_revision *entry = st_entry_of(log, record->revision);
+        record->barrier = entry->step == NULL;
+        record->inverts = entry->inverts;
+        record->ops = entry->ops;
+        record->tally = entry->tally;
+        break;
+    }
+    case ST_RECORD_CONTENT:
+        record->barrier = true;
+        break;
+    case ST_RECORD_RENAME:
+    case ST_RECORD_REMOVE:
+        break;
+    }
 }
 
 void st_log_point(const st_revision_log *log, uint64_t revision, st_point *out)

@@ -17,7 +17,6 @@ struct st_store {
     pthread_rwlock_t lock; /* of the table */
     st_mesh **meshes;      /* in the order of ids, each with a use */
     size_t count, capacity;
-    uint64_t secret[2];
     st_keys keys; /* of what makes a mesh */
 };
 
@@ -36,9 +35,7 @@ st_store *st_store_new(const st_store_options *options)
     store->journal = options->journal;
     store->undo_budget = options->undo_budget;
     store->max_meshes = options->max_meshes;
-    store->secret[0] = st_random();
-    store->secret[1] = st_random();
-    st_keys_init(&store->keys, store->secret);
+    st_keys_init(&store->keys, store->journal.secret);
     store->followers = (st_followers){
         .render = options->render,
         .most = options->listeners,
@@ -145,7 +142,7 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
                                      .journal = &store->journal,
                                      .followers = &store->followers,
                                      .undo_budget = store->undo_budget,
-                                     .secret = store->secret};
+                                     .secret = store->journal.secret};
     st_mesh *mesh = st_mesh_new(&options, id, name, content);
     if (mesh == NULL) {
         return ST_NO_MEMORY;
@@ -155,8 +152,9 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
     st_status status = insert(store, mesh);
     if (status == ST_OK) {
         *out = st_hold(mesh);
-        const st_record record = st_mesh_record(mesh, ST_REPLACE, keyed);
-        st_mesh_publish(mesh, &record, 1, NULL);
+        const st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, keyed);
+        const st_change change = {.action = ST_REPLACE, .content = mesh->content};
+        st_mesh_publish(mesh, &(st_group){.records = &record, .changes = &change, .count = 1});
     }
     pthread_rwlock_unlock(&store->lock);
     if (status != ST_OK) {
@@ -229,7 +227,7 @@ st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key
         status = st_keys_begin(keys, key, st_clock_utc(), out);
     }
     if (status == ST_KEYED_NEW) {
-        (*out)->of_store = mesh == NULL;
+        (*out)->key.of_store = mesh == NULL;
     }
     return status;
 }
@@ -241,7 +239,7 @@ size_t st_listeners(st_store *store)
 
 const uint64_t *st_secret(const st_store *store)
 {
-    return store->secret;
+    return store->journal.secret;
 }
 
 st_waits *st_store_waits(st_store *store)

@@ -23,11 +23,13 @@
 #ifndef HE_STORE_STORE_H
 #define HE_STORE_STORE_H
 
+#include "mesh/delta.h"
 #include "store/durability_wait.h"
 
 typedef struct st_store st_store;
 typedef struct st_mesh st_mesh;         /* a stored mesh */
 typedef struct st_snapshot st_snapshot; /* an immutable copy at one revision */
+typedef struct st_keyed st_keyed;       /* a request with an Idempotency-Key, begun and not ended */
 
 /* Plain facts about a stored mesh, copied out under its lock. */
 typedef struct st_mesh_info {
@@ -45,9 +47,19 @@ typedef struct st_mesh_info {
     char job[ST_JOB_ID + 1]; /* the job whose edit that is, "" when it is none */
 } st_mesh_info;
 
+/* A revision, a rename or the removal, as it is told to those who listen. */
+typedef struct st_change {
+    st_action action;          /* ST_REPLACE: the whole content */
+    const he_delta *delta;     /* NULL with ST_REPLACE and for a rename */
+    bool undone;               /* the delta was applied backwards */
+    const he_changes *changes; /* what the delta comes to; NULL: that was not found */
+    const he_mesh *content;    /* after the change */
+    bool removed;              /* the mesh was deleted; nothing follows */
+} st_change;
+
 /* Writes a change as a message for those who listen to the mesh. `bytes` is allocated by base/mem.h
  * and the caller's to free. False when memory is out. Called under the mesh's write lock. */
-typedef bool st_render(const st_mesh_info *info, const st_record *record, char **bytes,
+typedef bool st_render(const st_mesh_info *info, const st_change *change, char **bytes,
                        size_t *length);
 
 typedef struct st_store_options {
@@ -63,8 +75,8 @@ typedef struct st_store_options {
 st_store *st_store_new(const st_store_options *options);
 /* Nobody may hold a handle. */
 void st_store_free(st_store *store);
-/* Two random words. What is hashed with them cannot be foreseen from outside: names in tables,
- * requests that are remembered. They are kept as long as those are. */
+/* The journal's two random words. What is hashed with them cannot be foreseen from outside: names
+ * in tables, requests that are remembered. */
 const uint64_t *st_secret(const st_store *store);
 size_t st_store_count(st_store *store);
 /* Frees the cached copies and bodies of kept answers that nobody reads, and what was derived from

@@ -115,27 +115,41 @@ void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out)
     out->busy = mesh->claimed;
 }
 
-st_record st_mesh_record(st_mesh *mesh, st_action action, const st_keyed *keyed)
+static st_counts counts_of(const he_mesh *content)
+{
+    return (st_counts){.vertices = he_mesh_vertices(content),
+                       .edges = he_mesh_edges(content),
+                       .faces = he_mesh_faces(content),
+                       .boundary = he_mesh_boundary_halfedges(content)};
+}
+
+st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *keyed)
 {
     mesh->info.record++;
-    return (st_record){
+    st_record record = {
+        .kind = kind,
         .id = mesh->info.id,
+        .name = mesh->info.name,
         .incarnation = mesh->info.incarnation,
         .number = mesh->info.record,
         .revision = mesh->info.revision,
-        .name = mesh->info.name,
-        .action = action,
-        .removed = mesh->info.removed,
-        .content = mesh->info.removed ? NULL : mesh->content,
-        .keyed = keyed,
+        .metadata = mesh->info.metadata,
+        .created = mesh->info.created,
+        .time = mesh->info.modified,
+        .counts = counts_of(mesh->content),
+        .bytes = he_mesh_bytes(mesh->content),
+        .key = keyed == NULL ? NULL : &keyed->key,
     };
+    st_log_fill_record(&mesh->log, &record);
+    return record;
 }
 
-void st_mesh_publish(st_mesh *mesh, const st_record *records, size_t count, st_event *events)
+void st_mesh_publish(st_mesh *mesh, const st_group *group)
 {
-    mesh->info.position = mesh->journal->append(mesh->journal->self, records, count);
+    const st_journal *journal = mesh->journal;
+    mesh->info.position = journal->append(journal->self, NULL, group->records, group->count);
     st_waits_appended(mesh->followers->waits, mesh->info.position);
-    st_mesh_tell(mesh, records, count, events);
+    st_mesh_tell(mesh, group);
 }
 
 const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info)

@@ -84,14 +84,24 @@ typedef struct st_event {
     size_t length;
 } st_event;
 
-/* Under the exclusive lock: the next record of the mesh, of what it is now. */
-st_record st_mesh_record(st_mesh *mesh, st_action action, const st_keyed *keyed);
-/* Under the exclusive lock: hands a group of records to the journal and tells the listeners.
- * `events` has one for each record, whose bytes are taken; NULL: they are to be written. */
-void st_mesh_publish(st_mesh *mesh, const st_record *records, size_t count, st_event *events);
+/* Records that become durable together, and what listeners are told of each: a change that is
+ * written as an event if anybody listens, or an event that was written before, whose bytes are
+ * taken. */
+typedef struct st_group {
+    const st_record *records;
+    size_t count;
+    const st_change *changes; /* one for each, or NULL */
+    st_event *events;         /* likewise */
+} st_group;
+
+/* Under the exclusive lock: the next record of the mesh, of what it is now. A revision is in the
+ * log already. */
+st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *keyed);
+/* Under the exclusive lock: hands a group of records to the journal and tells the listeners. */
+void st_mesh_publish(st_mesh *mesh, const st_group *group);
 /* What st_mesh_publish does for the listeners, when the position is known. */
-void st_mesh_tell(st_mesh *mesh, const st_record *records, size_t count, st_event *events);
-void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_record *record,
+void st_mesh_tell(st_mesh *mesh, const st_group *group);
+void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_change *change,
                     st_event *out);
 /* Under the mesh's exclusive lock: the store has it no more. */
 void st_store_take_out(st_store *store, st_mesh *mesh);

@@ -51,9 +51,10 @@ static void expect(bool good)
     }
 }
 
-static uint64_t append(void *self, const st_record *records, size_t count)
+static uint64_t append(void *self, st_room *room, const st_record *records, size_t count)
 {
     (void)self;
+    (void)room;
     pthread_mutex_lock(&journal.lock);
     uint64_t last = journal.newest + count;
     for (size_t i = 0; i < count && last <= NOTES; i++) {
@@ -61,7 +62,7 @@ static uint64_t append(void *self, const st_record *records, size_t count)
                                                  .number = records[i].number,
                                                  .revision = records[i].revision,
                                                  .group = last};
-        if (records[i].removed) {
+        if (records[i].kind == ST_RECORD_REMOVE) {
             journal.removed[records[i].id[0] - 'a'] = journal.newest;
         }
     }
@@ -334,10 +335,10 @@ typedef struct told {
     uint64_t incarnation, revision;
 } told;
 
-static bool render(const st_mesh_info *info, const st_record *record, char **bytes, size_t *length)
+static bool render(const st_mesh_info *info, const st_change *change, char **bytes, size_t *length)
 {
     const told event = {info->incarnation, info->revision};
-    (void)record;
+    (void)change;
     *bytes = he_mem_alloc(sizeof event);
     *length = sizeof event;
     if (*bytes != NULL) {
@@ -436,7 +437,7 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     st_store *store = st_store_new(&(st_store_options){
         .undo_budget = 1 << 16,
         .max_meshes = MESHES,
-        .journal = {NULL, append, listen_to, close_journal},
+        .journal = {.append = append, .listen = listen_to, .close = close_journal},
         .render = render,
         .listeners = LISTENERS,
         .mesh_listeners = LISTENERS,
