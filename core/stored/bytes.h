@@ -1,5 +1,5 @@
-/* bytes.h - numbers as bytes, for core/stored only: writing moves a pointer on, reading moves a
- * cursor that never passes its end. */
+/* bytes.h - numbers as bytes, for core/stored and the frames of core/journal: writing moves a
+ * pointer on, reading moves a cursor that never passes its end. */
 #ifndef HE_STORED_BYTES_H
 #define HE_STORED_BYTES_H
 
