@@ -26,7 +26,7 @@ static const he_format formats[] = {
     },
     {
         .name = "gltf",
-        .doc = "glTF 2.0 as JSON, its buffers in data: URIs",
+        .doc = "glTF 2.0 as JSON, its buffers in data: URIs or in files that come with it",
         .media_types = LIST("model/gltf+json"),
         .extensions = LIST("gltf"),
         .encodings = LIST("ascii"),
@@ -254,6 +254,23 @@ he_status he_reader_feed(he_reader *reader, const void *bytes, size_t n, he_erro
     return settle(reader, status, &failure, err);
 }
 
+void he_reader_beside(he_reader *reader, he_beside *beside)
+{
+    reader->import.beside = beside;
+}
+
+static void note_unused(he_import *import)
+{
+    const he_beside *beside = import->beside;
+    for (size_t i = 0; beside != NULL && i < beside->count; i++) {
+        const he_beside_file *file = &beside->files[i];
+        if (!file->used) {
+            he_notes_add(&import->notes, "ignored_file", "ignored, since nothing names it: file",
+                         file->name, strlen(file->name), HE_PLACE_NONE, 0);
+        }
+    }
+}
+
 bool he_reader_reads_at_end(const he_reader *reader)
 {
     return reader->reading->at_end;
@@ -272,6 +289,8 @@ he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
         status = reader->reading->finish(reader->state, &failure);
     }
     if (status == HE_OK) {
+        note_unused(&reader->import);
+        reader->import.beside = NULL;
         *out = reader->import;
         reader->import = (he_import){0};
         /* What was needed to read is not kept beside the mesh that is built next. */

@@ -230,7 +230,7 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
         bench_reply_free(&r);
         r = bench_expect(422, bench_send(b, "POST", "/v1/meshes", headers, outside));
         assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "unsupported");
-        assert_non_null(strstr(r.body, "buffers/0/uri: a buffer outside the file"));
+        assert_non_null(strstr(r.body, "buffers/0/uri: the buffer is in another file"));
         bench_reply_free(&r);
     }
     bench_free(b);

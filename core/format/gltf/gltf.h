@@ -4,8 +4,8 @@
  *     length "JSON" ...          a chunk: the asset
  *     length "BIN\0" ...         a chunk that may be missing: its buffer 0
  *
- * READING. Everything comes from the bytes themselves: a buffer is the BIN chunk or a data: URI in
- * base64. Any other uri of a buffer is refused, images are noted; nothing is ever opened.
+ * READING. Everything comes from the bytes themselves: a buffer is the BIN chunk, a data: URI in
+ * base64 or a file that came with this one (io/beside.h). Images are noted; nothing is ever opened.
  *
  * Each node of the scene that has a mesh adds it, moved by the product of the matrices above it, so
  * a mesh of several nodes comes several times. Each primitive adds all its vertices, in the order

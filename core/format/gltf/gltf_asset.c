@@ -1,11 +1,9 @@
 #include "format/gltf/gltf_asset.h"
 
-#include "format/text/base64.h"
-
 #include <string.h>
 
-static void note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
-                 uint32_t place)
+void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
+                  uint32_t place)
 {
     char name[HE_NOTE_SUBJECT];
     size_t length =
@@ -81,7 +79,7 @@ he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name,
 
 /* --- the whole --- */
 
-static he_status list_items(he_gltf *asset, const char *name, he_ids *list, he_error *err)
+he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error *err)
 {
     const he_json *json = &asset->json;
     uint32_t array = HE_NONE;
@@ -163,136 +161,10 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
         if (he_json_is(json, i, "KHR_mesh_quantization")) {
             asset->quantized = true;
         } else {
-            note(asset, "ignored_extension", "ignored: extension", i, i);
+            he_gltf_note(asset, "ignored_extension", "ignored: extension", i, i);
         }
     }
     return HE_OK;
-}
-
-/* Characters of base64 between two looks at the watch; a multiple of four. */
-enum { PIECE = 1 << 16 };
-
-/* `to` has room for the bytes of `length` characters. */
-static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
-                        he_gltf_buffer *to, he_error *err)
-{
-    he_status status = HE_OK;
-    for (size_t at = 0, n; at < length && status == HE_OK; at += n) {
-        size_t decoded;
-        n = length - at < PIECE ? length - at : PIECE;
-        if (!he_base64_decode(text + at, n, to->own + to->length, &decoded) ||
-            (at + n < length && decoded != PIECE / 4 * 3)) {
-            return he_json_fail(&asset->json, uri, err, HE_SYNTAX, "the data: URI is not base64");
-        }
-        to->length += decoded;
-        asset->steps += n;
-        status = he_gltf_tell(asset, err);
-    }
-    return status;
-}
-
-/* The characters of a string whose escapes are undone, if it has any: then `own` is to be freed. */
-static he_status plain_text(const he_json *json, uint32_t value, const char **text, size_t *length,
-                            char **own, he_error *err)
-{
-    *text = he_json_raw(json, value, length);
-    if (memchr(*text, '\\', *length) == NULL) {
-        return HE_OK;
-    }
-    *own = he_mem_alloc(*length + 1);
-    if (*own == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a string of %zu bytes", *length);
-    }
-    *length = he_json_string(json, value, *own, *length + 1);
-    *text = *own;
-    return HE_OK;
-}
-
-static he_status decode_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, he_error *err)
-{
-    const he_json *json = &asset->json;
-    if (!he_json_begins(json, uri, "data:")) {
-        return he_json_fail(json, uri, err, HE_UNSUPPORTED,
-                            "a buffer outside the file: no uri but data: is read");
-    }
-    size_t length;
-    const char *text;
-    char *own = NULL;
-    he_status status = plain_text(json, uri, &text, &length, &own, err);
-    if (status != HE_OK) {
-        return status;
-    }
-    const char *comma = memchr(text, ',', length);
-    static const char coding[] = ";base64";
-    size_t head = comma == NULL ? 0 : (size_t)(comma - text), size = sizeof coding - 1;
-    if (head < size || memcmp(comma - size, coding, size) != 0) {
-        status = he_json_fail(json, uri, err, HE_UNSUPPORTED, "a data: URI that is not in base64");
-        goto out;
-    }
-    length -= head + 1;
-    *buffer =
-        (he_gltf_buffer){.own = he_mem_alloc(he_base64_room(length)), .place = HE_GLTF_NOWHERE};
-    if (buffer->own == NULL) {
-        status =
-            he_fail_plain(err, HE_NO_MEMORY, "no memory for a buffer of %zu characters", length);
-        goto out;
-    }
-    buffer->bytes = buffer->own;
-    status = decode(asset, uri, comma + 1, length, buffer, err);
-out:
-    he_mem_free(own);
-    return status;
-}
-
-static he_status open_buffer(he_gltf *asset, size_t i, uint32_t value, const he_gltf_bin *bin,
-                             he_error *err)
-{
-    const he_json *json = &asset->json;
-    he_gltf_buffer *buffer = &asset->buffers[i];
-    uint64_t length = 0;
-    uint32_t uri = he_json_find(json, value, "uri");
-    he_status status = he_gltf_need(asset, value, "byteLength", 1, HE_JSON_WHOLE, &length, err);
-    if (status == HE_OK && uri != HE_NONE) {
-        status = decode_uri(asset, buffer, uri, err);
-    } else if (status == HE_OK && i == 0 && bin->bytes != NULL) {
-        *buffer = (he_gltf_buffer){bin->bytes, NULL, bin->length, bin->place};
-        if (bin->length > length && bin->length - length > 3) {
-            note(asset, "bin_longer", "ignored: bytes of the BIN chunk behind its buffer", HE_NONE,
-                 value);
-        }
-    } else if (status == HE_OK) {
-        bool packed = he_json_find(json, he_json_find(json, value, "extensions"),
-                                   "EXT_meshopt_compression") != HE_NONE;
-        return he_json_fail(json, value, err, packed ? HE_UNSUPPORTED : HE_BAD_VALUE,
-                            packed ? "the buffer is there in EXT_meshopt_compression only"
-                                   : "the buffer has no bytes in the file");
-    }
-    if (status == HE_OK && buffer->length < length) {
-        return he_json_fail(json, value, err, HE_BAD_VALUE,
-                            "a buffer of %llu bytes of which %llu are there",
-                            (unsigned long long)length, (unsigned long long)buffer->length);
-    }
-    buffer->length = length;
-    return status;
-}
-
-static he_status open_buffers(he_gltf *asset, const he_gltf_bin *bin, he_error *err)
-{
-    he_ids list = {0};
-    he_status status = list_items(asset, "buffers", &list, err);
-    if (status == HE_OK && list.count > 0) {
-        asset->buffers = he_mem_zero(list.count, sizeof *asset->buffers);
-        asset->buffer_count = list.count;
-        if (asset->buffers == NULL) {
-            asset->buffer_count = 0;
-            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu buffers", list.count);
-        }
-    }
-    for (size_t i = 0; i < list.count && status == HE_OK; i++) {
-        status = open_buffer(asset, i, list.ids[i], bin, err);
-    }
-    he_ids_clear(&list);
-    return status;
 }
 
 /* What has no place in a mesh. */
@@ -307,7 +179,7 @@ static void note_rest(he_gltf *asset)
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         uint32_t list = he_json_find(&asset->json, 0, parts[i].name);
         if (he_json_first(&asset->json, list) != HE_NONE) {
-            note(asset, parts[i].code, parts[i].text, HE_NONE, list);
+            he_gltf_note(asset, parts[i].code, parts[i].text, HE_NONE, list);
         }
     }
 }
@@ -315,7 +187,8 @@ static void note_rest(he_gltf *asset)
 he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text, size_t length,
                        uint64_t offset, const he_gltf_bin *bin, he_error *err)
 {
-    *asset = (he_gltf){.into = into, .size = (uint64_t)length + bin->length};
+    *asset = (he_gltf){.into = into,
+                       .size = (uint64_t)length + bin->length + he_beside_bytes(into->beside)};
     asset->room = HE_GLTF_ROOM + HE_GLTF_FACTOR * asset->size;
     he_watch *watch = into->soup.limits.watch;
     he_status status = he_watch_phase(watch, "parsing", 0.4, err);
@@ -340,10 +213,10 @@ he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text, size_t
                  {"meshes", &asset->meshes},
                  {"materials", &asset->materials}};
     for (size_t i = 0; i < sizeof lists / sizeof *lists && status == HE_OK; i++) {
-        status = list_items(asset, lists[i].name, lists[i].list, err);
+        status = he_gltf_list(asset, lists[i].name, lists[i].list, err);
     }
     if (status == HE_OK) {
-        status = open_buffers(asset, bin, err);
+        status = he_gltf_open_buffers(asset, bin, err);
     }
     if (status != HE_OK) {
         he_gltf_close(asset);

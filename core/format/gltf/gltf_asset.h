@@ -48,6 +48,14 @@ HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char 
                                     he_error *err);
 void he_gltf_close(he_gltf *asset);
 
+/* For the files of this header: the buffers, */
+HE_NODISCARD he_status he_gltf_open_buffers(he_gltf *asset, const he_gltf_bin *bin, he_error *err);
+/* the objects in the array that is a member of the root, */
+HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error *err);
+/* and a note about `place` whose subject is the string `subject`, or HE_NONE. */
+void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
+                  uint32_t place);
+
 /* HE_CANCELLED. */
 HE_NODISCARD he_status he_gltf_tell(he_gltf *asset, he_error *err);
 /* For each element that is looked at: the soup's watch hears of some of them. */

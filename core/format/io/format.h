@@ -9,6 +9,9 @@
  *     he_reader_new -> he_reader_feed ... -> he_reader_finish -> he_import -> he_build
  * (build/build.h)
  *
+ * What a file refers to lies in others: those that came with it are given before it is finished
+ * (he_reader_beside).
+ *
  * An import is a polygon soup, notes on what was passed over, and the place of each vertex and
  * face in the input. A reader refuses what is wrong in the text itself (syntax, indices, numbers,
  * counts); what only the structure cannot hold, faces of two corners included, is left for
@@ -27,6 +30,7 @@
 #define HE_FORMAT_IO_FORMAT_H
 
 #include "build/build.h"
+#include "format/io/beside.h"
 #include "format/io/places.h"
 #include "format/text/notes.h"
 
@@ -36,6 +40,7 @@ typedef struct he_import {
     he_places vertices, faces;
     double edges;        /* how many the file says it has, */
     uint64_t edges_line; /* and where; 0: it does not say */
+    he_beside *beside;   /* while it is read: the files that came with it; may be NULL */
 } he_import;
 
 void he_import_clear(he_import *import);
@@ -98,6 +103,9 @@ void he_reader_free(he_reader *reader);
  * HE_LIMIT; HE_NO_MEMORY. After a failure every further call fails with the same error. */
 HE_NODISCARD he_status he_reader_feed(he_reader *reader, const void *bytes, size_t n,
                                       he_error *err);
+/* The files that came with this one, before finish and as long as the reader lives; those that it
+ * does not name are noted as ignored_file. `beside` may be NULL. */
+void he_reader_beside(he_reader *reader, he_beside *beside);
 /* Will finishing take about as long as reading the bytes does? Then it may be watched. */
 bool he_reader_reads_at_end(const he_reader *reader);
 void he_reader_watch(he_reader *reader, he_watch *watch);

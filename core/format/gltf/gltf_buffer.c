@@ -1,0 +1,159 @@
+/* Buffers of gltf_asset.h. */
+#include "format/gltf/gltf_asset.h"
+
+#include "format/text/base64.h"
+
+#include <string.h>
+
+/* Characters of base64 between two looks at the watch; a multiple of four. */
+enum { PIECE = 1 << 16 };
+
+/* `to` has room for the bytes of `length` characters. */
+static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
+                        he_gltf_buffer *to, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t at = 0, n; at < length && status == HE_OK; at += n) {
+        size_t decoded;
+        n = length - at < PIECE ? length - at : PIECE;
+        if (!he_base64_decode(text + at, n, to->own + to->length, &decoded) ||
+            (at + n < length && decoded != PIECE / 4 * 3)) {
+            return he_json_fail(&asset->json, uri, err, HE_SYNTAX, "the data: URI is not base64");
+        }
+        to->length += decoded;
+        asset->steps += n;
+        status = he_gltf_tell(asset, err);
+    }
+    return status;
+}
+
+/* The characters of a string whose escapes are undone, if it has any: then `own` is to be freed. */
+static he_status plain_text(const he_json *json, uint32_t value, const char **text, size_t *length,
+                            char **own, he_error *err)
+{
+    *text = he_json_raw(json, value, length);
+    if (memchr(*text, '\\', *length) == NULL) {
+        return HE_OK;
+    }
+    *own = he_mem_alloc(*length + 1);
+    if (*own == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a string of %zu bytes", *length);
+    }
+    *length = he_json_string(json, value, *own, *length + 1);
+    *text = *own;
+    return HE_OK;
+}
+
+/* A buffer in a file that came with this one. */
+static he_status find_beside(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, const char *name,
+                             size_t length, he_error *err)
+{
+    he_beside *beside = asset->into->beside;
+    const he_beside_file *file = he_beside_find_uri(beside, name, length);
+    char quoted[48], came[80];
+    if (file == NULL) {
+        he_quote(name, name + length, quoted, sizeof quoted);
+        if (beside == NULL || beside->count == 0) {
+            return he_json_fail(&asset->json, uri, err, HE_UNSUPPORTED,
+                                "the buffer is in another file, '%s': send both as "
+                                "multipart/form-data, or a .glb",
+                                quoted);
+        }
+        he_beside_list(beside, came, sizeof came);
+        return he_json_fail(&asset->json, uri, err, HE_UNSUPPORTED,
+                            "no file '%s' came for the buffer; what came is %s", quoted, came);
+    }
+    *buffer = (he_gltf_buffer){.bytes = (const unsigned char *)file->bytes,
+                               .length = file->length,
+                               .place = HE_GLTF_NOWHERE};
+    return HE_OK;
+}
+
+static he_status decode_data(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, const char *text,
+                             size_t length, he_error *err)
+{
+    const he_json *json = &asset->json;
+    const char *comma = memchr(text, ',', length);
+    static const char coding[] = ";base64";
+    size_t head = comma == NULL ? 0 : (size_t)(comma - text), size = sizeof coding - 1;
+    if (head < size || memcmp(comma - size, coding, size) != 0) {
+        return he_json_fail(json, uri, err, HE_UNSUPPORTED, "a data: URI that is not in base64");
+    }
+    length -= head + 1;
+    *buffer =
+        (he_gltf_buffer){.own = he_mem_alloc(he_base64_room(length)), .place = HE_GLTF_NOWHERE};
+    if (buffer->own == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a buffer of %zu characters", length);
+    }
+    buffer->bytes = buffer->own;
+    return decode(asset, uri, comma + 1, length, buffer, err);
+}
+
+static he_status read_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, he_error *err)
+{
+    size_t length;
+    const char *text;
+    char *own = NULL;
+    if (he_json_type(&asset->json, uri) != '"') {
+        return he_json_fail(&asset->json, uri, err, HE_BAD_VALUE, "this is not a string");
+    }
+    he_status status = plain_text(&asset->json, uri, &text, &length, &own, err);
+    if (status == HE_OK) {
+        status = he_json_begins(&asset->json, uri, "data:")
+                     ? decode_data(asset, buffer, uri, text, length, err)
+                     : find_beside(asset, buffer, uri, text, length, err);
+    }
+    he_mem_free(own);
+    return status;
+}
+
+static he_status open_buffer(he_gltf *asset, size_t i, uint32_t value, const he_gltf_bin *bin,
+                             he_error *err)
+{
+    const he_json *json = &asset->json;
+    he_gltf_buffer *buffer = &asset->buffers[i];
+    uint64_t length = 0;
+    uint32_t uri = he_json_find(json, value, "uri");
+    he_status status = he_gltf_need(asset, value, "byteLength", 1, HE_JSON_WHOLE, &length, err);
+    if (status == HE_OK && uri != HE_NONE) {
+        status = read_uri(asset, buffer, uri, err);
+    } else if (status == HE_OK && i == 0 && bin->bytes != NULL) {
+        *buffer = (he_gltf_buffer){bin->bytes, NULL, bin->length, bin->place};
+        if (bin->length > length && bin->length - length > 3) {
+            he_gltf_note(asset, "bin_longer", "ignored: bytes of the BIN chunk behind its buffer",
+                         HE_NONE, value);
+        }
+    } else if (status == HE_OK) {
+        bool packed = he_json_find(json, he_json_find(json, value, "extensions"),
+                                   "EXT_meshopt_compression") != HE_NONE;
+        return he_json_fail(json, value, err, packed ? HE_UNSUPPORTED : HE_BAD_VALUE,
+                            packed ? "the buffer is there in EXT_meshopt_compression only"
+                                   : "the buffer has no bytes in the file");
+    }
+    if (status == HE_OK && buffer->length < length) {
+        return he_json_fail(json, value, err, HE_BAD_VALUE,
+                            "a buffer of %llu bytes of which %llu are there",
+                            (unsigned long long)length, (unsigned long long)buffer->length);
+    }
+    buffer->length = length;
+    return status;
+}
+
+he_status he_gltf_open_buffers(he_gltf *asset, const he_gltf_bin *bin, he_error *err)
+{
+    he_ids list = {0};
+    he_status status = he_gltf_list(asset, "buffers", &list, err);
+    if (status == HE_OK && list.count > 0) {
+        asset->buffers = he_mem_zero(list.count, sizeof *asset->buffers);
+        asset->buffer_count = list.count;
+        if (asset->buffers == NULL) {
+            asset->buffer_count = 0;
+            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu buffers", list.count);
+        }
+    }
+    for (size_t i = 0; i < list.count && status == HE_OK; i++) {
+        status = open_buffer(asset, i, list.ids[i], bin, err);
+    }
+    he_ids_clear(&list);
+    return status;
+}
