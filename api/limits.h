@@ -28,6 +28,14 @@
 #define API_MAX_UNPACKING ((size_t)256 << 20)
 enum { API_UNPACK_RATIO = 100, API_UNPACK_WINDOW = 23 /* power of two */ };
 
+/* A body of several files. All of it counts against the limits above; what a reader needs beside
+ * the mesh's own file is kept until that is read. */
+enum {
+    API_MAX_PARTS = 64,
+    API_MAX_PART_HEADERS = 8192, /* of one part */
+    API_MAX_PART_NAME = 1000     /* of a file, a field or a media type */
+};
+
 /* Answers are coded when they have more than API_PACK_FROM bytes. Those up to API_PACK_AT_ONCE are
  * coded as a whole, which takes half a millisecond; of longer ones that much is in hand at a time,
  * and others have their turn after API_PACK_TURN. */

@@ -5,6 +5,7 @@
 #include "api/describe/routes.h"
 #include "api/describe/schemas.h"
 #include "api/document/shapes.h"
+#include "api/header/media.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -117,6 +118,18 @@ static void write_line_schema(api_out *out, const char *line)
 /* Media types with the schema of those that are the API's own JSON, which a model is not; that of a
  * line is an extension, since OpenAPI has a word for it (itemSchema) only from 3.2 on. `example`
  * gives a body of one for `route`. */
+/* The field's name is free; a client that is made from this calls it so. */
+static void write_files_schema(api_out *out)
+{
+    static const char schema[] =
+        "{\"type\":\"object\",\"description\":\"The mesh's file and those it refers to, by the "
+        "names it has for them: of 1 to 64 parts one is of a format that is read.\","
+        "\"properties\":{\"files\":{\"type\":\"array\",\"items\":{\"type\":\"string\","
+        "\"contentMediaType\":\"application/octet-stream\"}}}}";
+    api_out_key(out, "schema");
+    api_out_raw(out, schema, sizeof schema - 1);
+}
+
 static void write_content(api_out *out, const char *const *types, const char *schema,
                           const char *line,
                           const char *(*example)(const char *route, const char *media),
@@ -134,6 +147,8 @@ static void write_content(api_out *out, const char *const *types, const char *sc
             api_schema_ref_key(out, "schema", schema);
         } else if (lines && line != NULL) {
             write_line_schema(out, line);
+        } else if (strcmp(*types, API_MULTIPART) == 0) {
+            write_files_schema(out);
         }
         const char *body = example(route, *types);
         if (body != NULL && json) {

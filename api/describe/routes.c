@@ -12,10 +12,17 @@ static const char *const merge_patch[] = {"application/merge-patch+json", "appli
 static const char *const octets[] = {"application/octet-stream", NULL};
 static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
 static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
-static const char *const mesh_in[] = {
-    "application/json",         "model/obj", "model/x-off",       "model/ply",
-    "application/ply",          "model/stl", "model/gltf-binary", "model/gltf+json",
-    "application/octet-stream", NULL};
+static const char *const mesh_in[] = {"application/json",
+                                      "model/obj",
+                                      "model/x-off",
+                                      "model/ply",
+                                      "application/ply",
+                                      "model/stl",
+                                      "model/gltf-binary",
+                                      "model/gltf+json",
+                                      "application/octet-stream",
+                                      API_MULTIPART,
+                                      NULL};
 static const char *const mesh_out[] = {
     "application/json", "model/obj",         "model/x-off", "model/ply",
     "model/stl",        "model/gltf-binary", NULL};
@@ -111,8 +118,10 @@ static const api_route routes[] = {
      .request = "create",
      .response = "created",
      .summary = "Create a mesh",
-     .doc = "From a mesh document, a shape, or a file. What the structure cannot hold is refused "
-            "with each offending element, and with the repairs that would let it pass."},
+     .doc = "From a mesh document, a shape, or a file. A file that refers to others, as a .gltf to "
+            "its .bin, comes with them as multipart/form-data, each under the name by which it is "
+            "referred to. What the structure cannot hold is refused with each offending element, "
+            "and with the repairs that would let it pass."},
 
     /* one mesh */
     {.method = "GET",

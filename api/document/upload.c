@@ -2,6 +2,7 @@
 
 #include "algo/shape.h"
 #include "api/document/document_in.h"
+#include "api/document/parts.h"
 #include "api/document/repairs.h"
 #include "format/io/format.h"
 #include "mesh/walk.h"
@@ -33,6 +34,7 @@ typedef struct upload {
     api_document_in *document;
     he_reader *reader;
     const he_format *format; /* of the reader */
+    api_parts *parts;        /* where the body is several files */
     char head[SNIFF_BYTES];  /* the first bytes of the body */
     size_t head_length;
 
@@ -59,6 +61,7 @@ static void free_upload(void *state)
     upload *u = state;
     api_document_in_free(u->document);
     he_reader_free(u->reader);
+    api_parts_free(u->parts);
     if (u->has_import) {
         he_import_clear(&u->import);
     }
@@ -93,6 +96,10 @@ bool api_upload_begin(api_exchange *x)
     u->limits.bytes = 4 * x->service->options.max_upload;
     if (!api_repairs_read(x, &u->plan)) {
         return false;
+    }
+    if (strcmp(x->media_in, API_MULTIPART) == 0) {
+        u->parts = api_parts_new(x);
+        return u->parts != NULL;
     }
     const char *name = api_param_text(x, "format");
     if (name == NULL && strcmp(x->media_in, "application/octet-stream") == 0) {
@@ -162,12 +169,68 @@ static bool is_open(const upload *u)
     return u->document != NULL || u->reader != NULL;
 }
 
-bool api_upload_feed(api_exchange *x, const char *bytes, size_t length)
+/* How many of them found room. */
+static size_t keep_head(upload *u, const char *bytes, size_t length)
 {
-    upload *u = x->state;
     size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
     memcpy(u->head + u->head_length, bytes, take);
     u->head_length += take;
+    return take;
+}
+
+static bool open_part(api_exchange *x, upload *u, const api_part_kind *kind)
+{
+    return kind->format == NULL ? open_document(x, u) : open_reader(x, u, kind->format);
+}
+
+static bool feed_part(api_exchange *x, upload *u, const api_parts_piece *piece)
+{
+    keep_head(u, piece->bytes, piece->length);
+    return feed(x, u, piece->bytes, piece->length);
+}
+
+static bool feed_parts(api_exchange *x, upload *u, const char *bytes, size_t length)
+{
+    const char *end = bytes + length;
+    for (bool good = true; good;) {
+        api_parts_piece piece;
+        switch (api_parts_next(x, u->parts, &bytes, end, &piece)) {
+        case API_PARTS_MORE:
+            return true;
+        case API_PARTS_OPEN:
+            good = open_part(x, u, &piece.kind);
+            break;
+        case API_PARTS_BYTES:
+            good = feed_part(x, u, &piece);
+            break;
+        case API_PARTS_BAD:
+            return false;
+        }
+    }
+    return false;
+}
+
+/* The mesh's file is known, and what came beside it. */
+static bool end_parts(api_exchange *x, upload *u)
+{
+    api_parts_piece late;
+    if (!api_parts_end(x, u->parts, &late) ||
+        (late.bytes != NULL && !(open_part(x, u, &late.kind) && feed_part(x, u, &late)))) {
+        return false;
+    }
+    if (u->reader != NULL) {
+        he_reader_beside(u->reader, api_parts_beside(u->parts));
+    }
+    return true;
+}
+
+bool api_upload_feed(api_exchange *x, const char *bytes, size_t length)
+{
+    upload *u = x->state;
+    if (u->parts != NULL) {
+        return feed_parts(x, u, bytes, length);
+    }
+    size_t take = keep_head(u, bytes, length);
     if (!is_open(u)) {
         if (u->head_length < sizeof u->head) {
             return true;
@@ -253,6 +316,8 @@ static bool finish_reading(api_exchange *x, upload *u)
         return fail_reading(x, u, &err);
     }
     u->has_import = true;
+    api_parts_free(u->parts);
+    u->parts = NULL;
     return true;
 }
 
@@ -266,7 +331,7 @@ bool api_upload_end(api_exchange *x)
 {
     upload *u = x->state;
     u->name = api_param_text(x, "name");
-    if (!is_open(u) && !choose(x, u)) {
+    if (u->parts != NULL ? !end_parts(x, u) : !is_open(u) && !choose(x, u)) {
         return false;
     }
     if (u->document != NULL) {

@@ -1,6 +1,7 @@
-/* upload.h - a body that becomes a mesh: a JSON document, the name of a shape, or a mesh file.
+/* upload.h - a body that becomes a mesh: a JSON document, the name of a shape, or a mesh file,
+ * alone or among the files that it refers to (parts.h).
  *
- * The bytes go to a reader as they arrive; nothing keeps the body. The reader is chosen by
+ * The bytes go to a reader as they arrive; nothing keeps the mesh's file. The reader is chosen by
  * ?format=, else by Content-Type, else (application/octet-stream) by the first bytes.
  *
  *     api_upload_begin    before the body

@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* A body of several files, see multipart.h. */
+#define API_MULTIPART "multipart/form-data"
+
 /* Does a Content-Type name this type ("application/json")? Letter case and parameters do not
  * matter, but a charset must be UTF-8. */
 bool api_media_is(const char *content_type, const char *type);

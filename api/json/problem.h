@@ -71,6 +71,10 @@
       "The bytes do not follow the coding, a checksum or length in them does not hold, something " \
       "else follows, or the body ends too early. The detail names the byte, counted from 0 in "    \
       "the body as it was sent.")                                                                  \
+    X(BAD_MULTIPART, "bad_multipart", 400, "The body is not multipart/form-data",                  \
+      "Its parts do not follow RFC 7578: each has a Content-Disposition: form-data with a name, "  \
+      "none has parts itself, no two files have one name, and the last delimiter ends in two "     \
+      "hyphens. The detail names the byte, counted from 0 in the body when it is decoded.")        \
     X(UNAUTHORIZED, "unauthorized", 401, "A token is needed",                                      \
       "The request carries no token, or one that is not known.")                                   \
     X(FORBIDDEN, "forbidden", 403, "This is not allowed",                                          \
@@ -141,6 +145,10 @@
     X(IDEMPOTENCY_MISMATCH, "idempotency_mismatch", 422, "The key is of another request",          \
       "A request that carries the Idempotency-Key of one that was answered within a day must be "  \
       "the same in method, path, query, Content-Type and body.")                                   \
+    X(UNCLEAR_PARTS, "unclear_parts", 422, "It is not clear which file is the mesh",               \
+      "Of the files in a multipart/form-data body one is of a format that the server reads, by "   \
+      "its name or media type or, where no file is, by its first bytes; the others are what that " \
+      "one refers to. ?format= says which one is meant where several could be.")                   \
     X(RATE_LIMIT, "rate_limit", 429, "Too many requests", "Try again after Retry-After seconds.")  \
     X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
       "The request may be fine; the server broke one of its own rules answering it.")              \

@@ -37,10 +37,17 @@ bool api_keyed_begin(api_exchange *x)
     return true;
 }
 
-void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
+void api_keyed_add(api_exchange *x, const char *bytes, size_t length)
 {
     if (x->key != NULL) {
         he_siphash_add(&x->hash, bytes, length);
+    }
+}
+
+void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
+{
+    if (strcmp(x->media_in, API_MULTIPART) != 0) {
+        api_keyed_add(x, bytes, length);
     }
 }
 

@@ -19,8 +19,12 @@ typedef struct step {
     const char *headers[5]; /* pairs */
 } step;
 
-#define CUBE    "{\"shape\":\"cube\"}"
-#define TEXT    "Content-Type", "text/plain"
+#define CUBE  "{\"shape\":\"cube\"}"
+#define TEXT  "Content-Type", "text/plain"
+#define FILES "Content-Type", "multipart/form-data; boundary=x"
+#define ONE_FILE                                                                               \
+    "--x\r\nContent-Disposition: form-data; name=\"a.obj\"\r\n\r\nv 0 0 0\nv 1 0 0\nv 0 1 0\n" \
+    "f 1 2 3\n\r\n--x--"
 #define MINIMAL "Prefer", "return=minimal"
 #define STALE   "If-Match", "\"0-0-0-x\""
 #define ABSENT  "If-None-Match", "*"
@@ -39,12 +43,19 @@ static const step steps[] = {
     {"PUT", "/v1/meshes/m", 422, "{\"vertices\":[],\"faces\":[[0,1,2]]}", {NULL}},
     {"PUT", "/v1/meshes/m", 413, BIG, {NULL}},
     {"PUT", "/v1/meshes/m", 400, "{", {NULL}},
+    {"PUT", "/v1/meshes/m", 200, ONE_FILE, {FILES}},
+    {"PUT", "/v1/meshes/m", 400, "--x", {FILES}},
+    {"PUT", "/v1/meshes/m", 422, "--x--", {FILES}},
+    {"PUT", "/v1/meshes/m", 200, CUBE, {NULL}},
 
     {"POST", "/v1/meshes", 201, CUBE, {NULL}},
     {"POST", "/v1/meshes?id=n", 201, CUBE, {NULL}},
     {"POST", "/v1/meshes?id=n", 409, CUBE, {NULL}},
     {"POST", "/v1/meshes", 413, BIG, {NULL}},
     {"POST", "/v1/meshes", 415, CUBE, {TEXT}},
+    {"POST", "/v1/meshes", 201, ONE_FILE, {FILES}},
+    {"POST", "/v1/meshes", 400, "--x", {FILES}},
+    {"POST", "/v1/meshes", 422, "--x--", {FILES}},
     {"POST", "/v1/meshes", 422, "{\"vertices\":[],\"faces\":[[0,1,2]]}", {NULL}},
     {"GET", "/v1/meshes", 200, NULL, {NULL}},
     {"GET", "/v1/meshes?cursor=?", 400, NULL, {NULL}},

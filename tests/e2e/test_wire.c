@@ -64,6 +64,10 @@ static void expect_raw(const char *request, int status)
 }
 
 #define HOST "Host: localhost\r\n"
+#define FILES                                                                                      \
+    "Content-Type: multipart/form-data; boundary=x\r\nContent-Length: 92\r\n\r\n"                  \
+    "--x\r\nContent-Disposition: form-data; name=\"a.obj\"\r\n\r\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 " \
+    "2 3\n\r\n--x--"
 
 static void test_framing(void **state)
 {
@@ -120,6 +124,13 @@ static void test_framing(void **state)
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n"
          "Content-Type: application/json\r\nContent-Length: 16\r\n\r\n{\"shape\":\"cube\"}",
          403},
+        /* a form of any page can send this type without asking */
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: http://evil.example\r\n" FILES, 403},
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n" FILES, 403},
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST "Sec-Fetch-Site: cross-site\r\n" FILES, 403},
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST "Sec-Fetch-Site: same-site\r\n" FILES, 403},
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: http://localhost\r\n" FILES, 201},
+        {"POST /v1/meshes HTTP/1.1\r\n" HOST FILES, 201},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: http://localhost\r\n"
          "Content-Type: application/json\r\nContent-Length: 16\r\n\r\n{\"shape\":\"cube\"}",
          201},
