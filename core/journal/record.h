@@ -64,10 +64,13 @@ typedef struct st_record {
     uint64_t number;                /* of the record, from 1 for each incarnation */
     uint64_t revision;              /* of the content after it, from 1 */
     uint64_t metadata;              /* counts changes of the name, from 1; after it */
-    uint64_t inverts;               /* the revision that an undo or redo inverts, else 0 */
+    uint64_t inverts;               /* the revision that an undo or redo inverts; of a base the one
+                                       whose content it has again, where it is another; else 0 */
+    uint64_t reach;                 /* the history after it begins behind this revision: what was
+                                       before is dropped, to stay within the undo budget */
     double created, time;           /* of the mesh; of the change: seconds since 1970 UTC */
     const char *ops;                /* of an edit, for the history; never NULL */
-    st_tally tally;                 /* of a revision but a whole content */
+    st_tally tally;                 /* of an edit */
     uint32_t issued[HE_KIND_COUNT]; /* high-water marks after it */
     st_counts counts;               /* after its group */
     uint64_t bytes;                 /* that the content takes in memory then */
@@ -98,6 +101,7 @@ typedef enum st_piece_kind {
 typedef struct st_piece {
     st_piece_kind kind;
     st_record record; /* of BASE and RECORD */
+    uint64_t parts;   /* of BASE, and of RECORD with a stage: how many follow */
     unsigned coding;  /* of PART, as he_stored_reader_part wants it: packing is taken off */
     const unsigned char *bytes;
     size_t size;

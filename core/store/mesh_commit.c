@@ -66,9 +66,12 @@ static void commit_steps(st_write *w)
         st_log_add_step(&mesh->log, mesh->info.revision, w->which, now, mesh->content);
         w->records[i] = st_mesh_record(mesh, kind, w->keyed);
     }
+    st_log_settle(&mesh->log);
+    for (uint32_t i = 0; i < w->steps; i++) {
+        w->records[i].reach = mesh->log.before.revision;
+    }
     const st_group group = {.records = w->records, .count = w->steps, .events = w->events};
     st_mesh_publish(mesh, &group);
-    st_log_settle(&mesh->log);
 }
 
 static void rename_mesh(st_mesh *mesh, const char *name)

@@ -110,7 +110,7 @@ void st_log_settle(st_revision_log *log);
 bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out);
 /* What the newest entry says of its revision, and whether the history ends with it, into the record
  * of a revision; the texts are borrowed while the entry is there. Of a record of another kind the
- * marks. */
+ * marks and the reach. */
 void st_log_fill_record(const st_revision_log *log, st_record *record);
 /* The newest revision. */
 uint64_t st_log_head(const st_revision_log *log);

@@ -17,18 +17,21 @@ static const st_point *point_of(const st_revision_log *log, uint64_t revision)
 void st_log_fill_record(const st_revision_log *log, st_record *record)
 {
     memcpy(record->issued, point_of(log, st_log_head(log))->issued, sizeof record->issued);
+    const st_revision *entry;
     record->ops = "";
+    record->reach = log->before.revision;
     switch (record->kind) {
     case ST_RECORD_EDIT:
-    case ST_RECORD_UNDO:
-    case ST_RECORD_REDO: {
-        const st_revision *entry = st_entry_of(log, record->revision);
+        entry = st_entry_of(log, record->revision);
         record->barrier = entry->step == NULL;
-        record->inverts = entry->inverts;
         record->ops = entry->ops;
         record->tally = entry->tally;
         break;
-    }
+    case ST_RECORD_UNDO:
+    case ST_RECORD_REDO:
+        entry = st_entry_of(log, record->revision);
+        record->inverts = entry->inverts;
+        break;
     case ST_RECORD_CONTENT:
         record->barrier = true;
         break;
