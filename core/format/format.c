@@ -36,7 +36,7 @@ static const he_format formats[] = {
     },
     {
         .name = "off",
-        .doc = "Object File Format, text: OFF with any of the prefixes ST, C and N",
+        .doc = "Object File Format: OFF with any of the prefixes ST, C and N, and BINARY (read)",
         .media_types = LIST("model/x-off", "text/x-off", "application/x-off"),
         .extensions = LIST("off"),
         .encodings = LIST("ascii"),

@@ -123,6 +123,35 @@ static void nodes_move_what_they_place(void **state)
     }
 }
 
+/* The turn is that of the quaternion, whatever its length. */
+static void a_quaternion_of_another_length_is_made_one_of_length_1(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *rotation;
+        bool noted;
+    } rows[] = {
+        {"[0,0,3,3]", true},
+        {"[0,0,1e-200,1e-200]", true},
+        {"[0,0,1e300,1e300]", true},
+        {"[0,0,0.708,0.708]", true},
+        {"[0,0,0.70711,0.70711]", false},
+        {"[0,0,0.70710678118654752,0.70710678118654752]", false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char json[2500];
+        snprintf(json, sizeof json,
+                 "{" DATA "," MESHES
+                 ",'scenes':[{'nodes':[0]}],'nodes':[{'mesh':0,'rotation':%s}]}",
+                 rows[i].rotation);
+        he_import import = square_import(json);
+        expect_position(&import, 2, -1, 1, 0);
+        const he_note *note = find_note(&import.notes, "rotation_made_unit", "");
+        assert_true((note != NULL) == rows[i].noted);
+        he_import_clear(&import);
+    }
+}
+
 static void a_mesh_of_several_nodes_comes_several_times(void **state)
 {
     (void)state;
@@ -428,6 +457,41 @@ static void what_has_no_place_is_noted(void **state)
     he_import_clear(&import);
 }
 
+/* The chunk behind one of such a length comes at once, or at the next multiple of 4. */
+static void a_chunk_that_is_not_aligned_is_read_with_a_note(void **state)
+{
+    (void)state;
+    unsigned char bin[SQUARE_BYTES];
+    glb_file f;
+    square_bin(bin);
+    glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
+    size_t json = f.bin - 8 - f.json;
+    while (f.bytes[f.json + json - 1] == ' ' || json % 4 == 0) {
+        f.bytes[f.json + json - 1] = ' ';
+        json--;
+    }
+    for (size_t padded = 0; padded < 2; padded++) {
+        glb_file g = f;
+        g.length = 8;
+        glb_word(&g, (uint32_t)(f.length - (padded == 1 ? 0 : f.bin - 8 - f.json - json)));
+        glb_word(&g, (uint32_t)json);
+        memcpy(g.bytes + g.length, f.bytes + g.length, 4 + json);
+        g.length += 4 + json;
+        for (; padded == 1 && g.length < f.bin - 8; g.length++) {
+            g.bytes[g.length] = ' ';
+        }
+        memcpy(g.bytes + g.length, f.bytes + f.bin - 8, f.length - f.bin + 8);
+        g.length += f.length - f.bin + 8;
+        he_import import = {0};
+        he_error err = {0};
+        assert_int_equal(read_bytes("glb", g.bytes, g.length, &import, &err), HE_OK);
+        expect_counts(&import, 4, 2, 6);
+        expect_position(&import, 2, 1, 1, 0);
+        expect_note(&import, "unaligned_chunk", "", 1, 12);
+        he_import_clear(&import);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -435,6 +499,7 @@ int main(void)
         cmocka_unit_test(every_mode_and_every_type_of_index),
         cmocka_unit_test(points_and_lines_are_left_out),
         cmocka_unit_test(nodes_move_what_they_place),
+        cmocka_unit_test(a_quaternion_of_another_length_is_made_one_of_length_1),
         cmocka_unit_test(a_mesh_of_several_nodes_comes_several_times),
         cmocka_unit_test(the_scene_that_is_named_is_read),
         cmocka_unit_test(sparse_accessors),
@@ -447,6 +512,7 @@ int main(void)
         cmocka_unit_test(attributes_of_some_primitives),
         cmocka_unit_test(names_are_attributes_of_faces),
         cmocka_unit_test(what_has_no_place_is_noted),
+        cmocka_unit_test(a_chunk_that_is_not_aligned_is_read_with_a_note),
     };
     return cmocka_run_group_tests_name("format_glb", tests, NULL, NULL);
 }

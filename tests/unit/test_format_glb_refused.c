@@ -34,12 +34,13 @@ static void containers(void **state)
         {8, (uint32_t)good.length - 4, HE_SYNTAX, at, "a chunk of 96 bytes"},
         {8, 0xFFFFFFFF, HE_SYNTAX, good.length, "ends before the 4294967295"},
         {12, 0xFFFFFFF0, HE_SYNTAX, 12, "a chunk of 4294967280 bytes"},
-        {12, (uint32_t)json + 2, HE_SYNTAX, 12, "no multiple of 4"},
+        {12, (uint32_t)json + 2, HE_SYNTAX, at + 4, "a chunk of 5130562 bytes"},
         {16, 0x004E4942, HE_SYNTAX, 16, "the first chunk is not \"JSON\""},
         {at + 4, 0x4E4F534A, HE_SYNTAX, at + 4, "a second JSON chunk"},
         {at, 0xFFFFFFF0, HE_SYNTAX, at, "a chunk of 4294967280 bytes"},
         {at, 97, HE_SYNTAX, at, "a chunk of 97 bytes"},
-        {at, 95, HE_SYNTAX, at, "no multiple of 4"},
+        {at, 94, HE_BAD_VALUE, 58, "of which 94 are there"},
+        {at, 91, HE_SYNTAX, good.length - 5, "5 bytes behind the last chunk"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         glb_file f = good;
@@ -323,6 +324,8 @@ static void references_and_numbers(void **state)
         {WITH_NODES("{'scale':[1,2,3,4]}"), HE_BAD_VALUE, "nodes/0/scale: 3 numbers"},
         {WITH_NODES("{'scale':[1,2,null]}"), HE_BAD_VALUE, "nodes/0/scale/2: this is not a number"},
         {WITH_NODES("{'rotation':5}"), HE_BAD_VALUE, "nodes/0/rotation: 4 numbers"},
+        {WITH_NODES("{'rotation':[0,-0,0,0]}"), HE_BAD_VALUE,
+         "nodes/0/rotation: a quaternion of length 0"},
         {WITH_NODES("{'mesh':0,'scale':[1e308,1e308,1]},{}"), HE_OK, ""},
         {WITH_NODES("{'mesh':0,'scale':[1e308,1,1],'translation':[1e308,0,0]}"), HE_NOT_FINITE,
          "not finite"},

@@ -382,6 +382,19 @@ static void more_numbers_than_a_vertex_has(void **state)
     he_import_clear(&import);
 }
 
+static void lines_that_begin_with_a_dollar_are_passed_over(void **state)
+{
+    (void)state;
+    static const char text[] = "$ made by a program\n$$v 9 9 9\nv 0 0 0\nv 1 0 0\n"
+                               "  $ f 9 9 \\\n 9\nv 0 1 0\nf 1 2 3\n";
+    he_import import = read_text("obj", text);
+    expect_counts(&import, 3, 1, 3);
+    expect_note(&import, "ignored_keyword", "$", 3, 1);
+    assert_int_equal(import.notes.count, 1);
+    assert_ptr_equal(he_format_sniff(text, strlen(text)), he_format_find("obj"));
+    he_import_clear(&import);
+}
+
 static void wrong_text_names_its_line(void **state)
 {
     (void)state;
@@ -578,6 +591,7 @@ int main(void)
         cmocka_unit_test(wrong_indices_name_their_line),
         cmocka_unit_test(wrong_values_cost_the_corner_its_value),
         cmocka_unit_test(more_numbers_than_a_vertex_has),
+        cmocka_unit_test(lines_that_begin_with_a_dollar_are_passed_over),
         cmocka_unit_test(wrong_text_names_its_line),
         cmocka_unit_test(other_encodings_are_refused),
         cmocka_unit_test(refusals_of_the_builder_get_a_line),

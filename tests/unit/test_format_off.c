@@ -1,6 +1,8 @@
 /* The OFF reader: headers, colours, counts, and every refusal with its line. */
 #include "unit/format_fixture.h"
 
+#include <math.h>
+
 static void plain_files(void **state)
 {
     (void)state;
@@ -235,7 +237,8 @@ static void wrong_text_names_its_line(void **state)
         {"#\n4OFF\n3 1 3\n", HE_UNSUPPORTED, 2, "'4OFF' is not supported"},
         {"nOFF\n3 1 3\n", HE_UNSUPPORTED, 1, "'nOFF' is not supported"},
         {"STCN4nOFF\n3 1 3\n", HE_UNSUPPORTED, 1, "is not supported"},
-        {"OFF BINARY\n\1\2", HE_UNSUPPORTED, 1, "binary"},
+        {"OFF BINARY 3 1 3\n", HE_SYNTAX, 1, "'3' follows BINARY"},
+        {"OFF BINARYS\n", HE_SYNTAX, 1, "'BINARYS' is not a count"},
         {"OFF\n-3 1 3\n", HE_SYNTAX, 2, "'-3' is not a count"},
         {"OFF\n3.0 1 3\n", HE_SYNTAX, 2, "'3.0' is not a count"},
         {"OFF\n3 1 3 4\n", HE_SYNTAX, 2, "'4' follows"},
@@ -335,6 +338,137 @@ static void a_count_allocates_nothing(void **state)
     }
 }
 
+/* --- binary --- */
+
+typedef struct body {
+    unsigned char bytes[400];
+    size_t length;
+} body;
+
+static void put_text(body *b, const char *text)
+{
+    memcpy(b->bytes + b->length, text, strlen(text));
+    b->length += strlen(text);
+}
+
+static void put_whole(body *b, uint32_t value)
+{
+    for (int shift = 24; shift >= 0; shift -= 8) {
+        b->bytes[b->length++] = (unsigned char)(value >> shift);
+    }
+}
+
+static void put_floats(body *b, const float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        put_whole(b, bits);
+    }
+}
+
+/* A square of two faces: the first has a colour, the second a number that is none. */
+static body square_body(const char *header)
+{
+    static const float vertices[4][12] = {
+        {0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0, 0.25f},
+        {1, 0, 0, 0, 0, 1, 0, 1, 0, 1, 1, 0},
+        {1, 1, 0, 0, 0, 1, 0, 0, 1, 0.5f, 1, 1},
+        {0, 1, 0, 0, 0, 1, INFINITY, 0, 0, 1, 0, 1},
+    };
+    body b = {.length = 0};
+    put_text(&b, header);
+    put_whole(&b, 4);
+    put_whole(&b, 2);
+    put_whole(&b, 99);
+    for (size_t i = 0; i < 4; i++) {
+        put_floats(&b, vertices[i], strstr(header, "STCN") != NULL ? 12 : 3);
+    }
+    for (uint32_t f = 0; f < 2; f++) {
+        put_whole(&b, 3);
+        put_whole(&b, 0);
+        put_whole(&b, 1 + f);
+        put_whole(&b, 2 + f);
+        put_whole(&b, f == 0 ? 3 : 1);
+        put_floats(&b, (float[]){1, 0.5f, 0}, f == 0 ? 3 : 1);
+    }
+    return b;
+}
+
+static void a_binary_body_is_read_with_a_note(void **state)
+{
+    (void)state;
+    static const char *const headers[] = {"OFF BINARY\n", "# made by\r\nOFF BINARY # so\r\n",
+                                          "STCNOFF BINARY\n", "# x\rSTCNOFF BINARY\r"};
+    static const uint32_t corners[] = {0, 1, 2, 0, 2, 3};
+    static const double face_colors[] = {1, 0.5, 0, 0, 0, 0};
+    static const double uv[] = {0, 0.25, 1, 0, 1, 1, 0, 1};
+    static const double normal[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+    static const double colors[] = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 0.5, 0, 0, 0, 1};
+    for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
+        he_import import = {0};
+        he_error err = {0};
+        body b = square_body(headers[i]);
+        size_t header = strlen(headers[i]);
+        put_text(&b, "\n"); /* padding */
+        assert_int_equal(read_bytes("off", b.bytes, b.length, &import, &err), HE_OK);
+        expect_counts(&import, 4, 2, 6);
+        expect_corners(&import, corners, 6);
+        assert_true(import.soup.positions[2].x == 1 && import.soup.positions[2].y == 1);
+        expect_doubles(&import, HE_FACE, "color", 3, face_colors, 2);
+        expect_note(&import, "binary_off", "", 1, header);
+        expect_note(&import, "trailing_bytes", "", 1, b.length - 1);
+        expect_note(&import, "extra_numbers", "", 1, b.length - 9);
+        assert_int_equal(he_places_find(&import.vertices, 1), header + 12 + (i < 2 ? 12 : 48));
+        if (i >= 2) {
+            expect_doubles(&import, HE_VERTEX, "uv", 2, uv, 4);
+            expect_doubles(&import, HE_VERTEX, "normal", 3, normal, 4);
+            expect_doubles(&import, HE_VERTEX, "color", 4, colors, 4);
+            expect_note(&import, "not_finite", "", 1, header + 12 + 3 * 48 + 24);
+        }
+        he_mesh_free(build_import(&import));
+        he_import_clear(&import);
+    }
+}
+
+static void a_wrong_binary_body_names_its_byte(void **state)
+{
+    (void)state;
+    static const char header[] = "OFF BINARY\n";
+    enum { H = sizeof header - 1, FACES = H + 12 + 48 };
+    static const struct {
+        size_t where; /* a word that is changed */
+        uint32_t word;
+        he_status status;
+        uint64_t at;
+        const char *words;
+    } rows[] = {
+        {H, 0xFFFFFFFF, HE_BAD_VALUE, H, "4294967295 vertices are more"},
+        {H, 2147483646, HE_SYNTAX, H + 116, "of the 2147483646 vertices"},
+        {H + 4, 0x80000000, HE_BAD_VALUE, H + 4, "2147483648 faces are more"},
+        {H + 4, 2147483646, HE_SYNTAX, H + 116, "2 of the 2147483646 faces"},
+        {H + 4, 1, HE_SYNTAX, H + 92, "more than the 1 faces"},
+        {H + 12, 0x7F800000, HE_NOT_FINITE, H + 12, "is not finite"},
+        {FACES, 0xFFFFFFFD, HE_BAD_VALUE, FACES, "4294967293 corners are more"},
+        {FACES, 2147483646, HE_BAD_INDEX, FACES + 20, "there is no vertex 1065353216, only 0 to 3"},
+        {FACES + 8, 4, HE_BAD_INDEX, FACES + 8, "there is no vertex 4, only 0 to 3"},
+        {FACES + 8, 0xFFFFFFFF, HE_BAD_INDEX, FACES + 8, "there is no vertex -1"},
+        {FACES + 16, 0xFFFFFFFF, HE_BAD_VALUE, FACES + 16, "4294967295 numbers of a colour"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        body b = square_body(header);
+        size_t length = b.length;
+        b.length = rows[i].where;
+        put_whole(&b, rows[i].word);
+        expect_refused_at_byte("off", b.bytes, length, rows[i].status, rows[i].at, rows[i].words);
+    }
+    body b = square_body(header);
+    for (size_t length = H; length < b.length; length++) {
+        expect_refused_at_byte("off", b.bytes, length, HE_SYNTAX, length, "the file ends");
+    }
+    expect_refused_at_byte("off", header, H - 1, HE_SYNTAX, H - 1, "before its counts");
+}
+
 static void it_is_recognised(void **state)
 {
     (void)state;
@@ -362,6 +496,8 @@ int main(void)
         cmocka_unit_test(wrong_text_names_its_line),
         cmocka_unit_test(limits_are_kept),
         cmocka_unit_test(a_count_allocates_nothing),
+        cmocka_unit_test(a_binary_body_is_read_with_a_note),
+        cmocka_unit_test(a_wrong_binary_body_names_its_byte),
         cmocka_unit_test(it_is_recognised),
     };
     return cmocka_run_group_tests_name("format_off", tests, NULL, NULL);

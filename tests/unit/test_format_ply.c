@@ -380,15 +380,36 @@ static void lines_that_end_in_returns(void **state)
     import = read_text("ply", empty);
     expect_counts(&import, 0, 0, 0);
     he_import_clear(&import);
-    /* binary that a line feed does not begin may begin with one */
-    static const char *const ends[] = {"end_header\r\n", "end_header\rAB\r", "end_header\rABC"};
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-        char binary[200];
-        snprintf(binary, sizeof binary,
-                 "ply\rformat binary_little_endian 1.0\relement e 3\rproperty char c\r%s", ends[i]);
-        he_error err = {0};
-        assert_int_not_equal(read_pieces("ply", binary, strlen(binary), 0, NULL, &import, &err),
-                             HE_OK);
+}
+
+/* As Rhinoceros writes it: the body begins behind the return, and may begin with a line feed. */
+static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
+{
+    (void)state;
+    static const char header[] = "ply\rformat binary_little_endian 1.0\rcomment made by\r"
+                                 "element vertex 3\rproperty char x\rproperty char y\r"
+                                 "property char z\relement face 1\r"
+                                 "property list uchar uchar vertex_index\rend_header\r";
+    static const char body[] = "\n\r\r"
+                               "\r\n\0"
+                               "\n\n\r"
+                               "\3\2\1\0";
+    static const uint32_t corners[] = {2, 1, 0};
+    char bytes[sizeof header + sizeof body];
+    size_t at = sizeof header - 1, length = at + sizeof body - 1;
+    memcpy(bytes, header, at);
+    memcpy(bytes + at, body, sizeof body - 1);
+    he_import import = {0};
+    he_error err = {0};
+    assert_int_equal(read_bytes("ply", bytes, length, &import, &err), HE_OK);
+    expect_counts(&import, 3, 1, 3);
+    expect_corners(&import, corners, 3);
+    assert_true(import.soup.positions[0].x == 10 && import.soup.positions[1].z == 0);
+    assert_int_equal(he_places_find(&import.vertices, 1), at + 3);
+    assert_int_equal(import.notes.count, 0);
+    he_import_clear(&import);
+    for (size_t end = at; end < length; end++) {
+        expect_refused_at_byte("ply", bytes, end, HE_SYNTAX, end, "the file ends after");
     }
 }
 
@@ -520,6 +541,7 @@ int main(void)
         cmocka_unit_test(what_is_left_out_is_noted),
         cmocka_unit_test(values_that_are_not_finite),
         cmocka_unit_test(lines_that_end_in_returns),
+        cmocka_unit_test(a_header_that_ends_in_returns_before_a_binary_body),
         cmocka_unit_test(strips_become_triangles),
         cmocka_unit_test(line_ends_of_the_header),
         cmocka_unit_test(places_are_known),

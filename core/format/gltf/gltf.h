@@ -4,6 +4,8 @@
  *     length "JSON" ...          a chunk: the asset
  *     length "BIN\0" ...         a chunk that may be missing: its buffer 0
  *
+ * A length that is no multiple of 4 is noted; the next chunk may then come at once, or aligned.
+ *
  * READING. Everything comes from the bytes themselves: a buffer is the BIN chunk, a data: URI in
  * base64 or a file that came with this one (io/beside.h). Images are noted; nothing is ever opened.
  *
@@ -11,7 +13,8 @@
  * a mesh of several nodes comes several times. Each primitive adds all its vertices, in the order
  * of the file, then its triangles, strip or fan; one without indices takes the vertices as they
  * come. Vertices that share a position stay apart. Where a node mirrors, triangles are turned over,
- * so that they face out as before, with a note. Points and lines are noted and left out, as are
+ * so that they face out as before, with a note. A rotation that is a quaternion of another length
+ * than 1 is made one of that length, with a note. Points and lines are noted and left out, as are
  * skins, animations and morph targets: a mesh is as its node places it.
  *
  * Attributes of vertices are those of gltf_attribute.h; of faces, "object" is the name of the node,

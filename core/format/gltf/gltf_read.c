@@ -23,6 +23,7 @@ typedef struct glb {
     uint64_t length; /* of the file, as it says */
     uint64_t left;   /* of the chunk */
     size_t chunks;   /* begun */
+    size_t padding;  /* bytes that may follow the chunk, whose length is no multiple of 4 */
     bool begun, has_bin;
     block json, bin;
     block *chunk; /* where its bytes go; NULL: nowhere */
@@ -105,6 +106,23 @@ static he_status take_header(glb *g, he_error *err)
     return HE_OK;
 }
 
+/* Behind a chunk whose length is no multiple of 4 comes the next one, or first the bytes up to such
+ * a multiple. Are these at the beginning of what was taken for the header of a chunk? They are
+ * passed over then, and the rest of the header is to come. */
+static bool skip_padding(glb *g)
+{
+    size_t n = g->padding;
+    g->padding = 0;
+    if (n == 0 || word_at(g->head + 4) == BIN_CHUNK ||
+        (memcmp(g->head, "   ", n) != 0 && memcmp(g->head, "\0\0\0", n) != 0)) {
+        return false;
+    }
+    g->head_length -= n;
+    g->offset += n;
+    memmove(g->head, g->head + n, g->head_length);
+    return true;
+}
+
 static he_status take_chunk(glb *g, he_error *err)
 {
     uint64_t at = g->offset - CHUNK;
@@ -117,9 +135,9 @@ static he_status take_chunk(glb *g, he_error *err)
                           (unsigned long long)g->left, (unsigned long long)(g->length - g->offset));
     }
     if (g->left % 4 != 0) {
-        return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at,
-                          "a chunk of %llu bytes, which is no multiple of 4",
-                          (unsigned long long)g->left);
+        he_notes_add(&g->into->notes, "unaligned_chunk", "a chunk whose length is no multiple of 4",
+                     NULL, 0, HE_PLACE_BYTE, at);
+        g->padding = 4 - g->left % 4;
     }
     if ((type == JSON_CHUNK) != (number == 0)) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at + 4,
@@ -180,7 +198,7 @@ static he_status glb_feed(void *state, const void *bytes, size_t n, he_error *er
         memcpy(g->head + g->head_length, p, part);
         g->head_length += part;
         p += part;
-        if (g->head_length == size) {
+        if (g->head_length == size && !(g->begun && skip_padding(g))) {
             g->offset += size;
             g->head_length = 0;
             status = g->begun ? take_chunk(g, err) : take_header(g, err);
@@ -202,7 +220,7 @@ static he_status glb_finish(void *state, he_error *err)
                           "the file ends before the %llu bytes it says it has",
                           (unsigned long long)g->length);
     }
-    if (g->head_length > 0) {
+    if (g->head_length > 0 && g->head_length != g->padding) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, g->offset,
                           "%zu bytes behind the last chunk, which are no chunk", g->head_length);
     }

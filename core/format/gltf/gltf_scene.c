@@ -2,6 +2,7 @@
 
 #include "format/gltf/gltf_surface.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A node whose children are being visited. */
@@ -55,7 +56,35 @@ static he_status get_numbers(const he_json *json, uint32_t node, const char *nam
     return status;
 }
 
-/* T * R * S, the rotation as the quaternion stands. */
+/* A length of 1 to so much is taken for the rounding of what wrote it. */
+static const double UNIT = 1e-4;
+
+/* A rotation is a quaternion of length 1; one of another length would scale as well. */
+static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error *err)
+{
+    const he_json *json = &asset->json;
+    double largest = fmax(fmax(fabs(q[0]), fabs(q[1])), fmax(fabs(q[2]), fabs(q[3])));
+    if (largest == 0) {
+        return he_json_fail(json, he_json_find(json, node, "rotation"), err, HE_BAD_VALUE,
+                            "a quaternion of length 0 is no rotation");
+    }
+    double sum = 0;
+    for (int i = 0; i < 4; i++) {
+        sum += q[i] / largest * (q[i] / largest);
+    }
+    double length = sqrt(sum) * largest;
+    if (fabs(length - 1) > UNIT) {
+        he_notes_add(&asset->into->notes, "rotation_made_unit",
+                     "made a quaternion of length 1: a rotation", NULL, 0, HE_PLACE_BYTE,
+                     he_json_place(json, node));
+    }
+    for (int i = 0; i < 4; i++) {
+        q[i] = q[i] / largest / sqrt(sum);
+    }
+    return HE_OK;
+}
+
+/* T * R * S */
 static he_gltf_frame compose(const double *t, const double *q, const double *s)
 {
     double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -79,6 +108,9 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
     }
     if (status == HE_OK) {
         status = get_numbers(json, node, "rotation", 4, q, &turned, err);
+    }
+    if (status == HE_OK && turned) {
+        status = make_unit(asset, node, q, err);
     }
     if (status == HE_OK) {
         status = get_numbers(json, node, "scale", 3, s, &scaled, err);

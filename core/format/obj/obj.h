@@ -13,8 +13,8 @@
  *   o, g, usemtl              face attributes "object", "group", "material": the rest of the line
  *   s n | on | off            face attribute "smoothing"
  *   mtllib                    noted, never opened
- *   l, p, curves, others      noted and left out; a line that does not begin with a word is
- *                             HE_SYNTAX
+ *   l, p, curves, others      noted and left out, as are lines that begin with $; any other that
+ *                             does not begin with a word is HE_SYNTAX
  *
  * HE_BAD_INDEX: an index that is 0, or names nothing when the file has ended. Corners without a
  * texture coordinate or normal, where others have one, get zeros and a note. A file in which no

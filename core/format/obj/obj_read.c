@@ -312,6 +312,10 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     if (he_at_end(p, end)) {
         return HE_OK;
     }
+    if (*p == '$') { /* a comment, as some programs have it */
+        note(o, "ignored_keyword", "ignored: lines that begin with", p, 1, line);
+        return HE_OK;
+    }
     if (*p == 'v' && he_token_ends(p + 1, end)) {
         return read_vertex(o, line, p + 1, err);
     }
@@ -470,7 +474,7 @@ static he_status obj_finish(void *state, he_error *err)
 
 const he_reading he_obj_reading = {obj_open, obj_feed, obj_finish, obj_close, false};
 
-/* The first line that is neither blank nor a comment begins with a keyword. */
+/* The first line that is neither blank nor a comment, which $ begins too, begins with a keyword. */
 bool he_obj_sniff(const char *bytes, size_t n)
 {
     static const char *const keywords[] = {"v", "vt", "vn", "f",  "g",      "o",
@@ -487,7 +491,7 @@ bool he_obj_sniff(const char *bytes, size_t n)
         while (p < stop && (*p == ' ' || *p == '\t' || *p == '\r')) {
             p++;
         }
-        if (p < stop && *p != '#') {
+        if (p < stop && *p != '#' && *p != '$') {
             size_t length = 0;
             while (p + length < stop && is_word(p + length, p + length + 1)) {
                 length++;

@@ -13,9 +13,11 @@
  * the vertex attributes "normal" and "uv", v upward. A single number in place of a colour (an index
  * into a colour map) and numbers the header does not announce are noted and left out.
  *
+ * Behind "OFF BINARY", which may have the prefixes, the body is that of off_binary.h, with a note.
+ *
  * HE_SYNTAX: fewer vertices or faces than announced, or anything after the last face: a count
  * that lies would lose faces. HE_BAD_INDEX: a corner below 0 or not below V. HE_BAD_VALUE: a
- * count that no mesh can have. HE_UNSUPPORTED: 4OFF, nOFF and OFF BINARY. */
+ * count that no mesh can have. HE_UNSUPPORTED: 4OFF and nOFF. */
 #ifndef HE_FORMAT_OFF_OFF_H
 #define HE_FORMAT_OFF_OFF_H
 

@@ -1,6 +1,6 @@
 #include "format/off/off.h"
 
-#include "format/io/colors.h"
+#include "format/off/off_binary.h"
 #include "format/text/lines.h"
 #include "format/text/number.h"
 
@@ -17,8 +17,6 @@ typedef enum section {
     FACES,
     DONE
 } section;
-
-enum { HAS_NORMALS = 1, HAS_COLORS = 2, HAS_UV = 4 };
 
 /* More numbers than a vertex can have: 3 + 3 + 4 + 2. */
 enum { VERTEX_NUMBERS = 16 };
@@ -37,8 +35,10 @@ typedef struct off {
     uint32_t integers; /* bit i: the i-th was written as an integer */
     bool open;         /* the last face still lacks `missing` corners */
     uint64_t missing;
-    he_colors vertex_colors, face_colors;
-    he_column *normal, *uv; /* the soup's */
+    he_off_values values;
+    bool is_binary;
+    he_off_binary binary; /* what follows the header then */
+    uint64_t header_bytes;
 } off;
 
 static void note(off *o, const char *code, const char *text, const he_line *line)
@@ -58,12 +58,12 @@ static int header_flags(const char *p, const char *end)
     while (end - p > 3) {
         int flag = 0;
         if (*p == 'S' && p[1] == 'T') {
-            flag = HAS_UV;
+            flag = HE_OFF_UV;
             p++;
         } else if (*p == 'C') {
-            flag = HAS_COLORS;
+            flag = HE_OFF_COLORS;
         } else if (*p == 'N') {
-            flag = HAS_NORMALS;
+            flag = HE_OFF_NORMALS;
         } else if (*p == '4' || *p == 'n') {
             other = true;
         } else {
@@ -79,6 +79,14 @@ static int header_flags(const char *p, const char *end)
         return -1;
     }
     return other ? -2 : flags;
+}
+
+static he_status end_binary_header(const he_line *line, const char **p, he_error *err)
+{
+    *p = he_skip_blanks(he_token_end(*p, line->end), line->end);
+    return he_at_end(*p, line->end)
+               ? HE_OK
+               : he_token_fail(err, HE_SYNTAX, line, *p, "follows BINARY in its line");
 }
 
 static he_status read_header(off *o, const he_line *line, const char **p, he_error *err)
@@ -97,12 +105,10 @@ static he_status read_header(off *o, const he_line *line, const char **p, he_err
         return he_token_fail(err, HE_UNSUPPORTED, line, *p,
                              "is not supported: the points are not in three dimensions");
     }
-    if (line->end - rest >= 6 && memcmp(rest, "BINARY", 6) == 0) {
-        return he_line_fail(err, HE_UNSUPPORTED, line, rest, "binary OFF is not supported");
-    }
     o->has = (unsigned)flags;
+    o->is_binary = he_token_end(rest, line->end) - rest == 6 && memcmp(rest, "BINARY", 6) == 0;
     *p = rest;
-    return HE_OK;
+    return o->is_binary ? end_binary_header(line, p, err) : HE_OK;
 }
 
 static he_status read_count(const he_line *line, const char **p, const char *what, uint64_t limit,
@@ -195,25 +201,6 @@ static void forget_numbers(off *o)
     o->integers = 0;
 }
 
-/* The row of the last vertex of an attribute that is made when the first one has it. */
-static he_status add_row(off *o, he_column **column, const char *name, uint32_t components,
-                         const double *values, he_error *err)
-{
-    he_soup *soup = &o->into->soup;
-    he_status status = HE_OK;
-    if (*column == NULL) {
-        status = he_soup_column(soup, name, HE_VERTEX, HE_DOUBLE, components, HE_INTERPOLATE,
-                                column, err);
-    }
-    if (status == HE_OK) {
-        status = he_column_extend(*column, soup->vertex_count - (*column)->rows, err);
-    }
-    if (status == HE_OK) {
-        memcpy(he_column_row(*column, (*column)->rows - 1), values, (*column)->row_bytes);
-    }
-    return status;
-}
-
 /* What the numbers of a vertex are, besides its position: how many of each, behind each other. */
 typedef struct parts {
     size_t normal, color, uv;
@@ -222,13 +209,13 @@ typedef struct parts {
 /* As the header says, or without the last of what it says. */
 static bool divide(const off *o, size_t count, parts *out)
 {
-    parts p = {(o->has & HAS_NORMALS) != 0 ? 3 : 0, 0, (o->has & HAS_UV) != 0 ? 2 : 0};
+    parts p = {(o->has & HE_OFF_NORMALS) != 0 ? 3 : 0, 0, (o->has & HE_OFF_UV) != 0 ? 2 : 0};
     size_t known = 3 + p.normal + p.uv;
-    if ((o->has & HAS_COLORS) != 0) {
+    if ((o->has & HE_OFF_COLORS) != 0) {
         p.color = count > known ? count - known : 0;
     }
     bool color = p.color == 1 || p.color == 3 || p.color == 4;
-    if (count >= known + p.color && ((o->has & HAS_COLORS) == 0 || color)) {
+    if (count >= known + p.color && ((o->has & HE_OFF_COLORS) == 0 || color)) {
         *out = p;
         return true;
     }
@@ -248,9 +235,9 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     parts p;
     bool spread = o->number_line != line->number, fits = divide(o, count, &p);
     size_t color_at = 3 + p.normal, end = color_at + p.color + p.uv;
-    bool lacking = fits && (((o->has & HAS_NORMALS) != 0 && p.normal == 0) ||
-                            ((o->has & HAS_COLORS) != 0 && p.color == 0) ||
-                            ((o->has & HAS_UV) != 0 && p.uv == 0));
+    bool lacking = fits && (((o->has & HE_OFF_NORMALS) != 0 && p.normal == 0) ||
+                            ((o->has & HE_OFF_COLORS) != 0 && p.color == 0) ||
+                            ((o->has & HE_OFF_UV) != 0 && p.uv == 0));
     o->spread |= spread;
     o->lacking = o->lacking == 0 && lacking ? line->number : o->lacking;
     /* On several lines, what is too much is the next vertex; and where some go on on the next line
@@ -261,13 +248,13 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     }
     he_status status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
     if (status == HE_OK && p.normal > 0) {
-        status = add_row(o, &o->normal, "normal", 3, n + 3, err);
+        status = he_off_add_normal(&o->values, n + 3, err);
     }
     if (status == HE_OK && p.color >= 3) {
-        status = add_color(o, &o->vertex_colors, vertex, color_at, p.color, err);
+        status = add_color(o, &o->values.vertex_colors, vertex, color_at, p.color, err);
     }
     if (status == HE_OK && p.uv > 0) {
-        status = add_row(o, &o->uv, "uv", 2, n + color_at + p.color, err);
+        status = he_off_add_uv(&o->values, n + color_at + p.color, err);
     }
     if (p.color == 1) {
         note(o, "color_index", "ignored: an index into a colour map", line);
@@ -319,9 +306,9 @@ static he_status read_numbers(off *o, const he_line *line, const char **p, size_
 static he_status read_vertex(off *o, const he_line *line, const char **p, he_error *err)
 {
     size_t needed = 3;
-    needed += (o->has & HAS_NORMALS) != 0 ? 3 : 0;
-    needed += (o->has & HAS_COLORS) != 0 ? 1 : 0;
-    needed += (o->has & HAS_UV) != 0 ? 2 : 0;
+    needed += (o->has & HE_OFF_NORMALS) != 0 ? 3 : 0;
+    needed += (o->has & HE_OFF_COLORS) != 0 ? 1 : 0;
+    needed += (o->has & HE_OFF_UV) != 0 ? 2 : 0;
     if (o->number_count == 0) {
         o->number_line = line->number;
         he_status status = he_places_add(&o->into->vertices, (uint32_t)o->into->soup.vertex_count,
@@ -330,7 +317,7 @@ static he_status read_vertex(off *o, const he_line *line, const char **p, he_err
             return status;
         }
     }
-    he_status status = read_numbers(o, line, p, 3, (o->has & HAS_COLORS) != 0, err);
+    he_status status = read_numbers(o, line, p, 3, (o->has & HE_OFF_COLORS) != 0, err);
     size_t enough = o->number_line == line->number ? 3 : needed;
     if (status != HE_OK || o->number_count < enough) {
         return status; /* the vertex goes on on the next line */
@@ -344,7 +331,7 @@ static he_status read_face_color(off *o, const he_line *line, const char **p, he
     he_status status = read_numbers(o, line, p, 0, true, err);
     size_t count = o->number_count;
     if (status == HE_OK && (count == 3 || count == 4)) {
-        status = add_color(o, &o->face_colors, o->into->soup.face_count - 1, 0, count, err);
+        status = add_color(o, &o->values.face_colors, o->into->soup.face_count - 1, 0, count, err);
     } else if (count == 1) {
         note(o, "color_index", "ignored: an index into a colour map", line);
     } else if (count > 0) {
@@ -497,8 +484,7 @@ static void off_close(void *state)
 {
     off *o = state;
     he_lines_clear(&o->lines);
-    he_colors_clear(&o->vertex_colors);
-    he_colors_clear(&o->face_colors);
+    he_off_values_clear(&o->values);
     he_mem_free(o);
 }
 
@@ -508,7 +494,7 @@ static he_status off_open(he_import *into, void **state, he_error *err)
     if (o == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
     }
-    o->into = into;
+    o->into = o->values.into = into;
     he_lines_init(&o->lines, read_line, o);
     o->lines.limit = into->soup.limits.bytes;
     he_places_init(&into->vertices, HE_PLACE_LINE, 1);
@@ -531,10 +517,39 @@ static he_status explain(const off *o, he_status status, he_error *err)
     return status;
 }
 
+static void begin_binary(off *o)
+{
+    he_off_binary_init(&o->binary, &o->values, o->has, o->header_bytes);
+}
+
+/* The header is given out line by line, since what is not text may follow it. */
+static he_status feed_header(off *o, const char **p, const char *end, he_error *err)
+{
+    const char *stop = he_line_stop(*p, end);
+    size_t n = (size_t)(stop - *p);
+    he_status status = he_lines_feed(&o->lines, *p, n, err);
+    o->header_bytes += n;
+    *p = stop;
+    if (status == HE_OK && o->is_binary) {
+        begin_binary(o);
+    }
+    return status;
+}
+
 static he_status off_feed(void *state, const void *bytes, size_t n, he_error *err)
 {
     off *o = state;
-    return explain(o, he_lines_feed(&o->lines, bytes, n, err), err);
+    const char *p = bytes, *end = p + n;
+    he_status status = HE_OK;
+    while (p < end && status == HE_OK && o->section == HEADER) {
+        status = feed_header(o, &p, end, err);
+    }
+    if (status != HE_OK || p == end) {
+        return status;
+    }
+    size_t left = (size_t)(end - p);
+    return o->is_binary ? he_off_binary_feed(&o->binary, (const unsigned char *)p, left, err)
+                        : explain(o, he_lines_feed(&o->lines, p, left, err), err);
 }
 
 static he_status too_short(uint64_t last_line, const char *what, size_t came, uint64_t announced,
@@ -552,6 +567,12 @@ static he_status finish(off *o, he_error *err)
     he_status status = he_lines_finish(&o->lines, err);
     if (status != HE_OK) {
         return status;
+    }
+    if (o->is_binary) {
+        if (o->binary.values == NULL) { /* nothing ends the line of the header */
+            begin_binary(o);
+        }
+        return he_off_binary_finish(&o->binary, err);
     }
     switch (o->section) {
     case HEADER:
@@ -573,13 +594,7 @@ static he_status finish(off *o, he_error *err)
     if (soup->face_count - o->open < o->faces) {
         return too_short(last_line, "faces", soup->face_count - o->open, o->faces, err);
     }
-    status = he_colors_finish(&o->vertex_colors, soup, &o->into->notes, HE_VERTEX,
-                              soup->vertex_count, err);
-    if (status == HE_OK) {
-        status = he_colors_finish(&o->face_colors, soup, &o->into->notes, HE_FACE, soup->face_count,
-                                  err);
-    }
-    return status;
+    return he_off_values_finish(&o->values, err);
 }
 
 static he_status off_finish(void *state, he_error *err)

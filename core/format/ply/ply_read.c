@@ -130,13 +130,6 @@ static bool is_comment(const char *p, const char *end)
     return end - p >= 7 && memcmp(p, "comment", 7) == 0 && he_token_ends(p + 7, end);
 }
 
-/* Only line feeds tell where the bytes of binary begin. */
-static he_status refuse_returns(const he_lines *lines, he_error *err)
-{
-    return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_LINE, lines->number,
-                      "lines of a binary file's header end in carriage returns alone");
-}
-
 static he_status begin_body(ply *o, he_error *err)
 {
     size_t longest = sizeof(double);
@@ -164,9 +157,6 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     if (!o->header.ended) {
         he_status status = he_ply_header_read(&o->header, line, err);
         return status == HE_OK && o->header.ended ? begin_body(o, err) : status;
-    }
-    if (o->header.encoding != HE_PLY_ASCII) {
-        return refuse_returns(&o->lines, err);
     }
     const char *p = he_skip_blanks(line->begin, line->end);
     if (he_at_end(p, line->end) || is_comment(p, line->end)) {
@@ -502,14 +492,10 @@ static he_status ply_feed(void *state, const void *bytes, size_t n, he_error *er
     ply *o = state;
     const char *p = bytes, *end = p + n;
     while (p < end && !o->header.ended) {
-        const char *feed = memchr(p, '\n', (size_t)(end - p));
-        const char *stop = feed == NULL ? end : feed + 1;
+        const char *stop = he_line_stop(p, end);
         he_status status = he_lines_feed(&o->lines, p, (size_t)(stop - p), err);
         if (status != HE_OK) {
             return status;
-        }
-        if (o->header.ended && o->header.encoding != HE_PLY_ASCII && he_lines_held(&o->lines)) {
-            return refuse_returns(&o->lines, err);
         }
         o->offset += (uint64_t)(stop - p);
         p = stop;

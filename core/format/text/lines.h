@@ -41,16 +41,20 @@ typedef struct he_lines {
 
 void he_lines_init(he_lines *lines, he_line_take *take, void *context);
 void he_lines_clear(he_lines *lines);
+/* The end of the first line of some bytes, behind what may end it, for who has to feed what comes
+ * line by line, since other things than text follow. */
+static inline const char *he_line_stop(const char *p, const char *end)
+{
+    while (p < end && *p != '\n' && *p != '\r') {
+        p++;
+    }
+    return p < end ? p + 1 : end;
+}
 /* HE_LIMIT, HE_NO_MEMORY, HE_UNSUPPORTED for UTF-16, HE_SYNTAX for a NUL, or what `take`
  * returns. */
 HE_NODISCARD he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err);
 /* The number of the last line that has come, comments included; 1 while there is none. */
 uint64_t he_lines_last(const he_lines *lines);
-/* Has an unfinished line come? */
-static inline bool he_lines_held(const he_lines *lines)
-{
-    return lines->length > 0 || lines->in_comment;
-}
 /* Give out the last line if it had no line end. */
 HE_NODISCARD he_status he_lines_finish(he_lines *lines, he_error *err);
 
