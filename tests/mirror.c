@@ -1,6 +1,7 @@
 #include "tests/mirror.h"
 
 #include "mesh/column.h"
+#include "mesh/material.h"
 #include "mesh/walk.h"
 
 #include <setjmp.h>
@@ -31,7 +32,36 @@ void mirror_clear(mirror *m)
         drop_column(m, 0);
     }
     free(m->columns);
+    free(m->materials);
     *m = (mirror){0};
+}
+
+/* A row of the table behind those that are there. */
+static void add_material(mirror *m, const char *name, const double numbers[9], bool two_sided)
+{
+    size_t length = m->materials == NULL ? 0 : strlen(m->materials);
+    size_t room = length + strlen(name) + 400;
+    m->materials = realloc(m->materials, room);
+    assert_non_null(m->materials);
+    length += (size_t)snprintf(m->materials + length, room - length, "%s %d", name, two_sided);
+    for (size_t i = 0; i < 9; i++) {
+        length += (size_t)snprintf(m->materials + length, room - length, " %.17g", numbers[i]);
+    }
+    (void)snprintf(m->materials + length, room - length, "\n");
+}
+
+static void take_materials(mirror *m, const he_materials *table)
+{
+    for (size_t i = 0; i < table->count; i++) {
+        if (table->rows[i] != NULL) {
+            const he_look *look = &table->rows[i]->look;
+            const double numbers[9] = {
+                look->base_color[0], look->base_color[1], look->base_color[2],
+                look->base_color[3], look->metallic,      look->roughness,
+                look->emission[0],   look->emission[1],   look->emission[2]};
+            add_material(m, table->rows[i]->name, numbers, look->two_sided);
+        }
+    }
 }
 
 static mirror_row *row_at(mirror *m, he_kind kind, size_t id)
@@ -212,6 +242,7 @@ void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision)
             take_column(m, he_mesh_column(mesh, i));
         }
     }
+    take_materials(m, he_mesh_materials(mesh));
 }
 
 static const cJSON *member(const cJSON *object, const char *name)
@@ -306,6 +337,27 @@ static void apply_columns(mirror *m, const cJSON *data)
             read_numbers(fallback, c->fallback, c->components);
         }
         round_numbers(c, c->fallback);
+    }
+}
+
+/* The whole table comes where a row of it changed. */
+static void apply_materials(mirror *m, const cJSON *list)
+{
+    const cJSON *item;
+    if (list == NULL) {
+        return;
+    }
+    free(m->materials);
+    m->materials = NULL;
+    cJSON_ArrayForEach(item, list)
+    {
+        double numbers[9];
+        read_numbers(member(item, "base_color"), numbers, 4);
+        numbers[4] = member(item, "metallic")->valuedouble;
+        numbers[5] = member(item, "roughness")->valuedouble;
+        read_numbers(member(item, "emission"), numbers + 6, 3);
+        add_material(m, member(item, "name")->valuestring, numbers,
+                     cJSON_IsTrue(member(item, "two_sided")));
     }
 }
 
@@ -421,6 +473,7 @@ mirror_step mirror_apply(mirror *m, const cJSON *data)
     require_set(m, member(data, "created"), false);
     require_set(m, member(data, "modified"), true);
     apply_columns(m, data);
+    apply_materials(m, cJSON_GetObjectItem(data, "materials"));
     apply_deleted(m, member(data, "deleted"));
     apply_vertices(m, member(values, "vertices"));
     apply_links(m, HE_HALFEDGE, member(values, "halfedges"));
@@ -493,6 +546,10 @@ bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT])
                 return false;
             }
         }
+    }
+    if (a->materials != NULL && b->materials != NULL && strcmp(a->materials, b->materials) != 0) {
+        (void)snprintf(text, MIRROR_TEXT, "materials: %.80s, %.80s", a->materials, b->materials);
+        return false;
     }
     if (a->column_count == 0 || b->column_count == 0) {
         return true;

@@ -37,6 +37,7 @@ typedef struct mirror {
     mirror_table tables[HE_KIND_COUNT]; /* of vertices, half-edges and faces */
     mirror_column *columns;
     size_t column_count;
+    char *materials; /* the table as text; NULL: nothing was said of it */
 } mirror;
 
 void mirror_clear(mirror *m);

@@ -151,6 +151,12 @@ static void put_value(draft *d, const he_param *p)
         put(d, "\"%s\":[1,0,0,%.17g,0,1,0,%.17g,0,0,1,0,0,0,0,1]", p->name,
             md_unit(d->random) - 0.5, md_unit(d->random) - 0.5);
         return;
+    case HE_PARAM_TEXT:
+        put(d, "\"%s\":\"%c\"", p->name, (char)('a' + md_below(d->random, 5)));
+        return;
+    case HE_PARAM_COLOR:
+        put(d, "\"%s\":[%.17g,%.17g,0]", p->name, md_unit(d->random), md_unit(d->random));
+        return;
     case HE_PARAM_MESH:
         put(d, "\"%s\":\"m\"", p->name);
         return;

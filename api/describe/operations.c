@@ -28,6 +28,10 @@ static const char *param_type(const he_param *param)
         return "choice";
     case HE_PARAM_MATRIX:
         return "matrix";
+    case HE_PARAM_TEXT:
+        return "text";
+    case HE_PARAM_COLOR:
+        return param->flags & HE_OPACITY ? "color_alpha" : "color";
     case HE_PARAM_MESH:
         return "mesh";
     }
@@ -230,6 +234,12 @@ static void write_value_schema(api_out *out, const he_param *param)
         return;
     case HE_PARAM_MATRIX:
         api_schema_ref(out, "schemas", "matrix");
+        return;
+    case HE_PARAM_TEXT:
+        api_out_raw(out, "{\"type\":\"string\"}", 17);
+        return;
+    case HE_PARAM_COLOR:
+        api_schema_ref(out, "schemas", param->flags & HE_OPACITY ? "color_alpha" : "color");
         return;
     case HE_PARAM_MESH:
         api_schema_ref(out, "schemas", "mesh_id");

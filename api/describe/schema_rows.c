@@ -218,7 +218,7 @@ const api_member api_answer_members[] = {
     {"components", "by", "#connection", REQUIRED, NULL},
     {"components", "components", "*#component", REQUIRED, NULL},
 
-    {"broken", "rule", "text", REQUIRED, "I1 to I12."},
+    {"broken", "rule", "text", REQUIRED, "I1 to I13."},
     {"broken", "kind", "#element_kind", REQUIRED, NULL},
     {"broken", "id", "id", REQUIRED, NULL},
     {"broken", "detail", "text", REQUIRED, NULL},

@@ -23,6 +23,11 @@ static const struct {
               "\"maxItems\":3}"},
     {"points", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/point\"},{\"type\":\"array\","
                "\"items\":{\"$ref\":\"#/components/schemas/point\"},\"minItems\":1}]}"},
+    {"color", "{\"type\":\"array\",\"items\":{\"type\":\"number\",\"minimum\":0},\"minItems\":3,"
+              "\"maxItems\":3,\"description\":\"Linear red, green and blue.\"}"},
+    {"color_alpha", "{\"type\":\"array\",\"items\":{\"type\":\"number\",\"minimum\":0,\"maximum\":"
+                    "1},\"minItems\":3,"
+                    "\"maxItems\":4,\"description\":\"Linear red, green and blue, and opacity.\"}"},
     {"mesh_id", "{\"type\":\"string\",\"pattern\":\"^[A-Za-z0-9._-]{1,64}$\"}"},
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},

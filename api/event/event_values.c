@@ -1,6 +1,7 @@
 #include "api/event/event_values.h"
 
 #include "api/json/attribute_value.h"
+#include "api/json/material_value.h"
 #include "mesh/column.h"
 #include "mesh/walk.h"
 
@@ -17,6 +18,7 @@ typedef struct touched {
     he_ids vertices, halfedges, faces;
     slot *slots;
     size_t slot_count;
+    bool materials; /* the table */
 } touched;
 
 static void touched_clear(touched *t)
@@ -57,6 +59,9 @@ static he_status note_record(touched *t, const he_delta *delta, const he_record 
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
         note_column(t, delta, r, undone);
+        return HE_OK;
+    case HE_COL_MATERIAL:
+        t->materials = true;
         return HE_OK;
     case HE_COL_PARENT:
     case HE_COL_MERGED:
@@ -297,6 +302,10 @@ he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *de
         /* Dropped before added: one may have the name of the other. */
         write_columns_dropped(out, &t);
         write_columns_added(out, mesh, &t);
+        if (t.materials) {
+            api_out_key(out, "materials");
+            api_write_materials(out, he_mesh_materials(mesh));
+        }
         api_out_key(out, "values");
         api_out_object_begin(out);
         write_vertices(out, mesh, &t.vertices);

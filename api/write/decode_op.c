@@ -1,5 +1,6 @@
 #include "api/write/decode_op.h"
 
+#include "api/json/material_value.h"
 #include "api/limits.h"
 
 #include <string.h>
@@ -228,6 +229,10 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_CYCLE:
         /* Too few corners is a refusal of the operation, not of the document. */
         return decode_list(d, param->kind, 0, in, arg);
+    case HE_PARAM_TEXT:
+        return api_in_string(in, SIZE_MAX, &arg->text);
+    case HE_PARAM_COLOR:
+        return api_read_color(in, param->flags & HE_OPACITY ? 4 : 3, arg->color, &arg->count);
     case HE_PARAM_MESH:
         return decode_mesh(d, in, arg);
     }

@@ -417,6 +417,9 @@ static he_status run(he_mesh *m, he_scheme scheme, unsigned steps, start *at, co
         }
     }
     if (status == HE_OK) {
+        status = he_materials_copy(&m->c.materials, &now->c.materials, err);
+    }
+    if (status == HE_OK) {
         status = he_mesh_replace(m, now, HE_KEEPS_IDS, err);
     }
     if (status != HE_OK) {

@@ -206,6 +206,9 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
                                HE_MAX_ROWS);
     }
     if (status == HE_OK) {
+        status = he_materials_copy(&soup->materials, &mesh->c.materials, err);
+    }
+    if (status == HE_OK) {
         status = build_links(soup, (flags & HE_BUILD_TAKE) != 0, &corners, &turns, &mesh->c, err);
     }
     if (status == HE_OK) {

@@ -9,6 +9,7 @@
 #define HE_BUILD_BUILD_H
 
 #include "mesh/column.h"
+#include "mesh/material.h"
 #include "mesh/mesh.h"
 
 /* What a caller allows; 0 means the structure's own maximum. */
@@ -31,6 +32,7 @@ typedef struct he_soup {
      * filled up with their default. */
     he_column **columns;
     size_t column_count, column_capacity;
+    he_materials materials; /* the mesh's, whatever becomes of its faces */
 } he_soup;
 
 void he_soup_init(he_soup *soup, const he_limits *limits);

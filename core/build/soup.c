@@ -21,6 +21,7 @@ void he_soup_clear(he_soup *soup)
         he_column_free(soup->columns[i]);
     }
     he_mem_free(soup->columns);
+    he_materials_clear(&soup->materials);
     he_limits limits = soup->limits;
     he_soup_init(soup, &limits);
 }

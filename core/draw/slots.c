@@ -340,6 +340,7 @@ static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_e
     case HE_COL_MERGED:
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
+    case HE_COL_MATERIAL:
     case HE_COL_ATTRIBUTE:
         break;
     }

@@ -155,6 +155,7 @@ static he_status note_word(const he_mesh *mesh, he_changes *out, uint32_t column
     case HE_COL_MERGED:
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
+    case HE_COL_MATERIAL:
     case HE_COL_REPLACED:
         return HE_OK;
     case HE_COL_ATTRIBUTE:
@@ -204,6 +205,8 @@ static he_status gather_part(const he_change_part *part, words *w, he_changes *f
         } else if (r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED) {
             found->others = true;
             status = he_ids_add(&w->slots, r->row, err);
+        } else if (r->column == HE_COL_MATERIAL) {
+            found->others = true;
         }
     }
     return status;

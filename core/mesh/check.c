@@ -271,6 +271,24 @@ static void check_rows(checker *c)
     }
 }
 
+static void check_materials(checker *c)
+{
+    const he_materials *table = &c->m->c.materials;
+    for (size_t i = 0; i < table->count && !enough(c); i++) {
+        const he_material *row = table->rows[i];
+        if (row == NULL) {
+            continue;
+        }
+        he_look look = row->look;
+        if (he_materials_find(table, row->name, row->length) != i) {
+            broken(c, 13, HE_MESH_KIND, 0, "two materials are called %.80s", row->name);
+        }
+        if (row->length == 0 || he_look_clamp(&look)) {
+            broken(c, 13, HE_MESH_KIND, 0, "material %zu has no name, or a number out of range", i);
+        }
+    }
+}
+
 he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, size_t *total,
                    he_error *err)
 {
@@ -281,8 +299,8 @@ he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *pro
                            size_t capacity, size_t *total, he_error *err)
 {
     /* Later passes follow the links that the first has found to lead somewhere. */
-    static void (*const passes[])(checker * c) = {check_links, check_halfedges, check_faces,
-                                                  check_vertices, check_rows};
+    static void (*const passes[])(checker * c) = {check_links,    check_halfedges, check_faces,
+                                                  check_vertices, check_rows,      check_materials};
     enum { PASSES = sizeof passes / sizeof *passes };
     size_t halfedges = 2 * (size_t)mesh->c.edges.issued;
     he_status status = HE_OK;

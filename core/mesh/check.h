@@ -1,6 +1,6 @@
 /* check.h - is a mesh what mesh.h promises?
  *
- * Tests the invariants I1 to I12 on any content whatever, corrupt links included, in time linear in
+ * Tests the invariants I1 to I13 on any content whatever, corrupt links included, in time linear in
  * the mesh. Links that name nothing are reported alone: the other tests could not follow them. */
 #ifndef HE_MESH_CHECK_H
 #define HE_MESH_CHECK_H
@@ -10,7 +10,7 @@
 enum { HE_PROBLEM_TEXT = 160 };
 
 typedef struct he_problem {
-    int rule; /* 1..12 for I1..I12 */
+    int rule; /* 1..13 for I1..I13 */
     he_kind kind;
     uint32_t id;
     char text[HE_PROBLEM_TEXT];

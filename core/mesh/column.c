@@ -159,6 +159,12 @@ bool he_column_same_values(const he_column *a, const he_column *b)
     return a->type == b->type && a->components == b->components && a->labels == b->labels;
 }
 
+bool he_is_material_column(const he_column *column)
+{
+    return column->domain == HE_FACE && column->type == HE_UINT32 && column->components == 1 &&
+           column->labels != NULL && strcmp(column->name, HE_MATERIAL_ATTRIBUTE) == 0;
+}
+
 he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
                                 he_column **out, he_error *err)
 {

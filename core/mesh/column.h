@@ -20,6 +20,9 @@ typedef enum he_rule { HE_COPY, HE_INTERPOLATE, HE_DEFAULT, HE_RULE_COUNT } he_r
 
 enum { HE_COLUMN_NAME = 64, HE_COLUMN_COMPONENTS = 16, HE_COLUMN_ROW_BYTES = 128 };
 
+/* The attribute of faces whose labels name materials (material.h). */
+#define HE_MATERIAL_ATTRIBUTE "material"
+
 /* Strings of a categorical column, shared by reference count between copies of a mesh. */
 typedef struct he_labels he_labels;
 
@@ -73,6 +76,8 @@ size_t he_column_bytes(const he_column *column);
 bool he_column_same_kind(const he_column *a, const he_column *b); /* all but the rows */
 /* Do rows of one mean the same in the other: type, components, labels? */
 bool he_column_same_values(const he_column *a, const he_column *b);
+/* Is it of the kind that HE_MATERIAL_ATTRIBUTE is: uint32 of one component, with labels? */
+bool he_is_material_column(const he_column *column);
 /* One of corners under another name that is else of the kind of `column`, with so many rows. */
 HE_NODISCARD he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
                                              he_column **out, he_error *err);
@@ -86,6 +91,8 @@ size_t he_labels_count(const he_labels *labels);
 const char *he_labels_get(const he_labels *labels, size_t i);
 /* Returns whether both hold equal strings in one order. NULL equals NULL alone. */
 bool he_labels_equal(const he_labels *a, const he_labels *b);
+/* The index of a string that is there; false where it is not. */
+bool he_labels_find(const he_labels *labels, const char *text, size_t length, uint32_t *out);
 /* The index of a string, added when new. Only while nobody else holds a reference. */
 HE_NODISCARD he_status he_labels_add(he_labels *labels, const char *text, size_t length,
                                      uint32_t *out, he_error *err);

@@ -300,6 +300,9 @@ he_status he_compact(he_mesh *mesh, he_maps *out, he_error *err)
         status = move_columns(from, &r, &fresh->c, err);
     }
     if (status == HE_OK) {
+        status = he_materials_pack(&from->materials, &fresh->c.materials, err);
+    }
+    if (status == HE_OK) {
         status = he_mesh_replace(mesh, fresh, HE_RENUMBERS, err);
     }
     if (status == HE_OK) {

@@ -84,6 +84,7 @@ void he_content_clear(he_content *c)
         he_column_free(c->columns[i]);
     }
     he_mem_free(c->columns);
+    he_materials_clear(&c->materials);
     *c = (he_content){0};
 }
 
@@ -173,6 +174,9 @@ he_status he_content_copy(const he_content *from, he_watch *watch, he_content *o
         status = copy_columns(from, &to, err);
     }
     if (status == HE_OK) {
+        status = he_materials_copy(&from->materials, &to.materials, err);
+    }
+    if (status == HE_OK) {
         status = copy_links(from, watch, &to, err);
     }
     if (status != HE_OK) {
@@ -194,7 +198,8 @@ size_t he_content_bytes(const he_content *c)
 {
     size_t bytes = c->vertices.capacity * (sizeof *c->position + sizeof(uint32_t)) +
                    c->edges.capacity * (size_t)8 * sizeof(uint32_t) +
-                   c->faces.capacity * sizeof(uint32_t) + c->column_capacity * sizeof *c->columns;
+                   c->faces.capacity * sizeof(uint32_t) + c->column_capacity * sizeof *c->columns +
+                   he_materials_bytes(&c->materials);
     for (size_t i = 0; i < c->column_count; i++) {
         if (c->columns[i] != NULL) {
             bytes += he_column_bytes(c->columns[i]);

@@ -32,6 +32,14 @@ static void swap_column(void **objects, he_content *c, const he_record *r)
     c->columns[r->row] = other;
 }
 
+static void swap_material(void **objects, he_content *c, const he_record *r)
+{
+    assert(r->row < c->materials.count);
+    he_material *other = objects[r->before];
+    objects[r->before] = c->materials.rows[r->row];
+    c->materials.rows[r->row] = other;
+}
+
 static void swap_content(void **objects, he_content *c, const he_record *r)
 {
     he_content *other = objects[r->before];
@@ -78,6 +86,9 @@ static void apply(void **objects, he_content *c, const he_record *r, uint32_t be
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
         swap_column(objects, c, r);
+        return;
+    case HE_COL_MATERIAL:
+        swap_material(objects, c, r);
         return;
     case HE_COL_REPLACED:
         swap_content(objects, c, r);

@@ -66,29 +66,54 @@ static he_status add_slot(he_content *c, he_error *err)
     return HE_OK;
 }
 
-/* Slots for the columns that come in a span, and in these columns the rows that are issued. */
-static he_status ready_columns(he_content *c, const he_delta *delta, span s, void **objects,
-                               size_t *refused, he_error *err)
+/* A slot for the column that record i brings, and in the column the rows that are issued. */
+static he_status ready_column(he_content *c, const he_delta *delta, size_t i, void **objects,
+                              size_t *refused, he_error *err)
+{
+    const he_record *r = &delta->records[i];
+    he_column *column = objects[r->before];
+    he_status status = HE_OK;
+    if (column == NULL) {
+        return refuse(i, refused, "brings no attribute", err);
+    }
+    if (r->row > c->column_count) {
+        return refuse(i, refused, "passes over a free slot", err);
+    }
+    size_t rows = he_content_issued(c, column->domain);
+    if (column->rows < rows) {
+        status = he_column_extend(column, rows - column->rows, err);
+    }
+    return status == HE_OK && r->row == c->column_count ? add_slot(c, err) : status;
+}
+
+/* A slot for the material that record i brings. */
+static he_status ready_material(he_content *c, const he_delta *delta, size_t i, size_t *refused,
+                                he_error *err)
+{
+    uint32_t slot = delta->records[i].row;
+    if (slot > c->materials.count || slot >= HE_MATERIALS) {
+        return refuse(i, refused, "passes over a free slot, or has one that no material has", err);
+    }
+    if (slot < c->materials.count) {
+        return HE_OK;
+    }
+    he_status status = he_materials_reserve(&c->materials, slot + 1u, err);
+    if (status == HE_OK) {
+        c->materials.rows[c->materials.count++] = NULL;
+    }
+    return status;
+}
+
+/* Slots for the columns and materials that come in a span. */
+static he_status ready_slots(he_content *c, const he_delta *delta, span s, void **objects,
+                             size_t *refused, he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = s.from; i < s.to && status == HE_OK; i++) {
-        const he_record *r = &delta->records[i];
-        if (r->column != HE_COL_COLUMN_ADDED) {
-            continue;
-        }
-        he_column *column = objects[r->before];
-        size_t rows = column == NULL ? 0 : he_content_issued(c, column->domain);
-        if (column == NULL) {
-            return refuse(i, refused, "brings no attribute", err);
-        }
-        if (r->row > c->column_count) {
-            return refuse(i, refused, "passes over a free slot", err);
-        }
-        if (column->rows < rows) {
-            status = he_column_extend(column, rows - column->rows, err);
-        }
-        if (status == HE_OK && r->row == c->column_count) {
-            status = add_slot(c, err);
+        if (delta->records[i].column == HE_COL_COLUMN_ADDED) {
+            status = ready_column(c, delta, i, objects, refused, err);
+        } else if (delta->records[i].column == HE_COL_MATERIAL) {
+            status = ready_material(c, delta, i, refused, err);
         }
     }
     return status;
@@ -107,7 +132,7 @@ static he_status ready(he_content *c, const he_delta *delta, void **objects,
         }
         status = he_content_issue(c, last ? issued : marks, err);
         if (status == HE_OK && delta->object_count > 0) {
-            status = ready_columns(c, delta, s, objects, refused, err);
+            status = ready_slots(c, delta, s, objects, refused, err);
         }
         if (last) {
             break;
@@ -155,6 +180,15 @@ static bool is_free(const he_content *c, size_t slot, const he_column *column)
     return c->columns[slot] == NULL;
 }
 
+/* Does the slot hold the row that record r was made on, and no other row the name that comes? */
+static bool material_is(const he_content *c, const he_record *r, const he_material *comes)
+{
+    const he_material *row = c->materials.rows[r->row];
+    size_t slot =
+        comes == NULL ? SIZE_MAX : he_materials_find(&c->materials, comes->name, comes->length);
+    return (row == NULL ? 0 : row->mark) == r->after && (slot == SIZE_MAX || slot == r->row);
+}
+
 /* Does the content hold what the record was made on? */
 static bool holds(const he_content *c, void **objects, const he_record *r)
 {
@@ -182,6 +216,8 @@ static bool holds(const he_content *c, void **objects, const he_record *r)
         return is_free(c, r->row, objects[r->before]);
     case HE_COL_COLUMN_DROPPED:
         return r->row < c->column_count && c->columns[r->row] != NULL && objects[r->before] == NULL;
+    case HE_COL_MATERIAL:
+        return material_is(c, r, objects[r->before]);
     case HE_COL_ATTRIBUTE:
         break;
     }
@@ -193,7 +229,7 @@ he_status he_content_forward(he_content *c, const he_delta *delta, void **object
 {
     const uint32_t marks[HE_KIND_COUNT] = {
         [HE_VERTEX] = c->vertices.issued, [HE_EDGE] = c->edges.issued, [HE_FACE] = c->faces.issued};
-    size_t columns = c->column_count;
+    size_t columns = c->column_count, materials = c->materials.count;
     he_status status = ready(c, delta, objects, issued, refused, err);
     for (size_t i = 0; i < delta->count && status == HE_OK; i++) {
         if (!holds(c, objects, &delta->records[i])) {
@@ -205,6 +241,7 @@ he_status he_content_forward(he_content *c, const he_delta *delta, void **object
     }
     if (status != HE_OK) {
         c->column_count = columns;
+        c->materials.count = materials;
     }
     he_content_withdraw(c, status == HE_OK ? issued : marks);
     return status;

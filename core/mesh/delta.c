@@ -10,21 +10,36 @@ he_delta *he_delta_new(void)
     return he_mem_zero(1, sizeof(he_delta));
 }
 
+void he_object_free(uint32_t column, void *object)
+{
+    if (object == NULL) {
+        return;
+    }
+    if (column == HE_COL_REPLACED) {
+        he_content_clear(object);
+        he_mem_free(object);
+    } else if (column == HE_COL_MATERIAL) {
+        he_material_release(object);
+    } else {
+        he_column_free(object);
+    }
+}
+
+size_t he_object_bytes(uint32_t column, const void *object)
+{
+    return object == NULL              ? 0
+           : column == HE_COL_REPLACED ? he_content_bytes(object)
+           : column == HE_COL_MATERIAL ? he_material_bytes(object)
+                                       : he_column_bytes(object);
+}
+
 /* Objects from `from` on are what the mesh does not hold at this moment. */
 static void free_objects(he_delta *d, size_t from)
 {
     for (size_t i = 0; i < d->count; i++) {
         const he_record *r = &d->records[i];
-        bool column = r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED;
-        if ((!column && r->column != HE_COL_REPLACED) || r->before < from) {
-            continue;
-        }
-        if (column) {
-            he_column_free(d->objects[r->before]);
-        } else {
-            he_content *content = d->objects[r->before];
-            he_content_clear(content);
-            he_mem_free(content);
+        if (he_has_object(r) && r->before >= from) {
+            he_object_free(r->column, d->objects[r->before]);
         }
     }
     d->object_count = from;
@@ -57,11 +72,8 @@ size_t he_delta_bytes(const he_delta *d)
     }
     for (size_t i = 0; i < d->count; i++) {
         const he_record *r = &d->records[i];
-        if (r->column == HE_COL_REPLACED) {
-            bytes += he_content_bytes(d->objects[r->before]);
-        } else if ((r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED) &&
-                   d->objects[r->before] != NULL) {
-            bytes += he_column_bytes(d->objects[r->before]);
+        if (he_has_object(r)) {
+            bytes += he_object_bytes(r->column, d->objects[r->before]);
         }
     }
     return bytes;

@@ -2,9 +2,10 @@
  *
  * A delta is a list of records of 16 bytes. Most say that one 32-bit word of one row of one column
  * changed from `before` to `after`: every column, links and doubles alike, is seen as rows of
- * words. Others say that a column was added or dropped, or that the whole content was replaced;
- * those point at an object the delta owns and hold the other side of the change. Lineage records
- * (this element came from that one, this one merged into that one) change nothing.
+ * words. Others say that a column was added or dropped, a material put in the place of another or
+ * of none, or that the whole content was replaced; those point at an object the delta owns and hold
+ * the other side of the change. Lineage records (this element came from that one, this one merged
+ * into that one) change nothing.
  *
  * Applied backwards a delta undoes its edit, applied forwards it does it again, bit for bit. Rows
  * it issued stay issued when it is undone: they are dead then, and only redoing it revives them.
@@ -32,6 +33,8 @@ typedef enum he_col {
     HE_COL_MERGED,       /* row = the one gone, before = the one it became part of, word = kind */
     HE_COL_COLUMN_ADDED, /* row = slot, before = object */
     HE_COL_COLUMN_DROPPED,
+    HE_COL_MATERIAL, /* row = slot, before = object, after = mark of the row before the edit, or 0
+                      */
     HE_COL_REPLACED, /* before = object: the content of the other side; row = 1 where ids changed
                         their meaning */
     HE_COL_ATTRIBUTE
@@ -47,9 +50,15 @@ typedef struct he_record {
 struct he_delta {
     he_record *records;
     size_t count, capacity;
-    void **objects; /* he_column or he_content */
+    void **objects; /* he_column, he_material or he_content, by the record that names it */
     size_t object_count, object_capacity;
 };
+
+/* Does the record name an object of its delta? */
+static inline bool he_has_object(const he_record *r)
+{
+    return r->column >= HE_COL_COLUMN_ADDED && r->column < HE_COL_ATTRIBUTE;
+}
 
 /* A point inside a recording to which he_delta_rollback can return. */
 typedef struct he_savepoint {
@@ -98,6 +107,11 @@ HE_NODISCARD he_status he_delta_forward(he_delta *delta, he_mesh *mesh,
  * are as far as they were. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err);
 
+/* Release an object of a record of this column; NULL is allowed. For core/mesh. */
+void he_object_free(uint32_t column, void *object);
+/* What one costs. */
+size_t he_object_bytes(uint32_t column, const void *object);
+
 /* Only while recording. */
 he_savepoint he_delta_mark(const he_mesh *mesh);
 void he_delta_rollback(he_mesh *mesh, he_savepoint to);
@@ -113,8 +127,8 @@ typedef struct he_changes {
     he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];
     bool replaced;   /* the content as a whole: the sets are empty */
     bool renumbered; /* and ids mean other elements than before */
-    bool others;     /* what no set shows: a column came or went, or a value of the mesh, or a link
-                        or value of a half-edge that runs along a hole, differs */
+    bool others; /* what no set shows: a column or material came or went, or a value of the mesh,
+                    or a link or value of a half-edge that runs along a hole, differs */
 } he_changes;
 
 /* Records `from`..`to` of `delta`, with `mesh` in the state after `to`, or, when `undone`, before

@@ -122,6 +122,16 @@ static bool grow_text(he_labels *labels, size_t extra)
     return true;
 }
 
+bool he_labels_find(const he_labels *labels, const char *text, size_t length, uint32_t *out)
+{
+    size_t slot = labels->slot_count == 0 ? 0 : slot_of(labels, text, length);
+    if (labels->slot_count == 0 || labels->slots[slot] == 0) {
+        return false;
+    }
+    *out = labels->slots[slot] - 1;
+    return true;
+}
+
 he_status he_labels_add(he_labels *labels, const char *text, size_t length, uint32_t *out,
                         he_error *err)
 {

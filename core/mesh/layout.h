@@ -4,6 +4,7 @@
 #define HE_MESH_LAYOUT_H
 
 #include "mesh/column.h"
+#include "mesh/material.h"
 #include "mesh/mesh.h"
 
 /* One table of rows. `issued` only grows, except in he_compact and where nothing was published. */
@@ -22,6 +23,7 @@ typedef struct he_content {
     uint32_t *face_halfedge;
     he_column **columns; /* slots; NULL where a column was dropped */
     size_t column_count, column_capacity;
+    he_materials materials;
 } he_content;
 
 /* Rows issued in an attribute's domain. */

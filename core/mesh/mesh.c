@@ -174,6 +174,11 @@ size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column)
     return slot;
 }
 
+const he_materials *he_mesh_materials(const he_mesh *mesh)
+{
+    return &mesh->c.materials;
+}
+
 /* Columns are equal when every row is, rows of defaults that only one stores included. */
 static bool columns_equal(const he_column *a, const he_column *b)
 {
@@ -233,7 +238,7 @@ bool he_mesh_equal_live(const he_mesh *first, const he_mesh *second)
             return false;
         }
     }
-    return true;
+    return he_materials_equal(&a->materials, &b->materials);
 }
 
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b)

@@ -35,6 +35,7 @@
  *   I11  positions are finite.
  *   I12  a dead row holds HE_DEAD in every link, the origin as its position and defaults as its
  *        attributes; the live counts are right.
+ *   I13  materials have names, no two the same, and numbers in their ranges.
  *
  * IDS. A row is issued at the end of its table and its number is the element's id. It never moves
  * and is never issued again; deleting an element leaves a dead row. Only he_compact renumbers.
@@ -42,6 +43,8 @@
  *
  * ATTRIBUTES. Columns of values, one row an element (see column.h). Positions are the built-in
  * one: three doubles a vertex.
+ *
+ * MATERIALS. A table of what surfaces look like, which faces name (material.h).
  *
  * EDITS check everything, reserve everything, then write and cannot fail. Every write goes through
  * write.h, where the recording delta sees it (delta.h).
@@ -82,6 +85,7 @@ typedef struct he_vec3 {
 
 typedef struct he_mesh he_mesh;
 typedef struct he_column he_column;
+typedef struct he_materials he_materials;
 typedef struct he_delta he_delta;
 
 /* An empty mesh, or NULL when memory is out. */
@@ -130,5 +134,7 @@ const he_column *he_mesh_column(const he_mesh *mesh, size_t i);
 const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const char *name);
 /* Where a column of the mesh stands among its slots. */
 size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column);
+/* The table of materials; valid until one comes or goes. */
+const he_materials *he_mesh_materials(const he_mesh *mesh);
 
 #endif

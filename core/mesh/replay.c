@@ -9,7 +9,7 @@
 typedef struct other_side {
     uint64_t key;
     void **objects;
-    bool *contents; /* which of them are he_content and not he_column */
+    uint32_t *columns; /* of the record that names each */
     size_t count;
     struct other_side *next;
 } other_side;
@@ -19,25 +19,13 @@ struct he_replay {
     other_side *sides;
 };
 
-static void free_content(he_content *content)
-{
-    if (content != NULL) {
-        he_content_clear(content);
-        he_mem_free(content);
-    }
-}
-
 static void free_side(other_side *side)
 {
     for (size_t i = 0; i < side->count; i++) {
-        if (side->contents[i]) {
-            free_content(side->objects[i]);
-        } else {
-            he_column_free(side->objects[i]);
-        }
+        he_object_free(side->columns[i], side->objects[i]);
     }
     he_mem_free(side->objects);
-    he_mem_free(side->contents);
+    he_mem_free(side->columns);
     he_mem_free(side);
 }
 
@@ -82,23 +70,24 @@ size_t he_replay_bytes(const he_replay *replay)
 {
     size_t bytes = sizeof *replay + he_mesh_bytes(replay->mesh) + he_long_faces_bytes(replay->mesh);
     for (const other_side *side = replay->sides; side != NULL; side = side->next) {
-        bytes += sizeof *side + side->count * (sizeof *side->objects + sizeof *side->contents);
+        bytes += sizeof *side + side->count * (sizeof *side->objects + sizeof *side->columns);
         for (size_t i = 0; i < side->count; i++) {
-            if (side->objects[i] != NULL) {
-                bytes += side->contents[i] ? he_content_bytes(side->objects[i])
-                                           : he_column_bytes(side->objects[i]);
-            }
+            bytes += he_object_bytes(side->columns[i], side->objects[i]);
         }
     }
     return bytes;
 }
 
-static he_status copy_object(const void *object, bool content, void **out, he_error *err)
+static he_status copy_object(void *object, uint32_t of, void **out, he_error *err)
 {
     if (object == NULL) {
         return HE_OK;
     }
-    if (!content) {
+    if (of == HE_COL_MATERIAL) {
+        *out = he_material_retain(object);
+        return HE_OK;
+    }
+    if (of != HE_COL_REPLACED) {
         he_column *column = NULL;
         he_status status = he_column_copy(object, &column, err);
         *out = column;
@@ -117,14 +106,14 @@ static other_side *side_new(uint64_t key, size_t count)
 {
     other_side *side = he_mem_alloc(sizeof *side);
     void **objects = he_mem_zero(count, sizeof *objects);
-    bool *contents = he_mem_zero(count, sizeof *contents);
-    if (side == NULL || objects == NULL || contents == NULL) {
+    uint32_t *columns = he_mem_zero(count, sizeof *columns);
+    if (side == NULL || objects == NULL || columns == NULL) {
         he_mem_free(side);
         he_mem_free(objects);
-        he_mem_free(contents);
+        he_mem_free(columns);
         return NULL;
     }
-    *side = (other_side){key, objects, contents, count, NULL};
+    *side = (other_side){key, objects, columns, count, NULL};
     return side;
 }
 
@@ -137,13 +126,13 @@ static he_status side_of(const he_delta *delta, uint64_t key, other_side **out, 
     }
     for (size_t i = 0; i < delta->count; i++) {
         const he_record *r = &delta->records[i];
-        if (r->column == HE_COL_REPLACED) {
-            side->contents[r->before] = true;
+        if (he_has_object(r)) {
+            side->columns[r->before] = r->column;
         }
     }
     he_status status = HE_OK;
     for (size_t i = 0; i < side->count && status == HE_OK; i++) {
-        status = copy_object(delta->objects[i], side->contents[i], &side->objects[i], err);
+        status = copy_object(delta->objects[i], side->columns[i], &side->objects[i], err);
     }
     if (status != HE_OK) {
         free_side(side);

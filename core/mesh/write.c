@@ -218,10 +218,10 @@ static he_status slot_for_column(he_mesh *m, he_error *err)
 }
 
 /* The record's object is what stands on the other side of the change. */
-static void record_object(he_mesh *m, uint32_t column, uint32_t row, void *object)
+static void record_object(he_mesh *m, uint32_t column, uint32_t row, uint32_t after, void *object)
 {
     he_delta *d = m->delta;
-    he_record_word(m, column, 0, row, (uint32_t)d->object_count, 0);
+    he_record_word(m, column, 0, row, (uint32_t)d->object_count, after);
     d->objects[d->object_count++] = object;
 }
 
@@ -239,7 +239,7 @@ he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err)
     m->c.column_count += slot == m->c.column_count;
     m->c.columns[slot] = takes;
     if (m->delta != NULL) {
-        record_object(m, HE_COL_COLUMN_ADDED, (uint32_t)slot, NULL);
+        record_object(m, HE_COL_COLUMN_ADDED, (uint32_t)slot, 0, NULL);
     }
     return HE_OK;
 }
@@ -253,10 +253,36 @@ he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err)
     }
     he_status status = he_delta_reserve(m->delta, 1, 1, err);
     if (status == HE_OK) {
-        record_object(m, HE_COL_COLUMN_DROPPED, (uint32_t)slot, m->c.columns[slot]);
+        record_object(m, HE_COL_COLUMN_DROPPED, (uint32_t)slot, 0, m->c.columns[slot]);
         m->c.columns[slot] = NULL;
     }
     return status;
+}
+
+he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes, he_error *err)
+{
+    he_materials *table = &m->c.materials;
+    assert(slot <= table->count);
+    he_status status = he_materials_reserve(table, slot + 1, err);
+    if (status == HE_OK && m->delta != NULL) {
+        status = he_delta_reserve(m->delta, 1, 1, err);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    /* Nothing below can fail. */
+    if (slot == table->count) {
+        table->rows[table->count++] = NULL;
+    }
+    he_material *before = table->rows[slot];
+    table->rows[slot] = takes;
+    if (m->delta == NULL) {
+        he_material_release(before);
+    } else {
+        record_object(m, HE_COL_MATERIAL, (uint32_t)slot, before == NULL ? 0 : before->mark,
+                      before);
+    }
+    return HE_OK;
 }
 
 he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err)
@@ -275,7 +301,7 @@ he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error
     *before = m->c;
     m->c = takes->c;
     he_mem_free(takes);
-    record_object(m, HE_COL_REPLACED, how == HE_RENUMBERS, before);
+    record_object(m, HE_COL_REPLACED, how == HE_RENUMBERS, 0, before);
     return HE_OK;
 }
 

@@ -282,6 +282,11 @@ HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, h
  * record that names a slot is only applied while the same column is there. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
+/* Put a material in a slot, in the place of the one that is there; NULL only takes that out. A slot
+ * that is the first behind all is made. No other row has its name. `takes` is the mesh's from
+ * success on. HE_LIMIT beyond HE_MATERIALS, HE_NO_MEMORY. */
+HE_NODISCARD he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes,
+                                            he_error *err);
 /* Swap the whole content with `takes` (emptied and freed on success), recorded as one replace that
  * keeps the old arrays; without recording they are freed. HE_KEEPS_IDS promises that every id
  * issued before is issued in `takes` and means the same element, or a dead one, and that columns

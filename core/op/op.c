@@ -114,6 +114,8 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
         case HE_PARAM_POINTS:
         case HE_PARAM_MATRIX:
         case HE_PARAM_CYCLE:
+        case HE_PARAM_TEXT:
+        case HE_PARAM_COLOR:
         case HE_PARAM_MESH:
             break;
         }
@@ -148,6 +150,10 @@ static bool is_sound(const he_param *param, const he_arg *arg)
     case HE_PARAM_POINT:
     case HE_PARAM_POINTS:
         return arg->points != NULL && arg->count > 0;
+    case HE_PARAM_TEXT:
+        return arg->text != NULL;
+    case HE_PARAM_COLOR:
+        return arg->count == 3 || (arg->count == 4 && (param->flags & HE_OPACITY));
     case HE_PARAM_FLAG:
     case HE_PARAM_CHOICE:
     case HE_PARAM_MATRIX:

@@ -22,6 +22,8 @@ typedef enum he_param_type {
     HE_PARAM_CHOICE,   /* one of the strings in `choices` */
     HE_PARAM_MATRIX,   /* 16 numbers, row-major, last row 0 0 0 1 */
     HE_PARAM_CYCLE, /* a list of element ids whose order matters and where repeats are refusals */
+    HE_PARAM_TEXT,  /* a string */
+    HE_PARAM_COLOR, /* red, green and blue, from 0 on; with HE_OPACITY also four */
     HE_PARAM_MESH   /* another mesh, which stands still meanwhile */
 } he_param_type;
 
@@ -31,7 +33,7 @@ enum {
     HE_NULLABLE = 2,    /* an element that may be null: HE_NONE */
     HE_EXCLUSIVE = 4,   /* the ends of the range are not in it */
     HE_RANGE = 8,       /* min and max apply */
-    HE_DERIVED = 16,    /* a number whose default follows from the mesh, as `doc` says */
+    HE_DERIVED = 16,    /* a number or flag whose default follows from the mesh, as `doc` says */
     HE_COSTS_MESH = 32, /* where it is given, a local operation costs the mesh */
     HE_WHOLE = 128,     /* a number with a range that has no fraction */
     /* Elements whose neighbours are looked at too: all corners of the faces about a vertex, all
@@ -40,7 +42,8 @@ enum {
     /* Each call walks about all of the elements given here: around the vertices and along the loops
      * of faces and holes, and with HE_REACHES around all corners of their faces. A list of
      * operations is charged for that, since it may name one hub again and again. */
-    HE_WALKS = 256
+    HE_WALKS = 256,
+    HE_OPACITY = 512 /* a colour may have an opacity as its fourth number */
 };
 
 typedef struct he_param {
@@ -70,6 +73,8 @@ typedef struct he_arg {
     bool flag;
     int choice;
     double matrix[16];
+    const char *text;    /* borrowed */
+    double color[4];     /* `count` numbers of it */
     const he_mesh *mesh; /* borrowed, and not the one that is edited */
 } he_arg;
 

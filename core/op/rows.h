@@ -16,6 +16,7 @@ extern const he_op he_region_rows[];
 extern const he_op he_whole_rows[];
 extern const he_op he_refine_rows[];
 extern const he_op he_decimate_rows[];
+extern const he_op he_material_rows[];
 
 /* All rows in the order of the table. NULL past the last. */
 const he_op *he_table_row(size_t i);

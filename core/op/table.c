@@ -1,8 +1,9 @@
 #include "op/rows.h"
 
-static const he_op *const groups[] = {he_vertex_rows, he_edge_rows,   he_border_rows,  he_face_rows,
-                                      he_region_rows, he_loop_rows,   he_mesh_rows,    he_weld_rows,
-                                      he_whole_rows,  he_refine_rows, he_decimate_rows};
+static const he_op *const groups[] = {he_vertex_rows, he_edge_rows,     he_border_rows,
+                                      he_face_rows,   he_region_rows,   he_loop_rows,
+                                      he_mesh_rows,   he_weld_rows,     he_whole_rows,
+                                      he_refine_rows, he_decimate_rows, he_material_rows};
 
 const he_op *he_table_row(size_t i)
 {

@@ -177,3 +177,45 @@ he_status he_labels_take(he_cursor *c, he_labels **out, he_error *err)
     *out = labels;
     return HE_OK;
 }
+
+/* --- materials --- */
+
+size_t he_material_code_bytes(const he_material *material)
+{
+    return HE_MATERIAL_FIXED + he_varint_bytes(material->length) + material->length;
+}
+
+unsigned char *he_material_put_head(unsigned char *to, const he_material *material)
+{
+    const he_look *look = &material->look;
+    to = he_put_bytes(to, look->base_color, sizeof look->base_color);
+    to = he_put_bytes(to, &look->metallic, sizeof look->metallic);
+    to = he_put_bytes(to, &look->roughness, sizeof look->roughness);
+    to = he_put_bytes(to, look->emission, sizeof look->emission);
+    to = he_put_byte(to, look->two_sided);
+    return he_put_varint(to, material->length);
+}
+
+he_status he_material_take(he_cursor *c, he_material **out, he_error *err)
+{
+    he_look look = he_plain_look;
+    unsigned char sides = 0;
+    uint64_t length = 0;
+    he_cursor from = *c;
+    bool good = he_take_bytes(c, sizeof look.base_color, look.base_color) &&
+                he_take_bytes(c, sizeof look.metallic, &look.metallic) &&
+                he_take_bytes(c, sizeof look.roughness, &look.roughness) &&
+                he_take_bytes(c, sizeof look.emission, look.emission) &&
+                he_take_bytes(c, 1, &sides) && sides <= 1 &&
+                he_take_varint(c, HE_MATERIAL_NAME, &length) && length <= he_left(c);
+    if (!good) {
+        return he_refuse_at(c, err, "the bytes end in a material, or are none");
+    }
+    look.two_sided = sides == 1;
+    he_status status = he_material_new((const char *)c->at, (size_t)length, &look, out, err);
+    if (status != HE_OK && status != HE_NO_MEMORY) {
+        return he_refuse_at(&from, err, "a material has a name or numbers that none has");
+    }
+    c->at += length;
+    return status;
+}

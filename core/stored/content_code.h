@@ -8,14 +8,14 @@
 #define HE_CONTENT_MAGIC UINT32_C(0x67646568) /* "hedg" */
 
 enum {
-    HE_CONTENT_START = 4 + 4 + 8, /* magic, version, bytes of the header */
-    HE_CONTENT_HEADER = HE_CONTENT_START + 8 * 4,
-    HE_CONTENT_SLOT = 1 + 8, /* kind, length */
-    HE_CONTENT_ARRAYS = 7,   /* before the attributes' rows */
-    HE_PART_HEAD = 1 + 4     /* coding, length */
+    HE_CONTENT_START = 4 + 4 + 8,                  /* magic, version, bytes of the header */
+    HE_CONTENT_HEADER = HE_CONTENT_START + 10 * 4, /* the last word is zero */
+    HE_CONTENT_SLOT = 1 + 8,                       /* kind, length */
+    HE_CONTENT_ARRAYS = 7,                         /* before the attributes' rows */
+    HE_PART_HEAD = 1 + 4                           /* coding, length */
 };
 
-enum { HE_SLOT_EMPTY = 0, HE_SLOT_ATTRIBUTE = 1 };
+enum { HE_SLOT_EMPTY = 0, HE_SLOT_ATTRIBUTE = 1, HE_SLOT_MATERIAL = 2 };
 
 /* What a link in HE_CODING_LINKS is a difference to: its row where both are half-edges, which run
  * along one face; else the link before it in the array, the row where there is none in the part. */

@@ -151,7 +151,44 @@ static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, u
     return status;
 }
 
-static bool read_rows(he_cursor *c, he_content *content, uint32_t *slots)
+/* The table of materials. */
+static he_status read_materials(he_cursor *c, uint32_t slots, he_materials *out, he_error *err)
+{
+    he_status status = slots > HE_MATERIALS
+                           ? he_refuse_at(c, err, "there are more materials than a mesh has")
+                           : he_materials_reserve(out, slots, err);
+    for (uint32_t i = 0; i < slots && status == HE_OK; i++) {
+        unsigned char kind;
+        uint64_t length;
+        he_material *row = NULL;
+        if (!he_take_bytes(c, 1, &kind) || !he_take_u64(c, &length) || length > he_left(c)) {
+            return he_refuse_at(c, err, "the header ends in a material");
+        }
+        if ((kind != HE_SLOT_EMPTY && kind != HE_SLOT_MATERIAL) ||
+            (kind == HE_SLOT_EMPTY && length > 0)) {
+            return he_refuse_at(c, err, "there is no such kind of material");
+        }
+        he_cursor slot = *c;
+        c->at += length;
+        slot.end = c->at;
+        if (kind == HE_SLOT_MATERIAL) {
+            status = he_material_take(&slot, &row, err);
+        }
+        if (status == HE_OK &&
+            (he_left(&slot) > 0 ||
+             (row != NULL && he_materials_find(out, row->name, row->length) != SIZE_MAX))) {
+            status = he_refuse_at(&slot, err, "a material is longer than it says, or there twice");
+        }
+        if (status != HE_OK) {
+            he_material_release(row);
+            return status;
+        }
+        out->rows[out->count++] = row;
+    }
+    return status;
+}
+
+static bool read_rows(he_cursor *c, he_content *content, uint32_t *slots, uint32_t *materials)
 {
     he_rows *const tables[] = {&content->vertices, &content->edges, &content->faces};
     bool good = true;
@@ -161,7 +198,9 @@ static bool read_rows(he_cursor *c, he_content *content, uint32_t *slots)
     for (size_t i = 0; i < 3; i++) {
         good = good && he_take_u32(c, &tables[i]->live) && tables[i]->live <= tables[i]->issued;
     }
-    return good && he_take_u32(c, &content->boundary_halfedges) && he_take_u32(c, slots);
+    uint32_t zero = 0;
+    return good && he_take_u32(c, &content->boundary_halfedges) && he_take_u32(c, slots) &&
+           he_take_u32(c, materials) && he_take_u32(c, &zero) && zero == 0;
 }
 
 /* Room for all arrays, now that they are known to come. */
@@ -215,13 +254,17 @@ static void next_array(he_stored_reader *r)
 static he_status read_header(he_stored_reader *r, he_error *err)
 {
     he_cursor c = he_cursor_over(r->header, r->header_size);
-    uint32_t slots = 0;
+    uint32_t slots = 0, materials = 0;
     uint64_t bytes = 0;
     c.at += HE_CONTENT_START;
-    if (!read_rows(&c, &r->c, &slots) || slots > he_left(&c) / HE_CONTENT_SLOT) {
+    if (!read_rows(&c, &r->c, &slots, &materials) ||
+        (uint64_t)slots + materials > he_left(&c) / HE_CONTENT_SLOT) {
         return he_refuse_at(&c, err, "the counts of the mesh cannot be");
     }
     he_status status = read_slots(r, &c, slots, &bytes, err);
+    if (status == HE_OK) {
+        status = read_materials(&c, materials, &r->c.materials, err);
+    }
     if (status != HE_OK) {
         return status;
     }

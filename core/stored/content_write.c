@@ -13,6 +13,8 @@ enum stage {
     LABEL,
     LABEL_TEXT,
     ROWS,
+    MATERIAL,
+    MATERIAL_NAME,
     PADDING,
     ARRAYS, /* one stage each */
     COLUMNS = ARRAYS + HE_CONTENT_ARRAYS,
@@ -37,6 +39,10 @@ static uint64_t header_bytes(const he_content *c)
     uint64_t bytes = HE_CONTENT_HEADER;
     for (size_t i = 0; i < c->column_count; i++) {
         bytes += HE_CONTENT_SLOT + slot_bytes(c->columns[i]);
+    }
+    for (size_t i = 0; i < c->materials.count; i++) {
+        const he_material *row = c->materials.rows[i];
+        bytes += HE_CONTENT_SLOT + (row == NULL ? 0 : he_material_code_bytes(row));
     }
     return (bytes + 7) / 8 * 8;
 }
@@ -74,19 +80,32 @@ static void make_header(he_stored_writer *w)
 {
     const he_content *c = &w->mesh->c;
     const uint32_t words[] = {
-        c->vertices.issued, c->edges.issued, c->faces.issued,       c->vertices.live,
-        c->edges.live,      c->faces.live,   c->boundary_halfedges, (uint32_t)c->column_count,
+        c->vertices.issued,
+        c->edges.issued,
+        c->faces.issued,
+        c->vertices.live,
+        c->edges.live,
+        c->faces.live,
+        c->boundary_halfedges,
+        (uint32_t)c->column_count,
+        (uint32_t)c->materials.count,
+        0,
     };
     unsigned char *to = he_put_u32(w->scratch, HE_CONTENT_MAGIC);
     to = he_put_u64(he_put_u32(to, HE_STORED_VERSION), w->header);
     set_scratch(w, he_put_bytes(to, words, sizeof words));
-    w->stage = c->column_count > 0 ? SLOT : PADDING;
+    w->stage = c->column_count > 0 ? SLOT : MATERIAL;
 }
 
 static void next_slot(he_stored_writer *w)
 {
     w->slot++;
-    w->stage = w->slot < w->mesh->c.column_count ? SLOT : PADDING;
+    if (w->slot == w->mesh->c.column_count) {
+        w->slot = 0;
+        w->stage = MATERIAL;
+    } else {
+        w->stage = SLOT;
+    }
 }
 
 static void make_slot(he_stored_writer *w)
@@ -131,6 +150,28 @@ static void make_rows(he_stored_writer *w)
 {
     set_scratch(w, he_put_varint(w->scratch, slot_of(w)->rows));
     next_slot(w);
+}
+
+static void make_material(he_stored_writer *w)
+{
+    const he_materials *table = &w->mesh->c.materials;
+    if (w->slot == table->count) {
+        w->stage = PADDING;
+        return;
+    }
+    const he_material *row = table->rows[w->slot];
+    unsigned char *to = he_put_byte(w->scratch, row == NULL ? HE_SLOT_EMPTY : HE_SLOT_MATERIAL);
+    to = he_put_u64(to, row == NULL ? 0 : he_material_code_bytes(row));
+    set_scratch(w, row == NULL ? to : he_material_put_head(to, row));
+    w->stage = row == NULL ? MATERIAL : MATERIAL_NAME;
+    w->slot += row == NULL;
+}
+
+static void make_material_name(he_stored_writer *w)
+{
+    const he_material *row = w->mesh->c.materials.rows[w->slot++];
+    set_piece(w, row->name, row->length);
+    w->stage = MATERIAL;
 }
 
 static void make_padding(he_stored_writer *w)
@@ -188,6 +229,12 @@ static bool has_piece(he_stored_writer *w)
             break;
         case ROWS:
             make_rows(w);
+            break;
+        case MATERIAL:
+            make_material(w);
+            break;
+        case MATERIAL_NAME:
+            make_material_name(w);
             break;
         case PADDING:
             make_padding(w);

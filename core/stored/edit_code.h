@@ -23,7 +23,8 @@ typedef enum he_code {
 typedef enum he_object {
     HE_OBJECT_ADDED = 1,
     HE_OBJECT_DROPPED = 2,
-    HE_OBJECT_REPLACED = 3
+    HE_OBJECT_REPLACED = 3,
+    HE_OBJECT_MATERIAL = 4
 } he_object;
 
 /* The kind of element that each number in a coded lineage stands for. */

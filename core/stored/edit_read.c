@@ -57,7 +57,7 @@ static he_status begin_object(edit_reader *r, he_error *err)
         length > he_left(&r->c)) {
         return he_refuse_at(&r->c, err, "an object is longer than the edit");
     }
-    if (kind < HE_OBJECT_ADDED || kind > HE_OBJECT_REPLACED) {
+    if (kind < HE_OBJECT_ADDED || kind > HE_OBJECT_MATERIAL) {
         return he_refuse_at(&r->c, err, "there is no such kind of object");
     }
     r->kind = (he_object)kind;
@@ -256,12 +256,33 @@ static he_status take_replaced(he_cursor *c, he_record *out, he_content **conten
     return HE_OK;
 }
 
+/* What there was is told by its mark, for which the record has room where words have theirs. */
+static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot, he_material **row,
+                                   he_error *err)
+{
+    uint64_t value;
+    uint32_t mark;
+    if (!he_take_varint(c, HE_MATERIALS - 1, &value) || !he_take_u32(c, &mark)) {
+        return he_refuse_at(c, err, "there is no such slot of materials");
+    }
+    he_status status = he_left(c) > 0 ? he_material_take(c, row, err) : HE_OK;
+    if (status == HE_OK && he_left(c) > 0) {
+        he_material_release(*row);
+        *row = NULL;
+        return he_refuse_at(c, err, "an object is longer than what it holds");
+    }
+    *slot = (uint32_t)value;
+    out->after = mark;
+    return status;
+}
+
 /* The object at hand, into the delta as the next of its objects. */
 static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *named, he_delta *delta,
                              he_record *out, he_error *err)
 {
     he_column *column = NULL;
     he_content *content = NULL;
+    he_material *material = NULL;
     uint32_t slot = 0;
     he_status status = he_delta_reserve(delta, 0, 1, err);
     if (status != HE_OK) {
@@ -282,18 +303,25 @@ static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *name
                      ? he_refuse_at(&r->object, err, "a replace is the only change of its edit")
                      : take_replaced(&r->object, out, &content, err);
         break;
+    case HE_OBJECT_MATERIAL:
+        out->column = HE_COL_MATERIAL;
+        status = take_put_material(&r->object, out, &slot, &material, err);
+        break;
     }
     if (status != HE_OK) {
         return status;
     }
     if (r->kind != HE_OBJECT_REPLACED) {
         out->row = slot;
-        if (slot < he_mesh_columns(mesh)) {
-            he_bits_set(named, slot);
-        }
+    }
+    if (r->kind != HE_OBJECT_REPLACED && r->kind != HE_OBJECT_MATERIAL &&
+        slot < he_mesh_columns(mesh)) {
+        he_bits_set(named, slot);
     }
     out->before = (uint32_t)delta->object_count;
-    delta->objects[delta->object_count++] = content != NULL ? (void *)content : (void *)column;
+    delta->objects[delta->object_count++] = content != NULL    ? (void *)content
+                                            : material != NULL ? (void *)material
+                                                               : (void *)column;
     return HE_OK;
 }
 

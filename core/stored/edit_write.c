@@ -29,6 +29,7 @@ static he_code code_of(const he_record *r)
         return HE_CODE_MERGED;
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
+    case HE_COL_MATERIAL:
     case HE_COL_REPLACED:
         return HE_CODE_OBJECT;
     case HE_COL_ATTRIBUTE:
@@ -72,11 +73,30 @@ static const he_column *added_column(const he_delta *delta, size_t i, size_t nex
                                 : delta->objects[delta->records[next].before];
 }
 
+/* The material that record i put in its slot: in the mesh, or in the record that put the next one
+ * there. NULL where it took one out. */
+static const he_material *put_material(const he_delta *delta, size_t i, const he_mesh *after)
+{
+    uint32_t slot = delta->records[i].row;
+    size_t k = i + 1;
+    while (k < delta->count &&
+           !(delta->records[k].column == HE_COL_MATERIAL && delta->records[k].row == slot)) {
+        k++;
+    }
+    return k == delta->count ? after->c.materials.rows[slot]
+                             : delta->objects[delta->records[k].before];
+}
+
 static size_t object_room(const he_delta *delta, size_t i, const he_mesh *after)
 {
     const he_record *r = &delta->records[i];
     if (r->column == HE_COL_COLUMN_DROPPED) {
         return HE_OBJECT_HEAD + HE_SLOT_ROOM + HE_HEAD_ROOM;
+    }
+    if (r->column == HE_COL_MATERIAL) {
+        const he_material *row = put_material(delta, i, after);
+        return HE_OBJECT_HEAD + HE_SLOT_ROOM + sizeof(uint32_t) +
+               (row == NULL ? 0 : he_material_code_bytes(row));
     }
     const he_column *column = added_column(delta, i, next_of_slot(delta, i), after);
     return HE_OBJECT_HEAD + HE_SLOT_ROOM + HE_HEAD_ROOM + he_labels_bytes(column->labels) +
@@ -121,6 +141,19 @@ static unsigned char *put_dropped(unsigned char *to, const he_delta *delta, cons
     unsigned char *from = begin_object(to, HE_OBJECT_DROPPED);
     to = he_put_varint(from, r->row);
     return end_object(from, he_head_put(to, delta->objects[r->before]));
+}
+
+static unsigned char *put_material_change(unsigned char *to, const he_delta *delta, size_t i,
+                                          const he_mesh *after)
+{
+    const he_record *r = &delta->records[i];
+    const he_material *row = put_material(delta, i, after);
+    unsigned char *from = begin_object(to, HE_OBJECT_MATERIAL);
+    to = he_put_u32(he_put_varint(from, r->row), r->after);
+    if (row != NULL) {
+        to = he_put_bytes(he_material_put_head(to, row), row->name, row->length);
+    }
+    return end_object(from, to);
 }
 
 /* Values are coded as they were when the column came: what was written to them later in the same
@@ -174,6 +207,7 @@ static unsigned char *put_changes(unsigned char *to, const he_delta *delta, cons
         he_code code = code_of(r);
         if (code == HE_CODE_OBJECT) {
             to = r->column == HE_COL_COLUMN_ADDED ? put_added(to, delta, i, after)
+                 : r->column == HE_COL_MATERIAL   ? put_material_change(to, delta, i, after)
                                                   : put_dropped(to, delta, r);
             i++;
             continue;

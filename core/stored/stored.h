@@ -23,20 +23,33 @@
  *                  1  an attribute that was added: its slot, its head, labels, rows
  *                  2  an attribute that was dropped: its slot and its head
  *                  3  a replace: 1 byte, 1 where ids changed their meaning, and the content
+ *                  4  a material put in a slot: the slot (varint), the mark of the one that was
+ *                     there (4 bytes, 0 for none; material.h), the new one, or nothing
  *
  * Where a delta replaced the content, the content after it is all that is coded: the delta that is
  * read is one replace. The high-water marks after an edit are not in it; they go beside it.
  *
  * CONTENT: a header and the arrays, as one run of bytes, cut into PARTS of HE_STORED_PART bytes
- * (the last may be shorter), each of which is coded by itself. 4            "hedg" 4            the
- * version 8            bytes of the header, these included: a multiple of 8 3 x 4        vertices,
- * edges, faces issued 3 x 4        of them alive 4            boundary half-edges 4 slots of
- * attributes; then for each 1, 8         kind: 0 no attribute, 1 an attribute; length of what
- * follows head         domain, type, rule, components: 1 byte each; name: length (1 byte), UTF-8;
+ * (the last may be shorter), each of which is coded by itself.
+ *     4            "hedg"
+ *     4            the version
+ *     8            bytes of the header, these included: a multiple of 8
+ *     3 x 4        vertices, edges, faces issued
+ *     3 x 4        of them alive
+ *     4            boundary half-edges
+ *     4, 4, 4      slots of attributes, slots of materials, 0
+ *     attributes, each:
+ *       1, 8         kind: 0 no attribute, 1 an attribute; length of what follows
+ *       head         domain, type, rule, components: 1 byte each; name: length (1 byte), UTF-8;
  *                    the default row
  *       labels       varint: 0 for none, else 1 + how many; each a length (varint) and UTF-8
  *       rows         varint, as many as are stored; with an attribute that was added (above) their
  *                    values follow
+ *     materials, each:
+ *       1, 8         kind: 0 no material, 2 a material; length of what follows
+ *       look         base colour (4 doubles), metallic, roughness, emission (3), sides (1 byte: 1
+ *                    for both)
+ *       name         length (varint), UTF-8
  *     zeros        up to a multiple of 8
  *     arrays       position, halfedge of vertices, next, prev, origin, face, halfedge of faces,
  * then the rows of each attribute

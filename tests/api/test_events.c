@@ -368,8 +368,9 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     stream_dump(b, &now);
     stream_dump(b, &copy);
     while (now.revision < EDITS) {
-        /* compact would cut the history off, and a finer mesh is not told. The mesh stays so small
-         * that what makes all of it anew fits a message; what emptied it is taken back. */
+        /* compact would cut the history off; a finer mesh, and an attribute that comes with a
+         * material, are not told from the history. The mesh stays so small that what makes all of
+         * it anew fits a message; what emptied it is taken back. */
         size_t row = md_below(&random, (uint32_t)he_op_count());
         const char *name = he_op_at(row)->name;
         size_t faces = mirror_count(&now, HE_FACE);
@@ -377,6 +378,7 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
         if (back) {
             (void)send(b, "POST", "/v1/meshes/m/undo", NULL);
         } else if (strcmp(name, "compact") != 0 && strcmp(name, "subdivide") != 0 &&
+                   strcmp(name, "material_set") != 0 &&
                    (faces < 20 || strcmp(name, "append") != 0)) {
             random_edit(&random, &now, row, text);
             (void)send(b, "POST", "/v1/meshes/m/edits", text);

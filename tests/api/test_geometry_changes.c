@@ -101,6 +101,13 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
     case HE_PARAM_CHOICE:
         arg->choice = 0;
         break;
+    case HE_PARAM_TEXT:
+        arg->text = md_chance(&w->r, 50) ? "a" : "b";
+        break;
+    case HE_PARAM_COLOR:
+        arg->count = 3;
+        arg->color[0] = md_unit(&w->r);
+        break;
     case HE_PARAM_MESH:
         arg->mesh = a_vertex();
         break;

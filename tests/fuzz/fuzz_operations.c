@@ -9,6 +9,7 @@
 #include "unit/fixture.h"
 
 #include <math.h>
+#include <stdio.h>
 
 enum { STEPS = 16, LIST = 8, MOST_FACES = 600 };
 
@@ -17,6 +18,7 @@ typedef struct call {
     he_arg args[HE_OP_PARAMS];
     uint32_t ids[HE_OP_PARAMS][LIST];
     he_vec3 points[HE_OP_PARAMS][LIST];
+    char texts[HE_OP_PARAMS][8];
 } call;
 
 static he_mesh *make_shape(const char *name, const char *param, double value)
@@ -146,6 +148,17 @@ static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, con
         break;
     case HE_PARAM_MATRIX:
         draw_matrix(t, arg->matrix);
+        break;
+    case HE_PARAM_TEXT:
+        snprintf(c->texts[i], sizeof c->texts[i], "%.*s%c", (int)(fuzz_byte(t) % 4), "abc",
+                 fuzz_byte(t) % 128);
+        arg->text = c->texts[i];
+        break;
+    case HE_PARAM_COLOR:
+        arg->count = (p->flags & HE_OPACITY) != 0 && fuzz_byte(t) % 2 == 0 ? 4 : 3;
+        for (size_t k = 0; k < arg->count; k++) {
+            arg->color[k] = fuzz_double(t);
+        }
         break;
     case HE_PARAM_MESH:
         arg->mesh = other;

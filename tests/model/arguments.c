@@ -258,6 +258,12 @@ void md_describe(const md_call *c, char text[MD_CALL_TEXT])
         case HE_PARAM_MATRIX:
             n = snprintf(to, room, " %s=(16 numbers)", p->name);
             break;
+        case HE_PARAM_TEXT:
+            n = snprintf(to, room, " %s=%s", p->name, arg->text);
+            break;
+        case HE_PARAM_COLOR:
+            n = snprintf(to, room, " %s=(%zu numbers)", p->name, arg->count);
+            break;
         case HE_PARAM_MESH:
             n = snprintf(to, room, " %s=(%u faces)", p->name, he_mesh_faces(arg->mesh));
             break;

@@ -15,7 +15,7 @@ static bool same_point(he_vec3 a, he_vec3 b)
     return memcmp(bits[0], bits[1], sizeof bits[0]) == 0;
 }
 
-/* Values of columns that came or went are in no set. */
+/* Values of columns that came or went are in no set: one with other labels is another column. */
 static bool same_values(const he_mesh *was, const he_mesh *is, he_kind domain, uint32_t row)
 {
     for (size_t i = 0; i < he_mesh_columns(was); i++) {
@@ -23,6 +23,7 @@ static bool same_values(const he_mesh *was, const he_mesh *is, he_kind domain, u
         const he_column *b =
             a != NULL && a->domain == domain ? he_mesh_find_column(is, domain, a->name) : NULL;
         if (b != NULL && b->type == a->type && b->row_bytes == a->row_bytes &&
+            he_labels_equal(a->labels, b->labels) &&
             memcmp(he_column_value(a, row), he_column_value(b, row), a->row_bytes) != 0) {
             return false;
         }

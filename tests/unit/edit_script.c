@@ -148,6 +148,7 @@ bool allocation_failed(void)
 typedef struct storage {
     uint32_t ids[HE_OP_PARAMS][MAX_LIST];
     he_vec3 points[HE_OP_PARAMS][MAX_LIST];
+    char texts[HE_OP_PARAMS][MAX_TEXT];
 } storage;
 
 static uint32_t parse_id(const he_mesh *m, he_kind kind, const char **at)
@@ -243,6 +244,13 @@ static void parse_value(const he_mesh *m, const he_param *param, const char *tex
             points[i] = (he_vec3){numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
         }
         return;
+    case HE_PARAM_TEXT:
+        arg->text = text;
+        return;
+    case HE_PARAM_COLOR:
+        arg->count = parse_numbers(text, numbers);
+        memcpy(arg->color, numbers, arg->count * sizeof *numbers);
+        return;
     case HE_PARAM_MESH:
         arg->mesh = *other = other_mesh(text);
         return;
@@ -278,14 +286,14 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
     while (*at == ' ') {
         at++;
         size_t name = strcspn(at, "="), value = strcspn(at, " ");
-        char text[MAX_TEXT];
-        assert_true(name < value && value - name <= sizeof text);
-        snprintf(text, sizeof text, "%.*s", (int)(value - name - 1), at + name + 1);
         size_t i = 0;
         while (!is_name(op->params[i].name, at, name) && !is_name(op->params[i].plural, at, name)) {
             i++;
             assert_true(i < he_op_params(op));
         }
+        char *text = store.texts[i];
+        assert_true(name < value && value - name <= MAX_TEXT);
+        snprintf(text, MAX_TEXT, "%.*s", (int)(value - name - 1), at + name + 1);
         parse_value(m, &op->params[i], text, &args[i], store.ids[i], store.points[i], &other);
         at += value;
     }
@@ -325,6 +333,18 @@ static void mark(he_mesh *m, const char *text)
     }
 }
 
+/* Up to that many in the table, called m0, m1 and so on. */
+static void fill_materials(he_mesh *m, size_t count)
+{
+    for (size_t i = he_mesh_materials(m)->count; i < count; i++) {
+        char name[24];
+        he_material *row = NULL;
+        int length = snprintf(name, sizeof name, "m%zu", i);
+        assert_int_equal(he_material_new(name, (size_t)length, &he_plain_look, &row, NULL), HE_OK);
+        assert_int_equal(he_mesh_put_material(m, i, row, NULL), HE_OK);
+    }
+}
+
 void script_prepare(he_mesh *m, const char *script)
 {
     while (script != NULL && *script != '\0') {
@@ -335,6 +355,8 @@ void script_prepare(he_mesh *m, const char *script)
         he_error err = {.status = HE_OK};
         if (strncmp(text, "mark ", 5) == 0) {
             mark(m, text + 5);
+        } else if (strncmp(text, "materials ", 10) == 0) {
+            fill_materials(m, (size_t)strtoul(text + 10, NULL, 10));
         } else if (script_run(m, text, NULL, &err) != HE_OK) {
             fail_msg("%s: %s", text, err.text);
         }

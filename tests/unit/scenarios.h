@@ -19,5 +19,6 @@ extern const scenario corner_scenarios[];
 extern const scenario loop_scenarios[];
 extern const scenario region_scenarios[];
 extern const scenario refine_scenarios[];
+extern const scenario material_scenarios[];
 
 #endif

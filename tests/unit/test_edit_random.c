@@ -128,6 +128,13 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
         arg->points = store->points;
         store->points[0] = (he_vec3){random_unit(), random_unit(), random_unit()};
         return;
+    case HE_PARAM_TEXT:
+        arg->text = random_below(2) ? "a" : "b";
+        return;
+    case HE_PARAM_COLOR:
+        arg->count = 3;
+        arg->color[0] = random_unit();
+        return;
     case HE_PARAM_MESH:
         arg->mesh = other;
         return;

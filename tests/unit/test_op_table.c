@@ -369,9 +369,9 @@ static const scenario scenarios[] = {
     {.operation = NULL},
 };
 
-static const scenario *const groups[] = {scenarios,        border_scenarios, weld_scenarios,
-                                         corner_scenarios, loop_scenarios,   region_scenarios,
-                                         refine_scenarios};
+static const scenario *const groups[] = {scenarios,        border_scenarios,  weld_scenarios,
+                                         corner_scenarios, loop_scenarios,    region_scenarios,
+                                         refine_scenarios, material_scenarios};
 
 enum { MAX_OPS = 128 };
 
@@ -550,7 +550,8 @@ static void test_rows_are_sound(void **state)
             assert_non_null(param->doc);
             assert_int_equal(param->type == HE_PARAM_ELEMENTS, param->plural != NULL);
             assert_int_equal(param->type == HE_PARAM_CHOICE, param->choices != NULL);
-            assert_true(!(param->flags & HE_DERIVED) || param->type == HE_PARAM_NUMBER);
+            assert_true(!(param->flags & HE_DERIVED) || param->type == HE_PARAM_NUMBER ||
+                        param->type == HE_PARAM_FLAG);
             assert_true(!(param->flags & HE_WHOLE) ||
                         (param->type == HE_PARAM_NUMBER && (param->flags & HE_RANGE)));
             for (size_t j = 0; j < k; j++) {

@@ -185,6 +185,18 @@ static void drop_columns(he_mesh *m)
     }
 }
 
+/* Rows come, change twice and go; a slot in the middle stays free. */
+static void change_materials(he_mesh *m)
+{
+    script_prepare(m, "material_set name=red base_color=1,0,0,0.5 metallic=0.25 roughness=0.5 "
+                      "emission=2,0,0 two_sided=1;"
+                      "material_set name=blue faces=0,1;"
+                      "material_set name=w\xc3\xb6\x6f\x64;"
+                      "material_set name=red roughness=0.75;"
+                      "material_set name=red rename=rot face=2");
+    assert_int_equal(he_mesh_put_material(m, 1, NULL, NULL), HE_OK);
+}
+
 static void compact(he_mesh *m)
 {
     script_prepare(m, "face_delete face=0");
@@ -195,20 +207,24 @@ typedef struct specimen {
     const char *name;
     const char *operation;
     void (*change)(he_mesh *m);
-    bool columns; /* the mesh has those of script_add_columns */
+    bool columns;   /* the mesh has those of script_add_columns */
+    bool materials; /* and a table, with a free slot in it */
 } specimen;
 
 static const specimen specimens[] = {
-    {"vertex_move", "vertex_move vertex=1 by=0.5,0,1", NULL, false},
-    {"edge_flip", "edge_flip edge=0-2", NULL, false},
-    {"face_poke", "face_poke face=0", NULL, false},
-    {"edge_split", "edge_split edge=0-2 t=0.25", NULL, true},
-    {"edge_collapse", "edge_collapse edge=0-1", NULL, true},
-    {"vertex_delete", "vertex_delete vertex=0", NULL, false},
-    {"subdivide", "subdivide scheme=loop", NULL, false},
-    {"columns", NULL, change_columns, false},
-    {"columns_dropped", NULL, drop_columns, true},
-    {"compact", NULL, compact, false},
+    {"vertex_move", "vertex_move vertex=1 by=0.5,0,1", NULL, false, false},
+    {"edge_flip", "edge_flip edge=0-2", NULL, false, false},
+    {"face_poke", "face_poke face=0", NULL, false, false},
+    {"edge_split", "edge_split edge=0-2 t=0.25", NULL, true, false},
+    {"edge_collapse", "edge_collapse edge=0-1", NULL, true, false},
+    {"vertex_delete", "vertex_delete vertex=0", NULL, false, false},
+    {"subdivide", "subdivide scheme=loop", NULL, false, false},
+    {"columns", NULL, change_columns, false, false},
+    {"columns_dropped", NULL, drop_columns, true, false},
+    {"compact", NULL, compact, false, false},
+    {"material_set", "material_set name=red roughness=0.125 face=3", NULL, false, true},
+    {"materials", NULL, change_materials, false, false},
+    {"materials_compact", NULL, compact, false, true},
 };
 enum { SPECIMENS = sizeof specimens / sizeof *specimens };
 
@@ -225,6 +241,9 @@ static specimen_run run_of(const specimen *s)
     assert_non_null(run.delta);
     if (s->columns) {
         script_add_columns(run.after);
+    }
+    if (s->materials) {
+        change_materials(run.after);
     }
     run.before = copy_of(run.after);
     he_mesh_record(run.after, run.delta);

@@ -63,6 +63,61 @@ export class Flag {
     }
 }
 
+// A flag that may be left as it is.
+export class Whether extends Choice {
+    constructor() {
+        super([['', 'as it is'], ['yes', 'yes'], ['no', 'no']], '');
+    }
+
+    read() {
+        return this.isSaid ? this.node.value === 'yes' : undefined;
+    }
+}
+
+export class Text {
+    node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
+
+    get main() {
+        return this.node;
+    }
+
+    get isSaid() {
+        return this.node.value !== '';
+    }
+
+    clear() {
+        this.node.value = '';
+    }
+
+    read() {
+        return this.node.value || undefined;
+    }
+}
+
+// Red, green and blue, and an opacity where `most` is four: numbers in one field.
+export class Color extends Text {
+    #name;
+    #most;
+
+    constructor(name, most) {
+        super();
+        [this.#name, this.#most] = [name, most];
+        this.node.placeholder = most > 3 ? 'red green blue opacity' : 'red green blue';
+    }
+
+    read() {
+        const numbers = numbersOf(this.node.value, this.#name);
+        if (numbers.length === 0) {
+            return undefined;
+        }
+        if (numbers.length < 3 || numbers.length > this.#most) {
+            const count = this.#most > 3 ? 'three or four' : 'three';
+            throw slip(this.#name, 'Not a colour', `${this.#name} is ${count} numbers.`);
+        }
+        return numbers;
+    }
+}
+
 // Ids of elements; `isList` takes several, `isNullable` none.
 export class Ids {
     node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });

@@ -1,6 +1,6 @@
 // fields.js - which control a parameter of an operation has, and what the form then says of it.
 
-import { Choice, Flag, Ids, Numeral, Vector, vectors } from './controls.js';
+import { Choice, Color, Flag, Ids, Numeral, Text, Vector, vectors, Whether } from './controls.js';
 import { matrix } from './matrix.js';
 
 const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
@@ -32,7 +32,13 @@ export function isList({ plural, type }) {
 export function controlFor(param, meshes, pickable) {
     const { name, type, choices, default: usual, nullable = false } = param;
     if (type === 'flag') {
-        return new Flag(usual === true);
+        return usual === undefined ? new Whether() : new Flag(usual);
+    }
+    if (type === 'text') {
+        return new Text();
+    }
+    if (type === 'color' || type === 'color_alpha') {
+        return new Color(name, type === 'color' ? 3 : 4);
     }
     if (type === 'choice') {
         return new Choice(choices.map((choice) => [choice, choice]), usual ?? choices[0]);

@@ -2,6 +2,7 @@
 // selection. Nothing here knows any operation: a new row of the table appears by itself.
 
 import { Chooser } from './chooser.js';
+import { Flag } from './controls.js';
 import { enable, make, prose } from './dom.js';
 import {
     KINDS,
@@ -252,7 +253,7 @@ export class Tools {
 
     // `isOther` where it may be given in place of the one before it.
     #rows(param, isOther) {
-        const { name, type, doc } = param;
+        const { name, doc } = param;
         const id = `param-${name}`;
         const pickable = (part, control) => this.#pickable(part, control);
         const control = controlFor(param, this.#meshes, pickable);
@@ -273,7 +274,7 @@ export class Tools {
             make('span', { className: 'small' }, marksOf(param)),
         );
         const box = kindOf(param) === null ? control.node : pickable(param, control);
-        const className = type === 'flag' ? 'field flag' : 'field';
+        const className = control instanceof Flag ? 'field flag' : 'field';
         field.row = make('div', { className }, head, box, help);
         field.row.dataset.name = name;
         if (isGroup) {

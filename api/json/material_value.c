@@ -1,0 +1,120 @@
+#include "api/json/material_value.h"
+
+#include <string.h>
+
+static void write_numbers(api_out *out, const char *key, const double *numbers, size_t count)
+{
+    api_out_key(out, key);
+    api_out_array_begin(out);
+    for (size_t i = 0; i < count; i++) {
+        api_out_number(out, numbers[i]);
+    }
+    api_out_array_end(out);
+}
+
+static void write_material(api_out *out, const he_material *row)
+{
+    api_out_object_begin(out);
+    api_out_key_string(out, "name", row->name);
+    write_numbers(out, "base_color", row->look.base_color, 4);
+    api_out_key_number(out, "metallic", row->look.metallic);
+    api_out_key_number(out, "roughness", row->look.roughness);
+    write_numbers(out, "emission", row->look.emission, 3);
+    api_out_key_bool(out, "two_sided", row->look.two_sided);
+    api_out_object_end(out);
+}
+
+void api_write_materials(api_out *out, const he_materials *materials)
+{
+    api_out_array_begin(out);
+    for (size_t i = 0; i < materials->count; i++) {
+        if (materials->rows[i] != NULL) {
+            write_material(out, materials->rows[i]);
+        }
+    }
+    api_out_array_end(out);
+}
+
+bool api_read_color(const api_in *in, size_t most, double color[4], size_t *count)
+{
+    api_in child;
+    size_t n = 0;
+    if (!api_in_array(in, 3, most)) {
+        return false;
+    }
+    for (bool more = api_in_first(in, &child); more; more = api_in_next(&child)) {
+        if (!api_in_number(&child, &color[n])) {
+            return false;
+        }
+        if (color[n] < 0) {
+            return api_in_fail(&child, HE_BAD_VALUE, "a colour has no number below 0");
+        }
+        n++;
+    }
+    *count = n;
+    return true;
+}
+
+static bool read_color(const api_in *object, const char *key, size_t most, double *out)
+{
+    api_in member;
+    double color[4] = {0, 0, 0, 1};
+    size_t count = 0;
+    if (!api_in_find(object, key, &member)) {
+        return true;
+    }
+    if (!api_read_color(&member, most, color, &count)) {
+        return false;
+    }
+    memcpy(out, color, most * sizeof *out);
+    return true;
+}
+
+static bool read_fraction(const api_in *object, const char *key, double *out)
+{
+    api_in member;
+    return !api_in_find(object, key, &member) || api_in_number_within(&member, 0, 1, false, out);
+}
+
+static bool read_material(const api_in *in, he_materials *out)
+{
+    static const char *const members[] = {"name",     "base_color", "metallic", "roughness",
+                                          "emission", "two_sided",  NULL};
+    he_look look = he_plain_look;
+    he_material *row = NULL;
+    he_error err = {0};
+    api_in name, sides;
+    const char *text;
+    if (!api_in_object(in) || !api_in_only(in, members) || !api_in_need(in, "name", &name) ||
+        !api_in_string(&name, HE_MATERIAL_NAME, &text) ||
+        !read_color(in, "base_color", 4, look.base_color) ||
+        !read_fraction(in, "metallic", &look.metallic) ||
+        !read_fraction(in, "roughness", &look.roughness) ||
+        !read_color(in, "emission", 3, look.emission) ||
+        (api_in_find(in, "two_sided", &sides) && !api_in_bool(&sides, &look.two_sided))) {
+        return false;
+    }
+    if (he_materials_find(out, text, strlen(text)) != SIZE_MAX) {
+        return api_in_fail(&name, API_DUPLICATE_MEMBER, "there are two materials of this name");
+    }
+    if (he_material_new(text, strlen(text), &look, &row, &err) != HE_OK ||
+        he_materials_add(out, row, &err) != HE_OK) {
+        he_material_release(row);
+        return api_in_fail(in, (int)err.status, "%s", err.text);
+    }
+    return true;
+}
+
+bool api_read_materials(const api_in *in, he_materials *out)
+{
+    api_in child;
+    if (!api_in_array(in, 0, HE_MATERIALS)) {
+        return false;
+    }
+    for (bool more = api_in_first(in, &child); more; more = api_in_next(&child)) {
+        if (!read_material(&child, out)) {
+            return false;
+        }
+    }
+    return true;
+}

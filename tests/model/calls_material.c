@@ -1,0 +1,42 @@
+#include "model/rows.h"
+
+static const char *const names[] = {"red", "green", "blue", "steel", "glass"};
+enum { NAMES = sizeof names / sizeof *names };
+
+/* The model keeps no attributes: what a material looks like is the unit tests', what it does not
+ * touch is the model's. */
+static bool draw_material_set(md_draft *d)
+{
+    he_arg *name = &d->c->args[md_index(d->c, "name")];
+    he_arg *color = &d->c->args[md_index(d->c, "base_color")];
+    name->given = true;
+    name->text = names[md_below(d->r, NAMES)];
+    if (md_chance(d->r, 50)) {
+        color->given = true;
+        color->count = md_chance(d->r, 50) ? 4 : 3;
+        for (size_t i = 0; i < color->count; i++) {
+            color->color[i] = md_unit(d->r);
+        }
+        color->color[0] += md_chance(d->r, 5) ? 1 : 0;
+    }
+    if (md_chance(d->r, 30)) {
+        md_give_number(d, "metallic", md_unit(d->r));
+    }
+    if (md_chance(d->r, 60) && he_mesh_issued(d->m, HE_FACE) > 0) {
+        (void)md_pick_some(d, "face", "faces", HE_FACE, 3);
+    }
+    return true;
+}
+
+static uint64_t play_material_set(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)m;
+    const he_arg *color = md_get(c, "base_color"), *faces = md_get(c, "face");
+    uint64_t refused = faces->given ? md_require_all(o, HE_FACE, faces) : 0;
+    return refused | (color->given && color->color[0] > 1 ? OR_BIT(HE_BAD_VALUE) : 0);
+}
+
+const md_row md_material_rows[] = {
+    {"material_set", 0, draw_material_set, play_material_set, NULL, true},
+    {.name = NULL},
+};
