@@ -1,29 +1,131 @@
 #include "tests/slow_journal.h"
 
+#include "base/mem.h"
+
 #include <stdio.h>
+
+struct st_stage {
+    he_mesh *content;
+};
+
+static void count_out(slow_journal *journal, int by)
+{
+    pthread_mutex_lock(&journal->lock);
+    journal->out += (size_t)by;
+    pthread_mutex_unlock(&journal->lock);
+}
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)
 {
-    (void)self;
+    slow_journal *journal = self;
     (void)need;
     *out = NULL;
+    return journal->refuse;
+}
+
+static st_status reserve_kept(void *self, const st_room_need *need, st_room **out)
+{
+    slow_journal *journal = self;
+    if (journal->refuse != ST_OK && !(need->freeing && journal->refuse == ST_FULL)) {
+        return journal->refuse;
+    }
+    st_room *room = he_mem_alloc(sizeof *room + need->bytes);
+    if (room == NULL) {
+        return ST_NO_MEMORY;
+    }
+    *room = (st_room){.bytes = (unsigned char *)(room + 1), .size = need->bytes};
+    *out = room;
+    count_out(journal, 1);
     return ST_OK;
 }
 
 static void leave(void *self, st_room *room)
 {
+    if (room != NULL) {
+        count_out(self, -1);
+        he_mem_free(room);
+    }
+}
+
+static st_status stage_content(void *self, const he_mesh *content, st_stage **out)
+{
+    slow_journal *journal = self;
+    if (journal->refuse != ST_OK) {
+        return journal->refuse;
+    }
+    st_stage *stage = he_mem_zero(1, sizeof *stage);
+    if (stage == NULL || he_mesh_copy(content, &stage->content, NULL) != HE_OK) {
+        he_mem_free(stage);
+        return ST_NO_MEMORY;
+    }
+    *out = stage;
+    count_out(journal, 1);
+    return ST_OK;
+}
+
+static void free_stage(st_stage *stage)
+{
+    if (stage != NULL) {
+        he_mesh_free(stage->content);
+        he_mem_free(stage);
+    }
+}
+
+static void unstage(void *self, st_stage *stage)
+{
+    count_out(self, -1);
+    free_stage(stage);
+}
+
+const he_mesh *slow_journal_staged(const slow_journal *journal)
+{
+    return journal->stage == NULL ? NULL : journal->stage->content;
+}
+
+static st_status open_none(void *self, const char *id, st_card *card, st_reader **reader)
+{
     (void)self;
-    (void)room;
+    (void)id;
+    (void)card;
+    (void)reader;
+    return ST_ABSENT;
+}
+
+static st_status list_none(void *self, const char *after, st_card *out, size_t limit, size_t *count)
+{
+    (void)self;
+    (void)after;
+    (void)out;
+    (void)limit;
+    *count = 0;
+    return ST_OK;
+}
+
+static uint64_t count_none(void *self)
+{
+    (void)self;
+    return 0;
+}
+
+/* Under the lock: what the newest group brought is kept to be looked at. */
+static void keep_newest(slow_journal *journal, st_room *room, const st_record *first)
+{
+    he_mem_free(journal->room);
+    free_stage(journal->stage);
+    journal->out -= (size_t)(room != NULL) + (size_t)(first->stage != NULL);
+    journal->room = room;
+    journal->stage = first->stage;
+    journal->record = *first;
 }
 
 static uint64_t append(void *self, st_room *room, const st_record *records, size_t count)
 {
-    (void)room;
     slow_journal *journal = self;
     pthread_mutex_lock(&journal->lock);
     const st_record *record = &records[count - 1];
     uint64_t position = journal->newest += count;
     journal->groups++;
+    keep_newest(journal, room, records);
     snprintf(journal->key, sizeof journal->key, "%s", record->key == NULL ? "" : record->key->text);
     pthread_cond_broadcast(&journal->changed);
     pthread_mutex_unlock(&journal->lock);
@@ -44,6 +146,8 @@ static void listen_to(void *self, const st_journal_listener *listener)
 static void close_journal(void *self)
 {
     slow_journal *journal = self;
+    he_mem_free(journal->room);
+    free_stage(journal->stage);
     pthread_cond_destroy(&journal->changed);
     pthread_mutex_destroy(&journal->lock);
     pthread_mutex_destroy(&journal->telling);
@@ -62,6 +166,19 @@ st_journal slow_journal_open(slow_journal *journal)
                         .append = append,
                         .listen = listen_to,
                         .close = close_journal};
+}
+
+st_journal slow_journal_open_keeping(slow_journal *journal)
+{
+    st_journal kept = slow_journal_open(journal);
+    kept.keeps = true;
+    kept.reserve = reserve_kept;
+    kept.stage = stage_content;
+    kept.unstage = unstage;
+    kept.open = open_none;
+    kept.list = list_none;
+    kept.count = count_none;
+    return kept;
 }
 
 void slow_journal_wait(slow_journal *journal, uint64_t position)

@@ -1,5 +1,6 @@
-/* slow_journal.h - a journal that keeps nothing and lags as far behind as a test tells it to: a
- * record is durable, or lost, when the test says so. */
+/* slow_journal.h - a journal that lags as far behind as a test tells it to: a record is durable, or
+ * lost, when the test says so. It keeps nothing; or it has bodies coded and contents staged as one
+ * that keeps them, and shows the newest, but finds no mesh again. */
 #ifndef TESTS_SLOW_JOURNAL_H
 #define TESTS_SLOW_JOURNAL_H
 
@@ -14,6 +15,11 @@ typedef struct slow_journal {
     uint64_t durable;        /* told last; UINT64_MAX: nothing waits */
     uint64_t groups;         /* that were appended */
     char key[32];            /* Idempotency-Key of the newest record's request */
+    st_record record;        /* the newest group's first; its texts are good for the mesh's life */
+    st_room *room;           /* of the newest group */
+    st_stage *stage;         /* of the newest group's first record */
+    st_status refuse;        /* what reserving and staging are answered, but a removal by ST_FULL */
+    size_t out;              /* rooms and stages that are neither published nor given back */
     pthread_mutex_t telling; /* held while the listener is called */
     bool is_heard;
     st_journal_listener listener;
@@ -21,6 +27,10 @@ typedef struct slow_journal {
 
 /* Everything is behind. `journal` outlives the store that it is given to. */
 st_journal slow_journal_open(slow_journal *journal);
+/* One that has bodies coded. */
+st_journal slow_journal_open_keeping(slow_journal *journal);
+/* The content that the newest group brought, NULL where that was not staged. */
+const he_mesh *slow_journal_staged(const slow_journal *journal);
 /* Waits until so many records were appended. */
 void slow_journal_wait(slow_journal *journal, uint64_t position);
 uint64_t slow_journal_newest(slow_journal *journal);

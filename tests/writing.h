@@ -47,7 +47,7 @@ static inline st_status writing_replace(st_mesh *mesh, he_mesh *takes, const cha
     st_write write;
     st_status status = st_write_begin(mesh, NULL, &write);
     if (status == ST_OK) {
-        st_write_replace(&write, takes);
+        st_write_replace(&write, takes, NULL);
         if (name != NULL) {
             st_write_rename(&write, name);
         }

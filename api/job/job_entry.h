@@ -18,6 +18,7 @@ typedef struct api_job_entry {
     api_job_work work; /* self NULL when it has ended */
     st_mesh *about;    /* the mesh whose listeners are told, held; NULL: none, or the job ended */
     st_wait wait;      /* from the end of the work until that is durable */
+    bool changed;      /* the work changed something */
     uint32_t uses;     /* by the list, by the pool, by listeners */
     bool listed;
     struct api_job_entry *next, *previous; /* in the order of numbers */

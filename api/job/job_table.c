@@ -213,7 +213,7 @@ static void answer_lost(api_job_entry *j)
 {
     api_problem problem = {0};
     api_text text = {0};
-    api_problem_set_lost(&problem, j->wait.reason);
+    api_problem_set_lost(&problem, &j->wait, j->changed);
     api_problem_write(&problem, "", &text);
     pthread_mutex_lock(&j->table->lock);
     he_mem_free(j->body);
@@ -245,6 +245,7 @@ static void end_when_durable(api_job_entry *j, const api_job_outcome *outcome)
 {
     st_waits *waits = st_store_waits(j->table->options.store);
     j->wait = (st_wait){.shown = outcome->awaits, .resume = resume};
+    j->changed = outcome->changed;
     if (!st_waits_is_durable(waits, &outcome->awaits)) {
         atomic_store(&j->phase, "storing");
     }

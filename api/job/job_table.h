@@ -58,6 +58,7 @@ typedef struct api_job_outcome {
     bool shown;                           /* as in api_job */
     const char *headers[API_JOB_HEADERS]; /* NULL where it has none */
     st_shown awaits;                      /* the end shows when that is durable */
+    bool changed;                         /* the work changed something */
 } api_job_outcome;
 
 /* Called with the phase and how much of it is done, 0 to 1; false: the work is to end. */

@@ -167,13 +167,18 @@ bool api_problem_set(api_problem *problem, int code, const char *format, ...)
     return false;
 }
 
-bool api_problem_set_lost(api_problem *problem, const char *reason)
+bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed)
 {
-    if (reason == NULL) {
+    if (wait->end != ST_WAIT_LOST) {
         return api_problem_set(problem, API_NOT_READY,
                                "the server stopped before the change was durable");
     }
-    return api_problem_set(problem, API_STORE_FAILED, "the change was lost: %s", reason);
+    if (!changed) {
+        return api_problem_set(problem, API_STORE_LOST,
+                               "the answer shows a change that was lost: %s", wait->reason);
+    }
+    int code = wait->status == ST_FULL ? API_STORE_FULL : API_STORE_FAILED;
+    return api_problem_set(problem, code, "the change was lost: %s", wait->reason);
 }
 
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
@@ -240,6 +245,19 @@ bool api_problem_set_path(api_problem *problem, const he_error *err)
 int api_problem_http(const api_problem *problem)
 {
     return problem->status != 0 ? problem->status : api_code_http(problem->code);
+}
+
+const char *api_problem_retry(const api_problem *problem)
+{
+    switch (problem->code) {
+    case API_STORE_LOST:
+        return "0";
+    case API_MESH_BUSY:
+    case API_IDEMPOTENCY_BUSY:
+        return "1";
+    default:
+        return api_problem_http(problem) == 503 ? "1" : NULL;
+    }
 }
 
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER])

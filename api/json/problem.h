@@ -9,6 +9,7 @@
 
 #include "api/json/text.h"
 #include "build/build.h"
+#include "store/durability_wait.h"
 
 /* X(constant, slug, HTTP status, title, explanation) */
 #define API_CODE_MAP(X)                                                                            \
@@ -168,11 +169,20 @@
       "respond-async. What all elements of a mesh are read for takes that header.")                \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
-    X(STORE_FAILED, "store_failed", 503, "A change could not be kept",                             \
-      "The answer would show a change that the server could not make durable, this request's or "  \
-      "an earlier one's. The change is lost; the detail gives the reason.")                        \
+    X(STORE_BEHIND, "store_behind", 503, "The disk is behind",                                     \
+      "As many changes wait for the disk as may. Nothing was changed; try again after "            \
+      "Retry-After seconds.")                                                                      \
+    X(STORE_LOST, "store_lost", 503, "What the answer would show was lost",                        \
+      "It would show a change of somebody else that could not be kept. Nothing was changed; the "  \
+      "same request shows at once what is kept.")                                                  \
+    X(STORE_FAILED, "store_failed", 503, "The disk failed",                                        \
+      "A write or a sync of the disk failed. The change was not made, or is lost. Reads go on, "   \
+      "but no change is taken until the server is started again.")                                 \
     X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \
       "HTTP/1.1 and HTTP/1.0 are. The connection is closed.")                                      \
+    X(STORE_FULL, "store_full", 507, "The disk is full",                                           \
+      "The change was not made, or is lost. Reads go on, meshes can be deleted, and changes are "  \
+      "taken again as soon as there is room.")                                                     \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
       "What the request would store does not fit the configured budget. Delete a mesh and try "    \
       "again.")                                                                                    \
@@ -224,9 +234,9 @@ bool api_problem_set(api_problem *problem, int code, const char *format, ...)
 bool api_problem_set_core(api_problem *problem, const he_error *err);
 /* The same about the path: elements that do not live are 404 and 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Refuses an answer whose change is not durable: it was lost for `reason`, or, where that is NULL,
- * the server stopped before its fate was known. */
-bool api_problem_set_lost(api_problem *problem, const char *reason);
+/* Refuses an answer that may not be sent since what it shows did not become durable, as the wait
+ * for that tells. `changed`: the change is the request's own. */
+bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
@@ -238,6 +248,8 @@ enum { API_DEFECT_POINTER = 40 };
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
 
 int api_problem_http(const api_problem *problem);
+/* For Retry-After; NULL where it does not help to wait. */
+const char *api_problem_retry(const api_problem *problem);
 /* The JSON object onto `text`; `request_id` may be NULL. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
 /* The page at /problems/{code}. */

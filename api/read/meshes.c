@@ -108,7 +108,9 @@ void api_mesh_patch(api_exchange *x)
     }
     if (name != NULL && strcmp(name, x->info.name) != 0) {
         st_write_rename(&x->write, name);
-        (void)api_write_commit(x, NULL);
+        if (!api_write_commit(x, NULL)) {
+            return;
+        }
     } else {
         st_write_abort(&x->write);
         api_publish(x, 204);
@@ -126,8 +128,9 @@ void api_mesh_delete(api_exchange *x)
         return;
     }
     st_write_remove(&x->write);
-    (void)api_write_commit(x, NULL);
-    api_answer_empty(x, 204);
+    if (api_write_commit(x, NULL)) {
+        api_answer_empty(x, 204);
+    }
 }
 
 static const char *const copy_members[] = {"id", "name", NULL};

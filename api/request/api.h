@@ -82,6 +82,7 @@ typedef struct api_answer {
     const char *idle;
     bool close;        /* the connection must not be used again */
     st_shown shown;    /* the answer waits until that is durable (durability_wait.h) */
+    bool changed;      /* the request changed something */
     const char *route; /* template for logs and metrics, "-" when none matched */
 } api_answer;
 

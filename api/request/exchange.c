@@ -147,12 +147,16 @@ bool api_fail_store(api_exchange *x, st_status status)
     case ST_ELSEWHERE:
         return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
     case ST_LOST:
+        return api_fail(x, API_STORE_LOST, "the mesh stands on a change that was lost");
+    case ST_BEHIND:
+        return api_fail(x, API_STORE_BEHIND, "as many changes wait for the disk as may");
+    case ST_FULL:
+        return api_fail(x, API_STORE_FULL, "the disk is full");
+    case ST_FAILED:
+        return api_fail(x, API_STORE_FAILED, "the disk failed: no change is taken any more");
     case ST_COLD:
     case ST_DAMAGED:
-    case ST_BEHIND:
-    case ST_FULL:
-    case ST_FAILED:
-        return api_fail(x, API_STORE_FAILED, "the store takes no changes now");
+        break;
     }
     return api_fail(x, API_INTERNAL, "the store refused without a reason");
 }
@@ -244,7 +248,7 @@ bool api_write_commit(api_exchange *x, const char *ops)
 {
     st_status status = st_write_commit(&x->write, ops);
     if (status != ST_OK) {
-        x->has_info = false;
+        x->has_info = x->has_info && status != ST_ABSENT;
         return api_fail_store(x, status);
     }
     x->info = x->write.info;

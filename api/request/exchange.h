@@ -141,8 +141,8 @@ bool api_write_begin(api_exchange *x, const api_in *expected);
 /* Begins a claim as x->write, for a long edit that works without the lock (store/write.h). It is
  * ended with the exchange if not before. */
 bool api_write_claim(api_exchange *x, const api_in *expected);
-/* Commits x->write and publishes (api_publish) 204. False, with the problem filled, where a claimed
- * mesh was removed meanwhile. */
+/* Commits x->write and publishes (api_publish) 204. False, with the problem filled and nothing
+ * done, where the journal has no place for it or a claimed mesh was removed meanwhile. */
 bool api_write_commit(api_exchange *x, const char *ops);
 /* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);

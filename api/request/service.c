@@ -100,9 +100,9 @@ static void answer_problem(api_exchange *x)
     if (x->problem.code == API_UNSUPPORTED_ENCODING) {
         put_header(x, "Accept-Encoding", api_codings_list);
     }
-    if (x->answer.status == 503 || x->problem.code == API_MESH_BUSY ||
-        x->problem.code == API_IDEMPOTENCY_BUSY) {
-        put_header(x, "Retry-After", "1");
+    const char *retry = api_problem_retry(&x->problem);
+    if (retry != NULL) {
+        put_header(x, "Retry-After", retry);
     }
 }
 
@@ -181,6 +181,7 @@ static api_step finish(api_exchange *x)
         put_header(x, "Vary", "Accept");
     }
     x->answer.shown = shown(x);
+    x->answer.changed = x->published != 0;
     api_keyed_settle(x);
     if (x->phase != API_PHASE_JOB) {
         api_coded_answer(x); /* what is kept of the answer, here or of a job, is plain */
@@ -352,6 +353,7 @@ static void run_job(void *self, api_job_progress *progress, void *context, api_j
     out->length = (size_t)answer->length;
     out->body = take_bytes(x);
     out->awaits = answer->shown;
+    out->changed = answer->changed;
 }
 
 static void free_job(void *self)

@@ -88,15 +88,16 @@ static void publish(api_exchange *x, writing *w, const char *op, int status, boo
     }
     w->effect = good && !he_changes_none(&x->write.changes);
     good = good && write_answer(x, w);
-    if (good && w->effect && !w->dry_run) {
-        (void)api_write_commit(x, op);
-        api_publish(x, status == 201 ? 201 : 204);
-        api_attribute_path(x, x->location);
-    } else {
+    bool commits = good && w->effect && !w->dry_run;
+    if (!commits) {
         st_write_abort(&x->write);
     }
-    if (!good) {
+    if (!good || (commits && !api_write_commit(x, op))) {
         return;
+    }
+    if (commits) {
+        api_publish(x, status == 201 ? 201 : 204);
+        api_attribute_path(x, x->location);
     }
     api_out_fill(&x->text, w->revision_at, x->info.revision + (w->dry_run && w->effect ? 1 : 0));
     if (!w->dry_run) {

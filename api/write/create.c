@@ -108,19 +108,28 @@ static void create(api_exchange *x)
 /* False, with nothing done, where the mesh was removed meanwhile. */
 static bool replace(api_exchange *x, const made *m)
 {
+    st_stage *stage;
+    st_status status = st_store_stage(x->store, m->mesh, &stage);
+    if (status != ST_OK) {
+        he_mesh_free(m->mesh);
+        return !api_fail_store(x, status);
+    }
     if (!api_write_begin(x, NULL)) {
         bool removed = x->problem.code == API_NO_SUCH_MESH;
+        st_store_unstage(x->store, stage);
         if (!removed) {
             he_mesh_free(m->mesh);
         }
         return !removed;
     }
     const char *name = api_upload_name(x);
-    st_write_replace(&x->write, m->mesh);
+    st_write_replace(&x->write, m->mesh, stage);
     if (name != NULL) {
         st_write_rename(&x->write, name);
     }
-    (void)api_write_commit(x, NULL);
+    if (!api_write_commit(x, NULL)) {
+        return true;
+    }
     api_answer_etag(x, "summary");
     if (!api_answer_minimal(x)) {
         api_answer_stored(x, 200, &m->summary, api_upload_write_report);

@@ -134,12 +134,11 @@ static void run(api_exchange *x)
         refuse(x, s, status);
     }
     bool good = status == ST_OK && take(x, s, count);
-    if (good && count > 0) {
-        (void)api_write_commit(x, NULL);
-    } else {
+    bool commits = good && count > 0;
+    if (!commits) {
         st_write_abort(&x->write);
     }
-    if (!good) {
+    if (!good || (commits && !api_write_commit(x, NULL))) {
         return;
     }
     api_out_fill(&x->text, s->redo_at, x->info.redo);

@@ -89,7 +89,7 @@ typedef struct st_journal {
     /* Never waits. ST_BEHIND: the queue is full; what is larger than the queue is admitted when it
      * is empty. ST_FULL, ST_FAILED, ST_NO_MEMORY. */
     st_status (*reserve)(void *self, const st_room_need *need, st_room **out);
-    void (*leave)(void *self, st_room *room); /* nothing is appended; takes NULL */
+    void (*leave)(void *self, st_room *room); /* nothing is appended; does not wait */
     /* Takes the room, and a group of records of one mesh, at least one, which become durable
      * together or not at all. They get positions without a gap; returns the last one's. Neither
      * fails nor waits. */
@@ -99,7 +99,8 @@ typedef struct st_journal {
      * without a lock, the content private or a snapshot's. ST_FULL, ST_FAILED, ST_BEHIND,
      * ST_NO_MEMORY. */
     st_status (*stage)(void *self, const he_mesh *content, st_stage **out);
-    void (*unstage)(void *self, st_stage *stage); /* it is not published; takes NULL */
+    /* It is not published. Does not wait. */
+    void (*unstage)(void *self, st_stage *stage);
     /* The staged content, which it takes, is that of the mesh after the record `facts`: from now on
      * the mesh can be loaded from it. Bases are let go, with the records before them, down to the
      * newest whose revision is not after `needed`. */

@@ -103,7 +103,9 @@ static void lost(void *context, const st_loss *loss)
     if (reserve_loss(waits)) {
         waits->losses[waits->loss_count++] = *loss;
     } else if (loss->from < waits->rest.from) {
-        waits->rest = (st_loss){.from = loss->from, .to = UINT64_MAX, .reason = loss->reason};
+        waits->rest = *loss;
+        waits->rest.incarnation = 0;
+        waits->rest.to = UINT64_MAX;
     }
     atomic_store(&waits->has_losses, true);
     pthread_mutex_unlock(&waits->lock);
@@ -118,6 +120,7 @@ static bool is_over(const st_waits *waits, st_wait *wait)
     bool durable = shown->position <= atomic_load(&waits->durable);
     const st_loss *loss = durable ? find_loss(waits, shown) : NULL;
     wait->end = loss != NULL ? ST_WAIT_LOST : durable ? ST_WAIT_DURABLE : ST_WAIT_STOPPED;
+    wait->status = loss == NULL ? ST_OK : loss->status;
     wait->reason = loss == NULL ? NULL : loss->reason;
     return durable || waits->stopped;
 }

@@ -34,7 +34,8 @@ typedef struct st_wait {
     st_shown shown;
     void (*resume)(struct st_wait *wait);
     st_wait_end end;
-    const char *reason;             /* of ST_WAIT_LOST, a literal */
+    st_status status;               /* of ST_WAIT_LOST: ST_FULL or ST_FAILED */
+    const char *reason;             /* likewise, a literal */
     struct st_wait *child, *beside; /* in the heap */
 } st_wait;
 

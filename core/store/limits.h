@@ -2,6 +2,9 @@
 #ifndef HE_STORE_LIMITS_H
 #define HE_STORE_LIMITS_H
 
+/* A whole content that takes more is staged (journal.h) before it is published. */
+enum { ST_BODY_BYTES = 1 << 20 };
+
 /* How far the listeners of one mesh may be behind before they are sent to fetch anew: messages, and
  * their bytes. */
 enum { ST_QUEUE_MESSAGES = 1024, ST_QUEUE_BYTES = 1 << 20 };

@@ -46,14 +46,16 @@ static void commit_edit(st_write *w, const char *ops)
     } else {
         st_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content, &tally);
     }
-    const st_record record = st_mesh_record(mesh, ST_RECORD_EDIT, w->keyed);
+    st_record record = st_mesh_record(mesh, ST_RECORD_EDIT, w->keyed);
     st_change change = {.action = ST_REPLACE, .content = mesh->content};
     if (!barrier) {
         change.action = ST_EDIT;
         change.delta = st_step_delta(step);
         change.changes = &w->changes;
     }
-    st_mesh_publish(mesh, &(st_group){.records = &record, .changes = &change, .count = 1});
+    st_mesh_publish(
+        mesh,
+        &(st_group){.booking = &w->booking, .records = &record, .changes = &change, .count = 1});
     st_step_release(step);
 }
 
@@ -70,7 +72,8 @@ static void commit_steps(st_write *w)
     for (uint32_t i = 0; i < w->steps; i++) {
         w->records[i].reach = mesh->log.before.revision;
     }
-    const st_group group = {.records = w->records, .count = w->steps, .events = w->events};
+    const st_group group = {
+        .booking = &w->booking, .records = w->records, .count = w->steps, .events = w->events};
     st_mesh_publish(mesh, &group);
 }
 
@@ -107,7 +110,9 @@ static void commit_facts(st_write *w)
         changes[count] = (st_change){.action = ST_REPLACE, .removed = true};
         records[count++] = st_mesh_record(mesh, ST_RECORD_REMOVE, w->keyed);
     }
-    st_mesh_publish(mesh, &(st_group){.records = records, .changes = changes, .count = count});
+    st_mesh_publish(
+        mesh, &(st_group){
+                  .booking = &w->booking, .records = records, .changes = changes, .count = count});
 }
 
 /* Puts in what the write made; what it takes the place of is the caller's to free. */
@@ -128,17 +133,56 @@ static he_mesh *exchange_content(st_write *w)
     return before;
 }
 
+/* Of a claim without the lock: nobody else has its content. */
+static st_status book(st_write *w)
+{
+    const st_journal *journal = w->mesh->journal;
+    st_room_need need = {.records = 1};
+    switch (w->kind) {
+    case ST_WRITE_EDIT:
+        return st_book_edit(journal, w->delta, w->content, w->claimed, &w->booking);
+    case ST_WRITE_REPLACE: {
+        st_stage *stage = w->booking.stage;
+        size_t records = w->name == NULL ? 1 : 2;
+        return st_book_content(journal, w->content, stage, records, &w->booking);
+    }
+    case ST_WRITE_STEP:
+        need.records = w->steps;
+        break;
+    case ST_WRITE_REMOVE:
+        need.freeing = true;
+        break;
+    case ST_WRITE_RENAME:
+        break;
+    }
+    return st_book(journal, &need, &w->booking);
+}
+
+/* Refused where there is no place in the journal, or a claimed mesh was removed meanwhile. */
+static st_status get_ready(st_write *w)
+{
+    st_status status = book(w);
+    if (w->claimed) {
+        pthread_rwlock_wrlock(&w->mesh->lock);
+        if (status == ST_OK && w->mesh->info.removed) {
+            status = ST_ABSENT;
+        }
+    }
+    if (status != ST_OK) {
+        st_write_give_up(w);
+    }
+    return status;
+}
+
 st_status st_write_commit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
-    if (w->claimed) {
-        pthread_rwlock_wrlock(&mesh->lock);
-        if (mesh->info.removed) {
-            st_write_give_up(w);
-            return ST_ABSENT;
-        }
-    }
     assert(w->found || w->kind >= ST_WRITE_REPLACE);
+    st_status status = get_ready(w);
+    if (status != ST_OK) {
+        return status;
+    }
+    /* Nothing below can fail. */
     he_mesh *discard = exchange_content(w);
     bool cut_off = w->kind == ST_WRITE_REPLACE || w->changes.renumbered;
     bool removed = w->kind == ST_WRITE_REMOVE;

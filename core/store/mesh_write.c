@@ -262,13 +262,14 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
 
 /* --- the rest --- */
 
-void st_write_replace(st_write *w, he_mesh *takes)
+void st_write_replace(st_write *w, he_mesh *takes, st_stage *stage)
 {
     assert(w->kind == ST_WRITE_EDIT && w->delta != NULL);
     roll_back(w);
     he_mesh_record(takes, NULL);
     w->kind = ST_WRITE_REPLACE;
     w->content = takes;
+    w->booking.stage = stage;
 }
 
 void st_write_rename(st_write *w, const char *name)
@@ -300,6 +301,7 @@ void st_write_end(st_write *w, he_mesh *discard)
     st_mesh *mesh = w->mesh;
     free_steps(w);
     he_changes_clear(&w->changes);
+    st_booking_leave(mesh->journal, &w->booking);
     w->mesh = NULL;
     w->content = NULL;
     w->claimed = false;

@@ -136,7 +136,7 @@ static st_status insert(st_store *store, st_mesh *mesh)
 }
 
 static st_status create_as(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_keyed *keyed, st_mesh **out)
+                           const st_keyed *keyed, st_booking *booking, st_mesh **out)
 {
     const st_mesh_options options = {.store = store,
                                      .journal = &store->journal,
@@ -152,14 +152,30 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
     st_status status = insert(store, mesh);
     if (status == ST_OK) {
         *out = st_hold(mesh);
-        const st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, keyed);
+        st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, keyed);
         const st_change change = {.action = ST_REPLACE, .content = mesh->content};
-        st_mesh_publish(mesh, &(st_group){.records = &record, .changes = &change, .count = 1});
+        st_mesh_publish(
+            mesh,
+            &(st_group){.booking = booking, .records = &record, .changes = &change, .count = 1});
     }
     pthread_rwlock_unlock(&store->lock);
     if (status != ST_OK) {
         mesh->content = NULL; /* still the caller's */
         st_release(mesh);
+    }
+    return status;
+}
+
+static st_status book_creation(const st_store *store, const he_mesh *content, st_booking *out)
+{
+    st_stage *stage;
+    st_status status = st_book_stage(&store->journal, content, &stage);
+    if (status != ST_OK) {
+        return status;
+    }
+    status = st_book_content(&store->journal, content, stage, 1, out);
+    if (status != ST_OK) {
+        st_store_unstage(store, stage);
     }
     return status;
 }
@@ -173,16 +189,34 @@ st_status st_create(st_store *store, const char *id, const char *name, he_mesh *
             return ST_BUDGET;
         }
     }
-    if (id != NULL) {
-        return create_as(store, id, name, content, keyed, out);
+    st_booking booking = {NULL};
+    st_status status = book_creation(store, content, &booking);
+    if (status != ST_OK) {
+        return status;
     }
-    st_status status;
-    do {
-        char made[ID_LENGTH + 1];
-        st_random_id(made, ID_LENGTH);
-        status = create_as(store, made, name, content, keyed, out);
-    } while (status == ST_TAKEN);
+    if (id != NULL) {
+        status = create_as(store, id, name, content, keyed, &booking, out);
+    } else {
+        do {
+            char made[ID_LENGTH + 1];
+            st_random_id(made, ID_LENGTH);
+            status = create_as(store, made, name, content, keyed, &booking, out);
+        } while (status == ST_TAKEN);
+    }
+    st_booking_leave(&store->journal, &booking);
     return status;
+}
+
+st_status st_store_stage(const st_store *store, const he_mesh *content, st_stage **out)
+{
+    return st_book_stage(&store->journal, content, out);
+}
+
+void st_store_unstage(const st_store *store, st_stage *stage)
+{
+    if (stage != NULL) {
+        store->journal.unstage(store->journal.self, stage);
+    }
 }
 
 void st_store_take_out(st_store *store, st_mesh *mesh)

@@ -98,9 +98,15 @@ st_status st_find(st_store *store, const char *id, st_mesh **out);
 st_mesh *st_hold(st_mesh *mesh); /* adds a reference */
 void st_release(st_mesh *mesh);  /* takes NULL */
 /* Takes `content` on success. `id` NULL lets the store choose. `keyed`, or NULL, goes into the
- * record of the new mesh. ST_TAKEN, ST_TOO_MANY, ST_BUDGET, ST_NO_MEMORY. */
+ * record of the new mesh. Waits for the disk where the content is large: not on a worker then.
+ * ST_TAKEN, ST_TOO_MANY, ST_BUDGET, ST_NO_MEMORY, ST_BEHIND, ST_FULL, ST_FAILED. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_keyed *keyed, st_mesh **out);
+/* Before a large content takes the place of another (st_write_replace): brings it to the disk, so
+ * that the write need not do that under its lock. Waits, on a thread that may, without a lock. *out
+ * is NULL where there is nothing to be done. ST_NO_MEMORY, ST_BEHIND, ST_FULL, ST_FAILED. */
+st_status st_store_stage(const st_store *store, const he_mesh *content, st_stage **out);
+void st_store_unstage(const st_store *store, st_stage *stage); /* it was not taken; takes NULL */
 /* Up to `limit` meshes with ids after `after` ("" from the start), in the order of ids, each with a
  * reference. */
 size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit);

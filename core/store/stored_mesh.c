@@ -147,7 +147,10 @@ st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *key
 void st_mesh_publish(st_mesh *mesh, const st_group *group)
 {
     const st_journal *journal = mesh->journal;
-    mesh->info.position = journal->append(journal->self, NULL, group->records, group->count);
+    st_booking_fill(group->booking, group->records);
+    mesh->info.position =
+        journal->append(journal->self, group->booking->room, group->records, group->count);
+    *group->booking = (st_booking){NULL};
     st_waits_appended(mesh->followers->waits, mesh->info.position);
     st_mesh_tell(mesh, group);
 }

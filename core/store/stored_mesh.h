@@ -2,6 +2,7 @@
 #ifndef HE_STORE_STORED_MESH_H
 #define HE_STORE_STORED_MESH_H
 
+#include "store/booking.h"
 #include "store/broadcast_queue.h"
 #include "store/idempotency.h"
 #include "store/revision_log.h"
@@ -88,7 +89,8 @@ typedef struct st_event {
  * written as an event if anybody listens, or an event that was written before, whose bytes are
  * taken. */
 typedef struct st_group {
-    const st_record *records;
+    st_booking *booking; /* for them, which is taken and cleared */
+    st_record *records;
     size_t count;
     const st_change *changes; /* one for each, or NULL */
     st_event *events;         /* likewise */

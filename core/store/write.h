@@ -7,10 +7,10 @@
  *     st_write_claim --- st_write_copy, st_write_changes --------------+
  *     (no lock)
  *
- * What can fail fails before the commit, and then nothing has changed. The commit numbers what was
- * done, puts it into the history, hands it to the journal as one group of records, which become
- * durable together or not at all, and tells the listeners. What changed is found once, by
- * st_write_changes or st_write_step, for the answer, the history and the listeners.
+ * What fails changes nothing. The commit books a place in the journal, which can be refused; then
+ * it numbers what was done, puts it into the history, hands it to the journal as one group of
+ * records, which become durable together or not at all, and tells the listeners. What changed is
+ * found once, by st_write_changes or st_write_step, for the answer, the history and the listeners.
  *
  * A claim is for a long edit, which works without a lock on a copy of its own. Until the claim ends
  * no other write can change the mesh, so that its content stands still and may be copied; reads go
@@ -19,6 +19,7 @@
 #define HE_STORE_WRITE_H
 
 #include "base/watch.h"
+#include "store/booking.h"
 #include "store/store.h"
 
 typedef enum st_write_kind {
@@ -48,6 +49,7 @@ typedef struct st_write {
     he_delta **deltas;
     struct st_event *events;
     st_record *records;
+    st_booking booking; /* in the journal */
 } st_write;
 
 /* Takes the exclusive lock. `keyed` is the keyed request that the write is done for, or NULL: its
@@ -73,15 +75,16 @@ bool st_write_undoable(const st_write *write);
  * a revision that applies the inverse of an edit. ST_NOTHING where the stack has fewer;
  * ST_NO_MEMORY. */
 st_status st_write_step(st_write *write, st_action which, uint32_t steps);
-/* PUT. */
-void st_write_replace(st_write *write, he_mesh *takes);
+/* PUT. Takes `stage` too, that of st_store_stage, or NULL. */
+void st_write_replace(st_write *write, he_mesh *takes, st_stage *stage);
 /* `name`, which outlives the write, is cut to ST_MESH_NAME bytes. */
 void st_write_rename(st_write *write, const char *name);
 void st_write_remove(st_write *write);
 
 /* Makes it so and ends the write: the new facts are in `info`. `ops` names the operations of an
- * edit for the history, NULL for anything else. Only a claim can fail, with ST_ABSENT, where the
- * mesh was removed meanwhile: then nothing was done. */
+ * edit for the history, NULL for anything else. Where it is refused the write has ended with
+ * nothing done: ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY; a claim whose mesh was removed
+ * meanwhile: ST_ABSENT. A claim may wait for the disk, and is not to be committed on a worker. */
 st_status st_write_commit(st_write *write, const char *ops);
 /* Ends the write with nothing done. */
 void st_write_abort(st_write *write);

@@ -54,14 +54,19 @@ void he_stored_writer_init(he_stored_writer *w, const he_mesh *mesh)
     w->header = header_bytes(&mesh->c);
 }
 
-uint64_t he_stored_parts(const he_mesh *mesh)
+static uint64_t all_bytes(const he_mesh *mesh)
 {
     uint64_t bytes = header_bytes(&mesh->c) + he_content_array_bytes(&mesh->c);
     for (size_t i = 0; i < mesh->c.column_count; i++) {
         const he_column *column = mesh->c.columns[i];
         bytes += column == NULL ? 0 : (uint64_t)column->rows * column->row_bytes;
     }
-    return (bytes + HE_STORED_PART - 1) / HE_STORED_PART;
+    return bytes;
+}
+
+uint64_t he_stored_parts(const he_mesh *mesh)
+{
+    return (all_bytes(mesh) + HE_STORED_PART - 1) / HE_STORED_PART;
 }
 
 static void set_piece(he_stored_writer *w, const void *from, size_t bytes)
@@ -312,7 +317,10 @@ size_t he_stored_writer_next(he_stored_writer *w, unsigned char *to, unsigned *c
 
 size_t he_stored_content_bound(const he_mesh *mesh)
 {
-    return (size_t)he_stored_parts(mesh) * (HE_PART_HEAD + HE_STORED_PART);
+    uint64_t bytes = all_bytes(mesh), last = bytes % HE_STORED_PART;
+    last += last / sizeof(uint32_t) * (HE_LINK_BYTES - sizeof(uint32_t)); /* all of it links */
+    last = last > HE_STORED_PART ? HE_STORED_PART : last;
+    return (size_t)(bytes / HE_STORED_PART * (HE_PART_HEAD + HE_STORED_PART) + HE_PART_HEAD + last);
 }
 
 size_t he_stored_content_write(const he_mesh *mesh, unsigned char *to)

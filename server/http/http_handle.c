@@ -66,7 +66,7 @@ static bool answer_held(srv_request *r)
 {
     if (r->hold.end != ST_WAIT_DURABLE) {
         api_problem problem = {0};
-        api_problem_set_lost(&problem, r->hold.reason);
+        api_problem_set_lost(&problem, &r->hold, api_answer_of(r->exchange)->changed);
         srv_answer_refuse(r, problem.code, problem.detail);
         r->close = r->close || r->hold.end == ST_WAIT_STOPPED;
     }

@@ -44,8 +44,9 @@ void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *re
     }
     srv_wire_add(wire, "Cache-Control", "no-store");
     srv_wire_add(wire, "X-Request-Id", request_id);
-    if (wire->status == 503) {
-        srv_wire_add(wire, "Retry-After", "1");
+    const char *retry = problem == NULL ? NULL : api_problem_retry(problem);
+    if (retry != NULL) {
+        srv_wire_add(wire, "Retry-After", retry);
     }
 }
 

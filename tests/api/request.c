@@ -58,12 +58,7 @@ void bench_limit_jobs(api_bench *b, size_t most)
     b->most = most;
 }
 
-api_bench *bench_new(void)
-{
-    return bench_new_within(64 << 20, 0);
-}
-
-api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
+static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget, uint64_t upload)
 {
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
@@ -71,7 +66,7 @@ api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
     assert_non_null(b->pool);
     b->store = st_store_new(&(st_store_options){.undo_budget = undo_budget,
                                                 .max_meshes = 1000,
-                                                .journal = st_journal_memory(),
+                                                .journal = *journal,
                                                 .listeners = 3,
                                                 .mesh_listeners = 2,
                                                 .render = api_event_render});
@@ -87,6 +82,22 @@ api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
                                                 .pool = b->pool});
     assert_non_null(b->service);
     return b;
+}
+
+api_bench *bench_new(void)
+{
+    return bench_new_within(64 << 20, 0);
+}
+
+api_bench *bench_new_over(const st_journal *journal)
+{
+    return bench_new_with(journal, 64 << 20, 0);
+}
+
+api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
+{
+    const st_journal journal = st_journal_memory();
+    return bench_new_with(&journal, undo_budget, upload);
 }
 
 void bench_free(api_bench *b)

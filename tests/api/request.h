@@ -11,6 +11,8 @@
 typedef struct api_bench api_bench; /* a service over an empty store */
 
 api_bench *bench_new(void);
+/* Over another journal than that in memory. */
+api_bench *bench_new_over(const st_journal *journal);
 /* `upload` bytes are the most a body of a mesh may have; 0 for as many as bench_new allows. */
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 void bench_free(api_bench *b);

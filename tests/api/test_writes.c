@@ -2,6 +2,7 @@
  * answered by what became of them. */
 #include "tests/api/request.h"
 #include "store/write.h"
+#include "tests/slow_journal.h"
 
 #include "api/json/text.h"
 #include "api/limits.h"
@@ -132,10 +133,14 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
+/* It has bodies coded and contents staged, so that their memory fails too. */
+static slow_journal journal;
+
 /* A mesh with something to undo, something to do again, and a dead face. */
 static api_bench *begin(void)
 {
-    api_bench *b = bench_new();
+    const st_journal kept = slow_journal_open_keeping(&journal);
+    api_bench *b = bench_new_over(&kept);
     bench_done(
         bench_expect(201, bench_post(b, "/v1/meshes?id=m&name=first", "{\"shape\":\"cube\"}")));
     for (int face = 2; face < 5; face++) {
@@ -240,6 +245,7 @@ static bool try_write(const write *w, long fail_at, bool sticky)
     }
     free(before);
     free(after);
+    assert_int_equal(journal.out, 0);
     bench_free(b);
     return reached;
 }
@@ -261,6 +267,65 @@ static void writes_are_whole_or_not_at_all(void **state)
         }
     }
     he_mem_set_hook(NULL);
+}
+
+static void refuse_write(const write *w, st_status refusal, int status, const char *code)
+{
+    api_bench *b = begin();
+    const char *headers[] = {"Content-Type", "application/json", w->headers[0], w->headers[1],
+                             NULL};
+    size_t length = w->body == NULL ? 0 : strlen(w->body);
+    char *before = state_of(b);
+    uint64_t groups = journal.groups;
+    journal.refuse = refusal;
+    bench_reply r = bench_send_bytes(b, w->method, w->target, headers, w->body, length);
+    char *after = state_of(b);
+    if (r.status != status || strcmp(before, after) != 0) {
+        fail_msg("%s %s: %d where the journal has no place", w->method, w->target, r.status);
+    }
+    assert_string_equal(text_of(&r, "code"), code);
+    assert_string_equal(bench_header(&r, "Retry-After"), status == 503 ? "1" : "");
+    assert_true(journal.groups == groups);
+    assert_int_equal(journal.out, 0);
+    bench_reply_free(&r);
+    journal.refuse = ST_OK;
+    bench_done(bench_expect(w->status,
+                            bench_send_bytes(b, w->method, w->target, headers, w->body, length)));
+    free(before);
+    free(after);
+    bench_free(b);
+}
+
+static void without_a_place_in_the_journal_nothing_is_written(void **state)
+{
+    (void)state;
+    static const struct {
+        st_status refusal;
+        int status;
+        const char *code;
+    } refusals[] = {{ST_BEHIND, 503, "store_behind"},
+                    {ST_FULL, 507, "store_full"},
+                    {ST_FAILED, 503, "store_failed"}};
+    for (size_t i = 0; i < sizeof writes / sizeof *writes; i++) {
+        for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
+            bool frees = strcmp(writes[i].method, "DELETE") == 0 &&
+                         strstr(writes[i].target, "attributes") == NULL;
+            if (writes[i].how == ONCE && !(frees && refusals[k].refusal == ST_FULL)) {
+                refuse_write(&writes[i], refusals[k].refusal, refusals[k].status, refusals[k].code);
+            }
+        }
+    }
+}
+
+static void a_full_disk_takes_removals(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    journal.refuse = ST_FULL;
+    bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
+    assert_int_equal(journal.record.kind, ST_RECORD_REMOVE);
+    bench_done(bench_expect(404, bench_get(b, "/v1/meshes/m")));
+    bench_free(b);
 }
 
 /* --- preconditions --- */
@@ -697,6 +762,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(writes_are_whole_or_not_at_all),
+        cmocka_unit_test(without_a_place_in_the_journal_nothing_is_written),
+        cmocka_unit_test(a_full_disk_takes_removals),
         cmocka_unit_test(nothing_comes_between_if_match_and_delete),
         cmocka_unit_test(a_put_that_must_fail_needs_no_body),
         cmocka_unit_test(a_stale_write_shows_a_state),

@@ -250,16 +250,16 @@ static void a_job_whose_record_is_lost_has_failed_for_that_reason(void **state)
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     while (strcmp(look(id).phase, "storing") != 0) {
     }
-    const st_loss loss = {.from = 1, .to = 1, .reason = "the disk refused a write"};
+    const st_loss loss = {.from = 1, .to = 1, .status = ST_FULL, .reason = "the disk is full"};
     slow_journal_lose(&slow, &loss);
     assert_int_equal(look(id).state, API_JOB_RUNNING);
     slow_journal_advance(&slow, 1);
     api_job job = wait_for(id, API_JOB_DONE);
     assert_int_equal(job.state, API_JOB_FAILED);
-    assert_int_equal(job.status, 503);
+    assert_int_equal(job.status, 507);
     assert_string_equal(job.location, "");
     assert_true(api_job_find(jobs, id, copy_body, body));
-    assert_non_null(strstr(body, "\"code\":\"store_failed\""));
+    assert_non_null(strstr(body, "\"code\":\"store_full\""));
     assert_non_null(strstr(body, loss.reason));
 }
 

@@ -350,7 +350,8 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     read_until(listener, ".1\n\n");
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
     slow_journal_wait(&slow, 2);
-    const st_loss loss = {.from = 2, .to = 2, .reason = "the disk refused a write"};
+    const st_loss loss = {
+        .from = 2, .to = 2, .status = ST_FAILED, .reason = "the disk refused a write"};
     slow_journal_lose(&slow, &loss);
     assert_held(writer);
     slow_journal_advance(&slow, 2);
@@ -358,10 +359,11 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     assert_non_null(strstr(text, "\"code\":\"store_failed\""));
     assert_non_null(strstr(text, loss.reason));
     assert_non_null(strstr(text, "Retry-After: "));
-    /* The connection goes on, and a reader of the lost state hears the same. */
+    /* The connection goes on, and a reader of the lost state is to ask again. */
     ask(writer, "GET", "/v1/meshes/m", "");
     assert_int_equal(answer(writer, text, sizeof text), 503);
-    assert_non_null(strstr(text, "\"code\":\"store_failed\""));
+    assert_non_null(strstr(text, "\"code\":\"store_lost\""));
+    assert_non_null(strstr(text, "Retry-After: 0"));
     /* Its event is told to nobody. */
     assert_int_equal(answer(listener, text, sizeof text), 0);
     assert_null(strstr(text, "other"));
