@@ -23,10 +23,10 @@
  * (gltf_private.h).
  *
  * Refused: other versions; extensions that are required and change geometry (KHR_mesh_quantization
- * is read); what refers beyond its list, view or buffer; numbers outside their range; directions
- * that are no floats, without that extension; nodes that are reached twice or are inside
- * themselves; and scenes that make more than gltf_asset.h allows. The errors have the byte, and the
- * path in the JSON.
+ * and EXT_meshopt_compression are read); what refers beyond its list, view or buffer; numbers
+ * outside their range; directions that are no floats, without that extension; nodes that are
+ * reached twice or are inside themselves; and scenes that make more than gltf_asset.h allows. The
+ * errors have the byte, and the path in the JSON.
  *
  * WRITING. One mesh of one primitive: all vertices, in the order of ids, as floats, and triangles.
  * normal, tangent, uv, color, joints and weights of vertices and other attributes of floats are

@@ -74,30 +74,36 @@ typedef struct span {
     uint64_t place;
 } span;
 
+/* The bytes of a view, unpacked where they are compressed. */
+static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he_error *err)
+{
+    uint32_t extension = he_gltf_meshopt(asset, view);
+    if (extension == HE_NONE) {
+        return he_gltf_buffer_part(asset, view, out, err);
+    }
+    const he_gltf_buffer *unpacked = NULL;
+    he_status status = he_gltf_unpack(asset, view, extension, &unpacked, err);
+    if (status == HE_OK) {
+        *out = *unpacked;
+    }
+    return status;
+}
+
 /* `count` elements of `size` bytes, in 64 bits without overflow: all numbers are below 2^53 + 1, a
  * stride below 2^8. */
 static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_t size,
                           size_t alignment, span *out, he_error *err)
 {
     const he_json *json = &asset->json;
-    uint64_t buffer = 0, start = 0, length = 0, stride = 0, offset = 0;
+    uint64_t stride = 0, offset = 0;
+    he_gltf_buffer part = {.bytes = NULL};
     uint32_t view = HE_NONE, name = he_json_find(json, object, "bufferView");
     if (name == HE_NONE) {
         return he_json_fail(json, object, err, HE_BAD_VALUE, "'bufferView' is missing");
     }
     he_status status = he_gltf_item(asset, &asset->views, name, "buffer view", &view, err);
     if (status == HE_OK) {
-        status = he_gltf_need(asset, view, "buffer", 0, HE_JSON_WHOLE, &buffer, err);
-    }
-    if (status == HE_OK && buffer >= asset->buffer_count) {
-        status = he_json_fail(json, view, err, HE_BAD_INDEX, "there is no buffer %llu of %zu",
-                              (unsigned long long)buffer, asset->buffer_count);
-    }
-    if (status == HE_OK) {
-        status = he_gltf_may(asset, view, "byteOffset", HE_JSON_WHOLE, &start, err);
-    }
-    if (status == HE_OK) {
-        status = he_gltf_need(asset, view, "byteLength", 1, HE_JSON_WHOLE, &length, err);
+        status = get_view(asset, view, &part, err);
     }
     if (status == HE_OK) {
         status = he_gltf_may(asset, view, "byteStride", 252, &stride, err);
@@ -108,12 +114,7 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
     if (status != HE_OK) {
         return status;
     }
-    const he_gltf_buffer *b = &asset->buffers[buffer];
-    if (start + length > b->length) {
-        return he_json_fail(json, view, err, HE_BAD_VALUE, "bytes %llu to %llu of a buffer of %llu",
-                            (unsigned long long)start, (unsigned long long)(start + length),
-                            (unsigned long long)b->length);
-    }
+    uint64_t length = part.length;
     stride = stride == 0 ? size : stride;
     if (stride < size) {
         return he_json_fail(json, view, err, HE_BAD_VALUE,
@@ -127,12 +128,12 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
                             (unsigned long long)count, size, (unsigned long long)offset,
                             (unsigned long long)length);
     }
-    if ((start + offset) % alignment != 0 || stride % alignment != 0) {
+    if ((part.start + offset) % alignment != 0 || stride % alignment != 0) {
         he_notes_add(&asset->into->notes, "misaligned", "read all the same: misaligned numbers",
                      NULL, 0, HE_PLACE_BYTE, he_json_place(json, object));
     }
-    *out = (span){b->bytes + start + offset, (size_t)stride,
-                  b->place == HE_GLTF_NOWHERE ? b->place : b->place + start + offset};
+    *out = (span){part.bytes + offset, (size_t)stride,
+                  part.place == HE_GLTF_NOWHERE ? part.place : part.place + offset};
     return HE_OK;
 }
 

@@ -149,8 +149,13 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
         char name[HE_NOTE_SUBJECT], quoted[HE_NOTE_SUBJECT];
         size_t length = he_json_string(json, i, name, sizeof name);
         bool quantized = he_json_is(json, i, "KHR_mesh_quantization");
+        bool packed = he_json_is(json, i, HE_GLTF_MESHOPT);
         asset->quantized |= quantized;
-        if (!quantized && !begins_with_any(json, i, looks)) {
+        if (he_json_is(json, i, "KHR_draco_mesh_compression")) {
+            return he_json_fail(json, i, err, HE_UNSUPPORTED,
+                                "Draco compression is not read: " HE_GLTF_UNDRACO);
+        }
+        if (!quantized && !packed && !begins_with_any(json, i, looks)) {
             he_quote(name, name + length, quoted, sizeof quoted);
             return he_json_fail(json, i, err, HE_UNSUPPORTED,
                                 "the file needs the extension %s, which is not read", quoted);
@@ -160,7 +165,7 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
         if (he_json_is(json, i, "KHR_mesh_quantization")) {
             asset->quantized = true;
-        } else {
+        } else if (!he_json_is(json, i, HE_GLTF_MESHOPT)) {
             he_gltf_note(asset, "ignored_extension", "ignored: extension", i, i);
         }
     }
@@ -190,6 +195,7 @@ he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text, size_t
     *asset = (he_gltf){.into = into,
                        .size = (uint64_t)length + bin->length + he_beside_bytes(into->beside)};
     asset->room = HE_GLTF_ROOM + HE_GLTF_FACTOR * asset->size;
+    asset->unpack_room = HE_GLTF_ROOM + HE_GLTF_UNPACKED * asset->size;
     he_watch *watch = into->soup.limits.watch;
     he_status status = he_watch_phase(watch, "parsing", 0.4, err);
     if (status == HE_OK) {
@@ -232,6 +238,10 @@ void he_gltf_close(he_gltf *asset)
         he_mem_free(asset->buffers[i].own);
     }
     he_mem_free(asset->buffers);
+    for (size_t i = 0; asset->unpacked != NULL && i < asset->views.count; i++) {
+        he_mem_free(asset->unpacked[i].own);
+    }
+    he_mem_free(asset->unpacked);
     he_ids_clear(&asset->accessors);
     he_ids_clear(&asset->views);
     he_ids_clear(&asset->nodes);

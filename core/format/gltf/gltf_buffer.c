@@ -107,31 +107,58 @@ static he_status read_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, 
     return status;
 }
 
+/* Is it there for readers without the extension alone? Those of others may lack it. */
+static bool is_fallback(const he_gltf *asset, uint32_t value)
+{
+    uint32_t flag = he_json_find(&asset->json, he_gltf_meshopt(asset, value), "fallback");
+    return he_json_type(&asset->json, flag) == 't';
+}
+
+/* Nobody misses the bytes of one that did not come, as long as all its views are compressed. */
+static he_status find_fallback(he_gltf *asset, size_t i, uint32_t value, he_error *err)
+{
+    uint32_t uri = he_json_find(&asset->json, value, "uri");
+    he_error missing = {0};
+    he_status status =
+        uri == HE_NONE ? HE_UNSUPPORTED : read_uri(asset, &asset->buffers[i], uri, &missing);
+    if (status != HE_OK && status != HE_UNSUPPORTED && err != NULL) {
+        *err = missing;
+    }
+    return status == HE_UNSUPPORTED ? HE_OK : status;
+}
+
+static he_status find_bytes(he_gltf *asset, size_t i, uint32_t value, const he_gltf_bin *bin,
+                            uint64_t length, he_error *err)
+{
+    he_gltf_buffer *buffer = &asset->buffers[i];
+    uint32_t uri = he_json_find(&asset->json, value, "uri");
+    if (uri != HE_NONE) {
+        return read_uri(asset, buffer, uri, err);
+    }
+    if (i > 0 || bin->bytes == NULL) {
+        return he_json_fail(&asset->json, value, err, HE_BAD_VALUE,
+                            "the buffer has no bytes in the file");
+    }
+    *buffer = (he_gltf_buffer){.bytes = bin->bytes, .length = bin->length, .place = bin->place};
+    if (bin->length > length && bin->length - length > 3) {
+        he_gltf_note(asset, "bin_longer", "ignored: bytes of the BIN chunk behind its buffer",
+                     HE_NONE, value);
+    }
+    return HE_OK;
+}
+
 static he_status open_buffer(he_gltf *asset, size_t i, uint32_t value, const he_gltf_bin *bin,
                              he_error *err)
 {
-    const he_json *json = &asset->json;
     he_gltf_buffer *buffer = &asset->buffers[i];
     uint64_t length = 0;
-    uint32_t uri = he_json_find(json, value, "uri");
     he_status status = he_gltf_need(asset, value, "byteLength", 1, HE_JSON_WHOLE, &length, err);
-    if (status == HE_OK && uri != HE_NONE) {
-        status = read_uri(asset, buffer, uri, err);
-    } else if (status == HE_OK && i == 0 && bin->bytes != NULL) {
-        *buffer = (he_gltf_buffer){bin->bytes, NULL, bin->length, bin->place};
-        if (bin->length > length && bin->length - length > 3) {
-            he_gltf_note(asset, "bin_longer", "ignored: bytes of the BIN chunk behind its buffer",
-                         HE_NONE, value);
-        }
-    } else if (status == HE_OK) {
-        bool packed = he_json_find(json, he_json_find(json, value, "extensions"),
-                                   "EXT_meshopt_compression") != HE_NONE;
-        return he_json_fail(json, value, err, packed ? HE_UNSUPPORTED : HE_BAD_VALUE,
-                            packed ? "the buffer is there in EXT_meshopt_compression only"
-                                   : "the buffer has no bytes in the file");
+    if (status == HE_OK) {
+        status = is_fallback(asset, value) ? find_fallback(asset, i, value, err)
+                                           : find_bytes(asset, i, value, bin, length, err);
     }
-    if (status == HE_OK && buffer->length < length) {
-        return he_json_fail(json, value, err, HE_BAD_VALUE,
+    if (status == HE_OK && buffer->bytes != NULL && buffer->length < length) {
+        return he_json_fail(&asset->json, value, err, HE_BAD_VALUE,
                             "a buffer of %llu bytes of which %llu are there",
                             (unsigned long long)length, (unsigned long long)buffer->length);
     }

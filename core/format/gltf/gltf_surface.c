@@ -43,7 +43,7 @@ static he_status get_whole(he_gltf *asset, uint32_t primitive, uint32_t value,
     he_status status = he_gltf_accessor_get(asset, value, out, err);
     if (status == HE_OK && packed != HE_NONE && out->bytes == NULL) {
         return he_json_fail(json, packed, err, HE_UNSUPPORTED,
-                            "the primitive is there in KHR_draco_mesh_compression only");
+                            "the primitive is there in Draco compression only: " HE_GLTF_UNDRACO);
     }
     return status;
 }

@@ -1,0 +1,496 @@
+/* glTF whose buffer views are packed by EXT_meshopt_compression: the same geometry as plain, and
+ * what is refused. */
+#include "unit/gltf_file.h"
+
+#include "base/mem.h"
+#include "format/gltf/meshopt.h"
+
+#include <math.h>
+
+/* A square of four corners (16 bytes each, so that they have a padding) and two triangles. */
+static const float corners[4][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {0, 1, 0, 0}};
+static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
+
+static const he_meshopt_stream corner_stream = {HE_MESHOPT_ATTRIBUTES, HE_MESHOPT_NONE, 4, 16};
+
+typedef struct packed {
+    unsigned char bytes[1024];
+    size_t length;
+} packed;
+
+static packed pack(const he_meshopt_stream *stream, const void *elements)
+{
+    packed p;
+    unsigned char room[16384];
+    size_t most = he_meshopt_bound(stream);
+    assert_true(most <= sizeof room);
+    p.length = he_meshopt_encode(stream, elements, room, most);
+    assert_true(p.length <= most && p.length <= sizeof p.bytes);
+    assert_true(p.length >= he_meshopt_least(stream));
+    memcpy(p.bytes, room, p.length);
+    return p;
+}
+
+/* Corners packed at byte 0, indices behind them at `at`, all in one chunk that ends at `length`. */
+typedef struct bin {
+    unsigned char bytes[2048];
+    size_t corners, at, indices, length;
+} bin;
+
+static bin join(const packed *first, const packed *second)
+{
+    bin b = {
+        .corners = first->length, .at = (first->length + 3) / 4 * 4, .indices = second->length};
+    memset(b.bytes, 0, sizeof b.bytes);
+    memcpy(b.bytes, first->bytes, first->length);
+    memcpy(b.bytes + b.at, second->bytes, second->length);
+    b.length = (b.at + second->length + 3) / 4 * 4;
+    return b;
+}
+
+/* The asset over such a chunk: %1$ the extension of corners' view, %2$ that of the indices'. */
+static void describe(char *json, size_t size, const char *of_corners, const char *of_indices)
+{
+    int used = snprintf(
+        json, size,
+        "{'asset':{'version':'2.0'},'extensionsUsed':['EXT_meshopt_compression'],"
+        "'extensionsRequired':['EXT_meshopt_compression'],'buffers':[{'byteLength':%s},"
+        "{'byteLength':88,'extensions':{'EXT_meshopt_compression':{'fallback':true}}}],"
+        "'bufferViews':[{'buffer':1,'byteLength':64,'byteStride':16,'extensions':{"
+        "'EXT_meshopt_compression':%s}},{'buffer':1,'byteOffset':64,'byteLength':%s,'extensions':{"
+        "'EXT_meshopt_compression':%s}}],'accessors':[{'bufferView':0,'componentType':5126,"
+        "'count':4,'type':'VEC3'},{'bufferView':1,'componentType':%s,'count':6,'type':'SCALAR'}],"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1}]}]}",
+        "1024", of_corners, strstr(of_indices, "'byteStride':4") != NULL ? "24" : "12", of_indices,
+        strstr(of_indices, "'byteStride':4") != NULL ? "5125" : "5123");
+    assert_true(used > 0 && (size_t)used < size);
+}
+
+enum { CHUNK = 1024 };
+
+static he_status read_packed(const bin *b, const char *of_corners, const char *of_indices,
+                             he_import *import, he_error *err)
+{
+    char json[4096];
+    glb_file f;
+    describe(json, sizeof json, of_corners, of_indices);
+    glb_make(&f, json, b->bytes, CHUNK);
+    return read_bytes("glb", f.bytes, f.length, import, err);
+}
+
+/* An extension: `length` bytes from `at` are `count` elements. */
+static const char *extension(char *text, size_t size, size_t at, size_t length, const char *mode,
+                             const char *filter, unsigned long long count, unsigned stride)
+{
+    snprintf(text, size,
+             "{'buffer':0,'byteOffset':%zu,'byteLength':%zu,'mode':'%s'%s%s%s,'count':%llu,"
+             "'byteStride':%u}",
+             at, length, mode, filter[0] == '\0' ? "" : ",'filter':'", filter,
+             filter[0] == '\0' ? "" : "'", count, stride);
+    return text;
+}
+
+static bin square_packed(he_meshopt_mode mode, size_t stride)
+{
+    packed first = pack(&corner_stream, corners);
+    he_meshopt_stream stream = {mode, HE_MESHOPT_NONE, 6, stride};
+    packed second = pack(&stream, triangles);
+    return join(&first, &second);
+}
+
+static void expect_square(const he_import *import)
+{
+    expect_counts(import, 4, 2, 6);
+    assert_memory_equal(import->soup.positions, square, sizeof square);
+    assert_int_equal(import->notes.count, 0);
+}
+
+static void packed_views_are_read_as_plain_ones(void **state)
+{
+    (void)state;
+    static const size_t strides[] = {2, 4};
+    for (size_t i = 0; i < 4; i++) {
+        he_meshopt_mode mode = i < 2 ? HE_MESHOPT_TRIANGLES : HE_MESHOPT_INDICES;
+        bin b = square_packed(mode, strides[i % 2]);
+        char first[300], second[300];
+        he_import import = {0};
+        he_error err = {0};
+        he_status status = read_packed(
+            &b, extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "NONE", 4, 16),
+            extension(second, sizeof second, b.at, b.indices, he_meshopt_modes[mode], "", 6,
+                      (unsigned)strides[i % 2]),
+            &import, &err);
+        if (status != HE_OK) {
+            fail_msg("%zu: %s", i, err.text);
+        }
+        expect_square(&import);
+        if (mode == HE_MESHOPT_INDICES) {
+            expect_corners(&import, triangles, 6);
+        }
+        he_import_clear(&import);
+    }
+}
+
+/* 2^E * M: one is 2^-8 * 256. */
+static void exponents_are_undone(void **state)
+{
+    (void)state;
+    uint32_t words[4][4];
+    for (size_t i = 0; i < 16; i++) {
+        words[i / 4][i % 4] = 0xF8000000 | (uint32_t)(corners[i / 4][i % 4] * 256);
+    }
+    packed first = pack(&corner_stream, words);
+    he_meshopt_stream stream = {HE_MESHOPT_TRIANGLES, HE_MESHOPT_NONE, 6, 2};
+    packed second = pack(&stream, triangles);
+    bin b = join(&first, &second);
+    char of_corners[300], of_indices[300];
+    he_import import = {0};
+    he_error err = {0};
+    assert_int_equal(read_packed(&b,
+                                 extension(of_corners, sizeof of_corners, 0, b.corners,
+                                           "ATTRIBUTES", "EXPONENTIAL", 4, 16),
+                                 extension(of_indices, sizeof of_indices, b.at, b.indices,
+                                           "TRIANGLES", "NONE", 6, 2),
+                                 &import, &err),
+                     HE_OK);
+    expect_square(&import);
+    he_import_clear(&import);
+}
+
+/* Directions on an octahedron, and quaternions, of which the largest component is left out. */
+static void directions_and_turns_are_undone(void **state)
+{
+    (void)state;
+    static const int8_t up[4] = {0, 0, 127, 0}, right[4] = {127, 0, 127, 0};
+    static const int16_t none[4] = {0, 0, 0, 32767};
+    int8_t two[2][4];
+    memcpy(two[0], up, sizeof up);
+    memcpy(two[1], right, sizeof right);
+    he_meshopt_stream stream = {HE_MESHOPT_ATTRIBUTES, HE_MESHOPT_NONE, 2, 4};
+    packed p = pack(&stream, two);
+    int8_t out[2][4];
+    stream.filter = HE_MESHOPT_OCTAHEDRAL;
+    assert_true(he_meshopt_decode(&stream, p.bytes, p.length, out));
+    assert_memory_equal(out[0], up, sizeof up);
+    assert_memory_equal(out[1], ((int8_t[]){127, 0, 0, 0}), sizeof right);
+    he_meshopt_stream turns = {HE_MESHOPT_ATTRIBUTES, HE_MESHOPT_NONE, 1, 8};
+    p = pack(&turns, none);
+    int16_t turn[4];
+    turns.filter = HE_MESHOPT_QUATERNION;
+    assert_true(he_meshopt_decode(&turns, p.bytes, p.length, turn));
+    assert_memory_equal(turn, ((int16_t[]){0, 0, 0, 32767}), sizeof turn);
+}
+
+/* --- refused --- */
+
+typedef struct row {
+    const char *corners, *indices; /* with %zu for bytes of the stream; NULL: as they are */
+    he_status status;
+    const char *words;
+} row;
+
+#define CORNERS(rest) "{'buffer':0,'byteLength':%zu," rest "}"
+#define INDICES(rest) "{'buffer':0,'byteOffset':%zu,'byteLength':%zu," rest "}"
+
+static void expect_packed_refused(const bin *b, const char *of_corners, const char *of_indices,
+                                  he_status wanted, const char *words)
+{
+    he_import import = {0};
+    he_error err = {0};
+    he_status status = read_packed(b, of_corners, of_indices, &import, &err);
+    if (status != wanted || err.place != HE_PLACE_BYTE || strstr(err.text, words) == NULL) {
+        fail_msg("%s, %s\ngot %s: %s\nwanted %s: %s", of_corners, of_indices,
+                 he_status_slug(status), err.text, he_status_slug(wanted), words);
+    }
+}
+
+static void what_the_extension_forbids_is_refused(void **state)
+{
+    (void)state;
+    static const row rows[] = {
+        {CORNERS("'mode':'ATTRIBUTES','count':4"), NULL, HE_BAD_VALUE, "'byteStride' is missing"},
+        {CORNERS("'mode':'ATTRIBUTES','byteStride':16"), NULL, HE_BAD_VALUE, "'count' is missing"},
+        {CORNERS("'count':4,'byteStride':16"), NULL, HE_BAD_VALUE, "'mode' is missing"},
+        {CORNERS("'mode':'OTHER','count':4,'byteStride':16"), NULL, HE_UNSUPPORTED,
+         "/mode: this is no mode that is read"},
+        {CORNERS("'mode':7,'count':4,'byteStride':16"), NULL, HE_UNSUPPORTED, "/mode: "},
+        {CORNERS("'mode':'ATTRIBUTES','filter':'COLOR','count':4,'byteStride':16"), NULL,
+         HE_UNSUPPORTED, "/filter: this is no filter that is read"},
+        {CORNERS("'mode':'ATTRIBUTES','count':0,'byteStride':16"), NULL, HE_BAD_VALUE, "/count: 0"},
+        {CORNERS("'mode':'ATTRIBUTES','count':4294967296,'byteStride':16"), NULL, HE_BAD_VALUE,
+         "/count: 4294967296"},
+        {CORNERS("'mode':'ATTRIBUTES','count':2000000000,'byteStride':256"), NULL, HE_BAD_VALUE,
+         "2000000000 elements of 256 bytes do not fit in"},
+        {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':0"), NULL, HE_BAD_VALUE,
+         "/byteStride: 0"},
+        {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':14"), NULL, HE_BAD_VALUE,
+         "byteStride is no multiple of 4 up to 256"},
+        {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':260"), NULL, HE_BAD_VALUE,
+         "byteStride is no multiple of 4 up to 256"},
+        {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':18446744073709551632"), NULL,
+         HE_BAD_VALUE, "/byteStride: "},
+        {CORNERS("'mode':'ATTRIBUTES','filter':'OCTAHEDRAL','count':4,'byteStride':16"), NULL,
+         HE_BAD_VALUE, "the filter is of another byteStride"},
+        {CORNERS("'mode':'ATTRIBUTES','filter':'QUATERNION','count':4,'byteStride':16"), NULL,
+         HE_BAD_VALUE, "the filter is of another byteStride"},
+        {CORNERS("'mode':'ATTRIBUTES','count':3,'byteStride':16"), NULL, HE_BAD_VALUE,
+         "a view of 64 bytes that unpacks to 48"},
+        {CORNERS("'mode':'ATTRIBUTES','count':200,'byteStride':16"), NULL, HE_SYNTAX,
+         "the bytes are no packed ATTRIBUTES of 200"},
+        {CORNERS("'mode':'TRIANGLES','count':6,'byteStride':4"), NULL, HE_SYNTAX,
+         "the bytes are no packed TRIANGLES"},
+        {"{'buffer':2,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
+         HE_BAD_INDEX, "there is no buffer 2 of 2"},
+        {"{'buffer':1,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
+         HE_BAD_VALUE, "buffer 1 is a fallback that has no bytes"},
+        {"{'buffer':0,'byteOffset':1024,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,"
+         "'byteStride':16}",
+         NULL, HE_BAD_VALUE, "of a buffer of 1024"},
+        {"{'buffer':0,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL, HE_BAD_VALUE,
+         "'byteLength' is missing"},
+        {NULL, INDICES("'mode':'TRIANGLES','count':7,'byteStride':2"), HE_BAD_VALUE,
+         "count is no multiple of 3"},
+        {NULL, INDICES("'mode':'TRIANGLES','count':6,'byteStride':1"), HE_BAD_VALUE,
+         "byteStride is neither 2 nor 4"},
+        {NULL, INDICES("'mode':'TRIANGLES','count':6,'byteStride':8"), HE_BAD_VALUE,
+         "byteStride is neither 2 nor 4"},
+        {NULL, INDICES("'mode':'TRIANGLES','filter':'EXPONENTIAL','count':6,'byteStride':2"),
+         HE_BAD_VALUE, "only ATTRIBUTES have a filter"},
+        {NULL, INDICES("'mode':'TRIANGLES','count':2000000001,'byteStride':2"), HE_BAD_VALUE,
+         "2000000001 elements of 2 bytes do not fit in"},
+        {NULL, INDICES("'mode':'INDICES','count':2000000001,'byteStride':2"), HE_BAD_VALUE,
+         "2000000001 elements of 2 bytes do not fit in"},
+        {NULL, INDICES("'mode':'TRIANGLES','count':3,'byteStride':2"), HE_BAD_VALUE,
+         "a view of 12 bytes that unpacks to 6"},
+        {NULL, INDICES("'mode':'INDICES','count':6,'byteStride':2"), HE_SYNTAX,
+         "the bytes are no packed INDICES"},
+    };
+    bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char first[300], second[300];
+        extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "", 4, 16);
+        extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2);
+        if (rows[i].corners != NULL) {
+            const char *number = strstr(rows[i].corners, "%zu");
+            size_t before =
+                number == NULL ? strlen(rows[i].corners) : (size_t)(number - rows[i].corners);
+            snprintf(first, sizeof first, "%.*s", (int)before, rows[i].corners);
+            if (number != NULL) {
+                snprintf(first + before, sizeof first - before, "%zu%s", b.corners, number + 3);
+            }
+        }
+        if (rows[i].indices != NULL) {
+            const char *rest = strstr(rows[i].indices, "'mode'");
+            snprintf(second, sizeof second, "{'buffer':0,'byteOffset':%zu,'byteLength':%zu,%s",
+                     b.at, b.indices, rest);
+        }
+        expect_packed_refused(&b, first, second, rows[i].status, rows[i].words);
+    }
+}
+
+/* Never with other geometry: streams say where they end. */
+static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
+{
+    (void)state;
+    bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
+    char first[300], second[300];
+    for (size_t length = 1; length < b.corners; length++) {
+        he_import import = {0};
+        he_error err = {0};
+        he_status status =
+            read_packed(&b, extension(first, sizeof first, 0, length, "ATTRIBUTES", "", 4, 16),
+                        extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2),
+                        &import, &err);
+        assert_true(status == HE_SYNTAX || status == HE_BAD_VALUE);
+    }
+    extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "", 4, 16);
+    for (size_t length = 1; length < b.indices; length++) {
+        he_import import = {0};
+        he_error err = {0};
+        he_status status = read_packed(
+            &b, first, extension(second, sizeof second, b.at, length, "TRIANGLES", "", 6, 2),
+            &import, &err);
+        assert_true(status == HE_SYNTAX || status == HE_BAD_VALUE);
+    }
+    extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2);
+    b.bytes[0] = 0xA1;
+    expect_packed_refused(&b, first, second, HE_UNSUPPORTED,
+                          "ATTRIBUTES packed by version 1, where EXT_meshopt_compression has 0");
+    b.bytes[0] = 0xB0;
+    expect_packed_refused(&b, first, second, HE_SYNTAX, "the bytes are no packed ATTRIBUTES");
+    b.bytes[0] = 0xA0;
+    b.bytes[b.at] = 0xE2;
+    expect_packed_refused(&b, first, second, HE_UNSUPPORTED, "TRIANGLES packed by version 2");
+}
+
+/* Any bytes at all give a mesh, maybe another one, or a refusal. */
+static void streams_of_wrong_bytes_end_well(void **state)
+{
+    (void)state;
+    static const char *const filters[] = {"NONE", "EXPONENTIAL"};
+    bin whole = square_packed(HE_MESHOPT_TRIANGLES, 2);
+    char first[300], second[300];
+    size_t read = 0, refused = 0;
+    extension(second, sizeof second, whole.at, whole.indices, "TRIANGLES", "", 6, 2);
+    for (size_t at = 0; at < whole.at + whole.indices; at++) {
+        for (unsigned bit = 0; bit < 16; bit++) {
+            bin b = whole;
+            b.bytes[at] ^= (unsigned char)(1u << bit % 8);
+            extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", filters[bit / 8], 4, 16);
+            he_import import = {0};
+            he_error err = {0};
+            if (read_packed(&b, first, second, &import, &err) == HE_OK) {
+                read++;
+            } else {
+                refused++;
+                assert_int_equal(err.place, HE_PLACE_BYTE);
+            }
+            he_import_clear(&import);
+        }
+    }
+    print_message("note: %zu streams with a wrong bit were read, %zu refused\n", read, refused);
+    assert_true(read > 0 && refused > 0);
+}
+
+/* A view of zeros that 64 bytes are packed in one of: as many as there may be, then one more. */
+static void what_unpacks_to_too_much_is_refused(void **state)
+{
+    (void)state;
+    enum { COUNT = 1 << 16, STRIDE = 256 };
+    he_meshopt_stream stream = {HE_MESHOPT_ATTRIBUTES, HE_MESHOPT_NONE, COUNT, STRIDE};
+    size_t most = he_meshopt_bound(&stream);
+    unsigned char *zeros = calloc(COUNT, STRIDE), *room = malloc(most);
+    assert_non_null(zeros);
+    assert_non_null(room);
+    size_t length = he_meshopt_encode(&stream, zeros, room, most);
+    free(zeros);
+    size_t padded = (length + 3) / 4 * 4;
+    /* 16 MiB each: two fit into what any file may unpack to and 16 times its own bytes */
+    for (size_t views = 1; views <= 6; views++) {
+        char json[4096];
+        int used = snprintf(json, sizeof json,
+                            "{'asset':{'version':'2.0'},'buffers':[{'byteLength':%zu}],"
+                            "'bufferViews':[",
+                            padded);
+        for (size_t i = 0; i < views; i++) {
+            used += snprintf(json + used, sizeof json - (size_t)used,
+                             "%s{'buffer':0,'byteLength':%d,'byteStride':252,'extensions':{"
+                             "'EXT_meshopt_compression':{'buffer':0,'byteLength':%zu,'count':%d,"
+                             "'byteStride':%d,'mode':'ATTRIBUTES'}}}",
+                             i > 0 ? "," : "", COUNT * STRIDE, length, COUNT, STRIDE);
+        }
+        used += snprintf(json + used, sizeof json - (size_t)used, "],'accessors':[");
+        for (size_t i = 0; i < views; i++) {
+            used += snprintf(json + used, sizeof json - (size_t)used,
+                             "%s{'bufferView':%zu,'componentType':5126,'count':3,'type':'VEC3'}",
+                             i > 0 ? "," : "", i);
+        }
+        used += snprintf(json + used, sizeof json - (size_t)used, "],'meshes':[{'primitives':[");
+        for (size_t i = 0; i < views; i++) {
+            used += snprintf(json + used, sizeof json - (size_t)used,
+                             "%s{'attributes':{'POSITION':%zu}}", i > 0 ? "," : "", i);
+        }
+        used += snprintf(json + used, sizeof json - (size_t)used, "]}]}");
+        assert_true((size_t)used < sizeof json);
+        size_t text = ((size_t)used + 3) / 4 * 4, whole = 28 + text + padded;
+        unsigned char *file = malloc(whole);
+        assert_non_null(file);
+        uint32_t words[] = {0x46546C67, 2, (uint32_t)whole, (uint32_t)text, 0x4E4F534A};
+        memcpy(file, words, sizeof words);
+        memset(file + 20, ' ', text);
+        for (int i = 0; i < used; i++) {
+            file[20 + i] = (unsigned char)(json[i] == '\'' ? '"' : json[i]);
+        }
+        uint32_t chunk[] = {(uint32_t)padded, 0x004E4942};
+        memcpy(file + 20 + text, chunk, sizeof chunk);
+        memset(file + 28 + text, 0, padded);
+        memcpy(file + 28 + text, room, length);
+        he_import import = {0};
+        he_error err = {0};
+        uint64_t allowed = ((uint64_t)32 << 20) + 16 * (uint64_t)(text + padded);
+        he_status status = read_bytes("glb", file, whole, &import, &err);
+        bool fits = (uint64_t)views * COUNT * STRIDE <= allowed;
+        assert_int_equal(status, fits ? HE_OK : HE_LIMIT);
+        assert_true(fits || strstr(err.text, "unpacks to more than 32 MiB and 16 times") != NULL);
+        assert_true(fits == (views < 3));
+        he_import_clear(&import);
+        free(file);
+    }
+    free(room);
+}
+
+static void a_fallback_may_be_missing_unless_a_plain_view_needs_it(void **state)
+{
+    (void)state;
+    expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96,'extensions':{"
+                        "'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS "," ACCESSORS
+                        "," MESHES "}",
+                        HE_BAD_VALUE, "buffer 0 is a fallback that has no bytes");
+    expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
+                        "'extensions':{'EXT_meshopt_compression':{'fallback':false}}}]," VIEWS
+                        "," ACCESSORS "," MESHES "}",
+                        HE_UNSUPPORTED, "the buffer is in another file, 'x.bin'");
+    he_import import =
+        square_import("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
+                      "'extensions':{'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS
+                      "," ACCESSORS "," MESHES "}");
+    expect_square(&import);
+    he_import_clear(&import);
+}
+
+/* --- memory --- */
+
+static size_t left;
+
+static void *starve(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    return left == 0 ? NULL : (left--, realloc(memory, size));
+}
+
+static void without_memory_nothing_is_read(void **state)
+{
+    (void)state;
+    static const he_mem_hook hook = {starve, NULL};
+    bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
+    char first[300], second[300];
+    extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "", 4, 16);
+    extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2);
+    char json[4096];
+    glb_file f;
+    describe(json, sizeof json, first, second);
+    glb_make(&f, json, b.bytes, CHUNK);
+    size_t n = 0;
+    for (he_status status = HE_NO_MEMORY; status != HE_OK; n++) {
+        he_import import = {0};
+        he_error err = {0};
+        assert_true(n < 1000);
+        left = n;
+        he_mem_set_hook(&hook);
+        status = read_pieces("glb", f.bytes, f.length, 0, NULL, &import, &err);
+        he_import_clear(&import);
+        he_mem_set_hook(NULL);
+        assert_true(status == HE_OK || status == HE_NO_MEMORY);
+    }
+    assert_true(n > 5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(packed_views_are_read_as_plain_ones),
+        cmocka_unit_test(exponents_are_undone),
+        cmocka_unit_test(directions_and_turns_are_undone),
+        cmocka_unit_test(what_the_extension_forbids_is_refused),
+        cmocka_unit_test(streams_that_are_cut_or_of_another_version_are_refused),
+        cmocka_unit_test(streams_of_wrong_bytes_end_well),
+        cmocka_unit_test(what_unpacks_to_too_much_is_refused),
+        cmocka_unit_test(a_fallback_may_be_missing_unless_a_plain_view_needs_it),
+        cmocka_unit_test(without_memory_nothing_is_read),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
