@@ -54,6 +54,7 @@ size_t st_frame_write(const st_record *r, unsigned char *to)
     at = he_put_u64(at, 0);
     at = he_put_bytes(at, &r->time, sizeof r->time);
     at = he_put_varint(he_put_varint(at, r->metadata), r->inverts);
+    at = he_put_varint(at, r->revision - r->reach);
     for (size_t i = 0; i < COUNTED; i++) {
         at = he_put_varint(at, r->issued[counted[i]]);
     }
@@ -132,8 +133,11 @@ static bool take_kind(unsigned char byte, st_record_kind *out)
 
 static bool take_numbers(he_cursor *c, st_record *r)
 {
-    bool taken =
-        he_take_varint(c, UINT64_MAX, &r->metadata) && he_take_varint(c, UINT64_MAX, &r->inverts);
+    uint64_t back = 0;
+    bool taken = he_take_varint(c, UINT64_MAX, &r->metadata) &&
+                 he_take_varint(c, UINT64_MAX, &r->inverts) &&
+                 he_take_varint(c, r->revision, &back);
+    r->reach = r->revision - back;
     for (size_t i = 0; taken && i < COUNTED; i++) {
         taken = take_count(c, &r->issued[counted[i]]);
     }

@@ -6,11 +6,13 @@
  *     8, 8       number; revision
  *     8          the chain
  *     8          time, a double
- *     varints    counter of metadata; revision that is inverted; high-water marks of vertices,
- * edges and faces; live vertices, edges and faces, boundary half-edges; bytes in memory text ops:
- * length (varint) and UTF-8 text       the name, of a content and a rename 9 varints  with the flag
- * TALLY: created, deleted, modified vertices, edges and faces the rest   the body; none with the
- * flag PARTS: the content lies beside, in parts
+ *     varints    counter of metadata; revision that is inverted; revisions that the history
+ *                reaches back; high-water marks of vertices, edges and faces; live vertices,
+ *                edges and faces, boundary half-edges; bytes in memory
+ *     text       ops: length (varint) and UTF-8
+ *     text       the name, of a content and a rename
+ *     9 varints  with the flag TALLY: created, deleted, modified vertices, edges and faces
+ *     the rest   the body; none with the flag PARTS: the content lies beside, in parts
  *
  * THE CHAIN ties a record to all before it: that of the first is the hash of its mesh's origin (a
  * number that no other mesh has), that of each other the hash of the frame before it from the
@@ -30,7 +32,7 @@ enum {
     ST_FRAME_VERSION = 1,
     ST_FRAME_OPS = 255, /* bytes of `ops` at most; a longer one is cut */
     /* Bytes of a frame without its body at most. */
-    ST_FRAME_HEAD = 40 + 3 * 10 + 7 * 5 + (2 + ST_FRAME_OPS) + (2 + ST_MESH_NAME) + 9 * 5
+    ST_FRAME_HEAD = 40 + 4 * 10 + 7 * 5 + (2 + ST_FRAME_OPS) + (2 + ST_MESH_NAME) + 9 * 5
 };
 
 /* What a frame holds. Texts of the record point into the struct, its body into the bytes; id,

@@ -10,6 +10,7 @@ enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
 static _Atomic uint64_t used;
 static _Atomic uint64_t budget_bytes;
+static _Thread_local bool is_unrefused;
 
 /* Count `size` more, unless that leaves the budget. Counting first and taking back on failure
  * keeps two threads from passing the limit together. */
@@ -17,7 +18,7 @@ static bool take(size_t size)
 {
     uint64_t budget = atomic_load_explicit(&budget_bytes, memory_order_relaxed);
     uint64_t after = atomic_fetch_add_explicit(&used, size, memory_order_relaxed) + size;
-    if (budget == 0) {
+    if (budget == 0 || is_unrefused) {
         return true;
     }
     uint64_t limit = size <= SMALL ? budget : budget - budget / RESERVE_SHARE;
@@ -80,6 +81,14 @@ void st_memory_count(int64_t bytes)
 {
     /* Modular arithmetic: adding a negative number subtracts. */
     atomic_fetch_add_explicit(&used, (uint64_t)bytes, memory_order_relaxed);
+}
+
+void *st_memory_resize_unrefused(void *memory, size_t size)
+{
+    is_unrefused = true;
+    void *resized = he_mem_resize(memory, size);
+    is_unrefused = false;
+    return resized;
 }
 
 uint64_t st_memory_used(void)

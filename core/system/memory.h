@@ -22,6 +22,10 @@ void st_memory_set_budget(uint64_t budget);
  * connections. Never refused; what is there is only no longer there for large blocks. */
 void st_memory_count(int64_t bytes);
 
+/* As he_mem_resize, for a library whose work cannot be taken back where memory is refused: what is
+ * beyond the budget is counted all the same. */
+void *st_memory_resize_unrefused(void *memory, size_t size);
+
 uint64_t st_memory_used(void);
 uint64_t st_memory_budget(void);
 /* Is there still so much, counting what is kept for small blocks? */

@@ -23,6 +23,7 @@ static const struct specimen {
      {.kind = ST_RECORD_EDIT,
       .number = 7,
       .revision = 5,
+      .reach = 2,
       .metadata = 1,
       .time = 1700000000.5,
       .ops = "edge_split,face_poke",
@@ -32,9 +33,9 @@ static const struct specimen {
       .bytes = 70000,
       .body = body,
       .body_size = sizeof body},
-     "1f83bd560101020007000000000000000500000000000000efcdab896745230100002040fc54d941"
-     "010009c8010b08c8010a00f0a20414656467655f73706c69742c666163655f706f6b650103020000"
-     "0104ac0200010203fa"},
+     "06a461270101020007000000000000000500000000000000efcdab896745230100002040fc54d941"
+     "01000309c8010b08c8010a00f0a20414656467655f73706c69742c666163655f706f6b6501030200"
+     "000104ac0200010203fa"},
     {"undo",
      {.kind = ST_RECORD_UNDO,
       .number = 8,
@@ -46,8 +47,8 @@ static const struct specimen {
       .issued = {[HE_VERTEX] = 9, [HE_HALFEDGE] = 400, [HE_EDGE] = 200, [HE_FACE] = 11},
       .counts = {8, 197, 8, 3},
       .bytes = 70000},
-     "280b74680102000008000000000000000600000000000000efcdab896745230100004040fc54d941"
-     "010509c8010b08c5010803f0a20400"},
+     "556297060102000008000000000000000600000000000000efcdab896745230100004040fc54d941"
+     "01050609c8010b08c5010803f0a20400"},
     {"redo",
      {.kind = ST_RECORD_REDO,
       .number = 9,
@@ -59,8 +60,8 @@ static const struct specimen {
       .issued = {[HE_VERTEX] = 9, [HE_HALFEDGE] = 400, [HE_EDGE] = 200, [HE_FACE] = 11},
       .counts = {8, 200, 10, 0},
       .bytes = 70000},
-     "fe3175730103000009000000000000000700000000000000efcdab896745230100005040fc54d941"
-     "010609c8010b08c8010a00f0a20400"},
+     "6baf64680103000009000000000000000700000000000000efcdab896745230100005040fc54d941"
+     "01060709c8010b08c8010a00f0a20400"},
     {"content",
      {.kind = ST_RECORD_CONTENT,
       .barrier = true,
@@ -75,8 +76,8 @@ static const struct specimen {
       .bytes = 400,
       .body = body,
       .body_size = sizeof body},
-     "962772ba0104010001000000000000000100000000000000efcdab896745230100008040fc54d941"
-     "01000303010303010390030007612077c3b67264010203fa"},
+     "4cb52fc40104010001000000000000000100000000000000efcdab896745230100008040fc54d941"
+     "0100010303010303010390030007612077c3b67264010203fa"},
     {"parts",
      {.kind = ST_RECORD_EDIT,
       .number = UINT64_MAX,
@@ -91,9 +92,9 @@ static const struct specimen {
       .counts = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX},
       .bytes = UINT64_MAX,
       .stage = (st_stage *)&in_parts},
-     "c5c734f701010400fffffffffffffffffeffffffffffffffefcdab89674523010000000000000000"
-     "ffffffffffffffffff0100ffffffff0fffffffff07ffffffff0fffffffff0fffffffff0fffffffff"
-     "0fffffffff0fffffffffffffffffff0109737562646976696465"},
+     "b995e9e001010400fffffffffffffffffeffffffffffffffefcdab89674523010000000000000000"
+     "ffffffffffffffffff0100feffffffffffffffff01ffffffff0fffffffff07ffffffff0fffffffff"
+     "0fffffffff0fffffffff0fffffffff0fffffffffffffffffff0109737562646976696465"},
     {"rename",
      {.kind = ST_RECORD_RENAME,
       .name = "",
@@ -105,8 +106,8 @@ static const struct specimen {
       .issued = {[HE_VERTEX] = 9, [HE_HALFEDGE] = 400, [HE_EDGE] = 200, [HE_FACE] = 11},
       .counts = {8, 200, 10, 0},
       .bytes = 70000},
-     "d515d1af010500000a000000000000000700000000000000efcdab89674523010000c040fc54d941"
-     "020009c8010b08c8010a00f0a2040000"},
+     "b50a029d010500000a000000000000000700000000000000efcdab89674523010000c040fc54d941"
+     "02000709c8010b08c8010a00f0a2040000"},
 };
 enum { SPECIMENS = sizeof specimens / sizeof *specimens, ROOM = ST_FRAME_HEAD + 64 };
 
@@ -124,7 +125,7 @@ static void assert_record(const st_record *a, const st_record *b)
     assert_int_equal(a->kind, b->kind);
     assert_int_equal(a->barrier, b->barrier);
     assert_true(a->number == b->number && a->revision == b->revision);
-    assert_true(a->metadata == b->metadata && a->inverts == b->inverts);
+    assert_true(a->metadata == b->metadata && a->inverts == b->inverts && a->reach == b->reach);
     assert_true(a->time == b->time && a->bytes == b->bytes);
     assert_string_equal(a->ops, b->ops);
     assert_string_equal(a->name, b->name == NULL ? "" : b->name);

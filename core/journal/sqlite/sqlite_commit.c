@@ -1,0 +1,556 @@
+/* The commit thread.
+ *
+ *     WRITES   what is queued is taken as one group (take_group) and committed (commit_group); a
+ *              slice of background work goes with it. commit_group leads to the states below
+ *     FULL     what is queued is lost (lose); removals are admitted, the ballast given up for them;
+ *              each second seek_space tries to lead back to WRITES
+ *     FAILED   all that comes is lost; nothing leads out of it
+ */
+#include "base/mem.h"
+#include "journal/sqlite/sqlite_state.h"
+#include "system/clock.h"
+
+#include <sys/prctl.h>
+
+enum {
+    GROUP_RECORDS = 4096,
+    GROUP_BYTES = 8 << 20,
+    SLICE_BESIDE = 64 << 10, /* bytes of background work while others wait */
+    SLICE_ALONE = 1 << 20,
+    PAGE_BYTES = 4096,
+    CHECKPOINT_PAGES = 1000, /* 12 to 20 ms; more at a time keep others waiting longer */
+    LONG_LOG = 64 << 20,     /* bytes of the -wal from which on loads wait for a checkpoint */
+    SECOND = 1000000,
+    RETRY_MICROS = 20000,
+    CLOSING_TRIES = 50
+};
+
+/* What one transaction takes. */
+typedef struct group {
+    st_item *first, *last;
+    uint64_t records, position, made, removed;
+    bool freeing;
+    st_stage *stage; /* whose slice is written beside; NULL: something is purged */
+    size_t slice;    /* bytes of background work; 0: none */
+} group;
+
+/* --- taking from the queue; under the lock --- */
+
+static void count_room(group *g, const st_sqlite_room *room)
+{
+    for (size_t i = 0; i < room->count; i++) {
+        g->made += room->entries[i].number == 1;
+        g->removed += room->entries[i].kind == ST_RECORD_REMOVE;
+    }
+    g->records += room->count;
+    g->position = room->last;
+    g->freeing |= room->freeing;
+}
+
+static void take_group(st_sqlite *self, group *g)
+{
+    size_t bytes = 0;
+    *g = (group){.first = self->first, .position = self->told, .stage = self->stages};
+    st_item **at = &self->first;
+    while (*at != NULL && g->records < GROUP_RECORDS && bytes < GROUP_BYTES) {
+        g->last = *at;
+        if (g->last->kind == ST_ITEM_ROOM) {
+            count_room(g, st_room_of(g->last));
+            bytes += st_room_of(g->last)->charge;
+        }
+        at = &g->last->next;
+    }
+    if (g->last == NULL) {
+        g->first = NULL;
+    } else {
+        self->first = *at;
+        g->last->next = NULL;
+        if (self->first == NULL) {
+            self->end = &self->first;
+        }
+    }
+    g->slice = g->stage != NULL || !self->purged ? g->records > 0 ? SLICE_BESIDE : SLICE_ALONE : 0;
+}
+
+static void put_back(st_sqlite *self, const group *g)
+{
+    if (g->last != NULL) {
+        g->last->next = self->first;
+        if (self->first == NULL) {
+            self->end = &g->last->next;
+        }
+        self->first = g->first;
+    }
+}
+
+/* --- telling --- */
+
+static void tell(st_sqlite *self, const st_loss *loss, uint64_t position)
+{
+    pthread_mutex_lock(&self->telling);
+    if (self->is_heard && loss != NULL) {
+        self->listener.lost(self->listener.context, loss);
+    }
+    if (self->is_heard) {
+        self->listener.moved(self->listener.context, position);
+    }
+    pthread_mutex_unlock(&self->telling);
+}
+
+static void free_item(st_item *item)
+{
+    switch (item->kind) {
+    case ST_ITEM_ROOM: {
+        st_sqlite_room *room = st_room_of(item);
+        for (size_t i = 0; i < room->count; i++) {
+            he_mem_free(room->entries[i].stage);
+        }
+        he_mem_free(room);
+        break;
+    }
+    case ST_ITEM_REBASE:
+    case ST_ITEM_UNSTAGE:
+        he_mem_free((char *)item - offsetof(st_stage, item));
+        break;
+    case ST_ITEM_CONDEMN:
+        he_mem_free((char *)item - offsetof(st_condemned, item));
+        break;
+    }
+}
+
+static void free_items(st_item *item)
+{
+    while (item != NULL) {
+        st_item *next = item->next;
+        free_item(item);
+        item = next;
+    }
+}
+
+static uint64_t charge_of(const st_item *item)
+{
+    uint64_t charge = 0;
+    for (; item != NULL; item = item->next) {
+        charge += item->kind == ST_ITEM_ROOM ? st_room_of((st_item *)item)->charge : 0;
+    }
+    return charge;
+}
+
+/* Its slice was written, or will not be. Under the lock. */
+static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
+{
+    st_stage **at = &self->stages;
+    while (*at != stage) {
+        at = &(*at)->next;
+    }
+    *at = stage->next;
+    stage->status = status;
+    stage->waits = false;
+    pthread_cond_broadcast(&self->moved);
+}
+
+/* Up to `position` all is durable or told. Under the lock. */
+static void move(st_sqlite *self, uint64_t position)
+{
+    self->told = position;
+    if (self->waiting > 0) {
+        pthread_cond_broadcast(&self->moved);
+    }
+}
+
+/* --- when the disk says no --- */
+
+static void stop_writing(st_sqlite *self, st_write_mode mode)
+{
+    pthread_mutex_lock(&self->lock);
+    if (mode > self->mode) {
+        self->mode = mode;
+    }
+    self->generation++;
+    self->old_rooms = self->rooms;
+    self->losing = true;
+    self->log_is_long = false;
+    while (self->stages != NULL) {
+        end_slice(self, self->stages, mode == ST_WRITES_FULL ? ST_FULL : ST_FAILED);
+    }
+    pthread_cond_broadcast(&self->moved);
+    pthread_mutex_unlock(&self->lock);
+}
+
+/* Takes from the queue what is lost: the rooms, and in FAILED the rest too. Under the lock. */
+static st_item *take_lost(st_sqlite *self)
+{
+    st_item *lost = NULL, **lost_end = &lost, **at = &self->first;
+    while (*at != NULL) {
+        st_item *item = *at;
+        if (item->kind == ST_ITEM_ROOM || self->mode == ST_WRITES_FAILED) {
+            *at = item->next;
+            item->next = NULL;
+            *lost_end = item;
+            lost_end = &item->next;
+        } else {
+            at = &item->next;
+        }
+    }
+    self->end = at;
+    return lost;
+}
+
+static bool has_room(const st_sqlite *self)
+{
+    for (const st_item *item = self->first; item != NULL; item = item->next) {
+        if (item->kind == ST_ITEM_ROOM) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Contents that were staged for what was lost are to be deleted. Under the lock. */
+static void unstage(st_sqlite *self, st_sqlite_room *room)
+{
+    for (size_t i = 0; i < room->count; i++) {
+        st_stage *stage = room->entries[i].stage;
+        if (stage != NULL && self->mode != ST_WRITES_FAILED) {
+            stage->item.kind = ST_ITEM_UNSTAGE;
+            st_queue_put(self, &stage->item);
+            room->entries[i].stage = NULL;
+        }
+    }
+}
+
+/* What is queued is lost, and so are the rooms that are still out when they come. Under the lock,
+ * which is given up meanwhile. */
+static void lose(st_sqlite *self)
+{
+    st_item *lost = take_lost(self);
+    group g = {.position = self->told};
+    for (st_item *item = lost; item != NULL; item = item->next) {
+        if (item->kind == ST_ITEM_ROOM) {
+            count_room(&g, st_room_of(item));
+            unstage(self, st_room_of(item));
+        }
+    }
+    self->meshes += g.removed - g.made;
+    const bool full = self->mode == ST_WRITES_FULL;
+    const st_loss loss = {.from = self->told + 1,
+                          .to = g.position,
+                          .status = full ? ST_FULL : ST_FAILED,
+                          .reason = full ? "the disk is full" : "the disk failed"};
+    pthread_mutex_unlock(&self->lock);
+    if (g.records > 0) {
+        tell(self, &loss, g.position);
+    }
+    pthread_mutex_lock(&self->lock);
+    self->charged -= charge_of(lost);
+    move(self, g.position);
+    self->losing = self->old_rooms > 0 || has_room(self);
+    pthread_mutex_unlock(&self->lock);
+    free_items(lost);
+    pthread_mutex_lock(&self->lock);
+}
+
+/* --- one transaction --- */
+
+static st_sql apply(st_sqlite *self, st_item *item)
+{
+    st_stage *stage = (st_stage *)((char *)item - offsetof(st_stage, item));
+    switch (item->kind) {
+    case ST_ITEM_ROOM:
+        return st_rows_add_room(self, st_room_of(item));
+    case ST_ITEM_REBASE:
+        return st_stage_rebase(self, stage);
+    case ST_ITEM_UNSTAGE:
+        return st_stage_drop(self, stage);
+    case ST_ITEM_CONDEMN:
+        break;
+    }
+    return st_rows_condemn(self, (st_condemned *)((char *)item - offsetof(st_condemned, item)));
+}
+
+static st_sql write_slice(st_sqlite *self, const group *g)
+{
+    if (g->slice == 0) {
+        return ST_SQL_DONE;
+    }
+    if (g->stage != NULL) {
+        return st_stage_write(self, g->stage, g->slice / HE_STORED_PART);
+    }
+    bool done = false;
+    st_sql outcome = st_purge_slice(self, g->slice, &done);
+    self->purged = outcome == ST_SQL_DONE && done;
+    return outcome;
+}
+
+static st_sql put_progress(st_sqlite *self, const st_progress *progress)
+{
+    return st_db_do(&self->db, ST_SQL_STATE_PUT, "iiii", progress->commits, progress->position,
+                    progress->meshes, (uint64_t)st_progress_sum(progress));
+}
+
+static st_sql transact(st_sqlite *self, const group *g, st_progress *progress)
+{
+    *progress = (st_progress){self->progress.commits + 1, g->position,
+                              self->progress.meshes + g->made - g->removed};
+    st_sql outcome = st_db_do(&self->db, ST_SQL_BEGIN, "");
+    for (st_item *item = g->first; item != NULL && outcome == ST_SQL_DONE; item = item->next) {
+        outcome = apply(self, item);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = write_slice(self, g);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_heads_flush(self);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = put_progress(self, progress);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_do(&self->db, ST_SQL_COMMIT, "");
+    }
+    if (outcome != ST_SQL_DONE) {
+        st_heads_forget(self);
+        if (sqlite3_get_autocommit(self->db.handle) == 0) {
+            (void)st_db_do(&self->db, ST_SQL_ROLLBACK, "");
+        }
+    }
+    return outcome;
+}
+
+/* Memory that others give back, a lock of another program: both come to an end. */
+static void rest(st_sqlite *self)
+{
+    sqlite3_db_release_memory(self->db.handle);
+    const uint64_t until = st_clock_micros() + RETRY_MICROS;
+    pthread_mutex_lock(&self->lock);
+    while (st_clock_wait(&self->work, &self->lock, until)) {
+    }
+    pthread_mutex_unlock(&self->lock);
+}
+
+static bool is_closing(st_sqlite *self)
+{
+    pthread_mutex_lock(&self->lock);
+    bool closing = self->closing;
+    pthread_mutex_unlock(&self->lock);
+    return closing;
+}
+
+/* Tries until the disk has said yes or no. Without background work where that does not fit. */
+static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
+{
+    for (unsigned tries = 1;; tries++) {
+        st_sql outcome = transact(self, g, progress);
+        if (outcome == ST_SQL_FULL && g->slice > 0) {
+            g->slice = 0;
+        } else if ((outcome == ST_SQL_NO_MEMORY || outcome == ST_SQL_BUSY) &&
+                   (tries < CLOSING_TRIES || !is_closing(self))) {
+            rest(self);
+        } else {
+            return outcome;
+        }
+    }
+}
+
+static void write_mark(st_sqlite *self)
+{
+    /* A mark that is behind tells less, but nothing wrong. */
+    (void)st_mark_write(&self->folder, &(st_mark){self->identity.store, self->progress.commits,
+                                                  self->progress.position});
+}
+
+static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
+{
+    const bool wrote = g->stage != NULL && g->slice > 0;
+    pthread_mutex_lock(&self->lock);
+    if (wrote) {
+        st_stage_written(g->stage);
+    }
+    if (g->stage != NULL && slice_wanted > 0 &&
+        (!wrote || g->stage->slice->written == g->stage->slice->count)) {
+        end_slice(self, g->stage, wrote ? ST_OK : ST_FULL);
+    }
+    self->charged -= charge_of(g->first);
+    move(self, g->position);
+    pthread_mutex_unlock(&self->lock);
+    if (g->records > 0) {
+        tell(self, NULL, g->position);
+    }
+    free_items(g->first);
+}
+
+static bool commit_group(st_sqlite *self, group *g)
+{
+    st_progress progress;
+    const size_t slice = g->slice;
+    st_sql outcome = insist(self, g, &progress);
+    if (outcome == ST_SQL_DONE) {
+        self->progress = progress;
+        write_mark(self);
+        end_group(self, g, slice);
+        return true;
+    }
+    pthread_mutex_lock(&self->lock);
+    put_back(self, g);
+    pthread_mutex_unlock(&self->lock);
+    stop_writing(self, outcome == ST_SQL_FULL ? ST_WRITES_FULL : ST_WRITES_FAILED);
+    return false;
+}
+
+/* --- checkpoints --- */
+
+static bool log_is_long(const st_sqlite *self)
+{
+    return self->log_pages * PAGE_BYTES > LONG_LOG;
+}
+
+/* Writes the log back into the database, as far as readers let it. False when the disk failed. */
+static bool checkpoint(st_sqlite *self, int how)
+{
+    int code = sqlite3_wal_checkpoint_v2(self->db.handle, NULL, how, NULL, NULL);
+    st_sql outcome = st_db_outcome(&self->db, code);
+    self->log_tried = self->log_pages;
+    pthread_mutex_lock(&self->lock);
+    /* Loads wait for one checkpoint that no load kept from writing all back: those that begin after
+     * it read nothing from the log, and the next commit begins it anew. */
+    self->log_is_long = log_is_long(self) && self->loads_taken > 0;
+    if (!self->log_is_long) {
+        pthread_cond_broadcast(&self->moved);
+    }
+    pthread_mutex_unlock(&self->lock);
+    /* The disk being full is no failure here: the log is whole. */
+    return (outcome != ST_SQL_FAILED && outcome != ST_SQL_DAMAGED && st_mark_sync(&self->folder)) ||
+           (stop_writing(self, ST_WRITES_FAILED), false);
+}
+
+static void checkpoint_when_due(st_sqlite *self)
+{
+    if (self->log_pages < self->log_tried) {
+        self->log_tried = 0; /* it was begun anew */
+    }
+    if (self->log_pages >= self->log_tried + CHECKPOINT_PAGES) {
+        (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
+    }
+}
+
+int st_commit_log_grew(void *context, sqlite3 *db, const char *name, int pages)
+{
+    st_sqlite *self = context;
+    (void)db;
+    (void)name;
+    self->log_pages = (uint64_t)pages;
+    return SQLITE_OK;
+}
+
+/* --- the disk is full --- */
+
+/* Does what can be done with little space, purges and gives pages back. Under the lock, which is
+ * given up meanwhile. */
+static bool make_space(st_sqlite *self)
+{
+    bool good;
+    do {
+        group g;
+        st_progress progress;
+        take_group(self, &g);
+        g.slice = self->purged ? 0 : SLICE_ALONE;
+        pthread_mutex_unlock(&self->lock);
+        good = transact(self, &g, &progress) == ST_SQL_DONE;
+        if (good) {
+            self->progress = progress;
+            write_mark(self);
+            end_group(self, &g, 0);
+            good = checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
+            pthread_mutex_lock(&self->lock);
+        } else {
+            pthread_mutex_lock(&self->lock);
+            put_back(self, &g);
+        }
+    } while (good && !self->purged);
+    return good;
+}
+
+/* The ballast is made anew: space is only there when there is more of it than a page. Under the
+ * lock, which is given up meanwhile. */
+static void seek_space(st_sqlite *self)
+{
+    if (!make_space(self)) {
+        return;
+    }
+    pthread_mutex_unlock(&self->lock);
+    bool found = st_ballast_make(&self->folder);
+    pthread_mutex_lock(&self->lock);
+    if (found && self->mode == ST_WRITES_FULL) {
+        self->mode = ST_WRITES;
+    }
+}
+
+/* --- the thread --- */
+
+/* Is there something to be done now? Under the lock. */
+static bool has_work(const st_sqlite *self)
+{
+    switch (self->mode) {
+    case ST_WRITES:
+        return self->first != NULL || self->stages != NULL || !self->purged ||
+               (self->log_is_long && self->loads_taken == 0);
+    case ST_WRITES_FULL:
+        return self->losing ? has_room(self) || self->old_rooms == 0 : has_room(self);
+    case ST_WRITES_FAILED:
+        break;
+    }
+    return self->first != NULL || (self->losing && self->old_rooms == 0);
+}
+
+/* Under the lock, which is given up meanwhile. */
+static void work_once(st_sqlite *self)
+{
+    if (self->mode == ST_WRITES_FAILED || self->losing) {
+        lose(self);
+        return;
+    }
+    group g;
+    take_group(self, &g);
+    const bool full = self->mode == ST_WRITES_FULL;
+    pthread_mutex_unlock(&self->lock);
+    if (full) {
+        g.slice = 0;
+        (void)st_ballast_drop(&self->folder);
+    }
+    if (g.first == NULL && g.slice == 0) {
+        (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE); /* loads wait for it */
+    } else if (commit_group(self, &g)) {
+        checkpoint_when_due(self);
+    }
+    pthread_mutex_lock(&self->lock);
+}
+
+void *st_commit_thread(void *context)
+{
+    st_sqlite *self = context;
+    uint64_t tried = st_clock_micros();
+    prctl(PR_SET_NAME, "hedged-store");
+    pthread_mutex_lock(&self->lock);
+    for (;;) {
+        if (has_work(self)) {
+            work_once(self);
+            continue;
+        }
+        if (self->closing) {
+            break;
+        }
+        self->idle = true;
+        if (self->mode != ST_WRITES_FULL || self->losing) {
+            pthread_cond_wait(&self->work, &self->lock);
+        } else if (!st_clock_wait(&self->work, &self->lock, tried + SECOND)) {
+            seek_space(self);
+            tried = st_clock_micros();
+        }
+        self->idle = false;
+    }
+    pthread_mutex_unlock(&self->lock);
+    if (self->mode != ST_WRITES_FAILED) {
+        (void)checkpoint(self, SQLITE_CHECKPOINT_TRUNCATE);
+    }
+    return NULL;
+}

@@ -1,0 +1,204 @@
+#include "journal/sqlite/sqlite_folder.h"
+
+#include "journal/crc32c.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+enum { BALLAST_BYTES = 8 << 20, WHO = 256 };
+
+static bool fail(st_folder *folder, const char *what, const char *name)
+{
+    (void)snprintf(folder->message, sizeof folder->message, "%s %.200s%s%s: %s", what, folder->path,
+                   name[0] == '\0' ? "" : "/", name, strerror(errno));
+    return false;
+}
+
+/* --- the lock --- */
+
+/* The first line of the lock's file: the process and host that have it. */
+static void read_owner(int lock, char out[WHO])
+{
+    ssize_t got = pread(lock, out, WHO - 1, 0);
+    out[got > 0 ? got : 0] = '\0';
+    out[strcspn(out, "\n")] = '\0';
+}
+
+static bool write_owner(st_folder *folder)
+{
+    char host[HOST_NAME_MAX + 1] = "", who[WHO];
+    (void)gethostname(host, sizeof host - 1);
+    int length = snprintf(who, sizeof who, "process %ld on %s\n", (long)getpid(), host);
+    return (ftruncate(folder->lock, 0) == 0 &&
+            pwrite(folder->lock, who, (size_t)length, 0) == length) ||
+           fail(folder, "cannot write", "lock");
+}
+
+static bool take_lock(st_folder *folder)
+{
+    folder->lock = openat(folder->folder, "lock", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (folder->lock < 0) {
+        return fail(folder, "cannot open", "lock");
+    }
+    /* Unlike a lock of fcntl, this one is not dropped when any descriptor of the file is closed. */
+    if (flock(folder->lock, LOCK_EX | LOCK_NB) == 0) {
+        return write_owner(folder);
+    }
+    if (errno != EWOULDBLOCK) {
+        return fail(folder, "cannot lock", "lock");
+    }
+    char who[WHO];
+    read_owner(folder->lock, who);
+    (void)snprintf(folder->message, sizeof folder->message, "%.200s is in use by %s", folder->path,
+                   who[0] == '\0' ? "another process" : who);
+    return false;
+}
+
+/* --- the folder --- */
+
+bool st_folder_open(st_folder *folder, const char *path)
+{
+    *folder = (st_folder){.folder = -1, .lock = -1, .mark = -1};
+    (void)snprintf(folder->path, sizeof folder->path, "%s", path);
+    if (mkdir(path, 0700) != 0 && errno != EEXIST) {
+        return fail(folder, "cannot make", "");
+    }
+    folder->folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder->folder < 0) {
+        return fail(folder, "cannot open", "");
+    }
+    if (!take_lock(folder)) {
+        return false;
+    }
+    folder->mark = openat(folder->folder, "hedge.mark", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    return folder->mark >= 0 || fail(folder, "cannot open", "hedge.mark");
+}
+
+static void close_file(int file)
+{
+    if (file >= 0) {
+        (void)close(file);
+    }
+}
+
+void st_folder_close(st_folder *folder)
+{
+    close_file(folder->mark);
+    close_file(folder->lock);
+    close_file(folder->folder);
+    folder->mark = folder->lock = folder->folder = -1;
+}
+
+const char *st_folder_doubt(const st_folder *folder)
+{
+    /* From linux/magic.h, and fs/nfs, fs/fuse, fs/9p, fs/smb of the kernel. */
+    enum { NFS = 0x6969, FUSE = 0x65735546, P9 = 0x01021997 };
+    const uint32_t cifs = UINT32_C(0xff534d42), smb2 = UINT32_C(0xfe534d42);
+    struct statfs system;
+    if (fstatfs(folder->folder, &system) != 0) {
+        return "";
+    }
+    const uint32_t type = (uint32_t)system.f_type;
+    return type == NFS || type == FUSE || type == P9 || type == cifs || type == smb2
+               ? "it is on a network or user file system: locks and syncs may not be kept there"
+               : "";
+}
+
+bool st_folder_path(const st_folder *folder, const char *name, char out[PATH_MAX])
+{
+    int length = snprintf(out, PATH_MAX, "%s/%s", folder->path, name);
+    return length > 0 && length < PATH_MAX;
+}
+
+bool st_folder_has(const st_folder *folder, const char *name)
+{
+    struct stat status;
+    return fstatat(folder->folder, name, &status, 0) == 0 && status.st_size > 0;
+}
+
+bool st_folder_sync(st_folder *folder)
+{
+    return fsync(folder->folder) == 0 || fail(folder, "cannot sync", "");
+}
+
+/* --- the mark --- */
+
+/* A slot: store, commits, position, 4 zeros, CRC-32C of all before. */
+enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
+
+static bool read_slot(const st_folder *folder, unsigned slot, st_mark *out)
+{
+    unsigned char bytes[SLOT];
+    uint32_t sum;
+    if (pread(folder->mark, bytes, SLOT, (off_t)(slot * SLOT)) != SLOT) {
+        return false;
+    }
+    memcpy(&out->store, bytes, 8);
+    memcpy(&out->commits, bytes + 8, 8);
+    memcpy(&out->position, bytes + 16, 8);
+    memcpy(&sum, bytes + SUM_AT, sizeof sum);
+    return sum == st_crc32c(0, bytes, SUM_AT);
+}
+
+bool st_mark_read(st_folder *folder, st_mark *out)
+{
+    bool found = false;
+    for (unsigned slot = 0; slot < SLOTS; slot++) {
+        st_mark mark;
+        if (read_slot(folder, slot, &mark) && (!found || mark.commits > out->commits)) {
+            *out = mark;
+            found = true;
+        }
+    }
+    return found;
+}
+
+bool st_mark_write(st_folder *folder, const st_mark *mark)
+{
+    unsigned char bytes[SLOT] = {0};
+    memcpy(bytes, &mark->store, 8);
+    memcpy(bytes + 8, &mark->commits, 8);
+    memcpy(bytes + 16, &mark->position, 8);
+    uint32_t sum = st_crc32c(0, bytes, SUM_AT);
+    memcpy(bytes + SUM_AT, &sum, sizeof sum);
+    off_t at = (off_t)(mark->commits % SLOTS * SLOT);
+    return pwrite(folder->mark, bytes, SLOT, at) == SLOT ||
+           fail(folder, "cannot write", "hedge.mark");
+}
+
+bool st_mark_sync(st_folder *folder)
+{
+    return fdatasync(folder->mark) == 0 || fail(folder, "cannot sync", "hedge.mark");
+}
+
+/* --- the ballast --- */
+
+bool st_ballast_make(st_folder *folder)
+{
+    struct stat status;
+    if (fstatat(folder->folder, "ballast", &status, 0) == 0 && status.st_size == BALLAST_BYTES) {
+        return true;
+    }
+    int file = openat(folder->folder, "ballast", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    if (file < 0) {
+        return fail(folder, "cannot make", "ballast");
+    }
+    errno = posix_fallocate(file, 0, BALLAST_BYTES);
+    bool made = errno == 0 || fail(folder, "cannot make", "ballast");
+    close_file(file);
+    if (!made) {
+        (void)unlinkat(folder->folder, "ballast", 0);
+    }
+    return made;
+}
+
+bool st_ballast_drop(st_folder *folder)
+{
+    return unlinkat(folder->folder, "ballast", 0) == 0;
+}

@@ -1,0 +1,152 @@
+/* What is no longer needed: noted in the table `purge` by the group that makes it so, deleted by
+ * the slice when there is time. A row whose sum is wrong is passed over: better to keep what could
+ * go than to delete what could not. */
+#include "journal/sqlite/sqlite_state.h"
+
+st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before)
+{
+    const st_purge_row row = {kind, key, before};
+    self->purged = false;
+    return st_db_do(&self->db, ST_SQL_PURGE_MAKE, "iiii", (int64_t)kind, key, before,
+                    (uint64_t)st_purge_row_sum(&row));
+}
+
+/* The snapshots of a mesh that lie before record `before`. One at a time: the table is changed
+ * between. */
+static st_sql drop_snapshots(st_sqlite *self, int64_t mesh, uint64_t before)
+{
+    for (;;) {
+        sqlite3_stmt *s;
+        st_snapshot_row row = {.key = 0};
+        bool good = false;
+        st_sql outcome = st_db_find(&self->db, ST_SQL_SNAPSHOTS_BEFORE, &s, "ii", mesh, before);
+        while (outcome == ST_SQL_ROW && !good) {
+            good = st_snapshot_row_read(s, &row);
+            if (good) {
+                st_db_reset(s);
+            } else {
+                outcome = st_db_step(&self->db, s);
+            }
+        }
+        if (!good) {
+            return outcome;
+        }
+        outcome = st_db_do(&self->db, ST_SQL_SNAPSHOT_DELETE, "i", row.key);
+        if (outcome == ST_SQL_DONE) {
+            outcome = st_purge_add(self, ST_PURGE_PARTS, row.key, 0);
+        }
+        if (outcome != ST_SQL_DONE) {
+            return outcome;
+        }
+    }
+}
+
+st_sql st_purge_before(st_sqlite *self, int64_t mesh, uint64_t base, bool is_inline)
+{
+    st_sql outcome = drop_snapshots(self, mesh, base);
+    return outcome == ST_SQL_DONE
+               ? st_purge_add(self, ST_PURGE_RECORDS, mesh, is_inline ? base : base + 1)
+               : outcome;
+}
+
+st_sql st_purge_mesh(st_sqlite *self, int64_t mesh)
+{
+    st_sql outcome = drop_snapshots(self, mesh, INT64_MAX);
+    return outcome == ST_SQL_DONE ? st_purge_add(self, ST_PURGE_MESH, mesh, INT64_MAX) : outcome;
+}
+
+st_sql st_purge_dead_stages(st_sqlite *self)
+{
+    return drop_snapshots(self, 0, INT64_MAX);
+}
+
+/* --- by the slice --- */
+
+/* The last of the first records that make up so many bytes; 0 where there are none. */
+static st_sql end_of_slice(st_sqlite *self, const st_purge_row *row, size_t bytes, uint64_t *last)
+{
+    sqlite3_stmt *s;
+    *last = 0;
+    st_sql outcome = st_db_find(&self->db, ST_SQL_RECORDS_FIRST, &s, "ii", row->key, row->before);
+    while (outcome == ST_SQL_ROW) {
+        const size_t size = (size_t)sqlite3_column_int64(s, 1);
+        *last = st_db_word(s, 0);
+        if (size >= bytes) {
+            st_db_reset(s);
+            return ST_SQL_DONE;
+        }
+        bytes -= size;
+        outcome = st_db_step(&self->db, s);
+    }
+    return outcome;
+}
+
+static st_sql purge_records(st_sqlite *self, const st_purge_row *row, size_t bytes, bool *gone)
+{
+    uint64_t last;
+    st_sql outcome = end_of_slice(self, row, bytes, &last);
+    *gone = last == 0;
+    return outcome == ST_SQL_DONE && last != 0
+               ? st_db_do(&self->db, ST_SQL_RECORDS_DELETE, "ii", row->key, last)
+               : outcome;
+}
+
+static st_sql purge_parts(st_sqlite *self, const st_purge_row *row, size_t bytes, bool *gone)
+{
+    const size_t parts = bytes / HE_STORED_PART + 1;
+    st_sql outcome = st_db_do(&self->db, ST_SQL_PARTS_DELETE, "ii", row->key, (uint64_t)parts);
+    *gone = (size_t)sqlite3_changes(self->db.handle) < parts;
+    return outcome;
+}
+
+static st_sql next_row(st_sqlite *self, st_purge_row *out, bool *found)
+{
+    sqlite3_stmt *s;
+    *found = false;
+    st_sql outcome = st_db_find(&self->db, ST_SQL_PURGE_ALL, &s, "");
+    while (outcome == ST_SQL_ROW) {
+        if (st_purge_row_read(s, out)) {
+            *found = true;
+            st_db_reset(s);
+            return ST_SQL_DONE;
+        }
+        outcome = st_db_step(&self->db, s);
+    }
+    return outcome;
+}
+
+/* Free pages are given back to the file system where they are many, for they would be used again;
+ * all of them while the disk is full. */
+enum { SPARE_PAGES = 4096, SPARE_SHARE = 4 };
+
+static st_sql shrink(st_sqlite *self, bool *done)
+{
+    int64_t spare = 0, pages = 0;
+    st_sql outcome = st_db_number(&self->db, "PRAGMA freelist_count", 0, &spare);
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_number(&self->db, "PRAGMA page_count", 0, &pages);
+    }
+    *done = self->mode == ST_WRITES_FULL ? spare == 0
+                                         : spare <= SPARE_PAGES || spare <= pages / SPARE_SHARE;
+    return outcome == ST_SQL_DONE && !*done ? st_db_run(&self->db, "PRAGMA incremental_vacuum(64)")
+                                            : outcome;
+}
+
+st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done)
+{
+    st_purge_row row;
+    bool found, gone = false;
+    *done = false;
+    st_sql outcome = next_row(self, &row, &found);
+    if (outcome != ST_SQL_DONE) {
+        return outcome;
+    }
+    if (!found) {
+        return shrink(self, done);
+    }
+    outcome = row.kind == ST_PURGE_PARTS ? purge_parts(self, &row, bytes, &gone)
+                                         : purge_records(self, &row, bytes, &gone);
+    return outcome == ST_SQL_DONE && gone
+               ? st_db_do(&self->db, ST_SQL_PURGE_DELETE, "ii", (int64_t)row.kind, row.key)
+               : outcome;
+}

@@ -1,0 +1,236 @@
+/* Rooms: reserved, appended, queued for the commit thread. */
+#include "base/mem.h"
+#include "journal/sqlite/sqlite_state.h"
+
+#include <assert.h>
+#include <string.h>
+
+st_sqlite_room *st_room_of(st_item *item)
+{
+    return (st_sqlite_room *)((char *)item - offsetof(st_sqlite_room, item));
+}
+
+/* --- reserve --- */
+
+static bool size_of_room(const st_room_need *need, size_t *out)
+{
+    size_t heads, entries;
+    /* One more head: that of the record with the body lies right before it. */
+    return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
+           !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
+           !__builtin_add_overflow(heads, entries, out) &&
+           !__builtin_add_overflow(*out, sizeof(st_sqlite_room), out) &&
+           !__builtin_add_overflow(*out, need->bytes, out);
+}
+
+/* Under the lock. */
+static st_status admit(const st_sqlite *self, size_t size, bool freeing)
+{
+    if (self->mode == ST_WRITES_FAILED) {
+        return ST_FAILED;
+    }
+    if (self->mode == ST_WRITES_FULL && (self->losing || !freeing)) {
+        return ST_FULL;
+    }
+    if (self->charged > 0 &&
+        (size > self->queue_bytes || self->charged > self->queue_bytes - size)) {
+        return ST_BEHIND;
+    }
+    return ST_OK;
+}
+
+st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **out)
+{
+    st_sqlite *self = context;
+    size_t size;
+    assert(need->records > 0);
+    st_sqlite_room *room = size_of_room(need, &size) ? he_mem_alloc(size) : NULL;
+    if (room == NULL) {
+        return ST_NO_MEMORY;
+    }
+    memset(room, 0, sizeof *room);
+    room->item.kind = ST_ITEM_ROOM;
+    room->charge = size;
+    room->freeing = need->freeing;
+    room->most = need->records;
+    room->heads = (unsigned char *)(room->entries + need->records);
+    room->room.bytes = room->heads + (need->records + 1) * ST_FRAME_HEAD;
+    room->room.size = need->bytes;
+    pthread_mutex_lock(&self->lock);
+    st_status status = admit(self, size, need->freeing);
+    if (status == ST_OK) {
+        room->generation = self->generation;
+        self->charged += size;
+        self->rooms++;
+    }
+    pthread_mutex_unlock(&self->lock);
+    if (status != ST_OK) {
+        he_mem_free(room);
+        return status;
+    }
+    *out = &room->room;
+    return ST_OK;
+}
+
+/* A room is out no more. Under the lock. */
+static void come_back(st_sqlite *self, const st_sqlite_room *room)
+{
+    self->rooms--;
+    if (room->generation != self->generation && --self->old_rooms == 0) {
+        pthread_cond_signal(&self->work);
+    }
+}
+
+void st_sqlite_leave(void *context, st_room *left)
+{
+    st_sqlite *self = context;
+    if (left == NULL) {
+        return;
+    }
+    st_sqlite_room *room = (st_sqlite_room *)left;
+    pthread_mutex_lock(&self->lock);
+    come_back(self, room);
+    self->charged -= room->charge;
+    pthread_mutex_unlock(&self->lock);
+    he_mem_free(room);
+}
+
+/* --- append --- */
+
+static void fill_entry(st_sqlite_room *room, const st_record *record)
+{
+    st_queued *entry = &room->entries[room->count];
+    *entry = (st_queued){.kind = record->kind,
+                         .barrier = record->barrier,
+                         .incarnation = record->incarnation,
+                         .number = record->number,
+                         .revision = record->revision,
+                         .frame = room->heads + room->count * ST_FRAME_HEAD,
+                         .stage = record->stage};
+    room->count++;
+    if (record->body_size == 0) {
+        entry->size = st_frame_write(record, entry->frame);
+        return;
+    }
+    unsigned char head[ST_FRAME_HEAD];
+    st_record bodyless = *record;
+    assert(record->body == room->room.bytes);
+    bodyless.body_size = 0;
+    size_t size = st_frame_write(&bodyless, head);
+    entry->frame = room->room.bytes - size;
+    entry->size = size + record->body_size;
+    memcpy(entry->frame, head, size);
+}
+
+static void copy_text(char *to, const char *from, size_t most)
+{
+    size_t length = strnlen(from, most);
+    memcpy(to, from, length);
+    to[length] = '\0';
+}
+
+static void fill_card(st_card *card, const st_record *record)
+{
+    copy_text(card->id, record->id, ST_MESH_ID);
+    copy_text(card->name, record->name, ST_MESH_NAME);
+    card->incarnation = record->incarnation;
+    card->metadata = record->metadata;
+    card->revision = record->revision;
+    card->record = record->number;
+    card->created = record->created;
+    card->modified = record->time;
+    card->counts = record->counts;
+    card->bytes = record->bytes;
+}
+
+static void fill_key(st_sqlite_room *room, const st_record *record)
+{
+    const st_record_key *key = record->key;
+    copy_text(room->key_text, key->text, ST_KEY_TEXT);
+    room->has_key = true;
+    room->key = (st_kept_row){.mesh = key->of_store ? 0 : -1,
+                              .text = room->key_text,
+                              .id = room->card.id,
+                              .digest = {key->digest[0], key->digest[1]},
+                              .time = key->time,
+                              .incarnation = record->incarnation,
+                              .revision = record->revision,
+                              .metadata = record->metadata,
+                              .made = key->of_store};
+}
+
+uint64_t st_sqlite_append(void *context, st_room *taken, const st_record *records, size_t count)
+{
+    st_sqlite *self = context;
+    st_sqlite_room *room = (st_sqlite_room *)taken;
+    uint64_t made = 0, removed = 0;
+    assert(room != NULL && count > 0 && count <= room->most);
+    for (size_t i = 0; i < count; i++) {
+        fill_entry(room, &records[i]);
+        removed += records[i].kind == ST_RECORD_REMOVE;
+        made += records[i].number == 1;
+    }
+    fill_card(&room->card, &records[count - 1]);
+    if (records[count - 1].key != NULL) {
+        fill_key(room, &records[count - 1]);
+    }
+    pthread_mutex_lock(&self->lock);
+    come_back(self, room);
+    uint64_t position = self->newest += count;
+    room->last = position;
+    room->key.position = position;
+    self->meshes += made - removed;
+    st_queue_put(self, &room->item);
+    pthread_mutex_unlock(&self->lock);
+    return position;
+}
+
+/* --- the queue --- */
+
+void st_queue_put(st_sqlite *self, st_item *item)
+{
+    item->next = NULL;
+    *self->end = item;
+    self->end = &item->next;
+    if (self->idle) {
+        pthread_cond_signal(&self->work);
+    }
+}
+
+void st_queue_settle(st_sqlite *self)
+{
+    pthread_mutex_lock(&self->lock);
+    const uint64_t newest = self->newest;
+    self->waiting++;
+    while (self->told < newest) {
+        pthread_cond_wait(&self->moved, &self->lock);
+    }
+    self->waiting--;
+    pthread_mutex_unlock(&self->lock);
+}
+
+uint64_t st_sqlite_count(void *context)
+{
+    st_sqlite *self = context;
+    pthread_mutex_lock(&self->lock);
+    uint64_t count = self->meshes;
+    pthread_mutex_unlock(&self->lock);
+    return count;
+}
+
+void st_sqlite_listen(void *context, const st_journal_listener *listener)
+{
+    st_sqlite *self = context;
+    pthread_mutex_lock(&self->telling);
+    self->is_heard = listener != NULL;
+    if (listener != NULL) {
+        self->listener = *listener;
+        pthread_mutex_lock(&self->lock);
+        uint64_t told = self->told;
+        pthread_mutex_unlock(&self->lock);
+        if (told > 0) {
+            listener->moved(listener->context, told);
+        }
+    }
+    pthread_mutex_unlock(&self->telling);
+}

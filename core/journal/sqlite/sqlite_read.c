@@ -1,0 +1,521 @@
+/* Meshes are read again: cards by one connection, loads by ST_LOADS others. */
+#include "base/mem.h"
+#include "journal/sqlite/sqlite_state.h"
+#include "stored/bytes.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { CARD, CARDS, SNAPSHOT, PARTS, BASE, RECORDS, BEGIN, COMMIT, STATEMENTS };
+static const char *const texts[STATEMENTS] = {
+    [CARD] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE id = ?1",
+    [CARDS] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE id > ?1 ORDER BY id LIMIT ?2",
+    [SNAPSHOT] = "SELECT " ST_SNAPSHOT_COLUMNS " FROM snapshot WHERE mesh = ?1 AND number = ?2",
+    [PARTS] = "SELECT part, bytes FROM part WHERE snapshot = ?1 ORDER BY part",
+    [BASE] = "SELECT bytes FROM record WHERE mesh = ?1 AND number = ?2",
+    [RECORDS] = "SELECT number, bytes FROM record WHERE mesh = ?1 AND number > ?2 ORDER BY number",
+    [BEGIN] = "BEGIN",
+    [COMMIT] = "COMMIT",
+};
+
+/* Where a load stands. */
+typedef enum stage_of_load {
+    AT_BASE,
+    AT_BASE_PARTS,   /* in rows of their own */
+    AT_INLINE_PARTS, /* in the record that is the base */
+    AT_RECORDS,
+    AT_RECORD_PARTS /* of the record that was read last */
+} stage_of_load;
+
+struct st_reader {
+    st_sqlite *journal;
+    st_load_slot *slot;
+    st_mesh_row row;
+    stage_of_load at;
+    st_frame frame;
+    uint64_t number, chain; /* of the record that was read last; of the next */
+    sqlite3_stmt *records, *parts, *base;
+    int64_t snapshot;
+    uint64_t part, parts_left;
+    he_cursor inline_parts;
+};
+
+static st_status status_of(st_sql outcome)
+{
+    return outcome == ST_SQL_NO_MEMORY ? ST_NO_MEMORY : ST_FAILED;
+}
+
+/* --- connections --- */
+
+static st_sql open_one(st_db *db, const char *path)
+{
+    st_sql outcome = st_db_open(db, path, SQLITE_OPEN_READONLY, texts, STATEMENTS);
+    /* Without a mapping: a bad sector would be SIGBUS. */
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_run(db, "PRAGMA mmap_size = 0");
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_run(db, "PRAGMA cache_size = -2048");
+    }
+    return outcome == ST_SQL_DONE ? st_db_run(db, "PRAGMA cell_size_check = ON") : outcome;
+}
+
+st_sql st_readers_open(st_sqlite *self, const char *path)
+{
+    st_sql outcome = open_one(&self->cards, path);
+    for (size_t i = 0; i < ST_LOADS && outcome == ST_SQL_DONE; i++) {
+        outcome = open_one(&self->loads[i].db, path);
+    }
+    return outcome;
+}
+
+bool st_readers_close(st_sqlite *self)
+{
+    bool closed = st_db_close(&self->cards);
+    for (size_t i = 0; i < ST_LOADS; i++) {
+        closed = st_db_close(&self->loads[i].db) && closed;
+    }
+    return closed;
+}
+
+/* Waits for a connection, and while the log is too long. */
+static st_load_slot *take_slot(st_sqlite *self)
+{
+    pthread_mutex_lock(&self->lock);
+    self->waiting++;
+    while (self->loads_taken == ST_LOADS || self->log_is_long) {
+        pthread_cond_wait(&self->moved, &self->lock);
+    }
+    self->waiting--;
+    self->loads_taken++;
+    st_load_slot *slot = self->loads;
+    while (slot->taken) {
+        slot++;
+    }
+    slot->taken = true;
+    pthread_mutex_unlock(&self->lock);
+    return slot;
+}
+
+static void give_slot(st_sqlite *self, st_load_slot *slot)
+{
+    pthread_mutex_lock(&self->lock);
+    slot->taken = false;
+    self->loads_taken--;
+    pthread_cond_broadcast(&self->moved);
+    if (self->log_is_long && self->loads_taken == 0) {
+        pthread_cond_signal(&self->work);
+    }
+    pthread_mutex_unlock(&self->lock);
+}
+
+/* --- cards --- */
+
+static st_status read_card(sqlite3_stmt *s, st_mesh_row *row)
+{
+    if (!st_mesh_row_read(s, row)) {
+        (void)snprintf(row->card.damage, sizeof row->card.damage,
+                       "the facts that are kept of the mesh have a wrong checksum");
+    }
+    return row->card.damage[0] == '\0' ? ST_OK : ST_DAMAGED;
+}
+
+static st_status find_card(st_db *db, const char *id, st_mesh_row *row)
+{
+    sqlite3_stmt *s;
+    st_sql outcome = st_db_find(db, CARD, &s, "t", id);
+    if (outcome != ST_SQL_ROW) {
+        return outcome == ST_SQL_DONE ? ST_ABSENT : status_of(outcome);
+    }
+    st_status status = read_card(s, row);
+    st_db_reset(s);
+    return status;
+}
+
+st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t limit,
+                         size_t *count)
+{
+    st_sqlite *self = context;
+    sqlite3_stmt *s;
+    size_t found = 0;
+    pthread_mutex_lock(&self->cards_lock);
+    st_sql outcome = st_db_find(&self->cards, CARDS, &s, "ti", after, (uint64_t)limit);
+    while (outcome == ST_SQL_ROW) {
+        st_mesh_row row;
+        (void)read_card(s, &row);
+        out[found++] = row.card;
+        outcome = st_db_step(&self->cards, s);
+    }
+    pthread_mutex_unlock(&self->cards_lock);
+    if (outcome != ST_SQL_DONE) {
+        return status_of(outcome);
+    }
+    *count = found;
+    return ST_OK;
+}
+
+/* --- damage --- */
+
+void st_sqlite_condemn(void *context, uint64_t incarnation, const char *damage)
+{
+    st_sqlite *self = context;
+    st_condemned *condemned = he_mem_zero(1, sizeof *condemned);
+    if (condemned == NULL) {
+        return; /* it is found again at the next load */
+    }
+    condemned->item.kind = ST_ITEM_CONDEMN;
+    condemned->incarnation = incarnation;
+    (void)snprintf(condemned->damage, sizeof condemned->damage, "%s", damage);
+    pthread_mutex_lock(&self->lock);
+    st_queue_put(self, &condemned->item);
+    pthread_mutex_unlock(&self->lock);
+}
+
+__attribute__((format(printf, 2, 3))) static st_status damaged(st_reader *reader,
+                                                               const char *format, ...)
+{
+    char text[ST_DAMAGE];
+    va_list values;
+    va_start(values, format);
+    (void)vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    st_sqlite_condemn(reader->journal, reader->row.card.incarnation, text);
+    return ST_DAMAGED;
+}
+
+/* What a statement came to that had no row, or what could not be read. */
+static st_status failed(st_reader *reader, st_sql outcome, const char *what)
+{
+    return outcome == ST_SQL_DAMAGED
+               ? damaged(reader, "%s cannot be read: the file is damaged there", what)
+               : status_of(outcome);
+}
+
+/* --- loading --- */
+
+static void end_load(st_reader *reader)
+{
+    st_db_reset(reader->records);
+    st_db_reset(reader->parts);
+    st_db_reset(reader->base);
+    (void)st_db_do(&reader->slot->db, COMMIT, "");
+    give_slot(reader->journal, reader->slot);
+}
+
+static st_status begin_load(st_sqlite *self, const char *id, st_mesh_row *row, st_reader **out)
+{
+    st_reader *reader = he_mem_zero(1, sizeof *reader);
+    if (reader == NULL) {
+        return ST_NO_MEMORY;
+    }
+    reader->journal = self;
+    reader->slot = take_slot(self);
+    st_sql outcome = st_db_do(&reader->slot->db, BEGIN, "");
+    st_status status =
+        outcome == ST_SQL_DONE ? find_card(&reader->slot->db, id, row) : status_of(outcome);
+    if (status != ST_OK) {
+        end_load(reader);
+        he_mem_free(reader);
+        return status;
+    }
+    reader->row = *row;
+    *out = reader;
+    return ST_OK;
+}
+
+st_status st_sqlite_open_mesh(void *context, const char *id, st_card *card, st_reader **reader)
+{
+    st_sqlite *self = context;
+    st_mesh_row row;
+    st_status status;
+    st_queue_settle(self);
+    if (reader != NULL) {
+        status = begin_load(self, id, &row, reader);
+    } else {
+        pthread_mutex_lock(&self->cards_lock);
+        status = find_card(&self->cards, id, &row);
+        pthread_mutex_unlock(&self->cards_lock);
+    }
+    if (status == ST_OK || status == ST_DAMAGED) {
+        *card = row.card;
+    }
+    return status;
+}
+
+void st_sqlite_shut(st_reader *reader)
+{
+    if (reader != NULL) {
+        end_load(reader);
+        he_mem_free(reader);
+    }
+}
+
+/* What is in a frame, and what the card knows besides. */
+static void fill_piece(st_reader *reader, st_piece_kind kind, st_piece *out)
+{
+    const st_card *card = &reader->row.card;
+    *out = (st_piece){.kind = kind, .record = reader->frame.record};
+    st_record *record = &out->record;
+    record->ops = reader->frame.ops;
+    record->name = reader->frame.name;
+    if (record->kind != ST_RECORD_RENAME && record->kind != ST_RECORD_CONTENT) {
+        record->name = card->name;
+    }
+    record->id = card->id;
+    record->incarnation = card->incarnation;
+    record->created = card->created;
+}
+
+static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_t size,
+                            uint64_t number)
+{
+    he_error err = {.status = HE_OK};
+    if (st_frame_read(bytes, size, &reader->frame, &err) != HE_OK) {
+        return damaged(reader, "record %llu, byte %llu: %s", (unsigned long long)number,
+                       (unsigned long long)err.at, err.text);
+    }
+    if (reader->frame.record.number != number) {
+        return damaged(reader, "record %llu says that it is %llu", (unsigned long long)number,
+                       (unsigned long long)reader->frame.record.number);
+    }
+    reader->number = number;
+    return ST_OK;
+}
+
+/* The snapshot of that record, to be read part by part. ST_ABSENT. */
+static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
+{
+    st_db *db = &reader->slot->db;
+    sqlite3_stmt *s;
+    st_snapshot_row row;
+    st_sql outcome = st_db_find(db, SNAPSHOT, &s, "ii", reader->row.key, number);
+    if (outcome != ST_SQL_ROW) {
+        return outcome == ST_SQL_DONE ? ST_ABSENT : failed(reader, outcome, "a snapshot");
+    }
+    st_status status = st_snapshot_row_read(s, &row)
+                           ? ST_OK
+                           : damaged(reader, "the snapshot of record %llu has a wrong checksum",
+                                     (unsigned long long)number);
+    if (status == ST_OK && facts) {
+        status = read_frame(reader, row.facts, row.facts_size, number);
+        reader->chain = row.chain;
+    }
+    st_db_reset(s);
+    if (status != ST_OK) {
+        return status;
+    }
+    reader->snapshot = row.key;
+    reader->parts_left = row.parts;
+    reader->part = 0;
+    return ST_OK;
+}
+
+/* The next part of the snapshot; *out is left alone after the last. */
+static st_status read_part(st_reader *reader, bool *got, st_piece *out)
+{
+    st_db *db = &reader->slot->db;
+    size_t size;
+    *got = false;
+    if (reader->parts_left == 0) {
+        st_db_reset(reader->parts);
+        reader->parts = NULL;
+        return ST_OK;
+    }
+    st_sql outcome = reader->parts == NULL
+                         ? st_db_find(db, PARTS, &reader->parts, "i", reader->snapshot)
+                         : st_db_step(db, reader->parts);
+    if (outcome == ST_SQL_DONE) {
+        reader->parts = NULL;
+        return damaged(reader, "part %llu of the content after record %llu is missing",
+                       (unsigned long long)reader->part, (unsigned long long)reader->number);
+    }
+    if (outcome != ST_SQL_ROW) {
+        reader->parts = NULL;
+        return failed(reader, outcome, "a part of the content");
+    }
+    const unsigned char *bytes = st_db_bytes(reader->parts, 1, &size);
+    uint32_t sum = 0;
+    if (size >= ST_PART_HEAD) {
+        memcpy(&sum, bytes, sizeof sum);
+    }
+    if (size < ST_PART_HEAD || st_db_word(reader->parts, 0) != reader->part ||
+        sum != st_part_sum(reader->snapshot, reader->part, bytes + sizeof sum, size - sizeof sum)) {
+        return damaged(reader, "part %llu of the content after record %llu has a wrong checksum",
+                       (unsigned long long)reader->part, (unsigned long long)reader->number);
+    }
+    *out = (st_piece){.kind = ST_PIECE_PART,
+                      .coding = bytes[ST_PART_HEAD - 1],
+                      .bytes = bytes + ST_PART_HEAD,
+                      .size = size - ST_PART_HEAD};
+    reader->part++;
+    reader->parts_left--;
+    *got = true;
+    return ST_OK;
+}
+
+/* A content in one block: each part with its coding and length before it (stored.h). */
+static st_status read_inline_part(st_reader *reader, bool *got, st_piece *out)
+{
+    he_cursor *c = &reader->inline_parts;
+    unsigned char coding;
+    uint32_t size;
+    *got = he_left(c) > 0;
+    if (!*got) {
+        st_db_reset(reader->base);
+        reader->base = NULL;
+        return ST_OK;
+    }
+    if (!he_take_bytes(c, 1, &coding) || !he_take_u32(c, &size) || size > he_left(c)) {
+        return damaged(reader, "the content in record %llu ends within a part",
+                       (unsigned long long)reader->number);
+    }
+    *out = (st_piece){.kind = ST_PIECE_PART, .coding = coding, .bytes = c->at, .size = size};
+    c->at += size;
+    return ST_OK;
+}
+
+static uint64_t parts_in(he_cursor c)
+{
+    uint64_t parts = 0;
+    unsigned char coding;
+    uint32_t size;
+    for (; he_take_bytes(&c, 1, &coding) && he_take_u32(&c, &size) && size <= he_left(&c);
+         c.at += size) {
+        parts++;
+    }
+    return parts;
+}
+
+/* The record that is a base holds its content itself. */
+static st_status read_inline_base(st_reader *reader)
+{
+    const uint64_t number = reader->row.base;
+    size_t size;
+    st_sql outcome =
+        st_db_find(&reader->slot->db, BASE, &reader->base, "ii", reader->row.key, number);
+    if (outcome != ST_SQL_ROW) {
+        return outcome == ST_SQL_DONE
+                   ? damaged(reader, "record %llu, from which the mesh is loaded, is missing",
+                             (unsigned long long)number)
+                   : failed(reader, outcome, "the record from which the mesh is loaded");
+    }
+    const unsigned char *bytes = st_db_bytes(reader->base, 0, &size);
+    st_status status = read_frame(reader, bytes, size, number);
+    if (status != ST_OK) {
+        return status;
+    }
+    const st_frame *frame = &reader->frame;
+    if (frame->record.kind != ST_RECORD_CONTENT || frame->in_parts) {
+        return damaged(reader, "record %llu, from which the mesh is loaded, has no content",
+                       (unsigned long long)number);
+    }
+    if (number == 1 && frame->chain != st_chain_of_origin(reader->row.origin)) {
+        return damaged(reader, "record 1 is another mesh's");
+    }
+    reader->chain = st_frame_next_chain(bytes, size);
+    reader->inline_parts = he_cursor_over(frame->record.body, frame->record.body_size);
+    return ST_OK;
+}
+
+static st_status read_base(st_reader *reader, st_piece *out)
+{
+    st_status status = find_snapshot(reader, reader->row.base, true);
+    reader->at = AT_BASE_PARTS;
+    if (status == ST_ABSENT) {
+        status = read_inline_base(reader);
+        reader->at = AT_INLINE_PARTS;
+    }
+    if (status == ST_OK) {
+        fill_piece(reader, ST_PIECE_BASE, out);
+        out->parts =
+            reader->at == AT_BASE_PARTS ? reader->parts_left : parts_in(reader->inline_parts);
+        out->record.body = NULL;
+        out->record.body_size = 0;
+    }
+    return status;
+}
+
+/* After the last record: was it the last that there should be? */
+static st_status end_of_records(st_reader *reader, st_piece *out)
+{
+    const st_mesh_row *row = &reader->row;
+    if (reader->number != row->card.record) {
+        return damaged(reader, "records end with %llu, the last is %llu",
+                       (unsigned long long)reader->number, (unsigned long long)row->card.record);
+    }
+    if (reader->chain != row->chain) {
+        return damaged(reader,
+                       "the chain of records does not end where it should, after record "
+                       "%llu",
+                       (unsigned long long)reader->number);
+    }
+    *out = (st_piece){.kind = ST_PIECE_END};
+    return ST_OK;
+}
+
+static st_status read_record(st_reader *reader, st_piece *out)
+{
+    st_db *db = &reader->slot->db;
+    size_t size;
+    st_sql outcome = reader->records == NULL ? st_db_find(db, RECORDS, &reader->records, "ii",
+                                                          reader->row.key, reader->number)
+                                             : st_db_step(db, reader->records);
+    if (outcome != ST_SQL_ROW) {
+        reader->records = NULL;
+        return outcome == ST_SQL_DONE ? end_of_records(reader, out)
+                                      : failed(reader, outcome, "a record");
+    }
+    const uint64_t number = st_db_word(reader->records, 0);
+    if (number != reader->number + 1) {
+        return damaged(reader, "record %llu is missing", (unsigned long long)reader->number + 1);
+    }
+    const unsigned char *bytes = st_db_bytes(reader->records, 1, &size);
+    st_status status = read_frame(reader, bytes, size, number);
+    if (status != ST_OK) {
+        return status;
+    }
+    if (reader->frame.chain != reader->chain) {
+        return damaged(reader, "the chain of records breaks at record %llu",
+                       (unsigned long long)number);
+    }
+    reader->chain = st_frame_next_chain(bytes, size);
+    fill_piece(reader, ST_PIECE_RECORD, out);
+    if (reader->frame.in_parts) {
+        status = find_snapshot(reader, number, false);
+        if (status == ST_ABSENT) {
+            return damaged(reader, "the content of record %llu is missing",
+                           (unsigned long long)number);
+        }
+        reader->at = AT_RECORD_PARTS;
+        /* Whom it belongs to is nobody's concern: that there is one is all it says. */
+        out->record.stage = (st_stage *)reader;
+        out->parts = reader->parts_left;
+        out->record.body = NULL;
+    }
+    return status;
+}
+
+st_status st_sqlite_read(st_reader *reader, st_piece *out)
+{
+    bool got = false;
+    st_status status = ST_OK;
+    switch (reader->at) {
+    case AT_BASE:
+        return read_base(reader, out);
+    case AT_BASE_PARTS:
+    case AT_RECORD_PARTS:
+        status = read_part(reader, &got, out);
+        break;
+    case AT_INLINE_PARTS:
+        status = read_inline_part(reader, &got, out);
+        break;
+    case AT_RECORDS:
+        break;
+    }
+    if (status != ST_OK || got) {
+        return status;
+    }
+    reader->at = AT_RECORDS;
+    return read_record(reader, out);
+}

@@ -1,0 +1,301 @@
+/* What a record changes in the tables. All within the commit thread's transaction. */
+#include "journal/sqlite/sqlite_state.h"
+
+#include <string.h>
+
+const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
+    [ST_SQL_BEGIN] = "BEGIN IMMEDIATE",
+    [ST_SQL_COMMIT] = "COMMIT",
+    [ST_SQL_ROLLBACK] = "ROLLBACK",
+    [ST_SQL_MESH] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE incarnation = ?1",
+    [ST_SQL_MESH_MAKE] = "INSERT INTO mesh(" ST_MESH_COLUMNS ") VALUES "
+                         "(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, "
+                         "?17, ?18, ?19)",
+    [ST_SQL_MESH_PUT] = "UPDATE mesh SET name = ?2, metadata = ?3, revision = ?4, record = ?5, "
+                        "chain = ?6, modified = ?7, vertices = ?8, edges = ?9, faces = ?10, "
+                        "boundary = ?11, bytes = ?12, base = ?13, damage = ?14, sum = ?15 "
+                        "WHERE key = ?1",
+    [ST_SQL_MESH_DELETE] = "DELETE FROM mesh WHERE key = ?1",
+    [ST_SQL_RECORD] = "SELECT bytes FROM record WHERE mesh = ?1 AND number = ?2",
+    [ST_SQL_RECORD_MAKE] = "INSERT INTO record VALUES (?1, ?2, ?3)",
+    [ST_SQL_RECORDS_FIRST] = "SELECT number, length(bytes) FROM record "
+                             "WHERE mesh = ?1 AND number < ?2 ORDER BY number",
+    [ST_SQL_RECORDS_DELETE] = "DELETE FROM record WHERE mesh = ?1 AND number <= ?2",
+    [ST_SQL_SNAPSHOT_MAKE] = "INSERT OR REPLACE INTO snapshot(" ST_SNAPSHOT_COLUMNS ") VALUES "
+                             "(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
+    [ST_SQL_SNAPSHOT_DELETE] = "DELETE FROM snapshot WHERE key = ?1",
+    [ST_SQL_SNAPSHOTS_BEFORE] = "SELECT " ST_SNAPSHOT_COLUMNS " FROM snapshot "
+                                "WHERE mesh = ?1 AND number < ?2",
+    [ST_SQL_SNAPSHOTS_FROM] = "SELECT " ST_SNAPSHOT_COLUMNS " FROM snapshot "
+                              "WHERE mesh = ?1 AND number >= ?2 ORDER BY number DESC",
+    [ST_SQL_PART_MAKE] = "INSERT INTO part VALUES (?1, ?2, ?3)",
+    [ST_SQL_PARTS_DELETE] = "DELETE FROM part WHERE snapshot = ?1 AND part IN "
+                            "(SELECT part FROM part WHERE snapshot = ?1 LIMIT ?2)",
+    [ST_SQL_PURGE_MAKE] = "INSERT OR REPLACE INTO purge(" ST_PURGE_COLUMNS ") "
+                          "VALUES (?1, ?2, ?3, ?4)",
+    [ST_SQL_PURGE_ALL] = "SELECT " ST_PURGE_COLUMNS " FROM purge",
+    [ST_SQL_PURGE_DELETE] = "DELETE FROM purge WHERE kind = ?1 AND key = ?2",
+    [ST_SQL_KEPT_MAKE] = "INSERT OR REPLACE INTO kept(mesh, text, digest, time, id, incarnation, "
+                         "revision, metadata, position, made, sum) "
+                         "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
+    [ST_SQL_KEPT_DELETE] = "DELETE FROM kept WHERE mesh = ?1",
+    [ST_SQL_STATE_PUT] = "UPDATE state SET commits = ?1, position = ?2, meshes = ?3, sum = ?4",
+};
+
+/* --- heads: rows of meshes that are written to --- */
+
+static st_sql make_row(st_sqlite *self, const st_mesh_row *row)
+{
+    const st_card *c = &row->card;
+    return st_db_do(&self->db, ST_SQL_MESH_MAKE, "ittiiiiiiddiiiiiiti", row->key, c->id, c->name,
+                    c->incarnation, row->origin, c->metadata, c->revision, c->record, row->chain,
+                    c->created, c->modified, (uint64_t)c->counts.vertices,
+                    (uint64_t)c->counts.edges, (uint64_t)c->counts.faces,
+                    (uint64_t)c->counts.boundary, c->bytes, row->base, c->damage,
+                    (uint64_t)st_mesh_row_sum(row));
+}
+
+static st_sql put_row(st_sqlite *self, const st_mesh_row *row)
+{
+    const st_card *c = &row->card;
+    return st_db_do(&self->db, ST_SQL_MESH_PUT, "itiiiidiiiiiiti", row->key, c->name, c->metadata,
+                    c->revision, c->record, row->chain, c->modified, (uint64_t)c->counts.vertices,
+                    (uint64_t)c->counts.edges, (uint64_t)c->counts.faces,
+                    (uint64_t)c->counts.boundary, c->bytes, row->base, c->damage,
+                    (uint64_t)st_mesh_row_sum(row));
+}
+
+static st_sql flush(st_sqlite *self, st_head *head)
+{
+    st_sql outcome = ST_SQL_DONE;
+    if (head->dirty) {
+        outcome = head->made ? make_row(self, &head->row) : put_row(self, &head->row);
+        head->dirty = head->made = false;
+    }
+    return outcome;
+}
+
+static bool holds(const st_head *head, uint64_t incarnation)
+{
+    return head->row.key != 0 && head->row.card.incarnation == incarnation;
+}
+
+/* The place of a mesh's head; another one's is written first. */
+static st_sql place_of(st_sqlite *self, uint64_t incarnation, st_head **out)
+{
+    *out = &self->heads.slots[incarnation % ST_HEADS];
+    return holds(*out, incarnation) ? ST_SQL_DONE : flush(self, *out);
+}
+
+/* ST_SQL_DONE where there is no such mesh. */
+static st_sql read_row(st_sqlite *self, uint64_t incarnation, st_mesh_row *out, bool *good)
+{
+    sqlite3_stmt *s;
+    st_sql outcome = st_db_find(&self->db, ST_SQL_MESH, &s, "i", incarnation);
+    if (outcome == ST_SQL_ROW) {
+        *good = st_mesh_row_read(s, out);
+        st_db_reset(s);
+    }
+    return outcome;
+}
+
+st_sql st_head_find(st_sqlite *self, uint64_t incarnation, st_head **out)
+{
+    st_head *head;
+    bool good = false;
+    st_sql outcome = place_of(self, incarnation, &head);
+    *out = NULL;
+    if (outcome == ST_SQL_DONE && !holds(head, incarnation)) {
+        head->row.key = 0;
+        outcome = read_row(self, incarnation, &head->row, &good);
+        if (outcome != ST_SQL_ROW || !good) {
+            head->row.key = 0;
+            return outcome == ST_SQL_ROW ? ST_SQL_DAMAGED : outcome;
+        }
+    }
+    *out = head;
+    return outcome == ST_SQL_ROW ? ST_SQL_DONE : outcome;
+}
+
+void st_head_touch(st_sqlite *self, st_head *head)
+{
+    if (!head->dirty && !head->listed) {
+        head->next = self->heads.dirty;
+        self->heads.dirty = head;
+        head->listed = true;
+    }
+    head->dirty = true;
+}
+
+static void unlist(st_sqlite *self)
+{
+    for (st_head *head = self->heads.dirty; head != NULL; head = head->next) {
+        head->listed = false;
+    }
+    self->heads.dirty = NULL;
+}
+
+void st_heads_forget(st_sqlite *self)
+{
+    unlist(self);
+    for (size_t i = 0; i < ST_HEADS; i++) {
+        self->heads.slots[i].row.key = 0;
+        self->heads.slots[i].dirty = self->heads.slots[i].made = false;
+    }
+}
+
+st_sql st_heads_flush(st_sqlite *self)
+{
+    st_sql outcome = ST_SQL_DONE;
+    for (st_head *head = self->heads.dirty; head != NULL && outcome == ST_SQL_DONE;
+         head = head->next) {
+        outcome = flush(self, head);
+    }
+    unlist(self);
+    return outcome;
+}
+
+/* --- records --- */
+
+/* Also where the row is damaged: its key is what the index says. */
+static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
+{
+    st_head *head;
+    st_mesh_row row;
+    bool good;
+    st_sql outcome = place_of(self, incarnation, &head);
+    if (outcome == ST_SQL_DONE) {
+        outcome = flush(self, head);
+    }
+    if (outcome == ST_SQL_DONE) {
+        head->row.key = 0;
+        outcome = read_row(self, incarnation, &row, &good);
+        /* A removal follows the records of its mesh. */
+        outcome = outcome == ST_SQL_DONE ? ST_SQL_FAILED : outcome;
+    }
+    if (outcome == ST_SQL_ROW) {
+        outcome = st_db_do(&self->db, ST_SQL_MESH_DELETE, "i", row.key);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_do(&self->db, ST_SQL_KEPT_DELETE, "i", row.key);
+    }
+    return outcome == ST_SQL_DONE ? st_purge_mesh(self, row.key) : outcome;
+}
+
+static st_sql make_mesh(st_sqlite *self, const st_queued *entry, st_head **out)
+{
+    st_head *head;
+    st_sql outcome = place_of(self, entry->incarnation, &head);
+    if (outcome == ST_SQL_DONE) {
+        head->row = (st_mesh_row){.key = ++self->last_mesh,
+                                  .card = {.incarnation = entry->incarnation},
+                                  .origin = entry->incarnation,
+                                  .chain = st_chain_of_origin(entry->incarnation),
+                                  .base = 1};
+        head->made = true;
+        st_head_touch(self, head);
+    }
+    *out = head;
+    return outcome;
+}
+
+/* The record itself: its row, and its content where that lies in parts. */
+static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, uint64_t chain)
+{
+    const bool is_base =
+        entry->barrier && (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
+    st_sql outcome = ST_SQL_DONE;
+    /* A snapshot has the facts of a base; its record would not be read again. */
+    if (!is_base || entry->stage == NULL) {
+        outcome = st_db_do(&self->db, ST_SQL_RECORD_MAKE, "iib", head->row.key, entry->number,
+                           entry->frame, entry->size);
+    }
+    if (outcome == ST_SQL_DONE && entry->stage != NULL) {
+        const st_snapshot_row row = {.key = entry->stage->key,
+                                     .mesh = head->row.key,
+                                     .number = entry->number,
+                                     .revision = entry->revision,
+                                     .parts = entry->stage->parts,
+                                     .chain = chain,
+                                     .facts = entry->frame,
+                                     .facts_size = entry->size};
+        outcome = st_stage_adopt(self, &row);
+    }
+    if (outcome == ST_SQL_DONE && is_base && entry->number > 1) {
+        head->row.base = entry->number;
+        head->row.card.damage[0] = '\0'; /* it was of what is forgotten now */
+        outcome = st_purge_before(self, head->row.key, entry->number, entry->stage == NULL);
+    }
+    return outcome;
+}
+
+static st_sql add_entry(st_sqlite *self, st_queued *entry)
+{
+    if (entry->kind == ST_RECORD_REMOVE) {
+        return remove_mesh(self, entry->incarnation);
+    }
+    st_head *head;
+    st_sql outcome = entry->number == 1 ? make_mesh(self, entry, &head)
+                                        : st_head_find(self, entry->incarnation, &head);
+    if (outcome != ST_SQL_DONE) {
+        return outcome;
+    }
+    if (head == NULL || head->row.card.record + 1 != entry->number) {
+        return ST_SQL_FAILED; /* the store above counts otherwise than the disk */
+    }
+    uint64_t chain = st_frame_seal(entry->frame, entry->size, head->row.chain);
+    outcome = add_frame(self, head, entry, chain);
+    head->row.chain = chain;
+    head->row.card.record = entry->number;
+    st_head_touch(self, head);
+    return outcome;
+}
+
+static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_head *head)
+{
+    st_kept_row row = room->key;
+    if (row.mesh != 0 && head == NULL) {
+        return ST_SQL_DONE; /* keys of a mesh go with it */
+    }
+    row.mesh = row.mesh == 0 ? 0 : head->row.key;
+    return st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiii", row.mesh, row.text, row.digest,
+                    sizeof row.digest, row.time, row.id, row.incarnation, row.revision,
+                    row.metadata, row.position, (uint64_t)row.made,
+                    (uint64_t)st_kept_row_sum(&row));
+}
+
+st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room)
+{
+    st_sql outcome = ST_SQL_DONE;
+    st_head *head = NULL;
+    for (size_t i = 0; i < room->count && outcome == ST_SQL_DONE; i++) {
+        outcome = add_entry(self, &room->entries[i]);
+    }
+    if (outcome == ST_SQL_DONE && room->entries[room->count - 1].kind != ST_RECORD_REMOVE) {
+        outcome = st_head_find(self, room->card.incarnation, &head);
+        if (outcome == ST_SQL_DONE && head == NULL) {
+            return ST_SQL_FAILED;
+        }
+    }
+    if (outcome == ST_SQL_DONE && head != NULL) {
+        st_card before = head->row.card;
+        head->row.card = room->card;
+        memcpy(head->row.card.damage, before.damage, sizeof before.damage);
+        st_head_touch(self, head);
+    }
+    return outcome == ST_SQL_DONE && room->has_key ? keep_key(self, room, head) : outcome;
+}
+
+st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned)
+{
+    st_head *head;
+    st_sql outcome = st_head_find(self, condemned->incarnation, &head);
+    if (outcome == ST_SQL_DAMAGED) {
+        return ST_SQL_DONE; /* its row says so by itself */
+    }
+    if (outcome == ST_SQL_DONE && head != NULL && head->row.card.damage[0] == '\0') {
+        memcpy(head->row.card.damage, condemned->damage, sizeof condemned->damage);
+        st_head_touch(self, head);
+    }
+    return outcome;
+}

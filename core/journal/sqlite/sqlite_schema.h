@@ -1,0 +1,105 @@
+/* sqlite_schema.h - the tables of hedge.db, version 1, and the sums of their rows.
+ *
+ * Every row but those of record and part, whose bytes carry sums of their own, has a column `sum`:
+ * CRC-32C over its table's name and its values, keys included. A flipped bit in a number would
+ * otherwise load or delete the wrong thing without a word. */
+#ifndef HE_JOURNAL_SQLITE_SCHEMA_H
+#define HE_JOURNAL_SQLITE_SCHEMA_H
+
+#include "journal/record.h"
+#include "journal/sqlite/sqlite_db.h"
+
+enum {
+    ST_SCHEMA_VERSION = 1,
+    ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
+    ST_RELEASE = 32,                    /* bytes of a release's name */
+    ST_KEY_TEXT = 255                   /* of an Idempotency-Key, at most */
+};
+
+/* What the store is: never changed once it was made. */
+typedef struct st_identity {
+    uint64_t store, secret[2];
+    char made_by[ST_RELEASE];
+} st_identity;
+
+/* How far it is: written with each commit. */
+typedef struct st_progress {
+    uint64_t commits, position, meshes;
+} st_progress;
+
+/* A mesh's row. The card has its facts; `origin` is the number that its chain began with, `chain`
+ * that of the record to come, `base` the number of the record that it is loaded from. */
+typedef struct st_mesh_row {
+    int64_t key;
+    st_card card;
+    uint64_t origin, chain, base;
+} st_mesh_row;
+
+/* A snapshot's row: a whole content in parts, of the mesh after record `number`. One of no mesh is
+ * being staged by `process`. `facts` is a frame (record_bytes.h), `chain` that of the record after
+ * it. */
+typedef struct st_snapshot_row {
+    int64_t key, mesh;
+    uint64_t number, revision, parts, process, chain;
+    const unsigned char *facts;
+    size_t facts_size;
+} st_snapshot_row;
+
+/* What is left to be deleted. */
+typedef enum st_purge_kind {
+    ST_PURGE_MESH = 1,    /* the records of a mesh that was removed */
+    ST_PURGE_RECORDS = 2, /* those of a mesh that come before `before` */
+    ST_PURGE_PARTS = 3    /* the parts of a snapshot */
+} st_purge_kind;
+
+typedef struct st_purge_row {
+    st_purge_kind kind;
+    int64_t key;
+    uint64_t before;
+} st_purge_row;
+
+/* A kept key's row; the mesh is 0 for keys of the store. */
+typedef struct st_kept_row {
+    int64_t mesh;
+    const char *text, *id;
+    uint64_t digest[2];
+    double time;
+    uint64_t incarnation, revision, metadata, position;
+    bool made; /* the mesh: the answer was 201 */
+} st_kept_row;
+
+/* --- sums --- */
+
+uint32_t st_progress_sum(const st_progress *progress);
+uint32_t st_mesh_row_sum(const st_mesh_row *row);
+uint32_t st_snapshot_row_sum(const st_snapshot_row *row);
+uint32_t st_purge_row_sum(const st_purge_row *row);
+uint32_t st_kept_row_sum(const st_kept_row *row);
+
+/* A part as its row's bytes: sum (4), coding (1), bytes. The sum covers snapshot and part too. */
+enum { ST_PART_HEAD = 5 };
+uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes, size_t size);
+
+/* --- rows that are read: the columns in the order that the functions want --- */
+
+#define ST_MESH_COLUMNS                                                                          \
+    "key, id, name, incarnation, origin, metadata, revision, record, chain, created, modified, " \
+    "vertices, edges, faces, boundary, bytes, base, damage, sum"
+#define ST_SNAPSHOT_COLUMNS "key, mesh, number, revision, parts, process, chain, facts, sum"
+#define ST_PURGE_COLUMNS    "kind, key, before, sum"
+
+/* False where the sum is wrong; the row is filled in then too. */
+bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);
+/* `facts` is borrowed from the statement. */
+bool st_snapshot_row_read(sqlite3_stmt *statement, st_snapshot_row *out);
+bool st_purge_row_read(sqlite3_stmt *statement, st_purge_row *out);
+
+/* --- the whole database --- */
+
+/* Makes the tables in one transaction. */
+st_sql st_schema_make(st_db *db, const st_identity *identity);
+/* ST_SQL_DAMAGED also where rows are missing or their sums are wrong. */
+st_sql st_identity_read(st_db *db, st_identity *out);
+st_sql st_progress_read(st_db *db, st_progress *out);
+
+#endif

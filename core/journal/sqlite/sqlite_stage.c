@@ -1,0 +1,256 @@
+/* Contents in parts. The thread that stages codes them, a slice at a time, and waits while the
+ * commit thread writes the slice beside what others commit. */
+#include "base/mem.h"
+#include "journal/sqlite/sqlite_state.h"
+#include "stored/bytes.h"
+
+#include <string.h>
+
+/* --- the thread that stages --- */
+
+/* False after the last part. */
+static bool fill_slice(st_slice *slice, he_stored_writer *writer)
+{
+    *slice = (st_slice){.count = 0};
+    while (slice->count < ST_SLICE_PARTS) {
+        unsigned char *bytes = slice->bytes[slice->count];
+        unsigned coding;
+        size_t size = he_stored_writer_next(writer, bytes + ST_PART_HEAD, &coding);
+        if (size == 0) {
+            return false;
+        }
+        bytes[ST_PART_HEAD - 1] = (unsigned char)coding;
+        slice->sizes[slice->count++] = ST_PART_HEAD + size;
+    }
+    return true;
+}
+
+/* Under the lock. */
+static st_status refusal(const st_sqlite *self)
+{
+    return self->mode == ST_WRITES ? ST_OK : self->mode == ST_WRITES_FULL ? ST_FULL : ST_FAILED;
+}
+
+static st_status write_slice(st_sqlite *self, st_stage *stage)
+{
+    pthread_mutex_lock(&self->lock);
+    stage->status = refusal(self);
+    if (stage->status == ST_OK) {
+        st_stage **end = &self->stages;
+        while (*end != NULL) {
+            end = &(*end)->next;
+        }
+        *end = stage;
+        stage->next = NULL;
+        stage->waits = true;
+        if (self->idle) {
+            pthread_cond_signal(&self->work);
+        }
+    }
+    self->waiting++;
+    while (stage->waits) {
+        pthread_cond_wait(&self->moved, &self->lock);
+    }
+    self->waiting--;
+    pthread_mutex_unlock(&self->lock);
+    return stage->status;
+}
+
+st_status st_sqlite_stage(void *context, const he_mesh *content, st_stage **out)
+{
+    st_sqlite *self = context;
+    he_stored_writer writer;
+    st_stage *stage = he_mem_zero(1, sizeof *stage);
+    st_slice *slice = he_mem_alloc(sizeof *slice);
+    if (stage == NULL || slice == NULL) {
+        he_mem_free(stage);
+        he_mem_free(slice);
+        return ST_NO_MEMORY;
+    }
+    stage->slice = slice;
+    stage->parts = he_stored_parts(content);
+    he_stored_writer_init(&writer, content);
+    st_status status = ST_OK;
+    for (bool more = true; more && status == ST_OK;) {
+        more = fill_slice(slice, &writer);
+        status = slice->count == 0 ? ST_OK : write_slice(self, stage);
+    }
+    he_mem_free(slice);
+    stage->slice = NULL;
+    if (status != ST_OK) {
+        st_sqlite_unstage(self, stage);
+        return status;
+    }
+    *out = stage;
+    return ST_OK;
+}
+
+static void queue(st_sqlite *self, st_stage *stage, st_item_kind kind)
+{
+    pthread_mutex_lock(&self->lock);
+    stage->item.kind = kind;
+    st_queue_put(self, &stage->item);
+    pthread_mutex_unlock(&self->lock);
+}
+
+void st_sqlite_unstage(void *context, st_stage *stage)
+{
+    if (stage != NULL) {
+        queue(context, stage, ST_ITEM_UNSTAGE);
+    }
+}
+
+void st_sqlite_rebase(void *context, st_stage *stage, const st_record *facts, uint64_t needed)
+{
+    st_record content = *facts;
+    content.kind = ST_RECORD_CONTENT;
+    content.stage = stage;
+    content.body_size = 0;
+    stage->facts_size = st_frame_write(&content, stage->facts);
+    stage->incarnation = facts->incarnation;
+    stage->number = facts->number;
+    stage->revision = facts->revision;
+    stage->time = facts->time;
+    stage->needed = needed;
+    queue(context, stage, ST_ITEM_REBASE);
+}
+
+/* --- the commit thread --- */
+
+static st_sql put_row(st_sqlite *self, const st_snapshot_row *row)
+{
+    return st_db_do(&self->db, ST_SQL_SNAPSHOT_MAKE, "iiiiiiibi", row->key, row->mesh, row->number,
+                    row->revision, row->parts, row->process, row->chain, row->facts,
+                    row->facts_size, (uint64_t)st_snapshot_row_sum(row));
+}
+
+st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most)
+{
+    st_slice *slice = stage->slice;
+    st_sql outcome = ST_SQL_DONE;
+    int64_t key = stage->key;
+    if (key == 0) {
+        key = ++self->last_snapshot;
+        outcome = put_row(self, &(st_snapshot_row){.key = key,
+                                                   .parts = stage->parts,
+                                                   .process = self->process,
+                                                   .facts = (const unsigned char *)""});
+    }
+    size_t count = 0;
+    for (; count < most && slice->written + count < slice->count && outcome == ST_SQL_DONE;
+         count++) {
+        unsigned char *bytes = slice->bytes[slice->written + count];
+        const size_t size = slice->sizes[slice->written + count];
+        const uint64_t part = stage->written + count;
+        (void)he_put_u32(bytes, st_part_sum(key, part, bytes + 4, size - 4));
+        outcome = st_db_do(&self->db, ST_SQL_PART_MAKE, "iib", key, part, bytes, size);
+    }
+    /* Believed once the transaction was committed: st_stage_written. */
+    stage->writing = outcome == ST_SQL_DONE ? count : 0;
+    stage->new_key = key;
+    return outcome;
+}
+
+void st_stage_written(st_stage *stage)
+{
+    stage->key = stage->new_key;
+    stage->written += stage->writing;
+    stage->slice->written += stage->writing;
+    stage->writing = 0;
+}
+
+st_sql st_stage_adopt(st_sqlite *self, const st_snapshot_row *row)
+{
+    return put_row(self, row);
+}
+
+st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
+{
+    if (stage->key == 0) {
+        return ST_SQL_DONE;
+    }
+    st_sql outcome = st_db_do(&self->db, ST_SQL_SNAPSHOT_DELETE, "i", stage->key);
+    return outcome == ST_SQL_DONE ? st_purge_add(self, ST_PURGE_PARTS, stage->key, 0) : outcome;
+}
+
+/* Reads the record that the stage is the content after. It may be another one of that number: where
+ * the one meant was lost. `chain` is the record's own, `next` that of the record after it. */
+static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head *head, bool *same,
+                          uint64_t *chain, uint64_t *next)
+{
+    sqlite3_stmt *s;
+    st_frame frame;
+    size_t size;
+    *same = false;
+    st_sql outcome = st_db_find(&self->db, ST_SQL_RECORD, &s, "ii", head->row.key, stage->number);
+    if (outcome != ST_SQL_ROW) {
+        return outcome;
+    }
+    const unsigned char *bytes = st_db_bytes(s, 0, &size);
+    if (st_frame_read(bytes, size, &frame, NULL) == HE_OK && frame.record.number == stage->number &&
+        frame.record.revision == stage->revision && frame.record.time == stage->time) {
+        *same = true;
+        *chain = frame.chain;
+        *next = st_frame_next_chain(bytes, size);
+    }
+    st_db_reset(s);
+    return ST_SQL_DONE;
+}
+
+/* The newest base whose revision is not after `needed`. 0: the one there is. */
+static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, uint64_t *out)
+{
+    sqlite3_stmt *s;
+    st_snapshot_row row;
+    *out = 0;
+    st_sql outcome =
+        st_db_find(&self->db, ST_SQL_SNAPSHOTS_FROM, &s, "ii", head->row.key, head->row.base + 1);
+    while (outcome == ST_SQL_ROW && *out == 0) {
+        if (st_snapshot_row_read(s, &row) && row.revision <= needed) {
+            *out = row.number;
+            st_db_reset(s);
+            return ST_SQL_DONE;
+        }
+        outcome = st_db_step(&self->db, s);
+    }
+    return outcome;
+}
+
+st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
+{
+    st_head *head;
+    bool same = false;
+    uint64_t chain = 0, next = 0, base = 0;
+    st_sql outcome = st_head_find(self, stage->incarnation, &head);
+    if (outcome == ST_SQL_DAMAGED) {
+        head = NULL;
+    } else if (outcome != ST_SQL_DONE) {
+        return outcome;
+    }
+    if (head != NULL) {
+        outcome = read_record(self, stage, head, &same, &chain, &next);
+    }
+    if (!same) {
+        return head != NULL && outcome != ST_SQL_DONE ? outcome : st_stage_drop(self, stage);
+    }
+    unsigned char facts[ST_FRAME_HEAD];
+    memcpy(facts, stage->facts, stage->facts_size);
+    st_frame_seal(facts, stage->facts_size, chain);
+    outcome = put_row(self, &(st_snapshot_row){.key = stage->key,
+                                               .mesh = head->row.key,
+                                               .number = stage->number,
+                                               .revision = stage->revision,
+                                               .parts = stage->parts,
+                                               .chain = next,
+                                               .facts = facts,
+                                               .facts_size = stage->facts_size});
+    if (outcome == ST_SQL_DONE) {
+        outcome = find_base(self, head, stage->needed, &base);
+    }
+    if (outcome == ST_SQL_DONE && base != 0) {
+        head->row.base = base;
+        st_head_touch(self, head);
+        outcome = st_purge_before(self, head->row.key, base, false);
+    }
+    return outcome;
+}

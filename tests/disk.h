@@ -1,0 +1,24 @@
+/* disk.h - the disk under SQLite, as a test wants it: full, slow, failing. It stands before the
+ * system's as SQLite's default from disk_install on; other programs and other files of the store
+ * are not under it. */
+#ifndef TESTS_DISK_H
+#define TESTS_DISK_H
+
+#include <stdbool.h>
+
+/* Before the first store of the process is opened. */
+void disk_install(void);
+/* Writes find no space. */
+void disk_fill(bool full);
+/* The N-th write (sync) from now on finds no space (fails); 0: none does. */
+void disk_fill_at(long write);
+void disk_fail_at(long sync);
+/* Syncs wait until they are let go on. */
+void disk_hold(bool held);
+/* Since the last disk_fill_at or disk_fail_at. */
+long disk_writes(void);
+long disk_syncs(void);
+/* Connections to a database that may write, now. */
+long disk_writers(void);
+
+#endif

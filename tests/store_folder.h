@@ -1,0 +1,54 @@
+/* store_folder.h - folders for stores of the tests, and records to put into one. */
+#ifndef TESTS_STORE_FOLDER_H
+#define TESTS_STORE_FOLDER_H
+
+#include "journal/sqlite/sqlite_journal.h"
+
+#include <pthread.h>
+
+enum { FOLDER_PATH = 256 };
+
+/* Makes an empty folder of its own. */
+void folder_make(char out[FOLDER_PATH]);
+/* Removes it with the files of a store in it. */
+void folder_remove(const char *folder);
+/* Copies the files of a store as they are, which is what a killed process leaves. */
+void folder_copy(const char *from, const char *to);
+/* A file of it, whole; the caller frees the bytes. NULL where there is none. */
+unsigned char *folder_read(const char *folder, const char *name, size_t *size);
+void folder_write(const char *folder, const char *name, const unsigned char *bytes, size_t size);
+
+/* A journal and what it told. */
+typedef struct told_journal {
+    st_journal journal;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    uint64_t position;
+    unsigned losses;
+    st_loss loss; /* the last */
+} told_journal;
+
+void told_begin(told_journal *told, const st_journal *journal);
+void told_wait(told_journal *told, uint64_t position); /* until it is durable or lost */
+unsigned told_losses(told_journal *told);
+void told_end(told_journal *told); /* closes the journal */
+
+/* A mesh as far as a journal knows it. */
+typedef struct kept_mesh {
+    char id[ST_MESH_ID + 1], name[ST_MESH_NAME + 1];
+    uint64_t incarnation, number, revision, metadata;
+    const he_mesh *content;
+} kept_mesh;
+
+/* A record that makes the mesh, or a whole new content of it. The body is the caller's matter. */
+st_record kept_content(kept_mesh *mesh);
+st_record kept_edit(kept_mesh *mesh);
+st_record kept_rename(kept_mesh *mesh, const char *name);
+st_record kept_remove(kept_mesh *mesh);
+/* Append one record with this body, or the coded content for a content without a stage. Returns its
+ * position, 0 where it is refused. */
+uint64_t kept_append(const st_journal *journal, st_record record, const kept_mesh *mesh,
+                     const void *body, size_t size);
+st_status kept_status(void); /* of the last refusal */
+
+#endif
