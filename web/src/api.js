@@ -302,16 +302,23 @@ async function finish(first, work) {
     return job.result ?? null;
 }
 
-// Create a mesh of a file; `onProgress` gets the sent part, 0 to 1; `repairs` are to be applied.
+// Create a mesh of a file and those `beside` it; `onProgress` gets the sent part, 0 to 1; `repairs` are to be applied.
 // Returns the new mesh's summary.
 // fetch cannot tell how much was sent, hence XMLHttpRequest.
-export async function upload(file, onProgress, work, repairs = []) {
-    const { status, answer } = await send(file, onProgress, work, repairs);
+export async function upload(batch, onProgress, work, repairs = []) {
+    const { status, answer } = await send(batch, onProgress, work, repairs);
     onProgress(1);
     return status === 202 ? finish(answer, work) : answer;
 }
 
-function send(file, onProgress, work, repairs) {
+// Several files as a form has them.
+function formOf(files) {
+    const form = new FormData();
+    files.forEach((file) => form.append('files', file, file.name));
+    return form;
+}
+
+function send({ file, beside }, onProgress, work, repairs) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;
     const type = MEDIA_TYPES[file.name.slice(dot + 1).toLowerCase()];
@@ -319,7 +326,10 @@ function send(file, onProgress, work, repairs) {
         const sender = new XMLHttpRequest();
         const repair = repairs.length > 0 ? `&repair=${repairs.join(',')}` : '';
         sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}${repair}`);
-        sender.setRequestHeader('Content-Type', type ?? (file.type || 'application/octet-stream'));
+        if (beside.length === 0) {
+            const other = file.type || 'application/octet-stream';
+            sender.setRequestHeader('Content-Type', type ?? other);
+        }
         sender.setRequestHeader('Prefer', 'respond-async');
         sender.upload.onprogress = (event) => {
             onProgress(event.lengthComputable ? event.loaded / event.total : 0);
@@ -335,6 +345,6 @@ function send(file, onProgress, work, repairs) {
         sender.onerror = () => reject(unreachable());
         sender.onabort = () => reject(cancelled());
         work.begin(() => sender.abort());
-        sender.send(file);
+        sender.send(beside.length === 0 ? file : formOf([file, ...beside]));
     });
 }

@@ -1,4 +1,7 @@
-// upload.js - files from the button or dropped on the page, sent one after another.
+// upload.js - files from the button or dropped on the page, sent one after another, those that refer
+// to others with them.
+
+import { batchesOf } from './batches.js';
 
 export class Uploads {
     #work;
@@ -9,7 +12,7 @@ export class Uploads {
     #queue = Promise.resolve();
     #depth = 0;
 
-    // `send(file, onProgress, work)` uploads one file; `onDone(summary, file)` gets what became of
+    // `send(batch, onProgress, work)` uploads one, see batches.js; `onDone(summary, file)` gets what became of
     // it; `work` shows it, see work.js. `onError(error, again)`: where repairs let the file pass,
     // `again` has their names as its label and sends it once more with them.
     constructor({ input, work, area }, { send, onDone, onError }) {
@@ -59,19 +62,26 @@ export class Uploads {
     }
 
     #add(files) {
-        for (const file of files) {
-            this.#queue = this.#queue.then(() => this.#upload(file, []));
-        }
+        this.#queue = this.#queue.then(async () => {
+            try {
+                for (const batch of await batchesOf(files)) {
+                    await this.#upload(batch, []);
+                }
+            } catch (error) {
+                this.#onError(error, false); // a file that cannot be read
+            }
+        });
     }
 
-    #again(file, repairs) {
+    #again(batch, repairs) {
         const run = () => {
-            this.#queue = this.#queue.then(() => this.#upload(file, repairs));
+            this.#queue = this.#queue.then(() => this.#upload(batch, repairs));
         };
         return { label: `Upload with ${repairs.join(', ')}`, run };
     }
 
-    async #upload(file, repairs) {
+    async #upload(batch, repairs) {
+        const { file } = batch;
         this.#work.start(`Uploading ${file.name}`, true);
         try {
             const onProgress = (part) => {
@@ -80,9 +90,9 @@ export class Uploads {
                 }
                 this.#work.show({ progress: part });
             };
-            await this.#onDone(await this.#send(file, onProgress, this.#work, repairs), file);
+            await this.#onDone(await this.#send(batch, onProgress, this.#work, repairs), file);
         } catch (error) {
-            this.#onError(error, error.repair?.length > 0 && this.#again(file, error.repair));
+            this.#onError(error, error.repair?.length > 0 && this.#again(batch, error.repair));
         } finally {
             this.#work.end();
         }
