@@ -4,6 +4,7 @@
 #include "api/document/document_out.h"
 #include "api/request/mesh_access.h"
 #include "format/io/format.h"
+#include "format/obj/mtl.h"
 #include "geometry/long_faces_keep.h"
 
 #include <stdio.h>
@@ -136,6 +137,27 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
     return true;
 }
 
+/* A name that means nothing to a header, a shell or a file system. */
+static bool is_plain(const char *name)
+{
+    size_t length =
+        strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-");
+    return name[length] == '\0' && length > 0 && length <= HE_BESIDE_NAME && name[0] != '.';
+}
+
+/* A library is called as the mesh's OBJ file calls it. */
+static void name_file(api_exchange *x, const he_format *format)
+{
+    const char *names[HE_COLUMN_COMPONENTS];
+    bool library = format != NULL && strcmp(format->name, "mtl") == 0;
+    if (library && he_mtl_names(x->content, names) > 0 && is_plain(names[0])) {
+        api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s\"", names[0]);
+        return;
+    }
+    api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s.%s\"", x->info.id,
+                             format == NULL ? "json" : format->extensions[0]);
+}
+
 void api_content_get(api_exchange *x)
 {
     const choice *chosen = x->state;
@@ -149,8 +171,7 @@ void api_content_get(api_exchange *x)
         free_content(c);
         return;
     }
-    api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s.%s\"", x->info.id,
-                             format == NULL ? "json" : format->extensions[0]);
+    name_file(x, format);
     api_answer_stream(x, 200, format == NULL ? "application/json" : format->media_types[0], -1,
                       read_content, c, free_content);
 }

@@ -1,6 +1,7 @@
 #include "format/io/format.h"
 
 #include "format/gltf/gltf.h"
+#include "format/obj/mtl.h"
 #include "format/obj/obj.h"
 #include "format/off/off.h"
 #include "format/ply/ply.h"
@@ -73,7 +74,7 @@ static const he_format formats[] = {
     },
     {
         .name = "obj",
-        .doc = "Wavefront OBJ, polygons only; material libraries are named but never opened",
+        .doc = "Wavefront OBJ, polygons only; its materials are in a library of their own, mtl",
         .media_types = LIST("model/obj", "text/x-obj"),
         .extensions = LIST("obj"),
         .encodings = LIST("ascii"),
@@ -83,6 +84,16 @@ static const he_format formats[] = {
         .sniff = he_obj_sniff,
         .reading = &he_obj_reading,
         .writing = &he_obj_writing,
+    },
+    {
+        .name = "mtl",
+        .doc = "Material library of Wavefront OBJ; it is read where it comes with its OBJ file",
+        .media_types = LIST("model/mtl"),
+        .extensions = LIST("mtl"),
+        .encodings = LIST("ascii"),
+        .carries = LIST("materials"),
+        .sniff = he_mtl_sniff,
+        .writing = &he_mtl_writing,
     },
 };
 

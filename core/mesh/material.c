@@ -60,7 +60,7 @@ static he_status check_name(const char *name, size_t length, he_error *err)
                              HE_MATERIAL_NAME, length);
     }
     for (size_t i = 0; i < length; i++) {
-        if ((unsigned char)name[i] < 0x20 || name[i] == 0x7F) {
+        if ((unsigned char)name[i] < 0x20 && name[i] != '\t') {
             return he_fail_plain(err, HE_BAD_VALUE,
                                  "a material's name holds the control character %d", name[i]);
         }
@@ -168,7 +168,7 @@ bool he_material_equal(const he_material *a, const he_material *b)
     list_numbers(&one, numbers);
     list_numbers(&other, others);
     for (size_t i = 0; i < NUMBERS && same; i++) {
-        same = memcmp(numbers[i].value, others[i].value, sizeof *numbers[i].value) == 0;
+        same = *numbers[i].value == *others[i].value;
     }
     return same;
 }
@@ -208,6 +208,15 @@ he_status he_materials_copy(const he_materials *materials, he_materials *out, he
 he_status he_materials_pack(const he_materials *materials, he_materials *out, he_error *err)
 {
     return copy(materials, true, out, err);
+}
+
+size_t he_materials_count(const he_materials *materials)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < materials->count; i++) {
+        count += materials->rows[i] != NULL;
+    }
+    return count;
 }
 
 size_t he_materials_bytes(const he_materials *materials)

@@ -44,13 +44,14 @@ typedef struct he_material {
 } he_material;
 
 /* One reference. HE_BAD_VALUE for a name that is empty, longer than HE_MATERIAL_NAME, no UTF-8 or
- * has a control character, and for a number outside its range; HE_NOT_FINITE; HE_NO_MEMORY. */
+ * has a control character other than a tab, and for a number outside its range; HE_NOT_FINITE;
+ * HE_NO_MEMORY. */
 HE_NODISCARD he_status he_material_new(const char *name, size_t length, const he_look *look,
                                        he_material **out, he_error *err);
 he_material *he_material_retain(he_material *material); /* NULL is passed on */
 void he_material_release(he_material *material);
 size_t he_material_bytes(const he_material *material); /* 0 for NULL */
-/* Have they the same name, and the same numbers bit by bit? NULL equals NULL alone. */
+/* Have they the same name and numbers? NULL equals NULL alone. */
 bool he_material_equal(const he_material *a, const he_material *b);
 /* Every number of the look as it may be: what is not finite becomes that of he_plain_look, what is
  * out of range the end of the range. Returns whether one was changed. */
@@ -69,6 +70,7 @@ HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_mater
 /* The same rows without free slots between them. */
 HE_NODISCARD he_status he_materials_pack(const he_materials *materials, he_materials *out,
                                          he_error *err);
+size_t he_materials_count(const he_materials *materials); /* rows */
 size_t he_materials_bytes(const he_materials *materials);
 bool he_materials_equal(const he_materials *a,
                         const he_materials *b); /* but for free slots behind */

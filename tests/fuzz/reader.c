@@ -112,7 +112,7 @@ static void write_all_formats(const he_mesh *mesh, const char *own, bool repaire
     const he_format *row;
     for (size_t i = 0; (row = he_format_at(i)) != NULL; i++) {
         bool mine = strcmp(row->name, own) == 0, stl = strcmp(row->name, "stl") == 0;
-        if (row->writing == NULL || (!mine && !md_chance(random, 25))) {
+        if (row->writing == NULL || row->reading == NULL || (!mine && !md_chance(random, 25))) {
             continue;
         }
         size_t encodings = 0;

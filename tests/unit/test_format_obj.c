@@ -218,7 +218,8 @@ static void names_and_smoothing(void **state)
     }
     expect_u32s(&import, HE_FACE, "smoothing", 1, (uint32_t[]){0, 3, 3, 0, 1}, 5);
     assert_null(find_column(&import, HE_FACE, "smoothing")->labels);
-    expect_note(&import, "ignored_keyword", "mtllib", 1, 6);
+    expect_note(&import, "library_missing", "a", 1, 6);
+    expect_note(&import, "library_missing", "file.mtl", 1, 6);
     he_import_clear(&import);
 
     /* what holds for no face, or is the default for all, makes no attribute */
@@ -266,7 +267,7 @@ static void lines_that_are_passed_over(void **state)
                          "vp 0.1 0.2\ncstype bezier\nxyz 1 2 3\ncall evil.obj\nxyz 5\n"
                          "t crease 1/1/0 0 1 4.7\nf 1 2 3\n");
     expect_counts(&import, 3, 1, 3);
-    expect_note(&import, "ignored_keyword", "mtllib", 1, 1);
+    expect_note(&import, "library_missing", "/etc/passwd", 1, 1);
     expect_note(&import, "ignored_keyword", "l", 2, 5);
     expect_note(&import, "ignored_keyword", "p", 1, 7);
     expect_note(&import, "ignored_keyword", "vp", 1, 8);

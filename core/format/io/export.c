@@ -124,6 +124,12 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
     }
 }
 
+void he_export_note_materials(const he_mesh *mesh, he_notes *notes)
+{
+    he_notes_add_count(notes, "materials_lost", "not carried: what a material looks like",
+                       he_materials_count(he_mesh_materials(mesh)));
+}
+
 char *he_export_text(const char *text, char *to)
 {
     while (*text != '\0') {

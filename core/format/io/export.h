@@ -48,6 +48,9 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
 void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size_t count,
                          he_notes *notes);
 
+/* Note that the table of materials is left behind, where the mesh has one. */
+void he_export_note_materials(const he_mesh *mesh, he_notes *notes);
+
 /* One component; 0 in place of a value that is not finite. */
 double he_export_number(const he_column *column, size_t row, uint32_t component);
 /* These write to `to` without a NUL and return the end. A text of any length, */

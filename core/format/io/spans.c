@@ -83,10 +83,9 @@ he_status he_spans_set_label(he_spans *spans, size_t face, const char *text, siz
     return status == HE_OK ? he_spans_set(spans, face, value, err) : status;
 }
 
-he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, const char *p,
-                            he_notes *notes, he_error *err)
+he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char **own,
+                       const char **text, size_t *out, he_error *err)
 {
-    he_status status = HE_OK;
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
     char *name = he_mem_alloc(3 * room); /* the bytes, then the same in UTF-8 */
@@ -96,21 +95,37 @@ he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, c
     size_t length = join(begin, line->end, name);
     for (size_t i = 0; i < length; i++) {
         if ((unsigned char)name[i] < 0x20 && name[i] != '\t') {
-            status = he_line_fail(err, HE_SYNTAX, line, begin,
-                                  "a name holds the control character %d", name[i]);
-            goto out;
+            int control = name[i];
+            he_mem_free(name);
+            return he_line_fail(err, HE_SYNTAX, line, begin,
+                                "a name holds the control character %d", control);
         }
     }
-    const char *text = name;
+    *own = name;
+    *text = name;
     if (!he_is_utf8(name, length)) {
-        he_notes_add(notes, "not_utf8", "read as Latin-1: a name that is not UTF-8", name, length,
-                     HE_PLACE_LINE, line->number);
+        if (notes != NULL) {
+            he_notes_add(notes, "not_utf8", "read as Latin-1: a name that is not UTF-8", name,
+                         length, HE_PLACE_LINE, line->number);
+        }
         length = widen(name, length, name + room);
-        text = name + room;
+        *text = name + room;
     }
-    status = he_spans_set_label(spans, face, text, length, err);
-out:
-    he_mem_free(name);
+    *out = length;
+    return HE_OK;
+}
+
+he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, const char *p,
+                            he_notes *notes, he_error *err)
+{
+    char *own = NULL;
+    const char *text = NULL;
+    size_t length = 0;
+    he_status status = he_line_name(line, p, notes, &own, &text, &length, err);
+    if (status == HE_OK) {
+        status = he_spans_set_label(spans, face, text, length, err);
+    }
+    he_mem_free(own);
     return status;
 }
 

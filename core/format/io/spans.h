@@ -20,9 +20,13 @@ HE_NODISCARD he_status he_spans_set(he_spans *spans, size_t face, uint32_t value
 /* The same with a name in UTF-8. */
 HE_NODISCARD he_status he_spans_set_label(he_spans *spans, size_t face, const char *text,
                                           size_t length, he_error *err);
-/* The same with a name in a line: the text from `p` to the end of the line, blanks around it left
- * out and continuations inside it made blanks. Bytes that are not UTF-8 are taken for Latin-1, with
- * a note. HE_SYNTAX for a control character. */
+/* A name in a line: the text from `p` to the end of the line, blanks around it left out and
+ * continuations inside it made blanks. Bytes that are not UTF-8 are taken for Latin-1, with a note
+ * (`notes` may be NULL): then *text is not *own. *own is freed by the caller. HE_SYNTAX for a
+ * control character, HE_NO_MEMORY. */
+HE_NODISCARD he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char **own,
+                                    const char **text, size_t *length, he_error *err);
+/* he_spans_set_label with such a name. */
 HE_NODISCARD he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line,
                                          const char *p, he_notes *notes, he_error *err);
 /* Give the names to the faces up to `faces` of an attribute with labels, save those of `own`:

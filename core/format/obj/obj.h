@@ -12,7 +12,9 @@
  *                             far, positive ones may name later elements
  *   o, g, usemtl              face attributes "object", "group", "material": the rest of the line
  *   s n | on | off            face attribute "smoothing"
- *   mtllib                    noted, never opened
+ *   mtllib                    attribute "mtllib" of the mesh, which keeps the name; materials of
+ *                             a library that came with the file (mtl.h), else a note. Nothing is
+ *                             ever opened
  *   l, p, curves, others      noted and left out, as are lines that begin with $; any other that
  *                             does not begin with a word is HE_SYNTAX
  *
@@ -21,7 +23,8 @@
  * line was understood is HE_SYNTAX, a file of comments an empty mesh.
  *
  * Written: v, with three numbers of a colour where there is one, vt, vn (bit-equal values of
- * corners once), then faces, with o, g, usemtl and s where they change. A line of v never has seven
+ * corners once), then faces, with o, g, usemtl and s where they change, and before all of it mtllib
+ * where the mesh has materials or came with the name of a library. A line of v never has seven
  * numbers, which other programs refuse. */
 #ifndef HE_FORMAT_OBJ_OBJ_H
 #define HE_FORMAT_OBJ_OBJ_H

@@ -3,9 +3,11 @@
 #include "format/io/colors.h"
 #include "format/io/pool.h"
 #include "format/io/spans.h"
+#include "format/obj/mtl.h"
 #include "format/text/lines.h"
 #include "format/text/number.h"
 
+#include <stdio.h>
 #include <string.h>
 
 typedef struct obj {
@@ -14,10 +16,12 @@ typedef struct obj {
     he_pool uv, normal;
     he_colors colors;
     he_spans object, group, material, smoothing;
-    uint32_t highest;    /* vertex named by a corner */
-    uint64_t last_line;  /* that was read */
-    uint64_t understood; /* lines with a keyword of the format */
-    uint64_t unknown;    /* the first line with another, 0 for none */
+    he_labels *libraries; /* what lines of mtllib say, NULL while there is none */
+    he_ids library_lines; /* of each the first */
+    uint32_t highest;     /* vertex named by a corner */
+    uint64_t last_line;   /* that was read */
+    uint64_t understood;  /* lines with a keyword of the format */
+    uint64_t unknown;     /* the first line with another, 0 for none */
 } obj;
 
 static void note(obj *o, const char *code, const char *text, const char *subject, size_t length,
@@ -255,8 +259,31 @@ static const char *const passed_over[] = {
     "curv2",  "surf",     "parm",  "trim",  "hole",   "scrv",     "sp",         "end",
     "con",    "mg",       "bevel", "lod",   "bsp",    "bzp",      "cdc",        "cdp",
     "res",    "c_interp", "ctech", "stech", "usemap", "d_interp", "shadow_obj", "trace_obj",
-    "maplib", "mtllib",   "call",  "csh",   "t",
+    "maplib", "call",     "csh",   "t",
 };
+
+static he_status read_library(obj *o, const he_line *line, const char *p, he_error *err)
+{
+    char *own = NULL;
+    const char *text = NULL;
+    size_t length = 0;
+    uint32_t number = 0;
+    if (o->libraries == NULL) {
+        o->libraries = he_labels_new();
+        if (o->libraries == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
+        }
+    }
+    he_status status = he_line_name(line, p, &o->into->notes, &own, &text, &length, err);
+    if (status == HE_OK && length > 0) {
+        status = he_labels_add(o->libraries, text, length, &number, err);
+    }
+    if (status == HE_OK && he_labels_count(o->libraries) > o->library_lines.count) {
+        status = he_ids_add(&o->library_lines, (uint32_t)line->number, err);
+    }
+    he_mem_free(own);
+    return status;
+}
 
 static he_status read_other(obj *o, const he_line *line, const char *p, const char *end,
                             he_error *err)
@@ -284,6 +311,9 @@ static he_status read_other(obj *o, const he_line *line, const char *p, const ch
     case 6:
         if (memcmp(p, "usemtl", 6) == 0) {
             return he_spans_set_name(&o->material, faces, line, end, notes, err);
+        }
+        if (memcmp(p, "mtllib", 6) == 0) {
+            return read_library(o, line, end, err);
         }
         break;
     }
@@ -342,6 +372,8 @@ static void obj_close(void *state)
     he_spans_clear(&o->group);
     he_spans_clear(&o->material);
     he_spans_clear(&o->smoothing);
+    he_labels_release(o->libraries);
+    he_ids_clear(&o->library_lines);
     he_mem_free(o);
 }
 
@@ -423,6 +455,75 @@ static void note_partial(obj *o, size_t with, size_t all, const char *code, cons
     }
 }
 
+/* A library that came with the file: HE_OK where there is none, with a note. */
+static he_status open_library(obj *o, const char *name, size_t length, uint64_t line, he_error *err)
+{
+    const he_beside_file *file = he_beside_find(o->into->beside, name, length);
+    if (file == NULL) {
+        he_notes_add(&o->into->notes, "library_missing",
+                     "named, and did not come with the file: the material library", name, length,
+                     HE_PLACE_LINE, line);
+        return HE_OK;
+    }
+    he_error failure = {0};
+    he_status status = he_mtl_read(file->bytes, file->length, o->into, &failure);
+    if (status != HE_OK && err != NULL) {
+        char quoted[48], where[40] = "";
+        he_quote(name, name + length, quoted, sizeof quoted);
+        if (failure.place == HE_PLACE_LINE) {
+            snprintf(where, sizeof where, ", line %llu", (unsigned long long)failure.at);
+        }
+        *err = failure;
+        he_fail_at(err, status, HE_PLACE_LINE, line, "material library %s%s: %.100s", quoted, where,
+                   failure.text);
+    }
+    return status;
+}
+
+/* A line names one library whose name may have blanks, or several. */
+static he_status open_libraries(obj *o, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; i < o->library_lines.count && status == HE_OK; i++) {
+        const char *p = he_labels_get(o->libraries, i), *end = p + strlen(p);
+        bool several = he_beside_find(o->into->beside, p, (size_t)(end - p)) == NULL;
+        while (p < end && status == HE_OK) {
+            size_t length = several ? strcspn(p, " \t") : (size_t)(end - p);
+            status = open_library(o, p, length, o->library_lines.ids[i], err);
+            p += length;
+            p += strspn(p, " \t");
+        }
+    }
+    return status;
+}
+
+/* An attribute of the mesh says by which names its libraries are called. */
+static he_status keep_libraries(obj *o, he_error *err)
+{
+    size_t count = o->library_lines.count;
+    he_column *column = NULL;
+    if (count > HE_COLUMN_COMPONENTS) {
+        he_notes_add_count(&o->into->notes, "libraries", "left out: the name of a material library",
+                           count - HE_COLUMN_COMPONENTS);
+        count = HE_COLUMN_COMPONENTS;
+    }
+    if (count == 0) {
+        return HE_OK;
+    }
+    he_status status = he_soup_column(&o->into->soup, HE_OBJ_LIBRARY, HE_MESH_KIND, HE_UINT32,
+                                      (uint32_t)count, HE_COPY, &column, err);
+    if (status == HE_OK) {
+        status = he_column_extend(column, 1, err);
+    }
+    for (uint32_t i = 0; i < count && status == HE_OK; i++) {
+        memcpy(he_column_row(column, 0) + i * sizeof i, &i, sizeof i);
+    }
+    if (status == HE_OK) {
+        column->labels = he_labels_retain(o->libraries);
+    }
+    return status;
+}
+
 static he_status obj_finish(void *state, he_error *err)
 {
     obj *o = state;
@@ -468,6 +569,12 @@ static he_status obj_finish(void *state, he_error *err)
     }
     if (status == HE_OK) {
         status = he_spans_finish(&o->smoothing, soup, "smoothing", err);
+    }
+    if (status == HE_OK) {
+        status = keep_libraries(o, err);
+    }
+    if (status == HE_OK) {
+        status = open_libraries(o, err);
     }
     return status;
 }

@@ -1,12 +1,14 @@
 #include "format/obj/obj.h"
 
 #include "format/io/colors.h"
+#include "format/obj/mtl.h"
+#include "format/obj/obj_name.h"
 #include "format/text/number.h"
 
 #include <string.h>
 
 /* What is written, in this order. */
-typedef enum part { HEADER, VERTICES, UVS, NORMALS, FACES, END } part;
+typedef enum part { HEADER, LIBRARIES, VERTICES, UVS, NORMALS, FACES, END } part;
 
 /* The lines that say something about the faces after them. */
 enum { OBJECT, GROUP, MATERIAL, SMOOTHING, SPANS };
@@ -33,8 +35,9 @@ typedef struct obj_writer {
     part part;
     uint32_t row;      /* next vertex, value or face */
     uint32_t halfedge; /* next corner of the face that is being written, or HE_NONE */
-    const char *name;  /* rest of the name that is being written, or NULL */
-    bool name_begun;
+    he_obj_name name;
+    const char *libraries[HE_COLUMN_COMPONENTS];
+    size_t library_count;
 } obj_writer;
 
 static const char *label_of(const he_column *column, uint32_t value)
@@ -42,29 +45,10 @@ static const char *label_of(const he_column *column, uint32_t value)
     return value < he_labels_count(column->labels) ? he_labels_get(column->labels, value) : "";
 }
 
-/* What would end the line, join the next one, or not read back: each such byte is written as '_'.
- * `first` is the name's first byte. */
-static char printable(const char *p, bool first)
-{
-    bool last = p[1] == '\0';
-    bool blank = *p == ' ' || *p == '\t';
-    if ((unsigned char)*p < 0x20 && *p != '\t') {
-        return '_';
-    }
-    return (blank && (first || last)) || (*p == '\\' && last) ? '_' : *p;
-}
-
 static void note_changed_names(const he_column *column, he_notes *notes)
 {
     for (size_t i = 0; i < he_labels_count(column->labels); i++) {
-        const char *name = he_labels_get(column->labels, i);
-        for (const char *p = name; *p != '\0'; p++) {
-            if (printable(p, p == name) != *p) {
-                he_notes_add(notes, "names_changed", "changed to fit a line: a name", name,
-                             strlen(name), HE_PLACE_NONE, 0);
-                break;
-            }
-        }
+        he_obj_note_name(he_labels_get(column->labels, i), notes);
     }
 }
 
@@ -104,6 +88,21 @@ static void note_unnamed(const obj_writer *w, he_notes *notes)
                        count_unnamed(&w->normal, w->mesh));
 }
 
+/* Returns the attribute that the names come from, or NULL. */
+static const he_column *find_libraries(obj_writer *w, he_notes *notes)
+{
+    w->library_count = he_mtl_names(w->mesh, w->libraries);
+    for (size_t i = 0; i < w->library_count; i++) {
+        he_obj_note_name(w->libraries[i], notes);
+    }
+    if (he_materials_count(he_mesh_materials(w->mesh)) > 0) {
+        he_notes_add(notes, "in_library",
+                     "carried by the library, which format=mtl gives: materials", NULL, 0,
+                     HE_PLACE_NONE, 0);
+    }
+    return he_mesh_find_column(w->mesh, HE_MESH_KIND, HE_OBJ_LIBRARY);
+}
+
 static void obj_close(void *state)
 {
     obj_writer *w = state;
@@ -140,7 +139,8 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         he_notes_add(notes, "alpha_lost", "not carried: the fourth component of", "vertex color",
                      strlen("vertex color"), HE_PLACE_NONE, 0);
     }
-    const he_column *used[SPANS + 3] = {w->color, w->uv.column, w->normal.column};
+    const he_column *used[SPANS + 4] = {w->color, w->uv.column, w->normal.column};
+    used[SPANS + 3] = find_libraries(w, notes);
     for (size_t i = 0; i < SPANS; i++) {
         const he_column *column = he_mesh_find_column(mesh, HE_FACE, spans[i].attribute);
         bool named = i != SMOOTHING;
@@ -153,7 +153,7 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         }
     }
     note_unnamed(w, notes);
-    he_export_note_lost(mesh, used, SPANS + 3, notes);
+    he_export_note_lost(mesh, used, SPANS + 4, notes);
     *state = w;
     return HE_OK;
 }
@@ -165,6 +165,20 @@ static char *write_header(const obj_writer *w, char *p)
     p = he_export_text(" vertices, ", p);
     p += he_u32_print(he_mesh_faces(w->mesh), p);
     return he_export_text(" faces\n", p);
+}
+
+static char *write_libraries(obj_writer *w, char *p, const char *end)
+{
+    if (w->name.rest != NULL) {
+        return he_obj_name_write(&w->name, p, end);
+    }
+    if (w->row == w->library_count) {
+        w->row = 0;
+        w->part++;
+        return p;
+    }
+    w->name.rest = w->libraries[w->row++];
+    return he_export_text("mtllib ", p);
 }
 
 static char *write_vertex(const obj_writer *w, uint32_t v, char *p)
@@ -225,22 +239,6 @@ static char *write_rows(obj_writer *w, const values *v, char *p, const char *end
     return p;
 }
 
-/* Names have any length. */
-static char *write_name(obj_writer *w, char *p, const char *end)
-{
-    while (*w->name != '\0') {
-        if (end - p < 2) {
-            return p;
-        }
-        *p++ = printable(w->name, !w->name_begun);
-        w->name_begun = true;
-        w->name++;
-    }
-    *p++ = '\n';
-    w->name = NULL;
-    return p;
-}
-
 /* The line for the first attribute in which the face differs from what was said last. */
 static char *write_span(obj_writer *w, uint32_t face, char *p)
 {
@@ -264,9 +262,8 @@ static char *write_span(obj_writer *w, uint32_t face, char *p)
             p += he_u32_print(value, p);
             *p++ = '\n';
         } else {
-            w->name = label_of(w->spans[i], value);
-            w->name_begun = false;
-            if (*w->name != '\0') {
+            w->name.rest = label_of(w->spans[i], value);
+            if (*w->name.rest != '\0') {
                 *p++ = ' ';
             }
         }
@@ -303,8 +300,8 @@ static char *write_faces(obj_writer *w, char *p, const char *end)
 {
     const he_content *c = &w->mesh->c;
     while (end - p >= HE_WRITE_ROOM) {
-        if (w->name != NULL) {
-            p = write_name(w, p, end);
+        if (w->name.rest != NULL) {
+            p = he_obj_name_write(&w->name, p, end);
         } else if (w->halfedge != HE_NONE) {
             p = write_corner(w, w->halfedge, p);
             w->halfedge = c->next[w->halfedge];
@@ -336,7 +333,10 @@ static bool obj_step(void *state, char **p, const char *end)
     switch (w->part) {
     case HEADER:
         *p = write_header(w, *p);
-        w->part = VERTICES;
+        w->part = LIBRARIES;
+        break;
+    case LIBRARIES:
+        *p = write_libraries(w, *p, end);
         break;
     case VERTICES:
         *p = write_rows(w, NULL, *p, end);

@@ -45,6 +45,7 @@ static he_status off_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     w->face_color = he_colors_find(mesh, HE_FACE, notes);
     const he_column *used[] = {w->normal, w->color, w->uv, w->face_color};
     he_export_note_lost(mesh, used, sizeof used / sizeof *used, notes);
+    he_export_note_materials(mesh, notes);
     *state = w;
     return HE_OK;
 }

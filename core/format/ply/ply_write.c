@@ -225,6 +225,7 @@ static he_status choose_outputs(ply_writer *w, he_notes *notes, he_error *err)
     w->vertex_outputs = w->count;
     add_attributes(w, HE_FACE, used, notes);
     he_export_note_lost(w->mesh, used, w->count, notes);
+    he_export_note_materials(w->mesh, notes);
     he_mem_free(used);
     return status;
 }

@@ -142,6 +142,7 @@ static he_status stl_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         return status;
     }
     he_export_note_lost(mesh, NULL, 0, notes);
+    he_export_note_materials(mesh, notes);
     *state = w;
     return HE_OK;
 }

@@ -1,0 +1,29 @@
+#include "format/obj/obj_name.h"
+
+#include <string.h>
+
+void he_obj_note_name(const char *name, he_notes *notes)
+{
+    for (const char *p = name; *p != '\0'; p++) {
+        if (he_obj_printable(p, p == name) != *p) {
+            he_notes_add(notes, "names_changed", "changed to fit a line: a name", name,
+                         strlen(name), HE_PLACE_NONE, 0);
+            break;
+        }
+    }
+}
+
+char *he_obj_name_write(he_obj_name *name, char *p, const char *end)
+{
+    while (*name->rest != '\0') {
+        if (end - p < 2) {
+            return p;
+        }
+        *p++ = he_obj_printable(name->rest, !name->begun);
+        name->begun = true;
+        name->rest++;
+    }
+    *p++ = '\n';
+    *name = (he_obj_name){NULL, false};
+    return p;
+}
