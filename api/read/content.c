@@ -128,9 +128,10 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
         c->document = api_document_out_new(x->content, x->info.name);
         return c->document != NULL || api_fail_memory(x);
     }
+    he_watch_span(&x->watch, 0.5); /* as a job it takes about as long to write */
     bool long_faces = format->writing != NULL && format->writing->cuts;
     if ((long_faces && he_long_faces_keep(x->content, &x->watch, &err) != HE_OK) ||
-        he_writer_new(format, x->content, chosen->encoding, &c->writer, &err) != HE_OK) {
+        he_writer_new(format, x->content, chosen->encoding, &x->watch, &c->writer, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
     answer_losses(x, he_writer_notes(c->writer));

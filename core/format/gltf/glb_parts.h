@@ -43,9 +43,10 @@ typedef struct he_glb_parts {
     size_t json_length; /* a multiple of 4 */
 } he_glb_parts;
 
-/* HE_NO_MEMORY; HE_LIMIT where the file would have more than its 32 bits can count. */
-HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, he_notes *notes, he_glb_parts *out,
-                                         he_error *err);
+/* `watch` may be NULL. HE_NO_MEMORY, HE_CANCELLED; HE_LIMIT where the file would have more than its
+ * 32 bits can count. */
+HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, he_watch *watch, he_notes *notes,
+                                         he_glb_parts *out, he_error *err);
 void he_glb_parts_clear(he_glb_parts *parts);
 /* Bytes of a part without what fills it up to a multiple of 4. */
 uint64_t he_glb_part_bytes(const he_glb_part *part);

@@ -34,8 +34,8 @@ static void glb_close(void *state)
     he_mem_free(w);
 }
 
-static he_status glb_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
-                          he_error *err)
+static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                          void **state, he_error *err)
 {
     (void)encoding;
     glb_writer *w = he_mem_zero(1, sizeof *w);
@@ -43,7 +43,7 @@ static he_status glb_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
     }
     w->halfedge = HE_NONE;
-    he_status status = he_glb_parts_make(mesh, notes, &w->g, err);
+    he_status status = he_glb_parts_make(mesh, watch, notes, &w->g, err);
     if (status == HE_OK && w->g.splits.copies.count > 0) {
         w->at = he_mem_array(NULL, mesh->c.vertices.issued, sizeof *w->at);
         if (w->at == NULL) {
