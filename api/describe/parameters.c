@@ -62,8 +62,10 @@ const api_parameter api_parameter_repair = {
     0,
     he_repair_names,
     "What may be done to what the structure cannot hold: these repairs in this order, whatever the "
-    "order here. weld makes vertices within the tolerance one; drop_degenerate leaves out faces "
-    "without three different corners, drop_duplicates those with the corners of an earlier face; "
+    "order here. weld makes vertices within the tolerance one; drop_degenerate keeps of a "
+    "face that repeats a vertex what has an area: 1 2 3 3 becomes the triangle 1 2 3, one with a "
+    "keyhole is cut into triangles, and what has not three different corners is left out; "
+    "drop_duplicates leaves out faces with the corners of an earlier face; "
     "orient turns faces so that neighbours agree; split gives every fan of faces a vertex of its "
     "own; fill closes small holes."};
 const api_parameter api_parameter_tolerance = {
