@@ -3,7 +3,6 @@
 #include "format/text/number.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -280,20 +279,15 @@ bool api_can_be_job(const api_exchange *x)
            x->phase != API_PHASE_JOB;
 }
 
-double api_patience(const api_exchange *x)
-{
-    if (!api_can_be_job(x)) {
-        return HUGE_VAL;
-    }
-    if (x->prefer.wait >= 0) {
-        return x->prefer.wait;
-    }
-    return x->prefer.respond_async ? -1 : API_PATIENCE;
-}
-
 bool api_wants_job(const api_exchange *x, double seconds)
 {
-    return seconds > api_patience(x);
+    if (!api_can_be_job(x)) {
+        return false;
+    }
+    if (x->prefer.wait >= 0) {
+        return seconds > x->prefer.wait;
+    }
+    return x->prefer.respond_async || seconds > API_PATIENCE;
 }
 
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds)
