@@ -11,7 +11,8 @@
  * its strings; of an edit list it is its text and the operation at hand. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
 #define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
-#define API_MAX_EDITS          ((size_t)8 << 20) /* an edit list */
+#define API_MAX_MATERIALS      ((size_t)16 << 20) /* the materials of a mesh document */
+#define API_MAX_EDITS          ((size_t)8 << 20)  /* an edit list */
 #define API_MAX_EDITS_VALUES   ((size_t)1 << 20)
 #define API_DEFAULT_UPLOAD                                                 \
     ((uint64_t)1 << 30) /* a mesh document or file; api_options.max_upload \

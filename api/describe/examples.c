@@ -540,6 +540,11 @@ static const api_example examples[] = {
                  "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
                  "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
                  "\"edges\":[],\"faces\":[0,1]},\"parents\":{},\"merged\":{}}"},
+    {.route = "materials_list",
+     .target = "/v1/meshes/kite/materials",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"revision\":7,\"materials\":[]}"},
     {.route = "attributes_list",
      .target = "/v1/meshes/kite/attributes",
      .status = 200,

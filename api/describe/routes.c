@@ -308,6 +308,20 @@ static const api_route routes[] = {
     ADJACENCY(HE_FACE, "face", "faces", "faces", "Faces beside a face",
               "Those across its edges; holes are left out. " AROUND),
 
+    {.method = "GET",
+     .path = "/v1/meshes/{mesh}/materials",
+     .name = "materials_list",
+     .run = api_materials_list,
+     .reads = API_READS_LOCKED,
+     .produces = json,
+     .parameters = {&api_parameter_revision},
+     .statuses = {200, 304, 410},
+     .response = "material_list",
+     .summary = "List the materials",
+     .doc =
+         "What faces look like that name them in their attribute `material`, whose label \"\" is "
+         "none. The operation `material_set` changes them."},
+
     /* attributes */
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/attributes",

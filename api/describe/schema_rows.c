@@ -153,6 +153,16 @@ const api_member api_answer_members[] = {
     {"attribute_list", "revision", "count", REQUIRED, NULL},
     {"attribute_list", "attributes", "*#attribute_info", REQUIRED, NULL},
 
+    {"material_row", "name", "#material_name", REQUIRED, "No two have the same."},
+    {"material_row", "base_color", "#color_alpha", REQUIRED, "With its opacity."},
+    {"material_row", "metallic", "#fraction", REQUIRED, NULL},
+    {"material_row", "roughness", "#fraction", REQUIRED, NULL},
+    {"material_row", "emission", "#color", REQUIRED, NULL},
+    {"material_row", "two_sided", "flag", REQUIRED, NULL},
+
+    {"material_list", "revision", "count", REQUIRED, NULL},
+    {"material_list", "materials", "*#material_row", REQUIRED, "The oldest first."},
+
     {"attribute_values", "revision", "count", REQUIRED, NULL},
     {"attribute_values", "domain", "#domain", REQUIRED, NULL},
     {"attribute_values", "name", "text", REQUIRED, NULL},
@@ -420,6 +430,15 @@ const api_member api_request_members[] = {
     {"document", "vertices", "*point", OPTIONAL, NULL},
     {"document", "faces", "**index", OPTIONAL, "Vertices counter-clockwise, counted from 0."},
     {"document", "attributes", "*#document_attribute", OPTIONAL, "Of any domain."},
+    {"document", "materials", "*#material", OPTIONAL,
+     "What faces look like that name them in their attribute `material`."},
+
+    {"material", "name", "#material_name", REQUIRED, "No two have the same."},
+    {"material", "base_color", "#color_alpha", OPTIONAL, "White if not said."},
+    {"material", "metallic", "#fraction", OPTIONAL, "0 if not said."},
+    {"material", "roughness", "#fraction", OPTIONAL, "1 if not said."},
+    {"material", "emission", "#color", OPTIONAL, "Black if not said."},
+    {"material", "two_sided", "flag", OPTIONAL, "Do faces show from behind?"},
 
     {"document_attribute", "domain", "#domain", REQUIRED, NULL},
     {"document_attribute", "name", "#attribute_name", REQUIRED, NULL},

@@ -28,6 +28,9 @@ static const struct {
     {"color_alpha", "{\"type\":\"array\",\"items\":{\"type\":\"number\",\"minimum\":0,\"maximum\":"
                     "1},\"minItems\":3,"
                     "\"maxItems\":4,\"description\":\"Linear red, green and blue, and opacity.\"}"},
+    {"fraction", "{\"type\":\"number\",\"minimum\":0,\"maximum\":1}"},
+    {"material_name", "{\"type\":\"string\",\"minLength\":1,\"maxLength\":1023,\"description\":"
+                      "\"At most 1023 bytes of UTF-8 without control characters.\"}"},
     {"mesh_id", "{\"type\":\"string\",\"pattern\":\"^[A-Za-z0-9._-]{1,64}$\"}"},
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},

@@ -1,6 +1,7 @@
 #include "api/document/document_in.h"
 
 #include "api/document/attributes_in.h"
+#include "api/json/material_value.h"
 #include "api/limits.h"
 #include "format/text/number.h"
 
@@ -54,6 +55,8 @@ struct api_document_in {
 
     /* Other members: "{" and then each as it came. */
     api_text rest;
+    api_text materials; /* {"materials": and the value; empty without */
+    api_text *gathered; /* one of these */
     size_t rest_depth;
     bool rest_string;
     api_document document;
@@ -66,6 +69,7 @@ api_document_in *api_document_in_new(const he_limits *limits)
     if (in != NULL) {
         he_soup_init(&in->soup, limits);
         in->rest.maximum = API_MAX_CONTROL;
+        in->materials.maximum = API_MAX_MATERIALS;
     }
     return in;
 }
@@ -76,6 +80,7 @@ void api_document_in_free(api_document_in *in)
         he_soup_clear(&in->soup);
         api_attributes_in_free(in->attributes);
         api_text_clear(&in->rest);
+        api_text_clear(&in->materials);
         api_document_clear(&in->document);
         he_mem_free(in);
     }
@@ -358,12 +363,14 @@ static bool open_value(api_document_in *in)
 
 static bool add_rest(api_document_in *in, const char *bytes, size_t length)
 {
-    if (length > in->rest.maximum - in->rest.length) {
-        return refuse(in, HE_LIMIT, "members besides vertices and faces exceed %zu bytes",
-                      in->rest.maximum);
+    api_text *text = in->gathered;
+    if (length > text->maximum - text->length) {
+        return refuse(in, HE_LIMIT, "%s exceed %zu bytes",
+                      text == &in->rest ? "members besides vertices and faces" : "materials",
+                      text->maximum);
     }
-    api_text_add(&in->rest, bytes, length);
-    return !in->rest.failed || refuse(in, HE_NO_MEMORY, "no memory for the document");
+    api_text_add(text, bytes, length);
+    return !text->failed || refuse(in, HE_NO_MEMORY, "no memory for the document");
 }
 
 static bool key_is(const api_document_in *in, const char *name)
@@ -372,17 +379,17 @@ static bool key_is(const api_document_in *in, const char *name)
     return in->key_length == length + 2 && memcmp(in->key + 1, name, length) == 0;
 }
 
-static char list_of(bool vertices, bool faces, bool attributes)
-{
-    return vertices ? 'v' : faces ? 'f' : attributes ? 'a' : '\0';
-}
-
-/* Which list the key names: 'v', 'f', 'a' or 0. A key may be spelled with escapes. */
+/* Which list the key names, by its first letter: 'v', 'f', 'a', 'm' or 0. A key may be spelled with
+ * escapes. */
 static bool find_list(api_document_in *in, char *list)
 {
+    static const char *const lists[] = {"vertices", "faces", "attributes", "materials"};
+    enum { LISTS = sizeof lists / sizeof *lists };
     *list = '\0';
     if (memchr(in->key, '\\', in->key_length) == NULL) {
-        *list = list_of(key_is(in, "vertices"), key_is(in, "faces"), key_is(in, "attributes"));
+        for (size_t i = 0; i < LISTS; i++) {
+            *list = key_is(in, lists[i]) ? lists[i][0] : *list;
+        }
         return true;
     }
     api_document document = {0};
@@ -392,12 +399,21 @@ static bool find_list(api_document_in *in, char *list)
     bool good =
         api_document_parse(in->key, in->key_length, &limits, &document, &root, in->problem) &&
         api_in_string(&root, API_MAX_KEY, &name);
-    if (good) {
-        *list = list_of(strcmp(name, "vertices") == 0, strcmp(name, "faces") == 0,
-                        strcmp(name, "attributes") == 0);
+    for (size_t i = 0; good && i < LISTS; i++) {
+        *list = strcmp(name, lists[i]) == 0 ? lists[i][0] : *list;
     }
     api_document_clear(&document);
     return good;
+}
+
+/* The name of a member whose value is gathered. */
+static bool begin_other(api_document_in *in, const char *key, size_t length)
+{
+    in->state = INSIDE_OTHER;
+    in->rest_depth = 0;
+    in->rest_string = false;
+    in->escaped = false;
+    return add_rest(in, key, length) && add_rest(in, ":", 1);
 }
 
 static bool open_member(api_document_in *in)
@@ -414,6 +430,12 @@ static bool open_member(api_document_in *in)
         in->state = INSIDE_ATTRIBUTES;
         return in->attributes != NULL || refuse(in, HE_NO_MEMORY, "no memory for the document");
     }
+    if (list == 'm') {
+        in->gathered = &in->materials;
+        return in->materials.length == 0
+                   ? begin_other(in, "{\"materials\"", strlen("{\"materials\""))
+                   : refuse(in, API_DUPLICATE_MEMBER, "\"materials\" is given twice");
+    }
     if (list != '\0') {
         bool *has = list == 'f' ? &in->has_faces : &in->has_vertices;
         in->faces = list == 'f';
@@ -426,12 +448,9 @@ static bool open_member(api_document_in *in)
         *has = true;
         return true;
     }
-    in->state = INSIDE_OTHER;
-    in->rest_depth = 0;
-    in->rest_string = false;
-    in->escaped = false;
+    in->gathered = &in->rest;
     return add_rest(in, in->rest.length == 0 ? "{" : ",", 1) &&
-           add_rest(in, in->key, in->key_length) && add_rest(in, ":", 1);
+           begin_other(in, in->key, in->key_length);
 }
 
 static bool gather_key(api_document_in *in)
@@ -639,12 +658,34 @@ bool api_document_in_feed(api_document_in *in, const char *bytes, size_t length,
     return good;
 }
 
+static bool read_materials(api_document_in *in, api_problem *problem)
+{
+    api_document document = {0};
+    api_in root, list;
+    api_in_limits limits = {.values = API_MAX_CONTROL_VALUES, .no_offsets = true};
+    if (in->materials.length == 0) {
+        return true;
+    }
+    in->gathered = &in->materials;
+    bool good = add_rest(in, "}", 1) &&
+                api_document_parse(in->materials.bytes, in->materials.length, &limits, &document,
+                                   &root, problem) &&
+                api_in_need(&root, "materials", &list) &&
+                api_read_materials(&list, &in->soup.materials);
+    api_document_clear(&document);
+    return good;
+}
+
 bool api_document_in_end(api_document_in *in, api_problem *problem)
 {
     in->problem = problem;
     if (in->state != AFTER_DOCUMENT) {
         return refuse(in, API_MALFORMED_JSON, "the body ends within the document");
     }
+    if (!read_materials(in, problem)) {
+        return false;
+    }
+    in->gathered = &in->rest;
     if (!add_rest(in, in->rest.length == 0 ? "{}" : "}", in->rest.length == 0 ? 2 : 1)) {
         return false;
     }

@@ -1,17 +1,20 @@
 /* document_in.h - reading a mesh document piece by piece.
  *
- *     {"name":"cube","vertices":[[x,y,z],...],"faces":[[i,j,k,...],...],"attributes":[...]}
+ *     {"name":"cube","vertices":[[x,y,z],...],"faces":[[i,j,k,...],...],"attributes":[...],
+ *      "materials":[{"name":"red","base_color":[1,0,0]},...]}
  *
  * Pieces may be cut anywhere, members come in any order. Vertices and faces go straight into a soup
- * (build/build.h); numbers are read exactly. Attributes are attributes_in.h's. All other members
+ * (build/build.h); numbers are read exactly. Attributes are attributes_in.h's. Materials are
+ * gathered, at most API_MAX_MATERIALS bytes, and read at the end into the soup (material_value.h).
+ * All other members
  * ("name", "shape", what is not known) are gathered, at most API_MAX_CONTROL bytes, into a control
  * document that the caller reads through json_in.h at the end, so that {"shape":"cube","size":2}
  * comes through the same door.
  *
  * Refused here, with pointers such as /vertices/17/2: whatever is not JSON; a second "vertices",
- * "faces" or "attributes"; a vertex that is not three finite numbers; a corner that is not a whole
- * number >= 0 (one beyond any id is bad_index, 422); more than the limits (413). Faces of too few
- * corners and corners beyond the vertices are he_build's to refuse.
+ * "faces", "attributes" or "materials"; a vertex that is not three finite numbers; a corner that is
+ * not a whole number >= 0 (one beyond any id is bad_index, 422); more than the limits (413). Faces
+ * of too few corners and corners beyond the vertices are he_build's to refuse.
  *
  * Memory: the soup, the gathered members, and a number's text across a cut. */
 #ifndef HE_API_DOCUMENT_DOCUMENT_IN_H

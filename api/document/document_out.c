@@ -1,6 +1,7 @@
 #include "api/document/document_out.h"
 
 #include "api/json/attribute_value.h"
+#include "api/json/material_value.h"
 #include "format/text/number.h"
 #include "mesh/walk.h"
 
@@ -10,7 +11,14 @@
  * a vertex or a corner, so UNIT bytes must be free. */
 enum { BUFFER = 64 * 1024, UNIT = 128 };
 
-typedef enum phase { PHASE_HEAD, PHASE_VERTICES, PHASE_FACES, PHASE_ATTRIBUTES, PHASE_DONE } phase;
+typedef enum phase {
+    PHASE_HEAD,
+    PHASE_VERTICES,
+    PHASE_FACES,
+    PHASE_ATTRIBUTES,
+    PHASE_END,
+    PHASE_DONE
+} phase;
 
 struct api_document_out {
     const he_mesh *mesh;
@@ -218,6 +226,20 @@ static void begin_attribute(api_document_out *out, const he_column *column)
     out->next = 0;
 }
 
+/* What comes behind the lists: materials, and the end. */
+static void end_document(api_document_out *out)
+{
+    const he_materials *materials = he_mesh_materials(out->mesh);
+    if (he_materials_count(materials) > 0) {
+        api_out json;
+        api_text_add_string(&out->text, ",\n\"materials\":");
+        api_out_init(&json, &out->text);
+        api_write_materials(&json, materials);
+    }
+    api_text_add_string(&out->text, "}\n");
+    out->phase = PHASE_DONE;
+}
+
 /* The next part, onto the text. */
 static void fill_attributes(api_document_out *out)
 {
@@ -246,8 +268,8 @@ static void fill_attributes(api_document_out *out)
         out->begun = false;
     }
     if (out->column == he_mesh_columns(out->mesh)) {
-        api_text_add_string(&out->text, "]}\n");
-        out->phase = PHASE_DONE;
+        api_text_add_char(&out->text, ']');
+        end_document(out);
     }
     out->from_text = true;
     out->begin = 0;
@@ -282,14 +304,19 @@ static void fill(api_document_out *out)
         } else {
             out->column = next_column(out->mesh, 0);
             bool none = out->column == he_mesh_columns(out->mesh);
-            put(out, none ? "]}\n" : "],\n\"attributes\":[");
-            out->phase = none ? PHASE_DONE : PHASE_ATTRIBUTES;
+            put(out, none ? "]" : "],\n\"attributes\":[");
+            out->phase = none ? PHASE_END : PHASE_ATTRIBUTES;
             out->listed = false;
             out->next = 0;
         }
     }
     if (out->phase == PHASE_ATTRIBUTES && out->end == 0) {
         fill_attributes(out);
+    } else if (out->phase == PHASE_END && out->end == 0) {
+        api_text_empty(&out->text);
+        end_document(out);
+        out->from_text = true;
+        out->end = out->text.length;
     }
 }
 

@@ -50,6 +50,7 @@ void api_relation_get(api_exchange *x);
 
 /* Its attributes: x->kind, x->attribute. */
 void api_attributes_list(api_exchange *x);
+void api_materials_list(api_exchange *x);
 void api_attribute_get(api_exchange *x);
 bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_attribute_put_begin(api_exchange *x);

@@ -1,5 +1,8 @@
 #include "base/utf8.h"
 
+#include <stdio.h>
+#include <string.h>
+
 size_t he_utf8_character(const char *bytes, size_t length)
 {
     const unsigned char *b = (const unsigned char *)bytes;
@@ -31,4 +34,19 @@ bool he_is_utf8(const char *bytes, size_t length)
         i += size;
     }
     return true;
+}
+
+void he_name_number(const char *name, unsigned number, char *out, size_t size)
+{
+    char digits[16] = "";
+    if (number > 1) {
+        snprintf(digits, sizeof digits, "_%u", number);
+    }
+    size_t length = strlen(name), most = size - 1 - strlen(digits);
+    length = length < most ? length : most;
+    while (name[length] != '\0' && ((unsigned char)name[length] & 0xC0) == 0x80) {
+        length--;
+    }
+    memcpy(out, name, length);
+    memcpy(out + length, digits, strlen(digits) + 1);
 }

@@ -1,6 +1,7 @@
 #include "mesh/column.h"
 
-#include <stdio.h>
+#include "base/utf8.h"
+
 #include <string.h>
 
 static const struct {
@@ -185,18 +186,7 @@ he_status he_column_for_corners(const he_column *column, const char *name, size_
     return HE_OK;
 }
 
-/* A name is cut between letters: not inside the bytes of one. */
 void he_column_number_name(const char *name, unsigned number, char out[HE_COLUMN_NAME])
 {
-    char digits[16] = "";
-    if (number > 1) {
-        snprintf(digits, sizeof digits, "_%u", number);
-    }
-    size_t length = strlen(name), most = HE_COLUMN_NAME - 1 - strlen(digits);
-    length = length < most ? length : most;
-    while (name[length] != '\0' && ((unsigned char)name[length] & 0xC0) == 0x80) {
-        length--;
-    }
-    memcpy(out, name, length);
-    memcpy(out + length, digits, strlen(digits) + 1);
+    he_name_number(name, number, out, HE_COLUMN_NAME);
 }

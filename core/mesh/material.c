@@ -156,21 +156,31 @@ size_t he_material_bytes(const he_material *material)
     return material == NULL ? 0 : sizeof *material + material->length + 1;
 }
 
-bool he_material_equal(const he_material *a, const he_material *b)
+bool he_look_equal(const he_look *a, const he_look *b)
 {
-    if (a == NULL || b == NULL || a == b) {
-        return a == b;
-    }
-    he_look one = a->look, other = b->look;
+    he_look one = *a, other = *b;
     number numbers[NUMBERS], others[NUMBERS];
-    bool same = a->mark == b->mark && a->length == b->length &&
-                memcmp(a->name, b->name, a->length) == 0 && one.two_sided == other.two_sided;
+    bool same = one.two_sided == other.two_sided;
     list_numbers(&one, numbers);
     list_numbers(&other, others);
     for (size_t i = 0; i < NUMBERS && same; i++) {
         same = *numbers[i].value == *others[i].value;
     }
     return same;
+}
+
+bool he_material_equal(const he_material *a, const he_material *b)
+{
+    if (a == NULL || b == NULL || a == b) {
+        return a == b;
+    }
+    return a->mark == b->mark && a->length == b->length &&
+           memcmp(a->name, b->name, a->length) == 0 && he_look_equal(&a->look, &b->look);
+}
+
+void he_material_number_name(const char *name, unsigned which, char out[HE_MATERIAL_NAME + 1])
+{
+    he_name_number(name, which, out, HE_MATERIAL_NAME + 1);
 }
 
 /* --- tables --- */

@@ -53,6 +53,9 @@ void he_material_release(he_material *material);
 size_t he_material_bytes(const he_material *material); /* 0 for NULL */
 /* Have they the same name and numbers? NULL equals NULL alone. */
 bool he_material_equal(const he_material *a, const he_material *b);
+bool he_look_equal(const he_look *a, const he_look *b);
+/* NAME for number 1, else NAME_2 and so on, the name cut where that is too long. */
+void he_material_number_name(const char *name, unsigned number, char out[HE_MATERIAL_NAME + 1]);
 /* Every number of the look as it may be: what is not finite becomes that of he_plain_look, what is
  * out of range the end of the range. Returns whether one was changed. */
 bool he_look_clamp(he_look *look);

@@ -79,7 +79,7 @@ const he_op he_whole_rows[] = {
     },
     {
         .name = "append",
-        .doc = "Bring in the content of another mesh, with its attributes.",
+        .doc = "Bring in the content of another mesh, with its attributes and materials.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "mesh",
                     .type = HE_PARAM_MESH,
@@ -90,7 +90,7 @@ const he_op he_whole_rows[] = {
                      "The new ones, in the order of the ids in the other mesh."},
                     {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The same of edges."},
                     {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The same of faces."}},
-        .refusals = {HE_ATTRIBUTE_CLASH},
+        .refusals = {HE_ATTRIBUTE_CLASH, HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .pace = 2,
         .run = run_append,

@@ -101,6 +101,8 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/faces/x", 404, NULL, {NULL}},
     {"GET", "/v1/meshes/m/faces/0/none", 404, NULL, {NULL}},
 
+    {"GET", "/v1/meshes/m/materials", 200, NULL, {NULL}},
+    {"GET", "/v1/meshes/m/materials", 304, NULL, {ANY}},
     {"GET", "/v1/meshes/m/attributes", 200, NULL, {NULL}},
     {"GET", "/v1/meshes/m/attributes", 304, NULL, {ANY}},
     {"PUT", "/v1/meshes/m/attributes/faces/selected", 201, "{\"type\":\"bool\"}", {NULL}},
@@ -222,6 +224,7 @@ static const step steps[] = {
      410,
      "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}",
      {NULL}},
+    {"GET", "/v1/meshes/m/materials?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/attributes?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m/attributes/faces/selected?revision=1", 410, NULL, {NULL}},
 

@@ -194,7 +194,7 @@ static size_t parse_numbers(const char *text, double *numbers)
 static he_mesh *other_mesh(const char *text)
 {
     char faces[MAX_TEXT];
-    size_t length = strcspn(text, "*");
+    size_t length = strcspn(text, "*!");
     snprintf(faces, sizeof faces, "%.*s", (int)length, text);
     count_allocations(false);
     he_mesh *other = script_mesh(faces, NULL);
@@ -204,6 +204,9 @@ static he_mesh *other_mesh(const char *text)
         assert_int_equal(he_column_new("locked", HE_FACE, HE_INT32, 1, HE_COPY, &column, NULL),
                          HE_OK);
         assert_int_equal(he_mesh_add_column(other, column, NULL), HE_OK);
+    } else if (text[length] == '!') {
+        script_prepare(other, "material_set name=red base_color=1,0,0 face=0;"
+                              "material_set name=blue base_color=0,0,1");
     }
     count_allocations(counting);
     return other;

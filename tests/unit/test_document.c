@@ -5,6 +5,7 @@
 #include "api/limits.h"
 #include "fixture.h"
 #include "mesh/compact.h"
+#include "mesh/write.h"
 #include "repair/repair.h"
 
 #include <stdint.h>
@@ -63,6 +64,30 @@ static const struct {
      "}",
      HE_OK, "-"},
     {"{\"attributes\":[],\"attributes\":[]}", API_DUPLICATE_MEMBER, ""},
+    {"{\"materials\" : [ ] , \"name\":\"a\"}", HE_OK, "-"},
+    {"{\"name\":\"a\",\"material\\u0073\":[{\"name\":\"a ] } \\\" b\"},{\"name\":\"c\","
+     "\"base_color\":[1,0,0],\"metallic\":1,\"roughness\":0,\"emission\":[9,0,0],\"two_sided\":"
+     "true}]}",
+     HE_OK, "-"},
+    {"{\"materials\":[],\"materials\":[]}", API_DUPLICATE_MEMBER, ""},
+    {"{\"materials\":{}}", API_WRONG_TYPE, "/materials"},
+    {"{\"materials\":[1]}", API_WRONG_TYPE, "/materials/0"},
+    {"{\"materials\":[{}]}", API_MISSING_MEMBER, "/materials/0"},
+    {"{\"materials\":[{\"name\":\"\"}]}", HE_BAD_VALUE, "/materials/0"},
+    {"{\"materials\":[{\"name\":\"a\"},{\"name\":\"a\"}]}", API_DUPLICATE_MEMBER,
+     "/materials/1/name"},
+    {"{\"materials\":[{\"name\":\"a\",\"color\":1}]}", API_UNKNOWN_MEMBER, "/materials/0/color"},
+    {"{\"materials\":[{\"name\":\"a\",\"base_color\":[1,0]}]}", HE_BAD_VALUE,
+     "/materials/0/base_color"},
+    {"{\"materials\":[{\"name\":\"a\",\"base_color\":[1,0,-1]}]}", HE_BAD_VALUE,
+     "/materials/0/base_color/2"},
+    {"{\"materials\":[{\"name\":\"a\",\"base_color\":[1,0,2]}]}", HE_BAD_VALUE, "/materials/0"},
+    {"{\"materials\":[{\"name\":\"a\",\"emission\":[1,0,0,1]}]}", HE_BAD_VALUE,
+     "/materials/0/emission"},
+    {"{\"materials\":[{\"name\":\"a\",\"metallic\":1.5}]}", HE_BAD_VALUE, "/materials/0/metallic"},
+    {"{\"materials\":[{\"name\":\"a\",\"two_sided\":1}]}", API_WRONG_TYPE,
+     "/materials/0/two_sided"},
+    {"{\"materials\":[{\"name\":\"a\"]}", API_MALFORMED_JSON, "-"},
     {"{\"attributes\":[{\"domain\":\"faces\",\"name\":\"a\",\"type\":\"bool\",\"values\":[tru]}]}",
      API_MALFORMED_JSON, "/attributes/0/values/0"},
     {"{\"attributes\":[{\"values\":[1,2", API_MALFORMED_JSON, ""},
@@ -364,6 +389,34 @@ static void a_document_makes_its_mesh_again(void **state)
     }
 }
 
+static void materials_come_back_with_their_names(void **state)
+{
+    (void)state;
+    static const he_look look = {.base_color = {0.1, 1e-7, 1, 0.5},
+                                 .metallic = 0.25,
+                                 .roughness = 0.75,
+                                 .emission = {0, 1e300, 2},
+                                 .two_sided = true};
+    static const char *const names[] = {"red", "K\xc3\xb6rper \"1\"", "tab\there"};
+    he_mesh *mesh = fixture_mesh("012");
+    size_t length;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        he_material *row = NULL;
+        assert_int_equal(he_material_new(names[i], strlen(names[i]),
+                                         i == 1 ? &look : &he_plain_look, &row, NULL),
+                         HE_OK);
+        assert_int_equal(he_mesh_put_material(mesh, i, row, NULL), HE_OK);
+        for (size_t step = 1; step < 200; step = step * 3 + 1) {
+            char *text = write_all(mesh, "t", step, &length);
+            he_mesh *again = read_back(text, length);
+            assert_true(he_mesh_equal(mesh, again));
+            he_mesh_free(again);
+            free(text);
+        }
+    }
+    he_mesh_free(mesh);
+}
+
 static void text_is_one_item_a_line(void **state)
 {
     (void)state;
@@ -444,6 +497,7 @@ int main(void)
         cmocka_unit_test(every_failed_allocation_while_reading_is_a_problem),
         cmocka_unit_test(every_failed_allocation_of_attributes_and_repairs_is_a_problem),
         cmocka_unit_test(a_document_makes_its_mesh_again),
+        cmocka_unit_test(materials_come_back_with_their_names),
         cmocka_unit_test(text_is_one_item_a_line),
         cmocka_unit_test(a_large_document_is_cut_anywhere),
         cmocka_unit_test(every_failed_allocation_of_the_writer_gives_null),

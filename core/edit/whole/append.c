@@ -52,38 +52,161 @@ static he_status no_memory(const he_column *column, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for attribute %s", column->name);
 }
 
-/* --- labels --- */
+/* --- materials --- */
 
-static he_status add_labels(he_labels *to, const he_labels *from, uint32_t *at, he_error *err)
+/* Names of the other mesh's materials that others have here, and where they went. */
+typedef struct renames {
+    he_labels *from; /* NULL while there is none */
+    he_ids slots;    /* of each a row of this mesh */
+} renames;
+
+static void renames_clear(renames *r)
 {
-    for (size_t i = 0; i < he_labels_count(from); i++) {
-        const char *text = he_labels_get(from, i);
-        uint32_t index;
-        he_status status = he_labels_add(to, text, strlen(text), &index, err);
-        if (status != HE_OK) {
-            return status;
-        }
-        if (at != NULL) {
-            at[i] = index;
+    he_labels_release(r->from);
+    he_ids_clear(&r->slots);
+}
+
+static he_status rename_material(renames *r, const he_material *row, size_t slot, he_error *err)
+{
+    uint32_t index;
+    if (r->from == NULL) {
+        r->from = he_labels_new();
+        if (r->from == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for names of materials");
         }
     }
+    he_status status = he_labels_add(r->from, row->name, row->length, &index, err);
+    return status == HE_OK ? he_ids_add(&r->slots, (uint32_t)slot, err) : status;
+}
+
+static bool is_label(const he_mesh *m, const char *name)
+{
+    const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
+    uint32_t index;
+    return column != NULL && column->labels != NULL &&
+           he_labels_find(column->labels, name, strlen(name), &index);
+}
+
+/* The name under which a row of the other mesh is here: its own, unless a row that looks different
+ * has that; then NAME_2 and so on, where that is free in both or looks the same. */
+static void choose_name(const he_mesh *m, const he_mesh *other, const he_material *row,
+                        char name[HE_MATERIAL_NAME + 1])
+{
+    for (unsigned number = 1;; number++) {
+        he_material_number_name(row->name, number, name);
+        size_t slot = he_materials_find(&m->c.materials, name, strlen(name));
+        if (slot != SIZE_MAX) {
+            if (he_look_equal(&m->c.materials.rows[slot]->look, &row->look)) {
+                return;
+            }
+        } else if (number == 1 || !(is_label(m, name) || is_label(other, name))) {
+            return;
+        }
+    }
+}
+
+static he_status merge_material(he_mesh *m, const he_mesh *other, he_material *row, renames *r,
+                                he_error *err)
+{
+    char name[HE_MATERIAL_NAME + 1];
+    he_material *made = NULL;
+    choose_name(m, other, row, name);
+    bool same = strcmp(name, row->name) == 0;
+    size_t slot = he_materials_find(&m->c.materials, name, strlen(name));
+    he_status status = HE_OK;
+    if (slot == SIZE_MAX) {
+        slot = he_materials_free_slot(&m->c.materials);
+        if (same) {
+            made = he_material_retain(row);
+        } else {
+            status = he_material_new(name, strlen(name), &row->look, &made, err);
+        }
+        if (status == HE_OK) {
+            status = he_mesh_put_material(m, slot, made, err);
+        }
+        if (status != HE_OK) {
+            he_material_release(made);
+        }
+    }
+    return status == HE_OK && !same ? rename_material(r, row, slot, err) : status;
+}
+
+/* Rows that this mesh has not come behind its own. */
+static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, he_error *err)
+{
+    const he_materials *theirs = &other->c.materials;
+    he_status status = HE_OK;
+    for (size_t i = 0; i < theirs->count && status == HE_OK; i++) {
+        if (theirs->rows[i] != NULL) {
+            status = merge_material(m, other, theirs->rows[i], r, err);
+        }
+    }
+    return status;
+}
+
+/* --- labels --- */
+
+/* What a label of the other mesh is called here. */
+static const char *name_here(const he_mesh *m, const he_column *theirs, const renames *r,
+                             const char *text)
+{
+    uint32_t index;
+    return r->from != NULL && he_is_material_column(theirs) &&
+                   he_labels_find(r->from, text, strlen(text), &index)
+               ? m->c.materials.rows[r->slots.ids[index]]->name
+               : text;
+}
+
+static he_status add_labels(he_labels *to, const he_labels *from, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; i < he_labels_count(from) && status == HE_OK; i++) {
+        const char *text = he_labels_get(from, i);
+        uint32_t index;
+        status = he_labels_add(to, text, strlen(text), &index, err);
+    }
+    return status;
+}
+
+static he_status add_theirs(const he_mesh *m, he_labels *to, const he_column *theirs,
+                            const renames *r, uint32_t *at, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; i < he_labels_count(theirs->labels) && status == HE_OK; i++) {
+        const char *text = name_here(m, theirs, r, he_labels_get(theirs->labels, i));
+        status = he_labels_add(to, text, strlen(text), &at[i], err);
+    }
+    return status;
+}
+
+/* Labels of both, those of `own` (may be NULL) first; out->label says where each of theirs is. */
+static he_status make_labels(const he_mesh *m, const he_column *own, const he_column *theirs,
+                             const renames *r, target *out, he_labels **labels, he_error *err)
+{
+    he_labels *both = he_labels_new();
+    out->label = he_mem_array(NULL, he_labels_count(theirs->labels) + 1, sizeof *out->label);
+    he_status status = both == NULL || out->label == NULL ? no_memory(theirs, err) : HE_OK;
+    if (status == HE_OK && own != NULL) {
+        status = add_labels(both, own->labels, err);
+    }
+    if (status == HE_OK) {
+        status = add_theirs(m, both, theirs, r, out->label, err);
+    }
+    if (status != HE_OK) {
+        he_labels_release(both);
+        return status;
+    }
+    *labels = both;
     return HE_OK;
 }
 
 /* A column in the place of `own` that has the labels of both, when those of `own` do not do. */
-static he_status join_labels(he_mesh *m, const he_column *own, const he_column *theirs, target *out,
-                             he_error *err)
+static he_status join_labels(he_mesh *m, const he_column *own, const he_column *theirs,
+                             const renames *r, target *out, he_error *err)
 {
     he_column *copy = NULL;
-    he_labels *both = he_labels_new();
-    out->label = he_mem_array(NULL, he_labels_count(theirs->labels) + 1, sizeof *out->label);
-    he_status status = both == NULL || out->label == NULL ? no_memory(own, err) : HE_OK;
-    if (status == HE_OK) {
-        status = add_labels(both, own->labels, NULL, err);
-    }
-    if (status == HE_OK) {
-        status = add_labels(both, theirs->labels, out->label, err);
-    }
+    he_labels *both = NULL;
+    he_status status = make_labels(m, own, theirs, r, out, &both, err);
     if (status == HE_OK && he_labels_count(both) > he_labels_count(own->labels)) {
         status = he_column_copy(own, &copy, err);
         if (status == HE_OK) {
@@ -101,15 +224,41 @@ static he_status join_labels(he_mesh *m, const he_column *own, const he_column *
     return status;
 }
 
+/* The number of a label becomes the one that it has here. What lies beyond the labels, as -1 for
+ * none, stands for itself. */
+static void map_labels(const he_column *theirs, const target *to, unsigned char *value)
+{
+    for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {
+        uint32_t index;
+        memcpy(&index, value + k * sizeof index, sizeof index);
+        if (index < he_labels_count(theirs->labels)) {
+            index = to->label[index];
+        }
+        memcpy(value + k * sizeof index, &index, sizeof index);
+    }
+}
+
 /* --- columns --- */
 
 /* One like it, at its default everywhere; values of the mesh come along. */
-static he_status add_column(he_mesh *m, const he_column *theirs, target *out, he_error *err)
+static he_status add_column(he_mesh *m, const he_column *theirs, const renames *r, target *out,
+                            he_error *err)
 {
     he_column *column = NULL;
     he_status status = he_column_copy(theirs, &column, err);
     if (status != HE_OK) {
         return status;
+    }
+    if (r->from != NULL && he_is_material_column(theirs)) {
+        he_labels *labels = NULL;
+        status = make_labels(m, NULL, theirs, r, out, &labels, err);
+        if (status != HE_OK) {
+            he_column_free(column);
+            return status;
+        }
+        he_labels_release(column->labels);
+        column->labels = labels;
+        map_labels(theirs, out, column->fallback);
     }
     if (theirs->domain != HE_MESH_KIND) {
         column->rows = 0;
@@ -126,19 +275,21 @@ static he_status add_column(he_mesh *m, const he_column *theirs, target *out, he
     return status;
 }
 
-static he_status match_column(he_mesh *m, const he_column *theirs, target *out, he_error *err)
+static he_status match_column(he_mesh *m, const he_column *theirs, const renames *r, target *out,
+                              he_error *err)
 {
     const he_column *own = he_mesh_find_column(m, theirs->domain, theirs->name);
     if (own == NULL) {
-        return add_column(m, theirs, out, err);
+        return add_column(m, theirs, r, out, err);
     }
     if (theirs->domain == HE_MESH_KIND) {
         return HE_OK;
     }
     out->slot = he_mesh_column_slot(m, own);
-    return theirs->labels == NULL || theirs->labels == own->labels
+    bool renamed = r->from != NULL && he_is_material_column(theirs);
+    return theirs->labels == NULL || (theirs->labels == own->labels && !renamed)
                ? HE_OK
-               : join_labels(m, own, theirs, out, err);
+               : join_labels(m, own, theirs, r, out, err);
 }
 
 static void carry_row(he_mesh *m, const he_column *theirs, const target *to, uint32_t from,
@@ -146,15 +297,7 @@ static void carry_row(he_mesh *m, const he_column *theirs, const target *to, uin
 {
     unsigned char value[HE_COLUMN_ROW_BYTES];
     memcpy(value, he_column_value(theirs, from), theirs->row_bytes);
-    for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {
-        uint32_t index;
-        memcpy(&index, value + k * sizeof index, sizeof index);
-        /* What lies beyond the labels, as -1 for none, stands for itself. */
-        if (index < he_labels_count(theirs->labels)) {
-            index = to->label[index];
-        }
-        memcpy(value + k * sizeof index, &index, sizeof index);
-    }
+    map_labels(theirs, to, value);
     he_set_attribute(m, to->slot, row, value);
 }
 
@@ -241,12 +384,17 @@ static void carry_column(he_mesh *m, const he_mesh *other, const he_column *thei
 static he_status append_in_bracket(he_mesh *m, const he_mesh *other, target *targets,
                                    const maps *at, he_appended *out, he_error *err)
 {
+    renames r = {.from = NULL};
     he_status status = he_watch_phase(m->watch, "matching attributes", 0.2, err);
+    if (status == HE_OK) {
+        status = merge_materials(m, other, &r, err);
+    }
     for (size_t i = 0; status == HE_OK && i < other->c.column_count; i++) {
         if (other->c.columns[i] != NULL) {
-            status = match_column(m, other->c.columns[i], &targets[i], err);
+            status = match_column(m, other->c.columns[i], &r, &targets[i], err);
         }
     }
+    renames_clear(&r);
     const he_need need = {.vertices = other->c.vertices.live,
                           .edges = other->c.edges.live,
                           .faces = other->c.faces.live};

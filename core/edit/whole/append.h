@@ -25,9 +25,12 @@ typedef struct he_appended {
  * default on what was there. Values of the mesh's own domain are taken only where this mesh has
  * none of that name.
  *
- * Refused: HE_ATTRIBUTE_CLASH where attributes of one domain and name differ as above.
- * HE_NO_MEMORY, HE_IDS_EXHAUSTED, HE_CANCELLED. `other` is not `m`. `out` may be NULL, else
- * he_appended_clear frees it. */
+ * MATERIALS. Rows of the other mesh's table that this mesh has are those; others are added, under
+ * NAME_2 and so on where a row here looks different and has the name, and faces name them so.
+ *
+ * Refused: HE_LIMIT where there would be more than HE_MATERIALS, HE_ATTRIBUTE_CLASH where
+ * attributes of one domain and name differ as above. HE_NO_MEMORY, HE_IDS_EXHAUSTED, HE_CANCELLED.
+ * `other` is not `m`. `out` may be NULL, else he_appended_clear frees it. */
 HE_NODISCARD he_status he_append(he_mesh *m, const he_mesh *other, he_appended *out, he_error *err);
 void he_appended_clear(he_appended *appended);
 

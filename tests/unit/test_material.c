@@ -1,0 +1,204 @@
+/* Materials of a mesh: the table follows every edit that makes the mesh anew, faces keep theirs,
+ * and two meshes with different tables become one. */
+#include "unit/edit_script.h"
+#include "unit/fixture.h"
+
+#include "edit/whole/append.h"
+#include "mesh/check.h"
+#include "mesh/column.h"
+#include "mesh/write.h"
+
+#define QCUBE "0123,7654,1045,2156,3267,0374"
+
+static const char *name_of(const he_mesh *m, uint32_t face)
+{
+    const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
+    uint32_t label;
+    assert_non_null(column);
+    assert_true(he_is_material_column(column));
+    memcpy(&label, he_column_value(column, face), sizeof label);
+    assert_true(label < he_labels_count(column->labels));
+    return he_labels_get(column->labels, label);
+}
+
+static const he_look *look_of(const he_mesh *m, const char *name)
+{
+    const he_materials *table = he_mesh_materials(m);
+    size_t slot = he_materials_find(table, name, strlen(name));
+    if (slot == SIZE_MAX) {
+        fail_msg("there is no material %s", name);
+    }
+    return &table->rows[slot]->look;
+}
+
+static void a_material_is_made_changed_and_given(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    script_prepare(m, "material_set name=red base_color=1,0,0,0.5 faces=0,1");
+    assert_string_equal(name_of(m, 1), "red");
+    assert_string_equal(name_of(m, 2), "");
+    assert_true(look_of(m, "red")->base_color[3] == 0.5);
+    assert_true(look_of(m, "red")->roughness == 1 && look_of(m, "red")->metallic == 0);
+    script_prepare(m, "material_set name=red base_color=0,1,0 emission=3,0,0 two_sided=1");
+    const he_look *look = look_of(m, "red");
+    assert_true(look->base_color[0] == 0 && look->base_color[1] == 1);
+    assert_true(look->base_color[3] == 0.5); /* three numbers leave the opacity alone */
+    assert_true(look->emission[0] == 3 && look->two_sided);
+    script_prepare(m, "material_set name=red rename=green;material_set name=blue faces=1,2");
+    assert_string_equal(name_of(m, 0), "green");
+    assert_string_equal(name_of(m, 1), "blue");
+    assert_int_equal(he_materials_count(he_mesh_materials(m)), 2);
+    he_mesh_free(m);
+}
+
+/* An edit that says what is already so is none. */
+static void what_changes_nothing_is_no_edit(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    script_prepare(m, "material_set name=red base_color=1,0,0 face=0");
+    he_delta *delta = he_delta_new();
+    he_mesh_record(m, delta);
+    script_prepare(m, "material_set name=red base_color=1,0,0 face=0;material_set name=red");
+    assert_int_equal(delta->count, 0);
+    script_prepare(m, "material_set name=red roughness=0.5");
+    assert_int_equal(delta->count, 1); /* of a row, whatever the table holds */
+    he_mesh_record(m, NULL);
+    he_delta_free(delta);
+    he_mesh_free(m);
+}
+
+static void edits_of_the_whole_keep_the_table_and_faces_theirs(void **state)
+{
+    (void)state;
+    static const char *const edits[] = {"subdivide",
+                                        "subdivide scheme=linear",
+                                        "triangulate",
+                                        "compact",
+                                        "reverse",
+                                        "face_poke face=0",
+                                        "face_split face=0 from=0 to=2",
+                                        "face_delete face=5;compact",
+                                        "triangulate;decimate faces=8",
+                                        "plane_split point=3.5,0,0 normal=1,0,0",
+                                        "triangulate;subdivide scheme=loop;decimate faces=20"};
+    for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+        he_mesh *m = script_mesh(QCUBE, NULL);
+        script_prepare(m, "material_set name=red metallic=0.5 faces=0,1,2,3,4,5");
+        he_materials before = {0};
+        assert_int_equal(he_materials_copy(he_mesh_materials(m), &before, NULL), HE_OK);
+        script_prepare(m, edits[i]);
+        assert_true(he_materials_equal(he_mesh_materials(m), &before));
+        for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
+            if (he_mesh_is_live(m, HE_FACE, f)) {
+                assert_string_equal(name_of(m, f), "red");
+            }
+        }
+        assert_valid(m);
+        he_materials_clear(&before);
+        he_mesh_free(m);
+    }
+}
+
+/* A free slot is none afterwards. */
+static void compact_closes_gaps(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    script_prepare(m, "material_set name=a;material_set name=b;material_set name=c");
+    assert_int_equal(he_mesh_put_material(m, 1, NULL, NULL), HE_OK);
+    assert_int_equal(he_mesh_materials(m)->count, 3);
+    script_prepare(m, "compact");
+    assert_int_equal(he_mesh_materials(m)->count, 2);
+    assert_string_equal(he_mesh_materials(m)->rows[1]->name, "c");
+    he_mesh_free(m);
+}
+
+static void append_merges_equal_rows_and_numbers_others(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("012,034", NULL), *other = script_mesh("012,034,056", NULL);
+    script_prepare(m, "material_set name=same metallic=0.5 face=0;"
+                      "material_set name=red base_color=1,0,0 face=1");
+    script_prepare(other, "material_set name=red base_color=0,1,0 face=0;"
+                          "material_set name=same metallic=0.5 face=1;"
+                          "material_set name=red_2 base_color=0,0,1 face=2");
+    he_appended appended = {.vertices = {0}};
+    assert_int_equal(he_append(m, other, &appended, NULL), HE_OK);
+    assert_int_equal(he_materials_count(he_mesh_materials(m)), 4);
+    assert_string_equal(name_of(m, 0), "same");
+    assert_string_equal(name_of(m, 1), "red");
+    assert_string_equal(name_of(m, appended.faces.ids[0]), "red_3");
+    assert_string_equal(name_of(m, appended.faces.ids[1]), "same");
+    assert_string_equal(name_of(m, appended.faces.ids[2]), "red_2");
+    assert_true(look_of(m, "red_3")->base_color[1] == 1);
+    assert_true(look_of(m, "red_2")->base_color[2] == 1);
+    assert_true(look_of(m, "red")->base_color[1] == 0);
+    he_appended_clear(&appended);
+    /* again: what was numbered is found */
+    assert_int_equal(he_append(m, other, NULL, NULL), HE_OK);
+    assert_int_equal(he_materials_count(he_mesh_materials(m)), 4);
+    assert_valid(m);
+    he_mesh_free(m);
+    /* where no face has one yet, labels come with their new names */
+    m = script_mesh("012", NULL);
+    script_prepare(m, "material_set name=red roughness=0.5");
+    assert_int_equal(he_append(m, other, &appended, NULL), HE_OK);
+    assert_string_equal(name_of(m, 0), "");
+    assert_string_equal(name_of(m, appended.faces.ids[0]), "red_3");
+    assert_string_equal(name_of(m, appended.faces.ids[2]), "red_2");
+    he_appended_clear(&appended);
+    he_mesh_free(m);
+    he_mesh_free(other);
+}
+
+static void the_checker_sees_a_table_that_cannot_be(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("012", NULL);
+    he_problem problem;
+    size_t total = 0;
+    script_prepare(m, "material_set name=a;material_set name=b");
+    m->c.materials.rows[1]->name[0] = 'a';
+    assert_int_equal(he_check(m, &problem, 1, &total, NULL), HE_OK);
+    assert_int_equal(total, 1);
+    assert_int_equal(problem.rule, 13);
+    m->c.materials.rows[1]->name[0] = 'b';
+    m->c.materials.rows[0]->look.metallic = 2;
+    assert_int_equal(he_check(m, &problem, 1, &total, NULL), HE_OK);
+    assert_int_equal(problem.rule, 13);
+    he_mesh_free(m);
+}
+
+/* Rows are shared: a copy costs its slots, and both are counted in full. */
+static void memory_of_rows_is_counted(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh("012", NULL);
+    size_t before = he_mesh_bytes(m);
+    script_prepare(m, "materials 100");
+    assert_true(he_mesh_bytes(m) >= before + 100 * sizeof(he_material));
+    he_delta *delta = he_delta_new();
+    he_mesh_record(m, delta);
+    before = he_delta_bytes(delta);
+    script_prepare(m, "material_set name=m1 metallic=1");
+    assert_true(he_delta_bytes(delta) >= before + sizeof(he_record) + sizeof(he_material));
+    he_mesh_record(m, NULL);
+    he_delta_free(delta);
+    he_mesh_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_material_is_made_changed_and_given),
+        cmocka_unit_test(what_changes_nothing_is_no_edit),
+        cmocka_unit_test(edits_of_the_whole_keep_the_table_and_faces_theirs),
+        cmocka_unit_test(compact_closes_gaps),
+        cmocka_unit_test(append_merges_equal_rows_and_numbers_others),
+        cmocka_unit_test(the_checker_sees_a_table_that_cannot_be),
+        cmocka_unit_test(memory_of_rows_is_counted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
