@@ -26,12 +26,11 @@
  * others get copies, numbered after all vertices in the order of their first corners. Faces hang
  * together in a fan where they run along an edge in opposite directions. Where more than two have
  * an edge, they are paired in their order, each with the first that waits and runs the other way
- * (two solids that touch come apart); the rest is cut off. When
- * every fan has its vertex, more than two faces may still have an edge in common: where several
- * pairs lie between the same two fans, kept pairs would double the edge. None of the pairs along
- * such an edge is kept then: their faces are cut apart there, and the fans are found again. After
- * Gueziec, Taubin, Lazarus and Horn, "Cutting and stitching: converting sets of polygons to
- * manifold surfaces" (2001).
+ * (two solids that touch come apart); the rest is cut off. Where two pairs along an edge lie
+ * between the same two fans, the edge would be doubled: they exchange partners, which makes two
+ * fans of each. So what is closed, and wound consistently, stays closed. After Gueziec, Taubin,
+ * Lazarus and Horn, "Cutting and stitching: converting sets of polygons to manifold surfaces"
+ * (2001).
  *
  * fill: holes of at most `hole_edges` edges are closed by one polygon each. Those that pass a
  * vertex twice, and the rim of a single face, are left.

@@ -1,58 +1,17 @@
-/* split: a vertex for each fan.
- *
- * Corners are mates where their faces stay joined along an edge. About a vertex, corner c is
- * followed by the one after its mate, and preceded by the mate of the one before it:
- *
- *            v                     c leaves v; so do the corner after mate(c), in the face on
- *          / | \                   the other side of c's edge, and mate(before(c)).
- *      c  /  |  \  mate(before(c))
- *        /   |   \
- *       o----o----o
- *
- * When every fan has a copy of its own, corners that were not mates may still run along the same
- * edge: both ends of a fan that reaches around a vertex, say. Two of them run in opposite
- * directions then, since the fan winds consistently, and he_build joins them. Where mates meet
- * others so, more than two share the edge: they are no mates any longer, and the fans are found
- * again. The second time none are left, because all corners along such an edge are ends of fans,
- * and a fan has two. */
-#include "build/pair.h"
-#include "repair/mend.h"
+/* split: a vertex for each fan. Corners of an edge are mates, as many as there are of both
+ * directions; where pairs of them would double an edge, they exchange partners (exchange.c). */
+#include "repair/split.h"
 
 #include <string.h>
-
-typedef struct splitting {
-    const he_soup *soup;
-    uint32_t *mate, *face_of;
-    uint32_t *to;      /* each corner's vertex afterwards */
-    uint32_t *parents; /* of the copies */
-    size_t copies, capacity;
-    bool is_crowded;  /* an edge has more than two corners, or two in one direction */
-    bool has_closed;  /* a vertex has a closed fan and another */
-    uint64_t *done;   /* corners whose fan is found */
-    uint64_t *taken;  /* vertices that a fan has */
-    uint64_t *closed; /* vertices whose first fan is closed */
-} splitting;
 
 static he_status no_memory(const he_soup *soup, he_error *err)
 {
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to split %zu faces apart", soup->face_count);
 }
 
-static uint32_t after(const splitting *s, uint32_t c)
-{
-    uint32_t f = s->face_of[c];
-    return c + 1 < he_soup_end(s->soup, f) ? c + 1 : s->soup->starts[f];
-}
-
-static uint32_t before(const splitting *s, uint32_t c)
-{
-    uint32_t f = s->face_of[c];
-    return (c > s->soup->starts[f] ? c : he_soup_end(s->soup, f)) - 1;
-}
-
 /* Pair the corners of every edge: each with the first one waiting that runs the other way. All that
  * wait at an edge run the same way, so they are a queue, chained by `mate`. */
-static he_status pair(splitting *s, he_error *err)
+static he_status pair(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
     size_t edges = 0;
@@ -105,7 +64,7 @@ static he_status pair(splitting *s, he_error *err)
     return HE_OK;
 }
 
-static he_status add_copy(splitting *s, uint32_t parent, he_error *err)
+static he_status add_copy(he_splitting *s, uint32_t parent, he_error *err)
 {
     if (s->copies == s->capacity) {
         size_t capacity = he_mem_grown(s->capacity, s->copies + 1);
@@ -121,7 +80,7 @@ static he_status add_copy(splitting *s, uint32_t parent, he_error *err)
 }
 
 /* The vertex of the fan that corner c begins, or a part of it when that is open. */
-static he_status find_fan(splitting *s, uint32_t c, he_error *err)
+static he_status find_fan(he_splitting *s, uint32_t c, he_error *err)
 {
     uint32_t v = s->soup->corners[c], vertex = v;
     bool is_first = !he_bits_get(s->taken, v);
@@ -139,10 +98,10 @@ static he_status find_fan(splitting *s, uint32_t c, he_error *err)
         s->to[at] = vertex;
         he_bits_set(s->done, at);
         uint32_t mate = s->mate[at];
-        at = mate == HE_NONE ? HE_NONE : after(s, mate);
+        at = mate == HE_NONE ? HE_NONE : he_corner_after(s, mate);
         is_closed = at == c;
     } while (at != HE_NONE && !is_closed);
-    for (at = c; !is_closed && (at = s->mate[before(s, at)]) != HE_NONE;) {
+    for (at = c; !is_closed && (at = s->mate[he_corner_before(s, at)]) != HE_NONE;) {
         s->to[at] = vertex;
         he_bits_set(s->done, at);
     }
@@ -159,7 +118,7 @@ static void clear_bits(uint64_t *bits, size_t count)
     memset(bits, 0, (count + 63) / 64 * sizeof *bits);
 }
 
-static he_status find_fans(splitting *s, he_error *err)
+static he_status find_fans(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
     he_status status = HE_OK;
@@ -176,41 +135,7 @@ static he_status find_fans(splitting *s, he_error *err)
     return status;
 }
 
-/* Part the mates that meet others along the same edge; *found says that there were some. */
-static he_status part(splitting *s, bool *found, he_error *err)
-{
-    const he_soup *soup = s->soup;
-    he_soup now = *soup; /* as it would be; only read */
-    size_t edges = 0;
-    now.corners = s->to;
-    now.vertex_count += s->copies;
-    uint32_t *met = NULL;
-    uint32_t *edge_of = he_mem_array(NULL, soup->corner_count, sizeof *edge_of);
-    he_status status = HE_OK;
-    *found = false;
-    if (edge_of == NULL) {
-        return no_memory(soup, err);
-    }
-    status = he_soup_number_edges(&now, edge_of, &edges, err);
-    if (status == HE_OK) {
-        met = he_mem_zero(edges + 1, sizeof *met);
-        status = met == NULL ? no_memory(soup, err) : HE_OK;
-    }
-    for (size_t c = 0; c < soup->corner_count && status == HE_OK; c++) {
-        met[edge_of[c]]++;
-    }
-    for (size_t c = 0; c < soup->corner_count && status == HE_OK; c++) {
-        if (met[edge_of[c]] > 2) {
-            *found = *found || s->mate[c] != HE_NONE;
-            s->mate[c] = HE_NONE;
-        }
-    }
-    he_mem_free(edge_of);
-    he_mem_free(met);
-    return status;
-}
-
-static void clear(splitting *s)
+static void clear(he_splitting *s)
 {
     he_mem_free(s->mate);
     he_mem_free(s->face_of);
@@ -222,7 +147,7 @@ static void clear(splitting *s)
 }
 
 /* Memory, and mates. */
-static he_status begin(splitting *s, he_error *err)
+static he_status begin(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
     s->mate = he_mem_array(NULL, soup->corner_count, sizeof *s->mate);
@@ -239,7 +164,7 @@ static he_status begin(splitting *s, he_error *err)
     return pair(s, err);
 }
 
-static he_status plan(splitting *s, he_error *err)
+static he_status plan(he_splitting *s, he_error *err)
 {
     bool again = false;
     he_status status = begin(s, err);
@@ -247,7 +172,7 @@ static he_status plan(splitting *s, he_error *err)
         status = find_fans(s, err);
     }
     if (status == HE_OK && s->is_crowded) {
-        status = part(s, &again, err);
+        status = he_splitting_exchange(s, &again, err);
     }
     if (status == HE_OK && again) {
         status = find_fans(s, err);
@@ -256,7 +181,7 @@ static he_status plan(splitting *s, he_error *err)
 }
 
 /* Nothing of the soup is written before all memory is there. */
-static he_status apply(he_mend *m, splitting *s, he_error *err)
+static he_status apply(he_mend *m, he_splitting *s, he_error *err)
 {
     he_soup *soup = m->soup;
     he_repaired *out = m->out;
@@ -288,7 +213,7 @@ static he_status apply(he_mend *m, splitting *s, he_error *err)
 
 he_status he_mend_split(he_mend *m, he_error *err)
 {
-    splitting s = {.soup = m->soup};
+    he_splitting s = {.soup = m->soup};
     he_status status = plan(&s, err);
     if (status == HE_OK && s.copies > 0) {
         status = apply(m, &s, err);
@@ -299,7 +224,7 @@ he_status he_mend_split(he_mend *m, he_error *err)
 
 he_status he_mend_needs_split(const he_soup *soup, bool *out, he_error *err)
 {
-    splitting s = {.soup = soup};
+    he_splitting s = {.soup = soup};
     he_status status = begin(&s, err);
     if (status == HE_OK && !s.is_crowded) {
         status = find_fans(&s, err);
