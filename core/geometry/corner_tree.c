@@ -60,20 +60,40 @@ static uint64_t key_of(const he_flat *f, uint32_t corner)
     return spread(on_curve(f->x[corner])) | spread(on_curve(f->y[corner])) << 1;
 }
 
+/* Corners of a list that are compared with a box at once, which the compiler does several at a
+ * time. */
+enum { BATCH = 8 };
+
+static uint32_t batched(uint32_t count)
+{
+    return (count + BATCH - 1) / BATCH * BATCH;
+}
+
 static void put(he_corner_tree *t, uint32_t place, uint32_t corner)
 {
     t->order[place] = corner;
     t->place[corner] = place;
 }
 
+static void put_in_list(he_corner_tree *t, uint32_t place, uint32_t corner)
+{
+    put(t, place, corner);
+    t->x[place] = t->flat->x[corner];
+    t->y[place] = t->flat->y[corner];
+}
+
+static void fill_list(he_corner_tree *t, const uint32_t *corners)
+{
+    for (uint32_t i = 0; i < t->count; i++) {
+        put_in_list(t, i, corners[i]);
+    }
+    for (uint32_t i = t->count; i < batched(t->count); i++) {
+        t->x[i] = t->y[i] = HUGE_VAL;
+    }
+}
+
 static bool fill_order(he_corner_tree *t, const uint32_t *corners)
 {
-    if (t->leaves == 0) {
-        for (uint32_t i = 0; i < t->count; i++) {
-            put(t, i, corners[i]);
-        }
-        return true;
-    }
     keyed *block = he_mem_array(NULL, 2 * (size_t)t->count, sizeof *block);
     if (block == NULL) {
         return false;
@@ -150,17 +170,23 @@ he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat, const ui
             t.leaves *= 2;
         }
     }
-    size_t boxes = 2 * (size_t)t.leaves, words = (size_t)flat->n + count;
-    t.memory = he_mem_array(NULL, boxes + words / 8 + 1, sizeof *t.boxes);
+    size_t boxes = 2 * (size_t)t.leaves, listed = t.leaves == 0 ? batched(count) : 0;
+    size_t words = (size_t)flat->n + count;
+    t.memory = he_mem_array(NULL, boxes + listed / 2 + words / 8 + 1, sizeof *t.boxes);
     if (t.memory != NULL) {
         t.boxes = t.memory;
-        t.place = (uint32_t *)(t.boxes + boxes);
+        t.x = (double *)(t.boxes + boxes);
+        t.y = t.x + listed;
+        t.place = (uint32_t *)(t.y + listed);
         t.order = t.place + flat->n;
         memset(t.place, 0xFF, flat->n * sizeof *t.place);
     }
-    if (t.memory == NULL || !fill_order(&t, corners)) {
+    if (t.memory == NULL || (t.leaves > 0 && !fill_order(&t, corners))) {
         he_corner_tree_clear(&t);
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %u corners of a loop", count);
+    }
+    if (t.leaves == 0) {
+        fill_list(&t, corners);
     }
     for (uint32_t leaf = 0; leaf < t.leaves; leaf++) {
         t.boxes[t.leaves + leaf] = box_of_leaf(&t, leaf);
@@ -181,7 +207,9 @@ static uint32_t leaf_of(const he_corner_tree *t, uint32_t place)
 void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 {
     if (t->leaves == 0) {
-        put(t, t->place[corner], t->order[--t->count]);
+        uint32_t last = --t->count;
+        put_in_list(t, t->place[corner], t->order[last]);
+        t->x[last] = t->y[last] = HUGE_VAL;
         t->place[corner] = HE_NONE;
         return;
     }
@@ -284,11 +312,27 @@ static inline bool touches(const triangle *t, const he_corner_box *box)
     return true;
 }
 
-/* Has no branches between the comparisons: which of them fails cannot be foreseen. */
-static bool is_in_box(const he_corner_box *box, const he_flat *f, uint32_t p)
+/* Two numbers that the processor compares at once. */
+typedef double pair __attribute__((vector_size(2 * sizeof(double))));
+typedef int64_t pair_mask __attribute__((vector_size(2 * sizeof(int64_t))));
+
+static inline pair pair_at(const double *from)
 {
-    double x = f->x[p], y = f->y[p];
-    return ((x >= box->min[0]) & (x <= box->max[0]) & (y >= box->min[1]) & (y <= box->max[1])) != 0;
+    pair p;
+    memcpy(&p, from, sizeof p);
+    return p;
+}
+
+/* Is a corner of the batch in the box? */
+static inline bool is_any_in_box(const he_corner_box *box, const double *x, const double *y)
+{
+    const double left = box->min[0], right = box->max[0], low = box->min[1], high = box->max[1];
+    pair_mask any = {0, 0};
+    for (unsigned i = 0; i < BATCH; i += 2) {
+        pair px = pair_at(x + i), py = pair_at(y + i);
+        any |= (px >= left) & (px <= right) & (py >= low) & (py <= high);
+    }
+    return (any[0] | any[1]) != 0;
 }
 
 /* A corner of the tree: is it in the triangle? */
@@ -335,34 +379,43 @@ static bool is_before(const he_flat *f, uint32_t a, uint32_t b)
     return of_a != of_b ? of_a < of_b : a < b;
 }
 
+/* The better of `found` and a corner of the list, if that is in the triangle. */
+static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uint32_t p,
+                              uint32_t found)
+{
+    const he_flat *f = tree->flat;
+    if (p == t->corner[0] || p == t->corner[2] || !holds(t, f, p)) {
+        return found;
+    }
+    return found == HE_NONE || is_before(f, p, found) ? p : found;
+}
+
 /* Returns the first corner along the curve, which a tree would find, unless the list was short when
  * it was made: then the first of the list. */
 static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps)
 {
-    const he_flat *f = tree->flat;
-    const he_corner_box box = box_around(f, a, b, c);
+    const he_corner_box box = box_around(tree->flat, a, b, c);
     triangle t;
     uint32_t found = HE_NONE;
     bool has_sides = false;
-    for (uint32_t i = 0; i < tree->count; i++) {
-        uint32_t p = tree->order[i];
-        if (!is_in_box(&box, f, p) || p == a || p == c) {
+    *steps += 1 + tree->count / HE_CORNER_LEAF;
+    for (uint32_t i = 0; i < tree->count; i += BATCH) {
+        if (!is_any_in_box(&box, tree->x + i, tree->y + i)) {
             continue;
         }
         /* A triangle without a corner in its box needs no sides. */
         if (!has_sides) {
-            t = triangle_of(f, a, b, c, &box);
+            t = triangle_of(tree->flat, a, b, c, &box);
             has_sides = true;
         }
-        if (holds(&t, f, p) && (found == HE_NONE || is_before(f, p, found))) {
-            found = p;
-            if (tree->made <= HE_CORNER_UNSORTED) {
-                break;
+        for (uint32_t k = i; k < i + BATCH && k < tree->count; k++) {
+            found = better(tree, &t, tree->order[k], found);
+            if (found != HE_NONE && tree->made <= HE_CORNER_UNSORTED) {
+                return found;
             }
         }
     }
-    *steps += 1 + tree->count / HE_CORNER_LEAF;
     return found;
 }
 

@@ -35,8 +35,9 @@ typedef struct he_corner_box {
 /* {0} holds no corners. */
 typedef struct he_corner_tree {
     const he_flat *flat;
-    void *memory; /* of the three arrays below */
-    he_corner_box *boxes;
+    void *memory;         /* of the arrays below */
+    he_corner_box *boxes; /* of a tree */
+    double *x, *y;   /* of a list, in its order: coordinates, and infinity up to a whole batch */
     uint32_t *place; /* of each corner of the loop in `order`, HE_NONE when it is not in the tree */
     uint32_t *order; /* the corners along the curve, HE_NONE where one was removed. Of a list: in no
                         order and without gaps */

@@ -2,9 +2,6 @@
 
 #include <math.h>
 
-/* Twice the area of a triangle, relative to its squared sides, under which it has none. */
-static const double THIN = 1e-12;
-
 static he_vec3 minus(he_vec3 a, he_vec3 b)
 {
     return (he_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
@@ -20,9 +17,12 @@ static double dot(he_vec3 a, he_vec3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static double largest(he_vec3 p)
+static double largest(double size, he_vec3 p)
 {
-    return fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+    double x = fabs(p.x), y = fabs(p.y), z = fabs(p.z);
+    size = x > size ? x : size;
+    size = y > size ? y : size;
+    return z > size ? z : size;
 }
 
 /* A power of two, which may itself be no double: as two factors. */
@@ -43,49 +43,41 @@ static power power_for(double size)
     return (power){ldexp(1, -exponent / 2), ldexp(1, -exponent - -exponent / 2)};
 }
 
-/* Corner i, relative to corner 0 and scaled: first so that differences are finite, then so that
- * the loop fills the unit cube. */
-typedef struct frame {
-    power first, second;
-    he_vec3 base;
-} frame;
-
-static he_vec3 place(const he_mesh *m, const he_flat *flat, const frame *unit, uint32_t i)
+/* Puts the corners into `at`, relative to corner 0 and scaled: first so that differences are
+ * finite, then so that the loop fills the unit cube. */
+static void place(const he_mesh *m, const he_flat *flat, he_vec3 *at)
 {
-    he_vec3 p = he_position(m, he_origin(m, (he_halfedge){flat->halfedge[i]}));
-    return scaled(minus(scaled(p, unit->first), unit->base), unit->second);
-}
-
-static frame find_frame(const he_mesh *m, const he_flat *flat)
-{
-    frame found = {{1, 1}, {1, 1}, {0, 0, 0}};
     double size = 0;
     for (uint32_t i = 0; i < flat->n; i++) {
-        size = fmax(size, largest(he_position(m, he_origin(m, (he_halfedge){flat->halfedge[i]}))));
+        at[i] = he_position(m, he_origin(m, (he_halfedge){flat->halfedge[i]}));
+        size = largest(size, at[i]);
     }
-    found.first = power_for(size);
-    found.base = place(m, flat, &found, 0);
+    const power first = power_for(size);
+    const he_vec3 base = scaled(at[0], first);
     size = 0;
     for (uint32_t i = 0; i < flat->n; i++) {
-        size = fmax(size, largest(place(m, flat, &found, i)));
+        at[i] = minus(scaled(at[i], first), base);
+        size = largest(size, at[i]);
     }
-    found.second = power_for(size);
-    return found;
+    const power second = power_for(size);
+    for (uint32_t i = 0; i < flat->n; i++) {
+        at[i] = scaled(at[i], second);
+    }
 }
 
-static he_vec3 newell(const he_mesh *m, const he_flat *flat, const frame *unit, double *length2)
+static he_vec3 newell(const he_vec3 *at, uint32_t n, double *length2)
 {
-    he_vec3 sum = {0, 0, 0}, a = place(m, flat, unit, flat->n - 1);
-    for (uint32_t i = 0; i < flat->n; i++) {
-        he_vec3 b = place(m, flat, unit, i), n = cross(a, b), side = minus(b, a);
-        sum = (he_vec3){sum.x + n.x, sum.y + n.y, sum.z + n.z};
+    he_vec3 sum = {0, 0, 0}, a = at[n - 1];
+    for (uint32_t i = 0; i < n; i++) {
+        he_vec3 b = at[i], normal = cross(a, b), side = minus(b, a);
+        sum = (he_vec3){sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
         *length2 += dot(side, side);
         a = b;
     }
     return sum;
 }
 
-static void project(const he_mesh *m, he_flat *flat, const frame *unit, he_vec3 normal)
+static void project(he_flat *flat, const he_vec3 *at, he_vec3 normal)
 {
     double length = sqrt(dot(normal, normal));
     normal = (he_vec3){normal.x / length, normal.y / length, normal.z / length};
@@ -96,9 +88,8 @@ static void project(const he_mesh *m, he_flat *flat, const frame *unit, he_vec3 
     v = (he_vec3){v.x / length, v.y / length, v.z / length};
     he_vec3 u = cross(v, normal);
     for (uint32_t i = 0; i < flat->n; i++) {
-        he_vec3 p = place(m, flat, unit, i);
-        flat->x[i] = dot(p, u);
-        flat->y[i] = dot(p, v);
+        flat->x[i] = dot(at[i], u);
+        flat->y[i] = dot(at[i], v);
     }
 }
 
@@ -110,10 +101,17 @@ void he_flat_clear(he_flat *flat)
 
 he_status he_flat_init(he_flat *out, const he_mesh *m, he_halfedge first, he_error *err)
 {
+    enum { FEW = 32 };
+    he_vec3 few[FEW], *at = few;
     he_flat flat = {.n = he_loop_length(m, first)};
     flat.memory = he_mem_zero(flat.n, 2 * sizeof *flat.x + sizeof *flat.halfedge);
+    if (flat.n > FEW) {
+        at = he_mem_array(NULL, flat.n, sizeof *at);
+    }
     flat.x = flat.memory;
-    if (flat.x == NULL) {
+    if (flat.x == NULL || at == NULL) {
+        he_mem_free(at == few ? NULL : at);
+        he_flat_clear(&flat);
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to triangulate a loop");
     }
     flat.y = flat.x + flat.n;
@@ -122,22 +120,14 @@ he_status he_flat_init(he_flat *out, const he_mesh *m, he_halfedge first, he_err
     for (uint32_t i = 0; i < flat.n; i++, h = he_next(m, h)) {
         flat.halfedge[i] = h.i;
     }
-    frame unit = find_frame(m, &flat);
     double length2 = 0;
-    he_vec3 normal = newell(m, &flat, &unit, &length2);
-    flat.degenerate = !(sqrt(dot(normal, normal)) > THIN * length2);
+    place(m, &flat, at);
+    he_vec3 normal = newell(at, flat.n, &length2);
+    flat.degenerate = !(sqrt(dot(normal, normal)) > HE_FLAT_THIN * length2);
     if (!flat.degenerate) {
-        project(m, &flat, &unit, normal);
+        project(&flat, at, normal);
     }
+    he_mem_free(at == few ? NULL : at);
     *out = flat;
     return HE_OK;
-}
-
-bool he_flat_turns_left(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
-{
-    double abx = f->x[b] - f->x[a], aby = f->y[b] - f->y[a];
-    double acx = f->x[c] - f->x[a], acy = f->y[c] - f->y[a];
-    double bcx = acx - abx, bcy = acy - aby;
-    double sides = abx * abx + aby * aby + acx * acx + acy * acy + bcx * bcx + bcy * bcy;
-    return abx * acy - aby * acx > THIN * sides;
 }

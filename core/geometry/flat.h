@@ -23,7 +23,17 @@ HE_NODISCARD he_status he_flat_init(he_flat *flat, const he_mesh *m, he_halfedge
                                     he_error *err);
 void he_flat_clear(he_flat *flat);
 
+/* Twice the area of a triangle or loop, relative to its squared sides, under which it has none. */
+#define HE_FLAT_THIN 1e-12
+
 /* Does the triangle of corners a, b, c run counter-clockwise, by more than rounding? */
-bool he_flat_turns_left(const he_flat *flat, uint32_t a, uint32_t b, uint32_t c);
+static inline bool he_flat_turns_left(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+{
+    double abx = f->x[b] - f->x[a], aby = f->y[b] - f->y[a];
+    double acx = f->x[c] - f->x[a], acy = f->y[c] - f->y[a];
+    double bcx = acx - abx, bcy = acy - aby;
+    double sides = abx * abx + aby * aby + acx * acx + acy * acy + bcx * bcx + bcy * bcy;
+    return abx * acy - aby * acx > HE_FLAT_THIN * sides;
+}
 
 #endif
