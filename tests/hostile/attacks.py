@@ -288,7 +288,7 @@ def argument(parameter, count):
     values = {'vertex': 0, 'halfedge': 0, 'edge': 0, 'face': 0, 'point': [0.5, 0.25, 0.5],
               'points': [0.5, 0.25, 0.5], 'number': 0.5, 'integer': 10, 'flag': True,
               'vertices': [1, 2, 3], 'choice': parameter.get('choices', [None])[0],
-              'matrix': [2, 0, 0, 1, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], 'mesh': 'hostile'}
+              'matrix': [2, 0, 0, 1, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], 'mesh': 'hostile', 'text': 'hostile'}
     return parameter['name'], values[kind]
 
 

@@ -372,14 +372,19 @@ export class Mix {
             this.client.strange(`${mesh.id} is not valid: ${JSON.stringify(value).slice(0, 300)}`);
         }
         if (mesh.faces < 5000 && this.below(3) === 0) {
-            const { headers } = await this.client.send(
+            const answer = await this.client.send(
                 'GET', `${path}?self_intersections=true`, [202],
                 { headers: { Prefer: 'respond-async' } },
             );
-            await this.client.send('GET', `${headers.location}/events`, [200]);
-            await this.client.send('GET', `${headers.location}/result`, [200, 413]);
-            await this.client.send('DELETE', headers.location, [204]);
+            await this.outcome(answer, [200, 413]);
         }
+    }
+
+    // Of a read that was answered as a job, whose result would be kept for an hour.
+    async outcome({ headers: { location } }, expected) {
+        await this.client.send('GET', `${location}/events`, [200]);
+        await this.client.send('GET', `${location}/result`, expected);
+        await this.client.send('DELETE', location, [204]);
     }
 
     async read(mesh) {
@@ -391,7 +396,7 @@ export class Mix {
             ['GET', `/faces/${this.below(mesh.issued.faces)}/edges`, [200, 404, 410]],
             ['GET', '/edits?limit=20', [200]],
             ['GET', '/geometry', [200]],
-            ['GET', '/progressive', [200, 422]],
+            ['GET', '/progressive', [200, 202, 422]],
             ['GET', '/boundaries', [200]],
             ['GET', '/components', [200]],
             ['GET', '/faces?limit=1000', [200]],
@@ -401,10 +406,13 @@ export class Mix {
             ['POST', '/traverse', [200, 404, 410, 422],
                 { walk: 'rings', from: { vertex }, depth: 3 }],
         ]);
-        await this.client.send(method, this.path(mesh, rest), expected, {
+        const answer = await this.client.send(method, this.path(mesh, rest), expected, {
             body,
             headers: { 'Accept-Encoding': this.pick(CODINGS) },
         });
+        if (answer.status === 202) {
+            await this.outcome(answer, [200, 422]);
+        }
     }
 
     // Of a guest: a feed goes on collecting for a while when its listeners have gone.
