@@ -426,6 +426,53 @@ static void names_are_attributes_of_faces(void **state)
     he_import_clear(&import);
 }
 
+static void expect_look(const he_materials *table, size_t slot, const char *name,
+                        const double numbers[9], bool two_sided)
+{
+    assert_true(slot < table->count);
+    const he_look look = table->rows[slot]->look;
+    const double is[9] = {look.base_color[0], look.base_color[1], look.base_color[2],
+                          look.base_color[3], look.metallic,      look.roughness,
+                          look.emission[0],   look.emission[1],   look.emission[2]};
+    assert_string_equal(table->rows[slot]->name, name);
+    assert_int_equal(look.two_sided, two_sided);
+    for (size_t i = 0; i < 9; i++) {
+        if (is[i] != numbers[i]) {
+            fail_msg("number %zu of %s is %.17g, not %.17g", i, name, is[i], numbers[i]);
+        }
+    }
+}
+
+static void materials_are_rows_of_the_table(void **state)
+{
+    (void)state;
+    he_import import = square_import(
+        "{" DATA ",'extensionsUsed':['KHR_materials_emissive_strength'],'materials':["
+        "{'name':'red','pbrMetallicRoughness':{'baseColorFactor':[1,0,0,0.5],'metallicFactor':0.25,"
+        "'roughnessFactor':0.75},'emissiveFactor':[0.5,0,1],'doubleSided':true,'alphaMode':'BLEND',"
+        "'extensions':{'KHR_materials_emissive_strength':{'emissiveStrength':4}}},"
+        "{},"
+        "{'name':'red','pbrMetallicRoughness':{'baseColorFactor':[0,1,0,0.5]}},"
+        "{'name':'old','extensions':{'KHR_materials_pbrSpecularGlossiness':"
+        "{'diffuseFactor':[0,0,1,1],'glossinessFactor':0.25}}},"
+        "{'name':'odd','pbrMetallicRoughness':{'baseColorFactor':[1,2],'metallicFactor':7,"
+        "'roughnessFactor':'x'}}],"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,'material':2}]}]}");
+    const he_materials *table = &import.soup.materials;
+    assert_int_equal(table->count, 5);
+    expect_look(table, 0, "red", (double[]){1, 0, 0, 0.5, 0.25, 0.75, 2, 0, 4}, true);
+    expect_look(table, 1, "material_1", (double[]){1, 1, 1, 1, 1, 1, 0, 0, 0}, false);
+    expect_look(table, 2, "red_2", (double[]){0, 1, 0, 1, 1, 1, 0, 0, 0}, false);
+    expect_look(table, 3, "old", (double[]){0, 0, 1, 1, 0, 0.75, 0, 0, 0}, false);
+    expect_look(table, 4, "odd", (double[]){1, 1, 1, 1, 1, 1, 0, 0, 0}, false);
+    assert_string_equal(face_label(&import, "material", 0), "red_2");
+    assert_non_null(find_note(&import.notes, "material_renamed", "red"));
+    assert_non_null(find_note(&import.notes, "opaque", "red"));
+    assert_non_null(find_note(&import.notes, "material_range", "odd"));
+    assert_int_equal(import.notes.count, 3);
+    he_import_clear(&import);
+}
+
 static void what_has_no_place_is_noted(void **state)
 {
     (void)state;
@@ -435,11 +482,11 @@ static void what_has_no_place_is_noted(void **state)
         "'skins':[{'joints':[0]}],'animations':[{}],'extensionsUsed':['KHR_materials_unlit',"
         "'ACME_thing'],'extensionsRequired':['KHR_materials_unlit'],"
         "'extras':{'a':[1,{'b':null}]}}");
-    static const char *const codes[] = {"ignored_targets", "ignored_images", "ignored_skins",
-                                        "ignored_animations"};
-    for (size_t i = 0; i < 4; i++) {
+    static const char *const codes[] = {"ignored_targets", "ignored_skins", "ignored_animations"};
+    for (size_t i = 0; i < 3; i++) {
         assert_non_null(find_note(&import.notes, codes[i], ""));
     }
+    assert_non_null(find_note(&import.notes, "ignored_images", "file:///etc/passwd"));
     assert_non_null(find_note(&import.notes, "ignored_extension", "ACME_thing"));
     he_import_clear(&import);
     unsigned char bin[SQUARE_BYTES];
@@ -511,6 +558,7 @@ int main(void)
         cmocka_unit_test(directions_turn_with_their_node),
         cmocka_unit_test(attributes_of_some_primitives),
         cmocka_unit_test(names_are_attributes_of_faces),
+        cmocka_unit_test(materials_are_rows_of_the_table),
         cmocka_unit_test(what_has_no_place_is_noted),
         cmocka_unit_test(a_chunk_that_is_not_aligned_is_read_with_a_note),
     };

@@ -163,6 +163,9 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     }
     list = he_json_find(json, 0, "extensionsUsed");
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
+        if (he_json_is(json, i, HE_GLTF_EMISSIVE_STRENGTH)) {
+            continue;
+        }
         if (he_json_is(json, i, "KHR_mesh_quantization")) {
             asset->quantized = true;
         } else if (!he_json_is(json, i, HE_GLTF_MESHOPT)) {
@@ -172,13 +175,31 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     return HE_OK;
 }
 
+/* Images are told by their names: what came beside is not told again as a file that nothing names.
+ */
+static void note_images(he_gltf *asset)
+{
+    const he_json *json = &asset->json;
+    uint32_t list = he_json_find(json, 0, "images");
+    for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
+        uint32_t name = he_json_find(json, i, "name"), uri = he_json_find(json, i, "uri");
+        bool data = he_json_begins(json, uri, "data:");
+        if (he_json_type(json, uri) == '"' && !data) {
+            char text[HE_BESIDE_NAME];
+            size_t length = he_json_string(json, uri, text, sizeof text);
+            (void)he_beside_find_uri(asset->into->beside, text, length);
+            name = uri;
+        }
+        he_gltf_note(asset, "ignored_images", "not held: the image", name, i);
+    }
+}
+
 /* What has no place in a mesh. */
 static void note_rest(he_gltf *asset)
 {
     static const struct {
         const char *name, *code, *text;
     } parts[] = {
-        {"images", "ignored_images", "ignored: images, which are never opened"},
         {"animations", "ignored_animations", "ignored: animations"},
         {"skins", "ignored_skins", "ignored: skins; meshes are as their nodes place them"}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
@@ -228,6 +249,7 @@ he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text, size_t
         he_gltf_close(asset);
         return status;
     }
+    note_images(asset);
     note_rest(asset);
     return HE_OK;
 }

@@ -20,7 +20,8 @@
 #define HE_GLTF_UNPACKED ((uint64_t)16)
 #define HE_GLTF_NOWHERE  UINT64_MAX
 /* What to do about KHR_draco_mesh_compression, for messages. */
-#define HE_GLTF_UNDRACO "unpack it first, as \"gltf-transform copy IN.glb OUT.glb\" does"
+#define HE_GLTF_UNDRACO           "unpack it first, as \"gltf-transform copy IN.glb OUT.glb\" does"
+#define HE_GLTF_EMISSIVE_STRENGTH "KHR_materials_emissive_strength"
 enum { HE_GLTF_ELEMENT = 64 }; /* bytes of the largest element, sixteen floats */
 
 typedef struct he_gltf_buffer {

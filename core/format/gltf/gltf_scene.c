@@ -389,6 +389,9 @@ he_status he_gltf_read_scene(he_gltf *asset, he_error *err)
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for nodes and meshes");
     }
     if (status == HE_OK) {
+        status = he_gltf_read_materials(asset, &s.surface.names, err);
+    }
+    if (status == HE_OK) {
         status = find_scene(asset, &chosen, err);
     }
     if (status == HE_OK) {
@@ -400,6 +403,7 @@ he_status he_gltf_read_scene(he_gltf *asset, he_error *err)
         status = he_gltf_surface_finish(&s.surface, err);
         note_meshes(&s);
     }
+    he_labels_release(s.surface.names);
     he_gltf_surface_clear(&s.surface);
     he_mem_free(s.visited);
     he_mem_free(s.used);

@@ -3,7 +3,6 @@
 #include "format/gltf/gltf_attribute.h"
 #include "format/gltf/gltf_private.h"
 
-#include <stdio.h>
 #include <string.h>
 
 const he_gltf_frame he_gltf_no_frame = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
@@ -244,36 +243,23 @@ static he_status add_faces(he_gltf_surface *s, const he_gltf_primitive *p, he_er
 
 /* --- labels --- */
 
-/* "material_7": the name of what has none. Its length. */
-static size_t number_name(const char *before, uint64_t number, char *to)
-{
-    int length = snprintf(to, HE_GLTF_NAME, "%s%llu", before, (unsigned long long)number);
-    return length < 0 ? 0 : (size_t)length;
-}
-
 static he_status set_material(he_gltf_surface *s, const he_gltf_primitive *p, he_error *err)
 {
     const he_json *json = &s->asset->json;
     uint32_t value = he_json_find(json, p->value, "material"), material = HE_NONE;
-    char name[HE_GLTF_NAME] = "";
-    size_t length = 0;
+    uint64_t index = 0;
+    const char *name = "";
+    he_status status = HE_OK;
     if (value != HE_NONE) {
-        he_status status =
-            he_gltf_item(s->asset, &s->asset->materials, value, "material", &material, err);
-        if (status != HE_OK) {
-            return status;
+        status = he_gltf_item(s->asset, &s->asset->materials, value, "material", &material, err);
+        if (status == HE_OK) {
+            status = he_json_whole(json, value, 0, HE_JSON_WHOLE, &index, err);
         }
-        length = he_json_string(json, he_json_find(json, material, "name"), name, sizeof name);
-        if (length == 0) {
-            uint64_t number = 0;
-            status = he_json_whole(json, value, 0, HE_JSON_WHOLE, &number, err);
-            if (status != HE_OK) {
-                return status;
-            }
-            length = number_name("material_", number, name);
-        }
+        name = status == HE_OK ? he_labels_get(s->names, index) : "";
     }
-    return he_spans_set_label(&s->material, p->first_face, name, length, err);
+    return status == HE_OK
+               ? he_spans_set_label(&s->material, p->first_face, name, strlen(name), err)
+               : status;
 }
 
 static he_status set_object(he_gltf_surface *s, const he_gltf_primitive *p, uint32_t value,

@@ -2,10 +2,10 @@
 #ifndef HE_FORMAT_GLTF_GLTF_SURFACE_H
 #define HE_FORMAT_GLTF_GLTF_SURFACE_H
 
-#include "format/gltf/gltf_asset.h"
+#include "format/gltf/gltf_material.h"
 #include "format/io/spans.h"
 
-enum { HE_GLTF_ATTRIBUTES = 256, HE_GLTF_NAME = 1024 };
+enum { HE_GLTF_ATTRIBUTES = 256 };
 
 /* Where a node puts its mesh: p becomes (row 0 . p + row 0's last, ...). */
 typedef struct he_gltf_frame {
@@ -14,9 +14,10 @@ typedef struct he_gltf_frame {
 
 extern const he_gltf_frame he_gltf_no_frame; /* leaves all as it is, bit by bit */
 
-/* {.asset = ...} is empty. */
+/* {.asset = ..., .names = ...} is empty; names are borrowed. */
 typedef struct he_gltf_surface {
     he_gltf *asset;
+    he_labels *names; /* of materials, in their order */
     he_spans object, material;
     he_ids own_objects, own_materials;  /* pairs: faces from, to; read from extras */
     uint64_t given[HE_GLTF_ATTRIBUTES]; /* rows of each column of the soup */
