@@ -36,7 +36,12 @@ static const option options[] = {
      "let pages of this origin (https://name) read and write; may be repeated or a comma list"},
     {"web", TEXT, MEMBER(web), "", "DIR", 0, 0,
      "folder of the built page; otherwise looked for beside the executable"},
-    {"samples", FLAG, MEMBER(samples), "0", NULL, 0, 0, "start with a few meshes"},
+    {"store", TEXT, MEMBER(store), "memory", "memory|sqlite:DIR", 0, 0,
+     "where meshes are kept: in memory until the daemon stops, or for good in a folder, which is "
+     "made "
+     "where it is missing"},
+    {"samples", FLAG, MEMBER(samples), "0", NULL, 0, 0,
+     "put a few meshes into a store that is new"},
     {"log", CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
      "access: a line of JSON on stderr for each request; auto: only if stderr is no terminal"},
     {"max-upload", BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
@@ -303,9 +308,21 @@ static bool read_flags(srv_config *config, int argc, char *const *argv, char *me
     return true;
 }
 
+const char *srv_config_folder(const srv_config *config)
+{
+    static const char scheme[] = "sqlite:";
+    const size_t length = sizeof scheme - 1;
+    return strncmp(config->store, scheme, length) == 0 ? config->store + length : NULL;
+}
+
 static bool check(const srv_config *config, char *message, size_t size)
 {
     srv_address address;
+    const char *folder = srv_config_folder(config);
+    if (folder == NULL ? strcmp(config->store, "memory") != 0 : folder[0] == '\0') {
+        snprintf(message, size, "--store takes memory or sqlite:DIR, not \"%s\"", config->store);
+        return false;
+    }
     if (!srv_address_parse(config->listen, &address)) {
         snprintf(message, size,
                  "--listen takes an address and a port such as 127.0.0.1:8080 or [::1]:0, "

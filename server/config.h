@@ -21,7 +21,8 @@ typedef struct srv_config {
     const char *listen;
     bool insecure;
     srv_policy policy;
-    const char *web; /* "": look beside the executable */
+    const char *web;   /* "": look beside the executable */
+    const char *store; /* "memory", or "sqlite:" and a folder: srv_config_folder */
     bool samples;
     uint64_t log; /* st_log_kind */
 
@@ -54,6 +55,9 @@ typedef struct srv_config {
 bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size);
 void srv_config_clear(srv_config *config);
+
+/* The folder of the store; NULL where meshes are kept in memory alone. */
+const char *srv_config_folder(const srv_config *config);
 
 void srv_config_help(FILE *out);
 /* Each option as `name = value`, as a configuration would set it. */

@@ -3,6 +3,7 @@
 #include "api/describe/routes.h"
 #include "api/event/event_follow.h"
 #include "api/job/job_table.h"
+#include "journal/sqlite/sqlite_journal.h"
 #include "server/assets.h"
 #include "server/http/http.h"
 #include "server/samples.h"
@@ -108,21 +109,47 @@ static bool open_threads(daemon_parts *parts, const srv_config *config)
            fail("no memory or threads to start");
 }
 
+/* *made: the store is new, so that samples may be put into it. */
+static bool open_journal(const srv_config *config, st_journal *out, bool *made)
+{
+    const char *folder = srv_config_folder(config);
+    st_sqlite_opened opened;
+    if (folder == NULL) {
+        *out = st_journal_memory();
+        *made = true;
+        return true;
+    }
+    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = SRV_VERSION}, &opened)) {
+        return fail(opened.message);
+    }
+    fprintf(stderr, "hedged: meshes are kept in %s%s%s\n", folder,
+            opened.message[0] == '\0' ? "" : "; ", opened.message);
+    *out = opened.journal;
+    *made = opened.made;
+    return true;
+}
+
 static bool open_store(daemon_parts *parts, const srv_config *config)
 {
+    st_journal journal;
+    bool made;
+    if (!open_journal(config, &journal, &made)) {
+        return false;
+    }
     parts->store = st_store_new(&(st_store_options){
         .undo_budget = config->undo_budget,
         .max_meshes = config->max_meshes,
-        .journal = st_journal_memory(),
+        .journal = journal,
         .listeners = config->max_listeners,
         .mesh_listeners = config->max_mesh_listeners,
         .render = api_event_render,
     });
     if (parts->store == NULL) {
+        journal.close(journal.self);
         return fail("no memory to start");
     }
     he_error err;
-    if (config->samples && srv_samples_add(parts->store, &err) != HE_OK) {
+    if (config->samples && made && srv_samples_add(parts->store, &err) != HE_OK) {
         return fail(err.text);
     }
     return true;

@@ -10,13 +10,13 @@
 void disk_install(void);
 /* Writes find no space. */
 void disk_fill(bool full);
-/* The N-th write (sync) from now on finds no space (fails); 0: none does. */
+/* The N-th write from now on and all after it find no space; 0: none does. */
 void disk_fill_at(long write);
+/* The N-th sync from now on fails; 0: none does. */
 void disk_fail_at(long sync);
 /* Syncs wait until they are let go on. */
 void disk_hold(bool held);
 /* Since the last disk_fill_at or disk_fail_at. */
-long disk_writes(void);
 long disk_syncs(void);
 /* Connections to a database that may write, now. */
 long disk_writers(void);

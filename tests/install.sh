@@ -45,7 +45,7 @@ installs() {
 # The program finds the page from where it is, and stops when told.
 runs_from_there() {
     mkfifo "$work/log" || return 1
-    "$hedged" --listen 127.0.0.1:0 --log off 2>"$work/log" &
+    "$hedged" --listen 127.0.0.1:0 --store memory --log off 2>"$work/log" &
     daemon=$!
     line=$(sed -n '/listening on /{p;q}' "$work/log")
     base=${line##*listening on }

@@ -87,15 +87,15 @@ static he_status vertex_normals(const he_mesh *m, const uint32_t *of, size_t cou
 }
 
 /* One member of the curvatures: `at` is its offset. */
-static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, uint64_t most,
-                           size_t at, double *out, he_error *err)
+static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
+                           uint64_t most, size_t at, double *out, he_error *err)
 {
     he_curvature *all = he_mem_array(NULL, count + 1, sizeof *all);
     if (all == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the curvature of %zu vertices",
                              count);
     }
-    he_status status = he_curvatures(m, of, count, most, all, err);
+    he_status status = he_curvatures(m, of, count, most, o->watch, all, err);
     for (size_t i = 0; i < count && status == HE_OK; i++) {
         memcpy(&out[i], (const char *)&all[i] + at, sizeof out[i]);
     }
@@ -107,8 +107,7 @@ static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, u
     static he_status name(const he_mesh *m, const uint32_t *of, size_t count, const options *o, \
                           uint64_t most, double *out, he_error *err)                            \
     {                                                                                           \
-        (void)o;                                                                                \
-        return curvature(m, of, count, most, offsetof(he_curvature, member), out, err);         \
+        return curvature(m, of, count, o, most, offsetof(he_curvature, member), out, err);      \
     }
 CURVATURE(vertex_areas, area)
 CURVATURE(angle_defects, angle_defect)
@@ -193,8 +192,7 @@ static he_status dihedrals(const he_mesh *m, const uint32_t *of, size_t count, c
 static he_status edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
                                  const options *o, uint64_t most, double *out, he_error *err)
 {
-    (void)o;
-    return he_edge_cotangents(m, of, count, most, out, err);
+    return he_edge_cotangents(m, of, count, most, o->watch, out, err);
 }
 
 /* --- faces --- */
@@ -248,6 +246,7 @@ typedef struct asked {
     api_target target;
     const measure *measure;
     options options;
+    bool as_text; /* values are written as JSON */
 } asked;
 
 static bool read_name(const api_in *name, he_kind kind, const measure **out)
@@ -364,6 +363,11 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const uint
                 size_t count)
 {
     if (of == NULL) {
+        uint64_t pass = api_elements_of(a->mesh);
+        pass += q->as_text ? (uint64_t)count * q->measure->components : 0;
+        if (!api_asker_waits(a, (double)pass / API_MEASURE_PER_SECOND)) {
+            return false;
+        }
         uint64_t cost = he_mesh_count(a->mesh, HE_HALFEDGE) + (uint64_t)count;
         cost += q->measure->one == NULL ? cost_of_cutting(a->mesh) : 0;
         if (a->on_worker && cost >= api_asker_left(a)) {
@@ -496,6 +500,7 @@ bool api_measure_ask(api_asker *a, const api_in *question)
     if (!read(a, question, &q)) {
         return false;
     }
+    q.as_text = true;
     if (q.target.dense) {
         return ask_many(a, question, &q);
     }

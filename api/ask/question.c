@@ -91,6 +91,18 @@ bool api_asker_exceed(api_asker *a, const api_in *in)
                       : api_in_fail(in, HE_LIMIT, limit, a->asked, most, what, hint);
 }
 
+bool api_asker_waits(api_asker *a, double seconds)
+{
+    a->seconds += seconds;
+    if (a->on_worker || !api_wants_job(a->x, a->seconds)) {
+        return true;
+    }
+    a->spent = true;
+    a->x->is_job = true;
+    a->x->seconds = a->seconds;
+    return false;
+}
+
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err)
 {
     if (err->status == HE_LIMIT) {
@@ -280,6 +292,10 @@ static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_
     he_error err = {0};
     uint64_t count =
         q->target.of != NULL ? q->target.count : he_mesh_count(a->mesh, q->relation->of);
+    uint64_t pass = q->target.of == NULL ? count + he_mesh_count(a->mesh, HE_HALFEDGE) : 0;
+    if (!api_asker_waits(a, (double)pass / API_MAX_WALK)) {
+        return false;
+    }
     if (count >= api_asker_left(a)) {
         return api_asker_exceed(a, question);
     }

@@ -19,7 +19,8 @@
  * used up the request begins anew on the job pool with API_MAX_STEPS, or what one pass over the
  * mesh takes where that is more. A job has API_JOB_TIMES times as much. What exceeds that is
  * refused (limit_exceeded), unless the client takes a job instead. A question overspends by at most
- * one pass over the mesh. */
+ * one pass over the mesh; where such passes take longer than the client waits (API_PATIENCE), the
+ * request begins anew as a job. */
 #ifndef HE_API_ASK_QUESTION_H
 #define HE_API_ASK_QUESTION_H
 
@@ -40,6 +41,7 @@ typedef struct api_asker {
     bool on_worker;    /* what is not left is looked for on the job pool */
     bool reads_only;   /* the body: nothing is looked for or written */
     bool spent;        /* the request begins anew, there or as a job */
+    double seconds;    /* beside the budget, estimated: see api_asker_waits */
     bool has_met;      /* the one search for intersections beside the budget is done */
     he_ids first, second;
     struct api_tree *tree; /* once asked for: see tree.h */
@@ -89,6 +91,10 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 #define API_KIND_BIT(kind) (1u << (kind))
 /* {"vertex":5}, an element that lives and is of one of the kinds in this set of bits. */
 bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);
+/* What is about to be done for all of the mesh takes about these seconds, beside the budget and
+ * what was so announced before. False, with a->spent, where the request begins anew as a job; for
+ * that the client did not say how long it waits, or less. */
+bool api_asker_waits(api_asker *a, double seconds);
 /* Half-edges that may still be looked at, and the charge for some that were. */
 uint64_t api_asker_left(const api_asker *a);
 void api_asker_pay(api_asker *a, uint64_t halfedges);

@@ -147,7 +147,8 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question)
         return false;
     }
     bool complete;
-    if (!api_asker_intersections(a, question, &complete)) {
+    double seconds = a->has_met ? 0 : (double)api_elements_of(a->mesh) / API_SEARCH_PER_SECOND;
+    if (!api_asker_waits(a, seconds) || !api_asker_intersections(a, question, &complete)) {
         return false;
     }
     size_t total = a->first.count / 2;

@@ -179,19 +179,29 @@ static bool ask_loop(api_asker *a, const api_in *walk)
 
 /* --- rings, breadth first --- */
 
+/* How far a flood may go here. */
+static uint64_t most_of_flood(const api_asker *a)
+{
+    if (a->on_worker) {
+        return api_asker_left(a) / FLOOD_COST;
+    }
+    double most = API_FLOOD_PER_SECOND * api_patience(a->x);
+    return most < API_MAX_WALK ? (uint64_t)most : API_MAX_WALK;
+}
+
 /* Fills a->first with elements and a->second with depths. `limit` 0: all there are. */
 static bool flood(api_asker *a, const api_in *walk, he_kind kind, uint32_t from, uint32_t depth,
                   size_t limit)
 {
     he_error err = {0};
-    size_t most = 1 + (size_t)(a->on_worker ? api_asker_left(a) / FLOOD_COST : API_MAX_WALK);
+    size_t most = 1 + (size_t)most_of_flood(a);
     bool bounded = limit != 0 && limit < most;
     if (he_traverse_breadth_first(a->mesh, kind, from, depth, bounded ? limit : most, &a->first,
                                   &a->second, &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }
     if (!bounded && a->first.count == most) {
-        return api_asker_exceed(a, walk);
+        return api_asker_waits(a, API_MAX_WALK / API_FLOOD_PER_SECOND) && api_asker_exceed(a, walk);
     }
     api_asker_pay(a, FLOOD_COST * (uint64_t)a->first.count);
     return true;
@@ -304,6 +314,9 @@ static bool ask_shortest_path(api_asker *a, const api_in *walk)
     }
     if (a->on_worker && he_mesh_count(a->mesh, HE_HALFEDGE) > api_asker_left(a)) {
         return api_asker_exceed(a, walk);
+    }
+    if (!api_asker_waits(a, (double)api_elements_of(a->mesh) / API_PATH_PER_SECOND)) {
+        return false;
     }
     he_path found = {0};
     he_error err = {0};

@@ -54,17 +54,21 @@ static api_tree *take(api_asker *a, const api_in *in, st_derived *place, api_tre
                       bool *made_here)
 {
     api_tree *kept = place->value;
-    if (kept != NULL && kept->revision == a->revision) {
-        if (kept->bvh == NULL && a->on_worker) {
-            api_asker_exceed(a, in);
-            return NULL;
-        }
+    bool fits = kept != NULL && kept->revision == a->revision;
+    if (fits && kept->bvh != NULL) {
         hold(kept);
         return kept;
     }
-    if (a->on_worker && cost_of(a) >= api_asker_left(a)) {
+    if (a->on_worker && (fits || cost_of(a) >= api_asker_left(a))) {
         api_asker_exceed(a, in);
         return NULL;
+    }
+    if (!api_asker_waits(a, (double)api_elements_of(a->mesh) / API_TREE_PER_SECOND)) {
+        return NULL;
+    }
+    if (fits) {
+        hold(kept); /* somebody else makes it */
+        return kept;
     }
     api_tree *tree = tree_new(a);
     if (tree == NULL) {

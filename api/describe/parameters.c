@@ -9,7 +9,6 @@
 
 static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "gltf", "json", NULL};
 static const char *const encodings[] = {"ascii", "binary", "binary_big_endian", NULL};
-static const char *const compressions[] = {"meshopt", NULL};
 static const char *const connections[] = {"vertex", "edge", NULL};
 
 const api_parameter api_parameter_limit = {
@@ -54,9 +53,6 @@ const api_parameter api_parameter_format = {
 const api_parameter api_parameter_encoding = {
     "encoding", API_PARAM_CHOICE, 0,
     0,          encodings,        "Text or binary, where a format has both; binary if not said."};
-const api_parameter api_parameter_compress = {
-    "compress", API_PARAM_CHOICE, 0,
-    0,          compressions,     "Of glb: its buffers in EXT_meshopt_compression, without loss."};
 const api_parameter api_parameter_name = {
     "name", API_PARAM_TEXT, 0, ST_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
 const api_parameter api_parameter_repair = {
@@ -66,8 +62,10 @@ const api_parameter api_parameter_repair = {
     0,
     he_repair_names,
     "What may be done to what the structure cannot hold: these repairs in this order, whatever the "
-    "order here. weld makes vertices within the tolerance one; drop_degenerate leaves out faces "
-    "without three different corners, drop_duplicates those with the corners of an earlier face; "
+    "order here. weld makes vertices within the tolerance one; drop_degenerate keeps of a "
+    "face that repeats a vertex what has an area: 1 2 3 3 becomes the triangle 1 2 3, one with a "
+    "keyhole is cut into triangles, and what has not three different corners is left out; "
+    "drop_duplicates leaves out faces with the corners of an earlier face; "
     "orient turns faces so that neighbours agree; split gives every fan of faces a vertex of its "
     "own; fill closes small holes."};
 const api_parameter api_parameter_tolerance = {

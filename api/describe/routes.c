@@ -188,8 +188,7 @@ static const api_route routes[] = {
      .cost = api_content_cost,
      .flags = API_EXPENSIVE | API_OWN_ACCEPT | API_LONG,
      .produces = mesh_out,
-     .parameters = {&api_parameter_revision, &api_parameter_format, &api_parameter_encoding,
-                    &api_parameter_compress},
+     .parameters = {&api_parameter_revision, &api_parameter_format, &api_parameter_encoding},
      .headers = {&warnings},
      .statuses = {200, 202, 304, 410, 422},
      .response = "document",
@@ -201,7 +200,10 @@ static const api_route routes[] = {
          "beyond the range of floats is refused by glb and binary stl. A mesh holds texture "
          "coordinates `uv` with v upward, as "
          "OBJ, PLY and OFF do (glTF's runs down), and colours `color` of 0 to 1, which are bytes "
-         "in PLY; reading and writing convert both."},
+         "in PLY; reading and writing convert both. A file is sent at once however large the mesh "
+         "is, unless a job is preferred: for each million faces a thread works about a second "
+         "before the first byte of STL, half of that before one of GLB, and little before others; "
+         "what takes longer than the server's limit for reads is 503 `read_timeout`."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "geometry_get",
@@ -416,7 +418,10 @@ static const api_route routes[] = {
          "Adjacency, walks, elements, half-edges between vertices, measures, rays, nearest points "
          "and self-intersections, all of one revision. One question about many elements may be "
          "answered as octets: of a relation n + 1 offsets and the ids as 32-bit integers, of a "
-         "measure doubles, NaN for null; all little-endian."},
+         "measure doubles, NaN for null; all little-endian. What is asked about all of a mesh and "
+         "would take more than a second becomes a job where the client does not wait: the first "
+         "ray or nearest point of 580,000 quads, self-intersections of 340,000, relations and "
+         "measures of all of some million."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/traverse",
      .name = "traverse_post",
@@ -432,7 +437,9 @@ static const api_route routes[] = {
      .request = "walk",
      .response = "walked",
      .summary = "Walk over a mesh",
-     .doc = "Paths of next, prev and twin, loops, rings, breadth-first and shortest paths."},
+     .doc = "Paths of next, prev and twin, loops, rings, breadth-first and shortest paths. "
+            "Where the client does not wait, a walk that meets 4 million elements becomes a job, "
+            "and so does a shortest path on a mesh of 2 million quads."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/boundaries",
      .name = "boundaries_get",

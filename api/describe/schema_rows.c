@@ -90,7 +90,12 @@ const api_member api_answer_members[] = {
     {"repair", "into", "*id", OPTIONAL, "For each of these the id of the one that is kept."},
     {"repair", "lines", "*count", OPTIONAL, "For each its line."},
     {"repair", "bytes", "*count", OPTIONAL, "For each its first byte, in a binary file."},
-    {"repair", "faces", "*id", OPTIONAL, "orient, fill: the first 100 turned or made."},
+    {"repair", "mended", "count", OPTIONAL,
+     "drop_degenerate: faces that lost corners or were cut into triangles."},
+    {"repair", "faces", "*id", OPTIONAL,
+     "drop_degenerate: the first 100 of these, numbered as in the body. orient, fill: the first "
+     "100 "
+     "turned or made."},
     {"repair", "components", "count", OPTIONAL, "orient: in which faces were turned."},
     {"repair", "not_orientable", "count", OPTIONAL, "orient: components that are left to split."},
     {"repair", "clashes", "*id", OPTIONAL, "A face of each of these, of the first 100."},

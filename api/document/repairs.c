@@ -36,6 +36,18 @@ static void write_ids(api_out *out, const char *key, const he_repair_account *ac
     api_out_array_end(out);
 }
 
+/* drop_degenerate names faces that are gone, of which there are 0 faces now, and others. */
+static he_repair_account degenerate_ones(const he_repair_account *account, bool gone)
+{
+    he_repair_account some = {.count = 0};
+    for (size_t i = 0; i < account->named; i++) {
+        if ((account->pairs[i].b == 0) == gone) {
+            some.pairs[some.named++] = account->pairs[i];
+        }
+    }
+    return some;
+}
+
 static void write_parents(api_out *out, const he_repair_account *account)
 {
     api_out_key(out, "parents");
@@ -96,10 +108,15 @@ static void write_one(api_out *out, he_repair repair, const he_repair_plan *plan
         write_places(out, account, import == NULL ? NULL : &import->vertices);
         api_out_key_u64(out, "moved", account->moved);
         break;
-    case HE_REPAIR_DROP_DEGENERATE:
-        write_ids(out, "gone", account, FIRST);
-        write_places(out, account, import == NULL ? NULL : &import->faces);
+    case HE_REPAIR_DROP_DEGENERATE: {
+        he_repair_account gone = degenerate_ones(account, true);
+        he_repair_account mended = degenerate_ones(account, false);
+        write_ids(out, "gone", &gone, FIRST);
+        write_places(out, &gone, import == NULL ? NULL : &import->faces);
+        api_out_key_u64(out, "mended", account->parts);
+        write_ids(out, "faces", &mended, FIRST);
         break;
+    }
     case HE_REPAIR_DROP_DUPLICATES:
         write_ids(out, "gone", account, FIRST);
         write_ids(out, "into", account, SECOND);

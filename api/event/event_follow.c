@@ -98,6 +98,10 @@ static int64_t read_queue(stream *s, char *buffer, size_t size)
         return API_READ_WAIT;
     case ST_QUEUE_ENDED:
         return 0;
+    case ST_QUEUE_LOST:
+        api_event_resync(&s->text, s->incarnation, st_queue_skip(&s->listener).key, "lost");
+        s->ended = true;
+        return IN_TEXT;
     case ST_QUEUE_BEHIND:
         break;
     }

@@ -37,7 +37,8 @@ void api_event_stale(api_text *text, const st_mesh_info *info);
 void api_event_metadata(api_text *text, const st_mesh_info *info);
 /* Reasons: "replaced" (the content as a whole, or a compact), "gap" (neither the listener's speed
  * nor the history reach), "busy" (too many listeners are being brought forward), "incarnation" and
- * "future" (of what the client said it has). */
+ * "future" (of what the client said it has), "lost" (the newest changes could not be kept; the
+ * stream ends). */
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
 /* A message of this name. */
 void api_event_add(api_text *text, const char *name, const api_text *data);

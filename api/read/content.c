@@ -31,25 +31,21 @@ static int64_t read_content(void *stream, char *buffer, size_t size)
                                : (int64_t)he_writer_read(c->writer, buffer, size);
 }
 
-static bool find_encoding(api_exchange *x, const he_format *format, const char *what,
-                          const char *name, size_t *encoding)
+/* The number of the encoding that is wanted. */
+static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
 {
+    const char *name = api_param_text(x, "encoding");
+    *encoding = 0;
+    if (name == NULL) {
+        return true;
+    }
     int found = format == NULL ? -1 : he_format_encoding(format, name);
     if (found < 0) {
-        return api_fail(x, API_BAD_PARAMETER, "%s has no %s \"%s\"",
-                        format == NULL ? "json" : format->name, what, name);
+        return api_fail(x, API_BAD_PARAMETER, "%s has no encoding \"%s\"",
+                        format == NULL ? "json" : format->name, name);
     }
     *encoding = (size_t)found;
     return true;
-}
-
-/* The number of the encoding that is wanted: a compressed one is one of its own. */
-static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
-{
-    const char *name = api_param_text(x, "encoding"), *packed = api_param_text(x, "compress");
-    *encoding = 0;
-    return (name == NULL || find_encoding(x, format, "encoding", name, encoding)) &&
-           (packed == NULL || find_encoding(x, format, "compression", packed, encoding));
 }
 
 /* What is wanted: NULL is the JSON document. False when nothing fits. */
@@ -132,9 +128,10 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
         c->document = api_document_out_new(x->content, x->info.name);
         return c->document != NULL || api_fail_memory(x);
     }
+    he_watch_span(&x->watch, 0.5); /* as a job it takes about as long to write */
     bool long_faces = format->writing != NULL && format->writing->cuts;
     if ((long_faces && he_long_faces_keep(x->content, &x->watch, &err) != HE_OK) ||
-        he_writer_new(format, x->content, chosen->encoding, &c->writer, &err) != HE_OK) {
+        he_writer_new(format, x->content, chosen->encoding, &x->watch, &c->writer, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
     answer_losses(x, he_writer_notes(c->writer));

@@ -3,6 +3,7 @@
 #include "format/text/number.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -279,15 +280,20 @@ bool api_can_be_job(const api_exchange *x)
            x->phase != API_PHASE_JOB;
 }
 
-bool api_wants_job(const api_exchange *x, double seconds)
+double api_patience(const api_exchange *x)
 {
     if (!api_can_be_job(x)) {
-        return false;
+        return HUGE_VAL;
     }
     if (x->prefer.wait >= 0) {
-        return seconds > x->prefer.wait;
+        return x->prefer.wait;
     }
-    return x->prefer.respond_async || seconds > API_PATIENCE;
+    return x->prefer.respond_async ? -1 : API_PATIENCE;
+}
+
+bool api_wants_job(const api_exchange *x, double seconds)
+{
+    return seconds > api_patience(x);
 }
 
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds)

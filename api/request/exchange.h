@@ -157,6 +157,9 @@ void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
  * `seconds` are more than it will wait. Otherwise deferred if `costly`, or called at once. The
  * route has API_LONG. Reads leave that to mesh_access.h. */
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
+/* Seconds of work that the client waits for; what takes longer is a job. Negative where all is to
+ * be one, HUGE_VAL where nothing can be. */
+double api_patience(const api_exchange *x);
 /* Is work that may take these seconds to be a job? */
 bool api_wants_job(const api_exchange *x, double seconds);
 /* Should work on this many elements (or bytes) leave the worker? False in api_work. */

@@ -5,9 +5,9 @@
 const he_mesh *api_read_begin(api_exchange *x)
 {
     const he_mesh *mesh = st_read_begin(x->mesh, &x->info);
-    if (x->info.removed) {
+    if (x->info.removed || x->info.lost) {
         st_read_end(x->mesh);
-        api_fail_store(x, ST_ABSENT);
+        api_fail_store(x, x->info.lost ? ST_LOST : ST_ABSENT);
         return NULL;
     }
     x->has_info = true;

@@ -35,7 +35,7 @@ bool api_cost_of_mesh(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
 /* --- for handlers that write --- */
 /* The mesh under the shared lock, with x->info filled: to look at before the write begins. NULL and
- * 404 when it was removed. */
+ * 404 when it was removed, 503 when it was lost. */
 const he_mesh *api_read_begin(api_exchange *x);
 void api_read_end(api_exchange *x);
 

@@ -66,6 +66,9 @@ bool api_others_take(api_exchange *x, api_others *o)
             return api_fail_store(x, status);
         }
         other->content = st_snapshot_content(other->snapshot, &info);
+        if (info.lost) {
+            return api_fail_store(x, ST_LOST);
+        }
         if (info.removed) {
             api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"", other->id);
             x->problem.status = 422;

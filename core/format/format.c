@@ -17,7 +17,7 @@ static const he_format formats[] = {
         .doc = "glTF 2.0 in its binary container, without anything outside the file",
         .media_types = LIST("model/gltf-binary"),
         .extensions = LIST("glb"),
-        .encodings = LIST("binary", "meshopt"),
+        .encodings = LIST("binary"),
         .carries = LIST("triangles", "polygons in extras", "isolated vertices", "vertex attributes",
                         "halfedge normal", "halfedge tangent", "halfedge uv", "halfedge color",
                         "face attributes in extras", "halfedge attributes in extras"),
@@ -322,7 +322,7 @@ struct he_writer {
 };
 
 he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
-                        he_writer **out, he_error *err)
+                        he_watch *watch, he_writer **out, he_error *err)
 {
     if (format->writing == NULL) {
         return he_fail_plain(err, HE_UNSUPPORTED, "%s files cannot be written", format->name);
@@ -332,7 +332,8 @@ he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t enc
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
     }
     writer->writing = format->writing;
-    he_status status = writer->writing->open(mesh, encoding, &writer->notes, &writer->state, err);
+    he_status status =
+        writer->writing->open(mesh, encoding, watch, &writer->notes, &writer->state, err);
     if (status != HE_OK) {
         he_mem_free(writer);
         return status;

@@ -166,6 +166,21 @@ bool he_is_material_column(const he_column *column)
            column->labels != NULL && strcmp(column->name, HE_MATERIAL_ATTRIBUTE) == 0;
 }
 
+bool he_is_normal_column(const he_column *column)
+{
+    return (column->type == HE_FLOAT || column->type == HE_DOUBLE) && column->components == 3 &&
+           strcmp(column->name, "normal") == 0;
+}
+
+void he_normal_negate(const he_column *column, unsigned char *row)
+{
+    size_t size = he_type_bytes(column->type);
+    /* The sign is the top bit of the last byte. */
+    for (size_t k = 1; k <= 3; k++) {
+        row[k * size - 1] ^= 0x80;
+    }
+}
+
 he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
                                 he_column **out, he_error *err)
 {

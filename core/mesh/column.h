@@ -78,6 +78,10 @@ bool he_column_same_kind(const he_column *a, const he_column *b); /* all but the
 bool he_column_same_values(const he_column *a, const he_column *b);
 /* Is it of the kind that HE_MATERIAL_ATTRIBUTE is: uint32 of one component, with labels? */
 bool he_is_material_column(const he_column *column);
+/* Is it the attribute "normal", of three floats or doubles? */
+bool he_is_normal_column(const he_column *column);
+/* Make a row of such a column point the other way: all its signs are turned. */
+void he_normal_negate(const he_column *column, unsigned char *row);
 /* One of corners under another name that is else of the kind of `column`, with so many rows. */
 HE_NODISCARD he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
                                              he_column **out, he_error *err);

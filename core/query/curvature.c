@@ -173,14 +173,15 @@ static he_status visit_face(const he_mesh *m, uint32_t face, uint64_t *most, vis
     return HE_OK;
 }
 
-static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, visitor visit,
-                          void *context, he_error *err)
+static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_watch *watch,
+                          visitor visit, void *context, he_error *err)
 {
     he_status status = HE_OK;
     size_t count = c->all ? m->c.faces.issued : c->faces.count;
     for (size_t i = 0; i < count && status == HE_OK; i++) {
         uint32_t face = c->all ? (uint32_t)i : c->faces.ids[i];
-        if (he_face_is_live(m, (he_face){face})) {
+        status = he_watch_at(watch, i, count, err);
+        if (status == HE_OK && he_face_is_live(m, (he_face){face})) {
             status = visit_face(m, face, &most, visit, context, err);
         }
     }
@@ -284,7 +285,7 @@ static he_curvature conclude(const he_mesh *m, uint32_t v, const sums *s)
 }
 
 he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_t count, uint64_t most,
-                        he_curvature *out, he_error *err)
+                        he_watch *watch, he_curvature *out, he_error *err)
 {
     chosen c;
     bending b = {&c, NULL};
@@ -297,7 +298,7 @@ he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_t count, uint
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to sum up curvature");
         goto done;
     }
-    status = for_each(m, &c, most, add_bend, &b, err);
+    status = for_each(m, &c, most, watch, add_bend, &b, err);
     for (uint32_t v = 0; c.all && v < m->c.vertices.issued && status == HE_OK; v++) {
         if (he_vertex_is_live(m, (he_vertex){v})) {
             *out++ = conclude(m, v, &b.rows[v]);
@@ -338,7 +339,7 @@ static void add_cotangent(const triangle *t, void *context)
 }
 
 he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count, uint64_t most,
-                             double *out, he_error *err)
+                             he_watch *watch, double *out, he_error *err)
 {
     chosen c;
     weighing w = {m, &c, NULL};
@@ -351,7 +352,7 @@ he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to sum up cotangents");
         goto done;
     }
-    status = for_each(m, &c, most, add_cotangent, &w, err);
+    status = for_each(m, &c, most, watch, add_cotangent, &w, err);
     for (uint32_t e = 0; c.all && e < m->c.edges.issued && status == HE_OK; e++) {
         if (he_edge_is_live(m, (he_edge){e})) {
             *out++ = w.rows[e];

@@ -34,13 +34,16 @@ typedef struct he_curvature {
 
 /* Of each of `count` live vertices, or with `of` NULL of all of them in the order of ids. `most`
  * limits the squared corners of the faces of more than four beside them, which cutting those may
- * cost: HE_LIMIT. HE_NO_MEMORY, HE_IDS_EXHAUSTED. On failure `out` may be half written. */
+ * cost: HE_LIMIT. `watch` may be NULL. HE_NO_MEMORY, HE_IDS_EXHAUSTED, HE_CANCELLED. On failure
+ * `out` may be half written. */
 HE_NODISCARD he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_t count,
-                                     uint64_t most, he_curvature *out, he_error *err);
+                                     uint64_t most, he_watch *watch, he_curvature *out,
+                                     he_error *err);
 
 /* Half the sum of the cotangents of the angles opposite to each edge, one on the boundary; NaN
  * beside a degenerate triangle. Otherwise as above. */
 HE_NODISCARD he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
-                                          uint64_t most, double *out, he_error *err);
+                                          uint64_t most, he_watch *watch, double *out,
+                                          he_error *err);
 
 #endif

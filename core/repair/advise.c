@@ -57,6 +57,7 @@ static he_status find_needs(const he_soup *soup, bool *dropped, unsigned *out, h
         he_repaired_clear(done);
         he_mem_free(done);
     }
+    he_mem_free(m.turned);
     he_mem_free(copy.corners);
     he_mem_free(copy.starts);
     return status;
@@ -92,7 +93,8 @@ he_status he_repair_advise(he_soup *soup, unsigned asked, unsigned *out, he_erro
     }
     he_mend m = {.soup = soup, .out = done};
     he_status status = he_mend_drop_degenerate(&m, err);
-    bool drops = done->accounts[HE_REPAIR_DROP_DEGENERATE].count > 0;
+    const he_repair_account *dropped = &done->accounts[HE_REPAIR_DROP_DEGENERATE];
+    bool drops = dropped->count + dropped->parts > 0;
     if (status == HE_OK) {
         status = advise_proper(soup, &needs, err);
     }

@@ -1,4 +1,4 @@
-/* drop_degenerate and drop_duplicates: faces left out. */
+/* drop_duplicates: faces left out. */
 #include "build/pair.h"
 #include "repair/mend.h"
 
@@ -43,38 +43,6 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
     soup->corner_count = corners;
     return HE_OK;
 }
-
-/* --- degenerate ones --- */
-
-he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
-{
-    he_soup *soup = m->soup;
-    he_repair_account *account = &m->out->accounts[HE_REPAIR_DROP_DEGENERATE];
-    uint64_t *gone = he_bits_new(soup->face_count);
-    uint32_t *stamp = he_mem_zero(soup->vertex_count + 1, sizeof *stamp);
-    he_status status = HE_OK;
-    if (gone == NULL || stamp == NULL) {
-        status = no_memory(soup, err);
-    }
-    uint64_t before = account->count;
-    for (uint32_t f = 0; f < soup->face_count && status == HE_OK; f++) {
-        uint32_t begin = soup->starts[f], count = he_soup_end(soup, f) - begin;
-        status = he_watch_at(soup->limits.watch, f, soup->face_count, err);
-        if (count < 3 || he_soup_find_repeat(soup->corners + begin, count, stamp, f + 1) < count) {
-            he_bits_set(gone, f);
-            account->count++;
-            he_mend_name(account, he_mend_input(m->out->face_from, f), HE_NONE);
-        }
-    }
-    if (status == HE_OK && account->count > before) {
-        status = drop(m, gone, err);
-    }
-    he_mem_free(gone);
-    he_mem_free(stamp);
-    return status;
-}
-
-/* --- duplicates --- */
 
 /* The way round a face that is the same for all its duplicates: from its lowest vertex towards the
  * lower of that one's neighbours. */

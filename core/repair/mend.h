@@ -9,6 +9,7 @@ typedef struct he_mend {
     he_repaired *out;
     bool has_corner_values; /* attributes whose rows follow the corners */
     uint32_t *corner_from;  /* the input's corner of each; NULL: all kept their number */
+    uint64_t *turned;       /* a bit for each face that orient turned; NULL: none */
 } he_mend;
 
 static inline void he_mend_name(he_repair_account *account, uint32_t a, uint32_t b)

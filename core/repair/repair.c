@@ -124,6 +124,43 @@ static he_status carry(const he_mend *m, he_error *err)
     return status;
 }
 
+/* Normals of faces that were turned, and of their corners, are turned with them. */
+static he_status turn_normals(const he_mend *m, he_column *column, he_error *err)
+{
+    const he_soup *soup = m->soup;
+    size_t rows = column->domain == HE_FACE ? soup->face_count : soup->corner_count;
+    he_status status = HE_OK;
+    if (column->rows < rows) {
+        status = he_column_extend(column, rows - column->rows, err);
+    }
+    for (uint32_t f = 0; f < soup->face_count && status == HE_OK; f++) {
+        if (!he_bits_get(m->turned, f)) {
+            continue;
+        }
+        if (column->domain == HE_FACE) {
+            he_normal_negate(column, he_column_row(column, f));
+            continue;
+        }
+        for (uint32_t c = soup->starts[f], end = he_soup_end(soup, f); c < end; c++) {
+            he_normal_negate(column, he_column_row(column, c));
+        }
+    }
+    return status;
+}
+
+static he_status turn_all_normals(const he_mend *m, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; m->turned != NULL && i < m->soup->column_count && status == HE_OK; i++) {
+        he_column *column = m->soup->columns[i];
+        if (he_is_normal_column(column) &&
+            (column->domain == HE_FACE || column->domain == HE_HALFEDGE)) {
+            status = turn_normals(m, column, err);
+        }
+    }
+    return status;
+}
+
 /* --- the whole --- */
 
 bool he_mend_has_bad_index(const he_soup *soup)
@@ -189,6 +226,10 @@ he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan, he_repaired 
     if (status == HE_OK) {
         status = carry(&m, err);
     }
+    if (status == HE_OK) {
+        status = turn_all_normals(&m, err);
+    }
     he_mem_free(m.corner_from);
+    he_mem_free(m.turned);
     return status;
 }

@@ -11,7 +11,10 @@
  * one becomes an attribute of corners, so that seams of texture and sharp edges stay
  * (build/keep.h).
  *
- * drop_degenerate: faces of less than three corners, or with two at one vertex, are left out.
+ * drop_degenerate: a face that comes to a vertex twice keeps what has an area. Of corners at one
+ * vertex in a row one stays (1 2 3 3 is the triangle 1 2 3), and a spike, there and back, goes.
+ * Loops that touch in a vertex become faces of their own, and a face with a hole is cut into
+ * triangles. What has less than three corners, before or after that, is left out.
  *
  * drop_duplicates: of faces with the same corners, begun anywhere and wound either way, the first
  * is kept.
@@ -20,7 +23,8 @@
  * as edges of two faces lead. The larger part of a component keeps its direction; the part of its
  * first face, where they are equal. Where a component cannot be oriented (a Moebius band) the soup
  * is refused, unless it is to be split as well: then it is wound consistently along a tree of its
- * faces, or left where that makes no fewer of them clash, and cut where they do.
+ * faces, or left where that makes no fewer of them clash, and cut where they do. The attribute
+ * "normal" of the faces that are turned, and of their corners, is turned with them.
  *
  * split: every fan of faces gets its vertex for itself. The fan of the first corner keeps it, the
  * others get copies, numbered after all vertices in the order of their first corners. Faces hang
@@ -80,12 +84,13 @@ typedef struct he_repair_pair {
 typedef struct he_repair_account {
     uint64_t count; /* weld: vertices gone; drop_*: faces gone; orient: faces turned; split:
                        vertices made; fill: faces made */
-    uint64_t
-        parts; /* orient: components with turned faces; split: vertices that had several fans */
+    uint64_t parts; /* drop_degenerate: faces that lost corners or were cut up; orient: components
+                       with turned faces; split: vertices that had several fans */
     uint64_t moved; /* weld: values of vertices that went to corners, being different */
     uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
-    /* weld: gone, the one it joined; drop_degenerate: gone, HE_NONE; drop_duplicates: gone, the
-     * one kept; orient: turned face, HE_NONE; split: made, its parent; fill: face, its corners */
+    /* weld: gone, the one it joined; drop_degenerate: the face, what became of it, 0 or more faces;
+     * drop_duplicates: gone, the one kept; orient: turned face, HE_NONE; split: made, its parent;
+     * fill: face, its corners */
     he_repair_pair pairs[HE_REPAIR_NAMED];
     size_t named;
 } he_repair_account;
@@ -127,7 +132,8 @@ HE_NODISCARD he_status he_repair_mesh(he_mesh *mesh, const he_repair_plan *plan,
 
 /* he_build refused the soup to which the set `asked` was applied, or he_repair_soup found it not to
  * be orientable: which set, `asked` included, would let it pass? 0 where none would: a corner names
- * no vertex. Columns are not looked at. The soup may lose faces, and is only to be cleared after.
+ * no vertex. Columns are not looked at. The soup may get other faces, and is only to be cleared
+ * after.
  * HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_repair_advise(he_soup *soup, unsigned asked, unsigned *out,
                                         he_error *err);

@@ -358,7 +358,7 @@ st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, 
     if (used > 0) {
         step = ST_QUEUE_GOT;
     } else if (step == ST_QUEUE_WAIT && queue->lost) {
-        step = ST_QUEUE_ENDED;
+        step = ST_QUEUE_LOST;
     } else if (step == ST_QUEUE_WAIT) {
         begin_waiting(queue, listener);
     }

@@ -77,7 +77,7 @@ void st_queue_add_beside(st_queue *queue, const char *bytes, size_t length);
 uint64_t st_queue_newest(st_queue *queue);
 /* Messages up to this stamp may be read: wakes who waits. */
 void st_queue_allow(st_queue *queue, uint64_t stamp);
-/* What is not allowed by now never will be: listeners that come to it are at the end. */
+/* What is not allowed by now never will be. */
 void st_queue_lose(st_queue *queue);
 /* Nothing will be added any more. */
 void st_queue_end(st_queue *queue);
@@ -97,11 +97,13 @@ typedef enum st_queue_result {
     ST_QUEUE_GOT,  /* *got of them */
     ST_QUEUE_WAIT, /* nothing now; `wake` will be called */
     ST_QUEUE_BEHIND,
+    ST_QUEUE_LOST, /* what comes next never will be allowed */
     ST_QUEUE_ENDED
 } st_queue_result;
 
 st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, size_t *got);
-/* After ST_QUEUE_BEHIND: go on from the newest message that may be read, whose place this is. */
+/* After ST_QUEUE_BEHIND or ST_QUEUE_LOST: go on from the newest message that may be read, whose
+ * place this is. */
 st_place st_queue_skip(st_listener *listener);
 
 #endif

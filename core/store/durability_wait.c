@@ -6,7 +6,6 @@
 #include <stdatomic.h>
 
 struct st_waits {
-    const st_journal *journal;
     _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
     st_wait *top; /* of the heap */
@@ -95,12 +94,25 @@ static bool reserve_loss(st_waits *waits)
     return true;
 }
 
-/* Without memory everything from the loss on counts as lost: too much rather than too little. */
-static void lost(void *context, const st_loss *loss)
+/* Each room that comes back after a fault is a loss of its own: they make one interval. */
+static bool extend_last(st_waits *waits, const st_loss *loss)
 {
-    st_waits *waits = context;
+    st_loss *last = waits->loss_count == 0 ? NULL : &waits->losses[waits->loss_count - 1];
+    if (last == NULL || last->incarnation != loss->incarnation || last->to + 1 != loss->from ||
+        last->status != loss->status || last->reason != loss->reason) {
+        return false;
+    }
+    last->to = loss->to;
+    return true;
+}
+
+/* Without memory everything from the loss on counts as lost: too much rather than too little. */
+void st_waits_lose(st_waits *waits, const st_loss *loss)
+{
     pthread_mutex_lock(&waits->lock);
-    if (reserve_loss(waits)) {
+    if (extend_last(waits, loss)) {
+        /* It is noted. */
+    } else if (reserve_loss(waits)) {
         waits->losses[waits->loss_count++] = *loss;
     } else if (loss->from < waits->rest.from) {
         waits->rest = *loss;
@@ -145,31 +157,25 @@ static void resume_those_over(st_waits *waits)
     }
 }
 
-static void moved(void *context, uint64_t position)
+void st_waits_moved(st_waits *waits, uint64_t position)
 {
-    st_waits *waits = context;
     raise_to(&waits->durable, position);
     resume_those_over(waits);
 }
 
-st_waits *st_waits_new(const st_journal *journal)
+st_waits *st_waits_new(void)
 {
     st_waits *waits = he_mem_zero(1, sizeof *waits);
-    if (waits == NULL) {
-        return NULL;
+    if (waits != NULL) {
+        waits->rest = (st_loss){.from = UINT64_MAX};
+        pthread_mutex_init(&waits->lock, NULL);
     }
-    waits->journal = journal;
-    waits->rest = (st_loss){.from = UINT64_MAX};
-    pthread_mutex_init(&waits->lock, NULL);
-    const st_journal_listener listener = {waits, moved, lost};
-    journal->listen(journal->self, &listener);
     return waits;
 }
 
 void st_waits_free(st_waits *waits)
 {
     if (waits != NULL) {
-        waits->journal->listen(waits->journal->self, NULL);
         pthread_mutex_destroy(&waits->lock);
         he_mem_free(waits->losses);
         he_mem_free(waits);

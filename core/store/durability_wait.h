@@ -39,10 +39,14 @@ typedef struct st_wait {
     struct st_wait *child, *beside; /* in the heap */
 } st_wait;
 
-/* Listens to the journal, which outlives it. NULL when memory is out. */
-st_waits *st_waits_new(const st_journal *journal);
+/* NULL when memory is out. */
+st_waits *st_waits_new(void);
 /* Nothing may wait. */
-void st_waits_free(st_waits *waits);
+void st_waits_free(st_waits *waits); /* takes NULL */
+
+/* What the journal's listener is told (journal.h). */
+void st_waits_moved(st_waits *waits, uint64_t position);
+void st_waits_lose(st_waits *waits, const st_loss *loss);
 
 /* Notes the position of a record that was appended, before others can see the record. */
 void st_waits_appended(st_waits *waits, uint64_t position);

@@ -126,8 +126,8 @@ st_status st_follow(st_mesh *mesh, st_listener *listener, const st_since *since,
     }
     pthread_rwlock_rdlock(&mesh->lock);
     st_mesh_facts(mesh, info);
-    if (info->removed) {
-        status = ST_ABSENT;
+    if (info->removed || info->lost) {
+        status = info->lost ? ST_LOST : ST_ABSENT;
     } else if (!st_queue_listen(&mesh->queue, listener, followers->most_of_mesh)) {
         status = ST_LISTENERS;
     } else {

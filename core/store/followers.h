@@ -26,7 +26,7 @@ typedef enum st_missed {
 } st_missed;
 
 /* Begins to listen to a mesh: from after `since`, or from the present revision, whose facts go to
- * `info`. ST_ABSENT when the mesh was removed, ST_LISTENERS when as many listen as may. */
+ * `info`. ST_ABSENT when the mesh was removed, ST_LOST, ST_LISTENERS when as many listen as may. */
 st_status st_follow(st_mesh *mesh, st_listener *listener, const st_since *since, st_missed *missed,
                     st_mesh_info *info);
 void st_unfollow(st_mesh *mesh, st_listener *listener);

@@ -158,14 +158,16 @@ static st_status book(st_write *w)
     return st_book(journal, &need, &w->booking);
 }
 
-/* Refused where there is no place in the journal, or a claimed mesh was removed meanwhile. */
+/* Refused where there is no place in the journal, or a claimed mesh was removed or lost
+ * meanwhile. */
 static st_status get_ready(st_write *w)
 {
     st_status status = book(w);
     if (w->claimed) {
         pthread_rwlock_wrlock(&w->mesh->lock);
-        if (status == ST_OK && w->mesh->info.removed) {
-            status = ST_ABSENT;
+        const st_mesh_info *info = &w->mesh->info;
+        if (status == ST_OK && (info->removed || info->lost)) {
+            status = info->lost ? ST_LOST : ST_ABSENT;
         }
     }
     if (status != ST_OK) {

@@ -23,8 +23,8 @@ static st_status begin(st_write *w)
 {
     const st_mesh *mesh = w->mesh;
     st_mesh_facts(mesh, &w->info);
-    if (w->info.removed) {
-        return ST_ABSENT;
+    if (w->info.removed || w->info.lost) {
+        return w->info.lost ? ST_LOST : ST_ABSENT;
     }
     if (!mesh->claimed) {
         begin_recording(w);

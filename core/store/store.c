@@ -20,7 +20,32 @@ struct st_store {
     st_keys keys; /* of what makes a mesh */
 };
 
-enum { ID_LENGTH = 10, SHED_BATCH = 64 };
+enum { ID_LENGTH = 10, MESH_BATCH = 64 };
+
+/* --- what the journal tells, on its own thread --- */
+
+static void moved(void *context, uint64_t position)
+{
+    const st_store *store = context;
+    st_waits_moved(store->followers.waits, position);
+}
+
+/* Noted first: what a handler has read of a mesh that is lost is not sent any more. */
+static void lost(void *context, const st_loss *loss)
+{
+    st_store *store = context;
+    st_mesh *batch[MESH_BATCH];
+    char after[ST_MESH_ID + 1] = "";
+    size_t count;
+    st_waits_lose(store->followers.waits, loss);
+    while ((count = st_list(store, after, batch, MESH_BATCH)) > 0) {
+        memcpy(after, batch[count - 1]->info.id, sizeof after);
+        for (size_t i = 0; i < count; i++) {
+            st_mesh_lose(batch[i], loss);
+            st_release(batch[i]);
+        }
+    }
+}
 
 st_store *st_store_new(const st_store_options *options)
 {
@@ -40,13 +65,15 @@ st_store *st_store_new(const st_store_options *options)
         .render = options->render,
         .most = options->listeners,
         .most_of_mesh = options->mesh_listeners,
-        .waits = st_waits_new(&store->journal),
+        .waits = st_waits_new(),
     };
     if (store->followers.waits == NULL) {
         pthread_rwlock_destroy(&store->lock);
         he_mem_free(store);
         return NULL;
     }
+    const st_journal_listener listener = {store, moved, lost};
+    store->journal.listen(store->journal.self, &listener);
     return store;
 }
 
@@ -55,6 +82,7 @@ void st_store_free(st_store *store)
     if (store == NULL) {
         return;
     }
+    store->journal.listen(store->journal.self, NULL);
     for (size_t i = 0; i < store->count; i++) {
         st_release(store->meshes[i]);
     }
@@ -302,10 +330,10 @@ size_t st_store_count(st_store *store)
 void st_store_shed(st_store *store)
 {
     st_keys_shed(&store->keys);
-    st_mesh *batch[SHED_BATCH];
+    st_mesh *batch[MESH_BATCH];
     char after[ST_MESH_ID + 1] = "";
     size_t count;
-    while ((count = st_list(store, after, batch, SHED_BATCH)) > 0) {
+    while ((count = st_list(store, after, batch, MESH_BATCH)) > 0) {
         memcpy(after, batch[count - 1]->info.id, sizeof after);
         for (size_t i = 0; i < count; i++) {
             st_mesh_shed(batch[i]);

@@ -5,6 +5,10 @@
  * the store, reading `removed` true, and is given back by st_release. A mesh is freed with its last
  * handle, so a removed mesh is still there for those who were reading it.
  *
+ * When the journal loses changes, each mesh whose newest one is among them leaves the store,
+ * reading `lost` true: no write gets to it, its listeners are sent away, and what was read of it is
+ * never sent. Who asks for its id finds the mesh anew, as it was before.
+ *
  * Locks are held for as long as it takes to compute, never while a client is waited for. They are
  * taken in this order:
  *     past      the mesh's cached copy of an earlier revision; not on a worker
@@ -43,6 +47,8 @@ typedef struct st_mesh_info {
     double created, modified;    /* seconds since 1970 UTC */
     uint32_t undo, redo;         /* steps on the stacks */
     bool removed;
+    bool lost;               /* it stands on a change that will never be durable: the store has it
+                                no more */
     bool busy;               /* a long edit has claimed it: write.h */
     char job[ST_JOB_ID + 1]; /* the job whose edit that is, "" when it is none */
 } st_mesh_info;

@@ -155,6 +155,30 @@ void st_mesh_publish(st_mesh *mesh, const st_group *group)
     st_mesh_tell(mesh, group);
 }
 
+static bool is_lost(const st_mesh_info *info, const st_loss *loss)
+{
+    return !info->removed && !info->lost && info->position >= loss->from &&
+           info->position <= loss->to &&
+           (loss->incarnation == 0 || loss->incarnation == info->incarnation);
+}
+
+void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
+{
+    pthread_rwlock_rdlock(&mesh->lock);
+    bool found = is_lost(&mesh->info, loss);
+    pthread_rwlock_unlock(&mesh->lock);
+    if (found) {
+        pthread_rwlock_wrlock(&mesh->lock);
+        /* Asked again: it may have been removed meanwhile, which is lost too. */
+        if (is_lost(&mesh->info, loss)) {
+            mesh->info.lost = true;
+            st_queue_lose(&mesh->queue);
+            st_store_take_out(mesh->store, mesh);
+        }
+        pthread_rwlock_unlock(&mesh->lock);
+    }
+}
+
 const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info)
 {
     pthread_rwlock_rdlock(&mesh->lock);

@@ -105,6 +105,8 @@ void st_mesh_publish(st_mesh *mesh, const st_group *group);
 void st_mesh_tell(st_mesh *mesh, const st_group *group);
 void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_change *change,
                     st_event *out);
+/* Takes the mesh out of the store where its newest change lies in the loss: it is lost. */
+void st_mesh_lose(st_mesh *mesh, const st_loss *loss);
 /* Under the mesh's exclusive lock: the store has it no more. */
 void st_store_take_out(st_store *store, st_mesh *mesh);
 

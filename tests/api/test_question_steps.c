@@ -137,6 +137,88 @@ static void a_search_that_was_refused_has_used_up_the_steps_of_its_request(void 
     bench_free(b);
 }
 
+/* --- what is about all of a mesh --- */
+
+static bench_reply ask(api_bench *b, const char *target, const char *accept, const char *wait,
+                       const char *body)
+{
+    const char *const headers[] = {
+        "Content-Type", "application/json", "Accept", accept, "Prefer", wait, NULL};
+    return bench_send(b, "POST", target, headers, body);
+}
+
+static void expect_result(api_bench *b, const bench_reply *begun, const bench_reply *wanted)
+{
+    char link[128];
+    snprintf(link, sizeof link, "%s/result", bench_header(begun, "Location"));
+    bench_run_jobs(b, 1);
+    bench_reply r = bench_expect(200, bench_get(b, link));
+    assert_int_equal(r.length, wanted->length);
+    assert_memory_equal(r.body, wanted->body, wanted->length);
+    bench_done(r);
+}
+
+/* A client that waits for 0 s, since it takes a million faces to take longer than the usual one. */
+static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_waits(void **state)
+{
+    (void)state;
+    static const char json[] = "application/json", octets[] = "application/octet-stream";
+    static const char walks[] = "/v1/meshes/m/traverse";
+    static const struct {
+        const char *target, *accept, *body;
+    } cases[] = {
+        {QUERY, json, "{\"queries\":[{\"closest\":[2,0,0]}]}"}, /* makes the tree */
+        {QUERY, json, "{\"queries\":[{\"self_intersections\":{}}]}"},
+        {QUERY, json, "{\"queries\":[{\"measure\":\"area\",\"of\":{\"faces\":\"all\"}}]}"},
+        {QUERY, octets, "{\"queries\":[{\"measure\":\"dihedral\",\"of\":{\"edges\":\"all\"}}]}"},
+        {QUERY, octets, "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"edges\":\"all\"}}]}"},
+        {walks, json, "{\"walk\":\"breadth_first\",\"from\":{\"vertex\":0}}"},
+        {walks, json, "{\"walk\":\"rings\",\"from\":{\"vertex\":0},\"depth\":1000}"},
+        {walks, json,
+         "{\"walk\":\"shortest_path\",\"from\":{\"vertex\":0},\"to\":{\"vertex\":99}}"},
+    };
+    api_bench *b = bench_new();
+    bench_done(bench_expect(
+        201, bench_post(b, "/v1/meshes?id=m", "{\"shape\":\"icosphere\",\"subdivisions\":5}")));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *target = cases[i].target, *accept = cases[i].accept, *body = cases[i].body;
+        print_message("%s %s\n", target, body);
+        bench_reply begun = bench_expect(202, ask(b, target, accept, "wait=0", body));
+        bench_reply wanted = bench_expect(200, ask(b, target, accept, "wait=60", body));
+        expect_result(b, &begun, &wanted);
+        bench_done(wanted);
+        bench_done(begun);
+    }
+    /* The tree is there, and what concerns few elements takes no time. */
+    bench_done(bench_expect(200, ask(b, QUERY, json, "wait=0", cases[0].body)));
+    bench_done(bench_expect(200, ask(b, walks, json, "wait=0",
+                                     "{\"walk\":\"rings\",\"from\":{\"vertex\":0},\"depth\":2}")));
+    bench_free(b);
+}
+
+/* 92,162 elements and a number for each of 20,480 faces: 89 such passes take a second. */
+static void seconds_of_passes_over_a_mesh_add_up(void **state)
+{
+    (void)state;
+    static const struct {
+        int passes, status;
+    } cases[] = {{80, 200}, {100, 202}};
+    api_bench *b = bench_new();
+    bench_done(bench_expect(
+        201, bench_post(b, "/v1/meshes?id=m", "{\"shape\":\"icosphere\",\"subdivisions\":5}")));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        static const char pass[] = "{\"measure\":\"area\",\"of\":{\"faces\":\"all\"}}";
+        char body[8192] = "{\"queries\":[";
+        for (int n = 1; n <= cases[i].passes; n++) {
+            size_t used = strlen(body);
+            snprintf(body + used, sizeof body - used, "%s%s", pass,
+                     n < cases[i].passes ? "," : "]}");
+        }
+        bench_done(bench_expect(cases[i].status, bench_post(b, QUERY, body)));
+    }
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -145,6 +227,8 @@ int main(void)
         cmocka_unit_test(a_check_beyond_its_steps_is_a_job_where_the_client_takes_one),
         cmocka_unit_test(many_searches_in_one_request_are_refused_by_the_limit),
         cmocka_unit_test(a_search_that_was_refused_has_used_up_the_steps_of_its_request),
+        cmocka_unit_test(questions_about_all_are_jobs_where_they_take_longer_than_the_client_waits),
+        cmocka_unit_test(seconds_of_passes_over_a_mesh_add_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

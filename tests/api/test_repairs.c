@@ -309,6 +309,8 @@ static void each_repair_accounts_for_itself(void **state)
     expect_member(one, "count", "1");
     expect_member(one, "gone", "[2]");
     expect_member(one, "lines", "[9]");
+    expect_member(one, "mended", "0");
+    expect_member(one, "faces", "[]");
     one = repair_at(&r, 2, "drop_duplicates");
     expect_member(one, "count", "2");
     expect_member(one, "gone", "[1,6]");
@@ -321,6 +323,28 @@ static void each_repair_accounts_for_itself(void **state)
     expect_member(one, "parents", "{\"vertices\":[]}");
     one = repair_at(&r, 5, "fill");
     expect_member(one, "hole_edges", "4");
+    expect_valid(b, &r);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* A quad that is a triangle, a line, and a ring of quads as one face. */
+static void degenerate_faces_that_keep_an_area_are_named(void **state)
+{
+    (void)state;
+    static const char text[] = "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 2 1 0\nv 2 2 0\n"
+                               "v 1 2 0\nf 1 2 3 4 1 5 8 7 6 5\nf 5 5 6\nf 5 6 7 7\n";
+    api_bench *b = bench_new();
+    bench_reply r =
+        expect(201, post(b, "?repair=drop_degenerate", "model/obj", text, strlen(text)));
+    expect_member(cJSON_GetObjectItem(r.json, "counts"), "faces", "9");
+    expect_member(r.json, "area", "8.5");
+    const cJSON *one = repair_at(&r, 0, "drop_degenerate");
+    expect_member(one, "count", "1");
+    expect_member(one, "gone", "[1]");
+    expect_member(one, "lines", "[10]");
+    expect_member(one, "mended", "2");
+    expect_member(one, "faces", "[0,2]");
     expect_valid(b, &r);
     bench_reply_free(&r);
     bench_free(b);
@@ -698,6 +722,7 @@ int main(void)
         cmocka_unit_test(what_no_repair_mends_names_none),
         cmocka_unit_test(every_file_of_the_corpus_that_is_refused),
         cmocka_unit_test(each_repair_accounts_for_itself),
+        cmocka_unit_test(degenerate_faces_that_keep_an_area_are_named),
         cmocka_unit_test(copies_and_turned_faces_are_named),
         cmocka_unit_test(a_band_that_cannot_be_oriented_is_told),
         cmocka_unit_test(a_refusal_after_repairs_names_the_file),

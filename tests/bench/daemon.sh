@@ -16,7 +16,7 @@ trap daemon_stop EXIT INT TERM
 
 daemon_start() {
     mkfifo "$work/log"
-    "$@" --listen 127.0.0.1:0 2>"$work/log" &
+    "$@" --listen 127.0.0.1:0 --store "${store:-memory}" 2>"$work/log" &
     daemon=$!
     exec 4<"$work/log"
     base=

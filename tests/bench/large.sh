@@ -68,7 +68,7 @@ done
 step "summary, computed" 200 "$meshes/m"
 step "summary, kept" 200 "$meshes/m"
 step "all neighbours as octets" 200 -H "$json" -H 'Accept: application/octet-stream' \
-    "$meshes/m/query" -d '{"queries":[{"relation":"vertices","of":{"vertices":"all"}}]}'
+    -H 'Prefer: wait=60' "$meshes/m/query" -d '{"queries":[{"relation":"vertices","of":{"vertices":"all"}}]}'
 # word OFFSET: a number of eight bytes in the last answer
 word() { od -An -tu8 -j "$1" -N 8 "$work/answer" | tr -d ' '; }
 step "arrays to draw, first" 200 "$meshes/m/geometry"

@@ -170,7 +170,7 @@ int main(void)
 
     he_curvature *all = malloc(VERTICES * sizeof *all);
     start = seconds();
-    require(he_curvatures(m, NULL, 0, UINT64_MAX, all, NULL));
+    require(he_curvatures(m, NULL, 0, UINT64_MAX, NULL, all, NULL));
     printf("curvatures       %8.2f s   %d vertices\n", seconds() - start, VERTICES);
 
     free(all);

@@ -10,7 +10,7 @@ class Daemon:
     """Started on a free port; stopped at the end of the `with` block."""
 
     def __init__(self, program):
-        self.process = subprocess.Popen([program, '--listen', '127.0.0.1:0'],
+        self.process = subprocess.Popen([program, '--listen', '127.0.0.1:0', '--store', 'memory'],
                                         stderr=subprocess.PIPE, text=True)
         line = ''
         while 'listening on ' not in line:

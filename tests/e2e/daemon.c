@@ -153,12 +153,12 @@ static bool find_url(daemon_process *d)
 
 static daemon_process *start(const char *const *arguments, outlet to)
 {
-    static const char *const listen[] = {"--listen", "127.0.0.1:0", NULL};
+    static const char *const own[] = {"--listen", "127.0.0.1:0", "--store", "memory", NULL};
     daemon_process *d = calloc(1, sizeof *d);
     assert_non_null(d);
     pthread_mutex_init(&d->lock, NULL);
     pthread_cond_init(&d->changed, NULL);
-    d->log_fd = spawn(listen, arguments, to, false, &d->pid);
+    d->log_fd = spawn(own, arguments, to, false, &d->pid);
     assert_int_equal(pthread_create(&d->reader, NULL, read_log, d), 0);
     pthread_mutex_lock(&d->lock);
     while (!find_url(d) && !d->ended) {

@@ -34,6 +34,9 @@ static void test_options(void **state)
     expect_run(ARGUMENTS("--no-such-option"), 2, "no-such-option");
     expect_run(ARGUMENTS("--workers", "many"), 2, "many");
     expect_run(ARGUMENTS("--listen", "nowhere"), 2, "nowhere");
+    expect_run(ARGUMENTS("--store", "here"), 2, "sqlite:DIR");
+    expect_run(ARGUMENTS("--store", "sqlite:"), 2, "sqlite:DIR");
+    expect_run(ARGUMENTS("--store", "sqlite:/proc/1/none/none"), 1, "cannot make");
     expect_run(ARGUMENTS("--listen", "0.0.0.0:0"), 2, "other machines");
 }
 
@@ -43,7 +46,8 @@ static void test_port_in_use(void **state)
     daemon_process *d = daemon_start(NULL);
     const char *address = strstr(daemon_url(d), "127");
     char output[4096];
-    assert_int_equal(daemon_run(ARGUMENTS("--listen", address), output, sizeof output), 1);
+    assert_int_equal(
+        daemon_run(ARGUMENTS("--listen", address, "--store", "memory"), output, sizeof output), 1);
     assert_non_null(strstr(output, address));
     assert_int_equal(daemon_run(ARGUMENTS("--healthcheck", daemon_url(d)), output, sizeof output),
                      0);

@@ -98,7 +98,7 @@ static bool can_write(const he_mesh *mesh, const he_format *format, const char *
     he_writer *writer = NULL;
     he_error err = {0};
     size_t number = (size_t)he_format_encoding(format, encoding);
-    he_status status = he_writer_new(format, mesh, number, &writer, &err);
+    he_status status = he_writer_new(format, mesh, number, NULL, &writer, &err);
     FUZZ_REQUIRE(status == HE_OK || status == HE_BEYOND_FLOAT, "%s: %s", format->name, err.text);
     he_writer_free(writer);
     return status == HE_OK;

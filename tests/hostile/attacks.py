@@ -11,12 +11,16 @@ import meshes
 
 
 class Ask:
-    """A request about the mesh of its row, whose path goes before `path`."""
+    """A request about the mesh of its row, whose path goes before `path`. `most`: milliseconds that it
+    may hold a thread of the pool, where that is a limit of its own."""
 
-    def __init__(self, name, method, path='', body=b'', statuses=(200,), headers=()):
+    def __init__(self, name, method, path='', body=b'', statuses=(200,), headers=(), most=None):
         self.name, self.method, self.path, self.statuses = name, method, path, statuses
+        self.most = most
         self.body = json.dumps(body).encode() if isinstance(body, (dict, list)) else body
-        self.headers = ['Content-Type: application/json', *headers] if self.body else [*headers]
+        typed = any(header.startswith('Content-Type:') for header in headers)
+        self.headers = [*headers] if typed or not self.body else ['Content-Type: application/json',
+                                                                  *headers]
 
 
 class Row:
@@ -25,12 +29,21 @@ class Row:
         self.query, self.headers, self.quick = query, headers, quick
 
 
-def get(name, path, *statuses):
-    return Ask(name, 'GET', path, statuses=statuses or (200,))
+def get(name, path, *statuses, most=None):
+    return Ask(name, 'GET', path, statuses=statuses or (200,), most=most)
 
 
 def query(name, *questions, statuses=(200, 413)):
     return Ask(name, 'POST', '/query', {'queries': list(questions)}, statuses)
+
+
+def jobs(ask):
+    """Of a mesh so large that it must be a job."""
+    return Ask(ask.name, ask.method, ask.path, ask.body, (202,), ask.headers)
+
+
+def maybe_jobs(ask):
+    return Ask(ask.name, ask.method, ask.path, ask.body, (202, *ask.statuses), ask.headers)
 
 
 def edit(op, statuses=(200, 202), **arguments):
@@ -269,6 +282,19 @@ ROWS = [
         'application/json', b'{"shape":"icosphere","subdivisions":6}'),
         [PROGRESSIVE, CROSS_OFTEN, RAYS, CLOSEST, edit('decimate', faces=10),
          edit('delaunay')], (201, 202)),
+    # A file is sent at once however large the mesh is: the manual says what that takes.
+    Row('a torus of a million faces', lambda: ('application/json', json.dumps(
+        {'shape': 'torus', 'major_segments': 1000, 'minor_segments': 1000}).encode()),
+        [CHECK, get('check with merge', '/check?merge=0.01', 200, 202),
+         get('crossings', '/check?self_intersections=true', 202),
+         jobs(RAY), jobs(CLOSEST), jobs(CROSS), jobs(CROSS_OFTEN),
+         get('STL', '/content?format=stl', most=2000), GLB, GEOMETRY, JSON, ASCII,
+         *map(maybe_jobs, MEASURES), *map(maybe_jobs, WALKS), maybe_jobs(HUB[3]), *TABLES,
+         COPY], (201, 202)),
+    Row('an icosphere of 1,300,000 faces', lambda: (
+        'application/json', b'{"shape":"icosphere","subdivisions":8}'),
+        [jobs(PROGRESSIVE), CHECK, jobs(RAYS), get('STL', '/content?format=stl', most=2000), GLB],
+        (201, 202)),
 ]
 
 

@@ -162,8 +162,8 @@ class Daemon:
     def __init__(self, program, *flags):
         self.log = tempfile.TemporaryFile('w+')
         self.process = subprocess.Popen(
-            [program, '--listen', '127.0.0.1:0', '--workers', '1', '--jobs', '2', '--log', 'access',
-             *flags], stderr=subprocess.PIPE, text=True)
+            [program, '--listen', '127.0.0.1:0', '--store', 'memory', '--workers', '1', '--jobs', '2',
+             '--log', 'access', *flags], stderr=subprocess.PIPE, text=True)
         self.ended = {}  # lines of the access log by the request's id
         self.ending = threading.Condition()
         line = self.process.stderr.readline()

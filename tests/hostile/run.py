@@ -104,7 +104,7 @@ class Field:
             self.daemon.await_end(name)
         return reply, hold
 
-    def judge(self, name, size, reply, hold, statuses):
+    def judge(self, name, size, reply, hold, statuses, most=None):
         worker, pool = hold.worker / MILLION, hold.pool / MILLION
         job = reply is not None and reply.status == 202
         why = []
@@ -114,16 +114,17 @@ class Field:
             why.append(f'not {"|".join(map(str, statuses))}: {reply.body[:200]!r}')
         if worker > WORKER * self.scale:
             why.append('held the worker')
-        if pool > THREAD * self.scale and not job:
+        most = (most or THREAD) * self.scale
+        if pool > most and not job:
             why.append('held a pool thread')
-        limit = f'{WORKER * self.scale:.0f}/' + ('job' if job else f'{THREAD * self.scale:.0f}')
+        limit = f'{WORKER * self.scale:.0f}/' + ('job' if job else f'{most:.0f}')
         self.tally.add(name, size, reply.status if reply else '-', worker, pool, limit, not why,
                        ', '.join(why))
         return not why
 
     def ask(self, row, ask):
         reply, hold = self.measure(ask.method, MESH + ask.path, ask.body, ask.headers)
-        self.judge(f'{row}: {ask.name}', len(ask.body), reply, hold, ask.statuses)
+        self.judge(f'{row}: {ask.name}', len(ask.body), reply, hold, ask.statuses, ask.most)
         if reply is not None and reply.status == 202:
             self.end_job(f'{row}: {ask.name}', reply)
         elif hold.pool / MILLION > 2 * CANCELLED * self.scale:

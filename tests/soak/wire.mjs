@@ -19,7 +19,7 @@ export class Daemon {
 
     // On a free port.
     static async start(program, flags) {
-        const child = spawn(program, ['--listen', '127.0.0.1:0', '--log', 'off', ...flags], {
+        const child = spawn(program, ['--listen', '127.0.0.1:0', '--store', 'memory', '--log', 'off', ...flags], {
             stdio: ['ignore', 'ignore', 'pipe'],
         });
         process.on('exit', () => child.kill());

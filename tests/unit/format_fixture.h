@@ -292,7 +292,7 @@ static inline char *write_encoded(const char *format, const char *encoding, cons
     const he_format *row = he_format_find(format);
     int number = he_format_encoding(row, encoding);
     assert_true(number >= 0);
-    if (he_writer_new(row, mesh, (size_t)number, &writer, &err) != HE_OK) {
+    if (he_writer_new(row, mesh, (size_t)number, NULL, &writer, &err) != HE_OK) {
         fail_msg("%s", err.text);
     }
     size_t length = 0, capacity = 1024, n;

@@ -76,9 +76,13 @@ static inline void expect_carried(const he_soup *before, const he_soup *after,
     for (uint32_t f = 0; f < after->face_count; f++) {
         uint32_t from = done->face_from == NULL ? f : done->face_from[f];
         assert_int_equal(value(after, 1, f), from);
-        assert_int_equal(he_soup_end(after, f) - after->starts[f],
-                         he_soup_end(before, from) - before->starts[from]);
-        assert_int_equal(value(after, 2, after->starts[f]), before->starts[from]);
+        uint32_t degree = he_soup_end(after, f) - after->starts[f];
+        uint32_t read = he_soup_end(before, from) - before->starts[from];
+        if (degree == read) {
+            assert_int_equal(value(after, 2, after->starts[f]), before->starts[from]);
+        } else { /* it was degenerate */
+            assert_true(degree < read && account(done, HE_REPAIR_DROP_DEGENERATE)->parts > 0);
+        }
         for (uint32_t c = after->starts[f]; c < he_soup_end(after, f); c++) {
             uint32_t corner = value(after, 2, c);
             uint32_t v = after->corners[c];

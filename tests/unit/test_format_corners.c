@@ -235,7 +235,7 @@ static void a_writer_without_memory_is_refused(void **state)
         for (long n = 1; status != HE_OK; n++) {
             he_writer *writer = NULL;
             fixture_fail_at(n);
-            status = he_writer_new(he_format_find(ways[i].format), mesh, 0, &writer, NULL);
+            status = he_writer_new(he_format_find(ways[i].format), mesh, 0, NULL, &writer, NULL);
             fixture_memory_back();
             assert_true(status == HE_OK || status == HE_NO_MEMORY);
             he_writer_free(status == HE_OK ? writer : NULL);

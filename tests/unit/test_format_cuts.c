@@ -117,7 +117,7 @@ static void faces_about_two_vertices_are_cut_in_linear_time(void **state)
     enum { QUADS = 4000 };
     he_mesh *m = two_hubs(QUADS);
     he_cuts cuts;
-    assert_int_equal(he_cuts_make(m, &cuts, NULL), HE_OK);
+    assert_int_equal(he_cuts_make(m, NULL, &cuts, NULL), HE_OK);
     assert_int_equal(cuts.polygons, QUADS);
     assert_int_equal(cuts.corners.count, 6 * QUADS);
     assert_true(cuts.steps < 500 * QUADS);

@@ -153,7 +153,7 @@ static void writers_without_memory(void **state)
             he_writer *writer;
             he_error err = {0};
             fixture_fail_at(++n);
-            status = he_writer_new(he_format_find(name), meshes[i / FILES], 0, &writer, &err);
+            status = he_writer_new(he_format_find(name), meshes[i / FILES], 0, NULL, &writer, &err);
             if (status == HE_OK) {
                 char buffer[64];
                 while (he_writer_read(writer, buffer, sizeof buffer) > 0) {

@@ -147,7 +147,7 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
         he_error err = {0};
         const he_format *format = he_format_find(rows[i].format);
         int encoding = he_format_encoding(format, rows[i].encoding);
-        he_status status = he_writer_new(format, mesh, (size_t)encoding, &writer, &err);
+        he_status status = he_writer_new(format, mesh, (size_t)encoding, NULL, &writer, &err);
         assert_int_equal(status, rows[i].text == NULL ? HE_OK : HE_BEYOND_FLOAT);
         if (rows[i].text != NULL) {
             assert_string_equal(err.text, rows[i].text);

@@ -505,7 +505,7 @@ static void no_memory_to_cut_polygons(void **state)
         he_writer *writer = NULL;
         he_error err = {0};
         fixture_fail_at(++n);
-        status = he_writer_new(he_format_find("stl"), mesh, 0, &writer, &err);
+        status = he_writer_new(he_format_find("stl"), mesh, 0, NULL, &writer, &err);
         fixture_memory_back();
         if (status == HE_OK) {
             he_writer_free(writer);

@@ -97,7 +97,7 @@ static double number_corners(const void *context, size_t count)
     }
     double from = pace_seconds();
     assert_int_equal(
-        he_distinct_make(mesh, (const he_column *const[]){column}, 1, false, &distinct, NULL),
+        he_distinct_make(mesh, (const he_column *const[]){column}, 1, false, NULL, &distinct, NULL),
         HE_OK);
     double seconds = pace_seconds() - from;
     assert_int_equal(distinct.first.count, count / 3 * 3);

@@ -20,7 +20,7 @@ static he_curvature *curvatures(const he_mesh *m)
 {
     he_curvature *all = calloc(he_mesh_vertices(m) + 1u, sizeof *all);
     assert_non_null(all);
-    assert_int_equal(he_curvatures(m, NULL, 0, UINT64_MAX, all, NULL), HE_OK);
+    assert_int_equal(he_curvatures(m, NULL, 0, UINT64_MAX, NULL, all, NULL), HE_OK);
     return all;
 }
 
@@ -28,7 +28,7 @@ static double *cotangents(const he_mesh *m)
 {
     double *all = calloc(he_mesh_edges(m) + 1u, sizeof *all);
     assert_non_null(all);
-    assert_int_equal(he_edge_cotangents(m, NULL, 0, UINT64_MAX, all, NULL), HE_OK);
+    assert_int_equal(he_edge_cotangents(m, NULL, 0, UINT64_MAX, NULL, all, NULL), HE_OK);
     return all;
 }
 
@@ -287,14 +287,14 @@ static void an_element_alone_has_the_value_it_has_among_all(void **state)
         uint32_t vertices = he_mesh_vertices(m), edges = he_mesh_edges(m);
         for (uint32_t v = 0; v < vertices; v++) {
             uint32_t list[3] = {v, vertices - 1, v}; /* a repeated one is answered twice */
-            assert_int_equal(he_curvatures(m, list, 3, UINT64_MAX, one, NULL), HE_OK);
+            assert_int_equal(he_curvatures(m, list, 3, UINT64_MAX, NULL, one, NULL), HE_OK);
             assert_memory_equal(&one[0], &c[v], sizeof one[0]);
             assert_memory_equal(&one[1], &c[vertices - 1], sizeof one[0]);
             assert_memory_equal(&one[2], &c[v], sizeof one[0]);
         }
         for (uint32_t e = 0; e < edges; e++) {
             uint32_t list[2] = {edges - 1, e};
-            assert_int_equal(he_edge_cotangents(m, list, 2, UINT64_MAX, weight, NULL), HE_OK);
+            assert_int_equal(he_edge_cotangents(m, list, 2, UINT64_MAX, NULL, weight, NULL), HE_OK);
             assert_memory_equal(&weight[1], &weights[e], sizeof weight[0]);
         }
         free(c);
@@ -366,9 +366,9 @@ static void a_face_too_costly_to_cut_is_refused(void **state)
     he_mesh *m = fixture_mesh("01234567");
     he_curvature c;
     he_error err = {0};
-    assert_int_equal(he_curvatures(m, &(uint32_t){0}, 1, 63, &c, &err), HE_LIMIT);
+    assert_int_equal(he_curvatures(m, &(uint32_t){0}, 1, 63, NULL, &c, &err), HE_LIMIT);
     assert_true(err.kind == HE_FACE && err.id == 0);
-    assert_int_equal(he_curvatures(m, &(uint32_t){0}, 1, 64, &c, &err), HE_OK);
+    assert_int_equal(he_curvatures(m, &(uint32_t){0}, 1, 64, NULL, &c, &err), HE_OK);
     he_mesh_free(m);
 }
 
@@ -378,8 +378,8 @@ static void dead_rows_are_left_out(void **state)
     he_mesh *m = query_with_dead_rows();
     he_curvature c[4] = {{0}};
     double weights[3];
-    assert_int_equal(he_curvatures(m, NULL, 0, UINT64_MAX, c, NULL), HE_OK);
-    assert_int_equal(he_edge_cotangents(m, NULL, 0, UINT64_MAX, weights, NULL), HE_OK);
+    assert_int_equal(he_curvatures(m, NULL, 0, UINT64_MAX, NULL, c, NULL), HE_OK);
+    assert_int_equal(he_edge_cotangents(m, NULL, 0, UINT64_MAX, NULL, weights, NULL), HE_OK);
     assert_true(isnan(c[3].angle_defect) && c[3].area == 0);
     he_mesh_free(m);
 }
@@ -398,13 +398,13 @@ static void starved_questions_say_so(void **state)
             fixture_fail_at(n);
             switch (what) {
             case 0:
-                status = he_curvatures(m, NULL, 0, UINT64_MAX, c, NULL);
+                status = he_curvatures(m, NULL, 0, UINT64_MAX, NULL, c, NULL);
                 break;
             case 1:
-                status = he_curvatures(m, list, 3, UINT64_MAX, c, NULL);
+                status = he_curvatures(m, list, 3, UINT64_MAX, NULL, c, NULL);
                 break;
             case 2:
-                status = he_edge_cotangents(m, list, 3, UINT64_MAX, weights, NULL);
+                status = he_edge_cotangents(m, list, 3, UINT64_MAX, NULL, weights, NULL);
                 break;
             case 3:
                 status = he_corner_normals(m, 1, NULL, normals, NULL);

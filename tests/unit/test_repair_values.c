@@ -51,6 +51,42 @@ static void a_seam_of_texture_stays_a_seam(void **state)
     he_mesh_free(mesh);
 }
 
+/* One of four triangles clashes with another: it is turned, and its normals are. */
+static void normals_turn_with_their_face(void **state)
+{
+    (void)state;
+    he_repair_plan plan = {.which = he_repair_bit(HE_REPAIR_ORIENT)};
+    he_repaired done = {0};
+    he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 2 0\nv 3 2 0\n"
+                                        "vn 0 0 1\nvn 0.6 0 -0.8\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                                        "f 1/1/1 2/2/1 3/3/1\nf 2/1/2 3/2/1 4/3/2\n"
+                                        "f 1/1/1 3/1/1 5/1/1\nf 2/1/1 1/1/1 6/1/1\n");
+    he_column *face;
+    assert_int_equal(
+        he_soup_column(&import.soup, "normal", HE_FACE, HE_FLOAT, 3, HE_COPY, &face, NULL), HE_OK);
+    assert_int_equal(he_column_extend(face, 4, NULL), HE_OK);
+    memcpy(he_column_row(face, 1), (float[]){0, 0.5f, -1}, 3 * sizeof(float));
+    assert_int_equal(he_repair_soup(&import.soup, &plan, &done, NULL), HE_OK);
+    assert_int_equal(done.accounts[HE_REPAIR_ORIENT].count, 1);
+    assert_int_equal(done.accounts[HE_REPAIR_ORIENT].pairs[0].a, 1);
+    he_mesh *mesh = build_import(&import);
+    const float turned[3] = {0, -0.5f, 1};
+    face = (he_column *)he_mesh_find_column(mesh, HE_FACE, "normal");
+    for (size_t i = 0; i < 3; i++) {
+        float part;
+        memcpy(&part, he_column_value(face, 1) + i * sizeof part, sizeof part);
+        assert_true(part == turned[i]);
+    }
+    char *text = write_text("obj", mesh, NULL);
+    assert_non_null(strstr(text, "f 1/1/1 2/2/1 3/3/1\nf 2/1/2 4/3/2 3/2/3\n"
+                                 "f 1/1/1 3/1/1 5/1/1\n"));
+    assert_non_null(strstr(text, "vn 0 0 1\nvn -0.6 -0 0.8\nvn -0 -0 -1\nf"));
+    free(text);
+    he_mesh_free(mesh);
+    he_repaired_clear(&done);
+    he_import_clear(&import);
+}
+
 static void a_vertex_without_corners_keeps_its_value(void **state)
 {
     (void)state;
@@ -107,6 +143,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_seam_of_texture_stays_a_seam),
+        cmocka_unit_test(normals_turn_with_their_face),
         cmocka_unit_test(a_vertex_without_corners_keeps_its_value),
         cmocka_unit_test(the_edges_that_a_weld_would_make_are_counted),
         cmocka_unit_test(counting_them_may_lack_memory),

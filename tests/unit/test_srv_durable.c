@@ -1,6 +1,6 @@
-/* Writers, readers and listeners of a few meshes that come and go, over a journal that lags:
- * nothing is shown before the journal has it, groups of records are whole, and what is lost is not
- * shown. */
+/* Writers, readers and listeners of a few meshes that come and go, over a journal that lags, and
+ * whose disk is full now and then: nothing is shown before the journal has it, groups of records
+ * are whole, what is lost is not shown, and nothing durable stands on what was lost. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -31,45 +31,70 @@ static const char *const ids[MESHES] = {"a", "b", "c"};
 typedef struct note {
     uint64_t incarnation, number, revision;
     uint64_t group; /* position of the last record of its group */
+    bool lost;
 } note;
 
 static struct {
     pthread_mutex_t lock;
     note notes[NOTES + 1];
     uint64_t newest;
+    bool losing;              /* what is appended is lost, and nothing is admitted */
+    size_t out;               /* rooms */
     uint64_t removed[MESHES]; /* position of the last removal of an id */
     _Atomic uint64_t durable;
     st_journal_listener listener;
 } journal = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-static _Atomic bool broken, writing;
+static _Atomic bool writing;
+static _Atomic int broken; /* a line of this file */
 
-static void expect(bool good)
+static void expect_at(bool good, int line)
 {
     if (!good) {
-        atomic_store(&broken, true);
+        atomic_store(&broken, line);
     }
 }
+#define expect(good) expect_at(good, __LINE__)
+
+static _Atomic size_t refused;
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)
 {
     (void)self;
     (void)need;
-    *out = NULL;
-    return ST_OK;
+    pthread_mutex_lock(&journal.lock);
+    st_status status = journal.losing ? ST_FULL : ST_OK;
+    if (status == ST_OK) {
+        *out = he_mem_zero(1, sizeof **out);
+        journal.out++;
+    }
+    pthread_mutex_unlock(&journal.lock);
+    atomic_fetch_add(&refused, status == ST_OK ? 0 : 1);
+    return status;
+}
+
+static void leave(void *self, st_room *room)
+{
+    (void)self;
+    pthread_mutex_lock(&journal.lock);
+    journal.out--;
+    pthread_mutex_unlock(&journal.lock);
+    he_mem_free(room);
 }
 
 static uint64_t append(void *self, st_room *room, const st_record *records, size_t count)
 {
     (void)self;
-    (void)room;
+    he_mem_free(room);
     pthread_mutex_lock(&journal.lock);
     uint64_t last = journal.newest + count;
+    journal.out--;
     for (size_t i = 0; i < count && last <= NOTES; i++) {
         journal.notes[++journal.newest] = (note){.incarnation = records[i].incarnation,
                                                  .number = records[i].number,
                                                  .revision = records[i].revision,
-                                                 .group = last};
+                                                 .group = last,
+                                                 .lost = journal.losing};
         if (records[i].kind == ST_RECORD_REMOVE) {
             journal.removed[records[i].id[0] - 'a'] = journal.newest;
         }
@@ -98,11 +123,44 @@ static void advance(uint64_t position)
     journal.listener.moved(journal.listener.context, position);
 }
 
+static void lose(uint64_t from, uint64_t to)
+{
+    static const char reason[] = "the disk is full";
+    const st_loss loss = {.from = from, .to = to, .status = ST_FULL, .reason = reason};
+    if (from <= to) {
+        journal.listener.lost(journal.listener.context, &loss);
+    }
+}
+
+static _Atomic size_t incidents;
+
+/* All that is queued is lost, and what comes in rooms that are out; returns how far. */
+static uint64_t fill_up(uint64_t at)
+{
+    pthread_mutex_lock(&journal.lock);
+    journal.losing = true;
+    for (uint64_t i = at + 1; i <= journal.newest; i++) {
+        journal.notes[i].lost = true;
+    }
+    while (journal.out > 0 || at < journal.newest) {
+        uint64_t told = at;
+        at = journal.newest;
+        pthread_mutex_unlock(&journal.lock);
+        lose(told + 1, at);
+        sched_yield();
+        pthread_mutex_lock(&journal.lock);
+    }
+    journal.losing = false;
+    pthread_mutex_unlock(&journal.lock);
+    atomic_fetch_add(&incidents, 1);
+    return at;
+}
+
 /* Groups become durable whole. */
 static void *lag_behind(void *context)
 {
     md_random *random = context;
-    uint64_t at = 0;
+    uint64_t at = 0, full_at = 100;
     while (atomic_load(&writing)) {
         pthread_mutex_lock(&journal.lock);
         uint64_t newest = journal.newest, to = at;
@@ -111,7 +169,11 @@ static void *lag_behind(void *context)
             to = journal.notes[to].group == to ? to : at;
         }
         pthread_mutex_unlock(&journal.lock);
-        if (to > at && md_chance(random, 30)) {
+        if (newest > at && newest >= full_at) {
+            at = fill_up(at);
+            full_at = at + md_from(random, 1, 200);
+            advance(at);
+        } else if (to > at && md_chance(random, 30)) {
             at = to;
             advance(at);
         } else {
@@ -158,16 +220,26 @@ static uint64_t position_of_revision(uint64_t incarnation, uint64_t revision)
 
 typedef struct answer {
     st_wait wait;
-    uint64_t need; /* what it shows is at this position, or before */
+    uint64_t needs[MESHES]; /* the newest records it shows */
     _Atomic bool over;
 } answer;
+
+static bool was_kept(uint64_t position)
+{
+    pthread_mutex_lock(&journal.lock);
+    bool good = position <= atomic_load(&journal.durable) && !journal.notes[position].lost;
+    pthread_mutex_unlock(&journal.lock);
+    return good;
+}
 
 static _Atomic size_t sent, lost;
 
 static void end(answer *a)
 {
     bool durable = a->wait.end == ST_WAIT_DURABLE;
-    expect(!durable || a->need <= atomic_load(&journal.durable));
+    for (size_t i = 0; i < MESHES && durable; i++) {
+        expect(was_kept(a->needs[i]));
+    }
     expect(a->wait.end != ST_WAIT_STOPPED && !atomic_load(&a->over));
     atomic_store(&a->over, true);
     atomic_fetch_add(durable ? &sent : &lost, 1);
@@ -178,10 +250,14 @@ static void resume(st_wait *wait)
     end((answer *)wait);
 }
 
-static void send_when_durable(st_store *store, answer *a, st_shown shown, uint64_t need)
+static void send_when_durable(st_store *store, answer *a, st_shown shown,
+                              const uint64_t needs[MESHES])
 {
-    *a = (answer){.wait = {.shown = shown, .resume = resume}, .need = need};
-    expect(shown.position >= need);
+    *a = (answer){.wait = {.shown = shown, .resume = resume}};
+    for (size_t i = 0; i < MESHES; i++) {
+        a->needs[i] = needs[i];
+        expect(shown.position >= needs[i]);
+    }
     if (!st_waits_add(st_store_waits(store), &a->wait)) {
         end(a);
     }
@@ -189,8 +265,8 @@ static void send_when_durable(st_store *store, answer *a, st_shown shown, uint64
 
 static void show_mesh(st_store *store, answer *a, const st_mesh_info *info)
 {
-    send_when_durable(store, a, st_shown_of(info),
-                      position_of_record(info->incarnation, info->record));
+    const uint64_t needs[MESHES] = {position_of_record(info->incarnation, info->record)};
+    send_when_durable(store, a, st_shown_of(info), needs);
 }
 
 /* --- threads --- */
@@ -215,7 +291,7 @@ static void create(worker *w, const char *id)
         show_mesh(w->store, &w->answers[w->made++], &info);
         st_release(mesh);
     } else {
-        expect(status == ST_TAKEN);
+        expect(status == ST_TAKEN || status == ST_FULL);
         he_mesh_free(content);
     }
 }
@@ -266,20 +342,26 @@ static void *write_some(void *context)
         bool claims = md_chance(&w->random, 10);
         st_status status =
             claims ? st_write_claim(mesh, NULL, &write) : st_write_begin(mesh, NULL, &write);
-        expect(status == ST_OK || status == ST_ABSENT || (claims && status == ST_BUSY));
+        expect(status == ST_OK || status == ST_ABSENT || status == ST_LOST ||
+               (claims && status == ST_BUSY));
         if (status == ST_OK && claims) {
             expect(st_write_copy(&write, NULL, NULL) == HE_OK && edit(w, &write));
             sched_yield();
             status = st_write_commit(&write, "vertex_move");
-            expect(status == ST_OK || status == ST_ABSENT);
+            expect(status == ST_OK || status == ST_ABSENT || status == ST_LOST ||
+                   status == ST_FULL);
         } else if (status == ST_OK && (write.info.busy || !prepare(w, &write))) {
             st_write_abort(&write);
             status = ST_BUSY;
         } else if (status == ST_OK) {
-            expect(st_write_commit(&write, "vertex_move") == ST_OK);
+            status = st_write_commit(&write, "vertex_move");
+            expect(status == ST_OK || status == ST_FULL);
         }
         if (status == ST_OK) {
             show_mesh(w->store, &w->answers[w->made++], &write.info);
+        } else if (status == ST_FULL) {
+            i--;
+            sched_yield();
         }
         st_release(mesh);
     }
@@ -288,7 +370,7 @@ static void *write_some(void *context)
 
 static void read_list(worker *w)
 {
-    uint64_t since = st_waits_durable(st_store_waits(w->store)), need = 0;
+    uint64_t since = st_waits_durable(st_store_waits(w->store)), needs[MESHES] = {0};
     st_mesh *meshes[MESHES];
     size_t count = st_list(w->store, "", meshes, MESHES);
     for (size_t i = 0; i < count; i++) {
@@ -296,10 +378,10 @@ static void read_list(worker *w)
         st_read_begin(meshes[i], &info);
         st_read_end(meshes[i]);
         uint64_t at = position_of_record(info.incarnation, info.record);
-        need = at > need ? at : need;
+        needs[i] = at > since ? at : 0;
         st_release(meshes[i]);
     }
-    send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), need);
+    send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), needs);
 }
 
 static void read_one(worker *w)
@@ -320,8 +402,9 @@ static void read_one(worker *w)
         show_mesh(w->store, &w->answers[w->made++], &info);
     } else if (mesh == NULL) {
         /* The last removal before the search is what it shows, or a later one. */
-        send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since),
-                          removed < st_waits_newest(st_store_waits(w->store)) ? removed : 0);
+        bool shows = removed > since && removed < st_waits_newest(st_store_waits(w->store));
+        const uint64_t needs[MESHES] = {shows ? removed : 0};
+        send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), needs);
     }
 }
 
@@ -370,8 +453,7 @@ static bool hear(st_listener *listener, bool *ended)
     switch (st_queue_read(listener, (char *)&event, sizeof event, &got)) {
     case ST_QUEUE_GOT:
         expect(got == sizeof event);
-        expect(position_of_revision(event.incarnation, event.revision) <=
-               atomic_load(&journal.durable));
+        expect(was_kept(position_of_revision(event.incarnation, event.revision)));
         atomic_fetch_add(&events, 1);
         return true;
     case ST_QUEUE_WAIT:
@@ -379,6 +461,7 @@ static bool hear(st_listener *listener, bool *ended)
     case ST_QUEUE_BEHIND:
         (void)st_queue_skip(listener);
         return true;
+    case ST_QUEUE_LOST:
     case ST_QUEUE_ENDED:
         break;
     }
@@ -416,7 +499,8 @@ static void *listen_some(void *context)
 
 /* --- the run --- */
 
-/* A mesh's records are numbered without a gap in the order of positions. */
+/* A mesh's records are numbered without a gap in the order of positions, and none is kept after one
+ * that was lost. */
 static void expect_order(void)
 {
     for (uint64_t at = 1; at <= journal.newest; at++) {
@@ -426,7 +510,19 @@ static void expect_order(void)
             before--;
         }
         assert_int_equal(n->number, before == 0 ? 1 : journal.notes[before].number + 1);
+        assert_true(n->lost || !journal.notes[before].lost);
     }
+}
+
+static bool shows_lost(const st_shown *shown)
+{
+    for (uint64_t at = shown->since + 1; at <= shown->position; at++) {
+        const note *n = &journal.notes[at];
+        if (n->lost && (shown->incarnation == 0 || shown->incarnation == n->incarnation)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 static void start(worker *w, void *(*run)(void *context), st_store *store, md_random *random)
@@ -445,8 +541,11 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     st_store *store = st_store_new(&(st_store_options){
         .undo_budget = 1 << 16,
         .max_meshes = MESHES,
-        .journal =
-            {.reserve = reserve, .append = append, .listen = listen_to, .close = close_journal},
+        .journal = {.reserve = reserve,
+                    .leave = leave,
+                    .append = append,
+                    .listen = listen_to,
+                    .close = close_journal},
         .render = render,
         .listeners = LISTENERS,
         .mesh_listeners = LISTENERS,
@@ -472,29 +571,27 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     pthread_join(lagging, NULL);
 
     /* The rest is lost, and what showed it was not sent. */
-    uint64_t cut = atomic_load(&journal.durable);
-    const st_loss loss = {.from = cut + 1, .to = journal.newest, .reason = "the end of the test"};
-    if (cut < journal.newest) {
-        journal.listener.lost(journal.listener.context, &loss);
-    }
-    advance(journal.newest);
+    advance(fill_up(atomic_load(&journal.durable)));
+    assert_int_equal(journal.out, 0);
     size_t made = 0;
     for (int i = 0; i < WRITERS + READERS + LISTENERS; i++) {
         for (size_t k = 0; k < workers[i].made; k++) {
             const answer *a = &workers[i].answers[k];
             assert_true(atomic_load(&a->over));
             assert_int_equal(a->wait.end,
-                             a->wait.shown.position > cut ? ST_WAIT_LOST : ST_WAIT_DURABLE);
+                             shows_lost(&a->wait.shown) ? ST_WAIT_LOST : ST_WAIT_DURABLE);
         }
         made += workers[i].made;
         free(workers[i].answers);
     }
-    assert_false(atomic_load(&broken));
+    assert_int_equal(atomic_load(&broken), 0);
     assert_int_equal(atomic_load(&sent) + atomic_load(&lost), made);
     expect_order();
-    printf("note: %llu records, %zu answers sent, %zu lost, %zu events\n",
+    assert_true(atomic_load(&incidents) > 2);
+    printf("note: %llu records, %zu answers sent, %zu lost, %zu events; %zu times full, %zu writes "
+           "refused\n",
            (unsigned long long)journal.newest, atomic_load(&sent), atomic_load(&lost),
-           atomic_load(&events));
+           atomic_load(&events), atomic_load(&incidents), atomic_load(&refused));
     st_store_free(store);
 }
 

@@ -19,11 +19,23 @@ static size_t resumed;
 static uint64_t last; /* position that was resumed last */
 static bool in_order;
 
+static void moved(void *context, uint64_t position)
+{
+    st_waits_moved(context, position);
+}
+
+static void lost(void *context, const st_loss *loss)
+{
+    st_waits_lose(context, loss);
+}
+
 static int setup(void **state)
 {
     (void)state;
     journal = slow_journal_open(&slow);
-    waits = st_waits_new(&journal);
+    waits = st_waits_new();
+    const st_journal_listener listener = {waits, moved, lost};
+    journal.listen(journal.self, &listener);
     resumed = 0;
     last = 0;
     in_order = true;
@@ -33,6 +45,7 @@ static int setup(void **state)
 static int teardown(void **state)
 {
     (void)state;
+    journal.listen(journal.self, NULL);
     st_waits_free(waits);
     journal.close(journal.self);
     return 0;

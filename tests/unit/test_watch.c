@@ -16,6 +16,7 @@
 #include "geometry/geometry.h"
 #include "mesh/compact.h"
 #include "mesh/write.h"
+#include "query/curvature.h"
 #include "query/topology.h"
 
 /* --- memory that is counted --- */
@@ -156,7 +157,7 @@ static file grid_glb(void)
     assert_int_equal(he_column_new("part", HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
     assert_int_equal(he_column_extend(column, SIDE * SIDE, NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
-    assert_int_equal(he_writer_new(he_format_find("glb"), mesh, 0, &writer, NULL), HE_OK);
+    assert_int_equal(he_writer_new(he_format_find("glb"), mesh, 0, NULL, &writer, NULL), HE_OK);
     f.length = he_writer_read(writer, f.bytes, (size_t)1 << 24);
     assert_true(f.length < (size_t)1 << 24);
     he_writer_free(writer);
@@ -226,6 +227,94 @@ static void a_file_that_is_read_at_its_end_is_given_up_anywhere(void **state)
         he_mem_set_hook(NULL);
         free(files[i].bytes);
     }
+}
+
+/* --- what is found before an answer --- */
+
+typedef struct finding {
+    const char *name;
+    he_status (*find)(const he_mesh *m, he_watch *watch);
+} finding;
+
+static he_status write_file(const he_mesh *m, const char *format, he_watch *watch)
+{
+    he_writer *writer = NULL;
+    he_status status = he_writer_new(he_format_find(format), m, 0, watch, &writer, NULL);
+    assert_true((status == HE_OK) == (writer != NULL));
+    he_writer_free(writer);
+    return status;
+}
+
+#define WRITE(format)                                                  \
+    static he_status write_##format(const he_mesh *m, he_watch *watch) \
+    {                                                                  \
+        return write_file(m, #format, watch);                          \
+    }
+WRITE(obj)
+WRITE(ply)
+WRITE(stl)
+WRITE(glb)
+#undef WRITE
+
+static he_status find_curvatures(const he_mesh *m, he_watch *watch)
+{
+    he_curvature *all = he_mem_array(NULL, he_mesh_vertices(m), sizeof *all);
+    assert_non_null(all);
+    he_status status = he_curvatures(m, NULL, 0, UINT64_MAX, watch, all, NULL);
+    he_mem_free(all);
+    return status;
+}
+
+static he_status find_cotangents(const he_mesh *m, he_watch *watch)
+{
+    double *all = he_mem_array(NULL, he_mesh_edges(m), sizeof *all);
+    assert_non_null(all);
+    he_status status = he_edge_cotangents(m, NULL, 0, UINT64_MAX, watch, all, NULL);
+    he_mem_free(all);
+    return status;
+}
+
+/* Quads whose corners have texture coordinates of their own. */
+static void what_costs_the_mesh_before_an_answer_is_given_up_anywhere(void **state)
+{
+    (void)state;
+    static const finding findings[] = {{"obj", write_obj},
+                                       {"ply", write_ply},
+                                       {"stl", write_stl},
+                                       {"glb", write_glb},
+                                       {"curvatures", find_curvatures},
+                                       {"cotangents", find_cotangents}};
+    he_mesh *mesh = NULL;
+    he_column *uv;
+    he_mem_set_hook(&counting);
+    assert_int_equal(make(NULL, &mesh), HE_OK);
+    assert_int_equal(he_column_new("uv", HE_HALFEDGE, HE_FLOAT, 2, HE_INTERPOLATE, &uv, NULL),
+                     HE_OK);
+    assert_int_equal(he_column_extend(uv, he_mesh_issued(mesh, HE_HALFEDGE), NULL), HE_OK);
+    for (uint32_t h = 0; h < uv->rows; h++) {
+        const float value[2] = {(float)h, 1};
+        memcpy(uv->data + (size_t)h * uv->row_bytes, value, sizeof value);
+    }
+    assert_int_equal(he_mesh_add_column(mesh, uv, NULL), HE_OK);
+    size_t kept = blocks;
+    for (size_t i = 0; i < sizeof findings / sizeof *findings; i++) {
+        he_status status = HE_CANCELLED;
+        long n = 1;
+        for (; status != HE_OK; n++) {
+            he_watch watch;
+            listener l = {.give_up_at = n};
+            he_watch_init(&watch, hear, &l);
+            status = findings[i].find(mesh, &watch);
+            assert_true(status == HE_OK || status == HE_CANCELLED);
+            assert_true(status == HE_OK || l.told == n);
+            assert_int_equal(blocks, kept);
+            assert_false(l.fell);
+        }
+        print_message("note: %s: told %ld times\n", findings[i].name, n - 2);
+        assert_true(n - 2 >= SIDE * SIDE / HE_WATCH_STRIDE);
+    }
+    he_mesh_free(mesh);
+    he_mem_set_hook(NULL);
 }
 
 /* --- operations on a mesh --- */
@@ -477,6 +566,7 @@ int main(void)
         cmocka_unit_test(a_second_of_work_has_twenty_steps_and_none_falls),
         cmocka_unit_test(making_is_given_up_anywhere_and_leaves_nothing),
         cmocka_unit_test(a_file_that_is_read_at_its_end_is_given_up_anywhere),
+        cmocka_unit_test(what_costs_the_mesh_before_an_answer_is_given_up_anywhere),
         cmocka_unit_test(an_operation_is_given_up_and_the_mesh_is_as_it_was),
         cmocka_unit_test(a_cancelled_edit_of_an_expendable_mesh_is_left_half_done),
         cmocka_unit_test(a_fold_that_is_given_up_leads_to_the_states_it_led_to),

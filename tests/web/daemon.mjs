@@ -17,7 +17,7 @@ const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
 // {url, stop(), closers}; `t` is the context of the test, `flags` are more of hedged's. When it ends the closers are called, then
 // the daemon is stopped: a page that is open would miss it.
 export async function startDaemon(t, ...flags) {
-    const child = spawn(program, ['--listen', '127.0.0.1:0', '--web', page, ...flags], {
+    const child = spawn(program, ['--listen', '127.0.0.1:0', '--store', 'memory', '--web', page, ...flags], {
         stdio: ['ignore', 'ignore', 'pipe'],
     });
     const ended = new Promise((resolve) => {

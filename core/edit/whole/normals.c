@@ -6,9 +6,8 @@
 
 static bool is_normal(const he_column *column)
 {
-    return column != NULL && (column->type == HE_FLOAT || column->type == HE_DOUBLE) &&
-           column->components == 3 && column->domain != HE_EDGE && column->domain != HE_MESH_KIND &&
-           strcmp(column->name, "normal") == 0;
+    return column != NULL && column->domain != HE_EDGE && column->domain != HE_MESH_KIND &&
+           he_is_normal_column(column);
 }
 
 /* Cofactors of the linear part, with the sign of the inverse transpose; its scale does not matter,

@@ -136,19 +136,9 @@ static void negate(he_mesh *m, size_t slot, uint32_t row)
 {
     const he_column *column = m->c.columns[slot];
     unsigned char value[HE_COLUMN_ROW_BYTES];
-    size_t size = he_type_bytes(column->type);
     memcpy(value, he_column_value(column, row), column->row_bytes);
-    /* The sign is the top bit of the last byte. */
-    for (size_t k = 1; k <= 3; k++) {
-        value[k * size - 1] ^= 0x80;
-    }
+    he_normal_negate(column, value);
     he_set_attribute(m, slot, row, value);
-}
-
-static bool holds_normals(const he_column *column)
-{
-    return strcmp(column->name, "normal") == 0 && column->components == 3 &&
-           (column->type == HE_FLOAT || column->type == HE_DOUBLE);
 }
 
 static void turn_values(he_mesh *m, const part *p)
@@ -158,7 +148,7 @@ static void turn_values(he_mesh *m, const part *p)
         if (column == NULL) {
             continue;
         }
-        bool normals = holds_normals(column);
+        bool normals = he_is_normal_column(column);
         for (size_t i = 0; column->domain == HE_HALFEDGE && i < p->vertices.count; i++) {
             shift_corners(m, slot, (he_vertex){p->vertices.ids[i]});
         }

@@ -21,7 +21,6 @@ void he_glb_parts_clear(he_glb_parts *parts)
     he_splits_clear(&parts->splits);
     he_cuts_clear(&parts->cuts);
     he_mem_free(parts->parts);
-    he_mem_free(parts->streams);
     he_mem_free(parts->json);
     *parts = (he_glb_parts){0};
 }
@@ -263,7 +262,7 @@ static void add_values(he_glb_parts *g, he_notes *notes)
 }
 
 /* Split vertices where corners say different things of what is seen. */
-static he_status split(he_glb_parts *g, he_error *err)
+static he_status split(he_glb_parts *g, he_watch *watch, he_error *err)
 {
     const he_column *columns[HE_GLTF_SEMANTICS * MOST_NUMBERS];
     size_t count = 0;
@@ -273,7 +272,7 @@ static he_status split(he_glb_parts *g, he_error *err)
         }
     }
     return count == 0 ? HE_OK
-                      : he_splits_make(g->mesh, g->numbers, columns, count, &g->splits, err);
+                      : he_splits_make(g->mesh, g->numbers, columns, count, watch, &g->splits, err);
 }
 
 static void add_rest(he_glb_parts *g, const he_column **used, he_notes *notes)
@@ -314,18 +313,6 @@ static void place_values(he_glb_parts *g, const he_column **used)
     }
 }
 
-/* They are in the order of corners, and a packed triangle may begin at another one. */
-static bool has_corner_values(const he_mesh *m)
-{
-    for (size_t i = 0; i < he_mesh_columns(m); i++) {
-        const he_column *column = he_mesh_column(m, i);
-        if (column != NULL && column->domain == HE_HALFEDGE) {
-            return m->c.faces.live > 0;
-        }
-    }
-    return false;
-}
-
 static void add_rest_of_geometry(he_glb_parts *g)
 {
     const he_mesh *m = g->mesh;
@@ -344,7 +331,7 @@ static void add_rest_of_geometry(he_glb_parts *g)
         words.count = copies;
         add(g, words);
     }
-    if (g->cuts.polygons > 0 || (g->packs && has_corner_values(m))) {
+    if (g->cuts.polygons > 0) {
         words.content = HE_GLB_DEGREES;
         words.count = faces;
         add(g, words);
@@ -354,10 +341,11 @@ static void add_rest_of_geometry(he_glb_parts *g)
     }
 }
 
-static he_status add_parts(he_glb_parts *g, const he_column **used, he_notes *notes, he_error *err)
+static he_status add_parts(he_glb_parts *g, const he_column **used, he_watch *watch,
+                           he_notes *notes, he_error *err)
 {
     add_values(g, notes);
-    he_status status = split(g, err);
+    he_status status = split(g, watch, err);
     if (status == HE_OK) {
         place_values(g, used);
         add_rest_of_geometry(g);
@@ -391,12 +379,12 @@ static void note_geometry(const he_glb_parts *g, he_notes *notes)
                        g->cuts.turned);
 }
 
-static he_status make(he_glb_parts *g, he_notes *notes, he_error *err)
+static he_status make(he_glb_parts *g, he_watch *watch, he_notes *notes, he_error *err)
 {
     size_t columns = he_mesh_columns(g->mesh);
     he_status status = note_positions(g->mesh, notes, err);
     if (status == HE_OK) {
-        status = he_cuts_make(g->mesh, &g->cuts, err);
+        status = he_cuts_make(g->mesh, watch, &g->cuts, err);
     }
     if (status == HE_OK) {
         status = he_export_numbers(g->mesh, &g->numbers, err);
@@ -412,19 +400,27 @@ static he_status make(he_glb_parts *g, he_notes *notes, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu attributes", columns);
     }
     if (g->mesh->c.vertices.live > 0) {
-        status = add_parts(g, used, notes, err);
+        status = add_parts(g, used, watch, notes, err);
     }
     note_geometry(g, notes);
     he_export_note_lost(g->mesh, used, columns, notes);
     he_mem_free(used);
+    if (status != HE_OK) {
+        return status;
+    }
+    status = he_glb_describe(g, err);
+    if (status == HE_OK && g->bytes + g->json_length > UINT32_MAX - 64) {
+        return he_fail_plain(err, HE_LIMIT, "a GLB file has less than 4 GiB, not %llu bytes",
+                             (unsigned long long)(g->bytes + g->json_length));
+    }
     return status;
 }
 
-he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_notes *notes, he_glb_parts *out,
-                            he_error *err)
+he_status he_glb_parts_make(const he_mesh *mesh, he_watch *watch, he_notes *notes,
+                            he_glb_parts *out, he_error *err)
 {
-    he_glb_parts made = {.mesh = mesh, .packs = packs};
-    he_status status = make(&made, notes, err);
+    he_glb_parts made = {.mesh = mesh};
+    he_status status = make(&made, watch, notes, err);
     if (status != HE_OK) {
         he_glb_parts_clear(&made);
         return status;

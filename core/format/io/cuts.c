@@ -38,14 +38,16 @@ static he_status cut_face(he_cuts *cuts, he_halfedge first, he_triangulation_wor
     return HE_OK;
 }
 
-he_status he_cuts_make(const he_mesh *mesh, he_cuts *out, he_error *err)
+he_status he_cuts_make(const he_mesh *mesh, he_watch *watch, he_cuts *out, he_error *err)
 {
     he_cuts made = {.mesh = mesh};
     he_triangulation_work work = {0};
     he_error reason = {0};
     he_status status = HE_OK;
     for (uint32_t f = 0; f < mesh->c.faces.issued && status == HE_OK; f++) {
-        if (he_face_is_live(mesh, (he_face){f}) && he_face_degree(mesh, (he_face){f}) != 3) {
+        status = he_watch_at(watch, f, mesh->c.faces.issued, &reason);
+        if (status == HE_OK && he_face_is_live(mesh, (he_face){f}) &&
+            he_face_degree(mesh, (he_face){f}) != 3) {
             made.polygons++;
             status = cut_face(&made, he_face_halfedge(mesh, (he_face){f}), &work, &reason);
         }

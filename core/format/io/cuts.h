@@ -15,8 +15,10 @@ typedef struct he_cuts {
     uint64_t steps;            /* that cutting them took */
 } he_cuts;
 
-/* Borrows the mesh, which must not change meanwhile. HE_NO_MEMORY. */
-HE_NODISCARD he_status he_cuts_make(const he_mesh *mesh, he_cuts *out, he_error *err);
+/* Borrows the mesh, which must not change meanwhile. `watch` may be NULL. HE_NO_MEMORY,
+ * HE_CANCELLED. */
+HE_NODISCARD he_status he_cuts_make(const he_mesh *mesh, he_watch *watch, he_cuts *out,
+                                    he_error *err);
 void he_cuts_clear(he_cuts *cuts);
 /* Triangles in all: the corners of faces, less two a face. */
 uint64_t he_cuts_count(const he_cuts *cuts);

@@ -229,7 +229,7 @@ static he_status widen(table *t, const he_ids *first, he_error *err)
 }
 
 he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns, size_t count,
-                           bool apart, he_distinct *out, he_error *err)
+                           bool apart, he_watch *watch, he_distinct *out, he_error *err)
 {
     he_distinct made = {0};
     table t = {.mesh = mesh, .columns = columns, .count = count, .apart = apart};
@@ -246,6 +246,10 @@ he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns,
         goto out;
     }
     for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
+        status = he_watch_at(watch, f, mesh->c.faces.issued, err);
+        if (status != HE_OK) {
+            goto out;
+        }
         if (!he_face_is_live(mesh, (he_face){f})) {
             continue;
         }

@@ -69,7 +69,8 @@ typedef struct he_distinct {
 
 /* They say what all of the `count` columns have; with `apart` also at which vertex they are. */
 HE_NODISCARD he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns,
-                                        size_t count, bool apart, he_distinct *out, he_error *err);
+                                        size_t count, bool apart, he_watch *watch, he_distinct *out,
+                                        he_error *err);
 void he_distinct_clear(he_distinct *distinct);
 
 #endif

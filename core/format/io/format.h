@@ -62,8 +62,8 @@ typedef struct he_reading {
 enum { HE_WRITE_ROOM = 512 };
 
 typedef struct he_writing {
-    he_status (*open)(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
-                      he_error *err);
+    he_status (*open)(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                      void **state, he_error *err);
     bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
     bool cuts; /* polygons are cut into triangles (cuts.h): long_faces.h may do that before */
@@ -115,10 +115,11 @@ HE_NODISCARD he_status he_reader_finish(he_reader *reader, he_import *out, he_er
 
 typedef struct he_writer he_writer;
 
-/* `encoding` is an index into the format's list. HE_UNSUPPORTED when the format cannot be written,
- * HE_NO_MEMORY. */
+/* `encoding` is an index into the format's list; `watch` (NULL: none) is told of what is found
+ * before the first byte, which costs the mesh. HE_UNSUPPORTED when the format cannot be written,
+ * HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
-                                     he_writer **out, he_error *err);
+                                     he_watch *watch, he_writer **out, he_error *err);
 void he_writer_free(he_writer *writer);
 /* The next bytes of the document, at most `size`; 0 at the end. */
 size_t he_writer_read(he_writer *writer, void *buffer, size_t size);

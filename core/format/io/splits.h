@@ -19,10 +19,10 @@ typedef struct he_splits {
     he_ids copies;    /* of each copy a half-edge whose origin is the vertex */
 } he_splits;
 
-/* `numbers` are those of he_export_numbers. HE_NO_MEMORY. */
+/* `numbers` are those of he_export_numbers; `watch` may be NULL. HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_splits_make(const he_mesh *mesh, const uint32_t *numbers,
-                                      const he_column *const *columns, size_t count, he_splits *out,
-                                      he_error *err);
+                                      const he_column *const *columns, size_t count,
+                                      he_watch *watch, he_splits *out, he_error *err);
 void he_splits_clear(he_splits *splits);
 
 #endif

@@ -46,9 +46,10 @@ static void mtl_close(void *state)
     he_mem_free(state);
 }
 
-static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
-                          he_error *err)
+static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                          void **state, he_error *err)
 {
+    (void)watch;
     (void)encoding;
     mtl_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {

@@ -53,13 +53,13 @@ static void note_changed_names(const he_column *column, he_notes *notes)
 }
 
 static he_status find_values(values *v, const he_mesh *mesh, const char *name, const char *keyword,
-                             uint32_t least, he_notes *notes, he_error *err)
+                             uint32_t least, he_watch *watch, he_notes *notes, he_error *err)
 {
     v->keyword = keyword;
     v->column = he_export_find(mesh, HE_HALFEDGE, name, least, 3, notes);
     if (v->column != NULL) {
         v->of_corners = true;
-        return he_distinct_make(mesh, &v->column, 1, false, &v->distinct, err);
+        return he_distinct_make(mesh, &v->column, 1, false, watch, &v->distinct, err);
     }
     v->column = he_export_find(mesh, HE_VERTEX, name, least, 3, notes);
     return HE_OK;
@@ -112,8 +112,8 @@ static void obj_close(void *state)
     he_mem_free(w);
 }
 
-static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
-                          he_error *err)
+static he_status obj_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                          void **state, he_error *err)
 {
     (void)encoding;
     obj_writer *w = he_mem_zero(1, sizeof *w);
@@ -125,10 +125,10 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     w->said[OBJECT] = w->said[GROUP] = w->said[MATERIAL] = HE_NONE;
     he_status status = he_export_numbers(mesh, &w->numbers, err);
     if (status == HE_OK) {
-        status = find_values(&w->uv, mesh, "uv", "vt", 2, notes, err);
+        status = find_values(&w->uv, mesh, "uv", "vt", 2, watch, notes, err);
     }
     if (status == HE_OK) {
-        status = find_values(&w->normal, mesh, "normal", "vn", 3, notes, err);
+        status = find_values(&w->normal, mesh, "normal", "vn", 3, watch, notes, err);
     }
     if (status != HE_OK) {
         obj_close(w);

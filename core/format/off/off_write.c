@@ -24,10 +24,11 @@ static void off_close(void *state)
     he_mem_free(w);
 }
 
-static he_status off_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
-                          he_error *err)
+static he_status off_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                          void **state, he_error *err)
 {
     (void)encoding;
+    (void)watch;
     off_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");

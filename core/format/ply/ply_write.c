@@ -182,13 +182,13 @@ static void add_attributes(ply_writer *w, he_kind domain, const he_column **used
     }
 }
 
-static he_status split(ply_writer *w, he_notes *notes, he_error *err)
+static he_status split(ply_writer *w, he_watch *watch, he_notes *notes, he_error *err)
 {
     if (w->corner_count == 0) {
         return HE_OK;
     }
     he_status status =
-        he_splits_make(w->mesh, w->numbers, w->corners, w->corner_count, &w->splits, err);
+        he_splits_make(w->mesh, w->numbers, w->corners, w->corner_count, watch, &w->splits, err);
     if (status == HE_OK && w->splits.copies.count > 0) {
         add(w, HE_PLY_VERTEX_MARK, NULL, 0, HE_PLY_UINT32);
         w->outputs[w->count - 1].own = true;
@@ -200,7 +200,7 @@ static he_status split(ply_writer *w, he_notes *notes, he_error *err)
     return status;
 }
 
-static he_status choose_outputs(ply_writer *w, he_notes *notes, he_error *err)
+static he_status choose_outputs(ply_writer *w, he_watch *watch, he_notes *notes, he_error *err)
 {
     size_t most = 4;
     for (size_t i = 0; i < he_mesh_columns(w->mesh); i++) {
@@ -221,7 +221,7 @@ static he_status choose_outputs(ply_writer *w, he_notes *notes, he_error *err)
     }
     add_attributes(w, HE_VERTEX, used, notes);
     used[w->count] = NULL;
-    he_status status = split(w, notes, err);
+    he_status status = split(w, watch, notes, err);
     w->vertex_outputs = w->count;
     add_attributes(w, HE_FACE, used, notes);
     he_export_note_lost(w->mesh, used, w->count, notes);
@@ -230,8 +230,8 @@ static he_status choose_outputs(ply_writer *w, he_notes *notes, he_error *err)
     return status;
 }
 
-static he_status ply_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
-                          he_error *err)
+static he_status ply_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                          void **state, he_error *err)
 {
     /* in the order of the row's list */
     static const he_ply_encoding encodings[] = {HE_PLY_LITTLE_ENDIAN, HE_PLY_ASCII,
@@ -245,7 +245,7 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     w->halfedge = HE_NONE;
     he_status status = he_export_numbers(mesh, &w->numbers, err);
     if (status == HE_OK) {
-        status = choose_outputs(w, notes, err);
+        status = choose_outputs(w, watch, notes, err);
     }
     if (status != HE_OK) {
         ply_close(w);

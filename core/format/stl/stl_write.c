@@ -52,7 +52,8 @@ static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, h
     he_narrowed narrowed = {0};
     he_status status = HE_OK;
     for (uint32_t v = 0; v < c->vertices.issued && status == HE_OK; v++) {
-        if (!he_vertex_is_live(w->mesh, (he_vertex){v})) {
+        status = he_watch_at(a->soup.limits.watch, v, c->vertices.issued, err);
+        if (status != HE_OK || !he_vertex_is_live(w->mesh, (he_vertex){v})) {
             continue;
         }
         if (he_is_isolated(w->mesh, (he_vertex){v})) {
@@ -112,10 +113,10 @@ static he_status note_differences(const stl_writer *w, again *a, he_notes *notes
     return status;
 }
 
-static he_status note_again(const stl_writer *w, he_notes *notes, he_error *err)
+static he_status note_again(const stl_writer *w, he_watch *watch, he_notes *notes, he_error *err)
 {
     again a = {.vertex = NULL};
-    he_soup_init(&a.soup, NULL);
+    he_soup_init(&a.soup, &(he_limits){.watch = watch});
     he_status status = note_differences(w, &a, notes, err);
     he_weld_clear(&a.weld);
     he_soup_clear(&a.soup);
@@ -123,8 +124,8 @@ static he_status note_again(const stl_writer *w, he_notes *notes, he_error *err)
     return status;
 }
 
-static he_status stl_open(const he_mesh *mesh, size_t encoding, he_notes *notes, void **state,
-                          he_error *err)
+static he_status stl_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                          void **state, he_error *err)
 {
     stl_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
@@ -132,10 +133,10 @@ static he_status stl_open(const he_mesh *mesh, size_t encoding, he_notes *notes,
     }
     w->mesh = mesh;
     w->text = encoding != 0;
-    he_status status = he_cuts_make(mesh, &w->cuts, err);
+    he_status status = he_cuts_make(mesh, watch, &w->cuts, err);
     if (status == HE_OK) {
         note_cuts(&w->cuts, notes);
-        status = note_again(w, notes, err);
+        status = note_again(w, watch, notes, err);
     }
     if (status != HE_OK) {
         stl_close(w);

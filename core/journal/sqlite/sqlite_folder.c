@@ -122,6 +122,13 @@ bool st_folder_has(const st_folder *folder, const char *name)
     return fstatat(folder->folder, name, &status, 0) == 0 && status.st_size > 0;
 }
 
+bool st_folder_make(st_folder *folder, const char *name)
+{
+    int file = openat(folder->folder, name, O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    close_file(file);
+    return file >= 0 || fail(folder, "cannot make", name);
+}
+
 bool st_folder_sync(st_folder *folder)
 {
     return fsync(folder->folder) == 0 || fail(folder, "cannot sync", "");

@@ -38,6 +38,8 @@ const char *st_folder_doubt(const st_folder *folder);
 /* The path of a file in it. False where it is too long. */
 bool st_folder_path(const st_folder *folder, const char *name, char out[PATH_MAX]);
 bool st_folder_has(const st_folder *folder, const char *name);
+/* Makes the file, empty and for its owner alone, unless it is there. */
+bool st_folder_make(st_folder *folder, const char *name);
 /* What was made, renamed and removed in it stays so. */
 bool st_folder_sync(st_folder *folder);
 

@@ -143,11 +143,12 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
                       "`hedged --restore`; to begin an empty store remove hedge.mark",
                       self->folder.path);
     }
-    st_sql outcome = st_db_open(&self->db, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
-                                st_writer_texts, ST_WRITER_STATEMENTS);
-    if (outcome == ST_SQL_DONE) {
-        outcome = st_db_run(&self->db, "PRAGMA locking_mode = NORMAL");
+    /* SQLite gives -wal and -shm the rights of the database, and that those it finds. */
+    if (!st_folder_has(&self->folder, "hedge.db") && !st_folder_make(&self->folder, "hedge.db")) {
+        return refuse(out, "%s", self->folder.message);
     }
+    st_sql outcome =
+        st_db_open(&self->db, path, SQLITE_OPEN_READWRITE, st_writer_texts, ST_WRITER_STATEMENTS);
     if (outcome != ST_SQL_DONE) {
         return refuse_file(self, outcome, out);
     }

@@ -56,7 +56,7 @@ void bench_write(const bench_side *side, const he_mesh *m, const char *format, c
     int number = he_format_encoding(row, encoding);
     char *piece = malloc(PIECE);
     FILE *file = bench_open(side, name, "wb");
-    bench_require(he_writer_new(row, m, number < 0 ? 0 : (size_t)number, &writer, NULL));
+    bench_require(he_writer_new(row, m, number < 0 ? 0 : (size_t)number, NULL, &writer, NULL));
     size_t n;
     while ((n = he_writer_read(writer, piece, PIECE)) > 0) {
         if (fwrite(piece, 1, n, file) != n) {

@@ -1,0 +1,426 @@
+/* The journal in a folder when the disk is full, slow or fails, and when memory is out: what was
+ * acknowledged is there, what was not is told as lost, and nothing else changes. */
+#include "tests/disk.h"
+#include "tests/store_folder.h"
+#include "unit/edit_script.h"
+#include "unit/fixture.h"
+
+#include "stored/stored.h"
+
+#include <sched.h>
+#include <stdatomic.h>
+
+static char folder[FOLDER_PATH];
+static he_mesh *content;
+
+static int make_folder(void **state)
+{
+    (void)state;
+    folder_make(folder);
+    content = script_mesh("012,023,034", NULL);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    disk_fill(false);
+    disk_fail_at(0);
+    folder_remove(folder);
+    he_mesh_free(content);
+    return 0;
+}
+
+static bool try_open(told_journal *told, size_t queue)
+{
+    st_sqlite_opened out;
+    const st_sqlite_options options = {.folder = folder, .release = "test", .queue_bytes = queue};
+    if (!st_sqlite_open(&options, &out)) {
+        assert_true(out.message[0] != '\0');
+        return false;
+    }
+    told_begin(told, &out.journal);
+    return true;
+}
+
+static void open_store(told_journal *told, size_t queue)
+{
+    assert_true(try_open(told, queue));
+}
+
+static kept_mesh new_mesh(void)
+{
+    static uint64_t incarnations = 5000;
+    return (kept_mesh){.id = "a", .name = "a", .content = content, .incarnation = ++incarnations};
+}
+
+/* Reads a mesh whole: how many records follow its base. */
+static st_status count_records(const st_journal *j, const char *id, unsigned *records)
+{
+    st_card card;
+    st_reader *reader = NULL;
+    st_piece piece = {.kind = ST_PIECE_BASE};
+    *records = 0;
+    st_status status = j->open(j->self, id, &card, &reader);
+    while (status == ST_OK && piece.kind != ST_PIECE_END) {
+        status = j->read(reader, &piece);
+        *records += status == ST_OK && piece.kind == ST_PIECE_RECORD;
+    }
+    j->shut(reader);
+    return status;
+}
+
+/* Reserves again and again until it is no longer refused so; the journal comes there by itself. */
+static st_room *reserve_after(const st_journal *j, st_status refusal, bool freeing)
+{
+    const st_room_need need = {.records = 1, .bytes = 16, .freeing = freeing};
+    st_room *room = NULL;
+    st_status status;
+    while ((status = j->reserve(j->self, &need, &room)) == refusal) {
+        sched_yield();
+    }
+    assert_int_equal(status, ST_OK);
+    return room;
+}
+
+/* --- the disk is full --- */
+
+static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
+    uint64_t last = kept_append(j, kept_edit(&mesh), &mesh, "1", 1);
+    told_wait(&told, last);
+    disk_fill(true);
+    kept_mesh lost = mesh;
+    last = kept_append(j, kept_edit(&lost), &lost, "2", 1);
+    told_wait(&told, last);
+    assert_int_equal(told_losses(&told), 1);
+    assert_true(told.loss.from == last && told.loss.to == last);
+    assert_int_equal(told.loss.status, ST_FULL);
+    assert_int_equal(told.loss.incarnation, 0);
+    kept_mesh refused = mesh;
+    assert_int_equal(kept_append(j, kept_edit(&refused), &refused, "3", 1), 0);
+    assert_int_equal(kept_status(), ST_FULL);
+    st_stage *stage;
+    assert_int_equal(j->stage(j->self, content, &stage), ST_FULL);
+    unsigned records;
+    assert_int_equal(count_records(j, "a", &records), ST_OK);
+    assert_int_equal(records, 1);
+    disk_fill(false);
+    j->leave(j->self, reserve_after(j, ST_FULL, false));
+    /* The number of what was lost is free. */
+    told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "4", 1));
+    assert_int_equal(count_records(j, "a", &records), ST_OK);
+    assert_int_equal(records, 2);
+    assert_int_equal(told_losses(&told), 1);
+    told_end(&told);
+}
+
+static void rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
+    st_room *early = reserve_after(j, ST_OK + ST_FULL, false);
+    st_room *left = reserve_after(j, ST_OK + ST_FULL, false);
+    disk_fill(true);
+    kept_mesh head = mesh;
+    told_wait(&told, kept_append(j, kept_edit(&head), &head, "2", 1));
+    disk_fill(false);
+    const st_room_need removal = {.records = 1, .bytes = 0, .freeing = true};
+    st_room *room;
+    assert_int_equal(j->reserve(j->self, &removal, &room), ST_FULL);
+    st_record record = kept_edit(&head);
+    uint64_t last = j->append(j->self, early, &record, 1);
+    told_wait(&told, last);
+    assert_int_equal(told_losses(&told), 2);
+    assert_true(told.loss.from == last && told.loss.to == last);
+    assert_int_equal(j->reserve(j->self, &removal, &room), ST_FULL);
+    j->leave(j->self, left);
+    /* Now a removal may come, and then all. */
+    room = reserve_after(j, ST_FULL, true);
+    record = kept_remove(&mesh);
+    told_wait(&told, j->append(j->self, room, &record, 1));
+    assert_int_equal(told_losses(&told), 2);
+    j->leave(j->self, reserve_after(j, ST_FULL, false));
+    st_card card;
+    assert_int_equal(j->open(j->self, "a", &card, NULL), ST_ABSENT);
+    assert_int_equal(j->count(j->self), 0);
+    size_t size;
+    unsigned char *ballast = folder_read(folder, "ballast", &size);
+    assert_non_null(ballast);
+    assert_int_equal(size, 8 << 20);
+    free(ballast);
+    told_end(&told);
+}
+
+static void what_was_made_and_lost_was_never_there(void **state)
+{
+    (void)state;
+    told_journal told;
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    for (long n = 1; n <= 6; n++) {
+        kept_mesh mesh = new_mesh();
+        const unsigned losses = told_losses(&told);
+        disk_fill_at(n);
+        uint64_t last = kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
+        told_wait(&told, last);
+        st_card card;
+        const bool lost = told_losses(&told) > losses;
+        assert_int_equal(j->open(j->self, "a", &card, NULL), lost ? ST_ABSENT : ST_OK);
+        assert_int_equal(j->count(j->self), lost ? 0 : 1);
+        disk_fill_at(0);
+        j->leave(j->self, reserve_after(j, ST_FULL, false));
+        if (!lost) {
+            told_wait(&told, kept_append(j, kept_remove(&mesh), &mesh, NULL, 0));
+        }
+    }
+    assert_true(told_losses(&told) > 0);
+    told_end(&told);
+}
+
+/* --- a sync fails --- */
+
+enum { EDITS = 12 };
+
+/* Appends one by one while the N-th sync fails. Returns how many were acknowledged, the first of
+ * them the creation. */
+static unsigned append_while_failing(told_journal *told, kept_mesh *mesh)
+{
+    const st_journal *j = &told->journal;
+    unsigned acknowledged = 0;
+    for (unsigned i = 0; i <= EDITS; i++) {
+        st_record record = i == 0 ? kept_content(mesh) : kept_edit(mesh);
+        uint64_t position = kept_append(j, record, mesh, "x", 1);
+        if (position == 0) {
+            assert_int_equal(kept_status(), ST_FAILED);
+            break;
+        }
+        told_wait(told, position);
+        if (told_losses(told) > 0) {
+            assert_int_equal(told->loss.status, ST_FAILED);
+            assert_true(told->loss.from <= position && told->loss.to >= position);
+            continue;
+        }
+        acknowledged++;
+    }
+    return acknowledged;
+}
+
+static void after_a_failed_sync_nothing_is_acknowledged(void **state)
+{
+    (void)state;
+    bool fired = true;
+    unsigned runs = 0, opened = 0;
+    for (long n = 1; fired; n++, runs++) {
+        told_journal told;
+        kept_mesh mesh = new_mesh();
+        disk_fail_at(n);
+        unsigned acknowledged = 0;
+        if (try_open(&told, 0)) {
+            acknowledged = append_while_failing(&told, &mesh);
+            unsigned records;
+            if (acknowledged > 0) {
+                assert_int_equal(count_records(&told.journal, "a", &records), ST_OK);
+                assert_int_equal(records, acknowledged - 1);
+            }
+            told_end(&told);
+            opened++;
+        }
+        fired = disk_syncs() >= n;
+        assert_true(fired || acknowledged == EDITS + 1);
+        disk_fail_at(0);
+        open_store(&told, 0);
+        unsigned records = 0;
+        st_status status = count_records(&told.journal, "a", &records);
+        /* What was not acknowledged may be there: it had reached the disk before the sync. */
+        assert_true(status == ST_OK ? records + 1 >= acknowledged && records <= acknowledged
+                                    : status == ST_ABSENT && acknowledged == 0);
+        told_end(&told);
+        folder_remove(folder);
+        folder_make(folder);
+    }
+    printf("note: each of %u syncs failed once; %u runs got beyond the start\n", runs - 1, opened);
+    assert_true(runs > EDITS && opened > EDITS);
+}
+
+/* --- the disk is slow --- */
+
+static void a_slow_disk_bounds_the_queue(void **state)
+{
+    (void)state;
+    enum { QUEUE = 64 << 10 };
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, QUEUE);
+    const st_journal *j = &told.journal;
+    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
+    disk_hold(true);
+    uint64_t last = 0;
+    unsigned queued = 0;
+    for (;;) {
+        kept_mesh next = mesh;
+        uint64_t position = kept_append(j, kept_edit(&next), &next, "x", 1);
+        if (position == 0) {
+            break;
+        }
+        mesh = next;
+        last = position;
+        queued++;
+    }
+    assert_int_equal(kept_status(), ST_BEHIND);
+    assert_true(queued > 8 && queued < QUEUE / 500);
+    const st_room_need large = {.records = 1, .bytes = (size_t)4 * QUEUE};
+    st_room *room = NULL;
+    assert_int_equal(j->reserve(j->self, &large, &room), ST_BEHIND);
+    disk_hold(false);
+    told_wait(&told, last);
+    /* What is larger than the queue is admitted when that is empty. */
+    st_status status;
+    while ((status = j->reserve(j->self, &large, &room)) == ST_BEHIND) {
+        sched_yield();
+    }
+    assert_int_equal(status, ST_OK);
+    j->leave(j->self, room);
+    unsigned records;
+    assert_int_equal(count_records(j, "a", &records), ST_OK);
+    assert_int_equal(records, queued);
+    told_end(&told);
+}
+
+static void one_connection_writes(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
+    st_card card;
+    st_reader *readers[2];
+    st_stage *stage;
+    assert_int_equal(j->open(j->self, "a", &card, &readers[0]), ST_OK);
+    assert_int_equal(j->open(j->self, "a", &card, &readers[1]), ST_OK);
+    assert_int_equal(j->stage(j->self, content, &stage), ST_OK);
+    assert_int_equal(disk_writers(), 1);
+    j->unstage(j->self, stage);
+    j->shut(readers[0]);
+    j->shut(readers[1]);
+    told_end(&told);
+    assert_int_equal(disk_writers(), 0);
+}
+
+/* --- memory is out --- */
+
+static _Atomic long calls, fails_at;
+
+static void *failing_resize(void *context, void *memory, size_t size)
+{
+    (void)context;
+    if (size == 0) {
+        free(memory);
+        return NULL;
+    }
+    return atomic_fetch_add(&calls, 1) + 1 == atomic_load(&fails_at) ? NULL : realloc(memory, size);
+}
+
+static void fail_memory_at(long n)
+{
+    static const he_mem_hook hook = {failing_resize, NULL};
+    static bool installed;
+    atomic_store(&calls, 0);
+    atomic_store(&fails_at, n);
+    if (!installed) {
+        he_mem_set_hook(&hook);
+        installed = true;
+    }
+}
+
+/* Everything once. Whether what was asked for was done is for the caller to see. */
+static void use_all(told_journal *told, kept_mesh *mesh, unsigned *acknowledged)
+{
+    const st_journal *j = &told->journal;
+    st_card cards[2];
+    st_stage *stage = NULL;
+    size_t count;
+    unsigned records;
+    kept_mesh next = *mesh;
+    uint64_t position = kept_append(j, kept_content(&next), &next, NULL, 0);
+    if (position != 0) {
+        *mesh = next;
+        told_wait(told, position);
+        ++*acknowledged;
+    } else {
+        assert_int_equal(kept_status(), ST_NO_MEMORY);
+        return;
+    }
+    st_status status = j->stage(j->self, content, &stage);
+    assert_true(status == ST_OK || status == ST_NO_MEMORY);
+    j->unstage(j->self, stage);
+    next = *mesh;
+    position = kept_append(j, kept_edit(&next), &next, "x", 1);
+    if (position != 0) {
+        *mesh = next;
+        told_wait(told, position);
+        ++*acknowledged;
+    }
+    status = count_records(j, "a", &records);
+    assert_true(status == ST_OK || status == ST_NO_MEMORY);
+    status = j->list(j->self, "", cards, 2, &count);
+    assert_true(status == ST_OK || status == ST_NO_MEMORY);
+}
+
+static void without_memory_nothing_is_lost(void **state)
+{
+    (void)state;
+    unsigned runs = 0;
+    bool failed = true;
+    for (long n = 1; failed; n += 1 + n / 8, runs++) {
+        told_journal told;
+        kept_mesh mesh = new_mesh();
+        unsigned acknowledged = 0, records = 0;
+        fail_memory_at(n);
+        if (try_open(&told, 0)) {
+            use_all(&told, &mesh, &acknowledged);
+            assert_int_equal(told_losses(&told), 0);
+            told_end(&told);
+        }
+        failed = atomic_load(&calls) >= n;
+        fail_memory_at(0);
+        open_store(&told, 0);
+        st_status status = count_records(&told.journal, "a", &records);
+        assert_int_equal(status, acknowledged == 0 ? ST_ABSENT : ST_OK);
+        assert_true(acknowledged == 0 || records + 1 == acknowledged);
+        told_end(&told);
+        folder_remove(folder);
+        folder_make(folder);
+    }
+    printf("note: %u of the requests for memory failed, each alone\n", runs - 1);
+    assert_true(runs > 20);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+        STORE_TEST(a_full_disk_loses_what_is_queued_and_recovers),
+        STORE_TEST(rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile),
+        STORE_TEST(what_was_made_and_lost_was_never_there),
+        STORE_TEST(after_a_failed_sync_nothing_is_acknowledged),
+        STORE_TEST(a_slow_disk_bounds_the_queue),
+        STORE_TEST(one_connection_writes),
+        STORE_TEST(without_memory_nothing_is_lost),
+#undef STORE_TEST
+    };
+    disk_install();
+    return cmocka_run_group_tests_name("journal_faults", tests, NULL, NULL);
+}

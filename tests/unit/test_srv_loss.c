@@ -1,0 +1,274 @@
+/* What the journal loses is gone from memory too: meshes, claims, listeners, keys, answers. */
+#include "tests/slow_journal.h"
+#include "tests/unit/fixture.h"
+#include "tests/writing.h"
+
+#include "edit/local/vertex.h"
+#include "store/followers.h"
+
+static slow_journal journal;
+static st_store *store;
+static st_mesh *mesh, *other;
+
+static bool render(const st_mesh_info *info, const st_change *change, char **bytes, size_t *length)
+{
+    (void)info;
+    (void)change;
+    *length = 1;
+    *bytes = he_mem_zero(1, 1);
+    return *bytes != NULL;
+}
+
+static st_mesh *create(const char *id)
+{
+    st_mesh *made = NULL;
+    assert_int_equal(st_create(store, id, NULL, fixture_mesh("012,023"), NULL, &made), ST_OK);
+    return made;
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    store = st_store_new(&(st_store_options){.undo_budget = 1 << 20,
+                                             .max_meshes = 200,
+                                             .journal = slow_journal_open_keeping(&journal),
+                                             .render = render,
+                                             .listeners = 2,
+                                             .mesh_listeners = 2});
+    assert_non_null(store);
+    mesh = create("m");
+    other = create("n");
+    slow_journal_advance(&journal, 2);
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    st_release(mesh);
+    st_release(other);
+    assert_int_equal(journal.out, 0);
+    st_store_free(store);
+    return 0;
+}
+
+static st_mesh_info facts(st_mesh *of)
+{
+    st_mesh_info info;
+    (void)st_read_begin(of, &info);
+    st_read_end(of);
+    return info;
+}
+
+static void edit(st_write *w)
+{
+    uint32_t vertex = 0;
+    const he_vec3 by = {1, 0, 0};
+    assert_int_equal(he_vertex_move(w->content, &vertex, 1, HE_MOVE_BY, &by, 1, NULL), HE_OK);
+    assert_int_equal(st_write_changes(w, NULL), HE_OK);
+}
+
+static st_shown change(st_mesh *of)
+{
+    st_write w;
+    assert_int_equal(st_write_begin(of, NULL, &w), ST_OK);
+    edit(&w);
+    assert_int_equal(st_write_commit(&w, "vertex_move"), ST_OK);
+    return st_shown_of(&w.info);
+}
+
+/* All from `from` on. */
+static void lose(uint64_t from)
+{
+    const uint64_t to = slow_journal_newest(&journal);
+    const st_loss loss = {.from = from, .to = to, .status = ST_FULL, .reason = "the disk is full"};
+    slow_journal_lose(&journal, &loss);
+    slow_journal_advance(&journal, to);
+}
+
+static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
+{
+    (void)state;
+    st_write w;
+    st_listener listener;
+    st_missed missed;
+    st_mesh_info info;
+    st_mesh *found = NULL;
+    const st_since since = {.given = false};
+    (void)change(other);
+    slow_journal_advance(&journal, 3);
+    (void)change(mesh);
+    lose(4);
+    assert_int_equal(st_find(store, "m", &found), ST_ABSENT);
+    assert_true(facts(mesh).lost && !facts(mesh).removed);
+    assert_int_equal(st_write_begin(mesh, NULL, &w), ST_LOST);
+    assert_int_equal(st_write_claim(mesh, NULL, &w), ST_LOST);
+    assert_int_equal(st_follow(mesh, &listener, &since, &missed, &info), ST_LOST);
+    assert_int_equal(st_listeners(store), 0);
+    /* The change of the other one was kept. */
+    assert_int_equal(st_find(store, "n", &found), ST_OK);
+    st_release(found);
+    assert_false(facts(other).lost);
+    (void)change(other);
+    /* The id may be used again, and its mesh is another one. */
+    st_mesh *again = create("m");
+    assert_true(facts(again).incarnation != facts(mesh).incarnation);
+    assert_false(facts(again).lost);
+    st_release(again);
+}
+
+static void creations_and_removals_are_lost_too(void **state)
+{
+    (void)state;
+    enum { MANY = 150 }; /* more than are looked at at once */
+    st_mesh *found = NULL;
+    uint64_t durable = slow_journal_newest(&journal);
+    for (int i = 0; i < MANY; i++) {
+        char id[16];
+        snprintf(id, sizeof id, "x%d", i);
+        st_release(create(id));
+    }
+    assert_int_equal(writing_remove(other), ST_OK);
+    lose(durable + 1);
+    assert_int_equal(st_store_count(store), 1);
+    assert_int_equal(st_find(store, "x149", &found), ST_ABSENT);
+    assert_false(facts(mesh).lost);
+    assert_true(facts(other).removed && !facts(other).lost);
+}
+
+static void a_loss_of_one_mesh_leaves_the_others(void **state)
+{
+    (void)state;
+    (void)change(mesh);
+    (void)change(other);
+    const st_loss loss = {.incarnation = facts(other).incarnation,
+                          .from = 1,
+                          .to = 4,
+                          .status = ST_FAILED,
+                          .reason = "another node has it"};
+    slow_journal_lose(&journal, &loss);
+    assert_true(facts(other).lost);
+    assert_false(facts(mesh).lost);
+    slow_journal_advance(&journal, 4);
+    (void)change(mesh);
+}
+
+static void resume(st_wait *wait)
+{
+    (void)wait;
+    fail_msg("it was over when it was added");
+}
+
+/* The handler was stopped after its commit, slept through the disk being full, and goes on when all
+ * is well again. */
+static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
+{
+    (void)state;
+    const st_shown list = st_shown_all(store, 2), single = change(mesh);
+    const st_shown all = st_shown_all(store, 2);
+    lose(3);
+    const st_shown kept = change(other);
+    slow_journal_advance(&journal, 4);
+    const st_shown newer = st_shown_all(store, 3);
+    const struct {
+        st_shown shown;
+        st_wait_end end;
+    } rows[] = {{list, ST_WAIT_DURABLE},
+                {single, ST_WAIT_LOST},
+                {all, ST_WAIT_LOST},
+                {kept, ST_WAIT_DURABLE},
+                {newer, ST_WAIT_DURABLE}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        st_wait wait = {.shown = rows[i].shown, .resume = resume};
+        assert_false(st_waits_add(st_store_waits(store), &wait));
+        assert_int_equal(wait.end, rows[i].end);
+        assert_int_equal(wait.status, rows[i].end == ST_WAIT_LOST ? ST_FULL : ST_OK);
+    }
+}
+
+/* A long edit is under way when what it was made from is lost. */
+static void a_claim_of_a_lost_mesh_commits_nothing(void **state)
+{
+    (void)state;
+    st_write w;
+    (void)change(mesh);
+    assert_int_equal(st_write_claim(mesh, NULL, &w), ST_OK);
+    assert_int_equal(st_write_copy(&w, NULL, NULL), HE_OK);
+    edit(&w);
+    lose(3);
+    uint64_t groups = journal.groups;
+    assert_int_equal(st_write_commit(&w, "vertex_move"), ST_LOST);
+    assert_true(journal.groups == groups);
+    assert_int_equal(journal.out, 0);
+    assert_int_equal(facts(mesh).revision, 2);
+}
+
+static void wake(void *context)
+{
+    ++*(unsigned *)context;
+}
+
+static void listeners_are_sent_away(void **state)
+{
+    (void)state;
+    st_listener listener;
+    st_missed missed;
+    st_mesh_info info;
+    char buffer[8];
+    size_t got;
+    unsigned wakes = 0;
+    const st_since since = {.given = false};
+    assert_int_equal(st_follow(mesh, &listener, &since, &missed, &info), ST_OK);
+    st_queue_wake(&listener, wake, &wakes);
+    (void)change(mesh);
+    assert_int_equal(st_queue_read(&listener, buffer, sizeof buffer, &got), ST_QUEUE_WAIT);
+    lose(3);
+    assert_int_equal(wakes, 1);
+    assert_int_equal(st_queue_read(&listener, buffer, sizeof buffer, &got), ST_QUEUE_LOST);
+    assert_int_equal(st_queue_skip(&listener).key, 1);
+    st_unfollow(mesh, &listener);
+}
+
+/* It is tried anew, rather than answered with what is not there. */
+static void the_key_of_a_lost_creation_is_forgotten(void **state)
+{
+    (void)state;
+    const st_key key = {"a-key", {1, 2}};
+    st_keyed *keyed = NULL;
+    st_mesh *made = NULL;
+    for (int lost = 0; lost < 2; lost++) {
+        assert_int_equal(st_keyed_begin(store, NULL, &key, &keyed), ST_KEYED_NEW);
+        assert_int_equal(st_create(store, "k", NULL, fixture_mesh("012"), keyed, &made), ST_OK);
+        const st_mesh_info info = facts(made);
+        st_kept kept = {.status = 201,
+                        .changed = true,
+                        .id = "k",
+                        .incarnation = info.incarnation,
+                        .position = info.position};
+        st_keyed_keep(keyed, &kept);
+        st_keyed_end(keyed);
+        st_release(made);
+        if (lost == 0) {
+            lose(info.position);
+        }
+    }
+    slow_journal_advance(&journal, slow_journal_newest(&journal));
+    assert_int_equal(st_keyed_begin(store, NULL, &key, &keyed), ST_KEYED_KEPT);
+    st_keyed_end(keyed);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_mesh_with_a_lost_change_leaves_the_store, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(creations_and_removals_are_lost_too, setup, teardown),
+        cmocka_unit_test_setup_teardown(a_loss_of_one_mesh_leaves_the_others, setup, teardown),
+        cmocka_unit_test_setup_teardown(an_answer_that_comes_late_is_lost_all_the_same, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(a_claim_of_a_lost_mesh_commits_nothing, setup, teardown),
+        cmocka_unit_test_setup_teardown(listeners_are_sent_away, setup, teardown),
+        cmocka_unit_test_setup_teardown(the_key_of_a_lost_creation_is_forgotten, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
