@@ -1,0 +1,106 @@
+"""run.py - proves what core/journal promises about restarts, by breaking what can break.
+
+    python3 tests/durable/run.py --hedged build/hedged --faults FAULTS.so --proof NAME
+        [--rounds N] [--seed N] [--work FOLDER]
+
+Each proof prints its rounds, its seed and what it counted; the last line is `N passed, N failed`.
+A proof in which no fault fired has proved nothing, and fails. PROOFS below is the list of all.
+"""
+import argparse
+import faulthandler
+import os
+import random
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import traceback
+
+import kill
+import self_test
+from daemon import Daemon
+
+# Name: the function, the rounds without --rounds.
+PROOFS = {
+    'self': (self_test.prove, 3),
+    'kill': (kill.prove, 20),
+}
+
+
+class Run:
+    """One proof: its options, its folder, and the tally."""
+
+    def __init__(self, options, rounds):
+        self.hedged, self.library = options.hedged, options.faults
+        self.rounds, self.seed = rounds, options.seed
+        self.chance = random.Random(options.seed)
+        self.passed = self.failed = 0
+        self.counts = {}
+        self.begun = time.monotonic()
+        if options.work:
+            os.makedirs(options.work, exist_ok=True)
+        self.work = os.path.realpath(tempfile.mkdtemp(prefix=options.proof + '-', dir=options.work))
+
+    def folder(self, name='store'):
+        return os.path.join(self.work, name)
+
+    def start(self, flags=(), folder=None, **options):
+        if 'faults' in options:
+            options['library'] = self.library
+            options['faults'].setdefault('FAULT_FOLDER', folder or self.folder())
+        return Daemon(self.hedged, ['--store', 'sqlite:' + (folder or self.folder()), *flags],
+                      **options)
+
+    def count(self, name, add=1):
+        self.counts[name] = self.counts.get(name, 0) + add
+
+    def judge(self, name, good, why=''):
+        self.passed += bool(good)
+        self.failed += not good
+        if not good:
+            print(f'FAILED {name}: {why}', flush=True)
+        return good
+
+    def expect_fired(self, *names):
+        """Every fault that the proof is about must have come about."""
+        for name in names:
+            self.judge(f'{name} fired', self.counts.get(name, 0) > 0, 'a proof without its fault')
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument('--hedged', required=True)
+    parser.add_argument('--faults', required=True)
+    parser.add_argument('--proof', required=True, choices=PROOFS)
+    parser.add_argument('--rounds', type=int)
+    parser.add_argument('--seed', type=int, default=None)
+    parser.add_argument('--work', help='where stores are made: a disk, not memory')
+    parser.add_argument('--keep', action='store_true', help='leave the stores there')
+    options = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    faulthandler.register(signal.SIGUSR1)
+    if options.seed is None:
+        options.seed = random.SystemRandom().randrange(1 << 32)
+    prove, rounds = PROOFS[options.proof]
+    run = Run(options, options.rounds or rounds)
+    print(f'PROOF={options.proof} ROUNDS={run.rounds} SEED={run.seed}', flush=True)
+    try:
+        prove(run)
+    except Exception:  # pylint: disable=broad-except
+        traceback.print_exc(file=sys.stdout)
+        run.judge('the proof', False, 'it ended early')
+    finally:
+        if options.keep or run.failed:
+            print(f'stores are in {run.work}')
+        else:
+            shutil.rmtree(run.work)
+    counts = ', '.join(f'{count} {name}' for name, count in run.counts.items())
+    print(f'note: {options.proof}: SEED={run.seed}, {counts or "nothing counted"}, '
+          f'{time.monotonic() - run.begun:.0f} s')
+    print(f'{run.passed} passed, {run.failed} failed')
+    return 1 if run.failed or not run.passed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
