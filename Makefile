@@ -81,38 +81,41 @@ FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
                 $(wildcard tests/fuzz/*.c)))
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
+FAULTS_C   := tests/durable/inject/faults.c
 HEADERS    := $(sort $(shell find core api server -name '*.h') $(wildcard tests/*.h tests/*/*.h \
                 tests/bench/side/*.h tests/bench/ours/*.h))
 ALL_C      := $(KERNEL_C) $(STORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
-              $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C)
+              $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C) $(FAULTS_C)
 
 LIBRARIES  := $(patsubst %,$(BUILD)/lib%.a,server api store kernel)
 HEDGED     := $(BUILD)/hedged
 PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
 SPACE      := $(BUILD)/tests/bench/space $(BUILD)/tests/bench/polygons
 FUZZERS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
+FAULTS     := $(BUILD)/tests/durable/faults.so
 PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
 
-.PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak \
+.PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
         hostile fuzz targets bench bench-http bench-events bench-slow bench-large bench-space container fresh \
         screenshot \
         install clean
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
 # `make test TESTS=tests/web/rows.test.mjs`.
-TESTS   ?= $(SUITES) fuzz web install soak hostile lint
+TESTS   ?= $(SUITES) fuzz web install soak hostile durable lint
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web tests/web/%,$(TESTS))
 WITH_FUZZ = $(filter fuzz,$(TESTS))
 WITH_INSTALL = $(filter install,$(TESTS))
 WITH_SOAK = $(filter soak,$(TESTS))
 WITH_HOSTILE = $(filter hostile,$(TESTS))
+WITH_DURABLE = $(filter durable,$(TESTS))
 WITH_LINT = $(filter lint,$(TESTS))
 # What a narrower choice asks does not reach every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(filter web,$(TESTS)))
-WITH_DAEMON = $(filter e2e web install soak hostile tests/e2e/% tests/web/%,$(TESTS))
+WITH_DAEMON = $(filter e2e web install soak hostile durable tests/e2e/% tests/web/%,$(TESTS))
 
 # --- what must be installed ----------------------------------------------------------------
 # The sets of .ci/deps that each target needs. A target asks for all of them in one call before
@@ -126,7 +129,7 @@ NEEDS.programs     := build test
 NEEDS.built         = $(NEEDS.test)
 NEEDS.ready         = $(NEEDS.test) lint crosscheck fuzz
 NEEDS.test          = build test $(if $(WITH_WEB)$(WITH_INSTALL),web browser) \
-                      $(if $(WITH_SOAK),node) $(if $(WITH_HOSTILE),hostile)
+                      $(if $(WITH_SOAK),node) $(if $(WITH_HOSTILE),hostile) $(if $(WITH_DURABLE),durable)
 NEEDS.asan         := build test
 NEEDS.tsan         := build test
 NEEDS.coverage     := build test coverage
@@ -136,6 +139,7 @@ NEEDS.crosscheck   := build crosscheck
 NEEDS.proof        := build test web browser
 NEEDS.soak         := build node
 NEEDS.hostile      := build hostile
+NEEDS.durable      := build durable
 NEEDS.fuzz         := build test fuzz
 NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
 NEEDS.bench        := build node bench
@@ -240,7 +244,8 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 # --- tests ---------------------------------------------------------------------------------
 
 TEST_NEEDS = $(if $(WITH_DAEMON)$(WITH_LINT),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
-             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(FUZZERS))
+             $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(FUZZERS)) \
+             $(if $(WITH_DURABLE),$(FAULTS))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
@@ -257,9 +262,10 @@ test: built | $(INSTALLED) ## all tests, with their counts
 	    $(if $(WITH_TRAFFIC),--traffic) $(CHOSEN) $(filter tests/web/%,$(TESTS)) \
 	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh) \
 	    $(if $(WITH_LINT),tests/lint.sh) \
-	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh)
+	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh) \
+	    $(if $(WITH_DURABLE),tests/durable.sh)
 
-ASAN_TESTS = $(filter-out web tests/web/% install soak hostile lint,$(TESTS))
+ASAN_TESTS = $(filter-out web tests/web/% install soak hostile durable lint,$(TESTS))
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
 	+$(MAKE) CONFIG=asan TESTS="$(ASAN_TESTS)" test
 
@@ -306,6 +312,19 @@ soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is t
 hostile: $(HEDGED) | $(INSTALLED) ## files and requests made to be slow: what each may hold of the daemon, and what it held
 	@python3 -B tests/hostile/run.py --hedged $(abspath $(HEDGED)) \
 	    --corpus ../shared/corpus/files $(HOSTILE_FLAGS)
+
+# Preloaded into a daemon, whatever that was compiled with.
+$(FAULTS): $(FAULTS_C) Makefile | $(INSTALLED)
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(CPPFLAGS) -std=c11 -g1 -O1 -fPIC -shared $(WARNINGS) -o $@ $<
+
+# ROUNDS of another target's default are not ours.
+GIVEN_ROUNDS = $(if $(filter file default,$(origin ROUNDS)),,--rounds $(ROUNDS))
+PROOF ?= strace
+durable: $(HEDGED) $(FAULTS) | $(INSTALLED) ## PROOF=strace ROUNDS= SEED=: what was acknowledged is there, whatever the disk did; tests/durable/run.py lists the proofs
+	@python3 -B tests/durable/run.py --hedged $(abspath $(HEDGED)) --faults $(abspath $(FAULTS)) \
+	    --proof $(PROOF) $(GIVEN_ROUNDS) $(if $(SEED),--seed $(SEED)) --work build/durable
 
 # `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
 FUZZ_SECONDS ?= 20

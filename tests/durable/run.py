@@ -17,14 +17,20 @@ import tempfile
 import time
 import traceback
 
-import kill
+import locks
 import self_test
+import slow
+import traces
 from daemon import Daemon
+from replay import Wrong
 
 # Name: the function, the rounds without --rounds.
 PROOFS = {
     'self': (self_test.prove, 3),
-    'kill': (kill.prove, 20),
+
+    'strace': (traces.prove, 3),
+    'slow': (slow.prove, 1),
+    'two': (locks.prove, 3),
 }
 
 
@@ -61,6 +67,16 @@ class Run:
         if not good:
             print(f'FAILED {name}: {why}', flush=True)
         return good
+
+    def attempt(self, name, function, *arguments):
+        """Judges what raises Wrong; its result, or None."""
+        try:
+            result = function(*arguments)
+        except Wrong as wrong:
+            self.judge(name, False, wrong)
+            return None
+        self.judge(name, True)
+        return result
 
     def expect_fired(self, *names):
         """Every fault that the proof is about must have come about."""

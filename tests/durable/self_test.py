@@ -37,12 +37,8 @@ def prove(run):
         run.judge('nothing strange', not log.strange and not flying, f'{log.strange[:3]} {flying}')
         run.count('changes', len(done))
         for mesh in MESHES:
-            try:
-                replay.follow(client, mesh, done, flying)
-                run.count('steps walked', replay.walk(client, mesh))
-                run.judge(f'{mesh} is what was acknowledged', True)
-            except Wrong as wrong:
-                run.judge(f'{mesh} is what was acknowledged', False, wrong)
+            run.attempt(f'{mesh} is what was acknowledged', replay.follow, client, mesh, done, flying)
+            run.count('steps walked', run.attempt('undo and redo', replay.walk, client, mesh) or 0)
         mesh = max(MESHES, key=lambda m: len(replay.known[m].changes))
         lasting = [c for c in done if c.mesh == mesh and c.version
                    and c.version[0] == replay.known[mesh].incarnation]

@@ -2,6 +2,7 @@
  *
  * It looks at calls on files below one folder only; N counts them from 1.
  *     FAULT_FOLDER=DIR   the folder, absolute and without links
+ *     FAULT_WHEN=FILE    nothing is counted, and nothing fails, while this file is missing
  *     FAULT_SYNC=N       the N-th fsync or fdatasync fails with EIO
  *     FAULT_WRITE=N      the N-th write fails with ENOSPC
  *     FAULT_STUCK=1      and so do all later ones of that kind
@@ -42,7 +43,7 @@
 
 static struct {
     long sync, write, sticky, cut, rename, kill, call, slow;
-    const char *folder, *platter, *report;
+    const char *folder, *when, *platter, *report;
 } want;
 
 static struct {
@@ -67,6 +68,7 @@ __attribute__((constructor)) static void begin(void)
     want.slow = number("FAULT_SLOW");
     want.platter = getenv("FAULT_PLATTER");
     want.report = getenv("FAULT_REPORT");
+    want.when = getenv("FAULT_WHEN");
     want.folder = getenv("FAULT_FOLDER");
 }
 
@@ -104,7 +106,8 @@ static bool is_below(const char *path)
 {
     size_t length = want.folder == NULL ? 0 : strlen(want.folder);
     return length > 0 && strncmp(path, want.folder, length) == 0 &&
-           (path[length] == '/' || path[length] == '\0');
+           (path[length] == '/' || path[length] == '\0') &&
+           (want.when == NULL || access(want.when, F_OK) == 0);
 }
 
 static bool path_of(int fd, char path[PATH_MAX])

@@ -1,0 +1,31 @@
+#!/bin/sh
+# durable.sh - a few rounds of each proof of `make durable` (tests/durable/run.py), one of each seed
+# that `make test` is given or draws.
+set -u
+
+faults=$(dirname "$HEDGED")/tests/durable/faults.so
+passed=0
+failed=0
+work=$(mktemp -d "$(dirname "$HEDGED")/durable.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+
+# prove NAME ROUNDS
+prove() {
+    python3 -B tests/durable/run.py --hedged "$HEDGED" --faults "$faults" --proof "$1" \
+        --rounds "$2" --work "$work" ${SEED:+--seed "$SEED"} >"$work/log" 2>&1
+    counts=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p' "$work/log")
+    # shellcheck disable=SC2086 # two numbers
+    set -- "$1" ${counts:-0 1}
+    passed=$((passed + $2))
+    failed=$((failed + $3))
+    if [ "$3" -eq 0 ]; then
+        sed -n '/^note: /p' "$work/log"
+    else
+        cat "$work/log"
+    fi
+}
+
+prove self 1
+prove strace 1
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,293 @@
+"""traces.py - no answer before the sync that covers it (D1), by what strace saw.
+
+Each change but a few carries a name or a key that nothing else has, and that can be found again in
+what is written to the -wal. The first write that holds it, then the first sync of the -wal that
+begins after that write: when this sync has returned, and not before, an answer, an event or a list
+may show the change. A removal leaves no such mark: it counts as written by the first write to the
+-wal after its request came.
+"""
+import http.client
+import os
+import random
+import re
+import subprocess
+import threading
+
+
+MESHES = ['a', 'b', 'c']
+CALLS = 'fdatasync,fsync,pwrite64,write,writev,sendto,sendmsg,sendfile,recvfrom,recvmsg,read'
+LINE = re.compile(r'^(\d+) +(?:<\.\.\. )?(\w+)(?: resumed>|\()(.*)$')
+FILE = re.compile(r'^\d+<((?:\\x[0-9a-f]{2})*)>')
+DATA = re.compile(r'"((?:\\x[0-9a-f]{2})*)"')
+REQUEST = re.compile(rb'X-Request-Id: (t\d+)', re.I)
+EVENT = re.compile(rb'id: ([0-9a-f]+)\.(\d+)')
+
+
+def unhex(text):
+    return bytes.fromhex(text.replace('\\x', ''))
+
+
+class Seen:
+    """What a request was, and what its answer shows: (incarnation, names, revision)."""
+
+    def __init__(self, kind):
+        self.kind, self.mark, self.shows, self.items, self.gone = kind, None, [], [], None
+
+
+class Traffic:
+    """Writers, readers and a listener, whose requests have names."""
+
+    def __init__(self, daemon, chance):
+        self.daemon, self.chance = daemon, chance
+        self.lock, self.number = threading.Lock(), 0
+        self.seen, self.marks, self.removals = {}, {}, []
+        self.ending = threading.Event()
+
+    def ask(self, client, kind, method, path, body=None, headers=None):
+        with self.lock:
+            self.number += 1
+            name = f't{self.number}'
+            seen = self.seen[name] = Seen(kind)
+        answer = client.send(method, path, body, {**(headers or {}), 'X-Request-Id': name})
+        if answer.version():
+            seen.shows.append(answer.version())
+        return name, seen, answer
+
+    def write(self, chance, count):
+        client = self.daemon.client()
+        for i in range(count):
+            mesh = f'/v1/meshes/{chance.choice(MESHES)}'
+            draw = chance.random()
+            if draw < 0.06:
+                name, seen, answer = self.ask(client, 'delete', 'DELETE', mesh)
+                if answer.status == 204:
+                    self.removals.append((name, mesh))
+                continue
+            x = chance.random()
+            if draw < 0.16:
+                mark = f'name-{x}'.encode()
+                _, seen, answer = self.ask(client, 'rename', 'PATCH', mesh,
+                                           {'name': mark.decode()})
+            else:
+                mark = f'key-{x}'.encode()
+                body = {'op': 'vertex_move', 'vertex': i % 8, 'to': [x, 0, 0]}
+                headers = {'Idempotency-Key': mark.decode()} if draw < 0.95 else {}
+                if draw > 0.8:
+                    headers['Prefer'] = 'respond-async'
+                _, seen, answer = self.ask(client, 'list' if draw < 0.3 else 'edit', 'POST',
+                                           mesh + '/edits',
+                                           {'ops': [body]} if draw < 0.3 else body, headers)
+                if answer.status == 202:
+                    self.await_job(client, mark, answer.headers['Location'])
+                    continue
+            if answer.status == 404:
+                mark = f'made-{x}'.encode()
+                _, seen, answer = self.ask(client, 'create', 'PUT', f'{mesh}?name={mark.decode()}',
+                                           {'shape': 'cube'}, {'If-None-Match': '*'})
+            if answer.status in (200, 201):
+                seen.mark = mark
+                with self.lock:
+                    self.marks[answer.version()] = mark
+        client.close()
+
+    def await_job(self, client, mark, path):
+        """The answer that says `done` must wait; those before say nothing."""
+        while True:
+            _, seen, answer = self.ask(client, 'job', 'GET', path)
+            if answer.json()['state'] == 'done':
+                result = client.get(path + '/result')
+                if result.version():
+                    seen.shows.append(result.version())
+                    with self.lock:
+                        self.marks[result.version()] = mark
+                return
+            if answer.json()['state'] not in ('queued', 'running'):
+                return
+
+    def read(self, chance):
+        client = self.daemon.client()
+        while not self.ending.is_set():
+            mesh = chance.choice(MESHES)
+            if chance.random() < 0.4:
+                _, seen, answer = self.ask(client, 'page of meshes', 'GET', '/v1/meshes')
+                seen.items = [(item['name'], item['revision']) for item in answer.json()['items']]
+            else:
+                _, seen, answer = self.ask(client, 'read', 'GET', f'/v1/meshes/{mesh}/vertices/1')
+                if answer.status == 404:
+                    seen.kind, seen.gone = '404', f'/v1/meshes/{mesh}'
+        client.close()
+
+    def listen(self):
+        """Events are found in the trace by their ids; here they are only read."""
+        while not self.ending.is_set():
+            connection = http.client.HTTPConnection('127.0.0.1', self.daemon.port, timeout=0.5)
+            try:
+                connection.request('GET', f'/v1/meshes/{MESHES[0]}/events')
+                reply = connection.getresponse()
+                while not self.ending.is_set() and reply.read1(1 << 16):
+                    pass
+            except (OSError, http.client.HTTPException):
+                pass
+            connection.close()
+
+    def run(self, count):
+        writers = [threading.Thread(target=self.write, args=(random.Random(self.chance.random()),
+                                                             count)) for _ in range(4)]
+        others = [threading.Thread(target=self.read, args=(random.Random(self.chance.random()),))
+                  for _ in range(2)] + [threading.Thread(target=self.listen)]
+        for thread in writers + others:
+            thread.start()
+        for thread in writers:
+            thread.join()
+        self.ending.set()
+        for thread in others:
+            thread.join()
+
+
+class Trace:
+    """What strace wrote: the order of writes to the -wal, its syncs, and what was sent."""
+
+    def __init__(self, path):
+        self.written, self.syncs, self.sent, self.came, self.events = [], [], {}, {}, []
+        under_way = {}
+        with open(path, encoding='latin-1') as file:
+            for at, line in enumerate(file):
+                found = LINE.match(line)
+                if not found:
+                    continue
+                thread, call, rest = found.groups()
+                resumed = ' resumed>' in line[:60]
+                named = FILE.match(rest)
+                file_name = unhex(named[1]).decode() if named else ''
+                if call in ('fdatasync', 'fsync'):
+                    self.sync(at, thread, rest, resumed or file_name, under_way)
+                elif file_name.endswith('hedge.db-wal'):
+                    self.written.append((at, self.bytes(rest)))
+                elif '/' not in file_name:
+                    self.look(at, call, self.bytes(rest))
+
+    def sync(self, at, thread, rest, where, under_way):
+        """`where`: the name of the file, or True for the end of a call that was begun before."""
+        if where is not True:
+            if not where.endswith('hedge.db-wal'):
+                return
+            under_way[thread] = at
+            if '<unfinished' in rest:
+                return
+        begun = under_way.pop(thread, None)
+        if begun is not None and '= 0' in rest:
+            self.syncs.append((begun, at))
+
+    @staticmethod
+    def bytes(text):
+        return b''.join(unhex(part) for part in DATA.findall(text))
+
+    def look(self, at, call, data):
+        if call in ('recvfrom', 'recvmsg', 'read'):
+            for name in REQUEST.findall(data):
+                self.came[name.decode()] = at
+        else:
+            for name in REQUEST.findall(data):
+                self.sent.setdefault(name.decode(), at)
+            for incarnation, revision in EVENT.findall(data):
+                self.events.append((at, incarnation.decode(), int(revision)))
+
+    def covered(self, written, later=0):
+        """When the sync returned that covers a write; `later` syncs after it."""
+        after = [returned for begun, returned in self.syncs if begun > written]
+        return after[later] if len(after) > later else None
+
+    def find(self, mark):
+        return next((at for at, data in self.written if mark in data), None)
+
+
+class Verdict:
+    """Compares what was sent with what was covered."""
+
+    def __init__(self, run, traffic, trace, later):
+        self.run, self.trace, self.later, self.early, self.checked = run, trace, later, [], {}
+        self.when = {}  # by incarnation: (names, revision, is a rename, covered)
+        self.named = {mark.decode(): version[:2] for version, mark in traffic.marks.items()}
+        for (incarnation, names, revision), mark in traffic.marks.items():
+            written = trace.find(mark)
+            cover = written and trace.covered(written, later)
+            if cover:
+                self.when.setdefault(incarnation, []).append(
+                    (names, revision, mark.startswith(b'name-'), cover))
+        for name, seen in traffic.seen.items():
+            if name in trace.sent:
+                self.judge(name, seen, traffic)
+        for at, incarnation, revision in trace.events:
+            self.compare('event', at, self.until(incarnation, None, revision), f'r{revision}')
+
+    def until(self, incarnation, names, revision):
+        """When all was covered that this version shows; without `names` the revision alone, which
+        later renames leave as it is."""
+        return max((cover for n, r, renames, cover in self.when.get(incarnation, ())
+                    if r <= revision and (not renames if names is None else n <= names)),
+                   default=None)
+
+    def compare(self, kind, sent, covered, what):
+        if covered is None:
+            return
+        self.checked[kind] = self.checked.get(kind, 0) + 1
+        if sent < covered:
+            self.early.append(f'{kind} {what}: sent at line {sent}, covered at {covered}')
+
+    def judge(self, name, seen, traffic):
+        sent = self.trace.sent[name]
+        for version in seen.shows:
+            self.compare(seen.kind, sent, self.until(*version), f'{name} {version}')
+        for item, revision in seen.items:
+            if item in self.named:
+                incarnation, names = self.named[item]
+                self.compare(seen.kind, sent, self.until(incarnation, names, revision),
+                             f'{name} {item} r{revision}')
+        removed = [self.trace.came.get(n) for n, mesh in traffic.removals
+                   if n == name or mesh == seen.gone]
+        for came in removed:
+            # Of a 404 the latest removal before it counts; the mesh may have been made since.
+            if came is not None and came < sent and seen.kind in ('delete', '404') and came == max(
+                    r for r in removed if r is not None and r < sent):
+                written = next((at for at, _ in self.trace.written if at > came), None)
+                self.compare(seen.kind, sent, written and self.trace.covered(written, self.later),
+                             name)
+
+
+def trace_round(run, number):
+    folder = run.folder(f'store-{number}')
+    daemon = run.start(folder=folder)
+    client = daemon.client()
+    for mesh in MESHES:
+        client.send('PUT', f'/v1/meshes/{mesh}', {'shape': 'cube'})
+    path = run.folder('trace')
+    strace = subprocess.Popen(['strace', '-f', '-y', '-xx', '-s', '70000', '-e', 'trace=' + CALLS,
+                               '-e', 'signal=none', '-o', path, '-p', str(daemon.process.pid)],
+                              stderr=subprocess.PIPE, text=True)
+    said = strace.stderr.readline()
+    if 'attached' not in said:
+        raise RuntimeError('strace: ' + said)
+    traffic = Traffic(daemon, run.chance)
+    traffic.run(60)
+    strace.terminate()
+    strace.wait()
+    run.judge('it stops', daemon.stop() == 0, daemon.log())
+    trace = Trace(path)
+    verdict = Verdict(run, traffic, trace, 0)
+    for kind, count in verdict.checked.items():
+        run.count(f'answers of kind {kind}', count)
+    run.count('syncs', len(trace.syncs))
+    run.judge('no answer was early', not verdict.early,
+              f'{len(verdict.early)} were: {verdict.early[:5]}')
+    # Would it be seen? As if each sync that covers something had been the next one.
+    run.count('seen as early with the next sync', len(Verdict(run, traffic, trace, 1).early))
+    os.remove(path)
+
+
+def prove(run):
+    for number in range(run.rounds):
+        trace_round(run, number)
+    run.expect_fired('syncs', 'seen as early with the next sync',
+                     *(f'answers of kind {kind}' for kind in (
+                         'edit', 'list', 'rename', 'create', 'delete', 'read', 'page of meshes',
+                         '404', 'job', 'event')))
