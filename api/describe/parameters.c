@@ -9,6 +9,7 @@
 
 static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "gltf", "json", NULL};
 static const char *const encodings[] = {"ascii", "binary", "binary_big_endian", NULL};
+static const char *const compressions[] = {"meshopt", NULL};
 static const char *const connections[] = {"vertex", "edge", NULL};
 
 const api_parameter api_parameter_limit = {
@@ -53,6 +54,9 @@ const api_parameter api_parameter_format = {
 const api_parameter api_parameter_encoding = {
     "encoding", API_PARAM_CHOICE, 0,
     0,          encodings,        "Text or binary, where a format has both; binary if not said."};
+const api_parameter api_parameter_compress = {
+    "compress", API_PARAM_CHOICE, 0,
+    0,          compressions,     "Of glb: its buffers in EXT_meshopt_compression, without loss."};
 const api_parameter api_parameter_name = {
     "name", API_PARAM_TEXT, 0, ST_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
 const api_parameter api_parameter_repair = {

@@ -31,21 +31,25 @@ static int64_t read_content(void *stream, char *buffer, size_t size)
                                : (int64_t)he_writer_read(c->writer, buffer, size);
 }
 
-/* The number of the encoding that is wanted. */
-static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
+static bool find_encoding(api_exchange *x, const he_format *format, const char *what,
+                          const char *name, size_t *encoding)
 {
-    const char *name = api_param_text(x, "encoding");
-    *encoding = 0;
-    if (name == NULL) {
-        return true;
-    }
     int found = format == NULL ? -1 : he_format_encoding(format, name);
     if (found < 0) {
-        return api_fail(x, API_BAD_PARAMETER, "%s has no encoding \"%s\"",
-                        format == NULL ? "json" : format->name, name);
+        return api_fail(x, API_BAD_PARAMETER, "%s has no %s \"%s\"",
+                        format == NULL ? "json" : format->name, what, name);
     }
     *encoding = (size_t)found;
     return true;
+}
+
+/* The number of the encoding that is wanted: a compressed one is one of its own. */
+static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
+{
+    const char *name = api_param_text(x, "encoding"), *packed = api_param_text(x, "compress");
+    *encoding = 0;
+    return (name == NULL || find_encoding(x, format, "encoding", name, encoding)) &&
+           (packed == NULL || find_encoding(x, format, "compression", packed, encoding));
 }
 
 /* What is wanted: NULL is the JSON document. False when nothing fits. */

@@ -17,7 +17,7 @@ static const he_format formats[] = {
         .doc = "glTF 2.0 in its binary container, without anything outside the file",
         .media_types = LIST("model/gltf-binary"),
         .extensions = LIST("glb"),
-        .encodings = LIST("binary"),
+        .encodings = LIST("binary", "meshopt"),
         .carries = LIST("triangles", "polygons in extras", "isolated vertices", "vertex attributes",
                         "halfedge normal", "halfedge tangent", "halfedge uv", "halfedge color",
                         "face attributes in extras", "halfedge attributes in extras"),

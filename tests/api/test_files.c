@@ -151,6 +151,32 @@ static void a_position_that_no_float_holds_is_named(void **state)
     bench_free(b);
 }
 
+/* One of its own, with the same mesh inside. */
+static void a_compressed_export_is_another_representation(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {
+        "/v1/meshes/m/content?format=glb", "/v1/meshes/m/content?format=glb&compress=meshopt",
+        "/v1/meshes/m/content?format=glb&encoding=binary&compress=meshopt"};
+    static const char *const type[] = {"Content-Type", "model/gltf-binary", NULL};
+    api_bench *b = with_cube();
+    char tags[3][80];
+    for (size_t i = 0; i < 3; i++) {
+        bench_reply r = bench_expect(200, bench_send(b, "GET", targets[i], NULL, NULL));
+        assert_string_equal(bench_header(&r, "Content-Type"), "model/gltf-binary");
+        snprintf(tags[i], sizeof tags[i], "%s", bench_header(&r, "ETag"));
+        bench_reply made = bench_send_bytes(b, "POST", "/v1/meshes", type, r.body, r.length);
+        made = bench_expect(201, made);
+        assert_non_null(strstr(made.body, "\"vertices\":8,\"faces\":6,"));
+        assert_non_null(strstr(made.body, "\"volume\":1,"));
+        bench_reply_free(&made);
+        bench_reply_free(&r);
+    }
+    assert_string_not_equal(tags[0], tags[1]);
+    assert_string_equal(tags[1], tags[2]);
+    bench_free(b);
+}
+
 static void encodings_that_do_not_exist(void **state)
 {
     (void)state;
@@ -162,6 +188,11 @@ static void encodings_that_do_not_exist(void **state)
         "/v1/meshes/m/content?format=ply&encoding=utf-8",
         "/v1/meshes/m/content?format=glb&encoding=ascii",
         "/v1/meshes/m/content?format=gltf",
+        "/v1/meshes/m/content?format=glb&encoding=meshopt",
+        "/v1/meshes/m/content?format=glb&compress=draco",
+        "/v1/meshes/m/content?format=glb&encoding=ascii&compress=meshopt",
+        "/v1/meshes/m/content?format=ply&compress=meshopt",
+        "/v1/meshes/m/content?compress=meshopt",
     };
     api_bench *b = with_cube();
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
@@ -390,6 +421,7 @@ int main(void)
         cmocka_unit_test(each_encoding_has_its_tag),
         cmocka_unit_test(warnings_that_find_no_room_are_counted),
         cmocka_unit_test(a_position_that_no_float_holds_is_named),
+        cmocka_unit_test(a_compressed_export_is_another_representation),
         cmocka_unit_test(encodings_that_do_not_exist),
         cmocka_unit_test(a_wrong_file_names_its_place),
         cmocka_unit_test(gltf_is_read_and_what_is_outside_never),

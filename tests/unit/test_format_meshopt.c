@@ -2,7 +2,7 @@
  * what is refused. */
 #include "unit/gltf_file.h"
 
-#include "base/mem.h"
+#include "format/gltf/gltf.h"
 #include "format/gltf/meshopt.h"
 
 #include <math.h>
@@ -440,22 +440,9 @@ static void a_fallback_may_be_missing_unless_a_plain_view_needs_it(void **state)
 
 /* --- memory --- */
 
-static size_t left;
-
-static void *starve(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    return left == 0 ? NULL : (left--, realloc(memory, size));
-}
-
 static void without_memory_nothing_is_read(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {starve, NULL};
     bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
     char first[300], second[300];
     extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "", 4, 16);
@@ -464,19 +451,153 @@ static void without_memory_nothing_is_read(void **state)
     glb_file f;
     describe(json, sizeof json, first, second);
     glb_make(&f, json, b.bytes, CHUNK);
-    size_t n = 0;
+    long n = 1;
     for (he_status status = HE_NO_MEMORY; status != HE_OK; n++) {
         he_import import = {0};
         he_error err = {0};
-        assert_true(n < 1000);
-        left = n;
-        he_mem_set_hook(&hook);
+        fixture_fail_at(n);
         status = read_pieces("glb", f.bytes, f.length, 0, NULL, &import, &err);
-        he_import_clear(&import);
-        he_mem_set_hook(NULL);
+        fixture_memory_back();
         assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        he_import_clear(&import);
     }
     assert_true(n > 5);
+}
+
+/* --- written --- */
+
+/* Corners that differ at a seam, polygons, groups; then triangles alone. */
+static const char seam[] =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0.5 0.1\nv 9 9 9\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "vt 0.25 0.125\nvn 0 0 1\ng one\nf 1/1/1 2/2/1 3/3/1 4/4/1\ng two\nusemtl red\n"
+    "f 2/5/1 5/1/1 3/4/1\n";
+static const char cut[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                          "f 1/1 2/2 3/3\nf 3/1 4/2 1/3\n";
+static const char bare[] =
+    "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nv 5 5 5 1 1 1\n"
+    "f 3 1 2\nf 1 3 4\n";
+static const char points[] = "v 0 0 0\nv 1 0 0\n";
+
+static he_import read_glb(const he_mesh *mesh, const char *encoding, size_t piece, size_t *length)
+{
+    he_import import = {0};
+    he_error err = {0};
+    char *bytes = write_encoded("glb", encoding, mesh, piece, NULL, length);
+    if (read_pieces("glb", bytes, *length, 0, NULL, &import, &err) != HE_OK) {
+        fail_msg("%s: %s", encoding, err.text);
+    }
+    free(bytes);
+    return import;
+}
+
+/* Face by face the same corners; the first of them too where `exact`. */
+static void expect_same_faces(const he_soup *a, const he_soup *b, bool exact)
+{
+    assert_int_equal(a->face_count, b->face_count);
+    assert_int_equal(a->corner_count, b->corner_count);
+    for (size_t f = 0; f < a->face_count; f++) {
+        size_t start = a->starts[f];
+        size_t end = f + 1 < a->face_count ? a->starts[f + 1] : a->corner_count;
+        size_t turn = 0;
+        assert_int_equal(b->starts[f], start);
+        while (start + turn < end && b->corners[start + turn] != a->corners[start]) {
+            turn++;
+        }
+        assert_true(start + turn < end && (!exact || turn == 0));
+        for (size_t k = 0; k < end - start; k++) {
+            assert_int_equal(a->corners[start + k], b->corners[start + (turn + k) % (end - start)]);
+        }
+    }
+}
+
+static void a_packed_file_has_what_a_plain_one_has(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {seam, cut, bare, points};
+    static const size_t pieces[] = {1, 100, 4096};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        he_mesh *mesh = mesh_of_text("obj", texts[i]);
+        for (size_t k = 0; k < sizeof pieces / sizeof *pieces; k++) {
+            size_t plain, packed_bytes;
+            he_import a = read_glb(mesh, "binary", 4096, &plain);
+            he_import b = read_glb(mesh, "meshopt", pieces[k], &packed_bytes);
+            assert_int_equal(a.soup.vertex_count, b.soup.vertex_count);
+            assert_memory_equal(a.soup.positions, b.soup.positions,
+                                a.soup.vertex_count * sizeof(he_vec3));
+            expect_same_faces(&a.soup, &b.soup, i < 2);
+            assert_int_equal(a.soup.column_count, b.soup.column_count);
+            for (size_t c = 0; c < a.soup.column_count; c++) {
+                expect_same_columns(a.soup.columns[c], b.soup.columns[c]);
+            }
+            assert_int_equal(b.notes.count, 0);
+            he_import_clear(&a);
+            he_import_clear(&b);
+        }
+        he_mesh_free(mesh);
+    }
+}
+
+/* Nothing has no parts, and so no buffers to pack. */
+static void an_empty_mesh_is_not_packed(void **state)
+{
+    (void)state;
+    he_mesh *mesh = he_mesh_new();
+    assert_non_null(mesh);
+    size_t plain, length;
+    char *a = write_encoded("glb", "binary", mesh, 4096, NULL, &plain);
+    char *b = write_encoded("glb", "meshopt", mesh, 4096, NULL, &length);
+    assert_int_equal(plain, length);
+    assert_memory_equal(a, b, length);
+    free(a);
+    free(b);
+    he_mesh_free(mesh);
+}
+
+static void a_regular_mesh_becomes_smaller(void **state)
+{
+    (void)state;
+    enum { SIDE = 60 };
+    char *text = malloc(SIDE * SIDE * 80), *at = text;
+    assert_non_null(text);
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            at += snprintf(at, 80, "v %d %d %d\n", x, y, x * y % 7);
+        }
+    }
+    for (int y = 0; y + 1 < SIDE; y++) {
+        for (int x = 0; x + 1 < SIDE; x++) {
+            int v = y * SIDE + x + 1;
+            at += snprintf(at, 80, "f %d %d %d\nf %d %d %d\n", v, v + 1, v + SIDE + 1, v,
+                           v + SIDE + 1, v + SIDE);
+        }
+    }
+    he_mesh *mesh = mesh_of_text("obj", text);
+    size_t plain, length;
+    free(write_encoded("glb", "binary", mesh, 4096, NULL, &plain));
+    free(write_encoded("glb", "meshopt", mesh, 4096, NULL, &length));
+    print_message("note: a grid of %d faces has %zu bytes as GLB, %zu packed\n",
+                  2 * (SIDE - 1) * (SIDE - 1), plain, length);
+    assert_true(length * 2 < plain);
+    he_mesh_free(mesh);
+    free(text);
+}
+
+static void a_writer_without_memory_is_refused(void **state)
+{
+    (void)state;
+    he_mesh *mesh = mesh_of_text("obj", seam);
+    he_status status = HE_NO_MEMORY;
+    long n = 1;
+    for (; status != HE_OK; n++) {
+        he_writer *writer = NULL;
+        fixture_fail_at(n);
+        status = he_writer_new(he_format_find("glb"), mesh, HE_GLB_MESHOPT, NULL, &writer, NULL);
+        fixture_memory_back();
+        assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        he_writer_free(status == HE_OK ? writer : NULL);
+    }
+    assert_true(n > 10);
+    he_mesh_free(mesh);
 }
 
 int main(void)
@@ -491,6 +612,10 @@ int main(void)
         cmocka_unit_test(what_unpacks_to_too_much_is_refused),
         cmocka_unit_test(a_fallback_may_be_missing_unless_a_plain_view_needs_it),
         cmocka_unit_test(without_memory_nothing_is_read),
+        cmocka_unit_test(a_packed_file_has_what_a_plain_one_has),
+        cmocka_unit_test(an_empty_mesh_is_not_packed),
+        cmocka_unit_test(a_regular_mesh_becomes_smaller),
+        cmocka_unit_test(a_writer_without_memory_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* he_glb_describe of glb_parts.h: the JSON. */
 #include "format/gltf/glb_parts.h"
 
+#include "format/gltf/gltf_asset.h"
 #include "format/io/export.h"
 #include "format/text/number.h"
 
@@ -193,11 +194,25 @@ static void put_accessors(text *t, const he_glb_parts *g)
     put_text(t, "]");
 }
 
+static void put_stream(text *t, const he_glb_part *part)
+{
+    const he_meshopt_stream stream = he_glb_part_stream(part);
+    put_text(t, ",\"extensions\":{\"" HE_GLTF_MESHOPT "\":{\"buffer\":0");
+    put_number(t, ",\"byteOffset\":", part->packed_at);
+    put_number(t, ",\"byteLength\":", part->packed);
+    put_number(t, ",\"byteStride\":", stream.stride);
+    put_number(t, ",\"count\":", stream.count);
+    put_text(t, ",\"mode\":");
+    put_string(t, he_meshopt_modes[stream.mode]);
+    put_text(t, "}}");
+}
+
 static void put_views(text *t, const he_glb_parts *g)
 {
     for (size_t i = 0; i < g->count; i++) {
         const he_glb_part *part = &g->parts[i];
-        put_text(t, i > 0 ? ",{\"buffer\":0" : ",\"bufferViews\":[{\"buffer\":0");
+        put_text(t, i > 0 ? ",{" : ",\"bufferViews\":[{");
+        put_number(t, "\"buffer\":", g->packs ? 1 : 0);
         put_number(t, ",\"byteOffset\":", part->offset);
         put_number(t, ",\"byteLength\":", he_glb_part_bytes(part));
         if (part->content == HE_GLB_POSITIONS || part->content == HE_GLB_VALUES) {
@@ -206,9 +221,30 @@ static void put_views(text *t, const he_glb_parts *g)
         } else if (part->content == HE_GLB_TRIANGLES) {
             put_text(t, ",\"target\":34963");
         }
+        if (g->packs) {
+            put_stream(t, part);
+        }
         put_text(t, "}");
     }
     put_text(t, "]");
+}
+
+static void put_buffers(text *t, const he_glb_parts *g)
+{
+    static const char name[] = "\":[\"" HE_GLTF_MESHOPT "\"]";
+    put_number(t, ",\"buffers\":[{\"byteLength\":", he_glb_bin_bytes(g));
+    put_text(t, "}");
+    if (g->packs) {
+        put_number(t, ",{\"byteLength\":", g->bytes);
+        put_text(t, ",\"extensions\":{\"" HE_GLTF_MESHOPT "\":{\"fallback\":true}}}");
+    }
+    put_text(t, "]");
+    if (g->packs) {
+        put_text(t, ",\"extensionsUsed");
+        put_text(t, name);
+        put_text(t, ",\"extensionsRequired");
+        put_text(t, name);
+    }
 }
 
 he_status he_glb_describe(he_glb_parts *g, he_error *err)
@@ -221,8 +257,7 @@ he_status he_glb_describe(he_glb_parts *g, he_error *err)
         put_meshes(&t, g);
         put_accessors(&t, g);
         put_views(&t, g);
-        put_number(&t, ",\"buffers\":[{\"byteLength\":", g->bytes);
-        put_text(&t, "}]");
+        put_buffers(&t, g);
     }
     put_text(&t, "}");
     while (!t.failed && t.length % 4 != 0) {
@@ -234,5 +269,9 @@ he_status he_glb_describe(he_glb_parts *g, he_error *err)
     }
     g->json = t.bytes;
     g->json_length = t.length;
-    return HE_OK;
+    uint64_t bytes = he_glb_bin_bytes(g) + g->json_length;
+    return bytes <= UINT32_MAX - 64
+               ? HE_OK
+               : he_fail_plain(err, HE_LIMIT, "a GLB file has less than 4 GiB, not %llu bytes",
+                               (unsigned long long)bytes);
 }

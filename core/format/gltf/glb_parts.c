@@ -21,6 +21,7 @@ void he_glb_parts_clear(he_glb_parts *parts)
     he_splits_clear(&parts->splits);
     he_cuts_clear(&parts->cuts);
     he_mem_free(parts->parts);
+    he_mem_free(parts->streams);
     he_mem_free(parts->json);
     *parts = (he_glb_parts){0};
 }
@@ -313,6 +314,18 @@ static void place_values(he_glb_parts *g, const he_column **used)
     }
 }
 
+/* They are in the order of corners, and a packed triangle may begin at another one. */
+static bool has_corner_values(const he_mesh *m)
+{
+    for (size_t i = 0; i < he_mesh_columns(m); i++) {
+        const he_column *column = he_mesh_column(m, i);
+        if (column != NULL && column->domain == HE_HALFEDGE) {
+            return m->c.faces.live > 0;
+        }
+    }
+    return false;
+}
+
 static void add_rest_of_geometry(he_glb_parts *g)
 {
     const he_mesh *m = g->mesh;
@@ -331,7 +344,7 @@ static void add_rest_of_geometry(he_glb_parts *g)
         words.count = copies;
         add(g, words);
     }
-    if (g->cuts.polygons > 0) {
+    if (g->cuts.polygons > 0 || (g->packs && has_corner_values(m))) {
         words.content = HE_GLB_DEGREES;
         words.count = faces;
         add(g, words);
@@ -405,21 +418,13 @@ static he_status make(he_glb_parts *g, he_watch *watch, he_notes *notes, he_erro
     note_geometry(g, notes);
     he_export_note_lost(g->mesh, used, columns, notes);
     he_mem_free(used);
-    if (status != HE_OK) {
-        return status;
-    }
-    status = he_glb_describe(g, err);
-    if (status == HE_OK && g->bytes + g->json_length > UINT32_MAX - 64) {
-        return he_fail_plain(err, HE_LIMIT, "a GLB file has less than 4 GiB, not %llu bytes",
-                             (unsigned long long)(g->bytes + g->json_length));
-    }
     return status;
 }
 
-he_status he_glb_parts_make(const he_mesh *mesh, he_watch *watch, he_notes *notes,
+he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_watch *watch, he_notes *notes,
                             he_glb_parts *out, he_error *err)
 {
-    he_glb_parts made = {.mesh = mesh};
+    he_glb_parts made = {.mesh = mesh, .packs = packs};
     he_status status = make(&made, watch, notes, err);
     if (status != HE_OK) {
         he_glb_parts_clear(&made);

@@ -1,9 +1,13 @@
 /* glb_parts.h - what a GLB of a mesh consists of, known before its first byte: the parts of its one
- * buffer, each a buffer view and an accessor of the same number, and the JSON that names them. */
+ * buffer, each a buffer view and an accessor of the same number, and the JSON that names them.
+ *
+ * Packed, the parts are streams of EXT_meshopt_compression in the file's buffer, and the buffer
+ * that the views speak of is its fallback, which has no bytes. */
 #ifndef HE_FORMAT_GLTF_GLB_PARTS_H
 #define HE_FORMAT_GLTF_GLB_PARTS_H
 
 #include "format/gltf/gltf_attribute.h"
+#include "format/gltf/meshopt.h"
 #include "format/io/cuts.h"
 #include "format/io/splits.h"
 
@@ -24,10 +28,11 @@ typedef struct he_glb_part {
     unsigned type;                     /* the componentType */
     uint32_t components;               /* of an element of the accessor */
     bool normalized;
-    he_gltf_role role; /* of values; HE_GLTF_SEMANTICS without one */
-    uint64_t count;    /* elements of the accessor */
-    uint32_t stride;   /* bytes from one to the next */
-    uint64_t offset;   /* in the buffer, a multiple of 4 */
+    he_gltf_role role;          /* of values; HE_GLTF_SEMANTICS without one */
+    uint64_t count;             /* elements of the accessor */
+    uint32_t stride;            /* bytes from one to the next */
+    uint64_t offset;            /* in the buffer, a multiple of 4 */
+    uint64_t packed_at, packed; /* of its stream in the file's buffer, bytes of that */
 } he_glb_part;
 
 /* {0} is empty. */
@@ -39,19 +44,31 @@ typedef struct he_glb_parts {
     he_glb_part *parts;
     size_t count, capacity;
     uint64_t bytes; /* of the buffer, a multiple of 4 */
+    bool packs;     /* then the streams are here, a multiple of 4 bytes */
+    unsigned char *streams;
+    size_t streams_length, streams_capacity;
     char *json;
     size_t json_length; /* a multiple of 4 */
 } he_glb_parts;
 
-/* `watch` may be NULL. HE_NO_MEMORY, HE_CANCELLED; HE_LIMIT where the file would have more than its
- * 32 bits can count. */
-HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, he_watch *watch, he_notes *notes,
-                                         he_glb_parts *out, he_error *err);
+/* All but the JSON, and the streams where it `packs`. `watch` may be NULL. HE_NO_MEMORY,
+ * HE_CANCELLED. */
+HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_watch *watch,
+                                         he_notes *notes, he_glb_parts *out, he_error *err);
 void he_glb_parts_clear(he_glb_parts *parts);
 /* Bytes of a part without what fills it up to a multiple of 4. */
 uint64_t he_glb_part_bytes(const he_glb_part *part);
 
-/* For glb_parts.c: write the JSON of parts that are complete. HE_NO_MEMORY. */
+/* How a part is packed. Indices are taken as uint32_t, see he_meshopt_encode. */
+he_meshopt_stream he_glb_part_stream(const he_glb_part *part);
+/* Pack the next part, whose bytes these are. HE_NO_MEMORY. */
+HE_NODISCARD he_status he_glb_pack(he_glb_parts *parts, he_glb_part *part, const void *bytes,
+                                   he_error *err);
+
+/* The JSON, where nothing else is missing. HE_NO_MEMORY; HE_LIMIT where the file would have more
+ * than its 32 bits can count. */
 HE_NODISCARD he_status he_glb_describe(he_glb_parts *parts, he_error *err);
+/* Bytes of the BIN chunk. */
+uint64_t he_glb_bin_bytes(const he_glb_parts *parts);
 
 #endif

@@ -36,7 +36,11 @@
  * same. So are polygons, and which vertices are copies. Numbers have no gaps and joints come with
  * weights; what cannot has a name of its own, as _uv1 where there is no uv. Other programs ignore
  * extras, so this program reads back all but the positions' last digits, attributes of edges and of
- * the mesh. */
+ * the mesh.
+ *
+ * As "meshopt" the same in EXT_meshopt_compression, whose streams are held as a whole. No number is
+ * rounded, but a triangle may begin at another of its corners; where corners have values they keep
+ * their order. */
 #ifndef HE_FORMAT_GLTF_GLTF_H
 #define HE_FORMAT_GLTF_GLTF_H
 
@@ -46,5 +50,7 @@ bool he_glb_sniff(const char *bytes, size_t n);
 bool he_gltf_sniff(const char *bytes, size_t n);
 extern const he_reading he_glb_reading, he_gltf_reading;
 extern const he_writing he_glb_writing;
+/* Its encodings. */
+enum { HE_GLB_PLAIN, HE_GLB_MESHOPT };
 
 #endif

@@ -4,6 +4,7 @@
 #include "format/gltf/gltf_asset.h"
 #include "format/io/colors.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* What is written, in this order. */
@@ -32,30 +33,6 @@ static void glb_close(void *state)
     he_glb_parts_clear(&w->g);
     he_mem_free(w->at);
     he_mem_free(w);
-}
-
-static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                          void **state, he_error *err)
-{
-    (void)encoding;
-    glb_writer *w = he_mem_zero(1, sizeof *w);
-    if (w == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
-    }
-    w->halfedge = HE_NONE;
-    he_status status = he_glb_parts_make(mesh, watch, notes, &w->g, err);
-    if (status == HE_OK && w->g.splits.copies.count > 0) {
-        w->at = he_mem_array(NULL, mesh->c.vertices.issued, sizeof *w->at);
-        if (w->at == NULL) {
-            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
-        }
-    }
-    if (status != HE_OK) {
-        glb_close(w);
-        return status;
-    }
-    *state = w;
-    return HE_OK;
 }
 
 /* --- elements --- */
@@ -247,11 +224,85 @@ static char *put_element(glb_writer *w, const he_glb_part *part, char *p)
     return id == HE_NONE ? p : put_words(part->column, id, p);
 }
 
+/* --- packing --- */
+
+static void begin_part(glb_writer *w)
+{
+    w->row = 0;
+    w->copy = 0;
+    w->written = 0;
+}
+
+/* All elements of a part, for the packer: indices are words there. */
+static he_status pack_part(glb_writer *w, he_glb_part *part, he_error *err)
+{
+    he_glb_part plain = *part;
+    if (part->content == HE_GLB_TRIANGLES) {
+        plain.stride = sizeof(uint32_t);
+    }
+    size_t size = (size_t)he_glb_part_bytes(&plain);
+    char *bytes = he_mem_alloc(size + ELEMENT_ROOM), *at = bytes, *after;
+    if (bytes == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to pack %zu bytes", size);
+    }
+    while ((after = put_element(w, &plain, at)) != at) {
+        at = after;
+    }
+    assert((size_t)(at - bytes) == size);
+    begin_part(w);
+    he_status status = he_glb_pack(&w->g, part, bytes, err);
+    he_mem_free(bytes);
+    return status;
+}
+
+static he_status pack(glb_writer *w, he_watch *watch, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; i < w->g.count && status == HE_OK; i++) {
+        status = he_watch_step(watch, w->g.parts[i].offset, w->g.bytes, err);
+        if (status == HE_OK) {
+            status = pack_part(w, &w->g.parts[i], err);
+        }
+    }
+    return status;
+}
+
 /* --- the file --- */
+
+static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
+                          void **state, he_error *err)
+{
+    glb_writer *w = he_mem_zero(1, sizeof *w);
+    if (w == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+    }
+    w->halfedge = HE_NONE;
+    bool packs = encoding == HE_GLB_MESHOPT;
+    he_status status = he_glb_parts_make(mesh, packs, watch, notes, &w->g, err);
+    if (status == HE_OK && w->g.splits.copies.count > 0) {
+        w->at = he_mem_array(NULL, mesh->c.vertices.issued, sizeof *w->at);
+        if (w->at == NULL) {
+            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        }
+    }
+    if (status == HE_OK && packs) {
+        status = pack(w, watch, err);
+    }
+    if (status == HE_OK) {
+        status = he_glb_describe(&w->g, err);
+    }
+    if (status != HE_OK) {
+        glb_close(w);
+        return status;
+    }
+    *state = w;
+    return HE_OK;
+}
 
 static char *write_header(const glb_writer *w, char *p)
 {
-    uint64_t length = 12 + 8 + w->g.json_length + (w->g.count > 0 ? 8 + w->g.bytes : 0);
+    uint64_t length =
+        12 + 8 + w->g.json_length + (w->g.count > 0 ? 8 + he_glb_bin_bytes(&w->g) : 0);
     p = he_export_text("glTF", p);
     p = put_word(2, 4, p);
     p = put_word((uint32_t)length, 4, p);
@@ -271,6 +322,16 @@ static char *write_json(glb_writer *w, char *p, const char *end)
     return p + n;
 }
 
+static char *write_streams(glb_writer *w, char *p, const char *end)
+{
+    size_t left = w->g.streams_length - (size_t)w->written, room = (size_t)(end - p);
+    size_t n = left < room ? left : room;
+    memcpy(p, w->g.streams + w->written, n);
+    w->written += n;
+    w->stage = n == left ? END : PARTS;
+    return p + n;
+}
+
 static char *write_parts(glb_writer *w, char *p, const char *end)
 {
     while (end - p >= ELEMENT_ROOM) {
@@ -282,9 +343,7 @@ static char *write_parts(glb_writer *w, char *p, const char *end)
                 *after++ = 0;
             }
             w->part++;
-            w->row = 0;
-            w->copy = 0;
-            w->written = 0;
+            begin_part(w);
             if (w->part == w->g.count) {
                 w->stage = END;
                 return after;
@@ -307,12 +366,12 @@ static bool glb_step(void *state, char **p, const char *end)
         *p = write_json(w, *p, end);
         break;
     case BIN_HEADER:
-        *p = put_word((uint32_t)w->g.bytes, 4, *p);
+        *p = put_word((uint32_t)he_glb_bin_bytes(&w->g), 4, *p);
         *p = put_word(0x004E4942, 4, *p);
         w->stage = PARTS;
         break;
     case PARTS:
-        *p = write_parts(w, *p, end);
+        *p = w->g.packs ? write_streams(w, *p, end) : write_parts(w, *p, end);
         break;
     case END:
         break;
