@@ -2,6 +2,7 @@
 
 #include "build/link.h"
 #include "build/pair.h"
+#include "build/rest.h"
 #include "mesh/content.h"
 
 #include <stdio.h>
@@ -153,11 +154,15 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
     return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }
 
-static void clear_turns(he_turns *turns)
+/* All that the structure cannot hold is found: faces by themselves, then edges and fans. */
+static he_status find_turns(const he_soup *soup, he_corners *corners, he_turns *turns,
+                            he_report *report, uint64_t *total, he_error *err)
 {
-    he_mem_free(turns->spare);
-    he_mem_free(turns->turn);
-    he_mem_free(turns->first);
+    he_status status = he_corners_init(soup, corners, err);
+    if (status == HE_OK) {
+        status = he_soup_turn(corners, turns, report, total, err);
+    }
+    return status == HE_OK && *total > 0 ? he_soup_check_rest(soup, report, total, err) : status;
 }
 
 he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err)
@@ -165,12 +170,9 @@ he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err)
     uint64_t total = 0;
     he_corners corners = {0};
     he_turns turns = {0};
-    he_status status = he_corners_init(soup, &corners, err);
-    if (status == HE_OK) {
-        status = he_soup_turn(&corners, &turns, NULL, &total, err);
-    }
+    he_status status = find_turns(soup, &corners, &turns, NULL, &total, err);
     he_corners_clear(&corners);
-    clear_turns(&turns);
+    he_turns_clear(&turns);
     if (status == HE_OK) {
         *defects = total;
     }
@@ -194,10 +196,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         goto out;
     }
     report->total = 0;
-    status = he_corners_init(soup, &corners, err);
-    if (status == HE_OK) {
-        status = he_soup_turn(&corners, &turns, report, &total, err);
-    }
+    status = find_turns(soup, &corners, &turns, report, &total, err);
     if (status == HE_OK && total > 0) {
         status = he_report_fail(report, err);
     }
@@ -223,7 +222,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
 out:
     he_mem_free(own);
     he_corners_clear(&corners);
-    clear_turns(&turns);
+    he_turns_clear(&turns);
     he_mesh_free(mesh);
     return status;
 }

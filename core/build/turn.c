@@ -251,6 +251,9 @@ static unsigned turn_many(turning *t, uint32_t begin, uint32_t end, const hub_tu
         hub->follows[i] = found ? k : end;
         t->turn[t->filed[i]] = found ? t->filed[k] : HE_NONE;
         open += !found;
+        if (found && he_bits_get(hub->entered, k)) {
+            return BAD_EDGE; /* two faces come from one vertex */
+        }
         if (found) {
             he_bits_set(hub->entered, k);
         }
@@ -318,7 +321,8 @@ static he_status no_memory(const he_soup *soup, he_error *err)
 }
 
 /* Once more vertex by vertex: those of many corners, which share what remembers, and with `report`
- * all of them to say which have a closed fan beside another. */
+ * all of them to say which have a closed fan beside another. At the ends of edges that are wrong
+ * there are no fans to speak of. */
 static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *total, he_error *err)
 {
     const he_soup *soup = t->soup;
@@ -340,9 +344,10 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
         } else if (all && end > begin) {
             find_beside(t, t->filed + begin, end - begin, t->corners->degree, before, behind);
             found = turn_few(t, t->filed + begin, end - begin, before, behind, &matched);
+            found |= leads_twice(before, end - begin) ? BAD_EDGE : 0;
         }
         t->all |= found;
-        if (all && (found & CLOSED_FAN) != 0) {
+        if (all && found == CLOSED_FAN) {
             he_report_add(
                 report, total,
                 (he_defect){HE_CLOSED_FAN, HE_VERTEX, (uint32_t)v, HE_NONE, HE_NONE, HE_NONE});
@@ -399,11 +404,11 @@ static he_status turn_all(turning *t, he_report *report, uint64_t *total, he_err
             status = turn_again(t, false, NULL, NULL, err);
         }
     }
-    if (status == HE_OK && (t->all & BAD_EDGE) != 0) {
-        return he_soup_check_edges(soup, report, total, err);
+    unsigned bad = t->all & (BAD_EDGE | CLOSED_FAN);
+    if (status == HE_OK && (bad & BAD_EDGE) != 0) {
+        status = he_soup_check_edges(soup, report, total, err);
     }
-    return status == HE_OK && (t->all & CLOSED_FAN) != 0 ? turn_again(t, true, report, total, err)
-                                                         : status;
+    return status == HE_OK && bad != 0 ? turn_again(t, true, report, total, err) : status;
 }
 
 static bool allocate(turning *t)
@@ -418,6 +423,14 @@ static bool allocate(turning *t)
     t->filed = he_mem_array(NULL, soup->corner_count, sizeof *t->filed);
     return t->found != NULL && t->matched != NULL && t->places != NULL && t->first != NULL &&
            t->turn != NULL && t->filed != NULL;
+}
+
+void he_turns_clear(he_turns *turns)
+{
+    he_mem_free(turns->spare);
+    he_mem_free(turns->turn);
+    he_mem_free(turns->first);
+    *turns = (he_turns){0};
 }
 
 he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report, uint64_t *total,

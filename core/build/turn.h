@@ -25,8 +25,10 @@ typedef struct he_turns {
 } he_turns;
 
 /* The arrays are the caller's. HE_NO_MEMORY, HE_CANCELLED; where the structure cannot hold what was
- * found its defects are in `report` and *total, and `out` is as it was. */
+ * found its defects are in `report` and *total, and `out` is as it was. Where faces are not proper
+ * these alone are found: rest.h finds what else is wrong. */
 HE_NODISCARD he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report,
                                     uint64_t *total, he_error *err);
+void he_turns_clear(he_turns *turns);
 
 #endif

@@ -1,4 +1,5 @@
 /* Which repairs a refused soup needs. Each is tried on a copy of its faces. */
+#include "build/pair.h"
 #include "repair/mend.h"
 
 #include <string.h>
@@ -25,9 +26,85 @@ static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
     return HE_OK;
 }
 
+/* How many faces run along an edge, each way. */
+typedef struct runs {
+    uint32_t up, down;
+} runs;
+
+static void count_runs(const he_soup *soup, const uint64_t *gone, const uint32_t *edge_of,
+                       runs *edges)
+{
+    for (size_t f = 0; f < soup->face_count; f++) {
+        uint32_t begin = soup->starts[f], end = he_soup_end(soup, f);
+        for (uint32_t c = begin; c < end && !he_bits_get(gone, f); c++) {
+            uint32_t next = soup->corners[c + 1 < end ? c + 1 : begin];
+            edges[edge_of[c]].up += soup->corners[c] < next;
+            edges[edge_of[c]].down += soup->corners[c] > next;
+        }
+    }
+}
+
+/* Has the face an edge that was wrong and is right when the duplicates are gone? */
+static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, const runs *before,
+                       const runs *after)
+{
+    bool mends = false;
+    for (uint32_t c = soup->starts[f], end = he_soup_end(soup, f); c < end && !mends; c++) {
+        uint32_t e = edge_of[c];
+        mends = (before[e].up > 1 || before[e].down > 1) && after[e].up + after[e].down <= 2;
+    }
+    return mends;
+}
+
+/* Does each duplicate that is dropped mend an edge? The wall between two solids does not: both need
+ * it, and are to be split. */
+static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *out, he_error *err)
+{
+    size_t edges = 0;
+    uint32_t *edge_of = he_mem_array(NULL, soup->corner_count, sizeof *edge_of);
+    uint64_t *gone = he_bits_new(soup->face_count), *none = he_bits_new(soup->face_count);
+    runs *before = NULL, *after = NULL;
+    he_status status = HE_OK;
+    if (edge_of != NULL && gone != NULL && none != NULL) {
+        status = he_soup_number_edges(soup, edge_of, &edges, err);
+        before = he_mem_zero(edges + 1, sizeof *before);
+        after = he_mem_zero(edges + 1, sizeof *after);
+    }
+    if (status == HE_OK && (before == NULL || after == NULL)) {
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory to look at %zu faces", soup->face_count);
+    }
+    if (status == HE_OK) {
+        for (size_t f = 0, kept = 0; f < soup->face_count; f++) {
+            if (kept < done->faces && done->face_from[kept] == f) {
+                kept++;
+            } else {
+                he_bits_set(gone, f);
+            }
+        }
+        count_runs(soup, none, edge_of, before);
+        count_runs(soup, gone, edge_of, after);
+        *out = true;
+        for (size_t f = 0; f < soup->face_count && *out; f++) {
+            *out = !he_bits_get(gone, f) || mends_edge(soup, f, edge_of, before, after);
+        }
+    }
+    he_mem_free(edge_of);
+    he_mem_free(gone);
+    he_mem_free(none);
+    he_mem_free(before);
+    he_mem_free(after);
+    return status;
+}
+
+/* What is found of duplicates: are there any, and does each that is dropped mend an edge? */
+typedef struct duplicates {
+    bool some, mend;
+} duplicates;
+
 /* What proper faces need. With `dropped` the duplicates are dropped first; where there are none
- * that is false, and nothing else is found. */
-static he_status find_needs(const he_soup *soup, bool *dropped, unsigned *out, he_error *err)
+ * that is said, and nothing else is found. */
+static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *out, he_error *err)
 {
     he_soup copy;
     he_repaired *done = he_mem_zero(1, sizeof *done);
@@ -40,7 +117,10 @@ static he_status find_needs(const he_soup *soup, bool *dropped, unsigned *out, h
     bool goes_on = true;
     if (status == HE_OK && dropped != NULL) {
         status = he_mend_drop_duplicates(&m, err);
-        goes_on = *dropped = done->accounts[HE_REPAIR_DROP_DUPLICATES].count > 0;
+        goes_on = dropped->some = done->accounts[HE_REPAIR_DROP_DUPLICATES].count > 0;
+    }
+    if (status == HE_OK && dropped != NULL && goes_on) {
+        status = all_mend(soup, done, &dropped->mend, err);
     }
     if (status == HE_OK && goes_on) {
         status = he_mend_orient(&m, true, err);
@@ -63,18 +143,21 @@ static he_status find_needs(const he_soup *soup, bool *dropped, unsigned *out, h
     return status;
 }
 
-/* Dropping duplicates is the answer where it spares a split, or faces the turning. */
+/* Dropping duplicates is the answer where it spares a split, or faces the turning, and where each
+ * of them is in the way of an edge. */
 static he_status advise_proper(const he_soup *soup, unsigned *out, he_error *err)
 {
     unsigned as_is, less = 0;
-    bool dropped = false;
+    duplicates dropped = {false, false};
     he_status status = find_needs(soup, NULL, &as_is, err);
     if (status == HE_OK && as_is != 0) {
         status = find_needs(soup, &dropped, &less, err);
     }
     if (status == HE_OK) {
-        bool spares = dropped && (less & he_repair_bit(HE_REPAIR_SPLIT)) == 0 && less != as_is;
-        *out = spares ? less | he_repair_bit(HE_REPAIR_DROP_DUPLICATES) : as_is;
+        bool spares = (less & he_repair_bit(HE_REPAIR_SPLIT)) == 0 && less != as_is;
+        *out = dropped.some && (spares || dropped.mend)
+                   ? less | he_repair_bit(HE_REPAIR_DROP_DUPLICATES)
+                   : as_is;
     }
     return status;
 }

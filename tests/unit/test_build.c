@@ -86,6 +86,43 @@ static void test_build_refusals(void **state)
     expect_refusal("021,032,013,123,045", HE_CLOSED_FAN, HE_VERTEX, 0, 1);
 }
 
+/* Faces by themselves, then edges, then fans; those at the ends of a wrong edge are not told. */
+static void a_refusal_names_the_defects_of_all_stages(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *faces, *defects;
+    } rows[] = {
+        {"012,103,014,3345", "repeated_corner 3,nonmanifold_edge 2,"},
+        {"1,012,103,014,3345", "too_few_corners 0,repeated_corner 4,nonmanifold_edge 3,"},
+        {"021,032,013,123,045,678,679,1", "too_few_corners 7,orientation 6,closed_fan 0,"},
+        {"021,032,013,123,045,678,679", "orientation 6,closed_fan 0,"},
+        {"012,023,013,045", "orientation 2,orientation 2,"},
+        {"011,012", "repeated_corner 0,"},
+        {"0,1", "too_few_corners 0,too_few_corners 1,"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        he_soup soup;
+        he_report report;
+        he_error err = {0};
+        he_mesh *mesh = NULL;
+        char text[400] = "";
+        size_t length = 0;
+        uint64_t tried = 0;
+        fixture_soup(&soup, rows[i].faces);
+        assert_int_not_equal(he_build(&soup, 0, &mesh, &report, &err), HE_OK);
+        for (size_t k = 0; k < report.total; k++) {
+            length +=
+                (size_t)snprintf(text + length, sizeof text - length, "%s %u,",
+                                 he_status_slug(report.defects[k].reason), report.defects[k].id);
+        }
+        assert_string_equal(text, rows[i].defects);
+        assert_int_equal(he_build_try(&soup, &tried, &err), HE_OK);
+        assert_int_equal(tried, report.total);
+        he_soup_clear(&soup);
+    }
+}
+
 static void test_build_names_bad_indices(void **state)
 {
     (void)state;
@@ -385,6 +422,7 @@ int main(void)
         cmocka_unit_test(test_build_numbers_in_order),
         cmocka_unit_test(test_bowtie_is_visited_whole),
         cmocka_unit_test(test_build_refusals),
+        cmocka_unit_test(a_refusal_names_the_defects_of_all_stages),
         cmocka_unit_test(test_build_names_bad_indices),
         cmocka_unit_test(test_report_keeps_the_first_hundred),
         cmocka_unit_test(test_soup_limits),

@@ -32,6 +32,10 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
         {"012,012", HE_ORIENTATION, DUPLICATES, 3, 3, 1},
         {"021,032,013,123,231", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
         {"021,032,013,123,132", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
+        /* a duplicate beside an edge of three faces, and of one of its faces; the wall of two
+         * tetrahedra is none, though there is a duplicate too */
+        {"021,032,013,123,231,456,547,458", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 11, 14, 7},
+        {"012,103,014,012", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 7, 8, 3},
         /* a Moebius band of five triangles */
         {"012,123,234,340,401", HE_ORIENTATION, ORIENT | SPLIT, 7, 11, 5},
         /* several at once */
