@@ -49,6 +49,7 @@ static he_status add(st_store *store, const char *name, he_error *err)
     case ST_ELSEWHERE:
     case ST_LOST:
     case ST_COLD:
+    case ST_LOADING:
     case ST_DAMAGED:
     case ST_BEHIND:
     case ST_FULL:

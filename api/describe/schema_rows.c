@@ -21,6 +21,8 @@ const api_member api_answer_members[] = {
     {"mesh_item", "name", "text", REQUIRED, NULL},
     {"mesh_item", "revision", "count", REQUIRED, NULL},
     {"mesh_item", "counts", "#counts", REQUIRED, NULL},
+    {"mesh_item", "damage", "text", OPTIONAL,
+     "What is wrong with what the disk has of the mesh: it can be deleted or replaced."},
 
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},

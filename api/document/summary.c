@@ -70,29 +70,33 @@ static void write_box(api_out *out, const api_summary *summary)
     api_out_object_end(out);
 }
 
-static void write_identity(api_out *out, const st_mesh_info *info)
+static void write_identity(api_out *out, const char *id, const char *name, uint64_t revision)
 {
-    api_out_key_string(out, "id", info->id);
-    api_out_key_string(out, "name", info->name);
-    api_out_key_u64(out, "revision", info->revision);
+    api_out_key_string(out, "id", id);
+    api_out_key_string(out, "name", name);
+    api_out_key_u64(out, "revision", revision);
 }
 
-void api_write_brief(api_out *out, const st_mesh_info *info, const he_mesh *mesh)
+void api_write_brief(api_out *out, const st_card *card)
 {
-    write_identity(out, info);
+    const st_counts *counts = &card->counts;
+    write_identity(out, card->id, card->name, card->revision);
     api_out_key(out, "counts");
     api_out_object_begin(out);
-    api_out_key_u64(out, "vertices", he_mesh_vertices(mesh));
-    api_out_key_u64(out, "halfedges", he_mesh_count(mesh, HE_HALFEDGE));
-    api_out_key_u64(out, "edges", he_mesh_edges(mesh));
-    api_out_key_u64(out, "faces", he_mesh_faces(mesh));
+    api_out_key_u64(out, "vertices", counts->vertices);
+    api_out_key_u64(out, "halfedges", 2 * (uint64_t)counts->edges);
+    api_out_key_u64(out, "edges", counts->edges);
+    api_out_key_u64(out, "faces", counts->faces);
     api_out_object_end(out);
+    if (card->damage[0] != '\0') {
+        api_out_key_string(out, "damage", card->damage);
+    }
 }
 
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary)
 {
     const he_topology *t = &summary->topology;
-    write_identity(out, info);
+    write_identity(out, info->id, info->name, info->revision);
     write_counts(out, t);
     api_out_key(out, "euler");
     api_out_i64(out, t->euler);

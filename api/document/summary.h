@@ -28,8 +28,8 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out);
 
 /* The members of an object that is open: id, name, revision, counts, ... */
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary);
-/* id, name, revision and the counts that cost nothing. */
-void api_write_brief(api_out *out, const st_mesh_info *info, const he_mesh *mesh);
+/* id, name, revision, the counts that cost nothing, and what is wrong with a damaged mesh. */
+void api_write_brief(api_out *out, const st_card *card);
 
 /* GET of a mesh: 200 with the summary of the mesh at hand, from the cache where it has it, and what
  * that costs. */

@@ -153,6 +153,10 @@
     X(RATE_LIMIT, "rate_limit", 429, "Too many requests", "Try again after Retry-After seconds.")  \
     X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
       "The request may be fine; the server broke one of its own rules answering it.")              \
+    X(MESH_DAMAGED, "mesh_damaged", 500, "The mesh is damaged",                                    \
+      "What is on the disk of it is not what was written. The mesh can be deleted, or replaced "   \
+      "by "                                                                                        \
+      "PUT; all others are served.")                                                               \
     X(NOT_IMPLEMENTED, "not_implemented", 501, "The server does not implement this",               \
       "The method is longer than any there is, or the body has a transfer coding other than "      \
       "chunked. The connection is closed.")                                                        \
@@ -169,6 +173,9 @@
       "respond-async. What all elements of a mesh are read for takes that header.")                \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
+    X(LOADING, "loading", 503, "The mesh is being loaded",                                         \
+      "It is read from the disk, for longer than others wait for it. Try again after Retry-After " \
+      "seconds.")                                                                                  \
     X(STORE_BEHIND, "store_behind", 503, "The disk is behind",                                     \
       "As many changes wait for the disk as may. Nothing was changed; try again after "            \
       "Retry-After seconds.")                                                                      \

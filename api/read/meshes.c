@@ -22,18 +22,6 @@ static bool read_list_cursor(api_exchange *x, const char **after)
     return true;
 }
 
-/* One item, with what is known of the mesh in `info`. */
-static void write_item(api_exchange *x, st_mesh *mesh, st_mesh_info *info)
-{
-    const he_mesh *content = st_read_begin(mesh, info);
-    if (!info->removed) {
-        api_out_object_begin(&x->out);
-        api_write_brief(&x->out, info, content);
-        api_out_object_end(&x->out);
-    }
-    st_read_end(mesh);
-}
-
 /* Of the whole server: it is here that a client sees what to delete. */
 static void write_server(api_exchange *x)
 {
@@ -46,36 +34,38 @@ static void write_server(api_exchange *x)
     }
 }
 
-void api_meshes_list(api_exchange *x)
+static void list(api_exchange *x)
 {
     const char *after;
-    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE);
+    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE), count = 0;
     if (!read_list_cursor(x, &after)) {
         return;
     }
-    st_mesh **meshes = api_arena_array(&x->arena, limit + 1, sizeof(st_mesh *));
-    if (meshes == NULL) {
+    st_card *cards = api_arena_array(&x->arena, limit + 1, sizeof *cards);
+    if (cards == NULL) {
         api_fail_memory(x);
         return;
     }
     /* One more than asked tells whether there is a next page. */
-    size_t count = st_list(x->store, after, meshes, limit + 1);
-    st_mesh_info info = {.id = ""};
+    st_status status = st_cards(x->store, after, cards, limit + 1, &count);
+    if (status != ST_OK) {
+        api_fail_store(x, status);
+        return;
+    }
     api_out *out = &x->out;
     api_out_object_begin(out);
     api_out_key(out, "items");
     api_out_array_begin(out);
-    for (size_t i = 0; i < count; i++) {
-        if (i < limit) {
-            write_item(x, meshes[i], &info);
-        }
-        st_release(meshes[i]);
+    for (size_t i = 0; i < count && i < limit; i++) {
+        api_out_object_begin(out);
+        api_write_brief(out, &cards[i]);
+        api_out_object_end(out);
     }
     api_out_array_end(out);
     api_out_key(out, "next");
     if (count > limit) {
         char cursor[ST_MESH_ID + 2] = "m";
-        memcpy(cursor + 1, info.id, sizeof info.id);
+        memcpy(cursor + 1, cards[limit - 1].id, sizeof cards->id);
         api_out_string(out, cursor);
         api_answer_header_format(x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"", limit,
                                  cursor);
@@ -85,6 +75,15 @@ void api_meshes_list(api_exchange *x)
     write_server(x);
     api_out_object_end(out);
     api_answer_json(x, 200);
+}
+
+void api_meshes_list(api_exchange *x)
+{
+    if (st_store_waits_for_disk(x->store)) {
+        api_defer(x, list);
+    } else {
+        list(x);
+    }
 }
 
 static const char *const patch_members[] = {"name", NULL};
@@ -172,8 +171,9 @@ bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     }
     *r = (copy_request){NULL, NULL};
     x->state = r;
-    out->elements = api_elements_of(mesh);
-    out->seconds = (double)out->elements / API_COPY_PER_SECOND;
+    uint64_t elements = api_elements_of(mesh);
+    out->elements = st_store_waits_for_disk(x->store) ? UINT64_MAX : elements;
+    out->seconds = (double)elements / API_COPY_PER_SECOND;
     return read_copy(x, r) && api_preconditions_hold(x, NULL);
 }
 

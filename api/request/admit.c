@@ -176,17 +176,34 @@ static bool find_route(api_exchange *x)
     return check_variables(x, &variables) && check_query(x);
 }
 
+/* What there is of a damaged mesh can be removed or replaced, nothing else. */
+static bool take_mesh(api_exchange *x, st_status status)
+{
+    bool rids = (x->route->flags & (API_MAY_CREATE | API_INTERRUPTS)) != 0;
+    if (status == ST_OK && st_damage(x->mesh)[0] != '\0' && !rids) {
+        status = ST_DAMAGED;
+    } else if (status == ST_OK) {
+        return true;
+    } else {
+        x->mesh = NULL;
+    }
+    return (status == ST_ABSENT && (x->route->flags & API_MAY_CREATE)) || api_fail_store(x, status);
+}
+
 static bool find_mesh(api_exchange *x)
 {
     if (x->mesh_id == NULL) {
         return true;
     }
     st_status status = st_find(x->store, x->mesh_id, &x->mesh);
-    if (status == ST_OK) {
-        return true;
-    }
-    x->mesh = NULL;
-    return (status == ST_ABSENT && (x->route->flags & API_MAY_CREATE)) || api_fail_store(x, status);
+    x->is_cold = status == ST_COLD;
+    return x->is_cold || take_mesh(x, status);
+}
+
+bool api_load_mesh(api_exchange *x)
+{
+    x->is_cold = false;
+    return take_mesh(x, st_load(x->store, x->mesh_id, &x->mesh));
 }
 
 uint64_t api_body_cap(const api_exchange *x)

@@ -8,6 +8,10 @@
 /* Fill the request's part of `x`. False: it is refused, or answered (OPTIONS). */
 bool api_admit(api_exchange *x);
 
+/* Where x->is_cold: looks on the disk for the mesh, as api_admit would have in memory. Waits.
+ * False: it is refused. */
+bool api_load_mesh(api_exchange *x);
+
 /* Bytes the route's body may have. */
 uint64_t api_body_cap(const api_exchange *x);
 /* The body is longer, or there should be none. Always false. */

@@ -155,8 +155,11 @@ bool api_fail_store(api_exchange *x, st_status status)
         return api_fail(x, API_STORE_FULL, "the disk is full");
     case ST_FAILED:
         return api_fail(x, API_STORE_FAILED, "the disk failed: no change is taken any more");
-    case ST_COLD:
+    case ST_LOADING:
+        return api_fail(x, API_LOADING, "the mesh is being loaded from the disk");
     case ST_DAMAGED:
+        return api_fail(x, API_MESH_DAMAGED, "%s", x->mesh == NULL ? "" : st_damage(x->mesh));
+    case ST_COLD:
         break;
     }
     return api_fail(x, API_INTERNAL, "the store refused without a reason");

@@ -89,6 +89,7 @@ struct api_exchange {
 
     /* --- the mesh --- */
     st_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
+    bool is_cold;      /* it is not in memory, and is found when the body is whole */
     st_mesh_info info; /* filled by read_begin, write_begin and write_commit */
     bool has_info;
     bool shows_all; /* the answer may show more of the store than `info`: see api_answer's shown */

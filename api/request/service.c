@@ -564,19 +564,48 @@ static void parse_and_run(api_exchange *x)
     }
 }
 
+/* With the mesh at hand, if there is one. Reading a large document takes its time too. */
+static void go_on(api_exchange *x)
+{
+    if (!api_keyed_find(x)) {
+        return;
+    }
+    if (x->body.length > API_COSTLY_UPLOAD) {
+        x->deferred = parse_and_run;
+    } else {
+        parse_and_run(x);
+    }
+}
+
+/* Then the request is handled as on a worker: what is short reads the mesh under its lock, without
+ * a copy. What is not goes on here. */
+static void load_and_go_on(api_exchange *x)
+{
+    if (!api_load_mesh(x)) {
+        return;
+    }
+    x->phase = API_PHASE_BODY;
+    go_on(x);
+    x->phase = API_PHASE_WORK;
+    while (x->deferred != NULL && !x->is_job && !x->answered && x->problem.code == HE_OK) {
+        void (*handler)(api_exchange * x) = x->deferred;
+        x->deferred = NULL;
+        handler(x);
+    }
+}
+
 api_step api_end(api_exchange *x)
 {
     if (x->phase != API_PHASE_BODY) {
         return API_READY;
     }
-    if (!end_coding(x) || !api_keyed_find(x)) {
+    if (!end_coding(x)) {
         return finish(x);
     }
-    /* Reading a large document takes its time too. */
-    if (x->body.length > API_COSTLY_UPLOAD) {
-        x->deferred = parse_and_run;
+    if (x->is_cold) {
+        x->deferred = load_and_go_on;
     } else {
-        parse_and_run(x);
+        go_on(x);
     }
     return finish_or_go_on(x);
 }

@@ -44,11 +44,11 @@ static bool forget_removed(api_exchange *x)
 /* Preconditions that fail already spare the client its body. */
 void api_mesh_put_begin(api_exchange *x)
 {
-    bool good = false;
+    bool good = x->is_cold;
     if (x->mesh != NULL && api_read_begin(x) != NULL) {
         good = (!x->info.busy || api_fail_store(x, ST_BUSY)) && api_preconditions_hold(x, NULL);
         api_read_end(x);
-    } else if (x->mesh == NULL || forget_removed(x)) {
+    } else if (!x->is_cold && (x->mesh == NULL || forget_removed(x))) {
         good = api_precondition_absent(x);
     }
     if (good) {
@@ -105,9 +105,39 @@ static void create(api_exchange *x)
     }
 }
 
+/* Nothing of a damaged mesh stays but its id, and its name where none is given. */
+static bool replace_damaged(api_exchange *x, const made *m)
+{
+    st_mesh *fresh = NULL;
+    const char *name = api_upload_name(x);
+    (void)st_read_begin(x->mesh, &x->info);
+    st_read_end(x->mesh);
+    x->has_info = true;
+    if (!x->info.removed && !api_preconditions_hold(x, NULL)) {
+        he_mesh_free(m->mesh);
+        return true;
+    }
+    st_status status = st_create_over(x->store, x->mesh, name == NULL ? x->info.name : name,
+                                      m->mesh, x->keyed, &fresh);
+    if (status == ST_OK) {
+        st_release(x->mesh);
+        x->mesh = fresh;
+        api_answer_created(x, &m->summary, api_upload_write_report);
+        return true;
+    }
+    if (status != ST_ABSENT) {
+        he_mesh_free(m->mesh);
+    }
+    api_fail_store(x, status);
+    return status != ST_ABSENT;
+}
+
 /* False, with nothing done, where the mesh was removed meanwhile. */
 static bool replace(api_exchange *x, const made *m)
 {
+    if (st_damage(x->mesh)[0] != '\0') {
+        return replace_damaged(x, m);
+    }
     st_stage *stage;
     st_status status = st_store_stage(x->store, m->mesh, &stage);
     if (status != ST_OK) {
@@ -151,7 +181,7 @@ static bool create_named(api_exchange *x, const made *m)
         return true;
     }
     if (status == ST_TAKEN) {
-        status = st_find(x->store, x->mesh_id, &x->mesh);
+        status = st_load(x->store, x->mesh_id, &x->mesh);
         if (status == ST_OK || status == ST_ABSENT) {
             return false;
         }
@@ -180,7 +210,8 @@ static void finish(api_exchange *x, void (*make)(api_exchange *x))
         return;
     }
     uint64_t elements = api_upload_elements(x);
-    bool costly = elements > API_COSTLY_ELEMENTS || api_upload_is_guessed(x);
+    bool costly = elements > API_COSTLY_ELEMENTS || api_upload_is_guessed(x) ||
+                  st_store_waits_for_disk(x->store);
     api_run_long(x, make, costly, (double)elements / API_IMPORT_PER_SECOND);
 }
 

@@ -513,6 +513,14 @@ static void choose(api_exchange *x, edits *e)
     }
 }
 
+static void load_and_choose(api_exchange *x)
+{
+    edits *e = x->state;
+    if (api_others_load(x, &e->others)) {
+        choose(x, e);
+    }
+}
+
 void api_edits_post(api_exchange *x)
 {
     edits *e = he_mem_zero(1, sizeof *e);
@@ -529,5 +537,9 @@ void api_edits_post(api_exchange *x)
     if (!read_request(x, e)) {
         return;
     }
-    choose(x, e);
+    if (e->others.cold > 0) {
+        api_defer(x, load_and_choose);
+    } else {
+        choose(x, e);
+    }
 }

@@ -26,7 +26,12 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
                            (int)API_MAX_OTHERS);
     }
     api_other *other = &o->other[o->count];
-    if (!api_path_is_mesh_id(id) || st_find(o->asker->store, id, &other->mesh) != 0) {
+    st_status status =
+        api_path_is_mesh_id(id) ? st_find(o->asker->store, id, &other->mesh) : ST_ABSENT;
+    if (status == ST_COLD) {
+        other->mesh = NULL;
+        o->cold++;
+    } else if (status != ST_OK) {
         return refuse_absent(at, id);
     }
     memcpy(other->id, id, strlen(id) + 1);
@@ -42,6 +47,28 @@ void api_others_init(api_others *o, api_exchange *asker)
     o->meshes = (api_meshes){find, o};
     o->asker = asker;
     o->count = 0;
+    o->cold = 0;
+}
+
+static bool fail_absent(api_exchange *x, const char *id)
+{
+    api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"", id);
+    x->problem.status = 422;
+    return false;
+}
+
+bool api_others_load(api_exchange *x, api_others *o)
+{
+    for (size_t i = 0; i < o->count; i++) {
+        api_other *other = &o->other[i];
+        st_status status = other->mesh != NULL ? ST_OK : st_load(x->store, other->id, &other->mesh);
+        if (status != ST_OK) {
+            other->mesh = NULL;
+            return status == ST_ABSENT ? fail_absent(x, other->id) : api_fail_store(x, status);
+        }
+    }
+    o->cold = 0;
+    return true;
 }
 
 uint64_t api_others_elements(const api_others *o)
@@ -70,9 +97,11 @@ bool api_others_take(api_exchange *x, api_others *o)
             return api_fail_store(x, ST_LOST);
         }
         if (info.removed) {
-            api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"", other->id);
-            x->problem.status = 422;
-            return false;
+            return fail_absent(x, other->id);
+        }
+        if (info.damaged) {
+            return api_fail(x, API_MESH_DAMAGED, "mesh \"%s\": %s", other->id,
+                            st_damage(other->mesh));
         }
     }
     return true;
@@ -96,4 +125,5 @@ void api_others_clear(api_others *o)
         st_release(o->other[i].mesh);
     }
     o->count = 0;
+    o->cold = 0;
 }

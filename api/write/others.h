@@ -21,11 +21,14 @@ typedef struct api_others {
     api_exchange *asker;
     api_other other[API_MAX_OTHERS];
     size_t count;
+    size_t cold; /* of them are not in memory: api_others_load, before anything else is asked */
 } api_others;
 
 /* The first named one counts; naming more than API_MAX_OTHERS is refused as they are found, and so
  * is one that does not exist. */
 void api_others_init(api_others *others, api_exchange *asker);
+/* Find those that are not in memory. Waits; false with x->problem filled. */
+bool api_others_load(api_exchange *x, api_others *others);
 /* Of all of them now, for choosing where the work is done. */
 uint64_t api_others_elements(const api_others *others);
 /* Take snapshots; false with x->problem filled. They are given back by release, and the references

@@ -81,6 +81,7 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     case ST_LISTENERS:
     case ST_LOST:
     case ST_COLD:
+    case ST_LOADING:
     case ST_DAMAGED:
     case ST_BEHIND:
     case ST_FULL:

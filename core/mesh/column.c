@@ -147,6 +147,11 @@ size_t he_column_bytes(const he_column *column)
     return sizeof *column + column->capacity * column->row_bytes;
 }
 
+size_t he_column_rows_bytes(const he_column *column)
+{
+    return sizeof *column + column->rows * column->row_bytes;
+}
+
 bool he_column_same_kind(const he_column *a, const he_column *b)
 {
     return strcmp(a->name, b->name) == 0 && a->domain == b->domain && a->type == b->type &&

@@ -208,6 +208,21 @@ size_t he_content_bytes(const he_content *c)
     return bytes;
 }
 
+size_t he_content_rows_bytes(const he_content *c)
+{
+    size_t bytes = c->vertices.issued * (sizeof *c->position + sizeof(uint32_t)) +
+                   c->edges.issued * (size_t)8 * sizeof(uint32_t) +
+                   c->faces.issued * sizeof(uint32_t) + c->column_count * sizeof *c->columns +
+                   he_materials_bytes(&c->materials) -
+                   (c->materials.capacity - c->materials.count) * sizeof *c->materials.rows;
+    for (size_t i = 0; i < c->column_count; i++) {
+        if (c->columns[i] != NULL) {
+            bytes += he_column_rows_bytes(c->columns[i]);
+        }
+    }
+    return bytes;
+}
+
 he_rows *he_content_rows(he_content *c, he_kind kind)
 {
     switch (kind) {

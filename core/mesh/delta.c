@@ -28,9 +28,9 @@ void he_object_free(uint32_t column, void *object)
 size_t he_object_bytes(uint32_t column, const void *object)
 {
     return object == NULL              ? 0
-           : column == HE_COL_REPLACED ? he_content_bytes(object)
+           : column == HE_COL_REPLACED ? he_content_rows_bytes(object)
            : column == HE_COL_MATERIAL ? he_material_bytes(object)
-                                       : he_column_bytes(object);
+                                       : he_column_rows_bytes(object);
 }
 
 /* Objects from `from` on are what the mesh does not hold at this moment. */
@@ -66,7 +66,7 @@ void he_delta_free(he_delta *d)
 size_t he_delta_bytes(const he_delta *d)
 {
     size_t bytes =
-        sizeof *d + d->capacity * sizeof *d->records + d->object_capacity * sizeof *d->objects;
+        sizeof *d + d->capacity * sizeof *d->records + d->object_count * sizeof *d->objects;
     if (d->object_count == 0) {
         return bytes;
     }
@@ -214,6 +214,11 @@ he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err)
         }
     }
     return status;
+}
+
+he_status he_mesh_issue(he_mesh *mesh, const uint32_t issued[HE_KIND_COUNT], he_error *err)
+{
+    return he_content_issue(&mesh->c, issued, err);
 }
 
 static const he_kind tables[] = {HE_VERTEX, HE_EDGE, HE_FACE};

@@ -73,6 +73,8 @@ HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t 
 void he_delta_free(he_delta *delta);
 /* Forget the records but keep the memory. */
 void he_delta_empty(he_delta *delta);
+/* What it takes: the room for its records, and of columns and contents the rows, so that a delta
+ * that was read from its bytes takes what it took before. */
 size_t he_delta_bytes(const he_delta *delta);
 /* Give back what capacity holds beyond the records; keeps it when memory is out. */
 void he_delta_trim(he_delta *delta);
@@ -111,6 +113,11 @@ HE_NODISCARD he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_e
 void he_object_free(uint32_t column, void *object);
 /* What one costs. */
 size_t he_object_bytes(uint32_t column, const void *object);
+
+/* Issue dead rows up to the high-water marks, indexed by kind; lower ones change nothing. For what
+ * is known to have been issued on the mesh's way. After HE_NO_MEMORY some may be. */
+HE_NODISCARD he_status he_mesh_issue(he_mesh *mesh, const uint32_t issued[HE_KIND_COUNT],
+                                     he_error *err);
 
 /* Only while recording. */
 he_savepoint he_delta_mark(const he_mesh *mesh);

@@ -42,7 +42,7 @@ static void commit_edit(st_write *w, const char *ops)
     st_step *step = barrier ? NULL : st_log_hold_reserved(&mesh->log);
     double now = revise(mesh);
     if (barrier) {
-        st_log_add_barrier(&mesh->log, mesh->info.revision, ST_EDIT, ops, now, mesh->content);
+        st_log_add_barrier(&mesh->log, mesh->info.revision, ST_EDIT, ops, now, mesh->content, NULL);
     } else {
         st_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content, &tally);
     }
@@ -96,7 +96,7 @@ static void commit_facts(st_write *w)
     if (w->kind == ST_WRITE_REPLACE) {
         double now = revise(mesh);
         st_log_add_barrier(&mesh->log, mesh->info.revision, ST_REPLACE, "replace", now,
-                           mesh->content);
+                           mesh->content, NULL);
         changes[count] = (st_change){.action = ST_REPLACE, .content = mesh->content};
         records[count++] = st_mesh_record(mesh, ST_RECORD_CONTENT, w->keyed);
     }
@@ -162,7 +162,8 @@ static st_status book(st_write *w)
  * meanwhile. */
 static st_status get_ready(st_write *w)
 {
-    st_status status = book(w);
+    bool damaged = w->info.damaged && w->kind != ST_WRITE_REMOVE;
+    st_status status = damaged ? ST_DAMAGED : book(w);
     if (w->claimed) {
         pthread_rwlock_wrlock(&w->mesh->lock);
         const st_mesh_info *info = &w->mesh->info;

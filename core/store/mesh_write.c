@@ -26,6 +26,9 @@ static st_status begin(st_write *w)
     if (w->info.removed || w->info.lost) {
         return w->info.lost ? ST_LOST : ST_ABSENT;
     }
+    if (w->info.damaged && w->claimed) {
+        return ST_DAMAGED;
+    }
     if (!mesh->claimed) {
         begin_recording(w);
         return w->delta != NULL ? ST_OK : ST_NO_MEMORY;

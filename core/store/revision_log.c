@@ -18,11 +18,14 @@ static void note_marks(st_point *point, const he_mesh *content)
     }
 }
 
-void st_log_init(st_revision_log *log, uint64_t budget, uint64_t revision, const he_mesh *content,
-                 double time)
+void st_log_init(st_revision_log *log, uint64_t budget, const st_point *begin,
+                 const he_mesh *content)
 {
-    *log = (st_revision_log){.budget = budget, .oldest = revision, .bottom = revision};
-    log->before = (st_point){.revision = revision, .state = revision, .time = time};
+    *log = (st_revision_log){.budget = budget,
+                             .dropped = begin->revision - 1,
+                             .before = *begin,
+                             .oldest = begin->revision,
+                             .bottom = begin->state};
     note_marks(&log->before, content);
 }
 
@@ -209,6 +212,14 @@ static void shrink_ring(st_revision_log *log)
     }
 }
 
+void st_log_drop(st_revision_log *log, uint64_t reach)
+{
+    while (log->before.revision < reach && log->count > 0) {
+        drop_oldest(log);
+    }
+    shrink_ring(log);
+}
+
 void st_log_settle(st_revision_log *log)
 {
     /* The newest entry stays, whatever the budget: it says what the present revision is. */
@@ -216,6 +227,15 @@ void st_log_settle(st_revision_log *log)
         drop_oldest(log);
     }
     shrink_ring(log);
+}
+
+void st_log_limit(st_revision_log *log, uint64_t budget)
+{
+    log->budget = budget;
+    st_log_settle(log);
+    if (log->bytes > budget) {
+        forget_deltas(log); /* steps to do again, of a larger budget */
+    }
 }
 
 static void drop_spare_step(st_revision_log *log)
@@ -278,6 +298,12 @@ he_delta *st_log_reserve(st_revision_log *log)
         log->spare_step = step_new();
     }
     return log->spare == NULL || log->spare_step == NULL ? NULL : log->spare_step->delta;
+}
+
+void st_log_lend(st_revision_log *log, he_delta *takes)
+{
+    he_delta_free(log->spare_step->delta);
+    log->spare_step->delta = takes;
 }
 
 void st_log_unreserve(st_revision_log *log)
@@ -389,14 +415,16 @@ void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, d
 }
 
 void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action action, const char *ops,
-                        double time, const he_mesh *content)
+                        double time, const he_mesh *content, const st_tally *tally)
 {
+    size_t bytes = spare_bytes(log);
     st_revision *entry = add_spare(log, revision, action, ops, time, content);
-    forget_deltas(log);
-    if (log->spare_step != NULL) {
-        entry->delta_bytes = he_delta_bytes(log->spare_step->delta);
-        drop_spare_step(log);
+    entry->delta_bytes = bytes;
+    drop_spare_step(log);
+    if (tally != NULL) {
+        entry->tally = *tally;
     }
+    forget_deltas(log);
     st_log_settle(log);
 }
 

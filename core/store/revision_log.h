@@ -61,14 +61,16 @@ typedef struct st_revision_log {
     st_revision *steps;  /* reserved by st_log_reserve_steps, in the order of their use */
 } st_revision_log;
 
-/* The history of a mesh that begins with this revision and content. */
-void st_log_init(st_revision_log *log, uint64_t budget, uint64_t revision, const he_mesh *content,
-                 double time);
+/* The history of a mesh that begins with this revision (but for the marks) and content. */
+void st_log_init(st_revision_log *log, uint64_t budget, const st_point *begin,
+                 const he_mesh *content);
 void st_log_clear(st_revision_log *log);
 
 /* Make sure that one entry can be added without allocating, and lend the empty delta it would
  * have. NULL when memory is out. The functions below that add an entry need this first. */
 he_delta *st_log_reserve(st_revision_log *log);
+/* Puts a delta that was made elsewhere in the place of the one that is reserved. */
+void st_log_lend(st_revision_log *log, he_delta *takes);
 /* The reserved delta was used and emptied again: keep a small one, free a large one. */
 void st_log_unreserve(st_revision_log *log);
 /* Does what the reserved delta holds fit the budget, so that it can be undone? */
@@ -81,9 +83,9 @@ void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, d
 /* The step that the reserved delta is to become, held: it outlives the log until it is released. */
 st_step *st_log_hold_reserved(const st_revision_log *log);
 /* Add an edit that cannot be undone (a barrier) or a replace: no delta is kept before or with it,
- * and both stacks end. */
+ * and both stacks end. `tally` NULL: it is not known. */
 void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action action, const char *ops,
-                        double time, const he_mesh *content);
+                        double time, const he_mesh *content, const st_tally *tally);
 
 /* How many steps undo (redo) takes to the content of `revision`; none when it is there already.
  * ST_AHEAD when there is no such revision yet, ST_GONE when the log has dropped it,
@@ -97,6 +99,9 @@ uint64_t st_log_steps_bytes(const st_revision_log *log, st_action which, uint32_
 bool st_log_reserve_steps(st_revision_log *log, st_action which, uint32_t steps,
                           const he_mesh *content);
 void st_log_unreserve_steps(st_revision_log *log);
+/* The revision whose edit the next step back or forward would undo or do again, 0: there is none.
+ */
+uint64_t st_log_top(const st_revision_log *log, st_action which);
 /* The deltas that so many steps, which the stack has, apply, in their order. */
 void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, he_delta **out);
 /* The next of them was applied: move its step to the other stack and add the entry. */
@@ -105,6 +110,10 @@ void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, d
 /* Bring the log back within its budget after steps were added. Their deltas stay valid until the
  * next change. */
 void st_log_settle(st_revision_log *log);
+/* Begin to keep a budget, of which the log may have more by now. */
+void st_log_limit(st_revision_log *log, uint64_t budget);
+/* Drop the entries of revisions up to `reach`. */
+void st_log_drop(st_revision_log *log, uint64_t reach);
 
 /* The i-th newest entry; false past the end. */
 bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out);

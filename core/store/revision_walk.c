@@ -9,6 +9,12 @@ uint64_t st_log_head(const st_revision_log *log)
     return log->before.revision + log->count;
 }
 
+uint64_t st_log_top(const st_revision_log *log, st_action which)
+{
+    const st_step *step = which == ST_UNDO ? log->undo_top : log->redo_top;
+    return step == NULL ? 0 : step->revision;
+}
+
 static const st_point *point_of(const st_revision_log *log, uint64_t revision)
 {
     return revision == log->before.revision ? &log->before : &st_entry_of(log, revision)->point;

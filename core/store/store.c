@@ -1,26 +1,13 @@
 #include "store/store.h"
 
 #include "store/followers.h"
-#include "store/stored_mesh.h"
+#include "store/table.h"
 #include "system/clock.h"
-#include "system/memory.h"
-#include "system/random.h"
 
 #include <assert.h>
 #include <string.h>
 
-struct st_store {
-    st_journal journal;
-    uint64_t undo_budget;
-    uint64_t max_meshes;
-    st_followers followers;
-    pthread_rwlock_t lock; /* of the table */
-    st_mesh **meshes;      /* in the order of ids, each with a use */
-    size_t count, capacity;
-    st_keys keys; /* of what makes a mesh */
-};
-
-enum { ID_LENGTH = 10, MESH_BATCH = 64 };
+enum { MESH_BATCH = 64 };
 
 /* --- what the journal tells, on its own thread --- */
 
@@ -61,6 +48,7 @@ st_store *st_store_new(const st_store_options *options)
     store->undo_budget = options->undo_budget;
     store->max_meshes = options->max_meshes;
     st_keys_init(&store->keys, store->journal.secret);
+    st_lookups_init(&store->lookups);
     store->followers = (st_followers){
         .render = options->render,
         .most = options->listeners,
@@ -68,6 +56,7 @@ st_store *st_store_new(const st_store_options *options)
         .waits = st_waits_new(),
     };
     if (store->followers.waits == NULL) {
+        st_lookups_clear(&store->lookups);
         pthread_rwlock_destroy(&store->lock);
         he_mem_free(store);
         return NULL;
@@ -88,14 +77,14 @@ void st_store_free(st_store *store)
     }
     he_mem_free(store->meshes);
     st_keys_clear(&store->keys);
+    st_lookups_clear(&store->lookups);
     st_waits_free(store->followers.waits);
     store->journal.close(store->journal.self);
     pthread_rwlock_destroy(&store->lock);
     he_mem_free(store);
 }
 
-/* The first mesh whose id is not below `id`; *found when it is that id. Under the table's lock. */
-static size_t position_of(const st_store *store, const char *id, bool *found)
+size_t st_table_place(const st_store *store, const char *id, bool *found)
 {
     size_t low = 0, high = store->count;
     *found = false;
@@ -119,12 +108,18 @@ st_status st_find(st_store *store, const char *id, st_mesh **out)
 {
     bool found;
     pthread_rwlock_rdlock(&store->lock);
-    size_t i = position_of(store, id, &found);
+    size_t i = st_table_place(store, id, &found);
     if (found) {
         *out = st_hold(store->meshes[i]);
     }
     pthread_rwlock_unlock(&store->lock);
-    return found ? ST_OK : ST_ABSENT;
+    if (!store->journal.keeps) {
+        return found ? ST_OK : ST_ABSENT;
+    }
+    if (found) {
+        st_mesh_use(*out);
+    }
+    return found ? ST_OK : ST_COLD;
 }
 
 static bool reserve_place(st_store *store)
@@ -142,16 +137,12 @@ static bool reserve_place(st_store *store)
     return true;
 }
 
-/* Under the table's exclusive lock. */
-static st_status insert(st_store *store, st_mesh *mesh)
+st_status st_table_insert(st_store *store, st_mesh *mesh)
 {
     bool found;
-    size_t place = position_of(store, mesh->info.id, &found);
+    size_t place = st_table_place(store, mesh->info.id, &found);
     if (found) {
         return ST_TAKEN;
-    }
-    if (store->count >= store->max_meshes) {
-        return ST_TOO_MANY;
     }
     if (!reserve_place(store)) {
         return ST_NO_MEMORY;
@@ -161,78 +152,6 @@ static st_status insert(st_store *store, st_mesh *mesh)
     store->meshes[place] = mesh;
     store->count++;
     return ST_OK;
-}
-
-static st_status create_as(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_keyed *keyed, st_booking *booking, st_mesh **out)
-{
-    const st_mesh_options options = {.store = store,
-                                     .journal = &store->journal,
-                                     .followers = &store->followers,
-                                     .undo_budget = store->undo_budget,
-                                     .secret = store->journal.secret};
-    st_mesh *mesh = st_mesh_new(&options, id, name, content);
-    if (mesh == NULL) {
-        return ST_NO_MEMORY;
-    }
-    /* A thread that finds the mesh, or the id taken, finds its first record appended. */
-    pthread_rwlock_wrlock(&store->lock);
-    st_status status = insert(store, mesh);
-    if (status == ST_OK) {
-        *out = st_hold(mesh);
-        st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, keyed);
-        const st_change change = {.action = ST_REPLACE, .content = mesh->content};
-        st_mesh_publish(
-            mesh,
-            &(st_group){.booking = booking, .records = &record, .changes = &change, .count = 1});
-    }
-    pthread_rwlock_unlock(&store->lock);
-    if (status != ST_OK) {
-        mesh->content = NULL; /* still the caller's */
-        st_release(mesh);
-    }
-    return status;
-}
-
-static st_status book_creation(const st_store *store, const he_mesh *content, st_booking *out)
-{
-    st_stage *stage;
-    st_status status = st_book_stage(&store->journal, content, &stage);
-    if (status != ST_OK) {
-        return status;
-    }
-    status = st_book_content(&store->journal, content, stage, 1, out);
-    if (status != ST_OK) {
-        st_store_unstage(store, stage);
-    }
-    return status;
-}
-
-st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
-                    const st_keyed *keyed, st_mesh **out)
-{
-    if (st_memory_is_full()) {
-        st_store_shed(store);
-        if (st_memory_is_full()) {
-            return ST_BUDGET;
-        }
-    }
-    st_booking booking = {NULL};
-    st_status status = book_creation(store, content, &booking);
-    if (status != ST_OK) {
-        return status;
-    }
-    if (id != NULL) {
-        status = create_as(store, id, name, content, keyed, &booking, out);
-    } else {
-        do {
-            char made[ID_LENGTH + 1];
-            st_random_id(made, ID_LENGTH);
-            status = create_as(store, made, name, content, keyed, &booking, out);
-        } while (status == ST_TAKEN);
-    }
-    st_booking_leave(&store->journal, &booking);
-    return status;
 }
 
 st_status st_store_stage(const st_store *store, const he_mesh *content, st_stage **out)
@@ -251,7 +170,7 @@ void st_store_take_out(st_store *store, st_mesh *mesh)
 {
     bool found;
     pthread_rwlock_wrlock(&store->lock);
-    size_t place = position_of(store, mesh->info.id, &found);
+    size_t place = st_table_place(store, mesh->info.id, &found);
     assert(found && store->meshes[place] == mesh);
     store->count--;
     memmove(store->meshes + place, store->meshes + place + 1,
@@ -265,7 +184,7 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
     bool found;
     size_t given = 0;
     pthread_rwlock_rdlock(&store->lock);
-    size_t i = position_of(store, after, &found);
+    size_t i = st_table_place(store, after, &found);
     for (i += found ? 1 : 0; i < store->count && given < limit; i++) {
         out[given++] = st_hold(store->meshes[i]);
     }
@@ -319,12 +238,29 @@ st_shown st_shown_all(st_store *store, uint64_t since)
     return (st_shown){.position = st_waits_newest(store->followers.waits), .since = since};
 }
 
-size_t st_store_count(st_store *store)
+uint64_t st_store_count(st_store *store)
 {
+    if (store->journal.keeps) {
+        return store->journal.count(store->journal.self);
+    }
     pthread_rwlock_rdlock(&store->lock);
     size_t count = store->count;
     pthread_rwlock_unlock(&store->lock);
     return count;
+}
+
+bool st_store_waits_for_disk(const st_store *store)
+{
+    return store->journal.keeps;
+}
+
+st_mesh_options st_store_mesh_options(st_store *store)
+{
+    return (st_mesh_options){.store = store,
+                             .journal = &store->journal,
+                             .followers = &store->followers,
+                             .undo_budget = store->undo_budget,
+                             .secret = store->journal.secret};
 }
 
 void st_store_shed(st_store *store)

@@ -49,6 +49,7 @@ typedef struct st_mesh_info {
     bool removed;
     bool lost;               /* it stands on a change that will never be durable: the store has it
                                 no more */
+    bool damaged;            /* what is kept of it is not whole: st_load */
     bool busy;               /* a long edit has claimed it: write.h */
     char job[ST_JOB_ID + 1]; /* the job whose edit that is, "" when it is none */
 } st_mesh_info;
@@ -84,7 +85,11 @@ void st_store_free(st_store *store);
 /* The journal's two random words. What is hashed with them cannot be foreseen from outside: names
  * in tables, requests that are remembered. */
 const uint64_t *st_secret(const st_store *store);
-size_t st_store_count(st_store *store);
+/* Meshes there are, in memory or not. */
+uint64_t st_store_count(st_store *store);
+/* Are meshes kept beyond memory, so that what asks for one that is not in memory, for all or for a
+ * free id waits for the disk? */
+bool st_store_waits_for_disk(const st_store *store);
 /* Frees the cached copies and bodies of kept answers that nobody reads, and what was derived from
  * meshes. Called without a lock. */
 void st_store_shed(st_store *store);
@@ -99,23 +104,39 @@ st_shown st_shown_all(st_store *store, uint64_t since);
 
 /* --- the collection --- */
 
-/* Adds a reference. ST_ABSENT. */
+/* Adds a reference. Does not wait. ST_ABSENT; ST_COLD: it is not in memory, and st_load tells
+ * whether there is such a mesh. */
 st_status st_find(st_store *store, const char *id, st_mesh **out);
+/* As st_find, but loads the mesh where it is not in memory, which is done once for all who ask for
+ * it. Waits, on a thread that may and without a lock. A mesh that is damaged is found, with
+ * info.damaged: it has no content, can be removed and replaced (st_create_over), and nothing else.
+ * ST_ABSENT; ST_LOADING: another thread has been loading it for too long; ST_NO_MEMORY, ST_BUDGET,
+ * ST_FAILED. */
+st_status st_load(st_store *store, const char *id, st_mesh **out);
+/* What is wrong with a mesh that is damaged; "" of one that is not. Lives as long as the mesh. */
+const char *st_damage(const st_mesh *mesh);
 st_mesh *st_hold(st_mesh *mesh); /* adds a reference */
 void st_release(st_mesh *mesh);  /* takes NULL */
 /* Takes `content` on success. `id` NULL lets the store choose. `keyed`, or NULL, goes into the
- * record of the new mesh. Waits for the disk where the content is large: not on a worker then.
- * ST_TAKEN, ST_TOO_MANY, ST_BUDGET, ST_NO_MEMORY, ST_BEHIND, ST_FULL, ST_FAILED. */
+ * record of the new mesh. Not on a worker where st_store_waits_for_disk. ST_TAKEN, ST_TOO_MANY,
+ * ST_BUDGET, ST_NO_MEMORY, ST_LOADING, ST_BEHIND, ST_FULL, ST_FAILED. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_keyed *keyed, st_mesh **out);
+/* The same in the place of a damaged mesh of that id, which is removed: both or neither. ST_ABSENT:
+ * it was removed before. */
+st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
+                         const st_keyed *keyed, st_mesh **out);
 /* Before a large content takes the place of another (st_write_replace): brings it to the disk, so
  * that the write need not do that under its lock. Waits, on a thread that may, without a lock. *out
  * is NULL where there is nothing to be done. ST_NO_MEMORY, ST_BEHIND, ST_FULL, ST_FAILED. */
 st_status st_store_stage(const st_store *store, const he_mesh *content, st_stage **out);
 void st_store_unstage(const st_store *store, st_stage *stage); /* it was not taken; takes NULL */
-/* Up to `limit` meshes with ids after `after` ("" from the start), in the order of ids, each with a
- * reference. */
+/* Up to `limit` meshes that are in memory with ids after `after` ("" from the start), in the order
+ * of ids, each with a reference. */
 size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit);
+/* The cards of all, likewise; none is loaded for it. Not on a worker where st_store_waits_for_disk.
+ * ST_NO_MEMORY, ST_FAILED. */
+st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count);
 
 /* --- reading --- */
 

@@ -32,8 +32,7 @@ static int init_lock(pthread_rwlock_t *lock)
     return failed;
 }
 
-st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
-                     he_mesh *content)
+st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card)
 {
     st_mesh *mesh = he_mem_zero(1, sizeof *mesh);
     if (mesh == NULL || init_lock(&mesh->lock) != 0) {
@@ -52,16 +51,32 @@ st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char 
     mesh->store = options->store;
     mesh->journal = options->journal;
     mesh->followers = options->followers;
-    copy_name(mesh->info.id, sizeof mesh->info.id, id);
-    copy_name(mesh->info.name, sizeof mesh->info.name, name == NULL ? "" : name);
-    mesh->info.incarnation = st_random();
-    mesh->info.metadata = 1;
-    mesh->info.revision = 1;
-    mesh->info.created = st_clock_utc();
-    mesh->info.modified = mesh->info.created;
-    mesh->content = content;
-    st_log_init(&mesh->log, options->undo_budget, mesh->info.revision, content, mesh->info.created);
-    st_queue_init(&mesh->queue, (st_place){.key = mesh->info.revision});
+    mesh->info.incarnation = card->incarnation;
+    mesh->info.metadata = card->metadata;
+    mesh->info.revision = card->revision;
+    mesh->info.record = card->record;
+    mesh->info.created = card->created;
+    mesh->info.modified = card->modified;
+    copy_name(mesh->info.id, sizeof mesh->info.id, card->id);
+    copy_name(mesh->info.name, sizeof mesh->info.name, card->name);
+    st_queue_init(&mesh->queue, (st_place){.key = card->revision});
+    return mesh;
+}
+
+st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
+                     he_mesh *content)
+{
+    double now = st_clock_utc();
+    st_card card = {
+        .incarnation = st_random(), .metadata = 1, .revision = 1, .created = now, .modified = now};
+    copy_name(card.id, sizeof card.id, id);
+    copy_name(card.name, sizeof card.name, name == NULL ? "" : name);
+    st_mesh *mesh = st_mesh_bare(options, &card);
+    if (mesh != NULL) {
+        const st_point begin = {.revision = 1, .state = 1, .time = now};
+        mesh->content = content;
+        st_log_init(&mesh->log, options->undo_budget, &begin, content);
+    }
     return mesh;
 }
 
@@ -94,6 +109,7 @@ void st_release(st_mesh *mesh)
     st_copy_release(mesh->copy);
     st_copy_release(mesh->past);
     he_mem_free(mesh->cache);
+    he_mem_free(mesh->damage);
     st_keys_clear(&mesh->keys);
     drop_derived(mesh);
     pthread_rwlock_destroy(&mesh->lock);
@@ -107,6 +123,11 @@ void st_release(st_mesh *mesh)
     he_mem_free(mesh);
 }
 
+const char *st_damage(const st_mesh *mesh)
+{
+    return mesh->damage == NULL ? "" : mesh->damage;
+}
+
 void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out)
 {
     *out = mesh->info;
@@ -115,7 +136,7 @@ void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out)
     out->busy = mesh->claimed;
 }
 
-static st_counts counts_of(const he_mesh *content)
+st_counts st_counts_of(const he_mesh *content)
 {
     return (st_counts){.vertices = he_mesh_vertices(content),
                        .edges = he_mesh_edges(content),
@@ -136,7 +157,7 @@ st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *key
         .metadata = mesh->info.metadata,
         .created = mesh->info.created,
         .time = mesh->info.modified,
-        .counts = counts_of(mesh->content),
+        .counts = st_counts_of(mesh->content),
         .bytes = he_mesh_bytes(mesh->content),
         .key = keyed == NULL ? NULL : &keyed->key,
     };

@@ -20,6 +20,8 @@ typedef struct st_copy {
 
 struct st_mesh {
     _Atomic uint32_t uses;
+    _Atomic uint64_t used; /* when it was found last, st_clock_micros; 0 where nothing is evicted */
+    char *damage;          /* of one that stands for a mesh that cannot be loaded; NULL else */
     st_store *store;
     const st_journal *journal;
     struct st_followers *followers;
@@ -71,9 +73,15 @@ typedef struct st_mesh_options {
     const uint64_t *secret;
 } st_mesh_options;
 
-/* Takes `content`. NULL when memory is out. */
+/* A mesh with the facts of a card, but neither content nor history: those are the caller's to put
+ * in. NULL when memory is out. */
+st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card);
+/* A mesh at its first revision. Takes `content`. NULL when memory is out. */
 st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
                      he_mesh *content);
+/* It was asked for now. */
+void st_mesh_use(st_mesh *mesh);
+st_counts st_counts_of(const he_mesh *content);
 /* Under its lock. */
 void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
 /* Frees the cached copies and the bodies of kept answers, unless somebody reads them, and what was

@@ -1,0 +1,91 @@
+/* The list of all meshes, in memory or not. */
+#include "store/table.h"
+
+#include <string.h>
+
+/* How many handles are held at once. */
+enum { BATCH = 64 };
+
+/* The card of a mesh in memory; false when it was removed. */
+static bool card_of(st_mesh *mesh, st_card *out)
+{
+    st_mesh_info info;
+    const he_mesh *content = st_read_begin(mesh, &info);
+    *out = (st_card){
+        .incarnation = info.incarnation,
+        .metadata = info.metadata,
+        .revision = info.revision,
+        .record = info.record,
+        .created = info.created,
+        .modified = info.modified,
+        .counts = st_counts_of(content),
+        .bytes = he_mesh_bytes(content),
+    };
+    memcpy(out->id, info.id, sizeof out->id);
+    memcpy(out->name, info.name, sizeof out->name);
+    if (info.damaged) {
+        memcpy(out->damage, st_damage(mesh), sizeof out->damage);
+    }
+    st_read_end(mesh);
+    return !info.removed;
+}
+
+static size_t cards_in_memory(st_store *store, const char *after, st_card *out, size_t limit)
+{
+    st_mesh *batch[BATCH];
+    char last[ST_MESH_ID + 1];
+    size_t count = 0, held = 1;
+    memcpy(last, after, strlen(after) + 1);
+    while (count < limit && held > 0) {
+        held = st_list(store, last, batch, limit - count < BATCH ? limit - count : BATCH);
+        for (size_t i = 0; i < held; i++) {
+            memcpy(last, batch[i]->info.id, sizeof last);
+            count += card_of(batch[i], &out[count]) ? 1 : 0;
+            st_release(batch[i]);
+        }
+    }
+    return count;
+}
+
+/* Of one mesh the card with more records is the present one, and of one that is damaged the disk's.
+ * Of two meshes of one id the one on the disk was removed, which the disk does not know yet. */
+static const st_card *newer(const st_card *memory, const st_card *disk)
+{
+    bool same = memory->incarnation == disk->incarnation;
+    bool ahead = disk->record > memory->record || memory->damage[0] != '\0';
+    return same && ahead ? disk : memory;
+}
+
+static size_t merge(const st_card *memory, size_t in_memory, const st_card *disk, size_t on_disk,
+                    st_card *out, size_t limit)
+{
+    size_t count = 0, m = 0, d = 0;
+    while (count < limit && (m < in_memory || d < on_disk)) {
+        int order = m == in_memory ? 1 : d == on_disk ? -1 : strcmp(memory[m].id, disk[d].id);
+        out[count++] = order < 0 ? memory[m] : order > 0 ? disk[d] : *newer(&memory[m], &disk[d]);
+        m += order <= 0 ? 1 : 0;
+        d += order >= 0 ? 1 : 0;
+    }
+    return count;
+}
+
+/* First those in memory, then the disk: a mesh that leaves memory in between is in both. */
+st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count)
+{
+    const st_journal *journal = &store->journal;
+    if (!journal->keeps) {
+        *count = cards_in_memory(store, after, out, limit);
+        return ST_OK;
+    }
+    st_card *cards = he_mem_array(NULL, 2 * limit, sizeof *cards);
+    if (cards == NULL) {
+        return ST_NO_MEMORY;
+    }
+    size_t on_disk = 0, in_memory = cards_in_memory(store, after, cards, limit);
+    st_status status = journal->list(journal->self, after, cards + limit, limit, &on_disk);
+    if (status == ST_OK) {
+        *count = merge(cards, in_memory, cards + limit, on_disk, out, limit);
+    }
+    he_mem_free(cards);
+    return status;
+}

@@ -1,0 +1,171 @@
+/* Meshes come into the store: under a free id, or in the place of one that is damaged. */
+#include "store/evict.h"
+#include "store/table.h"
+#include "system/memory.h"
+#include "system/random.h"
+
+enum { ID_LENGTH = 10 };
+
+static st_status book(const st_store *store, const he_mesh *content, size_t records,
+                      st_booking *out)
+{
+    st_stage *stage;
+    st_status status = st_book_stage(&store->journal, content, &stage);
+    if (status != ST_OK) {
+        return status;
+    }
+    status = st_book_content(&store->journal, content, stage, records, out);
+    if (status != ST_OK) {
+        st_store_unstage(store, stage);
+    }
+    return status;
+}
+
+/* Under the table's exclusive lock. */
+static bool is_full(const st_store *store)
+{
+    const st_journal *journal = &store->journal;
+    uint64_t count = journal->keeps ? journal->count(journal->self) : store->count;
+    return count >= store->max_meshes;
+}
+
+/* A thread that finds the mesh, or the id taken, finds its first record appended. */
+static st_status publish(st_store *store, st_mesh *mesh, const st_keyed *keyed, st_booking *booking)
+{
+    pthread_rwlock_wrlock(&store->lock);
+    bool found;
+    (void)st_table_place(store, mesh->info.id, &found);
+    st_status status = found            ? ST_TAKEN
+                       : is_full(store) ? ST_TOO_MANY
+                                        : st_table_insert(store, mesh);
+    if (status == ST_OK) {
+        st_hold(mesh);
+        st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, keyed);
+        const st_change change = {.action = ST_REPLACE, .content = mesh->content};
+        st_mesh_publish(
+            mesh,
+            &(st_group){.booking = booking, .records = &record, .changes = &change, .count = 1});
+    }
+    pthread_rwlock_unlock(&store->lock);
+    return status;
+}
+
+static st_status make(st_store *store, const char *id, const char *name, he_mesh *content,
+                      const st_keyed *keyed, st_mesh **out)
+{
+    const st_mesh_options options = st_store_mesh_options(store);
+    st_booking booking = {NULL};
+    st_status status = book(store, content, 1, &booking);
+    if (status != ST_OK) {
+        return status;
+    }
+    st_mesh *mesh = st_mesh_new(&options, id, name, content);
+    status = mesh == NULL ? ST_NO_MEMORY : publish(store, mesh, keyed, &booking);
+    if (status == ST_OK) {
+        *out = mesh;
+    } else if (mesh != NULL) {
+        mesh->content = NULL; /* still the caller's */
+        st_release(mesh);
+    }
+    st_booking_leave(&store->journal, &booking);
+    return status;
+}
+
+static st_status create_as(st_store *store, const char *id, const char *name, he_mesh *content,
+                           const st_keyed *keyed, st_mesh **out)
+{
+    st_lookup *lookup;
+    st_status status = st_lookup_free_id(store, id, &lookup);
+    if (status == ST_OK) {
+        status = make(store, id, name, content, keyed, out);
+        if (status == ST_OK && store->journal.keeps) {
+            st_mesh_use(*out);
+        }
+        st_lookup_end(store, lookup);
+    }
+    return status;
+}
+
+static bool has_room(st_store *store)
+{
+    if (st_memory_is_full()) {
+        st_make_room(store, 0);
+    }
+    return !st_memory_is_full();
+}
+
+st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
+                    const st_keyed *keyed, st_mesh **out)
+{
+    if (!has_room(store)) {
+        return ST_BUDGET;
+    }
+    if (id != NULL) {
+        return create_as(store, id, name, content, keyed, out);
+    }
+    st_status status;
+    do {
+        char made[ID_LENGTH + 1];
+        st_random_id(made, ID_LENGTH);
+        status = create_as(store, made, name, content, keyed, out);
+    } while (status == ST_TAKEN);
+    return status;
+}
+
+/* --- over a damaged mesh --- */
+
+/* Under the exclusive lock of the old one: one group of records, the removal first. */
+static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st_keyed *keyed,
+                         st_booking *booking)
+{
+    const st_journal *journal = &store->journal;
+    const st_change changes[2] = {{.action = ST_REPLACE, .removed = true},
+                                  {.action = ST_REPLACE, .content = fresh->content}};
+    bool found;
+    pthread_rwlock_wrlock(&store->lock);
+    size_t place = st_table_place(store, old->info.id, &found);
+    store->meshes[place] = st_hold(fresh);
+    old->info.removed = true;
+    st_record records[2] = {st_mesh_record(old, ST_RECORD_REMOVE, NULL),
+                            st_mesh_record(fresh, ST_RECORD_CONTENT, keyed)};
+    st_booking_fill(booking, &records[1]);
+    uint64_t position = journal->append(journal->self, booking->room, records, 2);
+    *booking = (st_booking){NULL};
+    old->info.position = fresh->info.position = position;
+    st_waits_appended(store->followers.waits, position);
+    st_mesh_tell(old, &(st_group){.records = &records[0], .count = 1, .changes = &changes[0]});
+    st_mesh_tell(fresh, &(st_group){.records = &records[1], .count = 1, .changes = &changes[1]});
+    pthread_rwlock_unlock(&store->lock);
+}
+
+st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
+                         const st_keyed *keyed, st_mesh **out)
+{
+    const st_mesh_options options = st_store_mesh_options(store);
+    st_booking booking = {NULL};
+    st_status status = book(store, content, 2, &booking);
+    if (status != ST_OK) {
+        return status;
+    }
+    st_mesh *fresh = st_mesh_new(&options, damaged->info.id, name, content);
+    if (fresh == NULL) {
+        st_booking_leave(&store->journal, &booking);
+        return ST_NO_MEMORY;
+    }
+    st_mesh_use(fresh);
+    pthread_rwlock_wrlock(&damaged->lock);
+    bool there = !damaged->info.removed;
+    if (there) {
+        publish_over(store, damaged, fresh, keyed, &booking);
+    }
+    pthread_rwlock_unlock(&damaged->lock);
+    if (there) {
+        st_release(damaged); /* the table's use */
+        *out = fresh;
+        return ST_OK;
+    }
+    fresh->content = NULL; /* still the caller's */
+    st_release(fresh);
+    st_booking_leave(&store->journal, &booking);
+    return ST_ABSENT;
+}

@@ -1,0 +1,230 @@
+#include "store/lookup.h"
+
+#include "store/evict.h"
+#include "store/mesh_load.h"
+#include "store/table.h"
+#include "system/clock.h"
+
+#include <string.h>
+
+/* How long a thread waits for the lookup of another: microseconds. */
+enum { LOOKUP_MICROS = 30 * 1000 * 1000 };
+
+struct st_lookup {
+    char id[ST_MESH_ID + 1];
+    size_t uses; /* by the one who does it and those who wait */
+    bool ended;
+    st_status status; /* why the mesh is not there; ST_OK: the table says what is */
+    st_lookup *next;
+};
+
+void st_lookups_init(st_lookups *lookups)
+{
+    pthread_mutex_init(&lookups->lock, NULL);
+    st_clock_condition(&lookups->ended);
+    lookups->first = NULL;
+}
+
+void st_lookups_clear(st_lookups *lookups)
+{
+    pthread_cond_destroy(&lookups->ended);
+    pthread_mutex_destroy(&lookups->lock);
+}
+
+/* --- under the lock --- */
+
+static st_lookup *find(const st_lookups *lookups, const char *id)
+{
+    st_lookup *at = lookups->first;
+    while (at != NULL && strcmp(at->id, id) != 0) {
+        at = at->next;
+    }
+    return at;
+}
+
+static void release(st_lookup *lookup)
+{
+    if (--lookup->uses == 0) {
+        he_mem_free(lookup);
+    }
+}
+
+static st_status add(st_lookups *lookups, const char *id, st_lookup **out)
+{
+    st_lookup *lookup = he_mem_zero(1, sizeof *lookup);
+    if (lookup == NULL) {
+        return ST_NO_MEMORY;
+    }
+    memcpy(lookup->id, id, strlen(id) + 1);
+    lookup->uses = 1;
+    lookup->next = lookups->first;
+    lookups->first = lookup;
+    *out = lookup;
+    return ST_OK;
+}
+
+/* Waits for the end of another's lookup. ST_OK: the table is to be asked again. */
+static st_status await(st_lookups *lookups, st_lookup *lookup, uint64_t until)
+{
+    bool in_time = true;
+    lookup->uses++;
+    while (!lookup->ended && in_time) {
+        in_time = st_clock_wait(&lookups->ended, &lookups->lock, until);
+    }
+    st_status status = lookup->ended ? lookup->status : ST_LOADING;
+    release(lookup);
+    return status;
+}
+
+/* The mesh where it is in memory, or else a lookup that is the caller's. */
+static st_status begin(st_store *store, const char *id, st_mesh **mesh, st_lookup **out)
+{
+    st_lookups *lookups = &store->lookups;
+    const uint64_t until = st_clock_micros() + LOOKUP_MICROS;
+    st_status status = ST_OK;
+    *mesh = NULL;
+    *out = NULL;
+    pthread_mutex_lock(&lookups->lock);
+    while (status == ST_OK && *mesh == NULL && *out == NULL) {
+        st_lookup *other = find(lookups, id);
+        if (other != NULL) {
+            status = await(lookups, other, until);
+        } else if (st_find(store, id, mesh) != ST_OK) {
+            *mesh = NULL;
+            status = add(lookups, id, out);
+        }
+    }
+    pthread_mutex_unlock(&lookups->lock);
+    return status;
+}
+
+static void end(st_store *store, st_lookup *lookup, st_status status)
+{
+    st_lookups *lookups = &store->lookups;
+    pthread_mutex_lock(&lookups->lock);
+    st_lookup **at = &lookups->first;
+    while (*at != lookup) {
+        at = &(*at)->next;
+    }
+    *at = lookup->next;
+    lookup->ended = true;
+    lookup->status = status;
+    pthread_cond_broadcast(&lookups->ended);
+    release(lookup);
+    pthread_mutex_unlock(&lookups->lock);
+}
+
+/* --- an id for a new mesh --- */
+
+st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out)
+{
+    const st_journal *journal = &store->journal;
+    st_mesh *mesh;
+    st_card card;
+    *out = NULL;
+    if (!journal->keeps) {
+        return ST_OK;
+    }
+    st_status status = begin(store, id, &mesh, out);
+    if (status != ST_OK) {
+        return status;
+    }
+    if (mesh != NULL) {
+        st_release(mesh);
+        return ST_TAKEN;
+    }
+    status = journal->open(journal->self, id, &card, NULL);
+    if (status == ST_ABSENT) {
+        return ST_OK;
+    }
+    end(store, *out, ST_OK);
+    *out = NULL;
+    return status == ST_OK || status == ST_DAMAGED ? ST_TAKEN : status;
+}
+
+void st_lookup_end(st_store *store, st_lookup *lookup)
+{
+    if (lookup != NULL) {
+        end(store, lookup, ST_OK);
+    }
+}
+
+/* --- a mesh that is on the disk --- */
+
+/* Stands for a mesh that cannot be loaded: it has the facts of the card, but no content. */
+static st_status stand_in(const st_mesh_options *options, const st_card *card, st_mesh **out)
+{
+    st_mesh *mesh = st_mesh_bare(options, card);
+    if (mesh != NULL) {
+        const st_point begin_at = {
+            .revision = card->revision, .state = card->revision, .time = card->modified};
+        mesh->content = he_mesh_new();
+        mesh->damage = he_mem_alloc(ST_DAMAGE);
+        if (mesh->content != NULL && mesh->damage != NULL) {
+            memcpy(mesh->damage, card->damage, ST_DAMAGE);
+            mesh->info.damaged = true;
+            st_log_init(&mesh->log, options->undo_budget, &begin_at, mesh->content);
+            *out = mesh;
+            return ST_OK;
+        }
+    }
+    st_release(mesh);
+    return ST_NO_MEMORY;
+}
+
+static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
+{
+    const st_journal *journal = &store->journal;
+    const st_mesh_options options = st_store_mesh_options(store);
+    st_reader *reader = NULL;
+    st_card card;
+    st_status status = journal->open(journal->self, id, &card, &reader);
+    if (status == ST_OK) {
+        /* With what the content holds of columns that are not full. */
+        st_make_room(store, card.bytes + card.bytes / 2);
+        status = st_mesh_load(&options, &card, reader, 0, out, card.damage);
+        journal->shut(reader);
+        if (status == ST_DAMAGED && card.damage[0] != '\0') {
+            journal->condemn(journal->self, card.incarnation, card.damage);
+        } else if (status == ST_DAMAGED) {
+            status = journal->open(journal->self, id, &card, NULL);
+        }
+    }
+    return status == ST_DAMAGED ? stand_in(&options, &card, out) : status;
+}
+
+static st_status put_in(st_store *store, st_mesh *mesh)
+{
+    pthread_rwlock_wrlock(&store->lock);
+    st_status status = st_table_insert(store, mesh);
+    if (status == ST_OK) {
+        st_hold(mesh);
+    }
+    pthread_rwlock_unlock(&store->lock);
+    return status;
+}
+
+st_status st_load(st_store *store, const char *id, st_mesh **out)
+{
+    st_lookup *lookup;
+    st_mesh *mesh;
+    if (!store->journal.keeps) {
+        return st_find(store, id, out);
+    }
+    st_status status = begin(store, id, &mesh, &lookup);
+    if (status == ST_OK && mesh == NULL) {
+        status = load_mesh(store, id, &mesh);
+        if (status == ST_OK) {
+            st_mesh_use(mesh);
+            status = put_in(store, mesh);
+        }
+        if (status != ST_OK) {
+            st_release(mesh);
+        }
+        end(store, lookup, status);
+    }
+    if (status == ST_OK) {
+        *out = mesh;
+    }
+    return status;
+}

@@ -1,0 +1,403 @@
+#include "store/mesh_load.h"
+
+#include "mesh/check.h"
+#include "mesh/write.h"
+#include "stored/stored.h"
+#include "system/memory.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A load under way. */
+typedef struct load {
+    const st_mesh_options *options;
+    st_mesh *mesh;     /* its content and log are NULL and empty before the base */
+    uint64_t record;   /* the last that was applied, 0: none */
+    uint64_t metadata; /* after it */
+    uint64_t reach;    /* after it */
+    st_record pending; /* a base or record whose content is coming in parts; its texts are here */
+    bool is_base;      /* it is a base */
+    char ops[ST_ENTRY_OPS];
+    he_stored_reader *parts; /* NULL: nothing is pending */
+    uint64_t missing;        /* parts */
+    char *damage;
+} load;
+
+static st_status damaged(load *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static st_status damaged(load *l, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(l->damage, ST_DAMAGE, format, arguments);
+    va_end(arguments);
+    return ST_DAMAGED;
+}
+
+static st_status no_memory(void)
+{
+    return st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
+}
+
+/* What core said while it read record `number`. */
+static st_status status_of(load *l, he_status status, uint64_t number, const he_error *err)
+{
+    if (status == HE_OK) {
+        return ST_OK;
+    }
+    if (status == HE_NO_MEMORY) {
+        return no_memory();
+    }
+    if (err->place == HE_PLACE_BYTE) {
+        return damaged(l, "record %llu, byte %llu: %s", (unsigned long long)number,
+                       (unsigned long long)err->at, err->text);
+    }
+    return damaged(l, "record %llu: %s", (unsigned long long)number, err->text);
+}
+
+static bool has_marks(const he_mesh *content, const uint32_t issued[HE_KIND_COUNT])
+{
+    return he_mesh_issued(content, HE_VERTEX) == issued[HE_VERTEX] &&
+           he_mesh_issued(content, HE_EDGE) == issued[HE_EDGE] &&
+           he_mesh_issued(content, HE_FACE) == issued[HE_FACE];
+}
+
+static st_status wrong_marks(load *l, const st_record *record)
+{
+    return damaged(l, "record %llu has issued other ids", (unsigned long long)record->number);
+}
+
+/* --- contents --- */
+
+/* The history begins with this content, which is taken. */
+static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
+{
+    st_mesh *mesh = l->mesh;
+    const st_point begin = {.revision = record->revision,
+                            .state = record->inverts != 0 ? record->inverts : record->revision,
+                            .time = record->time};
+    mesh->content = takes;
+    st_log_init(&mesh->log, UINT64_MAX, &begin, takes);
+    return ST_OK;
+}
+
+/* PUT. */
+static st_status replace(load *l, const st_record *record, he_mesh *takes)
+{
+    st_mesh *mesh = l->mesh;
+    if (st_log_reserve(&mesh->log) == NULL) {
+        he_mesh_free(takes);
+        return no_memory();
+    }
+    he_mesh_free(mesh->content);
+    mesh->content = takes;
+    st_log_add_barrier(&mesh->log, record->revision, ST_REPLACE, "replace", record->time, takes,
+                       NULL);
+    return ST_OK;
+}
+
+/* The reserved delta, with what led to the record, becomes its entry. */
+static st_status add_edit(load *l, const st_record *record)
+{
+    st_mesh *mesh = l->mesh;
+    if (record->barrier) {
+        st_log_add_barrier(&mesh->log, record->revision, ST_EDIT, record->ops, record->time,
+                           mesh->content, &record->tally);
+    } else {
+        st_log_add_edit(&mesh->log, record->revision, record->ops, record->time, mesh->content,
+                        &record->tally);
+    }
+    return ST_OK;
+}
+
+/* An edit of which all is known is the content after it. */
+static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
+{
+    st_mesh *mesh = l->mesh;
+    he_delta *delta = st_log_reserve(&mesh->log);
+    he_error err = {0};
+    if (delta == NULL) {
+        he_mesh_free(takes);
+        return no_memory();
+    }
+    he_mesh_record(mesh->content, delta);
+    he_status status =
+        he_mesh_replace(mesh->content, takes, record->barrier ? HE_RENUMBERS : HE_KEEPS_IDS, &err);
+    he_mesh_record(mesh->content, NULL);
+    if (status != HE_OK) {
+        he_mesh_free(takes);
+        return status_of(l, status, record->number, &err);
+    }
+    return add_edit(l, record);
+}
+
+/* The content of a base or a record is whole. */
+static st_status take_content(load *l, const st_record *record, bool is_base, he_mesh *takes)
+{
+    if (!has_marks(takes, record->issued)) {
+        he_mesh_free(takes);
+        return wrong_marks(l, record);
+    }
+    if (is_base) {
+        return begin_history(l, record, takes);
+    }
+    return record->kind == ST_RECORD_CONTENT ? replace(l, record, takes)
+                                             : edit_whole(l, record, takes);
+}
+
+static st_status begin_parts(load *l, const st_piece *piece)
+{
+    he_error err = {0};
+    l->pending = piece->record;
+    l->is_base = piece->kind == ST_PIECE_BASE;
+    l->missing = piece->parts;
+    snprintf(l->ops, sizeof l->ops, "%s", piece->record.ops == NULL ? "" : piece->record.ops);
+    l->pending.ops = l->ops;
+    uint64_t most =
+        piece->parts > UINT64_MAX / HE_STORED_PART ? UINT64_MAX : piece->parts * HE_STORED_PART;
+    return status_of(l, he_stored_reader_new(most, &l->parts, &err), l->pending.number, &err);
+}
+
+static st_status take_part(load *l, const st_piece *piece)
+{
+    const st_record *record = &l->pending;
+    he_mesh *content = NULL;
+    he_error err = {0};
+    if (l->parts == NULL) {
+        return damaged(l, "a part of a content belongs to no record");
+    }
+    he_status status =
+        he_stored_reader_part(l->parts, piece->coding, piece->bytes, piece->size, &err);
+    if (status == HE_OK && --l->missing > 0) {
+        return ST_OK;
+    }
+    if (status == HE_OK) {
+        status = he_stored_reader_end(l->parts, &content, &err);
+    }
+    he_stored_reader_free(l->parts);
+    l->parts = NULL;
+    return status != HE_OK ? status_of(l, status, record->number, &err)
+                           : take_content(l, record, l->is_base, content);
+}
+
+/* --- records --- */
+
+static st_status take_edit(load *l, const st_record *record)
+{
+    st_mesh *mesh = l->mesh;
+    he_delta *delta = NULL;
+    he_error err = {0};
+    if (st_log_reserve(&mesh->log) == NULL) {
+        return no_memory();
+    }
+    he_status status = he_stored_edit_forward(record->body, record->body_size, record->issued,
+                                              mesh->content, &delta, &err);
+    if (status != HE_OK) {
+        return status_of(l, status, record->number, &err);
+    }
+    st_log_lend(&mesh->log, delta);
+    return has_marks(mesh->content, record->issued) ? add_edit(l, record) : wrong_marks(l, record);
+}
+
+static st_status take_whole(load *l, const st_record *record)
+{
+    he_mesh *content = NULL;
+    he_error err = {0};
+    he_status status = he_stored_content_read(record->body, record->body_size, &content, &err);
+    return status != HE_OK ? status_of(l, status, record->number, &err)
+                           : take_content(l, record, false, content);
+}
+
+static st_status take_step(load *l, const st_record *record)
+{
+    st_mesh *mesh = l->mesh;
+    st_revision_log *log = &mesh->log;
+    st_action which = record->kind == ST_RECORD_UNDO ? ST_UNDO : ST_REDO;
+    he_delta *delta = NULL;
+    he_error err = {0};
+    if (st_log_top(log, which) != record->inverts || record->inverts == 0) {
+        return damaged(l, "record %llu inverts revision %llu, which is not next",
+                       (unsigned long long)record->number, (unsigned long long)record->inverts);
+    }
+    if (!st_log_reserve_steps(log, which, 1, mesh->content)) {
+        return no_memory();
+    }
+    st_log_deltas(log, which, 1, &delta);
+    if (which == ST_UNDO) {
+        he_delta_undo(delta, mesh->content);
+    } else {
+        he_delta_redo(delta, mesh->content);
+    }
+    /* What a replace within an edit had issued is in the marks alone. */
+    he_status status = he_mesh_issue(mesh->content, record->issued, &err);
+    if (status == HE_OK && !has_marks(mesh->content, record->issued)) {
+        return wrong_marks(l, record);
+    }
+    if (status == HE_OK) {
+        st_log_add_step(log, record->revision, which, record->time, mesh->content);
+    }
+    return status_of(l, status, record->number, &err);
+}
+
+/* Is it the record that has to come, of this mesh? */
+static st_status check_record(load *l, const st_record *record)
+{
+    const st_mesh *mesh = l->mesh;
+    if (mesh->content == NULL) {
+        return damaged(l, "the mesh does not begin with a content");
+    }
+    bool revises = record->kind <= ST_RECORD_CONTENT;
+    uint64_t number = l->record + 1;
+    uint64_t revision = st_log_head(&mesh->log) + (revises ? 1 : 0);
+    if (record->incarnation != mesh->info.incarnation || record->number != number ||
+        record->revision != revision) {
+        return damaged(l, "record %llu is not here", (unsigned long long)number);
+    }
+    return ST_OK;
+}
+
+static st_status take_record(load *l, const st_piece *piece)
+{
+    const st_record *record = &piece->record;
+    st_status status = check_record(l, record);
+    if (status != ST_OK) {
+        return status;
+    }
+    l->record = record->number;
+    l->metadata = record->metadata;
+    l->reach = record->reach;
+    switch (record->kind) {
+    case ST_RECORD_EDIT:
+        return record->stage != NULL ? begin_parts(l, piece) : take_edit(l, record);
+    case ST_RECORD_UNDO:
+    case ST_RECORD_REDO:
+        return take_step(l, record);
+    case ST_RECORD_CONTENT:
+        return record->stage != NULL ? begin_parts(l, piece) : take_whole(l, record);
+    case ST_RECORD_RENAME:
+        return ST_OK; /* the card has the last name */
+    case ST_RECORD_REMOVE:
+        break;
+    }
+    return damaged(l, "record %llu is none of a mesh that is there",
+                   (unsigned long long)record->number);
+}
+
+static st_status take_base(load *l, const st_piece *piece)
+{
+    const st_record *record = &piece->record;
+    if (l->mesh->content != NULL || record->incarnation != l->mesh->info.incarnation ||
+        record->revision == 0) {
+        return damaged(l, "the base is of another mesh");
+    }
+    l->record = record->number;
+    l->metadata = record->metadata;
+    l->reach = record->reach;
+    return begin_parts(l, piece);
+}
+
+static st_status take(load *l, const st_piece *piece)
+{
+    if (l->parts != NULL && piece->kind != ST_PIECE_PART) {
+        return damaged(l, "parts of the content of record %llu are missing",
+                       (unsigned long long)l->pending.number);
+    }
+    switch (piece->kind) {
+    case ST_PIECE_BASE:
+        return take_base(l, piece);
+    case ST_PIECE_PART:
+        return take_part(l, piece);
+    case ST_PIECE_RECORD:
+        return take_record(l, piece);
+    case ST_PIECE_END:
+        break;
+    }
+    return l->mesh->content != NULL ? ST_OK : damaged(l, "the mesh has no content");
+}
+
+/* --- the end --- */
+
+static st_status check_card(load *l, const st_card *card)
+{
+    const he_mesh *content = l->mesh->content;
+    const st_counts *counts = &card->counts;
+    if (l->record != card->record || st_log_head(&l->mesh->log) != card->revision ||
+        l->metadata != card->metadata) {
+        return damaged(l, "the records end at %llu, but the mesh has %llu",
+                       (unsigned long long)l->record, (unsigned long long)card->record);
+    }
+    if (he_mesh_vertices(content) != counts->vertices || he_mesh_edges(content) != counts->edges ||
+        he_mesh_faces(content) != counts->faces ||
+        he_mesh_boundary_halfedges(content) != counts->boundary) {
+        return damaged(l, "the records lead to another mesh than they led to");
+    }
+    return ST_OK;
+}
+
+static st_status check_content(load *l)
+{
+    he_problem problem;
+    size_t total = 0;
+    he_error err = {0};
+    he_status status = he_check(l->mesh->content, &problem, 1, &total, &err);
+    if (status != HE_OK) {
+        return no_memory();
+    }
+    return total == 0 ? ST_OK : damaged(l, "I%d: %.140s", problem.rule, problem.text);
+}
+
+/* The history is what it was, and within a budget that may be smaller by now. */
+static void end_history(load *l)
+{
+    st_log_drop(&l->mesh->log, l->reach);
+    st_log_limit(&l->mesh->log, l->options->undo_budget);
+}
+
+/* Is this piece the first one beyond the revision that is wanted? */
+static bool is_beyond(const load *l, const st_piece *piece, uint64_t until)
+{
+    return piece->kind == ST_PIECE_END ||
+           (until != 0 && l->parts == NULL && l->mesh->content != NULL &&
+            piece->kind == ST_PIECE_RECORD && piece->record.revision > until);
+}
+
+static st_status read_pieces(load *l, st_reader *reader, uint64_t until)
+{
+    const st_journal *journal = l->options->journal;
+    st_piece piece;
+    st_status status = ST_OK;
+    bool ends = false;
+    while (status == ST_OK && !ends) {
+        status = journal->read(reader, &piece);
+        ends = status == ST_OK && is_beyond(l, &piece, until);
+        if (status == ST_OK && (!ends || piece.kind == ST_PIECE_END)) {
+            status = take(l, &piece);
+        }
+    }
+    return status;
+}
+
+st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
+                       uint64_t until, st_mesh **out, char damage[ST_DAMAGE])
+{
+    load l = {.options = options, .damage = damage, .mesh = st_mesh_bare(options, card)};
+    damage[0] = '\0';
+    if (l.mesh == NULL) {
+        return no_memory();
+    }
+    st_status status = read_pieces(&l, reader, until);
+    if (status == ST_OK && until == 0) {
+        status = check_card(&l, card);
+    }
+    if (status == ST_OK) {
+        status = check_content(&l);
+    }
+    he_stored_reader_free(l.parts);
+    if (status != ST_OK) {
+        st_release(l.mesh);
+        return status;
+    }
+    end_history(&l);
+    *out = l.mesh;
+    return ST_OK;
+}

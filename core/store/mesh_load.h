@@ -1,0 +1,21 @@
+/* mesh_load.h - a mesh comes back from the journal.
+ *
+ *     base:                [content]                            the history begins here
+ *     records after it:    [edit] [edit] [undo] [rename] ...    each by the functions that made it
+ *     end:                 what the card says must be so, he_check
+ *
+ * The content, the undo and redo stacks, the entries of the history and the facts are then what
+ * they were when the last of the records was made. */
+#ifndef HE_STORE_MESH_LOAD_H
+#define HE_STORE_MESH_LOAD_H
+
+#include "store/stored_mesh.h"
+
+/* Reads all pieces of a mesh. `until` is a revision: what comes after it is not applied, and the
+ * history is the one of then; 0 for all. ST_DAMAGED where the pieces make no mesh or another than
+ * the card's: `damage` says what is wrong, and stays "" where the reader said it first. ST_FAILED,
+ * ST_NO_MEMORY, ST_BUDGET. */
+st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
+                       uint64_t until, st_mesh **out, char damage[ST_DAMAGE]);
+
+#endif

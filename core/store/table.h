@@ -1,0 +1,27 @@
+/* table.h - the collection by id: what store.c, lookup.c, cards.c and evict.c share of it. */
+#ifndef HE_STORE_TABLE_H
+#define HE_STORE_TABLE_H
+
+#include "store/lookup.h"
+#include "store/stored_mesh.h"
+
+struct st_store {
+    st_journal journal;
+    uint64_t undo_budget;
+    uint64_t max_meshes;
+    st_followers followers;
+    st_lookups lookups;
+    pthread_rwlock_t lock; /* of the table */
+    st_mesh **meshes;      /* in memory, in the order of ids, each with a use */
+    size_t count, capacity;
+    st_keys keys; /* of what makes a mesh */
+};
+
+/* What the store's meshes take over from it. */
+st_mesh_options st_store_mesh_options(st_store *store);
+/* The first mesh whose id is not below `id`; *found when it is that id. Under the table's lock. */
+size_t st_table_place(const st_store *store, const char *id, bool *found);
+/* Puts a mesh in, with its use. ST_TAKEN, ST_NO_MEMORY. Under the table's exclusive lock. */
+st_status st_table_insert(st_store *store, st_mesh *mesh);
+
+#endif

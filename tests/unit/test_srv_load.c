@@ -1,0 +1,483 @@
+/* Meshes that come back from what the journal keeps: after random edits a mesh that is dropped and
+ * loaded is what it was, with its history, and what was damaged is named. */
+#include "tests/kept_journal.h"
+#include "tests/seed.h"
+#include "tests/unit/edit_log.h"
+#include "tests/unit/edit_script.h"
+#include "tests/unit/fixture.h"
+#include "tests/writing.h"
+
+#include "mesh/compact.h"
+#include "mesh/write.h"
+#include "store/followers.h"
+
+#include <inttypes.h>
+
+static kept_journal *journal;
+
+static st_store *open_store(uint64_t budget)
+{
+    st_store *store = st_store_new(&(st_store_options){
+        .undo_budget = budget, .max_meshes = 1000, .journal = kept_journal_open(journal)});
+    assert_non_null(store);
+    return store;
+}
+
+static st_mesh *load(st_store *store, const char *id)
+{
+    st_mesh *mesh = NULL;
+    assert_int_equal(st_find(store, id, &mesh), ST_COLD);
+    st_status status = st_load(store, id, &mesh);
+    if (status != ST_OK || st_damage(mesh)[0] != '\0') {
+        fail_msg("loading is %d: %s", status, status == ST_OK ? st_damage(mesh) : "");
+    }
+    return mesh;
+}
+
+static st_mesh *make(st_store *store, const char *id)
+{
+    st_mesh *mesh;
+    he_mesh *content = script_mesh("012,023,034,045,051", NULL);
+    script_add_columns(content);
+    assert_int_equal(st_create(store, id, "as made", content, NULL, &mesh), ST_OK);
+    return mesh;
+}
+
+/* --- random changes --- */
+
+static void script(he_mesh *m, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void script(he_mesh *m, const char *format, ...)
+{
+    char text[128];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    (void)script_run(m, text, NULL, NULL);
+}
+
+static void edit_once(he_mesh *m, md_random *random, unsigned serial)
+{
+    size_t slot = he_mesh_columns(m);
+    switch (md_below(random, 9)) {
+    case 0:
+        edit_log_add_column(m, random, serial);
+        break;
+    case 1:
+        while (slot > 0 && he_mesh_column(m, slot - 1) == NULL) {
+            slot--;
+        }
+        if (slot > 3) {
+            assert_int_equal(he_mesh_drop_column(m, slot - 1, NULL), HE_OK);
+        }
+        break;
+    case 2:
+    case 3:
+        script(m, "face_poke face=#%u", md_below(random, he_mesh_issued(m, HE_FACE)));
+        break;
+    case 4:
+        script(m, "face_delete face=#%u", md_below(random, he_mesh_issued(m, HE_FACE)));
+        break;
+    case 5:
+        if (he_mesh_faces(m) < 200) {
+            script(m, "subdivide scheme=linear");
+        }
+        break;
+    default:
+        script(m, "vertex_add position=%u,1,%u", serial, md_below(random, 9));
+        break;
+    }
+}
+
+static void edit(st_mesh *mesh, md_random *random, unsigned serial)
+{
+    st_write w;
+    he_mesh *m = writing_begin(mesh, &w);
+    assert_non_null(m);
+    for (uint32_t i = md_from(random, 1, 3); i > 0; i--) {
+        edit_once(m, random, 4 * serial + i);
+    }
+    if (md_chance(random, 4)) {
+        assert_int_equal(he_compact(m, NULL, NULL), HE_OK);
+    }
+    if (w.delta->count > 0) {
+        assert_true(writing_commit(&w, "vertex_add,face_poke", NULL));
+    } else {
+        st_write_abort(&w);
+    }
+}
+
+static void change(st_mesh *mesh, md_random *random, unsigned serial)
+{
+    char name[32];
+    st_write w;
+    switch (md_below(random, 24)) {
+    case 0:
+        assert_int_equal(writing_replace(mesh, script_mesh("012,023,034", NULL),
+                                         serial % 2 == 0 ? "replaced" : NULL, NULL),
+                         ST_OK);
+        break;
+    case 1:
+        assert_non_null(writing_begin(mesh, &w));
+        snprintf(name, sizeof name, "name %u", serial);
+        st_write_rename(&w, name);
+        assert_int_equal(st_write_commit(&w, NULL), ST_OK);
+        break;
+    case 2:
+    case 3:
+    case 4:
+    case 5:
+    case 6:
+        (void)writing_step(mesh, ST_UNDO, md_from(random, 1, 4));
+        break;
+    case 7:
+    case 8:
+    case 9:
+        (void)writing_step(mesh, ST_REDO, md_from(random, 1, 3));
+        break;
+    default:
+        edit(mesh, random, serial);
+        break;
+    }
+}
+
+/* --- two meshes are one --- */
+
+static void expect_entries(st_mesh *was, st_mesh *is)
+{
+    st_history a, b;
+    st_entry x, y;
+    size_t i = 0;
+    st_history_reach(was, &a);
+    st_history_reach(is, &b);
+    assert_int_equal(a.oldest, b.oldest);
+    assert_int_equal(a.dropped, b.dropped);
+    while (st_history_entry(was, i, &x)) {
+        assert_true(st_history_entry(is, i, &y));
+        assert_int_equal(x.revision, y.revision);
+        assert_int_equal(x.inverts, y.inverts);
+        assert_int_equal(x.action, y.action);
+        assert_string_equal(x.ops, y.ops);
+        assert_int_equal(x.undoable, y.undoable);
+        assert_true(x.time == y.time);
+        assert_memory_equal(&x.tally, &y.tally, sizeof x.tally);
+        i++;
+    }
+    assert_false(st_history_entry(is, i, &y));
+}
+
+static void expect_same(st_mesh *was, st_mesh *is)
+{
+    st_mesh_info a, b;
+    const he_mesh *m = st_read_begin(was, &a), *n = st_read_begin(is, &b);
+    assert_true(he_mesh_equal(m, n));
+    assert_string_equal(a.id, b.id);
+    assert_string_equal(a.name, b.name);
+    assert_int_equal(a.incarnation, b.incarnation);
+    assert_int_equal(a.metadata, b.metadata);
+    assert_int_equal(a.revision, b.revision);
+    assert_int_equal(a.record, b.record);
+    assert_true(a.created == b.created && a.modified == b.modified);
+    assert_int_equal(a.undo, b.undo);
+    assert_int_equal(a.redo, b.redo);
+    expect_entries(was, is);
+    st_read_end(was);
+    st_read_end(is);
+}
+
+static he_mesh *content_of(st_mesh *mesh)
+{
+    he_mesh *copy = copy_of(st_read_begin(mesh, NULL));
+    st_read_end(mesh);
+    return copy;
+}
+
+static void expect_contents(st_mesh *was, st_mesh *is)
+{
+    he_mesh *m = content_of(was), *n = content_of(is);
+    assert_true(he_mesh_equal_live(m, n));
+    he_mesh_free(m);
+    he_mesh_free(n);
+}
+
+/* Undo and redo lead where they would have led; each is a revision, for which older ones may have
+ * to go. The journal is given the steps of both: it is to keep neither. */
+static void expect_stack(st_mesh *was, st_mesh *is, st_action which)
+{
+    st_status status = ST_OK;
+    while (status == ST_OK) {
+        status = writing_step(was, which, 1);
+        assert_int_equal(writing_step(is, which, 1), status);
+        expect_contents(was, is);
+    }
+    assert_int_equal(status, ST_NOTHING);
+}
+
+static void expect_stacks(st_mesh *was, st_mesh *is)
+{
+    expect_stack(was, is, ST_UNDO);
+    expect_stack(was, is, ST_REDO);
+}
+
+enum { ROUNDS = 12, CHANGES = 80 };
+
+/* Loaded again and again on its way, and once more at its end beside the one that was there. */
+static void a_mesh_comes_back_as_it_was(void **state)
+{
+    (void)state;
+    static const uint64_t budgets[] = {64 << 20, 30000, 6000, 1500, 0};
+    md_random random = {seed_of_run()};
+    for (unsigned round = 0; round < ROUNDS; round++) {
+        uint64_t budget = budgets[round % 5];
+        journal = kept_journal_new();
+        st_store *store = open_store(budget);
+        st_mesh *mesh = make(store, "m");
+        for (unsigned i = 0; i < CHANGES; i++) {
+            change(mesh, &random, i);
+            if (md_chance(&random, 15)) {
+                st_store *other = open_store(budget);
+                st_mesh *loaded = load(other, "m");
+                expect_same(mesh, loaded);
+                /* The one that was loaded goes on. */
+                st_release(mesh);
+                st_store_free(store);
+                mesh = loaded;
+                store = other;
+            }
+        }
+        st_store *other = open_store(budget);
+        st_mesh *loaded = load(other, "m");
+        expect_same(mesh, loaded);
+        kept_journal_ignore(journal);
+        expect_stacks(mesh, loaded);
+        st_release(loaded);
+        st_release(mesh);
+        st_store_free(other);
+        st_store_free(store);
+        kept_journal_free(journal);
+    }
+}
+
+static void a_smaller_budget_keeps_the_newest(void **state)
+{
+    (void)state;
+    md_random random = {seed_of_run()};
+    journal = kept_journal_new();
+    st_store *store = open_store(64 << 20);
+    st_mesh *mesh = make(store, "m");
+    for (unsigned i = 0; i < CHANGES; i++) {
+        edit(mesh, &random, i);
+        (void)writing_step(mesh, i % 3 == 0 ? ST_UNDO : ST_REDO, 1);
+    }
+    for (uint64_t budget = 20000; budget > 500; budget /= 2) {
+        st_store *other = open_store(budget);
+        st_mesh *loaded = load(other, "m");
+        st_history reach;
+        st_history_reach(loaded, &reach);
+        assert_true(reach.bytes <= budget || reach.bytes < 700);
+        expect_contents(mesh, loaded);
+        st_release(loaded);
+        st_store_free(other);
+    }
+    st_release(mesh);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+/* --- memory --- */
+
+static void without_memory_nothing_is_loaded(void **state)
+{
+    (void)state;
+    md_random random = {7};
+    journal = kept_journal_new();
+    st_store *store = open_store(1 << 20);
+    st_mesh *mesh = make(store, "m");
+    for (unsigned i = 0; i < 30; i++) {
+        change(mesh, &random, i);
+    }
+    bool failed = true;
+    unsigned n = 0;
+    while (failed) {
+        st_store *other = open_store(1 << 20);
+        st_mesh *loaded = NULL;
+        fail_allocation(++n);
+        st_status status = st_load(other, "m", &loaded);
+        failed = allocation_failed();
+        fail_allocation(0);
+        assert_true(status == ST_OK || (failed && status == ST_NO_MEMORY));
+        if (status == ST_OK) {
+            assert_string_equal(st_damage(loaded), "");
+            expect_same(mesh, loaded);
+            st_release(loaded);
+        } else {
+            assert_false(kept_journal_facts(journal, "m").condemned);
+            st_release(load(other, "m")); /* the next one finds the memory */
+        }
+        st_store_free(other);
+    }
+    printf("note: %u allocations\n", n - 1);
+    st_release(mesh);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+/* --- damage --- */
+
+static void expect_damaged(st_store *store, const char *part)
+{
+    st_mesh *mesh = NULL;
+    st_write w;
+    assert_int_equal(st_load(store, "m", &mesh), ST_OK);
+    if (strstr(st_damage(mesh), part) == NULL) {
+        fail_msg("\"%s\" does not say \"%s\"", st_damage(mesh), part);
+    }
+    assert_true(kept_journal_facts(journal, "m").condemned);
+    assert_int_equal(st_write_claim(mesh, NULL, &w), ST_DAMAGED);
+    assert_non_null(writing_begin(mesh, &w));
+    st_write_rename(&w, "no");
+    assert_int_equal(st_write_commit(&w, NULL), ST_DAMAGED);
+    st_card card;
+    size_t count;
+    assert_int_equal(st_cards(store, "", &card, 1, &count), ST_OK);
+    assert_int_equal(count, 1);
+    assert_string_equal(card.damage, st_damage(mesh));
+    assert_true(card.counts.vertices > 0);
+    st_release(mesh);
+}
+
+static void make_damaged(kept_damage how)
+{
+    journal = kept_journal_new();
+    st_store *store = open_store(1 << 20);
+    st_mesh *mesh = make(store, "m");
+    md_random random = {3};
+    for (unsigned i = 0; i < 10; i++) {
+        st_write w;
+        script(writing_begin(mesh, &w), "vertex_move vertex=%u to=%u,1,2", md_below(&random, 5), i);
+        assert_true(writing_commit(&w, "vertex_move", NULL));
+    }
+    st_release(mesh);
+    st_store_free(store);
+    kept_journal_damage(journal, "m", 4, how, 5);
+}
+
+static void what_is_damaged_is_named(void **state)
+{
+    (void)state;
+    static const char *const parts[] = {
+        [KEPT_CUT] = "record 6, byte", [KEPT_TURNED] = "record 6", [KEPT_SUM] = "its sum is wrong"};
+    for (int how = KEPT_CUT; how <= KEPT_SUM; how++) {
+        make_damaged((kept_damage)how);
+        for (int again = 0; again < 2; again++) {
+            st_store *store = open_store(1 << 20);
+            expect_damaged(store, parts[how]);
+            expect_damaged(store, parts[how]);
+            st_store_free(store);
+        }
+        kept_journal_free(journal);
+    }
+}
+
+static void a_damaged_mesh_can_be_removed(void **state)
+{
+    (void)state;
+    st_mesh *mesh = NULL;
+    make_damaged(KEPT_CUT);
+    st_store *store = open_store(1 << 20);
+    assert_int_equal(st_load(store, "m", &mesh), ST_OK);
+    assert_int_equal(writing_remove(mesh), ST_OK);
+    st_release(mesh);
+    assert_int_equal(st_store_count(store), 0);
+    assert_int_equal(st_load(store, "m", &mesh), ST_ABSENT);
+    st_release(make(store, "m"));
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+static void a_damaged_mesh_can_be_replaced(void **state)
+{
+    (void)state;
+    st_mesh *mesh = NULL, *fresh = NULL, *late = NULL;
+    make_damaged(KEPT_SUM);
+    st_store *store = open_store(1 << 20);
+    assert_int_equal(st_load(store, "m", &mesh), ST_OK);
+    he_mesh *content = fixture_mesh("012");
+    kept_journal_refuse(journal, ST_FULL);
+    assert_int_equal(st_create_over(store, mesh, "anew", content, NULL, &fresh), ST_FULL);
+    kept_journal_refuse(journal, ST_OK);
+    assert_int_equal(st_create_over(store, mesh, "anew", content, NULL, &fresh), ST_OK);
+    content = fixture_mesh("012");
+    assert_int_equal(st_create_over(store, mesh, "late", content, NULL, &late), ST_ABSENT);
+    he_mesh_free(content);
+    st_release(mesh);
+    assert_int_equal(st_store_count(store), 1);
+    assert_int_equal(st_find(store, "m", &mesh), ST_OK);
+    assert_ptr_equal(mesh, fresh);
+    st_release(mesh);
+    st_store *other = open_store(1 << 20);
+    mesh = load(other, "m");
+    expect_same(fresh, mesh);
+    st_release(mesh);
+    st_release(fresh);
+    st_store_free(other);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+/* --- the collection --- */
+
+static void a_list_has_what_is_in_memory_and_what_is_not(void **state)
+{
+    (void)state;
+    journal = kept_journal_new();
+    st_store *store = open_store(1 << 20);
+    char id[8];
+    for (unsigned i = 0; i < 40; i++) {
+        snprintf(id, sizeof id, "m%02u", i);
+        st_release(make(store, id));
+    }
+    st_store_free(store);
+    store = open_store(1 << 20);
+    for (unsigned i = 0; i < 40; i += 3) {
+        snprintf(id, sizeof id, "m%02u", i);
+        st_release(load(store, id));
+    }
+    st_card cards[7];
+    size_t count = 7, all = 0;
+    char after[ST_MESH_ID + 1] = "";
+    while (count == 7) {
+        assert_int_equal(st_cards(store, after, cards, 7, &count), ST_OK);
+        for (size_t i = 0; i < count; i++, all++) {
+            snprintf(id, sizeof id, "m%02zu", all);
+            assert_string_equal(cards[i].id, id);
+            assert_int_equal(cards[i].counts.faces, 5);
+            snprintf(after, sizeof after, "%s", id);
+        }
+    }
+    assert_int_equal(all, 40);
+    assert_int_equal(st_store_count(store), 40);
+    /* An id on the disk is taken, and nothing is loaded to say so. */
+    st_mesh *mesh;
+    he_mesh *content = fixture_mesh("012");
+    size_t opened = kept_journal_facts(journal, "m01").opened;
+    assert_int_equal(st_create(store, "m01", NULL, content, NULL, &mesh), ST_TAKEN);
+    assert_int_equal(kept_journal_facts(journal, "m01").opened, opened);
+    he_mesh_free(content);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_mesh_comes_back_as_it_was),
+        cmocka_unit_test(a_smaller_budget_keeps_the_newest),
+        cmocka_unit_test(without_memory_nothing_is_loaded),
+        cmocka_unit_test(what_is_damaged_is_named),
+        cmocka_unit_test(a_damaged_mesh_can_be_removed),
+        cmocka_unit_test(a_damaged_mesh_can_be_replaced),
+        cmocka_unit_test(a_list_has_what_is_in_memory_and_what_is_not),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
