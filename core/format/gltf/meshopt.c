@@ -118,7 +118,7 @@ size_t he_meshopt_bound(const he_meshopt_stream *s)
 size_t he_meshopt_encode(const he_meshopt_stream *s, const void *elements, unsigned char *to,
                          size_t room)
 {
-    size_t count = (size_t)s->count, used;
+    size_t count = (size_t)s->count, used = 0;
     switch (s->mode) {
     case HE_MESHOPT_ATTRIBUTES:
         used = meshopt_encodeVertexBuffer(to, room, elements, count, s->stride);
