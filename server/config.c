@@ -7,7 +7,8 @@
 #include <stddef.h>
 #include <string.h>
 
-typedef enum kind { TEXT, LIST, BYTES, COUNT, FLAG, ACTION, CHOICE } kind;
+/* An action and a command are not settings: they have no variable. A command takes a text. */
+typedef enum kind { TEXT, LIST, BYTES, COUNT, FLAG, CHOICE, ACTION, COMMAND } kind;
 
 typedef struct option {
     const char *name; /* --name; NAME with '_' after HEDGE_ is its variable */
@@ -84,6 +85,10 @@ static const option options[] = {
      "bytes a second a client must send or take on average"},
     {"request-timeout", COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
      "for a whole body, however fast"},
+    {"backup", COMMAND, MEMBER(backup), "", "FILE", 0, 0,
+     "write the store to a file, also beside a running daemon, and exit"},
+    {"restore", COMMAND, MEMBER(restore), "", "FILE", 0, 0,
+     "put such a file in place of the store while no daemon runs, and exit"},
     {"healthcheck", ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
      "ask a running daemon for /livez: exit status 0 when it answers"},
     {"print-config", ACTION, MEMBER(print_config), "0", NULL, 0, 0,
@@ -177,6 +182,13 @@ static bool read_value(srv_config *config, const option *row, const char *text, 
     uint64_t number = 0;
     bool on;
     switch (row->kind) {
+    case COMMAND:
+        if (text[0] == '\0') {
+            snprintf(message, size, "%s needs a value, %s", source, row->argument);
+            return false;
+        }
+        memcpy(member, &text, sizeof text);
+        return true;
     case TEXT:
         memcpy(member, &text, sizeof text);
         return true;
@@ -234,6 +246,11 @@ static const option *find_option(const char *name, size_t length)
     return NULL;
 }
 
+static bool is_setting(const option *row)
+{
+    return row->kind != ACTION && row->kind != COMMAND;
+}
+
 static bool is_switch(const option *row)
 {
     return row->kind == FLAG || row->kind == ACTION;
@@ -244,7 +261,7 @@ static bool read_environment(srv_config *config, char *(*environment)(const char
 {
     for (size_t i = 0; i < OPTIONS; i++) {
         const option *row = &options[i];
-        if (row->kind == ACTION) {
+        if (!is_setting(row)) {
             continue;
         }
         char variable[64];
@@ -330,8 +347,9 @@ static bool check(const srv_config *config, char *message, size_t size)
                  config->listen);
         return false;
     }
-    if (!srv_address_is_loopback(&address) && !config->insecure && !config->healthcheck &&
-        !config->print_config) {
+    const bool serves = !config->healthcheck && !config->print_config && config->backup == NULL &&
+                        config->restore == NULL;
+    if (serves && !srv_address_is_loopback(&address) && !config->insecure) {
         snprintf(message, size,
                  "%s can be reached from other machines and requests need no token: "
                  "set --insecure to listen there all the same",
@@ -347,7 +365,8 @@ bool srv_config_read(srv_config *config, int argc, char *const *argv,
     *config = (srv_config){0};
     bool ok = true;
     for (size_t i = 0; i < OPTIONS && ok; i++) {
-        ok = read_value(config, &options[i], options[i].fallback, options[i].name, message, size);
+        ok = options[i].kind == COMMAND ||
+             read_value(config, &options[i], options[i].fallback, options[i].name, message, size);
     }
     ok = ok && read_environment(config, environment, message, size) &&
          read_flags(config, argc, argv, message, size) &&
@@ -381,7 +400,7 @@ void srv_config_help(FILE *out)
         if (!is_switch(row) && row->fallback[0] != '\0') {
             fprintf(out, " (%s)", row->fallback);
         }
-        if (row->kind != ACTION) {
+        if (is_setting(row)) {
             fprintf(out, "\n  %-26s %s", "", variable);
         }
         fputc('\n', out);
@@ -397,7 +416,7 @@ void srv_config_print(const srv_config *config, FILE *out)
         const srv_names *names;
         uint64_t number;
         bool on;
-        if (row->kind == ACTION) {
+        if (!is_setting(row)) {
             continue;
         }
         fprintf(out, "%s = ", row->name);
@@ -418,13 +437,15 @@ void srv_config_print(const srv_config *config, FILE *out)
             fprintf(out, "%" PRIu64, number);
             break;
         case FLAG:
-        case ACTION:
             memcpy(&on, member, sizeof on);
             fputc(on ? '1' : '0', out);
             break;
         case CHOICE:
             memcpy(&number, member, sizeof number);
             fputs(log_kinds[number], out);
+            break;
+        case ACTION:
+        case COMMAND:
             break;
         }
         fputc('\n', out);

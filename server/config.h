@@ -42,6 +42,7 @@ typedef struct srv_config {
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
     uint64_t min_rate;                                                  /* bytes a second */
 
+    const char *backup, *restore; /* files; NULL: not asked for */
     bool help, version, print_config, healthcheck;
     const char *healthcheck_url; /* NULL: /livez at `listen` */
 

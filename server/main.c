@@ -1,5 +1,6 @@
 #include "server/config.h"
 #include "server/daemon.h"
+#include "server/maintenance.h"
 #include "server/net/healthcheck.h"
 #include "system/memory.h"
 
@@ -28,6 +29,8 @@ int main(int argc, char **argv)
             fprintf(stderr, "hedged: %s\n", message);
             status = 1;
         }
+    } else if (srv_maintenance_asked(&config)) {
+        status = srv_maintenance_run(&config);
     } else {
         status = srv_daemon_run(&config);
     }

@@ -130,6 +130,9 @@ static void test_refusals(void **state)
         {{"--samples=maybe"}, "0 or 1"},
         {{"--workers", "65"}, "from 0 to 64"},
         {{"--max-meshes", "0"}, "from 1"},
+        {{"--backup"}, "--backup needs a value"},
+        {{"--restore="}, "--restore needs a value"},
+        {{"--store", "sqlite:"}, "sqlite:DIR"},
     };
     srv_config config;
     variables = NULL;

@@ -73,11 +73,7 @@ bool st_folder_open(st_folder *folder, const char *path)
     if (folder->folder < 0) {
         return fail(folder, "cannot open", "");
     }
-    if (!take_lock(folder)) {
-        return false;
-    }
-    folder->mark = openat(folder->folder, "hedge.mark", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    return folder->mark >= 0 || fail(folder, "cannot open", "hedge.mark");
+    return take_lock(folder);
 }
 
 static void close_file(int file)
@@ -138,6 +134,12 @@ bool st_folder_sync(st_folder *folder)
 
 /* A slot: store, commits, position, 4 zeros, CRC-32C of all before. */
 enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
+
+bool st_mark_open(st_folder *folder)
+{
+    folder->mark = openat(folder->folder, "hedge.mark", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    return folder->mark >= 0 || fail(folder, "cannot open", "hedge.mark");
+}
 
 static bool read_slot(const st_folder *folder, unsigned slot, st_mark *out)
 {

@@ -43,6 +43,8 @@ bool st_folder_make(st_folder *folder, const char *name);
 /* What was made, renamed and removed in it stays so. */
 bool st_folder_sync(st_folder *folder);
 
+/* Opens the mark, empty where it is missing. Before the others. */
+bool st_mark_open(st_folder *folder);
 /* The newest mark that is whole; false where there is none. */
 bool st_mark_read(st_folder *folder, st_mark *out);
 /* Does not wait for the disk. */

@@ -10,38 +10,37 @@
 #include <string.h>
 
 /* Says why the store cannot be opened. */
-__attribute__((format(printf, 2, 3))) static bool refuse(st_sqlite_opened *out, const char *format,
-                                                         ...)
+__attribute__((format(printf, 2, 3))) static bool refuse(char message[ST_SQLITE_MESSAGE],
+                                                         const char *format, ...)
 {
     va_list values;
     va_start(values, format);
-    (void)vsnprintf(out->message, sizeof out->message, format, values);
+    (void)vsnprintf(message, ST_SQLITE_MESSAGE, format, values);
     va_end(values);
     return false;
 }
 
-/* Of a failure that SQLite has words for. */
-static bool refuse_file(st_sqlite *self, st_sql outcome, st_sqlite_opened *out)
+bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
+                       char message[ST_SQLITE_MESSAGE])
 {
-    const char *path = self->folder.path;
     switch (outcome) {
     case ST_SQL_DAMAGED:
-        return refuse(out,
-                      "%s/hedge.db is damaged (%s). `hedged --verify` says which meshes are whole, "
+        return refuse(message,
+                      "%.300s is damaged (%s). `hedged --verify` says which meshes are whole, "
                       "`hedged --dump` saves them; `hedged --restore` puts a backup in its place",
-                      path, st_db_message(&self->db));
+                      path, st_db_message(db));
     case ST_SQL_FULL:
-        return refuse(out, "%s: the disk is full; the store needs some MiB to start", path);
+        return refuse(message, "%.300s: the disk is full; a store needs some MiB to start", path);
     case ST_SQL_BUSY:
-        return refuse(out, "%s/hedge.db is locked by another program", path);
+        return refuse(message, "%.300s is locked by another program", path);
     case ST_SQL_NO_MEMORY:
-        return refuse(out, "no memory to open %s", path);
+        return refuse(message, "no memory to open %.300s", path);
     case ST_SQL_DONE:
     case ST_SQL_ROW:
     case ST_SQL_FAILED:
         break;
     }
-    return refuse(out, "%s/hedge.db cannot be used: %s", path, st_db_message(&self->db));
+    return refuse(message, "%.300s cannot be used: %s", path, st_db_message(db));
 }
 
 /* --- the database --- */
@@ -63,38 +62,39 @@ static st_sql set_up(st_db *db)
     return outcome;
 }
 
-/* Whose file is it, and of which version? *empty: it has no tables yet. */
-static bool check_version(st_sqlite *self, const char *release, bool *empty, st_sqlite_opened *out)
+bool st_sqlite_check_version(st_db *db, const char *path, const char *release, bool *empty,
+                             char message[ST_SQLITE_MESSAGE])
 {
     int64_t application = 0, version = 0, tables = 0;
-    st_sql outcome = st_db_number(&self->db, "PRAGMA application_id", 0, &application);
+    st_sql outcome = st_db_number(db, "PRAGMA application_id", 0, &application);
     if (outcome == ST_SQL_DONE) {
-        outcome = st_db_number(&self->db, "PRAGMA user_version", 0, &version);
+        outcome = st_db_number(db, "PRAGMA user_version", 0, &version);
     }
     if (outcome == ST_SQL_DONE) {
-        outcome = st_db_number(&self->db, "SELECT count(*) FROM sqlite_schema", 0, &tables);
+        outcome = st_db_number(db, "SELECT count(*) FROM sqlite_schema", 0, &tables);
     }
     if (outcome != ST_SQL_DONE) {
-        return refuse_file(self, outcome, out);
+        return st_sqlite_explain(db, path, outcome, message);
     }
     *empty = tables == 0 && application == 0 && version == 0;
     if (!*empty && application != ST_SCHEMA_APPLICATION) {
-        return refuse(out, "%s/hedge.db is no store of hedged", self->folder.path);
+        return refuse(message, "%.300s is no store of hedged", path);
     }
     return version <= ST_SCHEMA_VERSION ||
-           refuse(out,
-                  "%s/hedge.db has version %lld of the tables, and hedged %s knows them up to "
-                  "version %d: start a newer hedged, or restore a backup made by this one",
-                  self->folder.path, (long long)version, release, ST_SCHEMA_VERSION);
+           refuse(message,
+                  "%.300s has version %lld of the tables, and hedged %s knows them up to version "
+                  "%d: start a newer hedged, or restore a backup made by this one",
+                  path, (long long)version, release, ST_SCHEMA_VERSION);
 }
 
-static bool make_store(st_sqlite *self, const char *release, st_sqlite_opened *out)
+static bool make_store(st_sqlite *self, const char *path, const char *release,
+                       st_sqlite_opened *out)
 {
     self->identity = (st_identity){.store = st_random(), .secret = {st_random(), st_random()}};
     (void)snprintf(self->identity.made_by, sizeof self->identity.made_by, "%s", release);
     st_sql outcome = st_schema_make(&self->db, &self->identity);
     if (outcome != ST_SQL_DONE) {
-        return refuse_file(self, outcome, out);
+        return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
     out->made = true;
     return true;
@@ -108,14 +108,14 @@ static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
         return true;
     }
     if (mark.store != self->identity.store) {
-        return refuse(out,
-                      "%s/hedge.mark is of another store than hedge.db: put back the two that "
+        return refuse(out->message,
+                      "%.300s/hedge.mark is of another store than hedge.db: put back the two that "
                       "belong together, or use `hedged --restore`",
                       self->folder.path);
     }
     return mark.commits <= self->progress.commits ||
-           refuse(out,
-                  "%s/hedge.db lacks the last %llu of %llu commits: hedge.db-wal is damaged or "
+           refuse(out->message,
+                  "%.300s/hedge.db lacks the last %llu of %llu commits: hedge.db-wal is damaged or "
                   "missing. Put it back, or restore a backup with `hedged --restore`; to go on "
                   "without these commits remove hedge.mark",
                   self->folder.path, (unsigned long long)(mark.commits - self->progress.commits),
@@ -138,28 +138,29 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
     bool empty = false;
     st_mark mark;
     if (!st_folder_has(&self->folder, "hedge.db") && st_mark_read(&self->folder, &mark)) {
-        return refuse(out,
-                      "%s has a hedge.mark but no hedge.db: put it back, or restore a backup with "
-                      "`hedged --restore`; to begin an empty store remove hedge.mark",
-                      self->folder.path);
+        return refuse(
+            out->message,
+            "%.300s has a hedge.mark but no hedge.db: put it back, or restore a backup with "
+            "`hedged --restore`; to begin an empty store remove hedge.mark",
+            self->folder.path);
     }
     /* SQLite gives -wal and -shm the rights of the database, and that those it finds. */
     if (!st_folder_has(&self->folder, "hedge.db") && !st_folder_make(&self->folder, "hedge.db")) {
-        return refuse(out, "%s", self->folder.message);
+        return refuse(out->message, "%s", self->folder.message);
     }
     st_sql outcome =
         st_db_open(&self->db, path, SQLITE_OPEN_READWRITE, st_writer_texts, ST_WRITER_STATEMENTS);
     if (outcome != ST_SQL_DONE) {
-        return refuse_file(self, outcome, out);
+        return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
-    if (!check_version(self, release, &empty, out)) {
+    if (!st_sqlite_check_version(&self->db, path, release, &empty, out->message)) {
         return false;
     }
     outcome = set_up(&self->db);
     if (outcome != ST_SQL_DONE) {
-        return refuse_file(self, outcome, out);
+        return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
-    if (empty && !make_store(self, release, out)) {
+    if (empty && !make_store(self, path, release, out)) {
         return false;
     }
     outcome = st_identity_read(&self->db, &self->identity);
@@ -169,11 +170,12 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
     if (outcome == ST_SQL_DONE) {
         outcome = last_keys(self);
     }
-    return (outcome == ST_SQL_DONE || refuse_file(self, outcome, out)) && compare_mark(self, out);
+    return (outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message)) &&
+           compare_mark(self, out);
 }
 
 /* What the last process left behind: its log is written back, what it staged is forgotten. */
-static bool clean_up(st_sqlite *self, st_sqlite_opened *out)
+static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     int code =
         sqlite3_wal_checkpoint_v2(self->db.handle, NULL, SQLITE_CHECKPOINT_PASSIVE, NULL, NULL);
@@ -188,13 +190,13 @@ static bool clean_up(st_sqlite *self, st_sqlite_opened *out)
         outcome = st_db_do(&self->db, ST_SQL_COMMIT, "");
     }
     if (outcome != ST_SQL_DONE) {
-        return refuse_file(self, outcome, out);
+        return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
     const st_mark mark = {self->identity.store, self->progress.commits, self->progress.position};
     /* The folder may have been made anew, and files in it. */
     return (st_mark_write(&self->folder, &mark) && st_mark_sync(&self->folder) &&
             st_folder_sync(&self->folder)) ||
-           refuse(out, "%s", self->folder.message);
+           refuse(out->message, "%s", self->folder.message);
 }
 
 /* --- the journal --- */
@@ -206,12 +208,12 @@ static bool start_thread(st_sqlite *self, st_sqlite_opened *out)
     sqlite3_wal_hook(self->db.handle, st_commit_log_grew, self);
     self->has_thread = pthread_create(&self->thread, NULL, st_commit_thread, self) == 0;
     if (!self->has_thread) {
-        return refuse(out, "no threads to start");
+        return refuse(out->message, "no threads to start");
     }
     return true;
 }
 
-static void free_all(st_sqlite *self)
+void st_sqlite_free(st_sqlite *self)
 {
     (void)st_readers_close(self);
     (void)st_db_close(&self->db);
@@ -231,11 +233,13 @@ void st_sqlite_close(void *context)
     self->closing = true;
     pthread_cond_signal(&self->work);
     pthread_mutex_unlock(&self->lock);
-    pthread_join(self->thread, NULL);
-    free_all(self);
+    if (self->has_thread) {
+        pthread_join(self->thread, NULL);
+    }
+    st_sqlite_free(self);
 }
 
-static st_sqlite *new_journal(const st_sqlite_options *options)
+st_sqlite *st_sqlite_new(const st_sqlite_options *options)
 {
     st_sqlite *self = he_mem_zero(1, sizeof *self);
     if (self == NULL) {
@@ -257,47 +261,56 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
 {
     char path[PATH_MAX];
     if (!st_folder_open(&self->folder, options->folder)) {
-        return refuse(out, "%s", self->folder.message);
+        return refuse(out->message, "%s", self->folder.message);
+    }
+    if (!st_sqlite_finish_restore(&self->folder) || !st_mark_open(&self->folder)) {
+        return refuse(out->message, "%s", self->folder.message);
     }
     if (!st_folder_path(&self->folder, "hedge.db", path)) {
-        return refuse(out, "the path of the store is too long");
+        return refuse(out->message, "the path of the store is too long");
     }
-    if (!open_database(self, options->release, path, out) || !clean_up(self, out)) {
+    if (!open_database(self, options->release, path, out) || !clean_up(self, path, out)) {
         return false;
     }
     (void)st_ballast_make(&self->folder); /* without space for it the store works all the same */
     st_sql outcome = st_readers_open(self, path);
-    return outcome == ST_SQL_DONE ? start_thread(self, out) : refuse_file(self, outcome, out);
+    return outcome == ST_SQL_DONE ? start_thread(self, out)
+                                  : st_sqlite_explain(&self->db, path, outcome, out->message);
+}
+
+st_journal st_sqlite_filled(st_sqlite *self)
+{
+    return (st_journal){.self = self,
+                        .keeps = true,
+                        .secret = {self->identity.secret[0], self->identity.secret[1]},
+                        .reserve = st_sqlite_reserve,
+                        .leave = st_sqlite_leave,
+                        .append = st_sqlite_append,
+                        .stage = st_sqlite_stage,
+                        .unstage = st_sqlite_unstage,
+                        .rebase = st_sqlite_rebase,
+                        .open = st_sqlite_open_mesh,
+                        .read = st_sqlite_read,
+                        .shut = st_sqlite_shut,
+                        .condemn = st_sqlite_condemn,
+                        .list = st_sqlite_list,
+                        .count = st_sqlite_count,
+                        .listen = st_sqlite_listen,
+                        .close = st_sqlite_close};
 }
 
 bool st_sqlite_open(const st_sqlite_options *options, st_sqlite_opened *out)
 {
     *out = (st_sqlite_opened){.made = false};
-    st_sqlite *self = st_db_prepare() ? new_journal(options) : NULL;
+    st_sqlite *self = st_db_prepare() ? st_sqlite_new(options) : NULL;
     if (self == NULL) {
-        return refuse(out, "no memory to open %s", options->folder);
+        return refuse(out->message, "no memory to open %s", options->folder);
     }
     if (!open_all(self, options, out)) {
-        free_all(self);
+        st_sqlite_free(self);
         return false;
     }
     (void)snprintf(out->message, sizeof out->message, "%s", st_folder_doubt(&self->folder));
-    out->journal = (st_journal){.self = self,
-                                .keeps = true,
-                                .secret = {self->identity.secret[0], self->identity.secret[1]},
-                                .reserve = st_sqlite_reserve,
-                                .leave = st_sqlite_leave,
-                                .append = st_sqlite_append,
-                                .stage = st_sqlite_stage,
-                                .unstage = st_sqlite_unstage,
-                                .rebase = st_sqlite_rebase,
-                                .open = st_sqlite_open_mesh,
-                                .read = st_sqlite_read,
-                                .shut = st_sqlite_shut,
-                                .condemn = st_sqlite_condemn,
-                                .list = st_sqlite_list,
-                                .count = st_sqlite_count,
-                                .listen = st_sqlite_listen,
-                                .close = st_sqlite_close};
+    out->journal = st_sqlite_filled(self);
     return true;
 }

@@ -160,7 +160,7 @@ st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t 
 void st_sqlite_condemn(void *context, uint64_t incarnation, const char *damage)
 {
     st_sqlite *self = context;
-    st_condemned *condemned = he_mem_zero(1, sizeof *condemned);
+    st_condemned *condemned = self->only_reads ? NULL : he_mem_zero(1, sizeof *condemned);
     if (condemned == NULL) {
         return; /* it is found again at the next load */
     }

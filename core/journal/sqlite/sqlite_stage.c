@@ -95,7 +95,9 @@ static void queue(st_sqlite *self, st_stage *stage, st_item_kind kind)
 
 void st_sqlite_unstage(void *context, st_stage *stage)
 {
-    if (stage != NULL) {
+    if (stage != NULL && stage->key == 0) {
+        he_mem_free(stage); /* nothing of it was written */
+    } else if (stage != NULL) {
         queue(context, stage, ST_ITEM_UNSTAGE);
     }
 }

@@ -16,6 +16,7 @@
 #include "journal/journal.h"
 #include "journal/record_bytes.h"
 #include "journal/sqlite/sqlite_folder.h"
+#include "journal/sqlite/sqlite_journal.h"
 #include "journal/sqlite/sqlite_schema.h"
 #include "stored/stored.h"
 
@@ -133,6 +134,7 @@ struct st_sqlite {
     uint64_t queue_bytes; /* at most */
     pthread_t thread;
     bool has_thread;
+    bool only_reads; /* nothing is written, by nobody */
 
     /* --- shared --- */
     pthread_mutex_t lock;
@@ -267,5 +269,20 @@ bool st_readers_close(st_sqlite *self);
 
 /* --- sqlite_open.c --- */
 void st_sqlite_close(void *self);
+/* NULL when memory is out. Freed with all that was opened for it. */
+st_sqlite *st_sqlite_new(const st_sqlite_options *options);
+void st_sqlite_free(st_sqlite *self);
+st_journal st_sqlite_filled(st_sqlite *self); /* with its functions */
+/* Is it a store of a version that `release` knows? Else a sentence about `path`. *empty: it has no
+ * tables yet. */
+bool st_sqlite_check_version(st_db *db, const char *path, const char *release, bool *empty,
+                             char message[ST_SQLITE_MESSAGE]);
+/* A sentence for what a statement on the database of that name came to; false. */
+bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
+                       char message[ST_SQLITE_MESSAGE]);
+
+/* --- sqlite_restore.c --- */
+/* Ends a restore that was interrupted. The folder is locked. */
+bool st_sqlite_finish_restore(st_folder *folder);
 
 #endif

@@ -1,0 +1,278 @@
+#include "journal/sqlite/sqlite_backup.h"
+
+#include "journal/sqlite/sqlite_state.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+__attribute__((format(printf, 2, 3))) static bool refuse(char message[ST_SQLITE_MESSAGE],
+                                                         const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    (void)vsnprintf(message, ST_SQLITE_MESSAGE, format, values);
+    va_end(values);
+    return false;
+}
+
+static bool exists(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0;
+}
+
+/* --- files that nobody writes to --- */
+
+/* The file as SQLite's URI: nobody changes it, so that neither lock nor -shm is made for it. Unless
+ * it has a -wal, which is to be read with it. */
+static bool uri_of(const char *file, char *out, size_t size)
+{
+    static const char hex[] = "0123456789ABCDEF";
+    char log[PATH_MAX];
+    size_t at = (size_t)snprintf(out, size, "file:");
+    for (const char *c = file; *c != '\0' && at + 4 < size; c++) {
+        if (strchr("%?#", *c) != NULL) {
+            out[at++] = '%';
+            out[at++] = hex[(unsigned char)*c >> 4];
+            out[at++] = hex[(unsigned char)*c & 15];
+        } else {
+            out[at++] = *c;
+        }
+    }
+    int length = snprintf(log, sizeof log, "%s-wal", file);
+    const char *end = exists(log) ? "" : "?immutable=1";
+    if (length < 0 || (size_t)length >= sizeof log || at + strlen(end) + 4 >= size) {
+        return false;
+    }
+    memcpy(out + at, end, strlen(end) + 1);
+    return true;
+}
+
+static bool open_file(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    char uri[3 * PATH_MAX];
+    *db = (st_db){.texts = NULL};
+    if (!exists(file)) {
+        return refuse(message, "%.300s: %s", file, strerror(errno));
+    }
+    if (!uri_of(file, uri, sizeof uri)) {
+        return refuse(message, "the path of the file is too long");
+    }
+    st_sql outcome = st_db_open(db, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL, 0);
+    return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
+}
+
+/* The first thing that SQLite finds wrong. */
+static bool check_structure(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    sqlite3_stmt *s = NULL;
+    int code = sqlite3_prepare_v2(db->handle, "PRAGMA integrity_check(1)", -1, &s, NULL);
+    if (code == SQLITE_OK) {
+        code = sqlite3_step(s);
+    }
+    const char *said = code == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : NULL;
+    bool good = said != NULL && strcmp(said, "ok") == 0;
+    if (!good && said != NULL) {
+        (void)refuse(message, "%.300s is damaged: %.200s", file, said);
+    } else if (!good) {
+        (void)st_sqlite_explain(db, file, st_db_outcome(db, code), message);
+    }
+    sqlite3_finalize(s);
+    return good;
+}
+
+static bool check_store(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    bool empty;
+    st_identity identity;
+    st_progress progress;
+    if (!st_sqlite_check_version(db, file, "", &empty, message)) {
+        return false;
+    }
+    if (empty) {
+        return refuse(message, "%.300s is no store of hedged", file);
+    }
+    if (!check_structure(db, file, message)) {
+        return false;
+    }
+    st_sql outcome = st_identity_read(db, &identity);
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_progress_read(db, &progress);
+    }
+    return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
+}
+
+bool st_sqlite_check_file(const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    st_db db;
+    if (!st_db_prepare()) {
+        return refuse(message, "no memory to open %.300s", file);
+    }
+    bool good = open_file(&db, file, message) && check_store(&db, file, message);
+    (void)st_db_close(&db);
+    return good;
+}
+
+/* --- backup --- */
+
+/* Space that is left to the store: the daemon beside goes on writing. */
+enum { SPARE_BYTES = 64 << 20 };
+
+static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    char folder[PATH_MAX];
+    struct statvfs system;
+    int64_t pages = 0;
+    (void)snprintf(folder, sizeof folder, "%s", file);
+    char *slash = strrchr(folder, '/');
+    memcpy(slash == NULL ? folder : slash + 1, ".", 2);
+    if (st_db_number(from, "PRAGMA page_count", 0, &pages) != ST_SQL_DONE ||
+        statvfs(folder, &system) != 0) {
+        return true; /* writing will tell */
+    }
+    const uint64_t need = (uint64_t)pages * 4096 + SPARE_BYTES;
+    const uint64_t there = (uint64_t)system.f_bavail * system.f_frsize;
+    return there >= need ||
+           refuse(message, "%.300s: a backup takes %llu MiB, and %llu MiB are free", file,
+                  (unsigned long long)(need >> 20), (unsigned long long)(there >> 20));
+}
+
+static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MESSAGE])
+{
+    st_db to;
+    st_sql outcome = st_db_open(&to, part, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL, 0);
+    /* A file that is not finished is not kept: it needs no journal, and one sync at its end. */
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_run(&to, "PRAGMA journal_mode = OFF");
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_run(&to, "PRAGMA synchronous = OFF");
+    }
+    if (outcome == ST_SQL_DONE) {
+        sqlite3_backup *backup = sqlite3_backup_init(to.handle, "main", from->handle, "main");
+        /* In one go: the state of one moment, while others write on. */
+        (void)(backup != NULL && sqlite3_backup_step(backup, -1));
+        outcome = st_db_outcome(&to, backup == NULL ? sqlite3_extended_errcode(to.handle)
+                                                    : sqlite3_backup_finish(backup));
+    }
+    bool good = outcome == ST_SQL_DONE || st_sqlite_explain(&to, part, outcome, message);
+    return st_db_close(&to) && good;
+}
+
+static bool sync_path(const char *path, int flags, char message[ST_SQLITE_MESSAGE])
+{
+    int file = open(path, flags | O_RDONLY | O_CLOEXEC);
+    bool good = file >= 0 && fsync(file) == 0;
+    if (!good) {
+        (void)refuse(message, "cannot sync %.300s: %s", path, strerror(errno));
+    }
+    if (file >= 0) {
+        (void)close(file);
+    }
+    return good;
+}
+
+static bool finish(const char *part, const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    char folder[PATH_MAX];
+    (void)snprintf(folder, sizeof folder, "%s", file);
+    char *slash = strrchr(folder, '/');
+    memcpy(slash == NULL ? folder : slash + 1, ".", 2);
+    if (rename(part, file) != 0) {
+        return refuse(message, "cannot rename %.300s: %s", part, strerror(errno));
+    }
+    return sync_path(folder, O_DIRECTORY, message);
+}
+
+/* Makes an empty file that its owner alone may read. */
+static bool begin_part(const char *part, char message[ST_SQLITE_MESSAGE])
+{
+    int file = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    if (file < 0) {
+        return refuse(message, "cannot make %.300s: %s", part, strerror(errno));
+    }
+    (void)close(file);
+    return true;
+}
+
+bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    char path[PATH_MAX], part[PATH_MAX];
+    st_db from;
+    bool empty;
+    int length = snprintf(path, sizeof path, "%s/hedge.db", folder);
+    int part_length = snprintf(part, sizeof part, "%s.part", file);
+    if (length >= PATH_MAX || part_length >= PATH_MAX || !st_db_prepare()) {
+        return refuse(message, "a path is too long, or memory is out");
+    }
+    if (!exists(path)) {
+        return refuse(message, "%.300s: %s", path, strerror(errno));
+    }
+    st_sql outcome = st_db_open(&from, path, SQLITE_OPEN_READONLY, NULL, 0);
+    bool good = (outcome == ST_SQL_DONE || st_sqlite_explain(&from, path, outcome, message)) &&
+                st_sqlite_check_version(&from, path, "", &empty, message) &&
+                has_space(&from, file, message) && begin_part(part, message) &&
+                copy_pages(&from, part, message);
+    (void)st_db_close(&from);
+    good = good && sync_path(part, 0, message) && st_sqlite_check_file(part, message) &&
+           finish(part, file, message);
+    if (!good) {
+        (void)unlink(part);
+    }
+    return good;
+}
+
+/* --- looking --- */
+
+static bool open_readers(st_sqlite *self, const char *path, st_sqlite_opened *out)
+{
+    char file[PATH_MAX], uri[3 * PATH_MAX];
+    struct stat status;
+    bool empty;
+    if (stat(path, &status) != 0) {
+        return refuse(out->message, "%.300s: %s", path, strerror(errno));
+    }
+    const bool is_folder = S_ISDIR(status.st_mode);
+    int length = snprintf(file, sizeof file, is_folder ? "%s/hedge.db" : "%s", path);
+    if (length >= PATH_MAX || !uri_of(file, uri, sizeof uri)) {
+        return refuse(out->message, "the path of the store is too long");
+    }
+    st_sql outcome = st_readers_open(self, is_folder ? file : uri);
+    if (outcome != ST_SQL_DONE) {
+        return st_sqlite_explain(&self->cards, file, outcome, out->message);
+    }
+    if (!st_sqlite_check_version(&self->cards, file, "", &empty, out->message)) {
+        return false;
+    }
+    outcome = st_identity_read(&self->cards, &self->identity);
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_progress_read(&self->cards, &self->progress);
+    }
+    self->meshes = self->progress.meshes;
+    return (outcome == ST_SQL_DONE ||
+            st_sqlite_explain(&self->cards, file, outcome, out->message)) &&
+           check_structure(&self->cards, file, out->message);
+}
+
+bool st_sqlite_look(const char *path, st_sqlite_opened *out)
+{
+    *out = (st_sqlite_opened){.made = false};
+    st_sqlite *self = st_db_prepare() ? st_sqlite_new(&(st_sqlite_options){.folder = path}) : NULL;
+    if (self == NULL) {
+        return refuse(out->message, "no memory to open %.300s", path);
+    }
+    self->only_reads = true;
+    self->mode = ST_WRITES_FAILED;
+    if (!open_readers(self, path, out)) {
+        st_sqlite_free(self);
+        return false;
+    }
+    out->journal = st_sqlite_filled(self);
+    return true;
+}

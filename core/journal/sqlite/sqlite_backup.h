@@ -1,0 +1,37 @@
+/* sqlite_backup.h - stores as single files: made beside a running daemon, looked into, put back.
+ *
+ * A backup is the state of one moment. It is finished when it has its name: written beside as
+ * NAME.part, synced, checked, renamed.
+ *
+ * A RESTORE puts a store back in time, so that every mesh gets a new incarnation: what was told of
+ * the states that are gone (ETags, event ids) must not be told again of others. It takes the lock
+ * of the folder. Its steps can be interrupted anywhere: from the moment that the file `restoring`
+ * is there the next start, or the next restore, finishes it.
+ *
+ *     restored.db    the copy of the backup, checked, with new incarnations
+ *     restoring      names the folder for what was there before; then, in this order:
+ *     before-TIME/   hedge.db, -wal, -shm and hedge.mark are moved into it, all together, for a
+ *                    -wal beside another database would be replayed onto it
+ *     hedge.db       restored.db gets this name; `restoring` is removed */
+#ifndef HE_JOURNAL_SQLITE_BACKUP_H
+#define HE_JOURNAL_SQLITE_BACKUP_H
+
+#include "journal/sqlite/sqlite_journal.h"
+
+/* All give false with a sentence in `message` where something is wrong. */
+
+/* Writes the store of a folder, which a daemon may have open, to a file, in place of one of that
+ * name. */
+bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLITE_MESSAGE]);
+/* In place of the folder's store, if it has one; `before` is the folder with that. */
+bool st_sqlite_restore(const char *folder, const char *file, char before[ST_SQLITE_MESSAGE],
+                       char message[ST_SQLITE_MESSAGE]);
+/* Is the structure of the file whole, and is it a store that this release knows? Of its meshes and
+ * their records nothing is said. */
+bool st_sqlite_check_file(const char *file, char message[ST_SQLITE_MESSAGE]);
+
+/* A journal that only reads: a folder's store, which a daemon may have open, or a file. What is
+ * appended is refused, and what is found damaged is not written down. */
+bool st_sqlite_look(const char *path, st_sqlite_opened *out);
+
+#endif

@@ -1,0 +1,260 @@
+/* A backup in place of a store: the steps of sqlite_backup.h. */
+#include "journal/sqlite/sqlite_backup.h"
+#include "journal/sqlite/sqlite_state.h"
+#include "system/clock.h"
+#include "system/random.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { COPY_BYTES = 1 << 16, NAME_BYTES = 64 };
+
+__attribute__((format(printf, 2, 3))) static bool refuse(st_folder *folder, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    (void)vsnprintf(folder->message, sizeof folder->message, format, values);
+    va_end(values);
+    return false;
+}
+
+static bool fail(st_folder *folder, const char *what, const char *name)
+{
+    return refuse(folder, "cannot %s %s in %.300s: %s", what, name, folder->path, strerror(errno));
+}
+
+/* --- the copy --- */
+
+static bool copy_bytes(st_folder *folder, int from, int to)
+{
+    unsigned char bytes[COPY_BYTES];
+    ssize_t got;
+    while ((got = read(from, bytes, sizeof bytes)) > 0) {
+        for (ssize_t put = 0, n; put < got; put += n) {
+            n = write(to, bytes + put, (size_t)(got - put));
+            if (n <= 0) {
+                return fail(folder, "write", "restored.db");
+            }
+        }
+    }
+    return got == 0 || fail(folder, "read", "the backup");
+}
+
+static bool copy_file(st_folder *folder, const char *file)
+{
+    int from = open(file, O_RDONLY | O_CLOEXEC);
+    int to = openat(folder->folder, "restored.db", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    bool good =
+        from >= 0 && to >= 0 ? copy_bytes(folder, from, to) : fail(folder, "copy", "the backup");
+    if (from >= 0) {
+        (void)close(from);
+    }
+    if (to >= 0) {
+        (void)close(to);
+    }
+    return good;
+}
+
+/* --- new incarnations --- */
+
+enum { MESHES, MESH_PUT, KEPT, STATEMENTS };
+static const char *const texts[STATEMENTS] = {
+    [MESHES] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE key > ?1 ORDER BY key LIMIT 1",
+    [MESH_PUT] = "UPDATE mesh SET incarnation = ?2, sum = ?3 WHERE key = ?1",
+    /* What a key answers again has a tag of a state that may be gone: none is told. */
+    [KEPT] = "DELETE FROM kept",
+};
+
+static st_sql draw_incarnations(st_db *db)
+{
+    int64_t last = 0;
+    for (;;) {
+        sqlite3_stmt *s;
+        st_mesh_row row;
+        st_sql outcome = st_db_find(db, MESHES, &s, "i", last);
+        if (outcome != ST_SQL_ROW) {
+            return outcome;
+        }
+        const bool good = st_mesh_row_read(s, &row);
+        st_db_reset(s);
+        row.card.incarnation = st_random();
+        /* What was damaged stays so. */
+        const uint32_t sum = st_mesh_row_sum(&row) ^ (good ? 0 : 1);
+        outcome = st_db_do(db, MESH_PUT, "iii", row.key, row.card.incarnation, (uint64_t)sum);
+        if (outcome != ST_SQL_DONE) {
+            return outcome;
+        }
+        last = row.key;
+    }
+}
+
+static st_sql renew(st_db *db)
+{
+    /* Out of the log's mode, so that nothing of the copy lies beside it. */
+    st_sql outcome = st_db_run(db, "PRAGMA journal_mode = DELETE");
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_run(db, "BEGIN IMMEDIATE");
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = draw_incarnations(db);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_do(db, KEPT, "");
+    }
+    return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
+}
+
+static bool renew_copy(st_folder *folder)
+{
+    char path[PATH_MAX], message[ST_SQLITE_MESSAGE];
+    st_db db;
+    if (!st_folder_path(folder, "restored.db", path)) {
+        return refuse(folder, "the path of the store is too long");
+    }
+    st_sql outcome = st_db_open(&db, path, SQLITE_OPEN_READWRITE, texts, STATEMENTS);
+    if (outcome == ST_SQL_DONE) {
+        outcome = renew(&db);
+    }
+    bool good = outcome == ST_SQL_DONE;
+    if (!good) {
+        (void)st_sqlite_explain(&db, path, outcome, message);
+        (void)refuse(folder, "%.500s", message);
+    }
+    (void)st_db_close(&db);
+    return good;
+}
+
+/* --- putting it in place --- */
+
+static bool sync_name(st_folder *folder, const char *name, int flags)
+{
+    int file = openat(folder->folder, name, flags | O_RDONLY | O_CLOEXEC);
+    bool good = file >= 0 && fsync(file) == 0;
+    if (!good) {
+        (void)fail(folder, "sync", name);
+    }
+    if (file >= 0) {
+        (void)close(file);
+    }
+    return good;
+}
+
+static bool is_there(const st_folder *folder, const char *name)
+{
+    struct stat status;
+    return fstatat(folder->folder, name, &status, 0) == 0;
+}
+
+static bool write_note(st_folder *folder, char before[NAME_BYTES])
+{
+    char time[ST_TIMESTAMP];
+    st_clock_format(st_clock_utc(), time);
+    int length = snprintf(before, NAME_BYTES, "before-%s", time);
+    int file = openat(folder->folder, "restoring", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    bool good = file >= 0 && write(file, before, (size_t)length) == length && fsync(file) == 0;
+    if (!good) {
+        (void)fail(folder, "write", "restoring");
+    }
+    if (file >= 0) {
+        (void)close(file);
+    }
+    return good && st_folder_sync(folder);
+}
+
+static bool read_note(st_folder *folder, char before[NAME_BYTES])
+{
+    int file = openat(folder->folder, "restoring", O_RDONLY | O_CLOEXEC);
+    ssize_t got = file < 0 ? -1 : read(file, before, NAME_BYTES - 1);
+    if (file >= 0) {
+        (void)close(file);
+    }
+    before[got < 0 ? 0 : got] = '\0';
+    return strncmp(before, "before-", 7) == 0 && strchr(before, '/') == NULL;
+}
+
+static bool move_old(st_folder *folder, const char *before)
+{
+    static const char *const names[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark"};
+    if (mkdirat(folder->folder, before, 0700) != 0 && errno != EEXIST) {
+        return fail(folder, "make", before);
+    }
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char to[2 * NAME_BYTES];
+        (void)snprintf(to, sizeof to, "%s/%s", before, names[i]);
+        if (renameat(folder->folder, names[i], folder->folder, to) != 0 && errno != ENOENT) {
+            return fail(folder, "move", names[i]);
+        }
+    }
+    return sync_name(folder, before, O_DIRECTORY) && st_folder_sync(folder);
+}
+
+bool st_sqlite_finish_restore(st_folder *folder)
+{
+    char before[NAME_BYTES];
+    if (!is_there(folder, "restoring")) {
+        return true;
+    }
+    /* Without the copy it has its new name already. */
+    if (is_there(folder, "restored.db")) {
+        if (!read_note(folder, before)) {
+            return refuse(folder,
+                          "%.300s has a file `restoring` that does not say where its store goes: a "
+                          "restore was interrupted; begin it again",
+                          folder->path);
+        }
+        if (!move_old(folder, before)) {
+            return false;
+        }
+        if (renameat(folder->folder, "restored.db", folder->folder, "hedge.db") != 0) {
+            return fail(folder, "rename", "restored.db");
+        }
+        if (!st_folder_sync(folder)) {
+            return false;
+        }
+    }
+    if (unlinkat(folder->folder, "restoring", 0) != 0) {
+        return fail(folder, "remove", "restoring");
+    }
+    return st_folder_sync(folder);
+}
+
+static bool restore(st_folder *folder, const char *path, const char *file, char before[NAME_BYTES],
+                    char message[ST_SQLITE_MESSAGE])
+{
+    /* One that was interrupted is ended before the next is begun: its note names a copy. */
+    bool good = st_folder_open(folder, path);
+    if (good && is_there(folder, "restoring") && is_there(folder, "restored.db") &&
+        !read_note(folder, before)) {
+        /* The note was never whole, so nothing was moved. */
+        good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
+    }
+    good = good && st_sqlite_finish_restore(folder);
+    if (good && !st_sqlite_check_file(file, message)) {
+        return false;
+    }
+    good = good && copy_file(folder, file) && renew_copy(folder) &&
+           sync_name(folder, "restored.db", 0);
+    if (good) {
+        good = write_note(folder, before) && st_sqlite_finish_restore(folder);
+    }
+    if (!good) {
+        (void)snprintf(message, ST_SQLITE_MESSAGE, "%s", folder->message);
+    }
+    return good;
+}
+
+bool st_sqlite_restore(const char *path, const char *file, char before[ST_SQLITE_MESSAGE],
+                       char message[ST_SQLITE_MESSAGE])
+{
+    st_folder folder;
+    char name[NAME_BYTES] = "";
+    bool good = restore(&folder, path, file, name, message);
+    (void)snprintf(before, ST_SQLITE_MESSAGE, "%.300s/%s", folder.path, name);
+    st_folder_close(&folder);
+    return good;
+}

@@ -1,0 +1,348 @@
+/* Backups of a store and their way back (core/journal/sqlite/sqlite_backup.h). */
+#include "tests/store_folder.h"
+#include "unit/edit_script.h"
+#include "unit/fixture.h"
+
+#include "journal/sqlite/sqlite_backup.h"
+#include "stored/stored.h"
+
+#include <dirent.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char folder[FOLDER_PATH], aside[FOLDER_PATH], backup[2 * FOLDER_PATH];
+static char message[ST_SQLITE_MESSAGE], before[ST_SQLITE_MESSAGE];
+static he_mesh *content;
+
+static int make_folders(void **state)
+{
+    (void)state;
+    folder_make(folder);
+    folder_make(aside);
+    (void)snprintf(backup, sizeof backup, "%s/it %%? is#one.db", aside);
+    content = script_mesh("012,023,034", NULL);
+    return 0;
+}
+
+/* The folders that a restore leaves, too. */
+static void remove_befores(void)
+{
+    DIR *dir = opendir(folder);
+    struct dirent *entry;
+    while (dir != NULL && (entry = readdir(dir)) != NULL) {
+        if (strncmp(entry->d_name, "before-", 7) == 0) {
+            char path[3 * FOLDER_PATH];
+            (void)snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+            folder_remove(path);
+        }
+    }
+    if (dir != NULL) {
+        (void)closedir(dir);
+    }
+}
+
+static int remove_folders(void **state)
+{
+    (void)state;
+    remove_befores();
+    folder_remove(folder);
+    (void)unlink(backup);
+    folder_remove(aside);
+    he_mesh_free(content);
+    return 0;
+}
+
+static void open_store(told_journal *told)
+{
+    st_sqlite_opened out;
+    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = "test"}, &out)) {
+        fail_msg("%s", out.message);
+    }
+    told_begin(told, &out.journal);
+}
+
+static kept_mesh new_mesh(const char *id)
+{
+    static uint64_t incarnations = 9000;
+    kept_mesh mesh = {.name = "name", .content = content, .incarnation = ++incarnations};
+    (void)snprintf(mesh.id, sizeof mesh.id, "%s", id);
+    return mesh;
+}
+
+static st_status count_records(const st_journal *j, const char *id, unsigned *records,
+                               st_card *card)
+{
+    st_reader *reader = NULL;
+    st_piece piece = {.kind = ST_PIECE_BASE};
+    *records = 0;
+    st_status status = j->open(j->self, id, card, &reader);
+    while (status == ST_OK && piece.kind != ST_PIECE_END) {
+        status = j->read(reader, &piece);
+        *records += status == ST_OK && piece.kind == ST_PIECE_RECORD;
+    }
+    j->shut(reader);
+    return status;
+}
+
+/* A mesh "a" with so many edits, closed. */
+static kept_mesh make_store(unsigned edits)
+{
+    told_journal told;
+    kept_mesh mesh = new_mesh("a");
+    open_store(&told);
+    kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
+    for (unsigned i = 0; i < edits; i++) {
+        kept_append(&told.journal, kept_edit(&mesh), &mesh, "x", 1);
+    }
+    told_end(&told);
+    return mesh;
+}
+
+static void expect_records(unsigned records, uint64_t *incarnation)
+{
+    told_journal told;
+    unsigned found;
+    st_card card;
+    open_store(&told);
+    assert_int_equal(count_records(&told.journal, "a", &found, &card), ST_OK);
+    assert_int_equal(found, records);
+    *incarnation = card.incarnation;
+    told_end(&told);
+}
+
+static void a_restore_brings_back_the_state_under_new_incarnations(void **state)
+{
+    (void)state;
+    kept_mesh mesh = make_store(5);
+    if (!st_sqlite_backup(folder, backup, message)) {
+        fail_msg("%s", message);
+    }
+    told_journal told;
+    open_store(&told);
+    for (int i = 0; i < 3; i++) {
+        kept_append(&told.journal, kept_edit(&mesh), &mesh, "y", 1);
+    }
+    kept_mesh other = new_mesh("b");
+    told_wait(&told, kept_append(&told.journal, kept_content(&other), &other, NULL, 0));
+    /* Not while a daemon has it. */
+    assert_false(st_sqlite_restore(folder, backup, before, message));
+    assert_non_null(strstr(message, "in use by process"));
+    told_end(&told);
+    if (!st_sqlite_restore(folder, backup, before, message)) {
+        fail_msg("%s", message);
+    }
+    uint64_t incarnation, again;
+    expect_records(5, &incarnation);
+    assert_true(incarnation != mesh.incarnation);
+    st_sqlite_opened old;
+    if (!st_sqlite_look(before, &old)) {
+        fail_msg("%s", old.message);
+    }
+    assert_int_equal(old.journal.count(old.journal.self), 2);
+    unsigned records;
+    st_card card;
+    assert_int_equal(count_records(&old.journal, "a", &records, &card), ST_OK);
+    assert_int_equal(records, 8);
+    old.journal.close(old.journal.self);
+    expect_records(5, &again);
+    assert_true(again == incarnation);
+}
+
+/* A -wal that kill -9 left behind is not replayed onto the restored file. */
+static void a_log_left_behind_stays_with_its_database(void **state)
+{
+    (void)state;
+    kept_mesh mesh = make_store(2);
+    assert_true(st_sqlite_backup(folder, backup, message));
+    told_journal told;
+    open_store(&told);
+    for (int i = 0; i < 30; i++) {
+        told_wait(&told, kept_append(&told.journal, kept_edit(&mesh), &mesh, "y", 1));
+    }
+    char killed[FOLDER_PATH];
+    folder_make(killed);
+    folder_copy(folder, killed);
+    told_end(&told);
+    folder_remove(folder);
+    assert_int_equal(rename(killed, folder), 0);
+    size_t size;
+    unsigned char *log = folder_read(folder, "hedge.db-wal", &size);
+    assert_true(log != NULL && size > 0);
+    free(log);
+    if (!st_sqlite_restore(folder, backup, before, message)) {
+        fail_msg("%s", message);
+    }
+    uint64_t incarnation;
+    expect_records(2, &incarnation);
+}
+
+static void move(const char *from, const char *to)
+{
+    char a[2 * FOLDER_PATH], b[2 * FOLDER_PATH];
+    (void)snprintf(a, sizeof a, "%s/%s", folder, from);
+    (void)snprintf(b, sizeof b, "%s/%s", folder, to);
+    (void)rename(a, b);
+}
+
+/* Each state that an interruption leaves, made by hand, is ended by the next start. */
+static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
+{
+    (void)state;
+    static const char *const moved[] = {"hedge.db", "hedge.db-wal", "hedge.mark"};
+    for (unsigned step = 0; step <= 5; step++) {
+        (void)make_store(1);
+        assert_true(st_sqlite_backup(folder, backup, message));
+        uint64_t incarnation;
+        told_journal told;
+        open_store(&told);
+        kept_mesh other = new_mesh("b");
+        told_wait(&told, kept_append(&told.journal, kept_content(&other), &other, NULL, 0));
+        told_end(&told);
+        size_t size;
+        unsigned char *bytes = folder_read(aside, strrchr(backup, '/') + 1, &size);
+        folder_write(folder, "restored.db", bytes, size);
+        free(bytes);
+        if (step > 0) {
+            folder_write(folder, "restoring", (const unsigned char *)"before-then", 11);
+            char path[2 * FOLDER_PATH];
+            (void)snprintf(path, sizeof path, "%s/before-then", folder);
+            (void)mkdir(path, 0700);
+        }
+        for (unsigned i = 0; i + 1 < step && i < 3; i++) {
+            char to[64];
+            (void)snprintf(to, sizeof to, "before-then/%s", moved[i]);
+            move(moved[i], to);
+        }
+        if (step == 5) {
+            move("restored.db", "hedge.db");
+        }
+        expect_records(1, &incarnation);
+        open_store(&told);
+        /* Without the note nothing was decided yet: the store is the one there was. */
+        assert_int_equal(told.journal.count(told.journal.self), step == 0 ? 2 : 1);
+        told_end(&told);
+        char path[2 * FOLDER_PATH];
+        (void)snprintf(path, sizeof path, "%s/restored.db", folder);
+        (void)unlink(path);
+        (void)snprintf(path, sizeof path, "%s/restoring", folder);
+        assert_int_equal(access(path, F_OK), -1);
+        remove_befores();
+        folder_remove(folder);
+        (void)mkdir(folder, 0700);
+    }
+}
+
+static void what_is_no_whole_store_is_not_restored(void **state)
+{
+    (void)state;
+    uint64_t incarnation;
+    (void)make_store(40);
+    assert_false(st_sqlite_restore(folder, "/proc/1/none", before, message));
+    assert_true(st_sqlite_backup(folder, backup, message));
+    size_t size;
+    const char *name = strrchr(backup, '/') + 1;
+    unsigned char *bytes = folder_read(aside, name, &size);
+    folder_write(aside, name, bytes, size / 2);
+    assert_false(st_sqlite_restore(folder, backup, before, message));
+    assert_non_null(strstr(message, "damaged"));
+    folder_write(aside, name, (const unsigned char *)"", 0);
+    assert_false(st_sqlite_restore(folder, backup, before, message));
+    assert_non_null(strstr(message, "no store"));
+    bytes[5000] ^= 0xff;
+    memset(bytes + 8192, 0xaa, 100);
+    folder_write(aside, name, bytes, size);
+    assert_false(st_sqlite_check_file(backup, message));
+    assert_false(st_sqlite_restore(folder, backup, before, message));
+    free(bytes);
+    expect_records(40, &incarnation);
+}
+
+/* --- beside a writer --- */
+
+static _Atomic bool stops;
+static told_journal writing;
+
+static void *write_on(void *context)
+{
+    kept_mesh *mesh = context;
+    while (!atomic_load(&stops)) {
+        kept_mesh next = *mesh;
+        uint64_t position =
+            kept_append(&writing.journal, kept_edit(&next), &next, "some bytes of an edit", 21);
+        if (position != 0) {
+            *mesh = next;
+        }
+        sched_yield();
+    }
+    return NULL;
+}
+
+static void a_backup_beside_a_writer_is_the_state_of_one_moment(void **state)
+{
+    (void)state;
+    pthread_t thread;
+    kept_mesh mesh = new_mesh("a");
+    open_store(&writing);
+    kept_append(&writing.journal, kept_content(&mesh), &mesh, NULL, 0);
+    atomic_store(&stops, false);
+    assert_int_equal(pthread_create(&thread, NULL, write_on, &mesh), 0);
+    unsigned last = 0;
+    for (int i = 0; i < 5; i++) {
+        st_sqlite_opened out;
+        st_card card;
+        unsigned records;
+        if (!st_sqlite_backup(folder, backup, message)) {
+            fail_msg("%s", message);
+        }
+        assert_true(st_sqlite_look(backup, &out));
+        st_status status = count_records(&out.journal, "a", &records, &card);
+        assert_true(status == ST_OK || (status == ST_ABSENT && last == 0));
+        assert_true(records >= last);
+        last = records;
+        out.journal.close(out.journal.self);
+    }
+    atomic_store(&stops, true);
+    pthread_join(thread, NULL);
+    told_end(&writing);
+    uint64_t incarnation;
+    expect_records((unsigned)mesh.number - 1, &incarnation);
+}
+
+static void who_looks_changes_nothing(void **state)
+{
+    (void)state;
+    st_sqlite_opened out;
+    (void)make_store(3);
+    assert_true(st_sqlite_look(folder, &out));
+    const st_journal *j = &out.journal;
+    const st_room_need need = {.records = 1, .bytes = 1};
+    st_room *room;
+    st_stage *stage;
+    st_card card;
+    unsigned records;
+    assert_int_equal(j->reserve(j->self, &need, &room), ST_FAILED);
+    assert_int_equal(j->stage(j->self, content, &stage), ST_FAILED);
+    assert_int_equal(count_records(j, "a", &records, &card), ST_OK);
+    j->condemn(j->self, card.incarnation, "it is only said so");
+    j->close(j->self);
+    uint64_t incarnation;
+    expect_records(3, &incarnation);
+    assert_false(st_sqlite_look(aside, &out));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folders, remove_folders)
+        STORE_TEST(a_restore_brings_back_the_state_under_new_incarnations),
+        STORE_TEST(a_log_left_behind_stays_with_its_database),
+        STORE_TEST(an_interrupted_restore_is_finished_by_the_next_start),
+        STORE_TEST(what_is_no_whole_store_is_not_restored),
+        STORE_TEST(a_backup_beside_a_writer_is_the_state_of_one_moment),
+        STORE_TEST(who_looks_changes_nothing),
+#undef STORE_TEST
+    };
+    return cmocka_run_group_tests_name("backup", tests, NULL, NULL);
+}
