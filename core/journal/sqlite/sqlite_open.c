@@ -122,6 +122,29 @@ static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
                   (unsigned long long)mark.commits);
 }
 
+/* A mesh whose entry in an index is damaged would seem not to be there. In a store of more meshes
+ * than this the check takes too long for a start. */
+enum { CHECKED_MESHES = 200000 };
+
+static bool check_meshes(st_sqlite *self, const char *path, st_sqlite_opened *out)
+{
+    sqlite3_stmt *s = NULL;
+    if (self->progress.meshes > CHECKED_MESHES) {
+        return true;
+    }
+    int code = sqlite3_prepare_v2(self->db.handle, "PRAGMA integrity_check('mesh')", -1, &s, NULL);
+    code = code == SQLITE_OK ? sqlite3_step(s) : code;
+    const char *said = code == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : NULL;
+    bool good = said != NULL && strcmp(said, "ok") == 0;
+    if (!good) {
+        (void)st_sqlite_explain(&self->db, path,
+                                said != NULL ? ST_SQL_DAMAGED : st_db_outcome(&self->db, code),
+                                out->message);
+    }
+    sqlite3_finalize(s);
+    return good;
+}
+
 static st_sql last_keys(st_sqlite *self)
 {
     st_sql outcome = st_db_number(&self->db, "SELECT seq FROM sqlite_sequence WHERE name = 'mesh'",
@@ -163,7 +186,10 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
     if (empty && !make_store(self, path, release, out)) {
         return false;
     }
-    outcome = st_identity_read(&self->db, &self->identity);
+    outcome = st_schema_check(&self->db);
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_identity_read(&self->db, &self->identity);
+    }
     if (outcome == ST_SQL_DONE) {
         outcome = st_progress_read(&self->db, &self->progress);
     }
@@ -171,7 +197,7 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
         outcome = last_keys(self);
     }
     return (outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message)) &&
-           compare_mark(self, out);
+           compare_mark(self, out) && check_meshes(self, path, out);
 }
 
 /* What the last process left behind: its log is written back, what it staged is forgotten. */

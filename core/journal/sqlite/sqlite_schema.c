@@ -164,11 +164,13 @@ bool st_purge_row_read(sqlite3_stmt *s, st_purge_row *out)
 
 /* --- the whole database --- */
 
-enum { META_PUT, META_GET, STATE_PUT, STATE_GET, STATEMENTS };
+enum { META_PUT, META_GET, STATE_PUT, STATE_GET, TABLE_GET, STATEMENTS };
 static const char *const texts[STATEMENTS] = {
     [META_PUT] = "INSERT INTO meta VALUES (?1, ?2, ?3)",
     [META_GET] = "SELECT value, sum FROM meta WHERE name = ?1",
     [STATE_PUT] = "INSERT INTO state VALUES (1, ?1, ?2, ?3, ?4)",
+    [TABLE_GET] = "SELECT 1 FROM sqlite_schema WHERE sql = ?1 AND "
+                  "?1 LIKE 'CREATE ' || type || ' ' || name || '%'",
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
@@ -234,6 +236,24 @@ st_sql st_schema_make(st_db *db, const st_identity *identity)
         outcome = st_db_run(db, "PRAGMA user_version = 1");
     }
     return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
+}
+
+st_sql st_schema_check(st_db *db)
+{
+    st_db mine = borrowed(db);
+    st_sql outcome = ST_SQL_DONE;
+    for (size_t i = 0; i < sizeof tables / sizeof *tables && outcome == ST_SQL_DONE; i++) {
+        sqlite3_stmt *s;
+        outcome = st_db_find(&mine, TABLE_GET, &s, "t", tables[i]);
+        if (outcome == ST_SQL_ROW) {
+            st_db_reset(s);
+        }
+        outcome = outcome == ST_SQL_ROW    ? ST_SQL_DONE
+                  : outcome == ST_SQL_DONE ? ST_SQL_DAMAGED
+                                           : outcome;
+    }
+    give_back(&mine);
+    return outcome;
 }
 
 /* The word, or with `text` the text, of that name. */

@@ -98,6 +98,8 @@ bool st_purge_row_read(sqlite3_stmt *statement, st_purge_row *out);
 
 /* Makes the tables in one transaction. */
 st_sql st_schema_make(st_db *db, const st_identity *identity);
+/* Are the tables those of version 1, to the letter? ST_SQL_DAMAGED. */
+st_sql st_schema_check(st_db *db);
 /* ST_SQL_DAMAGED also where rows are missing or their sums are wrong. */
 st_sql st_identity_read(st_db *db, st_identity *out);
 st_sql st_progress_read(st_db *db, st_progress *out);
