@@ -189,10 +189,10 @@ static int status_of(int waited)
 }
 
 /* The log is whole when this returns. */
-static int end(daemon_process *d)
+static int end(daemon_process *d, int signal)
 {
     int waited = 0;
-    kill(d->pid, SIGTERM);
+    kill(d->pid, signal);
     while (waitpid(d->pid, &waited, 0) < 0 && errno == EINTR) {
     }
     pthread_join(d->reader, NULL);
@@ -210,7 +210,7 @@ static void release(daemon_process *d)
 
 int daemon_stop(daemon_process *d)
 {
-    int status = end(d);
+    int status = end(d, SIGTERM);
     if (status != 0) {
         print_error("hedged ended with %d:\n%s\n", status, d->log);
     }
@@ -218,9 +218,19 @@ int daemon_stop(daemon_process *d)
     return status;
 }
 
+void daemon_kill(daemon_process *d)
+{
+    int status = end(d, SIGKILL);
+    if (status != 128 + SIGKILL) {
+        print_error("hedged ended by itself with %d:\n%s\n", status, d->log);
+    }
+    assert_int_equal(status, 128 + SIGKILL);
+    release(d);
+}
+
 char *daemon_stop_and_tell(daemon_process *d)
 {
-    assert_int_equal(end(d), 0);
+    assert_int_equal(end(d, SIGTERM), 0);
     char *log = d->log;
     d->log = NULL;
     release(d);

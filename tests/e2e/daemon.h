@@ -14,6 +14,8 @@ daemon_process *daemon_start(const char *const *arguments);
 daemon_process *daemon_start_on_terminal(const char *const *arguments);
 /* SIGTERM, wait, free. Gives the exit status, or 128 + the signal that ended it. */
 int daemon_stop(daemon_process *d);
+/* SIGKILL, wait, free: as if the machine had gone, but for its disk. */
+void daemon_kill(daemon_process *d);
 /* Stop it as daemon_stop does, require status 0, and give all it has written to stderr, ended by
  * NUL; the caller's to free. */
 char *daemon_stop_and_tell(daemon_process *d);

@@ -1,0 +1,221 @@
+/* A daemon that is killed, or stopped, and started again on its folder: everything it had answered
+ * is there, the history with it, and goes on from there. */
+#include "tests/e2e/client.h"
+#include "tests/store_folder.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static char folder[FOLDER_PATH], store[FOLDER_PATH + 16];
+static daemon_process *server;
+static client *http;
+
+static void begin(void)
+{
+    server = daemon_start((const char *const[]){"--store", store, "--jobs", "2", NULL});
+    http = client_new(server);
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    folder_make(folder);
+    snprintf(store, sizeof store, "sqlite:%s", folder);
+    begin();
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    client_free(http);
+    int status = daemon_stop(server);
+    folder_remove(folder);
+    return status;
+}
+
+static void kill_and_start(void)
+{
+    client_free(http);
+    daemon_kill(server);
+    begin();
+}
+
+static void stop_and_start(void)
+{
+    client_free(http);
+    assert_int_equal(daemon_stop(server), 0);
+    begin();
+}
+
+static void send(const char *method, const char *path, const char *body, long status)
+{
+    reply_done(reply_expect(status, client_send(http, method, path, body, strlen(body), NULL)));
+}
+
+/* What takes another value in each process, or another one for the same content: the bytes that a
+ * mesh takes in memory. */
+static void blank(char *text)
+{
+    for (char *at = strstr(text, "\"memory_"); at != NULL; at = strstr(at + 1, "\"memory_")) {
+        memset(at, ' ', strcspn(at, ",}"));
+    }
+}
+
+/* All that clients see, tags and history included. */
+static char *state_of(void)
+{
+    static const char *const targets[] = {"/v1/meshes",
+                                          "/v1/meshes/m",
+                                          "/v1/meshes/m/edits?limit=1000",
+                                          "/v1/meshes/m/content",
+                                          "/v1/meshes/m/faces",
+                                          "/v1/meshes/m/vertices",
+                                          "/v1/meshes/m/edges",
+                                          "/v1/meshes/m/attributes",
+                                          "/v1/meshes/n",
+                                          "/v1/meshes/n/content",
+                                          "/v1/meshes/m/content?revision=2"};
+    enum { MOST = 1 << 20 };
+    char *state = calloc(1, MOST), tag[200];
+    assert_non_null(state);
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        reply r = reply_expect(200, client_get(http, targets[i]));
+        blank(r.body);
+        size_t length = strlen(state);
+        assert_true(length + r.length + 400 < MOST);
+        snprintf(state + length, MOST - length, "%s %s\n%s\n", targets[i],
+                 reply_header(&r, "ETag", tag, sizeof tag), r.body);
+        reply_free(&r);
+    }
+    return state;
+}
+
+static char *content_of(const char *mesh)
+{
+    char path[100];
+    snprintf(path, sizeof path, "/v1/meshes/%s/content", mesh);
+    reply r = reply_expect(200, client_get(http, path));
+    char *body = strdup(r.body);
+    reply_free(&r);
+    return body;
+}
+
+static void make_history(void)
+{
+    send("PUT", "/v1/meshes/m?name=first", "{\"shape\":\"cube\"}", 201);
+    send("PUT", "/v1/meshes/n", "{\"shape\":\"octahedron\"}", 201);
+    send("PUT", "/v1/meshes/gone", "{\"shape\":\"octahedron\"}", 201);
+    send("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", 200);
+    send("POST", "/v1/meshes/m/edits",
+         "{\"ops\":[{\"op\":\"vertex_move\",\"vertex\":1,\"by\":[0.1,0,0.25]},"
+         "{\"op\":\"edge_split\",\"edge\":3},{\"op\":\"face_delete\",\"faces\":[2]}]}",
+         200);
+    send("PUT", "/v1/meshes/m/attributes/faces/kind",
+         "{\"type\":\"uint32\",\"default\":1,\"labels\":[\"a\",\"b\"]}", 201);
+    send("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":1}", 200);
+    send("POST", "/v1/meshes/m/undo", "{\"steps\":3}", 200);
+    send("POST", "/v1/meshes/m/redo", "{}", 200);
+    send("PATCH", "/v1/meshes/m", "{\"name\":\"second\"}", 200);
+    send("DELETE", "/v1/meshes/gone", "", 204);
+    send("PUT", "/v1/meshes/n?name=replaced", "{\"shape\":\"tetrahedron\"}", 200);
+    send("POST", "/v1/meshes/n/edits", "{\"op\":\"face_delete\",\"face\":0}", 200);
+    send("POST", "/v1/meshes/n/edits", "{\"op\":\"compact\"}", 200);
+}
+
+static void expect_state(const char *before)
+{
+    char *after = state_of();
+    assert_string_equal(before, after);
+    free(after);
+}
+
+static void what_was_answered_is_there_after_a_kill(void **state)
+{
+    (void)state;
+    make_history();
+    char *before = state_of();
+    kill_and_start();
+    reply_done(reply_expect(404, client_get(http, "/v1/meshes/gone")));
+    expect_state(before);
+    /* In the other order: the list from the disk, and of meshes that are in memory. */
+    stop_and_start();
+    expect_state(before);
+    free(before);
+}
+
+static void undo_and_redo_lead_where_they_would_have_led(void **state)
+{
+    (void)state;
+    static const char *const steps[] = {"undo", "undo", "redo", "redo", "redo", "redo", "redo"};
+    enum { STEPS = sizeof steps / sizeof *steps };
+    char *would[STEPS], path[64];
+    make_history();
+    send("PUT", "/v1/meshes/again", "{\"shape\":\"cube\"}", 201);
+    /* A copy of the folder lives on without the kill. */
+    char other[FOLDER_PATH];
+    folder_make(other);
+    client_free(http);
+    assert_int_equal(daemon_stop(server), 0);
+    folder_copy(folder, other);
+    begin();
+    for (size_t i = 0; i < STEPS; i++) {
+        snprintf(path, sizeof path, "/v1/meshes/m/%s", steps[i]);
+        send("POST", path, "{}", i < STEPS - 1 ? 200 : 409);
+        would[i] = content_of("m");
+    }
+    client_free(http);
+    daemon_kill(server);
+    snprintf(store, sizeof store, "sqlite:%s", other);
+    begin();
+    for (size_t i = 0; i < STEPS; i++) {
+        snprintf(path, sizeof path, "/v1/meshes/m/%s", steps[i]);
+        send("POST", path, "{}", i < STEPS - 1 ? 200 : 409);
+        char *is = content_of("m");
+        assert_string_equal(would[i], is);
+        free(is);
+        free(would[i]);
+        kill_and_start();
+    }
+    folder_remove(folder);
+    snprintf(folder, sizeof folder, "%s", other);
+}
+
+/* Tags of a state that was replaced or removed are never those of another one. */
+static void a_tag_names_one_state_for_ever(void **state)
+{
+    (void)state;
+    enum { TIMES = 4 };
+    char tags[TIMES][200];
+    for (int i = 0; i < TIMES; i++) {
+        send("PUT", "/v1/meshes/m",
+             i % 2 == 0 ? "{\"shape\":\"cube\"}" : "{\"shape\":\"octahedron\"}", 201);
+        kill_and_start();
+        reply r = reply_expect(200, client_get(http, "/v1/meshes/m"));
+        (void)reply_header(&r, "ETag", tags[i], sizeof tags[i]);
+        reply_free(&r);
+        for (int k = 0; k < i; k++) {
+            assert_string_not_equal(tags[i], tags[k]);
+        }
+        send("DELETE", "/v1/meshes/m", "", 204);
+        kill_and_start();
+        reply_done(reply_expect(404, client_get(http, "/v1/meshes/m")));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(what_was_answered_is_there_after_a_kill, setup, teardown),
+        cmocka_unit_test_setup_teardown(undo_and_redo_lead_where_they_would_have_led, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(a_tag_names_one_state_for_ever, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
