@@ -50,7 +50,13 @@ const api_parameter api_parameter_turning = {
 const api_parameter api_parameter_last_seen = {
     "since", API_PARAM_TEXT, 0, 64, NULL, "Go on after this: an event's id, or a revision."};
 const api_parameter api_parameter_format = {
-    "format", API_PARAM_CHOICE, 0, 0, formats, "The format, in place of the media type."};
+    "format",
+    API_PARAM_CHOICE,
+    0,
+    0,
+    formats,
+    "The format, in place of the media type. Of an upload that may then be missing, text/plain "
+    "or application/x-www-form-urlencoded, as programs say that do not know it."};
 const api_parameter api_parameter_encoding = {
     "encoding", API_PARAM_CHOICE, 0,
     0,          encodings,        "Text or binary, where a format has both; binary if not said."};

@@ -4,6 +4,8 @@
 #include "api/document/document_in.h"
 #include "api/document/parts.h"
 #include "api/document/repairs.h"
+#include "api/request/admit.h"
+#include "format/io/foreign.h"
 #include "format/io/format.h"
 #include "mesh/walk.h"
 #include "query/open_seams.h"
@@ -112,18 +114,29 @@ bool api_upload_begin(api_exchange *x)
     const he_format *format =
         name != NULL ? he_format_find(name) : he_format_of_media_type(x->media_in);
     if (format == NULL || format->reading == NULL) {
-        return api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s is not a format this server reads",
-                        name != NULL ? name : x->media_in);
+        char text[80];
+        snprintf(text, sizeof text, "%s is not a format this server reads",
+                 name != NULL ? name : x->media_in);
+        return api_refuse_format(x, text);
     }
     return open_reader(x, u, format);
 }
 
-/* What was said to be of one format may be of another. */
+/* What was said to be of one format may be of another, or no mesh at all: then that is the reason,
+ * and no place in it. Of text that is UTF-16 the reader says so itself. */
 static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
 {
+    const char *foreign = he_foreign_find(u->head, u->head_length);
     const he_format *looks = he_format_sniff(u->head, u->head_length);
     size_t length = strlen(err->text);
-    if (looks != NULL && looks != u->format) {
+    bool unread = err->status == HE_SYNTAX || err->status == HE_BAD_VALUE ||
+                  err->status == HE_NOT_FINITE || err->status == HE_LIMIT;
+    if (foreign != NULL && unread) {
+        snprintf(err->text, sizeof err->text, "the body is %s", foreign);
+        err->status = HE_SYNTAX;
+        err->place = HE_PLACE_NONE;
+        err->kind = HE_KIND_COUNT;
+    } else if (looks != NULL && looks != u->format) {
         snprintf(err->text + length, sizeof err->text - length,
                  "; the body begins as one of the format %s does", looks->name);
     }
@@ -150,15 +163,16 @@ static bool choose(api_exchange *x, upload *u)
     const he_format *gltf = he_format_find("gltf");
     bool json =
         blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
-    const he_format *format = json ? NULL : he_format_sniff(u->head, u->head_length);
-    if (!json && (format == NULL || format->reading == NULL)) {
-        bool wide = u->head_length >= 2 &&
-                    (memcmp(u->head, "\xFF\xFE", 2) == 0 || memcmp(u->head, "\xFE\xFF", 2) == 0);
-        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s",
-                 wide ? "the body is UTF-16: send it as UTF-8"
-                      : "the first bytes are of no format this server reads: say ?format=");
+    const char *foreign = he_foreign_find(u->head, u->head_length);
+    const he_format *format =
+        json || foreign != NULL ? NULL : he_format_sniff(u->head, u->head_length);
+    if (foreign != NULL) {
+        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "the body is %s", foreign);
         x->problem.supported = x->route->consumes;
         return false;
+    }
+    if (!json && (format == NULL || format->reading == NULL)) {
+        return api_refuse_format(x, "the first bytes are of no format this server reads");
     }
     return (json ? open_document(x, u) : open_reader(x, u, format)) &&
            feed(x, u, u->head, u->head_length);

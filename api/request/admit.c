@@ -3,6 +3,7 @@
 #include "api/request/coded.h"
 #include "format/text/number.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -232,6 +233,42 @@ bool api_refuse_size(api_exchange *x)
                     (unsigned long long)api_body_cap(x));
 }
 
+bool api_refuse_empty(api_exchange *x)
+{
+    return x->route->body_kind == API_BODY_UPLOAD
+               ? api_fail(
+                     x, API_MISSING_BODY,
+                     "the body is empty: send the bytes of a mesh file, a mesh document or the "
+                     "name of a shape")
+               : api_fail(x, API_MISSING_BODY, "%s needs a body here", x->request.method);
+}
+
+bool api_refuse_format(api_exchange *x, const char *detail)
+{
+    const api_parameter *format = NULL;
+    for (size_t i = 0; format == NULL && x->route->parameters[i] != NULL; i++) {
+        bool found = strcmp(x->route->parameters[i]->name, "format") == 0;
+        format = found ? x->route->parameters[i] : NULL;
+    }
+    char names[100] = "";
+    for (size_t i = 0, used = 0; format != NULL && format->choices[i] != NULL; i++) {
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "",
+                                 format->choices[i]);
+        assert(used < sizeof names);
+    }
+    api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s: say ?format=, one of %s", detail, names);
+    x->problem.supported = x->route->consumes;
+    return false;
+}
+
+/* What programs say of any bytes: curl says nothing with -T, and that they are a form with
+ * --data-binary. */
+static bool is_generic(const char *type)
+{
+    return type == NULL || api_media_is(type, "text/plain") ||
+           api_media_is(type, "application/x-www-form-urlencoded");
+}
+
 static bool check_content_type(api_exchange *x)
 {
     const char *type = x->request.headers[API_HEADER_CONTENT_TYPE];
@@ -241,11 +278,18 @@ static bool check_content_type(api_exchange *x)
             return true;
         }
     }
-    if (type == NULL) {
-        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "the body has no Content-Type");
-    } else {
-        api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "\"%.100s\" is not read here", type);
+    char text[140] = "the body has no Content-Type";
+    if (type != NULL) {
+        snprintf(text, sizeof text, "\"%.100s\" is not read here", type);
     }
+    if (x->route->body_kind == API_BODY_UPLOAD) {
+        if (is_generic(type) && api_param_text(x, "format") != NULL) {
+            x->media_in = "application/octet-stream";
+            return true;
+        }
+        return api_refuse_format(x, text);
+    }
+    api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s", text);
     x->problem.supported = x->route->consumes;
     return false;
 }
@@ -260,8 +304,7 @@ static bool check_body(api_exchange *x)
         /* A form may send an empty body of a type of its own: no body is not a type of body. */
         bool typed = x->route->body_kind == API_BODY_OPTION &&
                      x->request.headers[API_HEADER_CONTENT_TYPE] != NULL && !check_content_type(x);
-        return (optional && !typed) ||
-               (!typed && api_fail(x, API_MISSING_BODY, "%s needs a body here", r->method));
+        return (optional && !typed) || (!typed && api_refuse_empty(x));
     }
     if (r->has_length && r->length > api_body_cap(x)) {
         return api_refuse_size(x);

@@ -16,5 +16,10 @@ bool api_load_mesh(api_exchange *x);
 uint64_t api_body_cap(const api_exchange *x);
 /* The body is longer, or there should be none. Always false. */
 bool api_refuse_size(api_exchange *x);
+/* The body that the route needs is missing or empty. Always false. */
+bool api_refuse_empty(api_exchange *x);
+/* An upload whose format nothing tells: `detail` says why, the formats there are follow. Always
+ * false. */
+bool api_refuse_format(api_exchange *x, const char *detail);
 
 #endif

@@ -483,12 +483,10 @@ static bool parse_body(api_exchange *x)
 {
     api_body_kind kind = x->route->body_kind;
     if (kind == API_BODY_NONE || kind == API_BODY_UPLOAD) {
-        return kind == API_BODY_NONE || x->received > 0 ||
-               api_fail(x, API_MISSING_BODY, "%s needs a body here", x->request.method);
+        return kind == API_BODY_NONE || x->received > 0 || api_refuse_empty(x);
     }
     if (x->received == 0) {
-        return kind == API_BODY_OPTION ||
-               api_fail(x, API_MISSING_BODY, "%s needs a body here", x->request.method);
+        return kind == API_BODY_OPTION || api_refuse_empty(x);
     }
     api_in_limits limits = {.values = kind == API_BODY_EDITS ? API_MAX_EDITS_VALUES
                                                              : API_MAX_CONTROL_VALUES};

@@ -237,8 +237,11 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
                            .length = length,
                            .has_body = body != NULL};
     read_headers(headers, &request);
-    if (body != NULL && request.headers[API_HEADER_CONTENT_TYPE] == NULL) {
-        request.headers[API_HEADER_CONTENT_TYPE] = "application/json";
+    const char **type = &request.headers[API_HEADER_CONTENT_TYPE];
+    if (body != NULL && *type == NULL) {
+        *type = "application/json";
+    } else if (*type != NULL && **type == '\0') {
+        *type = NULL;
     }
     bench_reply r = {.exchange = api_handle(b->service, &request, body, length)};
     free(path);
@@ -268,8 +271,11 @@ static void record(const char *method, const char *target, const char *const *he
     assert_non_null(out);
     bool typed = false;
     for (size_t i = 0; headers != NULL && headers[i] != NULL; i += 2) {
-        fprintf(out, "%s: %s\r\n", headers[i], headers[i + 1]);
-        typed |= strcasecmp(headers[i], "content-type") == 0;
+        bool type = strcasecmp(headers[i], "content-type") == 0;
+        typed |= type;
+        if (!type || headers[i + 1][0] != '\0') {
+            fprintf(out, "%s: %s\r\n", headers[i], headers[i + 1]);
+        }
     }
     if (body != NULL && !typed) {
         fputs("Content-Type: application/json\r\n", out);

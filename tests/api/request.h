@@ -36,7 +36,8 @@ typedef struct bench_reply {
 } bench_reply;
 
 /* `target` is path and query. `headers` are pairs name, value that end in NULL, or NULL; a body
- * without a Content-Type among them is application/json. `body` NULL sends none. */
+ * without a Content-Type among them is application/json; one that is "" is not sent. `body` NULL
+ * sends none. */
 bench_reply bench_send(api_bench *b, const char *method, const char *target,
                        const char *const *headers, const char *body);
 bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,

@@ -146,7 +146,7 @@ static void a_position_that_no_float_holds_is_named(void **state)
     bench_reply_free(&r);
     r = bench_expect(422, bench_send(b, "GET", "/v1/meshes/m/content?format=glb", NULL, NULL));
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "beyond_float");
-    assert_non_null(strstr(r.body, "first that of vertex 1"));
+    assert_non_null(strstr(r.body, "vertex 1 has a coordinate beyond the floats"));
     bench_reply_free(&r);
     bench_free(b);
 }
@@ -414,6 +414,74 @@ static void a_body_of_another_format_is_told(void **state)
     bench_free(b);
 }
 
+/* Whatever it was said to be: bytes of a picture are no number of facets. */
+static void a_body_that_is_no_mesh_is_called_by_its_name(void **state)
+{
+    (void)state;
+    static const char png[100] = "\x89PNG\r\n\x1A\n", zip[100] = "PK\3\4",
+                      page[100] = "<!DOCTYPE html><title>404</title>";
+    static const struct {
+        const char *target, *type, *body;
+        int status;
+        const char *words;
+    } rows[] = {
+        {"/v1/meshes", "application/octet-stream", png, 415, "\"the body is a PNG image\""},
+        {"/v1/meshes", "model/stl", png, 400, "\"the body is a PNG image\""},
+        {"/v1/meshes", "model/ply", png, 400, "\"the body is a PNG image\""},
+        {"/v1/meshes", "model/gltf-binary", png, 400, "\"the body is a PNG image\""},
+        {"/v1/meshes", "application/octet-stream", zip, 415, "as 3MF and USDZ files are: unpack"},
+        {"/v1/meshes?format=stl", "application/octet-stream", zip, 400, "a ZIP archive"},
+        {"/v1/meshes?format=obj", "application/octet-stream", page, 400, "an HTML page"},
+        {"/v1/meshes", "application/octet-stream", page, 415, "an HTML page"},
+    };
+    api_bench *b = with_cube();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const char *const headers[] = {"Content-Type", rows[i].type, NULL};
+        bench_reply r = bench_expect(rows[i].status, bench_send_bytes(b, "POST", rows[i].target,
+                                                                      headers, rows[i].body, 100));
+        if (strstr(r.body, rows[i].words) == NULL || strstr(r.body, "facets") != NULL) {
+            fail_msg("no %s in %s", rows[i].words, r.body);
+        }
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
+/* As curl -T sends it, and --data-binary. */
+static void a_format_that_is_named_stands_in_for_a_generic_type(void **state)
+{
+    (void)state;
+    static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    static const char *const types[] = {NULL, "text/plain; charset=utf-8",
+                                        "application/x-www-form-urlencoded",
+                                        "application/octet-stream"};
+    api_bench *b = bench_new();
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        const char *const headers[] = {"Content-Type", types[i] == NULL ? "" : types[i], NULL};
+        bench_reply r =
+            bench_send_bytes(b, "PUT", "/v1/meshes/part?format=obj", headers, obj, sizeof obj - 1);
+        r = bench_expect(i == 0 ? 201 : 200, r);
+        assert_non_null(strstr(r.body, "\"format\":\"obj\""));
+        bench_reply_free(&r);
+        r = bench_send_bytes(b, "PUT", "/v1/meshes/part", headers, obj, sizeof obj - 1);
+        r = bench_expect(i == 3 ? 200 : 415, r);
+        if (i < 3) {
+            assert_non_null(
+                strstr(r.body, "say ?format=, one of obj, off, ply, stl, glb, gltf, json"));
+            assert_non_null(strstr(r.body, "\"supported\":[\"application/json\",\"model/obj\""));
+        }
+        bench_reply_free(&r);
+    }
+    const char *const other[] = {"Content-Type", "image/png", NULL};
+    bench_reply r = bench_send_bytes(b, "PUT", "/v1/meshes/part?format=obj", other, obj, 5);
+    r = bench_expect(415, r);
+    bench_reply_free(&r);
+    r = bench_expect(400, bench_send(b, "PUT", "/v1/meshes/part?format=obj", NULL, ""));
+    assert_non_null(strstr(r.body, "the body is empty: send the bytes of a mesh file"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -428,6 +496,8 @@ int main(void)
         cmocka_unit_test(a_file_that_is_read_at_its_end_can_be_given_up),
         cmocka_unit_test(a_small_file_that_is_read_at_its_end_leaves_the_worker),
         cmocka_unit_test(a_body_of_another_format_is_told),
+        cmocka_unit_test(a_body_that_is_no_mesh_is_called_by_its_name),
+        cmocka_unit_test(a_format_that_is_named_stands_in_for_a_generic_type),
         cmocka_unit_test(a_report_says_what_was_read_and_what_was_not),
     };
     return cmocka_run_group_tests_name("files", tests, NULL, NULL);

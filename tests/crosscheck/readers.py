@@ -478,7 +478,7 @@ KNOWN = [
      'numbers that no header announces belong to the next line'),
     ('obj', 'daemon', 'does not begin a line', 'it may have been the end of a face'),
     ('obj', 'daemon', 'and [13] are needed|is not a number', 'a line without its values'),
-    ('obj', 'daemon', 'needs a body|has no vertices', 'a body without a line of the format'),
+    ('obj', 'daemon', 'the body is empty|has no vertices', 'a body without a line of the format'),
     ('off ply stl', 'daemon', 'NUL byte', 'no text has one'),
     ('stl', 'reference', 'bad-number.*#', 'a comment'),
     ('obj off stl', 'reference', r'\\\\', 'a backslash that ends a line is blank'),

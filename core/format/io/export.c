@@ -41,10 +41,14 @@ void he_narrowed_add(he_narrowed *narrowed, uint32_t vertex, he_vec3 position)
 he_status he_narrowed_finish(const he_narrowed *narrowed, he_notes *notes, he_error *err)
 {
     if (narrowed->beyond > 0) {
+        char more[40] = "";
+        if (narrowed->beyond > 1) {
+            snprintf(more, sizeof more, " (and %llu more)",
+                     (unsigned long long)narrowed->beyond - 1);
+        }
         return he_fail(err, HE_BEYOND_FLOAT, HE_VERTEX, narrowed->first,
-                       "%llu positions have a coordinate beyond the floats of this format, first "
-                       "that of vertex %u",
-                       (unsigned long long)narrowed->beyond, narrowed->first);
+                       "vertex %u has a coordinate beyond the floats of this format%s",
+                       narrowed->first, more);
     }
     he_notes_add_count(notes, "rounded", "rounded to floats: a position", narrowed->rounded);
     return HE_OK;

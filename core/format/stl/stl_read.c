@@ -210,9 +210,11 @@ static he_status take_header(stl *o, const unsigned char *bytes, he_error *err)
     o->has_header = true;
     o->count = o->left = word_at(bytes + COUNT_AT);
     if (o->count > HE_MAX_ROWS) {
-        return he_fail_at(err, HE_BAD_VALUE, HE_PLACE_BYTE, COUNT_AT,
-                          "%llu facets are more than a mesh can have",
-                          (unsigned long long)o->count);
+        return he_fail_at(
+            err, HE_BAD_VALUE, HE_PLACE_BYTE, COUNT_AT,
+            "not an STL file: it does not begin with \"solid\", and what should count "
+            "its facets is %llu",
+            (unsigned long long)o->count);
     }
     if (limit != 0 && o->count > limit) {
         return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, COUNT_AT,
