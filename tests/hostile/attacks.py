@@ -58,6 +58,7 @@ CHECK = get('check', '/check', 200, 202)
 CROSSINGS = get('crossings', '/check?self_intersections=true', 200, 202, 413)
 STL = get('STL', '/content?format=stl')
 GLB = get('GLB', '/content?format=glb')
+PACKED = get('packed GLB', '/content?format=glb&compress=meshopt')
 JSON = get('JSON', '/content?format=json')
 ASCII = get('PLY text', '/content?format=ply&encoding=ascii')
 GEOMETRY = get('geometry', '/geometry')
@@ -272,11 +273,21 @@ ROWS = [
     Row('20 MB of brackets in gzip', lambda: zipped(lambda: meshes.nested(20000000)),
         statuses=(400, 413), headers=ZIP),
 
+    # several files, and what is packed in one
+    Row('900,000 carriage returns between two delimiters',
+        lambda: meshes.parts(('a.bin', b'\r' * 900000)), statuses=(422,), quick=True),
+    Row('64 files', lambda: meshes.parts(*((f'{i}.obj', b'v 0 0 0\n' * 1500) for i in range(64))),
+        statuses=(422,), quick=True),
+    Row('12 MB of corners packed in 200 KB, twice', lambda: meshes.packed_zeros(3 << 18, 2),
+        statuses=(201, 202)),
+    Row('12 MB of corners packed in 200 KB, 20 times', lambda: meshes.packed_zeros(3 << 18, 20),
+        statuses=(413,)),
+
     # whole meshes from a few bytes
     Row('a torus of 300,000 faces', lambda: ('application/json', json.dumps(
         {'shape': 'torus', 'major_segments': 600, 'minor_segments': 500}).encode()),
-        [edit('dual'), Ask('undo', 'POST', '/undo', statuses=(200, 409)), CHECK, CROSSINGS, STL, GLB, GEOMETRY, JSON,
-         ASCII, *MEASURES, *TABLES, edit('subdivide'), edit('triangulate'),
+        [edit('dual'), Ask('undo', 'POST', '/undo', statuses=(200, 409)), CHECK, CROSSINGS, STL, GLB, PACKED, GEOMETRY,
+         JSON, ASCII, *MEASURES, *TABLES, edit('subdivide'), edit('triangulate'),
          PROGRESSIVE, COPY], (201, 202)),
     Row('an icosphere of 80,000 faces', lambda: (
         'application/json', b'{"shape":"icosphere","subdivisions":6}'),
@@ -285,7 +296,8 @@ ROWS = [
     # A file is sent at once however large the mesh is: the manual says what that takes.
     Row('a torus of a million faces', lambda: ('application/json', json.dumps(
         {'shape': 'torus', 'major_segments': 1000, 'minor_segments': 1000}).encode()),
-        [CHECK, get('check with merge', '/check?merge=0.01', 200, 202),
+        [get('packed GLB', '/content?format=glb&compress=meshopt', most=2000),
+         CHECK, get('check with merge', '/check?merge=0.01', 200, 202),
          get('crossings', '/check?self_intersections=true', 202),
          jobs(RAY), jobs(CLOSEST), jobs(CROSS), jobs(CROSS_OFTEN),
          get('STL', '/content?format=stl', most=2000), GLB, GEOMETRY, JSON, ASCII,

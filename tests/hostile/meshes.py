@@ -313,3 +313,35 @@ def book(pages):
     points = [(0, 0, 0), (0, 0, 9)] + [(round(30000 * x), round(30000 * y), 0)
                                        for x, y, _ in circle(pages)]
     return ply(points, [(0, 1, 2 + i) for i in range(pages)], 'short')
+
+
+def parts(*files):
+    """Several files in one body."""
+    body = b''.join(b'--x\r\nContent-Disposition: form-data; name="%s"\r\n\r\n%s\r\n'
+                    % (name.encode(), text) for name, text in files)
+    return 'multipart/form-data; boundary=x', body + b'--x--'
+
+
+def packed_zeros(count, views):
+    """A GLB whose views, all of the same stream, are corners at the origin: two bits say that 16
+    bytes are 0, and the first corner is written at the end."""
+    stride = 16
+    block = min(8192 // stride // 16 * 16, 256)
+    blocks = [min(block, count - i) for i in range(0, count, block)]
+    stream = b'\xa0' + b''.join(bytes(-(-(-(-n // 16)) // 4)) * stride for n in blocks) + bytes(32)
+    packed = {'buffer': 0, 'byteLength': len(stream), 'byteStride': stride, 'count': count,
+              'mode': 'ATTRIBUTES'}
+    stream += bytes(-len(stream) % 4)
+    text = json.dumps({
+        'asset': {'version': '2.0'},
+        'buffers': [{'byteLength': len(stream)}],
+        'bufferViews': [{'buffer': 0, 'byteLength': count * stride, 'byteStride': stride,
+                         'extensions': {'EXT_meshopt_compression': packed}}] * views,
+        'accessors': [{'bufferView': i, 'componentType': 5126, 'count': count, 'type': 'VEC3'}
+                      for i in range(views)],
+        'meshes': [{'primitives': [{'attributes': {'POSITION': i}} for i in range(views)]}],
+    }).encode()
+    text += b' ' * (-len(text) % 4)
+    return 'model/gltf-binary', (
+        struct.pack('<4sIII4s', b'glTF', 2, 28 + len(text) + len(stream), len(text), b'JSON')
+        + text + struct.pack('<I4s', len(stream), b'BIN\0') + stream)
