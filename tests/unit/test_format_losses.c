@@ -129,11 +129,9 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
         const char *format, *encoding, *text;
     } rows[] = {
         {"stl", "binary",
-         "2 positions have a coordinate beyond the floats of this format, first "
-         "that of vertex 1"},
+         "vertex 1 has a coordinate beyond the floats of this format (and 1 more)"},
         {"glb", "binary",
-         "3 positions have a coordinate beyond the floats of this format, first "
-         "that of vertex 0"},
+         "vertex 0 has a coordinate beyond the floats of this format (and 2 more)"},
         {"stl", "ascii", NULL},
         {"ply", "binary", NULL},
         {"obj", "ascii", NULL},
