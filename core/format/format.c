@@ -20,6 +20,7 @@ static const he_format formats[] = {
         .encodings = LIST("binary", "meshopt"),
         .carries = LIST("triangles", "polygons in extras", "isolated vertices", "vertex attributes",
                         "halfedge normal", "halfedge tangent", "halfedge uv", "halfedge color",
+                        "face object", "face group", "face material", "materials",
                         "face attributes in extras", "halfedge attributes in extras"),
         .sniff = he_glb_sniff,
         .reading = &he_glb_reading,

@@ -137,18 +137,237 @@ static void put_extras(text *t, const he_glb_parts *g)
     put_text(t, columns > 0 ? "]}}" : "}}");
 }
 
-static void put_meshes(text *t, const he_glb_parts *g)
+/* The primitive of all faces, as the reader of this program takes it. */
+static void put_whole(text *t, const he_glb_parts *g)
 {
     size_t triangles;
     bool faces = find_part(g, HE_GLB_TRIANGLES, &triangles) != NULL;
-    put_text(t, ",\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{");
     put_attributes(t, g);
     if (faces) {
         put_number(t, ",\"indices\":", triangles);
     }
     put_text(t, faces ? ",\"mode\":4" : ",\"mode\":0");
     put_extras(t, g);
+}
+
+static void put_name(text *t, const char *before, const char *name)
+{
+    if (*name != '\0') {
+        put_text(t, before);
+        put_text(t, "\"name\":");
+        put_string(t, name);
+    }
+}
+
+static void put_material_of(text *t, const he_glb_parts *g, const he_glb_group *group)
+{
+    uint32_t material = he_glb_material(g->mesh, &g->groups, group);
+    if (material != HE_NONE) {
+        put_number(t, ",\"material\":", material);
+    }
+}
+
+static bool same_mesh(const he_glb_group *a, const he_glb_group *b)
+{
+    return a->label[HE_GLB_OBJECT] == b->label[HE_GLB_OBJECT] &&
+           a->label[HE_GLB_GROUP] == b->label[HE_GLB_GROUP];
+}
+
+/* Does group i begin a mesh? */
+static bool begins_mesh(const he_glb_parts *g, size_t i)
+{
+    return i == 0 || !same_mesh(&g->groups.list[i], &g->groups.list[i - 1]);
+}
+
+static size_t count_meshes(const he_glb_parts *g)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < g->groups.count; i++) {
+        count += begins_mesh(g, i);
+    }
+    return count == 0 ? 1 : count;
+}
+
+/* A node has the name of its object, a mesh that of its group; where one of them is not named, both
+ * have the other's name. */
+static const char *name_of_node(const he_glb_parts *g, const he_glb_group *group)
+{
+    const char *object = he_glb_name(&g->groups, group, HE_GLB_OBJECT);
+    return *object != '\0' ? object : he_glb_name(&g->groups, group, HE_GLB_GROUP);
+}
+
+static const char *name_of_mesh(const he_glb_parts *g, const he_glb_group *group)
+{
+    const char *name = he_glb_name(&g->groups, group, HE_GLB_GROUP);
+    return *name != '\0' ? name : name_of_node(g, group);
+}
+
+static void put_nodes(text *t, const he_glb_parts *g)
+{
+    size_t mesh = 0;
+    put_text(t, ",\"nodes\":[");
+    for (size_t i = 0; i < g->groups.count; i++) {
+        if (begins_mesh(g, i)) {
+            put_number(t, mesh > 0 ? ",{\"mesh\":" : "{\"mesh\":", mesh);
+            put_name(t, ",", name_of_node(g, &g->groups.list[i]));
+            put_text(t, "}");
+            mesh++;
+        }
+    }
+    put_text(t, mesh > 0 ? "]" : "{\"mesh\":0}]");
+}
+
+/* One mesh of one primitive where nothing is told apart: its extras are those of all. */
+static void put_one_mesh(text *t, const he_glb_parts *g)
+{
+    put_text(t, ",\"meshes\":[{");
+    if (g->groups.count == 1) {
+        const char *name = name_of_mesh(g, &g->groups.list[0]);
+        put_name(t, "", name);
+        put_text(t, *name != '\0' ? "," : "");
+    }
+    put_text(t, "\"primitives\":[{");
+    put_whole(t, g);
+    if (g->groups.count == 1) {
+        put_material_of(t, g, &g->groups.list[0]);
+    }
     put_text(t, "}]}]");
+}
+
+static void put_meshes(text *t, const he_glb_parts *g)
+{
+    put_nodes(t, g);
+    if (g->groups.count < 2) {
+        put_one_mesh(t, g);
+        return;
+    }
+    put_text(t, ",\"meshes\":[");
+    for (size_t i = 0; i < g->groups.count; i++) {
+        const he_glb_group *group = &g->groups.list[i];
+        if (begins_mesh(g, i)) {
+            put_text(t, i > 0 ? "]},{" : "{");
+            const char *name = name_of_mesh(g, group);
+            put_name(t, "", name);
+            put_text(t, *name != '\0' ? ",\"primitives\":[" : "\"primitives\":[");
+        } else {
+            put_text(t, ",");
+        }
+        put_text(t, "{");
+        put_attributes(t, g);
+        put_number(t, ",\"indices\":", g->count + i);
+        put_text(t, ",\"mode\":4");
+        put_material_of(t, g, group);
+        put_text(t, "}");
+    }
+    put_text(t, "]}]");
+}
+
+/* --- materials --- */
+
+static void put_double(text *t, const char *before, double value)
+{
+    char digits[HE_NUMBER_TEXT];
+    put_text(t, before);
+    put(t, digits, he_double_print(value, digits));
+}
+
+static void put_color(text *t, const char *name, const double *numbers, size_t count, double scale)
+{
+    put_text(t, name);
+    for (size_t i = 0; i < count; i++) {
+        put_double(t, i == 0 ? "[" : ",", numbers[i] / scale);
+    }
+    put_text(t, "]");
+}
+
+/* A power of two that no number of the emission is above: the factors are exact then. */
+static double strength_of(const he_look *look)
+{
+    double strength = 1;
+    for (size_t i = 0; i < 3; i++) {
+        while (strength < look->emission[i] && strength < DBL_MAX / 2) {
+            strength *= 2;
+        }
+    }
+    return strength;
+}
+
+static void put_row(text *t, const he_material *row, bool *strong)
+{
+    const he_look *look = &row->look;
+    double strength = strength_of(look);
+    put_name(t, "{", row->name);
+    put_color(t, ",\"pbrMetallicRoughness\":{\"baseColorFactor\":", look->base_color, 4, 1);
+    put_double(t, ",\"metallicFactor\":", look->metallic);
+    put_double(t, ",\"roughnessFactor\":", look->roughness);
+    put_color(t, "},\"emissiveFactor\":", look->emission, 3, strength);
+    if (strength > 1) {
+        *strong = true;
+        put_double(t, ",\"extensions\":{\"" HE_GLTF_EMISSIVE_STRENGTH "\":{\"emissiveStrength\":",
+                   strength);
+        put_text(t, "}}");
+    }
+    put_text(t, look->base_color[3] < 1 ? ",\"alphaMode\":\"BLEND\"" : "");
+    put_text(t, look->two_sided ? ",\"doubleSided\":true}" : "}");
+}
+
+/* Rows of the table, then names that are not in it. */
+static void put_materials(text *t, const he_glb_parts *g, bool *strong)
+{
+    const he_materials *table = he_mesh_materials(g->mesh);
+    static const char first[] = ",\"materials\":[";
+    bool any = false;
+    for (size_t i = 0; i < table->count; i++) {
+        if (table->rows[i] != NULL) {
+            put_text(t, any ? "," : first);
+            put_row(t, table->rows[i], strong);
+            any = true;
+        }
+    }
+    for (size_t i = 0; i < g->groups.only_names.count; i++) {
+        const he_labels *labels = g->groups.names[HE_GLB_MATERIAL]->labels;
+        put_text(t, any ? "," : first);
+        put_name(t, "{", he_labels_get(labels, g->groups.only_names.ids[i]));
+        put_text(t, ",\"extras\":{\"hedge\":\"name\"}}");
+        any = true;
+    }
+    put_text(t, any ? "]" : "");
+}
+
+/* The names of materials, so that a reader sees whether another program gave them others. */
+static void put_names(text *t, const he_glb_parts *g)
+{
+    const he_materials *table = he_mesh_materials(g->mesh);
+    const char *between = "";
+    put_text(t, ",\"materials\":[");
+    for (size_t i = 0; i < table->count; i++) {
+        if (table->rows[i] != NULL) {
+            put_text(t, between);
+            put_string(t, table->rows[i]->name);
+            between = ",";
+        }
+    }
+    for (size_t i = 0; i < g->groups.only_names.count; i++) {
+        const he_labels *labels = g->groups.names[HE_GLB_MATERIAL]->labels;
+        put_text(t, between);
+        put_string(t, he_labels_get(labels, g->groups.only_names.ids[i]));
+        between = ",";
+    }
+    put_text(t, "]");
+}
+
+/* Where faces are told apart, what puts them together again: gltf_whole.h. */
+static void put_root_extras(text *t, const he_glb_parts *g)
+{
+    size_t order;
+    if (find_part(g, HE_GLB_ORDER, &order) == NULL) {
+        return;
+    }
+    put_number(t, ",\"extras\":{\"hedge\":{\"order\":", order);
+    put_names(t, g);
+    put_text(t, ",\"primitive\":{");
+    put_whole(t, g);
+    put_text(t, "}}}");
 }
 
 /* --- accessors and views --- */
@@ -175,6 +394,20 @@ static void put_box(text *t, const he_mesh *m)
     put_text(t, "]");
 }
 
+/* Of each group its share of the triangles. */
+static void put_group_accessors(text *t, const he_glb_parts *g)
+{
+    size_t triangles;
+    const he_glb_part *part = find_part(g, HE_GLB_TRIANGLES, &triangles);
+    for (size_t i = 0; part != NULL && g->groups.count > 1 && i < g->groups.count; i++) {
+        put_number(t, ",{\"bufferView\":", triangles);
+        put_number(t, ",\"byteOffset\":", 3 * g->groups.list[i].first * part->stride);
+        put_number(t, ",\"componentType\":", part->type);
+        put_number(t, ",\"count\":", 3 * g->groups.list[i].triangles);
+        put_text(t, ",\"type\":\"SCALAR\"}");
+    }
+}
+
 static void put_accessors(text *t, const he_glb_parts *g)
 {
     static const char *const shapes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -191,6 +424,7 @@ static void put_accessors(text *t, const he_glb_parts *g)
         }
         put_text(t, "}");
     }
+    put_group_accessors(t, g);
     put_text(t, "]");
 }
 
@@ -231,7 +465,6 @@ static void put_views(text *t, const he_glb_parts *g)
 
 static void put_buffers(text *t, const he_glb_parts *g)
 {
-    static const char name[] = "\":[\"" HE_GLTF_MESHOPT "\"]";
     put_number(t, ",\"buffers\":[{\"byteLength\":", he_glb_bin_bytes(g));
     put_text(t, "}");
     if (g->packs) {
@@ -239,26 +472,43 @@ static void put_buffers(text *t, const he_glb_parts *g)
         put_text(t, ",\"extensions\":{\"" HE_GLTF_MESHOPT "\":{\"fallback\":true}}}");
     }
     put_text(t, "]");
-    if (g->packs) {
-        put_text(t, ",\"extensionsUsed");
-        put_text(t, name);
-        put_text(t, ",\"extensionsRequired");
-        put_text(t, name);
+}
+
+static void put_extensions(text *t, bool packs, bool strong)
+{
+    if (packs || strong) {
+        put_text(t, ",\"extensionsUsed\":[");
+        put_text(t, packs ? "\"" HE_GLTF_MESHOPT "\"" : "");
+        put_text(t, packs && strong ? "," : "");
+        put_text(t, strong ? "\"" HE_GLTF_EMISSIVE_STRENGTH "\"]" : "]");
     }
+    put_text(t, packs ? ",\"extensionsRequired\":[\"" HE_GLTF_MESHOPT "\"]" : "");
+}
+
+static void put_scene(text *t, const he_glb_parts *g)
+{
+    put_text(t,
+             "{\"asset\":{\"version\":\"2.0\",\"generator\":\"hedge\"},\"scene\":0,\"scenes\":[{");
+    for (size_t i = 0; g->count > 0 && i < count_meshes(g); i++) {
+        put_number(t, i == 0 ? "\"nodes\":[" : ",", i);
+    }
+    put_text(t, g->count > 0 ? "]}]" : "}]");
 }
 
 he_status he_glb_describe(he_glb_parts *g, he_error *err)
 {
     text t = {0};
-    put_text(&t,
-             "{\"asset\":{\"version\":\"2.0\",\"generator\":\"hedge\"},\"scene\":0,\"scenes\":[");
-    put_text(&t, g->count > 0 ? "{\"nodes\":[0]}]" : "{}]");
+    bool strong = false;
+    put_scene(&t, g);
+    put_materials(&t, g, &strong);
     if (g->count > 0) {
         put_meshes(&t, g);
         put_accessors(&t, g);
         put_views(&t, g);
         put_buffers(&t, g);
+        put_root_extras(&t, g);
     }
+    put_extensions(&t, g->packs && g->count > 0, strong);
     put_text(&t, "}");
     while (!t.failed && t.length % 4 != 0) {
         put_text(&t, " ");

@@ -24,6 +24,7 @@ he_meshopt_stream he_glb_part_stream(const he_glb_part *part)
     case HE_GLB_POSITIONS:
     case HE_GLB_VALUES:
     case HE_GLB_DEGREES:
+    case HE_GLB_ORDER:
         break;
     }
     return stream;

@@ -20,6 +20,7 @@ void he_glb_parts_clear(he_glb_parts *parts)
     he_mem_free(parts->numbers);
     he_splits_clear(&parts->splits);
     he_cuts_clear(&parts->cuts);
+    he_glb_groups_clear(&parts->groups);
     he_mem_free(parts->parts);
     he_mem_free(parts->streams);
     he_mem_free(parts->json);
@@ -352,6 +353,11 @@ static void add_rest_of_geometry(he_glb_parts *g)
         words.count = corner_count(m);
         add(g, words);
     }
+    if (g->groups.order != NULL) {
+        words.content = HE_GLB_ORDER;
+        words.count = faces;
+        add(g, words);
+    }
 }
 
 static he_status add_parts(he_glb_parts *g, const he_column **used, he_watch *watch,
@@ -400,12 +406,15 @@ static he_status make(he_glb_parts *g, he_watch *watch, he_notes *notes, he_erro
         status = he_cuts_make(g->mesh, watch, &g->cuts, err);
     }
     if (status == HE_OK) {
+        status = he_glb_groups_make(g->mesh, notes, &g->groups, err);
+    }
+    if (status == HE_OK) {
         status = he_export_numbers(g->mesh, &g->numbers, err);
     }
     if (status != HE_OK) {
         return status;
     }
-    g->capacity = 5 + 2 * columns;
+    g->capacity = 6 + 2 * columns;
     g->parts = he_mem_array(NULL, g->capacity, sizeof *g->parts);
     const he_column **used = he_mem_zero(columns + 1, sizeof *used);
     if (g->parts == NULL || used == NULL) {

@@ -8,6 +8,7 @@
 
 #include "format/gltf/gltf_attribute.h"
 #include "format/gltf/meshopt.h"
+#include "format/gltf/glb_groups.h"
 #include "format/io/cuts.h"
 #include "format/io/splits.h"
 
@@ -18,6 +19,7 @@ typedef enum he_glb_content {
     HE_GLB_COPIES,  /* of each copy the vertex that it is one of (splits.h) */
     HE_GLB_DEGREES, /* of faces */
     HE_GLB_CORNERS, /* vertices of faces */
+    HE_GLB_ORDER,   /* of faces as they are written: the number of each in the order of ids */
     HE_GLB_WORDS    /* an attribute as it is in memory, a bool as a word */
 } he_glb_content;
 
@@ -41,6 +43,7 @@ typedef struct he_glb_parts {
     uint32_t *numbers; /* of vertices, NULL where those are their ids */
     he_splits splits;  /* where corners say more than their vertices can */
     he_cuts cuts;
+    he_glb_groups groups; /* of faces */
     he_glb_part *parts;
     size_t count, capacity;
     uint64_t bytes; /* of the buffer, a multiple of 4 */

@@ -18,7 +18,8 @@
  * skins, animations and morph targets: a mesh is as its node places it.
  *
  * Attributes of vertices are those of gltf_attribute.h; of faces, "object" is the name of the node,
- * else of the mesh, and "material" that of the material, material_N where it has none. Polygons
+ * else of the mesh, and "material" that of the material. Materials are rows of the table
+ * (gltf_material.h). Polygons
  * and all that glTF has no place for are in the extras of files that were written here
  * (gltf_private.h).
  *
@@ -28,7 +29,9 @@
  * reached twice or are inside themselves; and scenes that make more than gltf_asset.h allows. The
  * errors have the byte, and the path in the JSON.
  *
- * WRITING. One mesh of one primitive: all vertices, in the order of ids, as floats, and triangles.
+ * WRITING. A mesh for each object and group of faces, in it a primitive for each material, all of
+ * them with all vertices, in the order of ids, as floats, and each with its triangles
+ * (glb_groups.h). Materials are rows of the table and names that are not in it.
  * normal, tangent, uv, color, joints and weights of vertices and other attributes of floats are
  * glTF attributes as they are read. Of corners those of that list are, before those of vertices of
  * the same name: where corners of a vertex differ, there are copies of it behind all vertices

@@ -1,6 +1,7 @@
 #include "format/gltf/gltf_scene.h"
 
 #include "format/gltf/gltf_surface.h"
+#include "format/gltf/gltf_whole.h"
 
 #include <math.h>
 #include <string.h>
@@ -394,13 +395,21 @@ he_status he_gltf_read_scene(he_gltf *asset, he_error *err)
     if (status == HE_OK) {
         status = find_scene(asset, &chosen, err);
     }
+    bool whole = false;
     if (status == HE_OK) {
+        status = he_gltf_add_whole(&s.surface, chosen, &whole, err);
+    }
+    if (status == HE_OK && !whole) {
         status = chosen != HE_NONE        ? visit_scene(&s, chosen, err)
                  : asset->nodes.count > 0 ? visit_roots(&s, err)
                                           : add_all_meshes(&s, err);
     }
     if (status == HE_OK) {
         status = he_gltf_surface_finish(&s.surface, err);
+    }
+    if (status == HE_OK && whole) {
+        status = he_gltf_order_whole(&s.surface, err);
+    } else if (status == HE_OK) {
         note_meshes(&s);
     }
     he_labels_release(s.surface.names);

@@ -289,8 +289,8 @@ static bool is_still(const he_gltf_frame *frame)
     return same;
 }
 
-static he_status add_primitive(he_gltf_surface *s, uint32_t value, uint32_t name,
-                               const he_gltf_frame *frame, he_error *err)
+he_status he_gltf_add_primitive(he_gltf_surface *s, uint32_t value, uint32_t name,
+                                const he_gltf_frame *frame, he_error *err)
 {
     he_gltf *asset = s->asset;
     const he_json *json = &asset->json;
@@ -375,7 +375,7 @@ he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t nam
     for (uint32_t i = he_json_first(json, primitives); i != HE_NONE && status == HE_OK;
          i = he_json_after(json, primitives, i)) {
         status = he_json_type(json, i) == '{'
-                     ? add_primitive(surface, i, name, frame, err)
+                     ? he_gltf_add_primitive(surface, i, name, frame, err)
                      : he_json_fail(json, i, err, HE_BAD_VALUE, "this is not an object");
     }
     return status;

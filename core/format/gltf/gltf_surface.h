@@ -30,6 +30,10 @@ void he_gltf_surface_clear(he_gltf_surface *surface);
  * none. A failure leaves the soup with a part. */
 HE_NODISCARD he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t name,
                                         const he_gltf_frame *frame, he_error *err);
+/* Add one primitive likewise. */
+HE_NODISCARD he_status he_gltf_add_primitive(he_gltf_surface *surface, uint32_t primitive,
+                                             uint32_t name, const he_gltf_frame *frame,
+                                             he_error *err);
 /* Make the attributes of faces. */
 HE_NODISCARD he_status he_gltf_surface_finish(he_gltf_surface *surface, he_error *err);
 

@@ -17,6 +17,7 @@ typedef struct glb_writer {
     he_glb_parts g;
     uint32_t
         *at; /* where vertices are split: of each vertex the number in the face that is written */
+    uint32_t *ranks; /* of faces among the live ones, NULL where that is their id */
     stage stage;
     size_t json;       /* next byte */
     size_t part;       /* that is being written */
@@ -32,6 +33,7 @@ static void glb_close(void *state)
     glb_writer *w = state;
     he_glb_parts_clear(&w->g);
     he_mem_free(w->at);
+    he_mem_free(w->ranks);
     he_mem_free(w);
 }
 
@@ -116,6 +118,9 @@ static uint32_t next_vertex(glb_writer *w)
 static uint32_t next_face(glb_writer *w)
 {
     uint32_t issued = w->g.mesh->c.faces.issued;
+    if (w->g.groups.order != NULL) {
+        return w->row < w->g.mesh->c.faces.live ? w->g.groups.order[w->row++] : HE_NONE;
+    }
     while (w->row < issued && !he_face_is_live(w->g.mesh, (he_face){w->row})) {
         w->row++;
     }
@@ -156,14 +161,22 @@ static void enter_face(const glb_writer *w, uint32_t face)
 static char *put_triangle(glb_writer *w, const he_glb_part *part, char *p)
 {
     uint32_t v[3];
-    bool begins = w->walk.left == 0;
-    if (he_cuts_next(&w->g.cuts, &w->walk, v)) {
-        if (w->at != NULL && begins) {
-            enter_face(w, w->walk.face - (w->walk.left == 0));
+    if (w->walk.left == 0) {
+        uint32_t face = next_face(w);
+        if (face == HE_NONE) {
+            return p;
         }
-        for (size_t i = 0; i < 3; i++) {
-            p = put_word(w->at != NULL ? w->at[v[i]] : number_of(w, v[i]), part->stride, p);
+        w->walk.face = face;
+        if (w->g.groups.cut != NULL) {
+            w->walk.corner = w->g.groups.cut[face];
         }
+        if (w->at != NULL) {
+            enter_face(w, face);
+        }
+    }
+    (void)he_cuts_next(&w->g.cuts, &w->walk, v);
+    for (size_t i = 0; i < 3; i++) {
+        p = put_word(w->at != NULL ? w->at[v[i]] : number_of(w, v[i]), part->stride, p);
     }
     return p;
 }
@@ -217,6 +230,9 @@ static char *put_element(glb_writer *w, const he_glb_part *part, char *p)
     case HE_GLB_CORNERS:
         id = next_corner(w);
         return id == HE_NONE ? p : put_word(number_of(w, m->c.origin[id]), 4, p);
+    case HE_GLB_ORDER:
+        id = next_face(w);
+        return id == HE_NONE ? p : put_word(w->ranks != NULL ? w->ranks[id] : id, 4, p);
     case HE_GLB_WORDS:
         break;
     }
@@ -269,6 +285,24 @@ static he_status pack(glb_writer *w, he_watch *watch, he_error *err)
 
 /* --- the file --- */
 
+static he_status rank_faces(glb_writer *w, he_error *err)
+{
+    const he_content *c = &w->g.mesh->c;
+    uint32_t next = 0;
+    if (c->faces.live == c->faces.issued) {
+        return HE_OK;
+    }
+    w->ranks = he_mem_array(NULL, c->faces.issued, sizeof *w->ranks);
+    if (w->ranks == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to number %u faces", c->faces.issued);
+    }
+    for (uint32_t f = 0; f < c->faces.issued; f++) {
+        w->ranks[f] = next;
+        next += he_face_is_live(w->g.mesh, (he_face){f});
+    }
+    return HE_OK;
+}
+
 static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
                           void **state, he_error *err)
 {
@@ -284,6 +318,9 @@ static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
         if (w->at == NULL) {
             status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
         }
+    }
+    if (status == HE_OK && w->g.groups.order != NULL) {
+        status = rank_faces(w, err);
     }
     if (status == HE_OK && packs) {
         status = pack(w, watch, err);
