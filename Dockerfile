@@ -1,7 +1,7 @@
 # An image of hedged with its page: only the program, what it links and what a browser loads.
 #
 #   docker build -t hedge .
-#   docker run --read-only -e HEDGE_INSECURE=1 -p 127.0.0.1:8080:8080 hedge
+#   docker run --read-only -v hedge:/data -e HEDGE_INSECURE=1 -p 127.0.0.1:8080:8080 hedge
 #
 # Inside, only an address beyond loopback can be reached from outside the container, and hedged takes
 # such a one only when HEDGE_INSECURE=1 says that requests without a token are meant. -p decides who
@@ -46,8 +46,11 @@ RUN apt-get -q update && \
 COPY LICENSE /usr/local/share/doc/hedge/
 COPY --from=page /src/build/web /usr/local/share/hedge/web
 COPY --from=build /src/build/hedged /usr/local/bin/
-# The health check reads the port from here too.
-ENV HEDGE_LISTEN=0.0.0.0:8080
+# Meshes are kept here, and nothing else is written to.
+RUN install -d -o 10001 -g 10001 -m 700 /data
+VOLUME /data
+# The health check reads the port from here too, --backup and --restore the store.
+ENV HEDGE_LISTEN=0.0.0.0:8080 HEDGE_STORE=sqlite:/data
 EXPOSE 8080
 USER 10001:10001
 STOPSIGNAL SIGTERM

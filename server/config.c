@@ -37,7 +37,7 @@ static const option options[] = {
      "let pages of this origin (https://name) read and write; may be repeated or a comma list"},
     {"web", TEXT, MEMBER(web), "", "DIR", 0, 0,
      "folder of the built page; otherwise looked for beside the executable"},
-    {"store", TEXT, MEMBER(store), "memory", "memory|sqlite:DIR", 0, 0,
+    {"store", TEXT, MEMBER(store), "sqlite:./hedge-data", "memory|sqlite:DIR", 0, 0,
      "where meshes are kept: in memory until the daemon stops, or for good in a folder, which is "
      "made "
      "where it is missing"},
@@ -54,7 +54,7 @@ static const option options[] = {
      "memory for the history of one mesh; the oldest edits go first"},
     {"no-compression", FLAG, MEMBER(no_compression), "0", NULL, 0, 0,
      "send answers as they are, whatever coding a client accepts"},
-    {"max-meshes", COUNT, MEMBER(max_meshes), "10000", "N", 1, 10000000, "meshes at once"},
+    {"max-meshes", COUNT, MEMBER(max_meshes), "10000000", "N", 1, 10000000, "meshes in the store"},
     {"workers", COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0 takes one a core"},
     {"jobs", COUNT, MEMBER(jobs), "0", "N", 0, 64,

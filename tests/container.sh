@@ -140,6 +140,13 @@ creates_and_edits() {
     curl -sSf "$base/v1/meshes/box" | grep -q '"vertices":9,'
 }
 
+# The mesh that creates_and_edits made, by a daemon that has stopped, and its undo.
+is_still_there() {
+    curl -sSf "$base/v1/meshes/box" | grep -q '"vertices":9,' || return 1
+    curl -sSf -X POST "$base/v1/meshes/box/undo" | grep -q '"revision":3,' || return 1
+    curl -sSf "$base/v1/meshes/box" | grep -q '"vertices":8,'
+}
+
 is_healthy() {
     inside "--env HEDGE_LISTEN=0.0.0.0:${base##*:}" hedged --healthcheck
 }
@@ -175,12 +182,15 @@ start_in_container() {
     wait_until_ready && find_first
 }
 
-# As an engine runs it with --read-only: the first process of its own, on a root nobody can write to.
+# As an engine runs it with --read-only and a volume: the first process of its own, on a root nobody
+# can write to but for /data.
 start_read_only() {
-    env -i HEDGE_INSECURE=1 HEDGE_LISTEN=0.0.0.0:0 PATH="$PATH:/usr/local/bin" \
-        unshare --mount --pid --fork sh -c '
+    install -d -o 10001 -g 10001 -m 700 "$work/data" || return 1
+    env -i HEDGE_INSECURE=1 HEDGE_LISTEN=0.0.0.0:0 HEDGE_STORE=sqlite:/data \
+        PATH="$PATH:/usr/local/bin" unshare --mount --pid --fork sh -c '
             mount --bind "$1" "$1" && mount -o remount,bind,ro "$1" && mount -t proc proc "$1/proc" &&
-                exec chroot --userspec=10001:10001 "$1" hedged --log off' - "$root" \
+                mount --bind "$2" "$1/data" &&
+                exec chroot --userspec=10001:10001 "$1" hedged --log off' - "$root" "$work/data" \
         2>"$work/log" &
     daemon=$!
     exec 4<"$work/log"
@@ -222,5 +232,10 @@ if [ -n "$base" ]; then
     check 'it is process 1, without rights, on a root that cannot be written' is_locked_in
     check 'a mesh is created and edited there' creates_and_edits
     check 'SIGTERM stops process 1 with status 0' stops
+fi
+check 'it starts again with the same volume' start_read_only
+if [ -n "$base" ]; then
+    check 'the mesh and its undo are still there' is_still_there
+    check 'SIGTERM stops it again' stops
 fi
 end

@@ -79,7 +79,7 @@ man_is_clean() {
 }
 
 unit_is_whole() {
-    grep -qx 'ExecStart=/usr/bin/hedged' "$unit" && ! grep -n '@[A-Z]*@' "$unit"
+    grep -qx 'ExecStart=/usr/bin/hedged' "$unit" && grep -qx 'StateDirectory=hedge' "$unit" && ! grep -n '@[A-Z]*@' "$unit"
 }
 
 # systemd grades what a service may do from 0 (nothing) to 100.
