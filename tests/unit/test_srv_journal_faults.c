@@ -7,8 +7,11 @@
 
 #include "stored/stored.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <sys/statvfs.h>
 
 static char folder[FOLDER_PATH];
 static he_mesh *content;
@@ -118,6 +121,61 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     assert_int_equal(count_records(j, "a", &records), ST_OK);
     assert_int_equal(records, 2);
     assert_int_equal(told_losses(&told), 1);
+    told_end(&told);
+}
+
+/* Files that SQLite does not write find no space either. */
+static bool no_space;
+
+int __real_fstatvfs(int file, struct statvfs *out);
+int __wrap_fstatvfs(int file, struct statvfs *out);
+int __real_posix_fallocate(int file, off_t from, off_t size);
+int __wrap_posix_fallocate(int file, off_t from, off_t size);
+
+int __wrap_fstatvfs(int file, struct statvfs *out)
+{
+    int failed = __real_fstatvfs(file, out);
+    out->f_bavail = no_space ? 0 : out->f_bavail;
+    return failed;
+}
+
+int __wrap_posix_fallocate(int file, off_t from, off_t size)
+{
+    return no_space ? ENOSPC : __real_posix_fallocate(file, from, size);
+}
+
+static bool has_ballast(void)
+{
+    size_t size = 0;
+    free(folder_read(folder, "ballast", &size));
+    return size > 0;
+}
+
+/* The ballast makes room for the start, and what is left of it is for removals. */
+static void a_store_starts_from_a_full_disk(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, 0);
+    told_wait(&told, kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0));
+    told_end(&told);
+    assert_true(has_ballast());
+    no_space = true;
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    assert_false(has_ballast());
+    unsigned records;
+    assert_int_equal(count_records(j, "a", &records), ST_OK);
+    kept_mesh refused = mesh;
+    assert_int_equal(kept_append(j, kept_edit(&refused), &refused, "1", 1), 0);
+    assert_int_equal(kept_status(), ST_FULL);
+    told_wait(&told, kept_append(j, kept_remove(&mesh), &mesh, NULL, 0));
+    assert_int_equal(told_losses(&told), 0);
+    assert_int_equal(count_records(j, "a", &records), ST_ABSENT);
+    no_space = false;
+    j->leave(j->self, reserve_after(j, ST_FULL, false));
+    assert_true(has_ballast());
     told_end(&told);
 }
 
@@ -413,6 +471,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
         STORE_TEST(a_full_disk_loses_what_is_queued_and_recovers),
+        STORE_TEST(a_store_starts_from_a_full_disk),
         STORE_TEST(rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile),
         STORE_TEST(what_was_made_and_lost_was_never_there),
         STORE_TEST(after_a_failed_sync_nothing_is_acknowledged),

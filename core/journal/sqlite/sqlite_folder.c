@@ -8,10 +8,11 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <sys/vfs.h>
 #include <unistd.h>
 
-enum { BALLAST_BYTES = 8 << 20, WHO = 256 };
+enum { BALLAST_BYTES = 8 << 20, START_BYTES = 1 << 20, WHO = 256 };
 
 static bool fail(st_folder *folder, const char *what, const char *name)
 {
@@ -210,4 +211,11 @@ bool st_ballast_make(st_folder *folder)
 bool st_ballast_drop(st_folder *folder)
 {
     return unlinkat(folder->folder, "ballast", 0) == 0;
+}
+
+bool st_ballast_drop_for_start(st_folder *folder)
+{
+    struct statvfs space;
+    return fstatvfs(folder->folder, &space) == 0 &&
+           (uint64_t)space.f_bavail * space.f_frsize < START_BYTES && st_ballast_drop(folder);
 }

@@ -55,5 +55,7 @@ bool st_mark_sync(st_folder *folder);
 bool st_ballast_make(st_folder *folder);
 /* Gives it up. False when there was none. */
 bool st_ballast_drop(st_folder *folder);
+/* Gives it up where the disk is too full to start from; false where it is not. */
+bool st_ballast_drop_for_start(st_folder *folder);
 
 #endif

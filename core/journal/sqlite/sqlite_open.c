@@ -289,6 +289,7 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
     if (!st_folder_open(&self->folder, options->folder)) {
         return refuse(out->message, "%s", self->folder.message);
     }
+    const bool full = st_ballast_drop_for_start(&self->folder);
     if (!st_sqlite_finish_restore(&self->folder) || !st_mark_open(&self->folder)) {
         return refuse(out->message, "%s", self->folder.message);
     }
@@ -298,7 +299,11 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
     if (!open_database(self, options->release, path, out) || !clean_up(self, path, out)) {
         return false;
     }
-    (void)st_ballast_make(&self->folder); /* without space for it the store works all the same */
+    /* Without space for it the store works all the same; but where it was needed to start, the disk
+     * is full and goes on being so: the room that it left is for removals. */
+    if (!st_ballast_make(&self->folder) && full) {
+        self->mode = ST_WRITES_FULL;
+    }
     st_sql outcome = st_readers_open(self, path);
     return outcome == ST_SQL_DONE ? start_thread(self, out)
                                   : st_sqlite_explain(&self->db, path, outcome, out->message);
