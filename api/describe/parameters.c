@@ -8,6 +8,7 @@
 #include <float.h>
 
 static const char *const formats[] = {"obj", "off", "ply", "stl", "glb", "gltf", "json", NULL};
+static const char *const formats_out[] = {"obj", "mtl", "off", "ply", "stl", "glb", "json", NULL};
 static const char *const encodings[] = {"ascii", "binary", "binary_big_endian", NULL};
 static const char *const compressions[] = {"meshopt", NULL};
 static const char *const connections[] = {"vertex", "edge", NULL};
@@ -57,6 +58,10 @@ const api_parameter api_parameter_format = {
     formats,
     "The format, in place of the media type. Of an upload that may then be missing, text/plain "
     "or application/x-www-form-urlencoded, as programs say that do not know it."};
+const api_parameter api_parameter_format_out = {
+    "format",    API_PARAM_CHOICE,
+    0,           0,
+    formats_out, "The format, in place of the media type; mtl is the material library of obj."};
 const api_parameter api_parameter_encoding = {
     "encoding", API_PARAM_CHOICE, 0,
     0,          encodings,        "Text or binary, where a format has both; binary if not said."};

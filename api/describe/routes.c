@@ -23,14 +23,20 @@ static const char *const mesh_in[] = {"application/json",
                                       "application/octet-stream",
                                       API_MULTIPART,
                                       NULL};
-static const char *const mesh_out[] = {
-    "application/json", "model/obj",         "model/x-off", "model/ply",
-    "model/stl",        "model/gltf-binary", NULL};
+static const char *const mesh_out[] = {"application/json",  "model/obj", "model/mtl",
+                                       "model/x-off",       "model/ply", "model/stl",
+                                       "model/gltf-binary", NULL};
 static const char *const event_stream[] = {"text/event-stream", NULL};
-static const char *const job_results[] = {
-    "application/json", "application/x-ndjson", "application/octet-stream",
-    "model/obj",        "model/x-off",          "model/ply",
-    "model/stl",        "model/gltf-binary",    NULL};
+static const char *const job_results[] = {"application/json",
+                                          "application/x-ndjson",
+                                          "application/octet-stream",
+                                          "model/obj",
+                                          "model/mtl",
+                                          "model/x-off",
+                                          "model/ply",
+                                          "model/stl",
+                                          "model/gltf-binary",
+                                          NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
                                        "text/javascript",
@@ -188,7 +194,7 @@ static const api_route routes[] = {
      .cost = api_content_cost,
      .flags = API_EXPENSIVE | API_OWN_ACCEPT | API_LONG,
      .produces = mesh_out,
-     .parameters = {&api_parameter_revision, &api_parameter_format, &api_parameter_encoding,
+     .parameters = {&api_parameter_revision, &api_parameter_format_out, &api_parameter_encoding,
                     &api_parameter_compress},
      .headers = {&warnings},
      .statuses = {200, 202, 304, 410, 422},

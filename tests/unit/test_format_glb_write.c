@@ -161,7 +161,8 @@ static void what_is_not_carried_is_said(void **state)
     assert_int_equal(find_note(&notes, "triangulated", "")->count, 1);
     assert_non_null(find_note(&notes, "attribute_lost", "edge crease"));
     assert_null(find_note(&notes, "in_extras", "halfedge uv")); /* others see it too */
-    assert_non_null(find_note(&notes, "in_extras", "face material"));
+    assert_null(find_note(&notes, "in_extras", "face material"));
+    assert_non_null(find_note(&notes, "in_extras", "face mark"));
     he_import import = read_back(bytes, length);
     assert_string_equal(face_label(&import, "material", 0), "steel \"1\"");
     assert_int_equal(find_column(&import, HE_FACE, "material")->rule, HE_COPY);

@@ -219,6 +219,16 @@ static bool is_shown(const he_glb_parts *g, const he_column *column)
     return i < g->count;
 }
 
+/* Do meshes, primitives and materials say what it does? */
+static bool is_told_apart(const he_glb_parts *g, const he_column *column)
+{
+    size_t i = 0;
+    while (i < HE_GLB_NAMES && g->groups.names[i] != column) {
+        i++;
+    }
+    return i < HE_GLB_NAMES;
+}
+
 static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
 {
     uint32_t words = column->components * (column->type == HE_DOUBLE ? 2 : 1);
@@ -231,7 +241,7 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
                          .components = 1,
                          .count = rows_of(g->mesh, column->domain) * words,
                          .stride = 4});
-    if (column->domain == HE_HALFEDGE && is_shown(g, column)) {
+    if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
         return; /* others see it too */
     }
     he_notes_add(notes, "in_extras", "kept where only hedge looks: attribute", subject,
