@@ -74,7 +74,7 @@ SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle
                 $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
 SIDE_C     := $(sort $(wildcard tests/bench/side/*.c))
 OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
-BENCH_C    := tests/bench/space.c tests/bench/polygons.c $(SIDE_C) $(OURS_C)
+BENCH_C    := tests/bench/space.c tests/bench/polygons.c tests/bench/store.c $(SIDE_C) $(OURS_C)
 PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
 FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 # What all targets are linked with; libFuzzer brings its own main program.
@@ -98,7 +98,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
-        hostile fuzz targets bench bench-http bench-events bench-slow bench-large bench-space container fresh \
+        hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-large bench-space container fresh \
         screenshot \
         install clean
 
@@ -144,6 +144,7 @@ NEEDS.fuzz         := build test fuzz
 NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
 NEEDS.bench        := build node bench
 NEEDS.bench-http   := build bench-http
+NEEDS.bench-store  := build durable
 NEEDS.bench-events := build
 NEEDS.bench-slow   := build bench-http bench-slow
 NEEDS.bench-large  := build bench-http
@@ -212,7 +213,7 @@ $(HEDGED): $(call object,server/main.c) $(LIBRARIES)
 # A test that looks at the calls of a room below has the linker give it these calls.
 wrap = $(patsubst %,-Wl$(comma)--wrap=%,$(1))
 comma := ,
-$(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_write_begin st_write_commit st_write_abort st_write_remove)
+$(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_create st_write_begin st_write_commit st_write_abort st_write_remove)
 $(BUILD)/tests/api/test_events: private LDFLAGS += $(call wrap,he_changes_find he_changes_sum)
 $(BUILD)/tests/api/test_snapshots: private LDFLAGS += $(call wrap,st_snapshot_take st_snapshot_held)
 $(BUILD)/tests/unit/test_srv_journal_faults: private LDFLAGS += $(call wrap,fstatvfs posix_fallocate)
@@ -328,8 +329,8 @@ $(FAULTS): $(FAULTS_C) Makefile | $(INSTALLED)
 
 # ROUNDS of another target's default are not ours.
 GIVEN_ROUNDS = $(if $(filter file default,$(origin ROUNDS)),,--rounds $(ROUNDS))
-PROOF ?= strace
-durable: $(HEDGED) $(FAULTS) | $(INSTALLED) ## PROOF=strace ROUNDS= SEED=: what was acknowledged is there, whatever the disk did; tests/durable/run.py lists the proofs
+PROOF ?= kill
+durable: $(HEDGED) $(FAULTS) | $(INSTALLED) ## PROOF=kill ROUNDS= SEED=: what was acknowledged is there, whatever the disk did; tests/durable/run.py lists the proofs
 	@python3 -B tests/durable/run.py --hedged $(abspath $(HEDGED)) --faults $(abspath $(FAULTS)) \
 	    --proof $(PROOF) $(GIVEN_ROUNDS) $(if $(SEED),--seed $(SEED)) --work build/durable
 
@@ -391,6 +392,15 @@ bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangu
 
 bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
+
+$(BUILD)/tests/bench/store: $(BUILD)/obj/tests/bench/store.o $(LIBRARIES)
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
+
+bench-store: $(HEDGED) $(BUILD)/tests/bench/store | $(INSTALLED) ## what durable edits cost, beside the same bytes written and synced, and beside memory
+	@mkdir -p build/durable
+	@$(BUILD)/tests/bench/store build/durable
 
 bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listeners: memory, and time to reach them all
 	@sh tests/bench/events.sh $(HEDGED) $(BUILD)/tests/bench/http/listeners

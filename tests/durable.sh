@@ -27,5 +27,8 @@ prove() {
 
 prove self 1
 prove strace 1
+prove two 1
+prove kill 10
+prove sync 2
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

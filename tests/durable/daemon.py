@@ -80,7 +80,8 @@ class Daemon:
             environment['ASAN_OPTIONS'] = (environment.get('ASAN_OPTIONS', '')
                                            + ':verify_asan_link_order=0')
         self.process = subprocess.Popen(
-            [*around, program, '--listen', '127.0.0.1:0', '--log', 'off', *flags],
+            [*around, program, '--listen', '127.0.0.1:0', '--log', 'off', '--idle-timeout', '3600',
+             *flags],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
             env=environment)
         atexit.register(self.process.kill)  # does nothing to one that was waited for

@@ -52,8 +52,17 @@ def state(client, mesh):
     for item in attributes.json()['attributes']:
         path = f'/attributes/{item["domain"]}/{item["name"]}'
         views[path] = client.get(base + path, 'application/octet-stream').body
-    views['history'] = plain(client.get(base + '/edits?limit=1000').body)
+    views['history'] = history(client, base)
     return views
+
+
+def history(client, base):
+    """What can be undone, done again or read; where it ended once, a loaded mesh lists no more."""
+    told = client.get(base + '/edits?limit=1000').json()
+    for entry in told['entries']:
+        del entry['time'], entry['bytes']
+    return json.dumps([told[name] for name in ('undo', 'redo', 'oldest')]
+                      + [e for e in told['entries'] if e['revision'] > told['oldest']])
 
 
 def difference(ours, theirs):
@@ -230,8 +239,8 @@ class Replay:
     def add_gap(self, mesh, gaps, steps, place, start, change):
         names, revisions = start[0] - place[0], start[1] - place[1]
         if names < 0 or revisions < 0:
-            raise Wrong(f'{mesh}: what was acknowledged is not there: {change or "the end"} is at '
-                        f'{start}, before {place}')
+            raise Wrong(f'{mesh}: what was acknowledged is not there: {change or "the end"} begins at '
+                        f'{start}, after {steps[-1:]} led to {place}')
         if names > 0 or revisions > 0:
             steps.append(len(gaps))
             gaps.append((names, revisions, place == (0, 0)))

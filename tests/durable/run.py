@@ -17,6 +17,8 @@ import tempfile
 import time
 import traceback
 
+import faulty
+import kill
 import locks
 import self_test
 import slow
@@ -27,7 +29,8 @@ from replay import Wrong
 # Name: the function, the rounds without --rounds.
 PROOFS = {
     'self': (self_test.prove, 3),
-
+    'kill': (kill.prove, 20),
+    'sync': (faulty.prove, 10),
     'strace': (traces.prove, 3),
     'slow': (slow.prove, 1),
     'two': (locks.prove, 3),

@@ -214,8 +214,10 @@ class Writer(threading.Thread):
 
     def await_job(self, change):
         while True:
-            state = self.client.get(change.job).json()
-            if state['state'] not in ('queued', 'running'):
+            answer = self.client.get(change.job)
+            if answer.status != 200:
+                return answer
+            if answer.json()['state'] not in ('queued', 'running'):
                 return self.client.get(change.job + '/result')
 
     def note(self, change, answer):

@@ -15,6 +15,7 @@
  *     FAULT_REPORT=FILE  a line `fired ...` for each fault, and at the exit one with the counts
  * A run whose report has no line `fired` has proved nothing. */
 #define _GNU_SOURCE /* RTLD_NEXT */
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -142,21 +143,14 @@ static void count_call(void)
 
 /* --- sync --- */
 
-static void keep_on_platter(int fd)
+static void copy_to_platter(int fd, const char *name)
 {
     REAL(ssize_t, "write", int, const void *, size_t);
-    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     static char bytes[1 << 16];
-    char path[PATH_MAX], copy[2 * PATH_MAX], made[2 * PATH_MAX + 4];
-    struct stat status;
-    if (want.platter == NULL || fstat(fd, &status) != 0 || !S_ISREG(status.st_mode) ||
-        !path_of(fd, path)) {
-        return;
-    }
-    snprintf(copy, sizeof copy, "%s/%s", want.platter, strrchr(path, '/') + 1);
+    char copy[PATH_MAX + NAME_MAX], made[PATH_MAX + NAME_MAX + 4];
+    snprintf(copy, sizeof copy, "%s/%s", want.platter, name);
     snprintf(made, sizeof made, "%s.new", copy);
-    pthread_mutex_lock(&lock);
-    /* Not a descriptor of its own of the same file: closing one lets go of all locks on it. */
+    /* Read by the descriptor there is: closing another one lets go of all locks on the file. */
     int out = openat(AT_FDCWD, made, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     off_t at = 0;
     ssize_t got = 0;
@@ -167,6 +161,39 @@ static void keep_on_platter(int fd)
     if (out >= 0) {
         close(out);
         (void)!renameat(AT_FDCWD, made, AT_FDCWD, copy);
+    }
+}
+
+/* What was removed from the folder is gone once the folder itself was synced. */
+static void clean_platter(const char *folder)
+{
+    DIR *platter = opendir(want.platter);
+    const struct dirent *entry;
+    while (platter != NULL && (entry = readdir(platter)) != NULL) {
+        char path[PATH_MAX + NAME_MAX + 2];
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        if (entry->d_name[0] != '.' && access(path, F_OK) != 0) {
+            (void)unlinkat(dirfd(platter), entry->d_name, 0);
+        }
+    }
+    if (platter != NULL) {
+        closedir(platter);
+    }
+}
+
+static void keep_on_platter(int fd)
+{
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    char path[PATH_MAX];
+    struct stat status;
+    if (want.platter == NULL || fstat(fd, &status) != 0 || !path_of(fd, path)) {
+        return;
+    }
+    pthread_mutex_lock(&lock);
+    if (S_ISDIR(status.st_mode)) {
+        clean_platter(path);
+    } else {
+        copy_to_platter(fd, strrchr(path, '/') + 1);
     }
     pthread_mutex_unlock(&lock);
 }
