@@ -213,7 +213,8 @@ $(HEDGED): $(call object,server/main.c) $(LIBRARIES)
 # A test that looks at the calls of a room below has the linker give it these calls.
 wrap = $(patsubst %,-Wl$(comma)--wrap=%,$(1))
 comma := ,
-$(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_create st_write_begin st_write_commit st_write_abort st_write_remove)
+$(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_write_begin st_write_commit st_write_abort st_write_remove)
+$(BUILD)/tests/api/test_created: private LDFLAGS += $(call wrap,st_create)
 $(BUILD)/tests/api/test_events: private LDFLAGS += $(call wrap,he_changes_find he_changes_sum)
 $(BUILD)/tests/api/test_snapshots: private LDFLAGS += $(call wrap,st_snapshot_take st_snapshot_held)
 $(BUILD)/tests/unit/test_srv_journal_faults: private LDFLAGS += $(call wrap,fstatvfs posix_fallocate)

@@ -154,12 +154,21 @@ void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
     write_answer(x, summary, status, extra);
 }
 
-void api_answer_created(api_exchange *x, const api_summary *summary, void (*extra)(api_exchange *x))
+/* What the mesh was when it was made: by now others may have changed or deleted it. */
+static void find_facts_as_made(api_exchange *x, const char *name)
 {
-    /* Its facts are read even where somebody has deleted it by now: it was made. */
     st_read_begin(x->mesh, &x->info);
     st_read_end(x->mesh);
+    snprintf(x->info.name, sizeof x->info.name, "%s", name);
+    x->info.revision = x->info.metadata = 1;
+    x->info.modified = x->info.created;
     x->has_info = true;
+}
+
+void api_answer_created(api_exchange *x, const char *name, const api_summary *summary,
+                        void (*extra)(api_exchange *x))
+{
+    find_facts_as_made(x, name);
     api_publish(x, 201);
     api_answer_header(x, "Location", x->location);
     api_answer_stored(x, 201, summary, extra);

@@ -41,8 +41,9 @@ void api_answer_summary(api_exchange *x);
  * held for it. `extra` (may be NULL) writes more members before the object ends. */
 void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
                        void (*extra)(api_exchange *x));
-/* The same, 201 and Location, for x->mesh that was just made: publishes. */
-void api_answer_created(api_exchange *x, const api_summary *summary,
+/* The same, 201 and Location, for x->mesh that was just made under this name: publishes. It is
+ * shown as it was made. */
+void api_answer_created(api_exchange *x, const char *name, const api_summary *summary,
                         void (*extra)(api_exchange *x));
 
 #endif

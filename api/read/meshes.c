@@ -5,6 +5,7 @@
 #include "api/document/summary.h"
 #include "store/followers.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* A page is continued by the id it ended with, behind a letter that keeps it opaque. */
@@ -205,8 +206,9 @@ void api_mesh_copy(api_exchange *x)
     if (!api_preconditions_hold(x, NULL) || !make_copy(x, &fresh, &summary)) {
         return;
     }
-    st_status stored = st_create(x->store, r->id, r->name != NULL ? r->name : x->info.name, fresh,
-                                 x->keyed, &made);
+    char name[ST_MESH_NAME + 1];
+    snprintf(name, sizeof name, "%s", r->name != NULL ? r->name : x->info.name);
+    st_status stored = st_create(x->store, r->id, name, fresh, x->keyed, &made);
     if (stored != ST_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);
@@ -214,5 +216,5 @@ void api_mesh_copy(api_exchange *x)
     }
     st_release(x->mesh);
     x->mesh = made;
-    api_answer_created(x, &summary, NULL);
+    api_answer_created(x, name, &summary, NULL);
 }

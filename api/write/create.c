@@ -82,11 +82,17 @@ static bool build(api_exchange *x, made *out)
     return true;
 }
 
+/* The name that a mesh is made with. */
+static const char *first_name(const api_exchange *x)
+{
+    const char *name = api_upload_name(x);
+    return name == NULL ? "" : name;
+}
+
 /* Takes `mesh` on success. `id` NULL lets the store choose. */
 static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
-    const char *name = api_upload_name(x);
-    return st_create(x->store, id, name == NULL ? "" : name, mesh, x->keyed, &x->mesh);
+    return st_create(x->store, id, first_name(x), mesh, x->keyed, &x->mesh);
 }
 
 static void create(api_exchange *x)
@@ -98,7 +104,7 @@ static void create(api_exchange *x)
     }
     st_status status = store_new(x, id, m.mesh);
     if (status == ST_OK) {
-        api_answer_created(x, &m.summary, api_upload_write_report);
+        api_answer_created(x, first_name(x), &m.summary, api_upload_write_report);
     } else {
         he_mesh_free(m.mesh);
         api_fail_store(x, status);
@@ -122,7 +128,7 @@ static bool replace_damaged(api_exchange *x, const made *m)
     if (status == ST_OK) {
         st_release(x->mesh);
         x->mesh = fresh;
-        api_answer_created(x, &m->summary, api_upload_write_report);
+        api_answer_created(x, first_name(x), &m->summary, api_upload_write_report);
         return true;
     }
     if (status != ST_ABSENT) {
@@ -177,7 +183,7 @@ static bool create_named(api_exchange *x, const made *m)
     }
     st_status status = store_new(x, x->mesh_id, m->mesh);
     if (status == ST_OK) {
-        api_answer_created(x, &m->summary, api_upload_write_report);
+        api_answer_created(x, first_name(x), &m->summary, api_upload_write_report);
         return true;
     }
     if (status == ST_TAKEN) {
