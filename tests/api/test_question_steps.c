@@ -49,7 +49,7 @@ static void a_check_beyond_its_steps_is_refused_and_names_the_limit_and_a_job(vo
 {
     (void)state;
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 3001, 1201);
+    put_fan(b, "/v1/meshes/m", 2001, 801);
     bench_reply r = bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", NULL, NULL);
     assert_int_equal(r.status, 413);
     assert_string_equal(in(r.json, "code")->valuestring, "limit_exceeded");
@@ -63,7 +63,7 @@ static void a_check_beyond_its_steps_is_a_job_where_the_client_takes_one(void **
     (void)state;
     static const char *const patient[] = {"Prefer", "respond-async, wait=60", NULL};
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 3001, 1201);
+    put_fan(b, "/v1/meshes/m", 2001, 801);
     bench_reply r =
         bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", patient, NULL);
     assert_int_equal(r.status, 202);
@@ -123,7 +123,7 @@ static void a_search_that_was_refused_has_used_up_the_steps_of_its_request(void 
 {
     (void)state;
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 3001, 1201);
+    put_fan(b, "/v1/meshes/m", 2001, 801);
     bench_reply r =
         bench_expect(200, bench_post(b, QUERY,
                                      "{\"queries\":[{\"self_intersections\":{}},"

@@ -15,7 +15,7 @@
 #include <pthread.h>
 
 #define LARGE      "{\"shape\":\"torus\",\"major_segments\":1500,\"minor_segments\":1500}"
-#define MIDDLE     "{\"shape\":\"torus\",\"major_segments\":800,\"minor_segments\":800}"
+#define MIDDLE     "{\"shape\":\"torus\",\"major_segments\":400,\"minor_segments\":400}"
 #define HUGE_TORUS "{\"shape\":\"torus\",\"major_segments\":3500,\"minor_segments\":3500}"
 #define CUBE       "{\"shape\":\"cube\"}"
 
