@@ -14,7 +14,7 @@
 static const he_format formats[] = {
     {
         .name = "glb",
-        .doc = "glTF 2.0 in its binary container, without anything outside the file",
+        .doc = "glTF 2.0 in its binary container, its buffers inside or in files that come with it",
         .media_types = LIST("model/gltf-binary"),
         .extensions = LIST("glb"),
         .encodings = LIST("binary", "meshopt"),
