@@ -140,6 +140,7 @@ static bool open_store(daemon_parts *parts, const srv_config *config)
         .undo_budget = config->undo_budget,
         .max_meshes = config->max_meshes,
         .journal = journal,
+        .pool = parts->pool,
         .listeners = config->max_listeners,
         .mesh_listeners = config->max_mesh_listeners,
         .render = api_event_render,

@@ -1,5 +1,4 @@
 /* Meshes come into the store: under a free id, or in the place of one that is damaged. */
-#include "store/evict.h"
 #include "store/table.h"
 #include "system/memory.h"
 #include "system/random.h"

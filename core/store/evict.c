@@ -1,5 +1,5 @@
-#include "store/evict.h"
-
+/* Meshes that nobody uses leave memory while it is short, and come back from the journal when they
+ * are asked for. */
 #include "store/table.h"
 #include "system/clock.h"
 #include "system/memory.h"

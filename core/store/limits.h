@@ -5,6 +5,9 @@
 /* A whole content that takes more is staged (journal.h) before it is published. */
 enum { ST_BODY_BYTES = 1 << 20 };
 
+/* Records of a mesh that take more, and more than its content, have another base made. */
+enum { ST_BASE_BYTES = 16 << 20 };
+
 /* How far the listeners of one mesh may be behind before they are sent to fetch anew: messages, and
  * their bytes. */
 enum { ST_QUEUE_MESSAGES = 1024, ST_QUEUE_BYTES = 1 << 20 };

@@ -1,6 +1,5 @@
 #include "store/lookup.h"
 
-#include "store/evict.h"
 #include "store/mesh_load.h"
 #include "store/table.h"
 #include "system/clock.h"

@@ -266,6 +266,7 @@ static st_status take_record(load *l, const st_piece *piece)
     l->record = record->number;
     l->metadata = record->metadata;
     l->reach = record->reach;
+    l->mesh->appended += st_rebase_bytes(record);
     switch (record->kind) {
     case ST_RECORD_EDIT:
         return record->stage != NULL ? begin_parts(l, piece) : take_edit(l, record);
@@ -346,7 +347,7 @@ static st_status check_content(load *l)
     return total == 0 ? ST_OK : damaged(l, "I%d: %.140s", problem.rule, problem.text);
 }
 
-/* The history is what it was, and within a budget that may be smaller by now. */
+/* The history is what it was, but for a budget that is much smaller by now. */
 static void end_history(load *l)
 {
     st_log_drop(&l->mesh->log, l->reach);

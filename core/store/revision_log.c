@@ -232,6 +232,9 @@ void st_log_settle(st_revision_log *log)
 void st_log_limit(st_revision_log *log, uint64_t budget)
 {
     log->budget = budget;
+    if (log->bytes / 2 <= budget) {
+        return;
+    }
     st_log_settle(log);
     if (log->bytes > budget) {
         forget_deltas(log); /* steps to do again, of a larger budget */

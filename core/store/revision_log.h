@@ -110,8 +110,12 @@ void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, d
 /* Bring the log back within its budget after steps were added. Their deltas stay valid until the
  * next change. */
 void st_log_settle(st_revision_log *log);
-/* Begin to keep a budget, of which the log may have more by now. */
+/* Begin to keep a budget after the log was filled without one. What a delta takes can be a little
+ * more than when it was made, so that only a log of more than twice the budget, which was smaller
+ * then, is cut here, and any other by what is added next. */
 void st_log_limit(st_revision_log *log, uint64_t budget);
+/* Is nothing before a revision needed, neither to be undone or done again nor to be read? */
+bool st_log_stands_on(const st_revision_log *log, uint64_t revision);
 /* Drop the entries of revisions up to `reach`. */
 void st_log_drop(st_revision_log *log, uint64_t reach);
 

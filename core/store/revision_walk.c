@@ -15,6 +15,13 @@ uint64_t st_log_top(const st_revision_log *log, st_action which)
     return step == NULL ? 0 : step->revision;
 }
 
+bool st_log_stands_on(const st_revision_log *log, uint64_t revision)
+{
+    return log->oldest >= revision &&
+           (log->undo_bottom == NULL || log->undo_bottom->revision > revision) &&
+           (log->redo_top == NULL || log->redo_top->revision > revision);
+}
+
 static const st_point *point_of(const st_revision_log *log, uint64_t revision)
 {
     return revision == log->before.revision ? &log->before : &st_entry_of(log, revision)->point;

@@ -1,6 +1,7 @@
 #include "store/store.h"
 
 #include "store/followers.h"
+#include "store/limits.h"
 #include "store/table.h"
 #include "system/clock.h"
 
@@ -47,6 +48,8 @@ st_store *st_store_new(const st_store_options *options)
     store->journal = options->journal;
     store->undo_budget = options->undo_budget;
     store->max_meshes = options->max_meshes;
+    store->pool = options->pool;
+    store->base_bytes = options->base_bytes != 0 ? options->base_bytes : ST_BASE_BYTES;
     st_keys_init(&store->keys, store->journal.secret);
     st_lookups_init(&store->lookups);
     store->followers = (st_followers){

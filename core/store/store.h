@@ -29,6 +29,7 @@
 
 #include "mesh/delta.h"
 #include "store/durability_wait.h"
+#include "system/thread_pool.h"
 
 typedef struct st_store st_store;
 typedef struct st_mesh st_mesh;         /* a stored mesh */
@@ -72,9 +73,11 @@ typedef bool st_render(const st_mesh_info *info, const st_change *change, char *
 typedef struct st_store_options {
     uint64_t undo_budget; /* bytes a mesh */
     uint64_t max_meshes;
-    st_journal journal; /* closed with the store */
-    st_render *render;  /* NULL: nobody will listen */
-    size_t listeners;   /* at once, and of one mesh */
+    st_journal journal;  /* closed with the store */
+    st_pool *pool;       /* for bases of meshes whose records are many (rebase.c); NULL: none */
+    uint64_t base_bytes; /* that those take; 0: ST_BASE_BYTES */
+    st_render *render;   /* NULL: nobody will listen */
+    size_t listeners;    /* at once, and of one mesh */
     size_t mesh_listeners;
 } st_store_options;
 

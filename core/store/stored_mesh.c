@@ -1,5 +1,4 @@
 #include "store/stored_mesh.h"
-
 #include "system/clock.h"
 #include "system/random.h"
 
@@ -103,6 +102,7 @@ void st_release(st_mesh *mesh)
     if (mesh == NULL || atomic_fetch_sub_explicit(&mesh->uses, 1, memory_order_acq_rel) > 1) {
         return;
     }
+    st_rebase_drop(mesh);
     st_log_clear(&mesh->log);
     st_queue_clear(&mesh->queue);
     he_mesh_free(mesh->content);
@@ -144,9 +144,8 @@ st_counts st_counts_of(const he_mesh *content)
                        .boundary = he_mesh_boundary_halfedges(content)};
 }
 
-st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *keyed)
+st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind)
 {
-    mesh->info.record++;
     st_record record = {
         .kind = kind,
         .id = mesh->info.id,
@@ -159,9 +158,16 @@ st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *key
         .time = mesh->info.modified,
         .counts = st_counts_of(mesh->content),
         .bytes = he_mesh_bytes(mesh->content),
-        .key = keyed == NULL ? NULL : &keyed->key,
     };
     st_log_fill_record(&mesh->log, &record);
+    return record;
+}
+
+st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *keyed)
+{
+    mesh->info.record++;
+    st_record record = st_mesh_facts_record(mesh, kind);
+    record.key = keyed == NULL ? NULL : &keyed->key;
     return record;
 }
 
@@ -174,6 +180,7 @@ void st_mesh_publish(st_mesh *mesh, const st_group *group)
     *group->booking = (st_booking){NULL};
     st_waits_appended(mesh->followers->waits, mesh->info.position);
     st_mesh_tell(mesh, group);
+    st_rebase_note(mesh, group);
 }
 
 static bool is_lost(const st_mesh_info *info, const st_loss *loss)

@@ -18,6 +18,8 @@ typedef struct st_copy {
     he_replay *replay;
 } st_copy;
 
+typedef struct st_next_base st_next_base;
+
 struct st_mesh {
     _Atomic uint32_t uses;
     _Atomic uint64_t used; /* when it was found last, st_clock_micros; 0 where nothing is evicted */
@@ -31,6 +33,9 @@ struct st_mesh {
     he_mesh *content;
     st_revision_log log;
     bool claimed; /* the log's reserve is lent to a long edit */
+
+    uint64_t appended;       /* bytes of records since the last snapshot: rebase.c */
+    st_next_base *next_base; /* likewise; NULL: there is none */
 
     /* See followers.h. */
     st_queue queue;
@@ -107,6 +112,8 @@ typedef struct st_group {
 /* Under the exclusive lock: the next record of the mesh, of what it is now. A revision is in the
  * log already. */
 st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *keyed);
+/* Under either lock: what the newest record of the mesh says, as a record of this kind. */
+st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind);
 /* Under the exclusive lock: hands a group of records to the journal and tells the listeners. */
 void st_mesh_publish(st_mesh *mesh, const st_group *group);
 /* What st_mesh_publish does for the listeners, when the position is known. */
@@ -117,6 +124,14 @@ void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_chan
 void st_mesh_lose(st_mesh *mesh, const st_loss *loss);
 /* Under the mesh's exclusive lock: the store has it no more. */
 void st_store_take_out(st_store *store, st_mesh *mesh);
+
+/* Under the exclusive lock: a group of records was appended, which may ask for a younger base
+ * (rebase.c). */
+void st_rebase_note(st_mesh *mesh, const st_group *group);
+/* About so many bytes of the record are on the disk. */
+uint64_t st_rebase_bytes(const st_record *record);
+/* Forgets a base that is not one yet. */
+void st_rebase_drop(st_mesh *mesh);
 
 void st_copy_release(st_copy *copy);
 /* Frees the cached copy, unless somebody reads it. */

@@ -9,6 +9,8 @@ struct st_store {
     st_journal journal;
     uint64_t undo_budget;
     uint64_t max_meshes;
+    st_pool *pool;       /* NULL: nothing is rebased */
+    uint64_t base_bytes; /* of records, before another base is due */
     st_followers followers;
     st_lookups lookups;
     pthread_rwlock_t lock; /* of the table */
@@ -23,5 +25,10 @@ st_mesh_options st_store_mesh_options(st_store *store);
 size_t st_table_place(const st_store *store, const char *id, bool *found);
 /* Puts a mesh in, with its use. ST_TAKEN, ST_NO_MEMORY. Under the table's exclusive lock. */
 st_status st_table_insert(st_store *store, st_mesh *mesh);
+
+/* Sees to it that `bytes` more and a sixteenth of the memory budget are free, as far as that can be
+ * had: frees what is only kept for later, then meshes that nobody uses and that the journal brings
+ * back, the least recently used first. Without a lock. */
+void st_make_room(st_store *store, uint64_t bytes);
 
 #endif

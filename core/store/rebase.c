@@ -1,0 +1,153 @@
+/* A younger base for a mesh whose records have become many, so that loading it and the
+ * disk stay within bounds.
+ *
+ *     base ... records ... | ... records ...
+ *                          +-- snapshot, staged while edits go on; it waits until nothing that
+ *                              can be undone, done again or read lies before it, then it is the
+ *                              base, and what is before it goes
+ *
+ * A snapshot is due when the records since the last one take more than the content, and
+ * ST_BASE_BYTES at least. An undo of what lies before it spoils it: it can be no base any more, for
+ * the records after it need what is before it. One that waits is dropped when its mesh leaves
+ * memory. */
+#include "store/table.h"
+
+#include <string.h>
+
+/* A record without its body, and a content on the disk beside one in memory. */
+enum { FRAME_BYTES = 200, PACKED_SHARE = 2 };
+
+/* A snapshot that may become the base. */
+struct st_next_base {
+    bool taking; /* it is being staged: only its taker has more to do with it */
+    bool spoiled;
+    st_stage *stage;
+    uint64_t before; /* bytes of records up to it */
+    st_record facts; /* of the mesh then */
+    char name[ST_MESH_NAME + 1];
+};
+
+uint64_t st_rebase_bytes(const st_record *record)
+{
+    return FRAME_BYTES + record->body_size +
+           (record->stage != NULL ? record->bytes / PACKED_SHARE : 0);
+}
+
+void st_rebase_drop(st_mesh *mesh)
+{
+    st_next_base *next = mesh->next_base;
+    if (next != NULL && next->stage != NULL) {
+        mesh->journal->unstage(mesh->journal->self, next->stage);
+    }
+    he_mem_free(next);
+    mesh->next_base = NULL;
+}
+
+/* Under the exclusive lock, with the snapshot on the disk: may it be the base by now? Then entries
+ * that a load could not bring back go here too. */
+static void settle(st_mesh *mesh)
+{
+    st_next_base *next = mesh->next_base;
+    const uint64_t revision = next->facts.revision;
+    if (next->spoiled) {
+        st_rebase_drop(mesh);
+    } else if (st_log_stands_on(&mesh->log, revision)) {
+        st_log_drop(&mesh->log, revision);
+        next->facts.reach = revision;
+        mesh->journal->rebase(mesh->journal->self, next->stage, &next->facts, revision);
+        next->stage = NULL;
+        st_rebase_drop(mesh);
+    }
+}
+
+/* Under the shared lock: an immutable copy of what the mesh is, and the facts of it. */
+static st_status begin(st_mesh *mesh, st_snapshot **out)
+{
+    st_next_base *next = mesh->next_base;
+    st_point point;
+    if (mesh->info.removed || mesh->info.lost) {
+        return ST_ABSENT;
+    }
+    st_log_point(&mesh->log, mesh->info.revision, &point);
+    next->facts = st_mesh_facts_record(mesh, ST_RECORD_CONTENT);
+    next->facts.inverts = point.state == mesh->info.revision ? 0 : point.state;
+    memcpy(next->name, mesh->info.name, sizeof next->name);
+    next->facts.name = next->name;
+    next->spoiled = false;
+    next->before = mesh->appended;
+    return st_snapshot_held(mesh, out);
+}
+
+/* On the pool. */
+static void take(void *context)
+{
+    st_mesh *mesh = context;
+    const st_journal *journal = mesh->journal;
+    st_next_base *next = mesh->next_base;
+    st_snapshot *snapshot = NULL;
+    st_stage *stage = NULL;
+    pthread_rwlock_rdlock(&mesh->lock);
+    st_status status = begin(mesh, &snapshot);
+    pthread_rwlock_unlock(&mesh->lock);
+    if (status == ST_OK) {
+        status = journal->stage(journal->self, st_snapshot_content(snapshot, NULL), &stage);
+        st_snapshot_release(snapshot);
+    }
+    pthread_rwlock_wrlock(&mesh->lock);
+    next->taking = false;
+    if (status == ST_OK) {
+        next->stage = stage;
+        mesh->appended -= next->before;
+        settle(mesh);
+    } else {
+        mesh->appended = 0; /* without memory or disk it is put off */
+        st_rebase_drop(mesh);
+    }
+    pthread_rwlock_unlock(&mesh->lock);
+    st_release(mesh);
+}
+
+static bool is_due(const st_mesh *mesh)
+{
+    return mesh->next_base == NULL && mesh->appended > mesh->store->base_bytes &&
+           mesh->appended > he_mesh_bytes(mesh->content);
+}
+
+static void begin_to_take(st_mesh *mesh)
+{
+    mesh->next_base = he_mem_zero(1, sizeof *mesh->next_base);
+    if (mesh->next_base == NULL) {
+        return;
+    }
+    mesh->next_base->taking = true;
+    const st_task task = {.work = take,
+                          .context = st_hold(mesh),
+                          .share = ST_SHARE_JOB,
+                          .cost = (double)he_mesh_bytes(mesh->content) / 1e8,
+                          .flow = st_pool_flow("", mesh->info.id)};
+    if (!st_pool_submit(mesh->store->pool, &task)) {
+        st_rebase_drop(mesh);
+        st_release(mesh);
+    }
+}
+
+void st_rebase_note(st_mesh *mesh, const st_group *group)
+{
+    st_next_base *next = mesh->next_base;
+    if (mesh->store->pool == NULL || !mesh->journal->keeps || mesh->info.removed) {
+        return;
+    }
+    for (size_t i = 0; i < group->count; i++) {
+        const st_record *record = &group->records[i];
+        mesh->appended += st_rebase_bytes(record);
+        if (next != NULL && record->inverts != 0 && record->inverts <= next->facts.revision) {
+            next->spoiled = true;
+        }
+    }
+    if (next != NULL && !next->taking) {
+        settle(mesh);
+    }
+    if (is_due(mesh)) {
+        begin_to_take(mesh);
+    }
+}
