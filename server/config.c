@@ -89,6 +89,10 @@ static const option options[] = {
      "write the store to a file, also beside a running daemon, and exit"},
     {"restore", COMMAND, MEMBER(restore), "", "FILE", 0, 0,
      "put such a file in place of the store while no daemon runs, and exit"},
+    {"verify", ACTION, MEMBER(verify), "0", "[FILE]", 0, 0,
+     "read every mesh of the store, or of such a file: exit status 0 when all are whole"},
+    {"dump", COMMAND, MEMBER(dump), "", "DIR", 0, 0,
+     "write every mesh of the store that is whole to a folder, as GLB, and exit"},
     {"healthcheck", ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
      "ask a running daemon for /livez: exit status 0 when it answers"},
     {"print-config", ACTION, MEMBER(print_config), "0", NULL, 0, 0,
@@ -296,6 +300,10 @@ static bool read_flags(srv_config *config, int argc, char *const *argv, char *me
                 config->healthcheck_url = argument;
                 continue;
             }
+            if (config->verify && config->verified == NULL) {
+                config->verified = argument;
+                continue;
+            }
             snprintf(message, size, "\"%s\" is not an option; --help lists them", argument);
             return false;
         }
@@ -347,8 +355,8 @@ static bool check(const srv_config *config, char *message, size_t size)
                  config->listen);
         return false;
     }
-    const bool serves = !config->healthcheck && !config->print_config && config->backup == NULL &&
-                        config->restore == NULL;
+    const bool serves = !config->healthcheck && !config->print_config && !config->verify &&
+                        config->backup == NULL && config->restore == NULL && config->dump == NULL;
     if (serves && !srv_address_is_loopback(&address) && !config->insecure) {
         snprintf(message, size,
                  "%s can be reached from other machines and requests need no token: "

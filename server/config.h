@@ -42,9 +42,10 @@ typedef struct srv_config {
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
     uint64_t min_rate;                                                  /* bytes a second */
 
-    const char *backup, *restore; /* files; NULL: not asked for */
-    bool help, version, print_config, healthcheck;
+    const char *backup, *restore, *dump; /* files, a folder; NULL: not asked for */
+    bool help, version, print_config, healthcheck, verify;
     const char *healthcheck_url; /* NULL: /livez at `listen` */
+    const char *verified;        /* a file; NULL: the store */
 
     /* The text that list members point into. */
     char *owned[2 * SRV_MAX_NAMES];

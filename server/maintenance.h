@@ -1,4 +1,5 @@
-/* maintenance.h - what hedged does with a store besides serving it: --backup, --restore. */
+/* maintenance.h - what hedged does with a store besides serving it: --backup, --restore, --verify,
+ * --dump. */
 #ifndef HE_SERVER_MAINTENANCE_H
 #define HE_SERVER_MAINTENANCE_H
 

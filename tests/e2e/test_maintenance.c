@@ -1,9 +1,10 @@
-/* hedged --backup and --restore: a store that goes back to what it was. */
+/* hedged --backup, --restore, --verify and --dump. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/daemon.h"
 #include "tests/store_folder.h"
 
 #include <setjmp.h>
+#include <sqlite3.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -61,11 +62,69 @@ static void a_backup_is_made_beside_the_daemon_and_restored_without_it(void **st
     expect_run(ARGUMENTS("--store", "memory", "--backup", file), 1, "--store sqlite:DIR");
 }
 
+static void run_sql(const char *text)
+{
+    char path[FOLDER_PATH + 16];
+    sqlite3 *db;
+    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+}
+
+static void assert_glb(const char *name, bool there)
+{
+    char path[64];
+    size_t size = 0;
+    (void)snprintf(path, sizeof path, "dump/%s", name);
+    unsigned char *bytes = folder_read(folder, path, &size);
+    assert_int_equal(bytes != NULL, there);
+    assert_true(!there || (size > 100 && memcmp(bytes, "glTF", 4) == 0));
+    free(bytes);
+}
+
+static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
+{
+    (void)state;
+    char dump[FOLDER_PATH + 16];
+    (void)snprintf(dump, sizeof dump, "%s/dump", folder);
+    daemon_process *d = daemon_start(ARGUMENTS("--store", store, "--samples"));
+    client *c = client_new(d);
+    for (int i = 0; i < 3; i++) {
+        reply_done(reply_expect(
+            200, client_post(c, "/v1/meshes/cube/edits", "{\"op\":\"edge_split\",\"edge\":0}")));
+    }
+    reply_done(reply_expect(200, client_post(c, "/v1/meshes/cube/undo", "{}")));
+    client_free(c);
+    /* Beside the daemon. */
+    expect_run(ARGUMENTS("--store", store, "--verify"), 0, "cube: whole, revision 5");
+    assert_non_null(strstr(output, "3 meshes whole, 0 not"));
+    expect_run(ARGUMENTS("--store", store, "--backup", file), 0, "holds 3 meshes");
+    assert_int_equal(daemon_stop(d), 0);
+    expect_run(ARGUMENTS("--verify", file), 0, "3 meshes whole, 0 not");
+    expect_run(ARGUMENTS("--store", store, "--dump", dump), 0, "3 meshes written, 0 not");
+    assert_glb("cube.glb", true);
+    run_sql("DELETE FROM record WHERE mesh = (SELECT key FROM mesh WHERE id = 'cube') "
+            "AND number = 3");
+    expect_run(ARGUMENTS("--store", store, "--verify"), 1, "cube: DAMAGED: record 3 is missing");
+    assert_non_null(strstr(output, "2 meshes whole, 1 not"));
+    (void)snprintf(dump, sizeof dump, "%s/dump/cube.glb", folder);
+    (void)unlink(dump);
+    (void)snprintf(dump, sizeof dump, "%s/dump", folder);
+    expect_run(ARGUMENTS("--store", store, "--dump", dump), 1, "2 meshes written, 1 not");
+    assert_glb("cube.glb", false);
+    assert_glb("torus.glb", true);
+    folder_write(folder, "hedge.db", (const unsigned char *)"nothing", 7);
+    expect_run(ARGUMENTS("--store", store, "--verify"), 1, "is damaged");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_backup_is_made_beside_the_daemon_and_restored_without_it,
                                         make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(what_is_damaged_is_named_and_the_rest_is_saved, make_folder,
+                                        remove_folder),
     };
     return cmocka_run_group_tests_name("maintenance", tests, NULL, NULL);
 }

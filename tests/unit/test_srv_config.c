@@ -132,6 +132,8 @@ static void test_refusals(void **state)
         {{"--max-meshes", "0"}, "from 1"},
         {{"--backup"}, "--backup needs a value"},
         {{"--restore="}, "--restore needs a value"},
+        {{"--dump"}, "--dump needs a value"},
+        {{"--verify", "a", "b"}, "not an option"},
         {{"--store", "sqlite:"}, "sqlite:DIR"},
     };
     srv_config config;

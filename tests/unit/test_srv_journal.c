@@ -461,6 +461,9 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         loaded l = load(j, "bad");
         assert_int_equal(l.status, ST_DAMAGED);
         loaded_clear(&l);
+        st_card at_once;
+        assert_int_equal(j->open(j->self, "bad", &at_once, NULL), ST_DAMAGED);
+        assert_true(at_once.damage[0] != '\0');
         /* It is on the card from now on. */
         kept_mesh other = mesh_as("other", NULL);
         he_mesh *content = script_mesh("012", NULL);

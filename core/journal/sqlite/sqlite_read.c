@@ -157,9 +157,54 @@ st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t 
 
 /* --- damage --- */
 
+/* Under the lock; NULL where nothing was found. */
+static st_finding *find_finding(st_sqlite *self, uint64_t incarnation)
+{
+    for (size_t i = 0; i < ST_FINDINGS; i++) {
+        if (self->findings[i].incarnation == incarnation && self->findings[i].damage[0] != '\0') {
+            return &self->findings[i];
+        }
+    }
+    return NULL;
+}
+
+void st_findings_forget(st_sqlite *self, uint64_t incarnation)
+{
+    pthread_mutex_lock(&self->lock);
+    st_finding *finding = find_finding(self, incarnation);
+    if (finding != NULL) {
+        finding->damage[0] = '\0';
+    }
+    pthread_mutex_unlock(&self->lock);
+}
+
+static void note_finding(st_sqlite *self, uint64_t incarnation, const char *damage)
+{
+    pthread_mutex_lock(&self->lock);
+    if (find_finding(self, incarnation) == NULL) {
+        st_finding *finding = &self->findings[self->last_finding++ % ST_FINDINGS];
+        finding->incarnation = incarnation;
+        (void)snprintf(finding->damage, sizeof finding->damage, "%s", damage);
+    }
+    pthread_mutex_unlock(&self->lock);
+}
+
+/* What was found since the row was written. */
+static st_status add_finding(st_sqlite *self, st_card *card)
+{
+    pthread_mutex_lock(&self->lock);
+    const st_finding *finding = find_finding(self, card->incarnation);
+    if (finding != NULL) {
+        memcpy(card->damage, finding->damage, sizeof card->damage);
+    }
+    pthread_mutex_unlock(&self->lock);
+    return finding == NULL ? ST_OK : ST_DAMAGED;
+}
+
 void st_sqlite_condemn(void *context, uint64_t incarnation, const char *damage)
 {
     st_sqlite *self = context;
+    note_finding(self, incarnation, damage);
     st_condemned *condemned = self->only_reads ? NULL : he_mem_zero(1, sizeof *condemned);
     if (condemned == NULL) {
         return; /* it is found again at the next load */
@@ -236,6 +281,13 @@ st_status st_sqlite_open_mesh(void *context, const char *id, st_card *card, st_r
         pthread_mutex_lock(&self->cards_lock);
         status = find_card(&self->cards, id, &row);
         pthread_mutex_unlock(&self->cards_lock);
+    }
+    if (status == ST_OK) {
+        status = add_finding(self, &row.card);
+        if (status == ST_DAMAGED && reader != NULL) {
+            st_sqlite_shut(*reader);
+            *reader = NULL;
+        }
     }
     if (status == ST_OK || status == ST_DAMAGED) {
         *card = row.card;

@@ -224,6 +224,7 @@ static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, 
     if (outcome == ST_SQL_DONE && is_base && entry->number > 1) {
         head->row.base = entry->number;
         head->row.card.damage[0] = '\0'; /* it was of what is forgotten now */
+        st_findings_forget(self, entry->incarnation);
         outcome = st_purge_before(self, head->row.key, entry->number, entry->stage == NULL);
     }
     return outcome;

@@ -122,6 +122,15 @@ typedef enum st_write_mode { ST_WRITES, ST_WRITES_FULL, ST_WRITES_FAILED } st_wr
 
 enum { ST_LOADS = 2 }; /* at once */
 
+/* What was found wrong with a mesh: its row says so only once that was committed, and never where
+ * nothing is written. */
+typedef struct st_finding {
+    uint64_t incarnation;
+    char damage[ST_DAMAGE];
+} st_finding;
+
+enum { ST_FINDINGS = 64 }; /* the oldest are forgotten */
+
 typedef struct st_load_slot {
     st_db db;
     bool taken;
@@ -156,6 +165,8 @@ struct st_sqlite {
     bool log_is_long;        /* no load begins until the log was written back */
     st_load_slot loads[ST_LOADS];
     unsigned loads_taken;
+    st_finding findings[ST_FINDINGS];
+    unsigned last_finding;
 
     pthread_mutex_t telling; /* held while the listener is called */
     bool is_heard;
@@ -261,6 +272,8 @@ st_sql st_purge_dead_stages(st_sqlite *self);
 st_status st_sqlite_open_mesh(void *self, const char *id, st_card *card, st_reader **reader);
 st_status st_sqlite_read(st_reader *reader, st_piece *out);
 void st_sqlite_shut(st_reader *reader);
+/* What was damaged of the mesh is no longer read. */
+void st_findings_forget(st_sqlite *self, uint64_t incarnation);
 void st_sqlite_condemn(void *self, uint64_t incarnation, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
 /* Opens the connections that read; closes them. */
