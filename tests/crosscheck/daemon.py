@@ -31,12 +31,11 @@ class Daemon:
         if self.status != 0:
             print(said)
 
-    def send(self, method, path, body=None):
+    def send(self, method, path, body=None, kind='application/octet-stream'):
         """The status and the bytes. A connection that the daemon has closed is opened again."""
         for again in (True, False):
             try:
-                self.connection.request(method, path, body,
-                                        {'Content-Type': 'application/octet-stream'})
+                self.connection.request(method, path, body, {'Content-Type': kind})
                 r = self.connection.getresponse()
                 return r.status, r.read()
             except (BrokenPipeError, ConnectionResetError, http.client.RemoteDisconnected):

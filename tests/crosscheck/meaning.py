@@ -4,7 +4,11 @@ A grid whose texture has seams, whose normals have creases and whose vertices ha
 in every format; assimp makes an OBJ of each, in which every corner of a face must have the place,
 texture coordinate, normal and colour that it has in the mesh, as far as the format holds them. What
 assimp writes is read by the daemon, welded, and must say the same. assimp makes vertices of its own
-and cuts polygons, so that corners are compared as a set, and faces are triangles."""
+and cuts polygons, so that corners are compared as a set, and faces are triangles.
+
+Materials likewise: a face has its colour and opacity in what assimp makes of an OBJ with its library
+and of a GLB, and in what the daemon reads of a GLB that assimp wrote."""
+import json
 import os
 import subprocess
 
@@ -109,7 +113,89 @@ def check_theirs(tally, daemon, folder, name, text, kept):
             daemon.delete(answer['id'])
 
 
+# Base colour and opacity of materials by name.
+LOOKS = {'red one': (1, 0.25, 0, 1), 'green': (0, 0.75, 0.125, 0.5), 'blue': (0, 0, 1, 1)}
+
+
+def paint(text):
+    """Faces of a grid in turn with each material, by rows so that they do not come together."""
+    names, lines, n = list(LOOKS), [], 0
+    for line in text.splitlines():
+        if line.startswith('f '):
+            lines.append('usemtl ' + names[n // SIDE % len(names)])
+            n += 1
+        lines.append(line)
+    return '\n'.join(lines) + '\n'
+
+
+def painted(text, library, numbers=4):
+    """Of an OBJ and its library: the faces as (places, material, so many numbers of its colour)."""
+    looks, v, out, at = {}, [], set(), None
+    for words in (line.split(None, 1) for line in library.splitlines() if line.strip()):
+        if words[0] == 'newmtl':
+            name = words[1].strip()
+            looks[name] = [0, 0, 0, 1]
+        elif words[0] == 'Kd':
+            looks[name][:3] = map(float, words[1].split())
+        elif words[0] == 'd':
+            looks[name][3] = float(words[1])
+    for words in (line.split() for line in text.splitlines()):
+        if words[:1] == ['v']:
+            v.append(tuple(map(float, words[1:4])))
+        elif words[:1] == ['usemtl']:
+            at = ' '.join(words[1:])
+        elif words[:1] == ['f']:
+            places = tuple(sorted(v[int(c.split('/')[0]) - 1] for c in words[1:]))
+            out.add((places, at, tuple(round(x, 4) for x in looks.get(at, ())[:numbers])))
+    return out
+
+
+def library_of(path):
+    """What assimp wrote beside an OBJ."""
+    path = path[:-len('obj')] + 'mtl'
+    return open(path).read() if os.path.exists(path) else ''
+
+
+def check_materials(tally, daemon, folder):
+    text = paint(grid(False, False))
+    _, answer = daemon.create('obj', text.encode())
+    mesh = answer['id']
+    for name, look in LOOKS.items():
+        edit = json.dumps({'op': 'material_set', 'name': name, 'base_color': look})
+        status, _ = daemon.send('POST', '/v1/meshes/%s/edits' % mesh, edit.encode(),
+                                'application/json')
+        tally.check('material_set ' + name, 200, status)
+    library = ''.join('newmtl %s\nKd %r %r %r\nd %r\n' % ((n,) + k) for n, k in LOOKS.items())
+    wanted = painted(text, library)
+    own = export(daemon, mesh, 'mtl').decode()
+    tally.check('faces of our obj', wanted, painted(export(daemon, mesh, 'obj').decode(), own))
+    with open(os.path.join(folder, 'materials.mtl'), 'w') as f:
+        f.write(own)
+    for kind in ('obj', 'glb'):
+        path = os.path.join(folder, 'materials.' + kind)
+        with open(path, 'wb') as f:
+            f.write(export(daemon, mesh, kind))
+        out = os.path.join(folder, 'materials-%s.out.obj' % kind)
+        said = painted(open(out).read(), library_of(out)) if run_assimp('obj', path, out) else None
+        tally.check('materials by assimp of ' + path, wanted, said)
+        theirs = os.path.join(folder, 'materials-assimp-%s.glb' % kind)
+        if not run_assimp('glb2', path, theirs):
+            tally.check('assimp writes ' + theirs, True, False)
+            continue
+        status, answer = daemon.create('glb', open(theirs, 'rb').read(), ['weld'])
+        tally.check('daemon of ' + theirs, 201, status)
+        if status == 201:
+            # from GLB to GLB assimp 5.2 multiplies an opacity with itself
+            numbers = 4 if kind == 'obj' else 3
+            back = painted(export(daemon, answer['id'], 'obj').decode(),
+                           export(daemon, answer['id'], 'mtl').decode(), numbers)
+            tally.check('materials of ' + theirs, painted(text, library, numbers), back)
+            daemon.delete(answer['id'])
+    daemon.delete(mesh)
+
+
 def run(daemon, folder, tally):
+    check_materials(tally, daemon, folder)
     for name, normals, colors in (('seams', True, False), ('colors', False, True), ('all', True, True)):
         text = grid(normals, colors)
         kept = ['uv'] + ['normal'] * normals + ['color'] * colors

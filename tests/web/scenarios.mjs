@@ -93,6 +93,9 @@ export const SCENARIOS = [
     ['transform', GRID, { 'rotate z': '30', 'scale x': '2', vertex: [vertex(5), vertex(6)] }],
     ['plane_split', GRID, { point: [0.05, 0, 0], normal: [1, 0, 0], face: [MIDDLE] }],
     ['plane_cut', GRID, { point: vertex(5), normal: [1, 0.5, 0], keep: 'below' }],
+    ['material_set', GRID, {
+        name: 'steel', base_color: '0.5 0.5 0.6', metallic: '1', two_sided: 'yes', face: [MIDDLE],
+    }],
     ['delaunay', LONG, { edge: [edge(0, 2)] }],
     ['compact', GRID, {}, HOLE],
     ['vertex_weld', GRID, { vertex: [vertex(5), vertex(6)], position: 'lowest' }],
