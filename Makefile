@@ -135,7 +135,7 @@ NEEDS.tsan         := build test
 NEEDS.coverage     := build test coverage
 NEEDS.lint         := build test web lint
 NEEDS.format       := format
-NEEDS.crosscheck   := build crosscheck
+NEEDS.crosscheck    = build $(if $(filter blender,$(PEERS)),blender,crosscheck)
 NEEDS.proof        := build test web browser
 NEEDS.soak         := build node
 NEEDS.hostile      := build hostile
@@ -293,10 +293,12 @@ coverage: | $(INSTALLED) ## line and branch coverage of the C tests
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
-# CHECK_FLAGS="--files 100000 --only ply" for a longer look; SEED=... repeats a run.
-crosscheck: $(HEDGED) $(BUILD)/tests/crosscheck/peers ## readers and writers beside assimp, OpenMesh, CGAL and the corpus' reader
+# CHECK_FLAGS="--files 100000 --only ply" for a longer look; SEED=... repeats a run. PEERS=blender has
+# Blender alone read what is written, which is no part of .ci/run.
+CHECK_PEERS = $(if $(filter blender,$(PEERS)),,$(BUILD)/tests/crosscheck/peers)
+crosscheck: $(HEDGED) $(CHECK_PEERS) ## readers and writers beside assimp, OpenMesh, CGAL and the corpus' reader; PEERS=blender: beside Blender
 	@python3 -B tests/crosscheck/run.py --hedged $(abspath $(HEDGED)) \
-	    --peers $(BUILD)/tests/crosscheck/peers $(CHECK_FLAGS)
+	    $(if $(CHECK_PEERS),--peers $(CHECK_PEERS),--blender blender) $(CHECK_FLAGS)
 
 $(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(INSTALLED)
 	@mkdir -p $(@D)
@@ -351,9 +353,9 @@ targets: $(FUZZERS)
 BENCH      ?=
 RUNS       ?= 5
 SCALE      ?= 1
-PEERS      := openmesh cgal meshoptimizer
+BENCH_PEERS := openmesh cgal meshoptimizer
 PEER_FLAGS := -std=c++17 -O3 -fno-math-errno -DNDEBUG
-SIDES      := $(addprefix $(BUILD)/tests/bench/sides/,ours $(PEERS))
+SIDES      := $(addprefix $(BUILD)/tests/bench/sides/,ours $(BENCH_PEERS))
 LIBS_openmesh      := -lOpenMeshTools -lOpenMeshCore
 LIBS_meshoptimizer := -lmeshoptimizer
 
@@ -369,7 +371,7 @@ $(BUILD)/tests/bench/sides/$(1): $(call peer_objects,$(1)) $(call object,$(SIDE_
 	@echo "LD $$@"
 	$$(Q)g++ -o $$@ $$^ $(LIBS_$(1))
 endef
-$(foreach peer,$(PEERS),$(eval $(call PEER,$(peer))))
+$(foreach peer,$(BENCH_PEERS),$(eval $(call PEER,$(peer))))
 
 $(BUILD)/tests/bench/sides/ours: $(call object,$(OURS_C) $(SIDE_C)) $(LIBRARIES)
 	@mkdir -p $(@D)

@@ -15,8 +15,9 @@ import subprocess
 SIDE = 6
 
 
-def grid(normals, colors):
-    """As OBJ: uv per cell of 2 x 2, so that each has a seam about it; normals likewise."""
+def grid(normals, colors, materials=False):
+    """As OBJ: uv per cell of 2 x 2, so that each has a seam about it; normals and materials
+    likewise."""
     lines = []
     for i in range((SIDE + 1) ** 2):
         x, y = i % (SIDE + 1), i // (SIDE + 1)
@@ -33,18 +34,20 @@ def grid(normals, colors):
         for v, u, w in quad:
             vt.append(((u + cell) / 16, (w + 2 * cell) / 32))
             corners.append((v + 1, len(vt), len(vn)))
-        faces += [corners[:3], [corners[0], corners[2], corners[3]]]
+        faces += [(cell, corners[:3]), (cell, [corners[0], corners[2], corners[3]])]
     lines += ['vt %r %r' % p for p in vt]
     if normals:
         lines += ['vn %r %r %r' % p for p in vn]
-    for f in faces:
+    for cell, f in faces:
+        if materials:
+            lines.append('usemtl %s' % ('red' if cell % 2 else 'blue'))
         lines.append('f ' + ' '.join('%d/%d' % c[:2] + ('/%d' % c[2] if normals else '') for c in f))
     return '\n'.join(lines) + '\n'
 
 
-def corners_of(text, parts):
-    """Of an OBJ: the corners as (place, uv, normal, colour), those not in `parts` left out."""
-    v, vt, vn, out = [], [], [], set()
+def faces_of(text):
+    """Of an OBJ: the faces as lists of (place, {uv, normal, color, material})."""
+    v, vt, vn, material = [], [], [], None
     for line in text.splitlines():
         words = line.split()
         if words[:1] == ['v']:
@@ -53,15 +56,24 @@ def corners_of(text, parts):
             vt.append(tuple(map(float, words[1:3])))
         elif words[:1] == ['vn']:
             vn.append(tuple(map(float, words[1:])))
+        elif words[:1] == ['usemtl']:
+            material = words[1]
         elif words[:1] == ['f']:
+            face = []
             for corner in words[1:]:
                 i = [int(x) if x else 0 for x in (corner + '//').split('/')[:3]]
                 p = v[i[0] - 1]
-                said = {'uv': vt[i[1] - 1] if i[1] else None, 'normal': vn[i[2] - 1] if i[2] else None,
-                        'color': p[3:6] or None}
-                out.add((p[:3],) + tuple(tuple(round(x, 4) for x in said[k]) if said[k] else None
-                                         for k in parts))
-    return out
+                face.append((p[:3], {'uv': vt[i[1] - 1] if i[1] else None,
+                                     'normal': vn[i[2] - 1] if i[2] else None,
+                                     'color': p[3:6] or None, 'material': material}))
+            yield face
+
+
+def corners_of(text, parts):
+    """Of an OBJ: the corners as (place, uv, normal, colour), those not in `parts` left out."""
+    return {(place,) + tuple(tuple(round(x, 4) for x in said[k]) if said[k] else None
+                             for k in parts)
+            for face in faces_of(text) for place, said in face}
 
 
 def run_assimp(form, path, out):

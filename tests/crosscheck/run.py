@@ -2,30 +2,45 @@
 """run.py - the daemon's readers and writers beside those of others.
 
     run.py --hedged PROGRAM --peers PROGRAM [--corpus DIR] [--files N] [--only obj,off] [--keep DIR]
+    run.py --hedged PROGRAM --blender PROGRAM
 
 readers.py compares it with the reference reader of the corpus, where the corpus lies beside the
-project; peers.py with assimp, OpenMesh and CGAL; meaning.py what corners say with assimp. The last line is `N passed, M failed`."""
+project; peers.py with assimp, OpenMesh and CGAL; meaning.py what corners say with assimp; with --blender,
+blender.py compares with Blender and nothing else is done. The last line is `N passed, M failed`."""
 import argparse
 import os
 import sys
 import tempfile
 
+import blender
 import meaning
 import peers
 import readers
 from daemon import Daemon
 
 
+def run_blender(a):
+    tally = peers.Tally()
+    with Daemon(a.hedged) as daemon, tempfile.TemporaryDirectory() as folder:
+        blender.run(daemon, a.blender, folder, tally)
+    tally.failed += daemon.status != 0
+    print('%d passed, %d failed' % (tally.passed, tally.failed))
+    sys.exit(tally.failed > 0)
+
+
 def main():
     p = argparse.ArgumentParser()
     p.add_argument('--hedged', required=True)
-    p.add_argument('--peers', required=True)
+    p.add_argument('--peers')
+    p.add_argument('--blender')
     p.add_argument('--corpus', default='../shared/corpus')
     p.add_argument('--files', type=int, default=6000)
     p.add_argument('--only', default=','.join(readers.MAKERS))
     p.add_argument('--keep', default='')
     p.add_argument('--show', type=int, default=2, help='examples of each difference')
     a = p.parse_args()
+    if a.blender:
+        run_blender(a)
     reference = None
     if os.path.isdir(os.path.join(a.corpus, 'tools')):
         sys.path.insert(0, os.path.join(a.corpus, 'tools'))
