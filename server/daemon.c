@@ -132,7 +132,7 @@ static bool open_journal(const srv_config *config, st_journal *out, bool *made)
 static bool open_store(daemon_parts *parts, const srv_config *config)
 {
     st_journal journal;
-    bool made;
+    bool made = false;
     if (!open_journal(config, &journal, &made)) {
         return false;
     }

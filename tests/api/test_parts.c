@@ -13,7 +13,8 @@
 #include <cmocka.h>
 
 #define BOUNDARY "xyz"
-#define TYPE     "multipart/form-data; boundary=" BOUNDARY
+
+static const char type[] = "multipart/form-data; boundary=" BOUNDARY;
 
 typedef struct file {
     const char *name, *type;
@@ -62,7 +63,7 @@ static several pack_as(const char *boundary, const file *files)
 static bench_reply send_body(api_bench *b, const char *method, const char *target,
                              const several *body)
 {
-    static const char *const headers[] = {"Content-Type", TYPE, NULL};
+    static const char *const headers[] = {"Content-Type", type, NULL};
     return bench_send_bytes(b, method, target, headers, body->bytes, body->length);
 }
 
@@ -238,13 +239,13 @@ static void every_upload_takes_them(void **state)
     for (size_t i = 0; i < 2; i++) {
         size_t length;
         char *coded = coding_pack(codings[i], packed.bytes, packed.length, &length);
-        const char *const headers[] = {"Content-Type", TYPE, "Content-Encoding", codings[i], NULL};
+        const char *const headers[] = {"Content-Type", type, "Content-Encoding", codings[i], NULL};
         bench_done(expect_triangle(
             "gltf", bench_send_bytes(b, "POST", "/v1/meshes", headers, coded, length)));
         free(coded);
     }
     /* as a job, which outlives the body */
-    const char *const headers[] = {"Content-Type", TYPE, "Prefer", "respond-async", NULL};
+    const char *const headers[] = {"Content-Type", type, "Prefer", "respond-async", NULL};
     bench_reply r = bench_expect(202, bench_send_bytes(b, "POST", "/v1/meshes?id=late", headers,
                                                        packed.bytes, packed.length));
     bench_reply_free(&r);
@@ -280,7 +281,7 @@ static void another_boundary_is_the_same_request(void **state)
 {
     (void)state;
     static const char *const boundaries[] = {BOUNDARY, "other"};
-    static const char *const types[] = {TYPE, "multipart/form-data; boundary=other"};
+    static const char *const types[] = {type, "multipart/form-data; boundary=other"};
     file files[MOST_FILES] = {{"a.obj", NULL, OBJ, 0}, {"a.mtl", NULL, MTL, 0}};
     api_bench *b = bench_new();
     char *first = NULL;
@@ -304,7 +305,7 @@ static void another_boundary_is_the_same_request(void **state)
         file *changed = &files[1];
         *changed = i == 0 ? (file){"b.mtl", NULL, MTL, 0} : (file){"a.mtl", NULL, MTL "\n", 0};
         several packed = pack_as(BOUNDARY, files);
-        const char *const headers[] = {"Content-Type", TYPE, "Idempotency-Key", "k", NULL};
+        const char *const headers[] = {"Content-Type", type, "Idempotency-Key", "k", NULL};
         expect_refused(
             422, "idempotency_mismatch", "another request",
             bench_send_bytes(b, "POST", "/v1/meshes", headers, packed.bytes, packed.length));
@@ -331,7 +332,7 @@ static void without_memory_nothing_is_made(void **state)
     (void)state;
     static const he_mem_hook hook = {starve, NULL};
     static const file files[MOST_FILES] = {{"scene", NULL, GLTF("a.bin"), 0}, {"a.bin", NULL, BIN}};
-    static const char *const headers[] = {"Content-Type", TYPE, NULL};
+    static const char *const headers[] = {"Content-Type", type, NULL};
     several packed = pack_as(BOUNDARY, files);
     api_bench *b = bench_new();
     for (size_t n = 0;; n++) {

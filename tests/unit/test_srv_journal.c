@@ -576,9 +576,10 @@ static void make_killed(const char *copy)
     kept_mesh mesh = mesh_as("a", content);
     open_store(&told);
     uint64_t last = kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
-    for (unsigned char i = 0; i < EDITS; i++) {
+    for (unsigned i = 0; i < EDITS; i++) {
+        const unsigned char byte = (unsigned char)i;
         told_wait(&told, last);
-        last = kept_append(&told.journal, kept_edit(&mesh), &mesh, &i, 1);
+        last = kept_append(&told.journal, kept_edit(&mesh), &mesh, &byte, 1);
     }
     told_wait(&told, last);
     folder_copy(folder, copy);

@@ -95,10 +95,10 @@ he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char
     size_t length = join(begin, line->end, name);
     for (size_t i = 0; i < length; i++) {
         if ((unsigned char)name[i] < 0x20 && name[i] != '\t') {
-            int control = name[i];
+            unsigned control = (unsigned char)name[i];
             he_mem_free(name);
             return he_line_fail(err, HE_SYNTAX, line, begin,
-                                "a name holds the control character %d", control);
+                                "a name holds the control character %u", control);
         }
     }
     *own = name;

@@ -161,7 +161,7 @@ st_sql st_heads_flush(st_sqlite *self)
 static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
 {
     st_head *head;
-    st_mesh_row row;
+    st_mesh_row row = {.key = 0};
     bool good;
     st_sql outcome = place_of(self, incarnation, &head);
     if (outcome == ST_SQL_DONE) {
