@@ -50,13 +50,13 @@ typedef struct api_asker {
 /* Call `answer` with the mesh at hand; it writes onto x->out and answers, or leaves a problem or
  * `spent`: then the request begins anew on the job pool. */
 void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
-/* Before there is a job: call `answer` with an asker that only reads the body, so that what is
- * wrong with it is said at once. It may look at the mesh for ids. False with the problem filled. */
+/* Before there is a job: call `answer` with an asker that only reads the body (a->reads_only), so
+ * that what is wrong with it is said at once. It may look at the mesh for ids. Then api_walk_ask,
+ * api_question_dense and api_measure_dense end as soon as the question is read, and give nothing;
+ * other questions are not asked. False with the problem filled. */
 bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
 
-/* With a->reads_only the question is read and nothing else, and true says that it is well formed.
- *
- * Answer a question of any kind, or a walk only. False with nothing written and the problem filled,
+/* Answer a question of any kind, or a walk only. False with nothing written and the problem filled,
  * or with a->spent. */
 bool api_question_ask(api_asker *a, const api_in *question);
 bool api_walk_ask(api_asker *a, const api_in *walk);

@@ -4,7 +4,8 @@
 
 No request of less than a megabyte may hold the worker for more than 50 ms or, unless it is answered
 as a job, a thread of the pool for more than a second; what is cancelled ends within 0.1 s; and while
-attacks are begun and abandoned an import finds a thread. These figures are processor time
+attacks are begun and abandoned an import finds a thread. Files of a million faces, which are sent
+at once, have a limit of their own in the table, as the manual has. These figures are processor time
 (daemon.py), multiplied by how much longer this machine, or a sanitizer, takes for a known import and
 check than the machine they were chosen on. An import waits for no more than a second of all other
 work, on whatever number of cores. The last line is `N passed, N failed`.
