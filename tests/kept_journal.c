@@ -484,6 +484,16 @@ void kept_journal_free(kept_journal *journal)
     free(journal);
 }
 
+/* It forgets keys. */
+static st_status keys_none(void *self, const char *id, st_take_key *take, void *context)
+{
+    (void)self;
+    (void)id;
+    (void)take;
+    (void)context;
+    return ST_OK;
+}
+
 st_journal kept_journal_open(kept_journal *journal)
 {
     return (st_journal){.self = journal,
@@ -500,6 +510,7 @@ st_journal kept_journal_open(kept_journal *journal)
                         .shut = shut,
                         .condemn = condemn,
                         .list = list_cards,
+                        .keys = keys_none,
                         .count = count_meshes,
                         .listen = listen_to,
                         .close = close_journal};

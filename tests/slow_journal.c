@@ -101,6 +101,15 @@ static st_status list_none(void *self, const char *after, st_card *out, size_t l
     return ST_OK;
 }
 
+static st_status keys_none(void *self, const char *id, st_take_key *take, void *context)
+{
+    (void)self;
+    (void)id;
+    (void)take;
+    (void)context;
+    return ST_OK;
+}
+
 static uint64_t count_none(void *self)
 {
     (void)self;
@@ -177,6 +186,7 @@ st_journal slow_journal_open_keeping(slow_journal *journal)
     kept.unstage = unstage;
     kept.open = open_none;
     kept.list = list_none;
+    kept.keys = keys_none;
     kept.count = count_none;
     return kept;
 }

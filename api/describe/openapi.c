@@ -360,8 +360,9 @@ static void write_header_parameters(api_out *out, const api_route *route)
             out, "Idempotency-Key",
             "1 to 255 visible characters of the client's choice. A request that took effect is "
             "answered again for a day, with Idempotency-Replayed: true, and not done again; where "
-            "the first answer was too large to keep, with 204 or 201 and no body. The key with "
-            "another request is 422, while the first is under way 409. Refusals are not kept.");
+            "the first answer was too large to keep, or the server was started since, with 204 or "
+            "201 and no body. The key with another request is 422, while the first is under way "
+            "409. Refusals are not kept.");
     }
 }
 

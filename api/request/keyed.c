@@ -51,6 +51,15 @@ void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
+/* Which tag an answer of the route has. */
+static const char *representation_of(const api_route *route)
+{
+    if (route->flags & API_KEYED_NEW || strcmp(route->path, "/v1/meshes/{mesh}") == 0) {
+        return "summary";
+    }
+    return strstr(route->path, "/attributes/") != NULL ? "attribute" : "edits";
+}
+
 static void replay(api_exchange *x)
 {
     const st_kept *kept = st_keyed_answer(x->keyed);
@@ -60,6 +69,10 @@ static void replay(api_exchange *x)
     api_answer_header(x, "Idempotency-Replayed", "true");
     if (kept->etag[0] != '\0') {
         api_answer_header(x, "ETag", kept->etag);
+    } else if (kept->revision != 0) {
+        x->info.revision = kept->revision;
+        x->info.metadata = kept->metadata;
+        api_answer_etag(x, representation_of(x->route));
     }
     if (kept->status == 201) {
         api_answer_header_format(x, "Location", "/v1/meshes/%s", kept->id);

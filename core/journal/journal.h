@@ -78,6 +78,9 @@ typedef struct st_journal_listener {
     void (*lost)(void *context, const st_loss *loss);
 } st_journal_listener;
 
+/* Takes a key, which is borrowed for the call. False without memory. */
+typedef bool st_take_key(void *context, const st_kept_key *key);
+
 typedef struct st_journal {
     void *self;
     /* Is what is appended kept beyond memory? Without it a room is NULL, so that nothing is coded,
@@ -120,6 +123,9 @@ typedef struct st_journal {
     /* Up to `limit` cards of ids after `after` ("" from the start), in the order of ids, as durable
      * records left them; waits for the disk. ST_FAILED, ST_NO_MEMORY. */
     st_status (*list)(void *self, const char *after, st_card *out, size_t limit, size_t *count);
+    /* Gives the keys of the last day that durable records of a mesh carry (`id` NULL: those that
+     * made a mesh), the oldest first; waits for the disk. ST_FAILED, ST_NO_MEMORY. */
+    st_status (*keys)(void *self, const char *id, st_take_key *take, void *context);
     /* How many meshes there are, with what is queued. Never waits. */
     uint64_t (*count)(void *self);
 

@@ -47,6 +47,13 @@ typedef struct st_record_key {
     bool of_store;      /* the key is the store's: the change made the mesh */
 } st_record_key;
 
+/* A key that is kept, and the state that the answer to its request had. */
+typedef struct st_kept_key {
+    st_record_key key;
+    const char *id; /* of the mesh */
+    uint64_t incarnation, revision, metadata;
+} st_kept_key;
+
 /* Live elements and boundary half-edges. */
 typedef struct st_counts {
     uint32_t vertices, edges, faces, boundary;

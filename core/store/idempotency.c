@@ -4,6 +4,7 @@
 #include "base/siphash.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { FIRST_BUCKETS = 16 };
@@ -166,6 +167,35 @@ void st_keyed_keep(st_keyed *keyed, const st_kept *answer)
         forget(keys, keys->oldest);
     }
     pthread_mutex_unlock(&keys->lock);
+}
+
+bool st_keys_restore(void *context, const st_kept_key *kept)
+{
+    st_keys *keys = context;
+    const st_record_key *was = &kept->key;
+    const st_key key = {.text = was->text, .digest = {was->digest[0], was->digest[1]}};
+    st_kept answer = {.status = was->of_store ? 201 : 204,
+                      .changed = true,
+                      .incarnation = kept->incarnation,
+                      .revision = kept->revision,
+                      .metadata = kept->metadata};
+    snprintf(answer.id, sizeof answer.id, "%s", kept->id);
+    st_keyed *keyed;
+    switch (st_keys_begin(keys, &key, was->time, &keyed)) {
+    case ST_KEYED_NEW:
+        st_keyed_keep(keyed, &answer);
+        st_keyed_end(keyed);
+        break;
+    case ST_KEYED_KEPT: /* it was used again: the newer answer is that in memory */
+        st_keyed_end(keyed);
+        break;
+    case ST_KEYED_BUSY:
+    case ST_KEYED_OTHER:
+        break;
+    case ST_KEYED_NO_MEMORY:
+        return false;
+    }
+    return true;
 }
 
 void st_keyed_end(st_keyed *keyed)

@@ -10,7 +10,9 @@
  *
  * The body of an answer is a copy made when it is kept. Where it is larger than ST_KEPT_BODY or
  * memory is out, status and tag are kept without it: that the request took effect is never
- * forgotten for want of memory. The table has a lock of its own, taken after all others. */
+ * forgotten for want of memory. Keys of changes come back with their mesh, and those of the store
+ * at its start, from the journal: with 201 or 204 and the tag, without a body. The table has a lock
+ * of its own, taken after all others. */
 #ifndef HE_STORE_IDEMPOTENCY_H
 #define HE_STORE_IDEMPOTENCY_H
 
@@ -53,6 +55,9 @@ void st_keys_clear(st_keys *keys); /* no request may be under way */
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out);
 /* Forgets a kept answer that was lent with ST_KEYED_KEPT, in place of st_keyed_end. */
 void st_keys_forget(st_keyed *keyed);
+/* Brings a key back that the journal kept (an st_take_key): its answer is 201 or 204, without a
+ * body. `keys` is an st_keys. */
+bool st_keys_restore(void *keys, const st_kept_key *kept);
 /* Free the bodies nobody reads. */
 void st_keys_shed(st_keys *keys);
 

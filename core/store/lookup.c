@@ -183,6 +183,12 @@ static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
         st_make_room(store, card.bytes + card.bytes / 2);
         status = st_mesh_load(&options, &card, reader, 0, out, card.damage);
         journal->shut(reader);
+        if (status == ST_OK) {
+            status = journal->keys(journal->self, id, st_keys_restore, &(*out)->keys);
+            if (status != ST_OK) {
+                st_release(*out);
+            }
+        }
         if (status == ST_DAMAGED && card.damage[0] != '\0') {
             journal->condemn(journal->self, card.incarnation, card.damage);
         } else if (status == ST_DAMAGED) {

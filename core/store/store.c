@@ -58,7 +58,12 @@ st_store *st_store_new(const st_store_options *options)
         .most_of_mesh = options->mesh_listeners,
         .waits = st_waits_new(),
     };
-    if (store->followers.waits == NULL) {
+    const st_journal *journal = &store->journal;
+    bool failed = journal->keeps &&
+                  journal->keys(journal->self, NULL, st_keys_restore, &store->keys) != ST_OK;
+    if (store->followers.waits == NULL || failed) {
+        st_keys_clear(&store->keys);
+        st_waits_free(store->followers.waits);
         st_lookups_clear(&store->lookups);
         pthread_rwlock_destroy(&store->lock);
         he_mem_free(store);

@@ -81,7 +81,7 @@ typedef struct st_store_options {
     size_t mesh_listeners;
 } st_store_options;
 
-/* NULL when memory is out; the journal is the caller's then. */
+/* NULL when memory is out, or the journal cannot be read; the journal is the caller's then. */
 st_store *st_store_new(const st_store_options *options);
 /* Nobody may hold a handle. */
 void st_store_free(st_store *store);
@@ -213,6 +213,9 @@ typedef struct st_kept {
     char etag[ST_KEPT_TAG];  /* "" for none */
     char id[ST_MESH_ID + 1]; /* of the mesh it shows, which Location names with 201 */
     uint64_t incarnation, position;
+    /* Of an answer that was kept before the server was started, whose tag is not known: what the
+     * tag names. Else 0. */
+    uint64_t revision, metadata;
     const char *body; /* JSON; NULL with a length: left out */
     size_t length;
 } st_kept;

@@ -209,6 +209,47 @@ static void a_tag_names_one_state_for_ever(void **state)
     }
 }
 
+/* A request that was answered before the kill is not done again after it. */
+static void a_key_is_good_after_a_restart(void **state)
+{
+    (void)state;
+    static const char shape[] = "{\"shape\":\"cube\"}",
+                      poke[] = "{\"op\":\"face_poke\",\"face\":0}";
+    static const struct {
+        const char *method, *path, *body, *key;
+        long status, again;
+    } rows[] = {
+        {"POST", "/v1/meshes?id=m", shape, "Idempotency-Key: a", 201, 201},
+        {"POST", "/v1/meshes/m/edits", poke, "Idempotency-Key: b", 200, 204},
+        {"POST", "/v1/meshes/m/undo", "{}", "Idempotency-Key: c", 200, 204},
+        {"PATCH", "/v1/meshes/m", "{\"name\":\"n\"}", "Idempotency-Key: d", 200, 204},
+        {"POST", "/v1/meshes/m/copy", "{\"id\":\"o\"}", "Idempotency-Key: e", 201, 201},
+    };
+    enum { ROWS = sizeof rows / sizeof *rows };
+    char tags[ROWS][200], tag[200];
+    for (int again = 0; again < 2; again++) {
+        for (size_t i = 0; i < ROWS; i++) {
+            const char *const headers[] = {rows[i].key, NULL};
+            reply r = reply_expect(again ? rows[i].again : rows[i].status,
+                                   client_send(http, rows[i].method, rows[i].path, rows[i].body,
+                                               strlen(rows[i].body), headers));
+            assert_string_equal(reply_header(&r, "Idempotency-Replayed", tag, sizeof tag),
+                                again ? "true" : "");
+            (void)reply_header(&r, "ETag", again ? tag : tags[i], sizeof tag);
+            if (again) {
+                assert_string_equal(tag, tags[i]);
+            }
+            reply_free(&r);
+        }
+        kill_and_start();
+    }
+    static const char *const other[] = {"Idempotency-Key: b", NULL};
+    reply_done(reply_expect(422, client_send(http, "POST", "/v1/meshes/m/edits", "{}", 2, other)));
+    reply r = reply_expect(200, client_get(http, "/v1/meshes/m"));
+    assert_true(reply_number(&r, "revision") == 3);
+    reply_free(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -216,6 +257,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(undo_and_redo_lead_where_they_would_have_led, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(a_tag_names_one_state_for_ever, setup, teardown),
+        cmocka_unit_test_setup_teardown(a_key_is_good_after_a_restart, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

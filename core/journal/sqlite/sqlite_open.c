@@ -325,6 +325,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .shut = st_sqlite_shut,
                         .condemn = st_sqlite_condemn,
                         .list = st_sqlite_list,
+                        .keys = st_sqlite_keys,
                         .count = st_sqlite_count,
                         .listen = st_sqlite_listen,
                         .close = st_sqlite_close};

@@ -39,6 +39,8 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
                          "revision, metadata, position, made, sum) "
                          "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
     [ST_SQL_KEPT_DELETE] = "DELETE FROM kept WHERE mesh = ?1",
+    [ST_SQL_KEPT_TRIM] = "DELETE FROM kept WHERE (mesh, holder, text) IN (SELECT mesh, holder, "
+                         "text FROM kept WHERE time < ?1 ORDER BY time LIMIT 2)",
     [ST_SQL_STATE_PUT] = "UPDATE state SET commits = ?1, position = ?2, meshes = ?3, sum = ?4",
 };
 
@@ -259,10 +261,14 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
         return ST_SQL_DONE; /* keys of a mesh go with it */
     }
     row.mesh = row.mesh == 0 ? 0 : head->row.key;
-    return st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiii", row.mesh, row.text, row.digest,
-                    sizeof row.digest, row.time, row.id, row.incarnation, row.revision,
-                    row.metadata, row.position, (uint64_t)row.made,
-                    (uint64_t)st_kept_row_sum(&row));
+    st_sql outcome =
+        st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiii", row.mesh, row.text, row.digest,
+                 sizeof row.digest, row.time, row.id, row.incarnation, row.revision, row.metadata,
+                 row.position, (uint64_t)row.made, (uint64_t)st_kept_row_sum(&row));
+    /* Two old ones go for each that comes. */
+    return outcome == ST_SQL_DONE
+               ? st_db_do(&self->db, ST_SQL_KEPT_TRIM, "d", row.time - ST_KEY_SECONDS)
+               : outcome;
 }
 
 st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room)

@@ -13,7 +13,8 @@ enum {
     ST_SCHEMA_VERSION = 1,
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
-    ST_KEY_TEXT = 255                   /* of an Idempotency-Key, at most */
+    ST_KEY_TEXT = 255,                  /* of an Idempotency-Key, at most */
+    ST_KEY_SECONDS = 24 * 3600          /* that it is kept, at least */
 };
 
 /* What the store is: never changed once it was made. */

@@ -229,6 +229,7 @@ enum st_writer_statement {
     ST_SQL_PURGE_DELETE,
     ST_SQL_KEPT_MAKE,
     ST_SQL_KEPT_DELETE,
+    ST_SQL_KEPT_TRIM,
     ST_SQL_STATE_PUT,
     ST_WRITER_STATEMENTS
 };
@@ -276,6 +277,8 @@ void st_sqlite_shut(st_reader *reader);
 void st_findings_forget(st_sqlite *self, uint64_t incarnation);
 void st_sqlite_condemn(void *self, uint64_t incarnation, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
+/* sqlite_keys.c */
+st_status st_sqlite_keys(void *self, const char *id, st_take_key *take, void *context);
 /* Opens the connections that read; closes them. */
 st_sql st_readers_open(st_sqlite *self, const char *path);
 bool st_readers_close(st_sqlite *self);

@@ -1,0 +1,74 @@
+/* Keys of requests come back: those of one mesh, or of the store. */
+#include "journal/sqlite/sqlite_state.h"
+
+#include <string.h>
+
+/* The keys of the last day before the newest one. */
+static const char of_store[] =
+    "SELECT mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum "
+    "FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
+    "ORDER BY time";
+static const char of_mesh[] =
+    "SELECT k.mesh, k.text, k.digest, k.time, k.id, k.incarnation, k.revision, k.metadata, "
+    "k.position, k.made, k.sum FROM kept k JOIN mesh m ON k.mesh = m.key "
+    "WHERE m.id = ?2 AND k.time > m.modified - ?1 ORDER BY k.time";
+
+/* False where the sum is wrong: such a key is as good as none. */
+static bool read_row(sqlite3_stmt *s, char id[ST_MESH_ID + 1], char text[ST_KEY_TEXT + 1],
+                     st_kept_row *row)
+{
+    st_db_text(s, 4, id, ST_MESH_ID + 1);
+    st_db_text(s, 1, text, ST_KEY_TEXT + 1);
+    *row = (st_kept_row){.mesh = sqlite3_column_int64(s, 0),
+                         .text = text,
+                         .id = id,
+                         .time = sqlite3_column_double(s, 3),
+                         .incarnation = st_db_word(s, 5),
+                         .revision = st_db_word(s, 6),
+                         .metadata = st_db_word(s, 7),
+                         .position = st_db_word(s, 8),
+                         .made = st_db_word(s, 9) != 0};
+    const void *digest = sqlite3_column_blob(s, 2);
+    if (digest == NULL || sqlite3_column_bytes(s, 2) != (int)sizeof row->digest) {
+        return false;
+    }
+    memcpy(row->digest, digest, sizeof row->digest);
+    return sqlite3_column_int64(s, 10) == (int64_t)st_kept_row_sum(row);
+}
+
+st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void *to)
+{
+    st_sqlite *self = context;
+    sqlite3_stmt *s = NULL;
+    char of[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1];
+    st_kept_row row;
+    bool taken = true;
+    pthread_mutex_lock(&self->cards_lock);
+    int code =
+        sqlite3_prepare_v2(self->cards.handle, id == NULL ? of_store : of_mesh, -1, &s, NULL);
+    if (code == SQLITE_OK) {
+        sqlite3_bind_int(s, 1, ST_KEY_SECONDS);
+        code = id == NULL ? SQLITE_OK : sqlite3_bind_text(s, 2, id, -1, SQLITE_STATIC);
+    }
+    while (code == SQLITE_OK && taken && (code = sqlite3_step(s)) == SQLITE_ROW) {
+        code = SQLITE_OK;
+        if (read_row(s, of, text, &row)) {
+            const st_kept_key key = {.key = {.text = text,
+                                             .digest = {row.digest[0], row.digest[1]},
+                                             .time = row.time,
+                                             .of_store = row.made},
+                                     .id = of,
+                                     .incarnation = row.incarnation,
+                                     .revision = row.revision,
+                                     .metadata = row.metadata};
+            taken = take(to, &key);
+        }
+    }
+    const st_sql outcome = code == SQLITE_OK ? ST_SQL_DONE : st_db_outcome(&self->cards, code);
+    sqlite3_finalize(s);
+    pthread_mutex_unlock(&self->cards_lock);
+    if (!taken || outcome == ST_SQL_NO_MEMORY) {
+        return ST_NO_MEMORY;
+    }
+    return outcome == ST_SQL_DONE ? ST_OK : ST_FAILED;
+}
