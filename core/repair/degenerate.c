@@ -108,7 +108,7 @@ static he_status add_loop(mending *g, uint32_t f, he_error *err)
     return HE_OK;
 }
 
-/* Corners [from, end) of `loops` are a loop. */
+/* The corners of `loops` behind the last loop are another. */
 static he_status end_loop(mending *g, uint32_t cut, he_error *err)
 {
     he_status status = he_ids_add(&g->ends, (uint32_t)g->loops.count, err);

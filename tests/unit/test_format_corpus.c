@@ -3,6 +3,7 @@
 #include "unit/format_fixture.h"
 
 #include "format/io/export.h"
+#include "build/pair.h"
 #include "query/defects.h"
 
 static const char *corpus;
@@ -88,6 +89,23 @@ static void check_defects(const char *line, const he_mesh *mesh)
     assert_int_equal(inside_out, found.of[HE_DEFECT_INSIDE_OUT].total > 0);
 }
 
+/* The compression of indices begins a triangle with any of its corners. */
+static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
+{
+    assert_int_equal(found->face_count, wanted->face_count);
+    for (size_t f = 0; f < wanted->face_count; f++) {
+        uint32_t begin = wanted->starts[f], n = he_soup_end(wanted, f) - begin, turn = 0;
+        const uint32_t *a = wanted->corners + begin, *b = found->corners + found->starts[f];
+        assert_int_equal(he_soup_end(found, f) - found->starts[f], n);
+        while (turn < n && b[turn] != a[0]) {
+            turn++;
+        }
+        for (uint32_t i = 0; i < n; i++) {
+            assert_int_equal(b[(turn + i) % n], a[i]);
+        }
+    }
+}
+
 /* What is written is read back: the same polygons, or in STL as many triangles. */
 static void check_export(const he_format *format, const char *encoding, const he_mesh *mesh,
                          const he_soup *wanted)
@@ -112,7 +130,12 @@ static void check_export(const he_format *format, const char *encoding, const he
             assert_memory_equal(&s->positions[i], &p, sizeof p);
         }
         assert_int_equal(s->corner_count, wanted->corner_count);
-        assert_memory_equal(s->corners, wanted->corners, wanted->corner_count * sizeof(uint32_t));
+        if (strcmp(encoding, "meshopt") == 0) {
+            expect_turned_faces(s, wanted);
+        } else {
+            assert_memory_equal(s->corners, wanted->corners,
+                                wanted->corner_count * sizeof(uint32_t));
+        }
     }
     he_import_clear(&again);
     free(bytes);
@@ -160,10 +183,11 @@ static void check_file(const char *line, const char *format)
         fixture_check(mesh);
         check_defects(line, mesh);
         assert_int_equal(he_mesh_edges(mesh), strtoul(e, NULL, 10));
-        for (size_t i = 0; he_format_at(i) != NULL; i++) {
-            bool written = he_format_at(i)->writing != NULL;
-            for (size_t k = 0; written && he_format_at(i)->encodings[k] != NULL; k++) {
-                check_export(he_format_at(i), he_format_at(i)->encodings[k], mesh, &import.soup);
+        const he_format *row;
+        for (size_t i = 0; (row = he_format_at(i)) != NULL; i++) {
+            bool both = row->writing != NULL && row->reading != NULL;
+            for (size_t k = 0; both && row->encodings[k] != NULL; k++) {
+                check_export(row, row->encodings[k], mesh, &import.soup);
             }
         }
     } else if (status != HE_OK) {
