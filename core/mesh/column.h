@@ -94,6 +94,8 @@ he_labels *he_labels_new(void); /* one reference; NULL when memory is out */
 he_labels *he_labels_retain(he_labels *labels);
 void he_labels_release(he_labels *labels);
 size_t he_labels_count(const he_labels *labels);
+/* What labels cost that only the asker holds; 0 where others hold them too, and for NULL. */
+size_t he_labels_own_bytes(const he_labels *labels);
 const char *he_labels_get(const he_labels *labels, size_t i);
 /* Returns whether both hold equal strings in one order. NULL equals NULL alone. */
 bool he_labels_equal(const he_labels *a, const he_labels *b);

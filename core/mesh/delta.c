@@ -27,10 +27,17 @@ void he_object_free(uint32_t column, void *object)
 
 size_t he_object_bytes(uint32_t column, const void *object)
 {
-    return object == NULL              ? 0
-           : column == HE_COL_REPLACED ? he_content_rows_bytes(object)
-           : column == HE_COL_MATERIAL ? he_material_bytes(object)
-                                       : he_column_rows_bytes(object);
+    if (object == NULL) {
+        return 0;
+    }
+    if (column == HE_COL_REPLACED) {
+        return he_content_bytes(object);
+    }
+    if (column == HE_COL_MATERIAL) {
+        return he_material_bytes(object);
+    }
+    /* Each edit that adds or renames a label leaves the labels there were to its delta. */
+    return he_column_bytes(object) + he_labels_own_bytes(((const he_column *)object)->labels);
 }
 
 /* Objects from `from` on are what the mesh does not hold at this moment. */

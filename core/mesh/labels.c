@@ -45,6 +45,15 @@ void he_labels_release(he_labels *labels)
     }
 }
 
+size_t he_labels_own_bytes(const he_labels *labels)
+{
+    if (labels == NULL || atomic_load_explicit(&labels->references, memory_order_relaxed) > 1) {
+        return 0;
+    }
+    return sizeof *labels + labels->text_capacity + labels->capacity * sizeof *labels->starts +
+           labels->slot_count * sizeof *labels->slots;
+}
+
 size_t he_labels_count(const he_labels *labels)
 {
     return labels->count;

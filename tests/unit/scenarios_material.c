@@ -48,6 +48,7 @@ const scenario material_scenarios[] = {
      "material_set name=red;material_set name=blue",
      HE_BAD_VALUE,
      {0}},
+    {"material_set name= rename=blue", QCUBE, "material_set name=red face=0", HE_BAD_VALUE, {0}},
     {"material_set name=red rename=", "012", "material_set name=red face=0", HE_BAD_VALUE, {0}},
     {"material_set name=red face=0", "012", "materials 4096", HE_LIMIT, {0}},
     {"material_set name=red face=1", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},

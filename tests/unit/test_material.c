@@ -184,6 +184,13 @@ static void memory_of_rows_is_counted(void **state)
     before = he_delta_bytes(delta);
     script_prepare(m, "material_set name=m1 metallic=1");
     assert_true(he_delta_bytes(delta) >= before + sizeof(he_record) + sizeof(he_material));
+    /* the labels that an edit leaves behind are the delta's */
+    char name[HE_MATERIAL_NAME + 30];
+    snprintf(name, sizeof name, "material_set name=%0200d face=0", 1);
+    script_prepare(m, name);
+    before = he_delta_bytes(delta);
+    script_prepare(m, "material_set name=m2 face=0");
+    assert_true(he_delta_bytes(delta) > before + 200);
     he_mesh_record(m, NULL);
     he_delta_free(delta);
     he_mesh_free(m);

@@ -109,6 +109,9 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     if (status != HE_OK) {
         return status;
     }
+    if (*name == '\0') { /* it stands for none: all faces without a material would get one */
+        return he_fail_plain(err, HE_BAD_VALUE, "there is no material without a name");
+    }
     if (he_materials_find(&m->c.materials, to, strlen(to)) != SIZE_MAX ||
         has_label(column, to, &index)) {
         return he_fail_plain(err, HE_BAD_VALUE, "there is already a material %.80s", to);
