@@ -1,0 +1,194 @@
+/* Requests about meshes that are not in memory: what is answered is what was answered before the
+ * service began anew, and a damaged mesh can be deleted or replaced. */
+#include "tests/api/request.h"
+#include "tests/kept_journal.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static kept_journal *journal;
+
+static api_bench *restart(api_bench *b)
+{
+    if (b != NULL) {
+        bench_free(b);
+    }
+    const st_journal kept = kept_journal_open(journal);
+    return bench_new_over(&kept);
+}
+
+static void poke(api_bench *b, const char *id, int face)
+{
+    char target[64], body[64];
+    snprintf(target, sizeof target, "/v1/meshes/%s/edits", id);
+    snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", face);
+    bench_done(bench_expect(200, bench_post(b, target, body)));
+}
+
+static api_bench *begin(void)
+{
+    journal = kept_journal_new();
+    api_bench *b = restart(NULL);
+    bench_done(
+        bench_expect(201, bench_post(b, "/v1/meshes?id=m&name=first", "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=n", "{\"shape\":\"cube\"}")));
+    for (int face = 1; face < 5; face++) {
+        poke(b, "m", face);
+    }
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+    return b;
+}
+
+static void end(api_bench *b)
+{
+    bench_free(b);
+    kept_journal_free(journal);
+}
+
+static void expect_code(api_bench *b, int status, const char *code, const char *method,
+                        const char *target, const char *body)
+{
+    bench_reply r = bench_expect(status, bench_send(b, method, target, NULL, body));
+    assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, code);
+    bench_done(r);
+}
+
+static api_bench *expect_same_after_restart(api_bench *b, const char *target)
+{
+    bench_reply was = bench_expect(200, bench_get(b, target));
+    char *body = strdup(was.body), *tag = strdup(bench_header(&was, "ETag"));
+    bench_done(was);
+    b = restart(b);
+    bench_reply is = bench_expect(200, bench_get(b, target));
+    assert_string_equal(is.body, body);
+    assert_string_equal(bench_header(&is, "ETag"), tag);
+    bench_done(is);
+    free(body);
+    free(tag);
+    return b;
+}
+
+static void what_is_read_is_what_it_was(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {
+        "/v1/meshes/m",         "/v1/meshes/m/content",          "/v1/meshes/m/edits",
+        "/v1/meshes/m/faces/1", "/v1/meshes/m/faces/1/vertices", "/v1/meshes/m/content?revision=3",
+        "/v1/meshes/m/check",   "/v1/meshes/m/vertices?limit=3"};
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        b = expect_same_after_restart(b, targets[i]);
+    }
+    end(b);
+}
+
+static void a_cold_mesh_is_changed_like_any_other(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *method, *target, *body;
+        int status;
+    } cases[] = {
+        {"POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", 200},
+        {"POST", "/v1/meshes/m/redo", NULL, 409},
+        {"POST", "/v1/meshes/m/undo", "{\"steps\":4}", 200},
+        {"POST", "/v1/meshes/m/redo", "{\"steps\":2}", 200},
+        {"PATCH", "/v1/meshes/m", "{\"name\":\"second\"}", 200},
+        {"PUT", "/v1/meshes/m/attributes/faces/kind", "{\"type\":\"float\",\"default\":1}", 201},
+        {"POST", "/v1/meshes/m/copy", "{\"id\":\"c\"}", 201},
+        {"POST", "/v1/meshes/n/edits", "{\"op\":\"append\",\"mesh\":\"m\"}", 200},
+        {"POST", "/v1/meshes/n/edits", "{\"op\":\"append\",\"mesh\":\"x\"}", 422},
+        {"POST", "/v1/meshes?id=c", "{\"shape\":\"cube\"}", 409},
+        {"PUT", "/v1/meshes/c", "{\"shape\":\"cube\"}", 200},
+        {"PUT", "/v1/meshes/d", "{\"shape\":\"cube\"}", 201},
+        {"DELETE", "/v1/meshes/c", NULL, 204},
+        {"GET", "/v1/meshes/c", NULL, 404},
+        {"POST", "/v1/meshes/c/edits", "{\"op\":\"compact\"}", 404},
+        {"GET", "/v1/meshes/m/faces/99", NULL, 404},
+    };
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        b = restart(b);
+        bench_done(bench_expect(
+            cases[i].status, bench_send(b, cases[i].method, cases[i].target, NULL, cases[i].body)));
+    }
+    end(b);
+}
+
+static void preconditions_hold_of_a_cold_mesh(void **state)
+{
+    (void)state;
+    static const char *const stale[] = {"If-Match", "\"1.1\"", NULL};
+    static const char *const any[] = {"If-None-Match", "*", NULL};
+    api_bench *b = restart(begin());
+    bench_done(
+        bench_expect(412, bench_send(b, "PUT", "/v1/meshes/m", stale, "{\"shape\":\"cube\"}")));
+    b = restart(b);
+    bench_done(
+        bench_expect(412, bench_send(b, "PUT", "/v1/meshes/m", any, "{\"shape\":\"cube\"}")));
+    b = restart(b);
+    bench_done(bench_expect(412, bench_send(b, "DELETE", "/v1/meshes/m", stale, NULL)));
+    end(b);
+}
+
+static void a_list_loads_nothing(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    b = expect_same_after_restart(b, "/v1/meshes");
+    assert_int_equal(kept_journal_facts(journal, "m").opened, 0);
+    end(b);
+}
+
+static void a_damaged_mesh_can_only_go(void **state)
+{
+    (void)state;
+    static const char *const reads[] = {"/v1/meshes/m", "/v1/meshes/m/faces/1",
+                                        "/v1/meshes/m/content", "/v1/meshes/m/edits",
+                                        "/v1/meshes/m/events"};
+    for (int round = 0; round < 2; round++) {
+        api_bench *b = begin();
+        bench_free(b);
+        kept_journal_damage(journal, "m", 1, KEPT_CUT, 3);
+        b = restart(NULL);
+        for (size_t i = 0; i < sizeof reads / sizeof *reads; i++) {
+            expect_code(b, 500, "mesh_damaged", "GET", reads[i], NULL);
+        }
+        expect_code(b, 500, "mesh_damaged", "POST", "/v1/meshes/m/undo", "{}");
+        expect_code(b, 500, "mesh_damaged", "PATCH", "/v1/meshes/m", "{\"name\":\"x\"}");
+        expect_code(b, 500, "mesh_damaged", "POST", "/v1/meshes/n/edits",
+                    "{\"op\":\"append\",\"mesh\":\"m\"}");
+        bench_done(bench_expect(200, bench_get(b, "/v1/meshes/n")));
+        bench_reply list = bench_expect(200, bench_get(b, "/v1/meshes"));
+        assert_non_null(strstr(list.body, "\"damage\":\"record 3"));
+        bench_done(list);
+        if (round == 0) {
+            bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
+            bench_done(bench_expect(404, bench_get(b, "/v1/meshes/m")));
+        } else {
+            bench_done(bench_expect(
+                201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+            b = restart(b);
+            bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m")));
+        }
+        end(b);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_read_is_what_it_was),
+        cmocka_unit_test(a_cold_mesh_is_changed_like_any_other),
+        cmocka_unit_test(preconditions_hold_of_a_cold_mesh),
+        cmocka_unit_test(a_list_loads_nothing),
+        cmocka_unit_test(a_damaged_mesh_can_only_go),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

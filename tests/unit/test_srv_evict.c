@@ -1,0 +1,294 @@
+/* Meshes leave memory and come back while threads find, change, make, remove and list them: each is
+ * loaded once for all who ask for it, and nothing is lost or doubled. */
+#include "tests/kept_journal.h"
+#include "tests/seed.h"
+#include "tests/unit/edit_script.h"
+#include "tests/unit/fixture.h"
+#include "tests/writing.h"
+
+#include "edit/local/vertex.h"
+#include "store/table.h"
+#include "system/memory.h"
+#include "tests/model/random.h"
+
+#include <inttypes.h>
+#include <stdatomic.h>
+
+enum { MESHES = 5, THREADS = 4, OPERATIONS = 4000 };
+static const uint64_t BUDGET = (uint64_t)1 << 30;
+
+static const char *const ids[MESHES] = {"a", "b", "c", "d", "e"};
+
+static kept_journal *journal;
+static st_store *store;
+static _Atomic bool broken;
+static _Atomic unsigned made, removed, edited, loaded, seen;
+
+static st_store *open_store(st_pool *pool)
+{
+    return st_store_new(&(st_store_options){.undo_budget = 2000,
+                                            .max_meshes = MESHES,
+                                            .journal = kept_journal_open(journal),
+                                            .pool = pool,
+                                            .base_bytes = 3000});
+}
+
+static void expect(bool good)
+{
+    if (!good) {
+        atomic_store(&broken, true);
+    }
+}
+
+/* Everything that nobody uses goes. */
+static void evict(void)
+{
+    st_make_room(store, 2 * BUDGET);
+}
+
+static void make(const char *id)
+{
+    st_mesh *mesh = NULL;
+    he_mesh *content = fixture_mesh("012,023,031");
+    st_status status = st_create(store, id, "", content, NULL, &mesh);
+    expect(status == ST_OK || status == ST_TAKEN);
+    if (status == ST_OK) {
+        st_release(mesh);
+        atomic_fetch_add(&made, 1);
+    } else {
+        he_mesh_free(content);
+    }
+}
+
+/* Each edit puts vertex 0 where it says which revision it made. */
+static bool is_whole(const he_mesh *m, uint64_t revision)
+{
+    double x = he_position(m, (he_vertex){0}).x;
+    return revision == 1 || x == (double)revision;
+}
+
+static void edit(st_mesh *mesh)
+{
+    st_write w;
+    st_status status = st_write_begin(mesh, NULL, &w);
+    expect(status == ST_OK || status == ST_ABSENT);
+    if (status != ST_OK) {
+        return;
+    }
+    const uint32_t vertex = 0;
+    const he_vec3 to = {(double)(w.info.revision + 1), 0, 0};
+    expect(is_whole(w.content, w.info.revision));
+    expect(he_vertex_move(w.content, &vertex, 1, HE_MOVE_TO, &to, 1, NULL) == HE_OK);
+    expect(writing_commit(&w, "vertex_move", NULL));
+    atomic_fetch_add(&edited, 1);
+}
+
+static void look(st_mesh *mesh)
+{
+    st_mesh_info info;
+    const he_mesh *m = st_read_begin(mesh, &info);
+    expect(info.removed || is_whole(m, info.revision));
+    st_read_end(mesh);
+    atomic_fetch_add(&seen, 1);
+}
+
+static void list(void)
+{
+    st_card cards[MESHES];
+    size_t count = 0;
+    expect(st_cards(store, "", cards, MESHES, &count) == ST_OK && count <= MESHES);
+    for (size_t i = 1; i < count; i++) {
+        expect(strcmp(cards[i - 1].id, cards[i].id) < 0);
+    }
+}
+
+static void remove_one(st_mesh *mesh)
+{
+    st_status status = writing_remove(mesh);
+    expect(status == ST_OK || status == ST_ABSENT);
+    atomic_fetch_add(&removed, status == ST_OK ? 1 : 0);
+}
+
+static void *run(void *context)
+{
+    md_random *random = context;
+    for (int i = 0; i < OPERATIONS; i++) {
+        const char *id = ids[md_below(random, MESHES)];
+        uint32_t what = md_below(random, 20);
+        st_mesh *mesh = NULL;
+        if (what == 0) {
+            evict();
+            continue;
+        }
+        if (what == 1) {
+            list();
+            continue;
+        }
+        st_status status = st_find(store, id, &mesh);
+        if (status == ST_COLD) {
+            status = st_load(store, id, &mesh);
+            atomic_fetch_add(&loaded, status == ST_OK ? 1 : 0);
+        }
+        expect(status == ST_OK || status == ST_ABSENT);
+        if (status != ST_OK) {
+            make(id);
+            continue;
+        }
+        expect(st_damage(mesh)[0] == '\0');
+        if (what == 2) {
+            remove_one(mesh);
+        } else if (what < 12) {
+            edit(mesh);
+        } else {
+            look(mesh);
+        }
+        st_release(mesh);
+    }
+    return NULL;
+}
+
+static void threads_find_evict_make_and_remove(void **state)
+{
+    (void)state;
+    pthread_t threads[THREADS];
+    md_random random = {seed_of_run()}, of_thread[THREADS];
+    st_memory_install(BUDGET);
+    journal = kept_journal_new();
+    st_pool *pool = st_pool_new("bases", 3, 100);
+    store = open_store(pool);
+    for (int i = 0; i < THREADS; i++) {
+        of_thread[i] = (md_random){md_bits(&random)};
+        assert_int_equal(pthread_create(&threads[i], NULL, run, &of_thread[i]), 0);
+    }
+    for (int i = 0; i < THREADS; i++) {
+        pthread_join(threads[i], NULL);
+    }
+    st_pool_free(pool);
+    assert_false(atomic_load(&broken));
+    assert_int_equal(st_store_count(store), atomic_load(&made) - atomic_load(&removed));
+    printf("note: %u made, %u removed, %u edits, %u looks, %u times from the disk\n",
+           atomic_load(&made), atomic_load(&removed), atomic_load(&edited), atomic_load(&seen),
+           atomic_load(&loaded));
+    assert_true(atomic_load(&loaded) > 50);
+    store->pool = NULL;
+    st_store *other = open_store(NULL);
+    for (int i = 0; i < MESHES; i++) {
+        st_mesh *was = NULL, *is = NULL;
+        st_status status = st_load(store, ids[i], &was);
+        assert_int_equal(st_load(other, ids[i], &is), status);
+        if (status == ST_OK) {
+            st_mesh_info a, b;
+            assert_true(he_mesh_equal(st_read_begin(was, &a), st_read_begin(is, &b)));
+            assert_true(a.record == b.record && a.undo == b.undo && a.redo == b.redo);
+            st_read_end(was);
+            st_read_end(is);
+            st_release(was);
+            st_release(is);
+        }
+    }
+    st_store_free(other);
+    st_store_free(store);
+    kept_journal_free(journal);
+    he_mem_set_hook(NULL);
+}
+
+/* --- one load for all --- */
+
+enum { ASKERS = 6 };
+
+static void *ask(void *context)
+{
+    st_mesh *mesh = NULL;
+    (void)context;
+    expect(st_load(store, "m", &mesh) == ST_OK);
+    st_release(mesh);
+    return NULL;
+}
+
+static void a_mesh_is_loaded_once_for_all_who_ask(void **state)
+{
+    (void)state;
+    pthread_t threads[ASKERS];
+    journal = kept_journal_new();
+    store = open_store(NULL);
+    make("m");
+    st_store_free(store);
+    store = open_store(NULL);
+    kept_journal_stop(journal);
+    for (int i = 0; i < ASKERS; i++) {
+        assert_int_equal(pthread_create(&threads[i], NULL, ask, NULL), 0);
+    }
+    kept_journal_await(journal, 1);
+    kept_journal_go(journal);
+    for (int i = 0; i < ASKERS; i++) {
+        pthread_join(threads[i], NULL);
+    }
+    assert_false(atomic_load(&broken));
+    assert_int_equal(kept_journal_facts(journal, "m").opened, 1);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+static void what_is_used_stays_in_memory(void **state)
+{
+    (void)state;
+    st_mesh *mesh = NULL, *found = NULL;
+    st_memory_install(BUDGET);
+    journal = kept_journal_new();
+    store = open_store(NULL);
+    make("a");
+    make("b");
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK);
+    evict();
+    assert_int_equal(st_find(store, "a", &found), ST_OK);
+    assert_ptr_equal(found, mesh);
+    st_release(found);
+    assert_int_equal(st_find(store, "b", &found), ST_COLD);
+    assert_int_equal(st_store_count(store), 2);
+    st_release(mesh);
+    evict();
+    assert_int_equal(st_find(store, "a", &found), ST_COLD);
+    st_store_free(store);
+    kept_journal_free(journal);
+    he_mem_set_hook(NULL);
+}
+
+/* The oldest go, and no more than are needed. */
+static void the_least_recently_used_go_first(void **state)
+{
+    (void)state;
+    enum { MANY = MESHES };
+    st_memory_install(BUDGET);
+    journal = kept_journal_new();
+    store = open_store(NULL);
+    for (int i = 0; i < MANY; i++) {
+        make(ids[i]);
+    }
+    for (int i = 0; i < MANY; i++) {
+        atomic_store(&store->meshes[i]->used, (uint64_t)1000 * (uint64_t)(MANY - i));
+    }
+    /* An eighth is to be free: about as much as one of them holds. */
+    st_memory_set_budget(st_memory_used());
+    st_make_room(store, 0);
+    st_memory_set_budget(BUDGET);
+    st_mesh *mesh = NULL;
+    assert_int_equal(st_find(store, ids[MANY - 1], &mesh), ST_COLD);
+    for (int i = 0; i < MANY - 1; i++) {
+        assert_int_equal(st_find(store, ids[i], &mesh), ST_OK);
+        st_release(mesh);
+    }
+    st_store_free(store);
+    kept_journal_free(journal);
+    he_mem_set_hook(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_find_evict_make_and_remove),
+        cmocka_unit_test(a_mesh_is_loaded_once_for_all_who_ask),
+        cmocka_unit_test(what_is_used_stays_in_memory),
+        cmocka_unit_test(the_least_recently_used_go_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
