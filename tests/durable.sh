@@ -30,5 +30,7 @@ prove strace 1
 prove two 1
 prove kill 10
 prove sync 2
+prove backup 1
+prove restore 2
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -130,6 +130,11 @@ class Replay:
                 return False
         return True
 
+    def make_all_of(self, mesh, changes):
+        """A mesh from these changes alone. Raises Wrong."""
+        if not self.make_all(mesh, changes, True):
+            raise Wrong(f'{mesh}: a change leads elsewhere when it is made again')
+
     def position(self, mesh):
         names = revision = 0
         for change in self.known[mesh].changes:

@@ -17,6 +17,7 @@ import tempfile
 import time
 import traceback
 
+import backups
 import faulty
 import kill
 import locks
@@ -33,6 +34,8 @@ PROOFS = {
     'sync': (faulty.prove, 10),
     'strace': (traces.prove, 3),
     'slow': (slow.prove, 1),
+    'backup': (backups.prove_backup, 3),
+    'restore': (backups.prove_restore, 1000),
     'two': (locks.prove, 3),
 }
 

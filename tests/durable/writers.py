@@ -111,8 +111,9 @@ class Draw:
     def change_name(self, mesh):
         name = self.name()
         return Change(mesh, 'PATCH', '', {'name': name},
-                      {'Content-Type': 'application/merge-patch+json'}, revisions=0, names=1,
-                      name=name)
+                      # Minimal: the summary would be that of a later change, where there is one.
+                      {'Content-Type': 'application/merge-patch+json', 'Prefer': 'return=minimal'},
+                      revisions=0, names=1, name=name)
 
     def change_put(self, mesh):
         name = self.name()

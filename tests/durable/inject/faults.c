@@ -313,6 +313,42 @@ int unlink(const char *path)
     return real(path);
 }
 
+static bool is_below_at(int folder, const char *path)
+{
+    return path[0] == '/' || folder == AT_FDCWD ? is_below(path) : is_watched(folder);
+}
+
+int renameat(int from_folder, const char *from, int to_folder, const char *to)
+{
+    REAL(int, "renameat", int, const char *, int, const char *);
+    if (is_below_at(from_folder, from) || is_below_at(to_folder, to)) {
+        count_call();
+    }
+    return real(from_folder, from, to_folder, to);
+}
+
+int unlinkat(int folder, const char *path, int flags)
+{
+    REAL(int, "unlinkat", int, const char *, int);
+    if (is_below_at(folder, path)) {
+        count_call();
+    }
+    return real(folder, path, flags);
+}
+
+int openat(int folder, const char *path, int flags, ...)
+{
+    REAL(int, "openat", int, const char *, int, ...);
+    va_list rest;
+    va_start(rest, flags);
+    mode_t mode = (flags & O_CREAT) != 0 ? va_arg(rest, mode_t) : 0;
+    va_end(rest);
+    if ((flags & (O_CREAT | O_TRUNC)) != 0 && is_below_at(folder, path)) {
+        count_call();
+    }
+    return real(folder, path, flags, mode);
+}
+
 int mkdir(const char *path, mode_t mode)
 {
     REAL(int, "mkdir", const char *, mode_t);
