@@ -1,6 +1,7 @@
 /* A daemon that is killed, or stopped, and started again on its folder: everything it had answered
  * is there, the history with it, and goes on from there. */
 #include "tests/e2e/client.h"
+#include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
 
 #include <setjmp.h>
@@ -250,6 +251,45 @@ static void a_key_is_good_after_a_restart(void **state)
     reply_free(&r);
 }
 
+/* Who was listening is told what it missed by the history that came back, and one that listened to
+ * another mesh of the id is sent to fetch it anew. */
+static void listeners_go_on_where_they_were(void **state)
+{
+    (void)state;
+    char tag[200], last[64];
+    send("PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}", 201);
+    for (int face = 0; face < 3; face++) {
+        char body[64];
+        snprintf(body, sizeof body, "{\"op\":\"face_poke\",\"face\":%d}", face);
+        send("POST", "/v1/meshes/m/edits", body, 200);
+    }
+    reply r = reply_expect(200, client_get(http, "/v1/meshes/m"));
+    (void)reply_header(&r, "ETag", tag, sizeof tag);
+    reply_free(&r);
+    tag[strcspn(tag, "-")] = '\0';
+    snprintf(last, sizeof last, "%.32s.2", tag + 1);
+    kill_and_start();
+    listener *l = listener_open(server, "/v1/meshes/m/events", last, 0);
+    assert_string_equal(listener_next(l, true), "metadata");
+    for (int revision = 3; revision <= 4; revision++) {
+        assert_string_equal(listener_next(l, true), "edit");
+        assert_int_equal(listener_number(l, "revision"), revision);
+    }
+    send("POST", "/v1/meshes/m/undo", "{}", 200);
+    assert_string_equal(listener_next(l, true), "edit");
+    assert_int_equal(listener_number(l, "revision"), 5);
+    assert_string_equal(listener_string(l, "action"), "undo");
+    listener_close(l);
+
+    send("DELETE", "/v1/meshes/m", "", 204);
+    send("PUT", "/v1/meshes/m", "{\"shape\":\"octahedron\"}", 201);
+    kill_and_start();
+    l = listener_open(server, "/v1/meshes/m/events", last, 0);
+    assert_string_equal(listener_next(l, true), "resync");
+    assert_string_equal(listener_string(l, "reason"), "incarnation");
+    listener_close(l);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -258,6 +298,7 @@ int main(void)
                                         teardown),
         cmocka_unit_test_setup_teardown(a_tag_names_one_state_for_ever, setup, teardown),
         cmocka_unit_test_setup_teardown(a_key_is_good_after_a_restart, setup, teardown),
+        cmocka_unit_test_setup_teardown(listeners_go_on_where_they_were, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
