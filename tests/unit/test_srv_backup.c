@@ -150,6 +150,45 @@ static void a_restore_brings_back_the_state_under_new_incarnations(void **state)
     assert_true(again == incarnation);
 }
 
+static bool count_key(void *context, const st_kept_key *key)
+{
+    unsigned *keys = context;
+    ++*keys;
+    assert_string_equal(key->key.text, "a key");
+    assert_string_equal(key->id, "a");
+    assert_true(key->key.digest[1] == 8);
+    /* Of the state that it made nothing is told: that state may be gone. */
+    assert_true(key->incarnation == 0 && key->revision == 0 && key->metadata == 0);
+    return true;
+}
+
+static void a_restore_keeps_keys_without_their_tags(void **state)
+{
+    (void)state;
+    static const st_record_key make = {"a key", {7, 8}, 1000, true};
+    static const st_record_key edit = {"a key", {7, 8}, 1001, false};
+    told_journal told;
+    kept_mesh mesh = new_mesh("a");
+    open_store(&told);
+    st_record record = kept_content(&mesh);
+    record.key = &make;
+    kept_append(&told.journal, record, &mesh, NULL, 0);
+    record = kept_edit(&mesh);
+    record.key = &edit;
+    told_wait(&told, kept_append(&told.journal, record, &mesh, "x", 1));
+    told_end(&told);
+    assert_true(st_sqlite_backup(folder, backup, message));
+    if (!st_sqlite_restore(folder, backup, before, message)) {
+        fail_msg("%s", message);
+    }
+    open_store(&told);
+    unsigned keys = 0;
+    assert_int_equal(told.journal.keys(told.journal.self, NULL, count_key, &keys), ST_OK);
+    assert_int_equal(told.journal.keys(told.journal.self, "a", count_key, &keys), ST_OK);
+    assert_int_equal(keys, 2);
+    told_end(&told);
+}
+
 /* A -wal that kill -9 left behind is not replayed onto the restored file. */
 static void a_log_left_behind_stays_with_its_database(void **state)
 {
@@ -337,6 +376,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folders, remove_folders)
         STORE_TEST(a_restore_brings_back_the_state_under_new_incarnations),
+        STORE_TEST(a_restore_keeps_keys_without_their_tags),
         STORE_TEST(a_log_left_behind_stays_with_its_database),
         STORE_TEST(an_interrupted_restore_is_finished_by_the_next_start),
         STORE_TEST(what_is_no_whole_store_is_not_restored),

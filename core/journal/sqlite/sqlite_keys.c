@@ -5,17 +5,16 @@
 
 /* The keys of the last day before the newest one. */
 static const char of_store[] =
-    "SELECT mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum "
-    "FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
+    "SELECT " ST_KEPT_COLUMNS
+    " FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
     "ORDER BY time";
 static const char of_mesh[] =
     "SELECT k.mesh, k.text, k.digest, k.time, k.id, k.incarnation, k.revision, k.metadata, "
     "k.position, k.made, k.sum FROM kept k JOIN mesh m ON k.mesh = m.key "
     "WHERE m.id = ?2 AND k.time > m.modified - ?1 ORDER BY k.time";
 
-/* False where the sum is wrong: such a key is as good as none. */
-static bool read_row(sqlite3_stmt *s, char id[ST_MESH_ID + 1], char text[ST_KEY_TEXT + 1],
-                     st_kept_row *row)
+bool st_kept_row_read(sqlite3_stmt *s, char id[ST_MESH_ID + 1], char text[ST_KEY_TEXT + 1],
+                      st_kept_row *row)
 {
     st_db_text(s, 4, id, ST_MESH_ID + 1);
     st_db_text(s, 1, text, ST_KEY_TEXT + 1);
@@ -52,7 +51,7 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     }
     while (code == SQLITE_OK && taken && (code = sqlite3_step(s)) == SQLITE_ROW) {
         code = SQLITE_OK;
-        if (read_row(s, of, text, &row)) {
+        if (st_kept_row_read(s, of, text, &row)) {
             const st_kept_key key = {.key = {.text = text,
                                              .digest = {row.digest[0], row.digest[1]},
                                              .time = row.time,

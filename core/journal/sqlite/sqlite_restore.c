@@ -62,12 +62,13 @@ static bool copy_file(st_folder *folder, const char *file)
 
 /* --- new incarnations --- */
 
-enum { MESHES, MESH_PUT, KEPT, STATEMENTS };
+enum { MESHES, MESH_PUT, KEPT, KEPT_PUT, STATEMENTS };
 static const char *const texts[STATEMENTS] = {
     [MESHES] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE key > ?1 ORDER BY key LIMIT 1",
     [MESH_PUT] = "UPDATE mesh SET incarnation = ?2, sum = ?3 WHERE key = ?1",
-    /* What a key answers again has a tag of a state that may be gone: none is told. */
-    [KEPT] = "DELETE FROM kept",
+    [KEPT] = "SELECT " ST_KEPT_COLUMNS " FROM kept WHERE incarnation <> 0 LIMIT 1",
+    [KEPT_PUT] = "UPDATE kept SET incarnation = 0, revision = 0, metadata = 0, sum = ?3 "
+                 "WHERE mesh = ?1 AND text = ?2",
 };
 
 static st_sql draw_incarnations(st_db *db)
@@ -93,6 +94,32 @@ static st_sql draw_incarnations(st_db *db)
     }
 }
 
+/* What a key answers again had the tag of a state that may be gone: none is told any more. */
+static st_sql take_tags(st_db *db)
+{
+    for (;;) {
+        sqlite3_stmt *s;
+        st_kept_row row;
+        char id[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1];
+        st_sql outcome = st_db_find(db, KEPT, &s, "");
+        if (outcome != ST_SQL_ROW) {
+            return outcome;
+        }
+        const bool good = st_kept_row_read(s, id, text, &row);
+        st_db_reset(s);
+        row.incarnation = row.revision = row.metadata = 0;
+        /* What was damaged stays so. */
+        const uint32_t sum = st_kept_row_sum(&row) ^ (good ? 0 : 1);
+        outcome = st_db_do(db, KEPT_PUT, "iti", row.mesh, text, (uint64_t)sum);
+        if (outcome == ST_SQL_DONE && sqlite3_changes(db->handle) == 0) {
+            outcome = ST_SQL_DAMAGED;
+        }
+        if (outcome != ST_SQL_DONE) {
+            return outcome;
+        }
+    }
+}
+
 static st_sql renew(st_db *db)
 {
     /* Out of the log's mode, so that nothing of the copy lies beside it. */
@@ -104,7 +131,7 @@ static st_sql renew(st_db *db)
         outcome = draw_incarnations(db);
     }
     if (outcome == ST_SQL_DONE) {
-        outcome = st_db_do(db, KEPT, "");
+        outcome = take_tags(db);
     }
     return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
 }

@@ -88,6 +88,8 @@ uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes
     "vertices, edges, faces, boundary, bytes, base, damage, sum"
 #define ST_SNAPSHOT_COLUMNS "key, mesh, number, revision, parts, process, chain, facts, sum"
 #define ST_PURGE_COLUMNS    "kind, key, before, sum"
+#define ST_KEPT_COLUMNS \
+    "mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum"
 
 /* False where the sum is wrong; the row is filled in then too. */
 bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);

@@ -277,7 +277,11 @@ void st_sqlite_shut(st_reader *reader);
 void st_findings_forget(st_sqlite *self, uint64_t incarnation);
 void st_sqlite_condemn(void *self, uint64_t incarnation, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
-/* sqlite_keys.c */
+/* --- sqlite_keys.c --- */
+/* The row's texts lie in `id` and `text`. False where the sum is wrong: such a key is as good as
+ * none. */
+bool st_kept_row_read(sqlite3_stmt *statement, char id[ST_MESH_ID + 1], char text[ST_KEY_TEXT + 1],
+                      st_kept_row *row);
 st_status st_sqlite_keys(void *self, const char *id, st_take_key *take, void *context);
 /* Opens the connections that read; closes them. */
 st_sql st_readers_open(st_sqlite *self, const char *path);
