@@ -8,9 +8,9 @@ static const struct {
     size_t length, at;
     const char *name;
 } signatures[] = {
-#define SIGNATURE(bytes, at, name)        \
-    {                                     \
-        bytes, sizeof bytes - 1, at, name \
+#define SIGNATURE(bytes, at, name)               \
+    {                                            \
+        (bytes), sizeof(bytes) - 1, (at), (name) \
     }
     SIGNATURE("PK\3\4", 0, "a ZIP archive, as 3MF and USDZ files are: unpack it first"),
     SIGNATURE("PK\5\6", 0, "an empty ZIP archive"),
