@@ -1,6 +1,8 @@
 #include "store/stored_mesh.h"
 
 #include "store/history_cursor.h"
+#include "store/mesh_load.h"
+#include "store/table.h"
 #include "system/memory.h"
 
 /* What one caller holds: a copy that many may share, and the facts as they were when it asked. */
@@ -149,6 +151,50 @@ static st_status past_info(st_mesh *mesh, uint64_t revision, st_mesh_info *out)
     return there ? ST_OK : ST_GONE;
 }
 
+/* A revision that the history has dropped, from the disk where the records still reach back to it:
+ * a mesh of its own is loaded and becomes the cached copy. Under the past lock. */
+static st_status copy_from_disk(st_mesh *mesh, uint64_t revision, st_mesh_info *info)
+{
+    const st_journal *journal = mesh->journal;
+    const st_mesh_options options = st_store_mesh_options(mesh->store);
+    st_reader *reader = NULL;
+    st_mesh *loaded = NULL;
+    st_card card;
+    char damage[ST_DAMAGE];
+    st_status status =
+        journal->keeps ? journal->open(journal->self, mesh->info.id, &card, &reader) : ST_GONE;
+    if (status == ST_OK) {
+        st_make_room(mesh->store, 2 * card.bytes);
+        status = card.incarnation == mesh->info.incarnation
+                     ? st_mesh_load(&options, &card, reader, revision, &loaded, damage)
+                     : ST_GONE;
+        journal->shut(reader);
+    }
+    if (status == ST_OK && st_log_head(&loaded->log) != revision) {
+        status = ST_GONE;
+    }
+    st_copy *copy = status == ST_OK ? he_mem_zero(1, sizeof *copy) : NULL;
+    if (status == ST_OK &&
+        (copy == NULL || he_replay_new(loaded->content, &copy->replay, NULL) != HE_OK)) {
+        he_mem_free(copy);
+        status = st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
+    }
+    if (status == ST_OK) {
+        st_point point;
+        atomic_init(&copy->uses, 1);
+        copy->revision = revision;
+        mesh->past = copy;
+        st_log_point(&loaded->log, revision, &point);
+        (void)st_read_begin(mesh, info);
+        st_read_end(mesh);
+        info->revision = revision;
+        info->modified = point.time;
+    }
+    st_release(loaded);
+    bool none = status == ST_ABSENT || status == ST_DAMAGED;
+    return none ? ST_GONE : status;
+}
+
 st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
 {
     st_snapshot *snapshot = he_mem_zero(1, sizeof *snapshot);
@@ -159,6 +205,11 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
     st_status status = past_copy(mesh, revision);
     if (status == ST_OK) {
         status = past_info(mesh, revision, &snapshot->info);
+    }
+    if (status == ST_GONE && revision > 0) {
+        st_copy_release(mesh->past);
+        mesh->past = NULL;
+        status = copy_from_disk(mesh, revision, &snapshot->info);
     }
     if (status == ST_OK) {
         snapshot->copy = mesh->past;

@@ -151,7 +151,7 @@ void st_read_end(st_mesh *mesh);
 st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 /* A copy of an earlier revision. May replay the history: not on a worker thread. The info is that
  * of the present but for `revision` and `modified`. ST_AHEAD; ST_GONE when the history does not
- * reach back to it; ST_NO_MEMORY, ST_BUDGET. */
+ * reach back to it, nor do the records on the disk; ST_NO_MEMORY, ST_BUDGET, ST_FAILED. */
 st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out);
 /* As st_snapshot_take, for a caller that holds the shared lock: at the revision that it sees. */
 st_status st_snapshot_held(st_mesh *mesh, st_snapshot **out);

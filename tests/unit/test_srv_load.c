@@ -352,6 +352,46 @@ static void a_smaller_budget_keeps_the_newest(void **state)
     kept_journal_free(journal);
 }
 
+/* What the history has dropped is read from the disk for as long as its records are there. */
+static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
+{
+    (void)state;
+    enum { REVISIONS = 40 };
+    md_random random = {seed_of_run()};
+    journal = kept_journal_new();
+    st_store *store = open_store(3000);
+    st_mesh *mesh = make(store, "m");
+    he_mesh *at[REVISIONS + 1] = {NULL, content_of(mesh)};
+    st_mesh_info info;
+    uint64_t head = 1;
+    for (unsigned i = 0; head < REVISIONS; i++) {
+        change(mesh, &random, i);
+        (void)st_read_begin(mesh, &info);
+        st_read_end(mesh);
+        head = info.revision;
+        if (head <= REVISIONS && at[head] == NULL) {
+            at[head] = content_of(mesh);
+        }
+    }
+    st_history reach;
+    st_history_reach(mesh, &reach);
+    assert_true(reach.oldest > 2);
+    for (uint64_t revision = 1; revision <= REVISIONS; revision++) {
+        st_snapshot *snapshot;
+        assert_int_equal(st_snapshot_at(mesh, revision, &snapshot), ST_OK);
+        const he_mesh *content = st_snapshot_content(snapshot, &info);
+        assert_int_equal(info.revision, revision);
+        assert_true(at[revision] == NULL || he_mesh_equal(content, at[revision]));
+        st_snapshot_release(snapshot);
+        he_mesh_free(at[revision]);
+    }
+    st_snapshot *none;
+    assert_int_equal(st_snapshot_at(mesh, head + 1, &none), ST_AHEAD);
+    st_release(mesh);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
 /* --- memory --- */
 
 static void without_memory_nothing_is_loaded(void **state)
@@ -541,6 +581,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mesh_comes_back_as_it_was),
         cmocka_unit_test(a_younger_base_leads_to_the_same_mesh),
+        cmocka_unit_test(a_revision_beyond_memory_is_read_from_the_disk),
         cmocka_unit_test(a_smaller_budget_keeps_the_newest),
         cmocka_unit_test(without_memory_nothing_is_loaded),
         cmocka_unit_test(what_is_damaged_is_named),
