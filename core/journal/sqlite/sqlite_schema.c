@@ -169,8 +169,7 @@ static const char *const texts[STATEMENTS] = {
     [META_PUT] = "INSERT INTO meta VALUES (?1, ?2, ?3)",
     [META_GET] = "SELECT value, sum FROM meta WHERE name = ?1",
     [STATE_PUT] = "INSERT INTO state VALUES (1, ?1, ?2, ?3, ?4)",
-    [TABLE_GET] = "SELECT 1 FROM sqlite_schema WHERE sql = ?1 AND "
-                  "?1 LIKE 'CREATE ' || type || ' ' || name || '%'",
+    [TABLE_GET] = "SELECT 1 FROM sqlite_schema WHERE sql = ?1 AND sql LIKE '% ' || name || '%'",
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
