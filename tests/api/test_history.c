@@ -306,6 +306,9 @@ static void every_revision_stays_what_it_was(void **state)
     while (m->head < MOST - 60) {
         random_step(b, m, &random);
     }
+    while (m->done_count == 0) {
+        edit_once(b, m, &random);
+    }
     /* All the way back, all the way forward, each depth compared inside. */
     he_mesh *end = content_of(b);
     size_t deepest = m->done_count + m->undone_count;
