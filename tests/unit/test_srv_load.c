@@ -208,21 +208,35 @@ static void expect_contents(st_mesh *was, st_mesh *is)
     he_mesh_free(n);
 }
 
-/* Undo and redo lead where they would have led; each is a revision, for which older ones may have
- * to go: of an edit that replaced the content among other changes less is kept after loading, so
- * that there may be more steps. The journal is given the steps of both: it is to keep neither. */
-static void expect_stack(st_mesh *was, st_mesh *is, st_action which)
+static uint64_t dropped_by(st_mesh *mesh)
+{
+    st_history reach;
+    st_history_reach(mesh, &reach);
+    return reach.dropped;
+}
+
+/* Undo and redo lead where they would have led. Each is a revision, for which older ones may have
+ * to go, and what an edit takes that replaced the content among other changes is not to the byte
+ * what it took: so the one may have to let go of a step before the other. The journal is given the
+ * steps of both: it is to keep neither. */
+static bool expect_stack(st_mesh *was, st_mesh *is, st_action which)
 {
     while (writing_step(was, which, 1) == ST_OK) {
-        assert_int_equal(writing_step(is, which, 1), ST_OK);
+        st_status status = writing_step(is, which, 1);
+        if (status == ST_NOTHING && dropped_by(is) > dropped_by(was)) {
+            return false;
+        }
+        assert_int_equal(status, ST_OK);
         expect_contents(was, is);
     }
+    return true;
 }
 
 static void expect_stacks(st_mesh *was, st_mesh *is)
 {
-    expect_stack(was, is, ST_UNDO);
-    expect_stack(was, is, ST_REDO);
+    if (expect_stack(was, is, ST_UNDO)) {
+        (void)expect_stack(was, is, ST_REDO);
+    }
 }
 
 enum { ROUNDS = 12, CHANGES = 80 };
