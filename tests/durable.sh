@@ -32,5 +32,8 @@ prove kill 10
 prove sync 2
 prove backup 1
 prove restore 2
+if unshare --mount true 2>/dev/null; then
+    prove full 1
+fi
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

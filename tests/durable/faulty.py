@@ -98,8 +98,9 @@ class Patient(Writer):
     def refuse(self, change, answer):
         if answer.code() not in DISK_CODES:
             self.log.strange.append(f'{change!r}: {answer.status} {answer.body[:200]!r}')
-        # One that found no space is not there. One whose sync failed may have come to the disk.
-        if answer.code() != 'store_full':
+        # One that found no space is not there. One whose sync failed may have come to the disk, and
+        # what is said of a job is not what becomes of its change.
+        if answer.code() != 'store_full' or change.job:
             self.log.open.append(change)
         self.refusals += 1
         if answer.code() == 'store_failed' or self.refusals > 300:

@@ -19,6 +19,7 @@ import traceback
 
 import backups
 import faulty
+import full
 import kill
 import locks
 import self_test
@@ -34,6 +35,7 @@ PROOFS = {
     'sync': (faulty.prove, 10),
     'strace': (traces.prove, 3),
     'slow': (slow.prove, 1),
+    'full': (full.prove, 2),
     'backup': (backups.prove_backup, 3),
     'restore': (backups.prove_restore, 1000),
     'two': (locks.prove, 3),

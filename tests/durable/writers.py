@@ -15,6 +15,16 @@ SHAPES = [{'shape': 'icosphere', 'subdivisions': 1}, {'shape': 'cube'},
           {'shape': 'torus', 'major_segments': 8, 'minor_segments': 6},
           {'shape': 'uv_sphere', 'segments': 8, 'rings': 6}]
 WRITTEN = (200, 201, 202, 204)
+# What an edit answers that found nothing to do, such as the dual of no faces, and made no revision; or
+# a list whose operations undo each other, which did.
+NOTHING = b'"created":%s,"deleted":%s,"modified":%s' % (3 * (
+    b'{"vertices":[],"edges":[],"faces":[]}',))
+
+
+def did_nothing(change, answer):
+    return (change.path == '/edits' and NOTHING in answer.body
+            and b'"replaced":true' not in answer.body)
+
 
 
 class Change:
@@ -225,7 +235,9 @@ class Writer(threading.Thread):
         change.answered, change.answer = time.monotonic(), answer
         with self.log.lock:
             self.log.open.remove(change)
-            if answer.status in WRITTEN:
+            if answer.status in WRITTEN and did_nothing(change, answer):
+                self.log.open.append(change)
+            elif answer.status in WRITTEN:
                 change.version = answer.version()
                 if change.version or change.deletes():
                     self.log.done.append(change)

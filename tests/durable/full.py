@@ -1,0 +1,109 @@
+"""full.py - a disk that fills up while four clients write, and is emptied by DELETE alone (D5).
+
+The store lies on a file system of 32 MiB in memory. Meshes are made until there is no space: 507,
+nothing half done, reads go on. Then they are deleted, one after another, until writes work again,
+without a restart. What was acknowledged is there before and after a restart.
+"""
+import os
+import random
+import subprocess
+import sys
+import threading
+import time
+
+from faulty import DISK_CODES, Patient
+from replay import Replay
+from writers import Draw, Log
+
+MESHES = ['a', 'b', 'c']
+SIZE = '32m'
+FILL = {'shape': 'grid', 'columns': 90, 'rows': 90}
+PATIENCE = 60  # seconds until writes work again
+
+
+def in_own_mounts():
+    """What is mounted is seen by this process and its children alone, and goes with them."""
+    if 'DURABLE_MOUNTS' in os.environ:
+        return
+    os.environ['DURABLE_MOUNTS'] = '1'
+    who = [] if os.geteuid() == 0 else ['--map-root-user']
+    os.execvp('unshare', ['unshare', '--mount', *who, sys.executable, '-B', *sys.argv])
+
+
+class Stubborn(Patient):
+    """Goes on however often the disk was full."""
+
+    def refuse(self, change, answer):
+        self.refusals = 0
+        super().refuse(change, answer)
+
+
+def fill(run, client):
+    """Makes meshes until there is no space; their names."""
+    made = []
+    while True:
+        name = f'fill{len(made)}'
+        answer = client.send('PUT', f'/v1/meshes/{name}', FILL)
+        if answer.code() in DISK_CODES:
+            run.count('times full')
+            return made
+        if not run.judge('a mesh is made', answer.status == 201, answer.body):
+            return made
+        made.append(name)
+
+
+def empty(run, client, log, made):
+    """Deletes until something was written again."""
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        before = len(log.done)
+        if made:
+            answer = client.send('DELETE', '/v1/meshes/' + made.pop())
+            run.count('deleted', answer.status == 204)
+            run.judge('DELETE works', answer.status == 204, answer.body)
+        threading.Event().wait(0.5)
+        if len(log.done) > before + 20:
+            return True
+    return False
+
+
+def follow_all(run, client, replay, done, flying, when):
+    for mesh in MESHES:
+        run.attempt(f'{mesh} is what was acknowledged, {when}', replay.follow, client, mesh, done,
+                    flying)
+
+
+def prove(run):
+    in_own_mounts()
+    folder = run.folder()
+    for _ in range(run.rounds):
+        os.makedirs(folder, exist_ok=True)
+        subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=' + SIZE, 'tmpfs', folder], check=True)
+        daemon, log, replay = run.start(), Log(), Replay(run.hedged, [])
+        writers = [Stubborn(daemon.port, log, MESHES, Draw(random.Random(run.chance.random()),
+                                                           f'w{i}')) for i in range(4)]
+        for writer in writers:
+            writer.start()
+        client = daemon.client()
+        made = fill(run, client)
+        threading.Event().wait(1)
+        for mesh in MESHES:
+            run.judge('reads go on', client.get(f'/v1/meshes/{mesh}').status in (200, 404))
+        run.judge('writes work again', empty(run, client, log, made), daemon.log())
+        for writer in writers:
+            writer.stop()
+        done, flying = log.take()
+        run.count('changes', len(done))
+        run.count('changes refused', log.refused.get('store_full', 0))
+        run.judge('nothing strange', not log.strange, log.strange[:2])
+        follow_all(run, client, replay, done, flying, 'without a restart')
+        client.close()
+        run.judge('it stops', daemon.stop() == 0, daemon.log())
+        daemon = run.start()
+        client = daemon.client()
+        follow_all(run, client, replay, [], [], 'after a restart')
+        client.close()
+        run.judge('it stops', daemon.stop() == 0, daemon.log())
+        replay.close()
+        subprocess.run(['umount', folder], check=True)
+    run.expect_fired('times full', 'changes refused', 'deleted')
