@@ -192,7 +192,9 @@ static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
         if (status == ST_DAMAGED && card.damage[0] != '\0') {
             journal->condemn(journal->self, card.incarnation, card.damage);
         } else if (status == ST_DAMAGED) {
+            /* The reader found it and has told the journal, whose card says now what it is. */
             status = journal->open(journal->self, id, &card, NULL);
+            status = status == ST_OK ? ST_FAILED : status;
         }
     }
     return status == ST_DAMAGED ? stand_in(&options, &card, out) : status;

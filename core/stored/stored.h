@@ -51,8 +51,8 @@
  *                    for both)
  *       name         length (varint), UTF-8
  *     zeros        up to a multiple of 8
- *     arrays       position, halfedge of vertices, next, prev, origin, face, halfedge of faces,
- * then the rows of each attribute
+ *     arrays       position, halfedge of vertices, next, prev, origin, face, halfedge of faces;
+ *                  then the rows of each attribute
  *
  * Codings of parts: in HE_CODING_PLAIN a part is those bytes; in HE_CODING_LINKS each link in it is
  * a varint as in an edit and all else plain. Links of next and prev are differences to their row
