@@ -395,6 +395,7 @@ bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangu
 
 bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
+	@sh tests/bench/http_store.sh $(HEDGED) build/durable
 
 $(BUILD)/tests/bench/store: $(BUILD)/obj/tests/bench/store.o $(LIBRARIES)
 	@mkdir -p $(@D)
