@@ -273,6 +273,50 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
     }
 }
 
+/* A journal that a killed restore left would put its pages, here a first one of zeros, into the
+ * next copy. */
+static void what_a_killed_restore_left_is_not_played_into_the_next(void **state)
+{
+    (void)state;
+    enum { SECTOR = 512, PAGE = 4096 };
+    static const unsigned char head[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7, 0, 0,
+                                         0,    1,    0,    0,    0,    0,    0,    0,    0, 1,
+                                         0,    0,    2,    0,    0,    0,    0x10, 0};
+    static unsigned char journal[SECTOR + 4 + PAGE + 4];
+    memcpy(journal, head, sizeof head);
+    journal[SECTOR + 3] = 1;
+    (void)make_store(5);
+    if (!st_sqlite_backup(folder, backup, message)) {
+        fail_msg("%s", message);
+    }
+    folder_write(folder, "restored.db-journal", journal, sizeof journal);
+    if (!st_sqlite_restore(folder, backup, before, message)) {
+        fail_msg("%s", message);
+    }
+    uint64_t incarnation;
+    expect_records(5, &incarnation);
+}
+
+static void a_file_with_a_log_beside_it_is_not_restored(void **state)
+{
+    (void)state;
+    char log[sizeof backup + 8];
+    (void)make_store(5);
+    if (!st_sqlite_backup(folder, backup, message)) {
+        fail_msg("%s", message);
+    }
+    (void)snprintf(log, sizeof log, "%s-wal", backup);
+    FILE *file = fopen(log, "w");
+    assert_non_null(file);
+    assert_true(fputs("a log", file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    assert_false(st_sqlite_restore(folder, backup, before, message));
+    assert_non_null(strstr(message, "has a log beside it (-wal)"));
+    assert_int_equal(unlink(log), 0);
+    uint64_t incarnation;
+    expect_records(5, &incarnation);
+}
+
 static void what_is_no_whole_store_is_not_restored(void **state)
 {
     (void)state;
@@ -379,6 +423,8 @@ int main(void)
         STORE_TEST(a_restore_keeps_keys_without_their_tags),
         STORE_TEST(a_log_left_behind_stays_with_its_database),
         STORE_TEST(an_interrupted_restore_is_finished_by_the_next_start),
+        STORE_TEST(what_a_killed_restore_left_is_not_played_into_the_next),
+        STORE_TEST(a_file_with_a_log_beside_it_is_not_restored),
         STORE_TEST(what_is_no_whole_store_is_not_restored),
         STORE_TEST(a_backup_beside_a_writer_is_the_state_of_one_moment),
         STORE_TEST(who_looks_changes_nothing),

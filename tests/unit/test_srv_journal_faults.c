@@ -311,6 +311,50 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
     assert_true(runs > EDITS && opened > EDITS);
 }
 
+/* The store looks for space by itself: a sync that fails there has failed as any other. */
+static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
+    disk_fill(true);
+    kept_mesh lost = mesh;
+    told_wait(&told, kept_append(j, kept_edit(&lost), &lost, "1", 1));
+    assert_int_equal(told.loss.status, ST_FULL);
+    disk_fail_at(1);
+    disk_fill(false);
+    const st_room_need need = {.records = 1, .bytes = 16};
+    st_room *room = NULL;
+    st_status status = ST_FULL;
+    while ((status = j->reserve(j->self, &need, &room)) == ST_FULL) {
+        sched_yield();
+    }
+    j->leave(j->self, room);
+    assert_int_equal(status, ST_FAILED);
+    assert_true(disk_syncs() >= 1);
+    disk_fail_at(0);
+    told_end(&told);
+}
+
+static void what_no_row_can_hold_is_refused_at_once(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    const st_room_need need = {.records = 1, .bytes = 1000000000};
+    st_room *room = NULL;
+    assert_int_equal(j->reserve(j->self, &need, &room), ST_NO_MEMORY);
+    assert_null(room);
+    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
+    assert_int_equal(told_losses(&told), 0);
+    told_end(&told);
+}
+
 /* --- the disk is slow --- */
 
 static void a_slow_disk_bounds_the_queue(void **state)
@@ -475,6 +519,8 @@ int main(void)
         STORE_TEST(rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile),
         STORE_TEST(what_was_made_and_lost_was_never_there),
         STORE_TEST(after_a_failed_sync_nothing_is_acknowledged),
+        STORE_TEST(a_failed_sync_on_a_full_disk_ends_writing),
+        STORE_TEST(what_no_row_can_hold_is_refused_at_once),
         STORE_TEST(a_slow_disk_bounds_the_queue),
         STORE_TEST(one_connection_writes),
         STORE_TEST(without_memory_nothing_is_lost),

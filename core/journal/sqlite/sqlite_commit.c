@@ -336,12 +336,13 @@ static bool is_closing(st_sqlite *self)
     return closing;
 }
 
-/* Tries until the disk has said yes or no. Without background work where that does not fit. */
+/* Tries until the disk has said yes or no. Without background work where that does not fit; a purge
+ * alone is not tried again so: it would be due again at once. */
 static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 {
     for (unsigned tries = 1;; tries++) {
         st_sql outcome = transact(self, g, progress);
-        if (outcome == ST_SQL_FULL && g->slice > 0) {
+        if (outcome == ST_SQL_FULL && g->slice > 0 && (g->first != NULL || g->stage != NULL)) {
             g->slice = 0;
         } else if ((outcome == ST_SQL_NO_MEMORY || outcome == ST_SQL_BUSY) &&
                    (tries < CLOSING_TRIES || !is_closing(self))) {
@@ -448,14 +449,15 @@ int st_commit_log_grew(void *context, sqlite3 *db, const char *name, int pages)
  * given up meanwhile. */
 static bool make_space(st_sqlite *self)
 {
-    bool good;
+    bool good, closing;
     do {
         group g;
         st_progress progress;
         take_group(self, &g);
         g.slice = self->purged ? 0 : SLICE_ALONE;
         pthread_mutex_unlock(&self->lock);
-        good = transact(self, &g, &progress) == ST_SQL_DONE;
+        const st_sql outcome = transact(self, &g, &progress);
+        good = outcome == ST_SQL_DONE;
         if (good) {
             self->progress = progress;
             write_mark(self);
@@ -465,8 +467,15 @@ static bool make_space(st_sqlite *self)
         } else {
             pthread_mutex_lock(&self->lock);
             put_back(self, &g);
+            if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
+                /* What a sync that failed has left on the disk is not known: no more is written. */
+                pthread_mutex_unlock(&self->lock);
+                stop_writing(self, ST_WRITES_FAILED);
+                pthread_mutex_lock(&self->lock);
+            }
         }
-    } while (good && !self->purged);
+        closing = self->closing;
+    } while (good && !self->purged && !closing);
     return good;
 }
 
@@ -492,7 +501,7 @@ static bool has_work(const st_sqlite *self)
 {
     switch (self->mode) {
     case ST_WRITES:
-        return self->first != NULL || self->stages != NULL || !self->purged ||
+        return self->first != NULL || self->stages != NULL || (!self->purged && !self->closing) ||
                (self->log_is_long && self->loads_taken == 0);
     case ST_WRITES_FULL:
         return self->losing ? has_room(self) || self->old_rooms == 0 : has_room(self);

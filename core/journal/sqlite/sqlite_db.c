@@ -145,9 +145,11 @@ st_sql st_db_outcome(const st_db *db, int code)
         if (code == SQLITE_IOERR_NOMEM) {
             return ST_SQL_NO_MEMORY;
         }
-        /* SQLite tells apart only ENOSPC. A sync that fails so has failed as any other. */
-        if (code == SQLITE_IOERR_WRITE && sqlite3_system_errno(db->handle) == EDQUOT) {
-            return ST_SQL_FULL;
+        /* SQLite tells apart only ENOSPC, and not where it makes the -shm longer. A sync that fails
+         * so has failed as any other. */
+        if (code == SQLITE_IOERR_WRITE || code == SQLITE_IOERR_SHMSIZE) {
+            const int reason = sqlite3_system_errno(db->handle);
+            return reason == EDQUOT || reason == ENOSPC ? ST_SQL_FULL : ST_SQL_FAILED;
         }
         return ST_SQL_FAILED;
     default:

@@ -12,11 +12,15 @@ st_sqlite_room *st_room_of(st_item *item)
 
 /* --- reserve --- */
 
+/* SQLite refuses a row above 10^9 bytes, with its other columns. */
+enum { MOST_BYTES = 900000000 };
+
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
     /* One more head: that of the record with the body lies right before it. */
-    return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
+    return need->bytes <= MOST_BYTES &&
+           !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
            !__builtin_add_overflow(heads, entries, out) &&
            !__builtin_add_overflow(*out, sizeof(st_sqlite_room), out) &&

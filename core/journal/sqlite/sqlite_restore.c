@@ -45,6 +45,40 @@ static bool copy_bytes(st_folder *folder, int from, int to)
     return got == 0 || fail(folder, "read", "the backup");
 }
 
+/* What a restore that was killed left: its journal would be played into the next copy. */
+static bool remove_copy(st_folder *folder)
+{
+    static const char *const names[] = {"restored.db-journal", "restored.db-wal", "restored.db-shm",
+                                        "restored.db"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        if (unlinkat(folder->folder, names[i], 0) != 0 && errno != ENOENT) {
+            return fail(folder, "remove", names[i]);
+        }
+    }
+    return st_folder_sync(folder);
+}
+
+/* Only the file itself is copied: what lies in a log beside it would be left out. */
+static bool has_no_log(st_folder *folder, const char *file)
+{
+    static const char *const ends[] = {"-wal", "-journal"};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        char log[PATH_MAX];
+        struct stat status;
+        int length = snprintf(log, sizeof log, "%s%s", file, ends[i]);
+        if (length < 0 || (size_t)length >= sizeof log) {
+            return refuse(folder, "the path of the file is too long");
+        }
+        if (stat(log, &status) == 0 && status.st_size > 0) {
+            return refuse(folder,
+                          "%.300s has a log beside it (%s) that is not written back into it: "
+                          "restore a file that --backup made",
+                          file, ends[i]);
+        }
+    }
+    return true;
+}
+
 static bool copy_file(st_folder *folder, const char *file)
 {
     int from = open(file, O_RDONLY | O_CLOEXEC);
@@ -150,10 +184,10 @@ static bool renew_copy(st_folder *folder)
     bool good = outcome == ST_SQL_DONE;
     if (!good) {
         (void)st_sqlite_explain(&db, path, outcome, message);
-        (void)refuse(folder, "%.500s", message);
     }
     (void)st_db_close(&db);
-    return good;
+    good = good && st_sqlite_check_file(path, message);
+    return good || refuse(folder, "%.500s", message);
 }
 
 /* --- putting it in place --- */
@@ -260,14 +294,19 @@ static bool restore(st_folder *folder, const char *path, const char *file, char 
         /* The note was never whole, so nothing was moved. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
     }
-    good = good && st_sqlite_finish_restore(folder);
+    good = good && st_sqlite_finish_restore(folder) && has_no_log(folder, file);
     if (good && !st_sqlite_check_file(file, message)) {
         return false;
     }
-    good = good && copy_file(folder, file) && renew_copy(folder) &&
-           sync_name(folder, "restored.db", 0);
+    good = good && remove_copy(folder);
+    if (good && !(copy_file(folder, file) && renew_copy(folder) &&
+                  sync_name(folder, "restored.db", 0) && write_note(folder, before))) {
+        (void)snprintf(message, ST_SQLITE_MESSAGE, "%s", folder->message);
+        (void)remove_copy(folder);
+        return false;
+    }
     if (good) {
-        good = write_note(folder, before) && st_sqlite_finish_restore(folder);
+        good = st_sqlite_finish_restore(folder);
     }
     if (!good) {
         (void)snprintf(message, ST_SQLITE_MESSAGE, "%s", folder->message);
