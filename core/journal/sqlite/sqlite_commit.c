@@ -414,7 +414,7 @@ static bool checkpoint(st_sqlite *self, int how)
     pthread_mutex_lock(&self->lock);
     /* Loads wait for one checkpoint that no load kept from writing all back: those that begin after
      * it read nothing from the log, and the next commit begins it anew. */
-    self->log_is_long = log_is_long(self) && self->loads_taken > 0;
+    self->log_is_long = self->mode == ST_WRITES && log_is_long(self) && self->loads_taken > 0;
     if (!self->log_is_long) {
         pthread_cond_broadcast(&self->moved);
     }
@@ -557,6 +557,10 @@ void *st_commit_thread(void *context)
         }
         self->idle = false;
     }
+    /* On a full disk what was to be deleted is still queued. */
+    free_items(self->first);
+    self->first = NULL;
+    self->end = &self->first;
     pthread_mutex_unlock(&self->lock);
     if (self->mode != ST_WRITES_FAILED) {
         (void)checkpoint(self, SQLITE_CHECKPOINT_TRUNCATE);

@@ -38,7 +38,8 @@ static bool write_owner(st_folder *folder)
     int length = snprintf(who, sizeof who, "process %ld on %s\n", (long)getpid(), host);
     return (ftruncate(folder->lock, 0) == 0 &&
             pwrite(folder->lock, who, (size_t)length, 0) == length) ||
-           fail(folder, "cannot write", "lock");
+           /* The lock is held all the same; others are only not told by whom. */
+           errno == ENOSPC || errno == EDQUOT || fail(folder, "cannot write", "lock");
 }
 
 static bool take_lock(st_folder *folder)

@@ -20,6 +20,15 @@ __attribute__((format(printf, 2, 3))) static bool refuse(char message[ST_SQLITE_
     return false;
 }
 
+/* SQLite has no error of its own where a sum or a value of a row is what is wrong. */
+static const char *damage_of(const st_db *db)
+{
+    const int code = db->handle == NULL ? SQLITE_OK : sqlite3_errcode(db->handle);
+    return code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE
+               ? "a table or a row of the store is not what it was"
+               : st_db_message(db);
+}
+
 bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
                        char message[ST_SQLITE_MESSAGE])
 {
@@ -28,7 +37,7 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
         return refuse(message,
                       "%.300s is damaged (%s). `hedged --verify` says which meshes are whole, "
                       "`hedged --dump` saves them; `hedged --restore` puts a backup in its place",
-                      path, st_db_message(db));
+                      path, damage_of(db));
     case ST_SQL_FULL:
         return refuse(message, "%.300s: the disk is full; a store needs some MiB to start", path);
     case ST_SQL_BUSY:
