@@ -35,38 +35,60 @@ static void write_server(api_exchange *x)
     }
 }
 
+/* At once: where memory is short, large blocks are the first to be refused. */
+enum { CARDS = 32 };
+
+/* `last` is the id after which the page begins, then that of the last item. */
+static bool write_items(api_exchange *x, size_t limit, char last[ST_MESH_ID + 1], bool *more)
+{
+    size_t given = 0, count = 0, asked;
+    st_card *cards = api_arena_array(&x->arena, CARDS, sizeof *cards);
+    if (cards == NULL) {
+        return api_fail_memory(x);
+    }
+    do {
+        /* One more than asked tells whether there is a next page. */
+        asked = limit - given + 1 < CARDS ? limit - given + 1 : CARDS;
+        st_status status = st_cards(x->store, last, cards, asked, &count);
+        if (status != ST_OK) {
+            return api_fail_store(x, status);
+        }
+        for (size_t i = 0; i < count; i++, given++) {
+            if (given == limit) {
+                *more = true;
+                return true;
+            }
+            api_out_object_begin(&x->out);
+            api_write_brief(&x->out, &cards[i]);
+            api_out_object_end(&x->out);
+            memcpy(last, cards[i].id, sizeof cards->id);
+        }
+    } while (count == asked);
+    return true;
+}
+
 static void list(api_exchange *x)
 {
     const char *after;
-    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE), count = 0;
+    char last[ST_MESH_ID + 1];
+    bool more = false;
+    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE);
     if (!read_list_cursor(x, &after)) {
         return;
     }
-    st_card *cards = api_arena_array(&x->arena, limit + 1, sizeof *cards);
-    if (cards == NULL) {
-        api_fail_memory(x);
-        return;
-    }
-    /* One more than asked tells whether there is a next page. */
-    st_status status = st_cards(x->store, after, cards, limit + 1, &count);
-    if (status != ST_OK) {
-        api_fail_store(x, status);
-        return;
-    }
+    snprintf(last, sizeof last, "%s", after);
     api_out *out = &x->out;
     api_out_object_begin(out);
     api_out_key(out, "items");
     api_out_array_begin(out);
-    for (size_t i = 0; i < count && i < limit; i++) {
-        api_out_object_begin(out);
-        api_write_brief(out, &cards[i]);
-        api_out_object_end(out);
+    if (!write_items(x, limit, last, &more)) {
+        return;
     }
     api_out_array_end(out);
     api_out_key(out, "next");
-    if (count > limit) {
+    if (more) {
         char cursor[ST_MESH_ID + 2] = "m";
-        memcpy(cursor + 1, cards[limit - 1].id, sizeof cards->id);
+        memcpy(cursor + 1, last, sizeof last);
         api_out_string(out, cursor);
         api_answer_header_format(x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"", limit,
                                  cursor);

@@ -102,13 +102,14 @@ static void publish(api_exchange *x, writing *w, const char *op, int status, boo
     api_out_fill(&x->text, w->revision_at, x->info.revision + (w->dry_run && w->effect ? 1 : 0));
     if (!w->dry_run) {
         api_answer_etag(x, "attribute");
-        if (status == 201) {
-            api_answer_header(x, "Location", x->location);
-        }
     }
-    if (!api_answer_minimal(x)) {
-        api_answer_json(x, w->dry_run ? 200 : status);
+    if (api_answer_minimal(x)) {
+        return;
     }
+    if (!w->dry_run && status == 201) {
+        api_answer_header(x, "Location", x->location);
+    }
+    api_answer_json(x, w->dry_run ? 200 : status);
 }
 
 static he_mesh *write_begin(api_exchange *x, writing *w)

@@ -240,7 +240,9 @@ static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
     uint32_t loop[8], n = he_soup_end(soup, f) - soup->starts[f];
     runs left = {.count = 0}, now = {.count = 0};
     size_t made = 0;
-    memcpy(loop, soup->corners + soup->starts[f], n * sizeof *loop);
+    for (uint32_t i = 0; i < n; i++) {
+        loop[i] = soup->corners[soup->starts[f] + i];
+    }
     n = reduce(loop, n);
     add_runs(&left, loop, n);
     for (; at + made < after->face_count && from[at + made] == f; made++) {
