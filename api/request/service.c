@@ -152,7 +152,14 @@ static st_shown shown(const api_exchange *x)
     if (x->route == NULL || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
-    return x->has_info && !x->shows_all ? st_shown_of(&x->info) : st_shown_all(x->store, x->since);
+    if (x->has_info && !x->shows_all) {
+        return st_shown_of(&x->info);
+    }
+    /* What a write read of other meshes came before it: what is lost later is not in its answer. */
+    if (x->published != 0 && x->has_info && x->info.position != 0) {
+        return (st_shown){.position = x->info.position, .since = x->since};
+    }
+    return st_shown_all(x->store, x->since);
 }
 
 static api_step finish(api_exchange *x)

@@ -173,11 +173,12 @@ static bool refuse_body(api_exchange *x, const writing *w)
                     (unsigned long long)body_cap(w), w->octets ? "" : ": octets may have more");
 }
 
-/* The most octets a good body can have are known before it comes: they bound what is kept. */
+/* The most octets a good body can have bound what is kept. They are known before it comes where the
+ * mesh is in memory. */
 static bool set_maximum(api_exchange *x, writing *w)
 {
     uint64_t most = body_cap(w);
-    if (w->octets) {
+    if (w->octets && !x->is_cold) {
         const he_mesh *mesh = api_read_begin(x);
         if (mesh == NULL) {
             return false;

@@ -15,7 +15,7 @@ typedef struct st_booking {
     st_stage *stage; /* the first record's content, instead of a body */
 } st_booking;
 
-/* All of them: ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY, and *out is as it was. */
+/* All of them: ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY. A booking in *out is as it was. */
 
 /* For records without a body. */
 st_status st_book(const st_journal *journal, const st_room_need *need, st_booking *out);
@@ -27,8 +27,8 @@ st_status st_book_edit(const st_journal *journal, const he_delta *delta, const h
  * content was not staged. */
 st_status st_book_content(const st_journal *journal, const he_mesh *content, st_stage *stage,
                           size_t records, st_booking *out);
-/* Brings a content that is too large for a body to the disk: may wait for it. *out is NULL where
- * the content is not, or nothing is kept. */
+/* Brings a content that is too large for a body to the disk: may wait for it. *out is NULL on
+ * failure, and where the content is small or nothing is kept. */
 st_status st_book_stage(const st_journal *journal, const he_mesh *content, st_stage **out);
 /* Fills in what `first` keeps of the booking. */
 void st_booking_fill(const st_booking *booking, st_record *first);

@@ -109,13 +109,20 @@ static void evict(st_store *store, uint64_t bytes)
 void st_make_room(st_store *store, uint64_t bytes)
 {
     uint64_t budget = st_memory_budget(), share = budget / 16;
-    if (budget == 0 || st_memory_has(bytes + share)) {
+    if (budget == 0 || bytes > budget - share || st_memory_has(bytes + share)) {
         return;
     }
-    st_store_shed(store);
+    /* Who waited here finds the room that was made meanwhile. */
+    pthread_mutex_lock(&store->room);
+    if (!st_memory_has(bytes + share)) {
+        st_store_shed(store);
+    }
     if (store->journal.keeps && !st_memory_has(bytes + share)) {
         /* Twice the share, so that it is not to be done again at once. */
         uint64_t wanted = st_memory_used() + bytes + 2 * share;
-        evict(store, wanted - budget);
+        if (wanted > budget) { /* others free memory between the two looks at it */
+            evict(store, wanted - budget);
+        }
     }
+    pthread_mutex_unlock(&store->room);
 }

@@ -187,6 +187,7 @@ static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
             status = journal->keys(journal->self, id, st_keys_restore, &(*out)->keys);
             if (status != ST_OK) {
                 st_release(*out);
+                *out = NULL;
             }
         }
         if (status == ST_DAMAGED && card.damage[0] != '\0') {

@@ -45,6 +45,7 @@ st_store *st_store_new(const st_store_options *options)
         he_mem_free(store);
         return NULL;
     }
+    pthread_mutex_init(&store->room, NULL);
     store->journal = options->journal;
     store->undo_budget = options->undo_budget;
     store->max_meshes = options->max_meshes;
@@ -66,6 +67,7 @@ st_store *st_store_new(const st_store_options *options)
         st_waits_free(store->followers.waits);
         st_lookups_clear(&store->lookups);
         pthread_rwlock_destroy(&store->lock);
+        pthread_mutex_destroy(&store->room);
         he_mem_free(store);
         return NULL;
     }
@@ -89,6 +91,7 @@ void st_store_free(st_store *store)
     st_waits_free(store->followers.waits);
     store->journal.close(store->journal.self);
     pthread_rwlock_destroy(&store->lock);
+    pthread_mutex_destroy(&store->room);
     he_mem_free(store);
 }
 

@@ -13,6 +13,8 @@
  * taken in this order:
  *     past      the mesh's cached copy of an earlier revision; not on a worker
  *     mesh      one mesh, shared by readers or held by one writer; writers come first
+ *     room      by the one thread that frees memory for others
+ *     lookups   ids that are being looked for on the disk (lookup.h)
  *     table     the collection, for as long as a search takes
  *     snapshot  the mesh's cached copy
  *     cache     the mesh's cached value

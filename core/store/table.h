@@ -13,6 +13,7 @@ struct st_store {
     uint64_t base_bytes; /* of records, before another base is due */
     st_followers followers;
     st_lookups lookups;
+    pthread_mutex_t room;  /* one thread at a time makes room; taken before the table's */
     pthread_rwlock_t lock; /* of the table */
     st_mesh **meshes;      /* in memory, in the order of ids, each with a use */
     size_t count, capacity;
@@ -28,7 +29,8 @@ st_status st_table_insert(st_store *store, st_mesh *mesh);
 
 /* Sees to it that `bytes` more and a sixteenth of the memory budget are free, as far as that can be
  * had: frees what is only kept for later, then meshes that nobody uses and that the journal brings
- * back, the least recently used first. Without a lock. */
+ * back, the least recently used first. Frees nothing for more than the budget could ever hold.
+ * Without a lock but `past`. */
 void st_make_room(st_store *store, uint64_t bytes);
 
 #endif

@@ -121,6 +121,29 @@ static void a_cold_mesh_is_changed_like_any_other(void **state)
     end(b);
 }
 
+static void octets_of_an_attribute_are_counted_when_the_mesh_is_there(void **state)
+{
+    (void)state;
+    static const char *const octets[] = {"Content-Type", "application/octet-stream", NULL};
+    static const struct {
+        const char *id;
+        size_t rows;
+        int status;
+    } cases[] = {{"n", 8, 201}, {"n", 7, 422}, {"n", 9, 422}, {"nosuch", 8, 404}};
+    static const float rows[9] = {1, 2, 3};
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char target[80];
+        snprintf(target, sizeof target, "/v1/meshes/%s/attributes/vertices/a%zu?type=float",
+                 cases[i].id, i);
+        b = restart(b);
+        bench_done(bench_expect(cases[i].status,
+                                bench_send_bytes(b, "PUT", target, octets, (const char *)rows,
+                                                 cases[i].rows * sizeof *rows)));
+    }
+    end(b);
+}
+
 static void preconditions_hold_of_a_cold_mesh(void **state)
 {
     (void)state;
@@ -186,6 +209,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_read_is_what_it_was),
         cmocka_unit_test(a_cold_mesh_is_changed_like_any_other),
+        cmocka_unit_test(octets_of_an_attribute_are_counted_when_the_mesh_is_there),
         cmocka_unit_test(preconditions_hold_of_a_cold_mesh),
         cmocka_unit_test(a_list_loads_nothing),
         cmocka_unit_test(a_damaged_mesh_can_only_go),

@@ -43,7 +43,7 @@ static void expect(bool good)
 /* Everything that nobody uses goes. */
 static void evict(void)
 {
-    st_make_room(store, 2 * BUDGET);
+    st_make_room(store, BUDGET - BUDGET / 16);
 }
 
 static void make(const char *id)
@@ -282,6 +282,25 @@ static void the_least_recently_used_go_first(void **state)
     he_mem_set_hook(NULL);
 }
 
+static void for_what_never_fits_nothing_goes(void **state)
+{
+    (void)state;
+    st_mesh *mesh = NULL;
+    st_memory_install(BUDGET);
+    journal = kept_journal_new();
+    store = open_store(NULL);
+    make("a");
+    st_make_room(store, BUDGET - BUDGET / 16 + 1);
+    st_make_room(store, UINT64_MAX);
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK);
+    st_release(mesh);
+    evict();
+    assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
+    st_store_free(store);
+    kept_journal_free(journal);
+    he_mem_set_hook(NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -289,6 +308,7 @@ int main(void)
         cmocka_unit_test(a_mesh_is_loaded_once_for_all_who_ask),
         cmocka_unit_test(what_is_used_stays_in_memory),
         cmocka_unit_test(the_least_recently_used_go_first),
+        cmocka_unit_test(for_what_never_fits_nothing_goes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,7 @@
 #include "mesh/compact.h"
 #include "mesh/write.h"
 #include "store/followers.h"
+#include "store/table.h"
 
 #include <semaphore.h>
 
@@ -444,6 +445,36 @@ static void without_memory_nothing_is_loaded(void **state)
     kept_journal_free(journal);
 }
 
+static st_status one_key(void *self, const char *id, st_take_key *take, void *context)
+{
+    (void)self;
+    st_kept_key kept = {.key = {.text = "key", .digest = {1, 2}}, .id = id};
+    return id == NULL || take(context, &kept) ? ST_OK : ST_NO_MEMORY;
+}
+
+static void without_memory_for_its_keys_nothing_is_loaded(void **state)
+{
+    (void)state;
+    journal = kept_journal_new();
+    st_store *store = open_store(1 << 20);
+    st_release(make(store, "m"));
+    bool failed = true;
+    for (unsigned n = 1; failed; n++) {
+        st_store *other = open_store(1 << 20);
+        st_mesh *loaded = NULL;
+        other->journal.keys = one_key;
+        fail_allocation(n);
+        st_status status = st_load(other, "m", &loaded);
+        failed = allocation_failed();
+        fail_allocation(0);
+        assert_true(status == ST_OK || (failed && status == ST_NO_MEMORY));
+        st_release(status == ST_OK ? loaded : load(other, "m"));
+        st_store_free(other);
+    }
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
 /* --- damage --- */
 
 static void expect_damaged(st_store *store, const char *part)
@@ -598,6 +629,7 @@ int main(void)
         cmocka_unit_test(a_revision_beyond_memory_is_read_from_the_disk),
         cmocka_unit_test(a_smaller_budget_keeps_the_newest),
         cmocka_unit_test(without_memory_nothing_is_loaded),
+        cmocka_unit_test(without_memory_for_its_keys_nothing_is_loaded),
         cmocka_unit_test(what_is_damaged_is_named),
         cmocka_unit_test(a_damaged_mesh_can_be_removed),
         cmocka_unit_test(a_damaged_mesh_can_be_replaced),
