@@ -124,7 +124,10 @@ st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out)
     if (!journal->keeps) {
         return ST_OK;
     }
-    st_status status = begin(store, id, &mesh, out);
+    st_status status;
+    do {
+        status = begin(store, id, &mesh, out);
+    } while (status == ST_ABSENT); /* another looked for it and found none: now it is our turn */
     if (status != ST_OK) {
         return status;
     }
