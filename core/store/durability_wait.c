@@ -66,7 +66,10 @@ static bool concerns(const st_loss *loss, const st_shown *shown)
 {
     bool same = loss->incarnation == 0 || shown->incarnation == 0 ||
                 loss->incarnation == shown->incarnation;
-    return same && loss->from <= shown->position && loss->to > shown->since;
+    /* Nothing is shown where all was durable that had been appended: a journal may have told of a
+     * record before its writer noted it. */
+    return same && shown->since < shown->position && loss->from <= shown->position &&
+           loss->to > shown->since;
 }
 
 static const st_loss *find_loss(const st_waits *waits, const st_shown *shown)

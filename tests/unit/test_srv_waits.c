@@ -132,6 +132,23 @@ static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
     assert_true(st_waits_is_durable(waits, &later));
 }
 
+/* The list was begun when the journal had told of records that their writers had not noted yet. */
+static void a_list_of_nothing_new_is_not_lost(void **state)
+{
+    (void)state;
+    static const char reason[] = "full";
+    const st_loss first = {.from = 3, .to = 6, .reason = reason};
+    const st_loss next = {.from = 7, .to = 9, .reason = reason};
+    slow_journal_lose(&slow, &first);
+    slow_journal_advance(&slow, 6);
+    const st_shown list = {.position = 5, .since = 6};
+    assert_true(st_waits_is_durable(waits, &list));
+    slow_journal_lose(&slow, &next);
+    slow_journal_advance(&slow, 9);
+    assert_true(st_waits_is_durable(waits, &list));
+    assert_false(st_waits_is_lost(waits, &list));
+}
+
 static void a_loss_without_memory_takes_too_much_rather_than_too_little(void **state)
 {
     (void)state;
@@ -204,6 +221,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(one_notice_releases_a_thousand),
         TEST(a_lost_position_ends_as_lost_whenever_it_is_added),
+        TEST(a_list_of_nothing_new_is_not_lost),
         TEST(a_loss_without_memory_takes_too_much_rather_than_too_little),
         TEST(a_stop_ends_what_is_not_known),
         cmocka_unit_test(a_request_is_one_group_of_records),
