@@ -215,20 +215,6 @@ static kept_record *copy_of(const kept_mesh *mesh, const st_record *record)
     return out;
 }
 
-static void note_card(st_card *card, const st_record *record)
-{
-    snprintf(card->id, sizeof card->id, "%s", record->id);
-    snprintf(card->name, sizeof card->name, "%s", record->name);
-    card->incarnation = record->incarnation;
-    card->metadata = record->metadata;
-    card->revision = record->revision;
-    card->record = record->number;
-    card->created = record->created;
-    card->modified = record->time;
-    card->counts = record->counts;
-    card->bytes = record->bytes;
-}
-
 /* A body that is a content, as parts. */
 static st_stage *stage_of(const unsigned char *body, size_t size)
 {
@@ -250,7 +236,7 @@ static void keep_first(kept_journal *journal, const st_record *record)
     kept_mesh **at = place_of(journal, record->id);
     mesh->next = *at;
     *at = mesh;
-    note_card(&mesh->card, record);
+    st_card_of_record(record, &mesh->card);
     st_record base = *record;
     base.body = NULL;
     base.body_size = 0;
@@ -275,7 +261,7 @@ static void keep(kept_journal *journal, const st_record *record)
         remove_mesh(journal, mesh);
         return;
     }
-    note_card(&mesh->card, record);
+    st_card_of_record(record, &mesh->card);
     mesh->records = grown(mesh->records, mesh->count, &mesh->capacity, sizeof *mesh->records);
     mesh->records[mesh->count++] = copy_of(mesh, record);
 }

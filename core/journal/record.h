@@ -11,6 +11,7 @@
 #include "mesh/mesh.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 enum { ST_MESH_ID = 64, ST_MESH_NAME = 256, ST_JOB_ID = 22, ST_DAMAGE = 160 };
 
@@ -96,6 +97,11 @@ typedef struct st_card {
     uint64_t bytes;         /* that the content takes in memory */
     char damage[ST_DAMAGE]; /* "", or a sentence: what is wrong with what is kept of it */
 } st_card;
+
+/* Copies a text, cut after `most` bytes. */
+void st_copy_text(char *to, const char *from, size_t most);
+/* What the mesh is after the record; `damage` is left alone. */
+void st_card_of_record(const st_record *record, st_card *card);
 
 typedef enum st_piece_kind {
     ST_PIECE_BASE,   /* facts of the mesh at the base, which its parts follow */

@@ -49,24 +49,45 @@ static st_status publish(st_store *store, st_mesh *mesh, const st_keyed *keyed, 
     return status;
 }
 
-static st_status make(st_store *store, const char *id, const char *name, he_mesh *content,
-                      const st_keyed *keyed, st_mesh **out)
+/* A mesh of the content that nobody knows yet, with a place for its records. */
+static st_status prepare(st_store *store, const char *id, const char *name, he_mesh *content,
+                         size_t records, st_booking *booking, st_mesh **out)
 {
     const st_mesh_options options = st_store_mesh_options(store);
-    st_booking booking = {NULL};
-    st_status status = book(store, content, 1, &booking);
+    st_status status = book(store, content, records, booking);
     if (status != ST_OK) {
         return status;
     }
-    st_mesh *mesh = st_mesh_new(&options, id, name, content);
-    status = mesh == NULL ? ST_NO_MEMORY : publish(store, mesh, keyed, &booking);
-    if (status == ST_OK) {
-        *out = mesh;
-    } else if (mesh != NULL) {
-        mesh->content = NULL; /* still the caller's */
-        st_release(mesh);
+    *out = st_mesh_new(&options, id, name, content);
+    if (*out == NULL) {
+        st_booking_leave(&store->journal, booking);
+        return ST_NO_MEMORY;
     }
-    st_booking_leave(&store->journal, &booking);
+    return ST_OK;
+}
+
+/* It is not to be known; the content is the caller's still. */
+static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
+{
+    mesh->content = NULL;
+    st_release(mesh);
+    st_booking_leave(&store->journal, booking);
+}
+
+static st_status make(st_store *store, const char *id, const char *name, he_mesh *content,
+                      const st_keyed *keyed, st_mesh **out)
+{
+    st_booking booking = {NULL};
+    st_mesh *mesh;
+    st_status status = prepare(store, id, name, content, 1, &booking, &mesh);
+    if (status == ST_OK) {
+        status = publish(store, mesh, keyed, &booking);
+        if (status == ST_OK) {
+            *out = mesh;
+        } else {
+            discard(store, mesh, &booking);
+        }
+    }
     return status;
 }
 
@@ -140,16 +161,11 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
                          const st_keyed *keyed, st_mesh **out)
 {
-    const st_mesh_options options = st_store_mesh_options(store);
     st_booking booking = {NULL};
-    st_status status = book(store, content, 2, &booking);
+    st_mesh *fresh;
+    st_status status = prepare(store, damaged->info.id, name, content, 2, &booking, &fresh);
     if (status != ST_OK) {
         return status;
-    }
-    st_mesh *fresh = st_mesh_new(&options, damaged->info.id, name, content);
-    if (fresh == NULL) {
-        st_booking_leave(&store->journal, &booking);
-        return ST_NO_MEMORY;
     }
     st_mesh_use(fresh);
     pthread_rwlock_wrlock(&damaged->lock);
@@ -158,13 +174,11 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
         publish_over(store, damaged, fresh, keyed, &booking);
     }
     pthread_rwlock_unlock(&damaged->lock);
-    if (there) {
-        st_release(damaged); /* the table's use */
-        *out = fresh;
-        return ST_OK;
+    if (!there) {
+        discard(store, fresh, &booking);
+        return ST_ABSENT;
     }
-    fresh->content = NULL; /* still the caller's */
-    st_release(fresh);
-    st_booking_leave(&store->journal, &booking);
-    return ST_ABSENT;
+    st_release(damaged); /* the table's use */
+    *out = fresh;
+    return ST_OK;
 }

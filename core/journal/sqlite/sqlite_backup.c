@@ -4,22 +4,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
-
-__attribute__((format(printf, 2, 3))) static bool refuse(char message[ST_SQLITE_MESSAGE],
-                                                         const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    (void)vsnprintf(message, ST_SQLITE_MESSAGE, format, values);
-    va_end(values);
-    return false;
-}
 
 static bool exists(const char *path)
 {
@@ -59,10 +48,10 @@ static bool open_file(st_db *db, const char *file, char message[ST_SQLITE_MESSAG
     char uri[3 * PATH_MAX];
     *db = (st_db){.texts = NULL};
     if (!exists(file)) {
-        return refuse(message, "%.300s: %s", file, strerror(errno));
+        return st_refuse(message, "%.300s: %s", file, strerror(errno));
     }
     if (!uri_of(file, uri, sizeof uri)) {
-        return refuse(message, "the path of the file is too long");
+        return st_refuse(message, "the path of the file is too long");
     }
     st_sql outcome = st_db_open(db, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL, 0);
     return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
@@ -79,7 +68,7 @@ static bool check_structure(st_db *db, const char *file, char message[ST_SQLITE_
     const char *said = code == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : NULL;
     bool good = said != NULL && strcmp(said, "ok") == 0;
     if (!good && said != NULL) {
-        (void)refuse(message, "%.300s is damaged: %.200s", file, said);
+        (void)st_refuse(message, "%.300s is damaged: %.200s", file, said);
     } else if (!good) {
         (void)st_sqlite_explain(db, file, st_db_outcome(db, code), message);
     }
@@ -96,7 +85,7 @@ static bool check_store(st_db *db, const char *file, char message[ST_SQLITE_MESS
         return false;
     }
     if (empty) {
-        return refuse(message, "%.300s is no store of hedged", file);
+        return st_refuse(message, "%.300s is no store of hedged", file);
     }
     if (!check_structure(db, file, message)) {
         return false;
@@ -112,7 +101,7 @@ bool st_sqlite_check_file(const char *file, char message[ST_SQLITE_MESSAGE])
 {
     st_db db;
     if (!st_db_prepare()) {
-        return refuse(message, "no memory to open %.300s", file);
+        return st_refuse(message, "no memory to open %.300s", file);
     }
     bool good = open_file(&db, file, message) && check_store(&db, file, message);
     (void)st_db_close(&db);
@@ -139,8 +128,8 @@ static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESS
     const uint64_t need = (uint64_t)pages * 4096 + SPARE_BYTES;
     const uint64_t there = (uint64_t)system.f_bavail * system.f_frsize;
     return there >= need ||
-           refuse(message, "%.300s: a backup takes %llu MiB, and %llu MiB are free", file,
-                  (unsigned long long)(need >> 20), (unsigned long long)(there >> 20));
+           st_refuse(message, "%.300s: a backup takes %llu MiB, and %llu MiB are free", file,
+                     (unsigned long long)(need >> 20), (unsigned long long)(there >> 20));
 }
 
 static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MESSAGE])
@@ -170,7 +159,7 @@ static bool sync_path(const char *path, int flags, char message[ST_SQLITE_MESSAG
     int file = open(path, flags | O_RDONLY | O_CLOEXEC);
     bool good = file >= 0 && fsync(file) == 0;
     if (!good) {
-        (void)refuse(message, "cannot sync %.300s: %s", path, strerror(errno));
+        (void)st_refuse(message, "cannot sync %.300s: %s", path, strerror(errno));
     }
     if (file >= 0) {
         (void)close(file);
@@ -185,7 +174,7 @@ static bool finish(const char *part, const char *file, char message[ST_SQLITE_ME
     char *slash = strrchr(folder, '/');
     memcpy(slash == NULL ? folder : slash + 1, ".", 2);
     if (rename(part, file) != 0) {
-        return refuse(message, "cannot rename %.300s: %s", part, strerror(errno));
+        return st_refuse(message, "cannot rename %.300s: %s", part, strerror(errno));
     }
     return sync_path(folder, O_DIRECTORY, message);
 }
@@ -195,7 +184,7 @@ static bool begin_part(const char *part, char message[ST_SQLITE_MESSAGE])
 {
     int file = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     if (file < 0) {
-        return refuse(message, "cannot make %.300s: %s", part, strerror(errno));
+        return st_refuse(message, "cannot make %.300s: %s", part, strerror(errno));
     }
     (void)close(file);
     return true;
@@ -209,10 +198,10 @@ bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLI
     int length = snprintf(path, sizeof path, "%s/hedge.db", folder);
     int part_length = snprintf(part, sizeof part, "%s.part", file);
     if (length >= PATH_MAX || part_length >= PATH_MAX || !st_db_prepare()) {
-        return refuse(message, "a path is too long, or memory is out");
+        return st_refuse(message, "a path is too long, or memory is out");
     }
     if (!exists(path)) {
-        return refuse(message, "%.300s: %s", path, strerror(errno));
+        return st_refuse(message, "%.300s: %s", path, strerror(errno));
     }
     st_sql outcome = st_db_open(&from, path, SQLITE_OPEN_READONLY, NULL, 0);
     bool good = (outcome == ST_SQL_DONE || st_sqlite_explain(&from, path, outcome, message)) &&
@@ -236,12 +225,12 @@ static bool open_readers(st_sqlite *self, const char *path, st_sqlite_opened *ou
     struct stat status;
     bool empty;
     if (stat(path, &status) != 0) {
-        return refuse(out->message, "%.300s: %s", path, strerror(errno));
+        return st_refuse(out->message, "%.300s: %s", path, strerror(errno));
     }
     const bool is_folder = S_ISDIR(status.st_mode);
     int length = snprintf(file, sizeof file, is_folder ? "%s/hedge.db" : "%s", path);
     if (length >= PATH_MAX || !uri_of(file, uri, sizeof uri)) {
-        return refuse(out->message, "the path of the store is too long");
+        return st_refuse(out->message, "the path of the store is too long");
     }
     st_sql outcome = st_readers_open(self, is_folder ? file : uri);
     if (outcome != ST_SQL_DONE) {
@@ -265,7 +254,7 @@ bool st_sqlite_look(const char *path, st_sqlite_opened *out)
     *out = (st_sqlite_opened){.made = false};
     st_sqlite *self = st_db_prepare() ? st_sqlite_new(&(st_sqlite_options){.folder = path}) : NULL;
     if (self == NULL) {
-        return refuse(out->message, "no memory to open %.300s", path);
+        return st_refuse(out->message, "no memory to open %.300s", path);
     }
     self->only_reads = true;
     self->mode = ST_WRITES_FAILED;

@@ -14,11 +14,10 @@
 
 enum { BALLAST_BYTES = 8 << 20, START_BYTES = 1 << 20, WHO = 256 };
 
-static bool fail(st_folder *folder, const char *what, const char *name)
+bool st_folder_fail(st_folder *folder, const char *what, const char *name)
 {
-    (void)snprintf(folder->message, sizeof folder->message, "%s %.200s%s%s: %s", what, folder->path,
-                   name[0] == '\0' ? "" : "/", name, strerror(errno));
-    return false;
+    return st_refuse(folder->message, "%s %.200s%s%s: %s", what, folder->path,
+                     name[0] == '\0' ? "" : "/", name, strerror(errno));
 }
 
 /* --- the lock --- */
@@ -39,27 +38,26 @@ static bool write_owner(st_folder *folder)
     return (ftruncate(folder->lock, 0) == 0 &&
             pwrite(folder->lock, who, (size_t)length, 0) == length) ||
            /* The lock is held all the same; others are only not told by whom. */
-           errno == ENOSPC || errno == EDQUOT || fail(folder, "cannot write", "lock");
+           errno == ENOSPC || errno == EDQUOT || st_folder_fail(folder, "cannot write", "lock");
 }
 
 static bool take_lock(st_folder *folder)
 {
     folder->lock = openat(folder->folder, "lock", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (folder->lock < 0) {
-        return fail(folder, "cannot open", "lock");
+        return st_folder_fail(folder, "cannot open", "lock");
     }
     /* Unlike a lock of fcntl, this one is not dropped when any descriptor of the file is closed. */
     if (flock(folder->lock, LOCK_EX | LOCK_NB) == 0) {
         return write_owner(folder);
     }
     if (errno != EWOULDBLOCK) {
-        return fail(folder, "cannot lock", "lock");
+        return st_folder_fail(folder, "cannot lock", "lock");
     }
     char who[WHO];
     read_owner(folder->lock, who);
-    (void)snprintf(folder->message, sizeof folder->message, "%.200s is in use by %s", folder->path,
-                   who[0] == '\0' ? "another process" : who);
-    return false;
+    return st_refuse(folder->message, "%.200s is in use by %s", folder->path,
+                     who[0] == '\0' ? "another process" : who);
 }
 
 /* --- the folder --- */
@@ -69,11 +67,11 @@ bool st_folder_open(st_folder *folder, const char *path)
     *folder = (st_folder){.folder = -1, .lock = -1, .mark = -1};
     (void)snprintf(folder->path, sizeof folder->path, "%s", path);
     if (mkdir(path, 0700) != 0 && errno != EEXIST) {
-        return fail(folder, "cannot make", "");
+        return st_folder_fail(folder, "cannot make", "");
     }
     folder->folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder->folder < 0) {
-        return fail(folder, "cannot open", "");
+        return st_folder_fail(folder, "cannot open", "");
     }
     return take_lock(folder);
 }
@@ -124,12 +122,12 @@ bool st_folder_make(st_folder *folder, const char *name)
 {
     int file = openat(folder->folder, name, O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
     close_file(file);
-    return file >= 0 || fail(folder, "cannot make", name);
+    return file >= 0 || st_folder_fail(folder, "cannot make", name);
 }
 
 bool st_folder_sync(st_folder *folder)
 {
-    return fsync(folder->folder) == 0 || fail(folder, "cannot sync", "");
+    return fsync(folder->folder) == 0 || st_folder_fail(folder, "cannot sync", "");
 }
 
 /* --- the mark --- */
@@ -140,7 +138,7 @@ enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
 bool st_mark_open(st_folder *folder)
 {
     folder->mark = openat(folder->folder, "hedge.mark", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    return folder->mark >= 0 || fail(folder, "cannot open", "hedge.mark");
+    return folder->mark >= 0 || st_folder_fail(folder, "cannot open", "hedge.mark");
 }
 
 static bool read_slot(const st_folder *folder, unsigned slot, st_mark *out)
@@ -180,12 +178,12 @@ bool st_mark_write(st_folder *folder, const st_mark *mark)
     memcpy(bytes + SUM_AT, &sum, sizeof sum);
     off_t at = (off_t)(mark->commits % SLOTS * SLOT);
     return pwrite(folder->mark, bytes, SLOT, at) == SLOT ||
-           fail(folder, "cannot write", "hedge.mark");
+           st_folder_fail(folder, "cannot write", "hedge.mark");
 }
 
 bool st_mark_sync(st_folder *folder)
 {
-    return fdatasync(folder->mark) == 0 || fail(folder, "cannot sync", "hedge.mark");
+    return fdatasync(folder->mark) == 0 || st_folder_fail(folder, "cannot sync", "hedge.mark");
 }
 
 /* --- the ballast --- */
@@ -198,10 +196,10 @@ bool st_ballast_make(st_folder *folder)
     }
     int file = openat(folder->folder, "ballast", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
     if (file < 0) {
-        return fail(folder, "cannot make", "ballast");
+        return st_folder_fail(folder, "cannot make", "ballast");
     }
     errno = posix_fallocate(file, 0, BALLAST_BYTES);
-    bool made = errno == 0 || fail(folder, "cannot make", "ballast");
+    bool made = errno == 0 || st_folder_fail(folder, "cannot make", "ballast");
     close_file(file);
     if (!made) {
         (void)unlinkat(folder->folder, "ballast", 0);

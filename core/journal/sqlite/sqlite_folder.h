@@ -11,17 +11,17 @@
 #ifndef HE_JOURNAL_SQLITE_FOLDER_H
 #define HE_JOURNAL_SQLITE_FOLDER_H
 
+#include "journal/sqlite/sqlite_message.h"
+
 #include <limits.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-enum { ST_FOLDER_MESSAGE = 512 };
-
 typedef struct st_folder {
     char path[PATH_MAX];
     int folder, lock, mark;          /* descriptors, -1 where there is none */
-    char message[ST_FOLDER_MESSAGE]; /* of the last failure: a sentence */
+    char message[ST_SQLITE_MESSAGE]; /* of the last failure: a sentence */
 } st_folder;
 
 typedef struct st_mark {
@@ -34,6 +34,10 @@ bool st_folder_open(st_folder *folder, const char *path);
 void st_folder_close(st_folder *folder); /* unlocks */
 /* A sentence about a file system that does not keep what it says; "" for any other. */
 const char *st_folder_doubt(const st_folder *folder);
+
+/* Says what, such as "cannot make", failed with errno for that file of it, or with "" for itself;
+ * false. */
+bool st_folder_fail(st_folder *folder, const char *what, const char *name);
 
 /* The path of a file in it. False where it is too long. */
 bool st_folder_path(const st_folder *folder, const char *name, char out[PATH_MAX]);

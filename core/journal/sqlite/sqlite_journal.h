@@ -14,8 +14,7 @@
 #define HE_JOURNAL_SQLITE_JOURNAL_H
 
 #include "journal/journal.h"
-
-enum { ST_SQLITE_MESSAGE = 768 };
+#include "journal/sqlite/sqlite_message.h"
 
 typedef struct st_sqlite_options {
     const char *folder;   /* made where it is missing */

@@ -5,20 +5,8 @@
 #include "system/clock.h"
 #include "system/random.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-/* Says why the store cannot be opened. */
-__attribute__((format(printf, 2, 3))) static bool refuse(char message[ST_SQLITE_MESSAGE],
-                                                         const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    (void)vsnprintf(message, ST_SQLITE_MESSAGE, format, values);
-    va_end(values);
-    return false;
-}
 
 /* SQLite has no error of its own where a sum or a value of a row is what is wrong. */
 static const char *damage_of(const st_db *db)
@@ -34,22 +22,24 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
 {
     switch (outcome) {
     case ST_SQL_DAMAGED:
-        return refuse(message,
-                      "%.300s is damaged (%s). `hedged --verify` says which meshes are whole, "
-                      "`hedged --dump` saves them; `hedged --restore` puts a backup in its place",
-                      path, damage_of(db));
+        return st_refuse(
+            message,
+            "%.300s is damaged (%s). `hedged --verify` says which meshes are whole, "
+            "`hedged --dump` saves them; `hedged --restore` puts a backup in its place",
+            path, damage_of(db));
     case ST_SQL_FULL:
-        return refuse(message, "%.300s: the disk is full; a store needs some MiB to start", path);
+        return st_refuse(message, "%.300s: the disk is full; a store needs some MiB to start",
+                         path);
     case ST_SQL_BUSY:
-        return refuse(message, "%.300s is locked by another program", path);
+        return st_refuse(message, "%.300s is locked by another program", path);
     case ST_SQL_NO_MEMORY:
-        return refuse(message, "no memory to open %.300s", path);
+        return st_refuse(message, "no memory to open %.300s", path);
     case ST_SQL_DONE:
     case ST_SQL_ROW:
     case ST_SQL_FAILED:
         break;
     }
-    return refuse(message, "%.300s cannot be used: %s", path, st_db_message(db));
+    return st_refuse(message, "%.300s cannot be used: %s", path, st_db_message(db));
 }
 
 /* --- the database --- */
@@ -87,13 +77,14 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
     }
     *empty = tables == 0 && application == 0 && version == 0;
     if (!*empty && application != ST_SCHEMA_APPLICATION) {
-        return refuse(message, "%.300s is no store of hedged", path);
+        return st_refuse(message, "%.300s is no store of hedged", path);
     }
     return version <= ST_SCHEMA_VERSION ||
-           refuse(message,
-                  "%.300s has version %lld of the tables, and hedged %s knows them up to version "
-                  "%d: start a newer hedged, or restore a backup made by this one",
-                  path, (long long)version, release, ST_SCHEMA_VERSION);
+           st_refuse(
+               message,
+               "%.300s has version %lld of the tables, and hedged %s knows them up to version "
+               "%d: start a newer hedged, or restore a backup made by this one",
+               path, (long long)version, release, ST_SCHEMA_VERSION);
 }
 
 static bool make_store(st_sqlite *self, const char *path, const char *release,
@@ -117,18 +108,20 @@ static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
         return true;
     }
     if (mark.store != self->identity.store) {
-        return refuse(out->message,
-                      "%.300s/hedge.mark is of another store than hedge.db: put back the two that "
-                      "belong together, or use `hedged --restore`",
-                      self->folder.path);
+        return st_refuse(
+            out->message,
+            "%.300s/hedge.mark is of another store than hedge.db: put back the two that "
+            "belong together, or use `hedged --restore`",
+            self->folder.path);
     }
     return mark.commits <= self->progress.commits ||
-           refuse(out->message,
-                  "%.300s/hedge.db lacks the last %llu of %llu commits: hedge.db-wal is damaged or "
-                  "missing. Put it back, or restore a backup with `hedged --restore`; to go on "
-                  "without these commits remove hedge.mark",
-                  self->folder.path, (unsigned long long)(mark.commits - self->progress.commits),
-                  (unsigned long long)mark.commits);
+           st_refuse(
+               out->message,
+               "%.300s/hedge.db lacks the last %llu of %llu commits: hedge.db-wal is damaged or "
+               "missing. Put it back, or restore a backup with `hedged --restore`; to go on "
+               "without these commits remove hedge.mark",
+               self->folder.path, (unsigned long long)(mark.commits - self->progress.commits),
+               (unsigned long long)mark.commits);
 }
 
 /* A mesh whose entry in an index is damaged would seem not to be there. In a store of more meshes
@@ -170,7 +163,7 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
     bool empty = false;
     st_mark mark;
     if (!st_folder_has(&self->folder, "hedge.db") && st_mark_read(&self->folder, &mark)) {
-        return refuse(
+        return st_refuse(
             out->message,
             "%.300s has a hedge.mark but no hedge.db: put it back, or restore a backup with "
             "`hedged --restore`; to begin an empty store remove hedge.mark",
@@ -178,7 +171,7 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
     }
     /* SQLite gives -wal and -shm the rights of the database, and that those it finds. */
     if (!st_folder_has(&self->folder, "hedge.db") && !st_folder_make(&self->folder, "hedge.db")) {
-        return refuse(out->message, "%s", self->folder.message);
+        return st_refuse(out->message, "%s", self->folder.message);
     }
     st_sql outcome =
         st_db_open(&self->db, path, SQLITE_OPEN_READWRITE, st_writer_texts, ST_WRITER_STATEMENTS);
@@ -231,7 +224,7 @@ static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
     /* The folder may have been made anew, and files in it. */
     return (st_mark_write(&self->folder, &mark) && st_mark_sync(&self->folder) &&
             st_folder_sync(&self->folder)) ||
-           refuse(out->message, "%s", self->folder.message);
+           st_refuse(out->message, "%s", self->folder.message);
 }
 
 /* --- the journal --- */
@@ -243,7 +236,7 @@ static bool start_thread(st_sqlite *self, st_sqlite_opened *out)
     sqlite3_wal_hook(self->db.handle, st_commit_log_grew, self);
     self->has_thread = pthread_create(&self->thread, NULL, st_commit_thread, self) == 0;
     if (!self->has_thread) {
-        return refuse(out->message, "no threads to start");
+        return st_refuse(out->message, "no threads to start");
     }
     return true;
 }
@@ -296,14 +289,14 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
 {
     char path[PATH_MAX];
     if (!st_folder_open(&self->folder, options->folder)) {
-        return refuse(out->message, "%s", self->folder.message);
+        return st_refuse(out->message, "%s", self->folder.message);
     }
     const bool full = st_ballast_drop_for_start(&self->folder);
     if (!st_sqlite_finish_restore(&self->folder) || !st_mark_open(&self->folder)) {
-        return refuse(out->message, "%s", self->folder.message);
+        return st_refuse(out->message, "%s", self->folder.message);
     }
     if (!st_folder_path(&self->folder, "hedge.db", path)) {
-        return refuse(out->message, "the path of the store is too long");
+        return st_refuse(out->message, "the path of the store is too long");
     }
     if (!open_database(self, options->release, path, out) || !clean_up(self, path, out)) {
         return false;
@@ -345,7 +338,7 @@ bool st_sqlite_open(const st_sqlite_options *options, st_sqlite_opened *out)
     *out = (st_sqlite_opened){.made = false};
     st_sqlite *self = st_db_prepare() ? st_sqlite_new(options) : NULL;
     if (self == NULL) {
-        return refuse(out->message, "no memory to open %s", options->folder);
+        return st_refuse(out->message, "no memory to open %s", options->folder);
     }
     if (!open_all(self, options, out)) {
         st_sqlite_free(self);

@@ -126,31 +126,10 @@ static void fill_entry(st_sqlite_room *room, const st_record *record)
     memcpy(entry->frame, head, size);
 }
 
-static void copy_text(char *to, const char *from, size_t most)
-{
-    size_t length = strnlen(from, most);
-    memcpy(to, from, length);
-    to[length] = '\0';
-}
-
-static void fill_card(st_card *card, const st_record *record)
-{
-    copy_text(card->id, record->id, ST_MESH_ID);
-    copy_text(card->name, record->name, ST_MESH_NAME);
-    card->incarnation = record->incarnation;
-    card->metadata = record->metadata;
-    card->revision = record->revision;
-    card->record = record->number;
-    card->created = record->created;
-    card->modified = record->time;
-    card->counts = record->counts;
-    card->bytes = record->bytes;
-}
-
 static void fill_key(st_sqlite_room *room, const st_record *record)
 {
     const st_record_key *key = record->key;
-    copy_text(room->key_text, key->text, ST_KEY_TEXT);
+    st_copy_text(room->key_text, key->text, ST_KEY_TEXT);
     room->has_key = true;
     room->key = (st_kept_row){.mesh = key->of_store ? 0 : -1,
                               .text = room->key_text,
@@ -174,7 +153,7 @@ uint64_t st_sqlite_append(void *context, st_room *taken, const st_record *record
         removed += records[i].kind == ST_RECORD_REMOVE;
         made += records[i].number == 1;
     }
-    fill_card(&room->card, &records[count - 1]);
+    st_card_of_record(&records[count - 1], &room->card);
     if (records[count - 1].key != NULL) {
         fill_key(room, &records[count - 1]);
     }

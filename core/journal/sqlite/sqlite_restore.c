@@ -6,7 +6,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -14,23 +13,14 @@
 
 enum { COPY_BYTES = 1 << 16, NAME_BYTES = 64 };
 
-__attribute__((format(printf, 2, 3))) static bool refuse(st_folder *folder, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    (void)vsnprintf(folder->message, sizeof folder->message, format, values);
-    va_end(values);
-    return false;
-}
-
-static bool fail(st_folder *folder, const char *what, const char *name)
-{
-    return refuse(folder, "cannot %s %s in %.300s: %s", what, name, folder->path, strerror(errno));
-}
-
 /* --- the copy --- */
 
-static bool copy_bytes(st_folder *folder, int from, int to)
+static bool cannot_read(st_folder *folder, const char *file)
+{
+    return st_refuse(folder->message, "cannot read %.300s: %s", file, strerror(errno));
+}
+
+static bool copy_bytes(st_folder *folder, const char *file, int from, int to)
 {
     unsigned char bytes[COPY_BYTES];
     ssize_t got;
@@ -38,11 +28,11 @@ static bool copy_bytes(st_folder *folder, int from, int to)
         for (ssize_t put = 0, n; put < got; put += n) {
             n = write(to, bytes + put, (size_t)(got - put));
             if (n <= 0) {
-                return fail(folder, "write", "restored.db");
+                return st_folder_fail(folder, "cannot write", "restored.db");
             }
         }
     }
-    return got == 0 || fail(folder, "read", "the backup");
+    return got == 0 || cannot_read(folder, file);
 }
 
 /* What a restore that was killed left: its journal would be played into the next copy. */
@@ -52,7 +42,7 @@ static bool remove_copy(st_folder *folder)
                                         "restored.db"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (unlinkat(folder->folder, names[i], 0) != 0 && errno != ENOENT) {
-            return fail(folder, "remove", names[i]);
+            return st_folder_fail(folder, "cannot remove", names[i]);
         }
     }
     return st_folder_sync(folder);
@@ -67,13 +57,13 @@ static bool has_no_log(st_folder *folder, const char *file)
         struct stat status;
         int length = snprintf(log, sizeof log, "%s%s", file, ends[i]);
         if (length < 0 || (size_t)length >= sizeof log) {
-            return refuse(folder, "the path of the file is too long");
+            return st_refuse(folder->message, "the path of the file is too long");
         }
         if (stat(log, &status) == 0 && status.st_size > 0) {
-            return refuse(folder,
-                          "%.300s has a log beside it (%s) that is not written back into it: "
-                          "restore a file that --backup made",
-                          file, ends[i]);
+            return st_refuse(folder->message,
+                             "%.300s has a log beside it (%s) that is not written back into it: "
+                             "restore a file that --backup made",
+                             file, ends[i]);
         }
     }
     return true;
@@ -82,12 +72,13 @@ static bool has_no_log(st_folder *folder, const char *file)
 static bool copy_file(st_folder *folder, const char *file)
 {
     int from = open(file, O_RDONLY | O_CLOEXEC);
-    int to = openat(folder->folder, "restored.db", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    bool good =
-        from >= 0 && to >= 0 ? copy_bytes(folder, from, to) : fail(folder, "copy", "the backup");
-    if (from >= 0) {
-        (void)close(from);
+    if (from < 0) {
+        return cannot_read(folder, file);
     }
+    int to = openat(folder->folder, "restored.db", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    bool good = to >= 0 ? copy_bytes(folder, file, from, to)
+                        : st_folder_fail(folder, "cannot make", "restored.db");
+    (void)close(from);
     if (to >= 0) {
         (void)close(to);
     }
@@ -172,22 +163,18 @@ static st_sql renew(st_db *db)
 
 static bool renew_copy(st_folder *folder)
 {
-    char path[PATH_MAX], message[ST_SQLITE_MESSAGE];
+    char path[PATH_MAX];
     st_db db;
     if (!st_folder_path(folder, "restored.db", path)) {
-        return refuse(folder, "the path of the store is too long");
+        return st_refuse(folder->message, "the path of the store is too long");
     }
     st_sql outcome = st_db_open(&db, path, SQLITE_OPEN_READWRITE, texts, STATEMENTS);
     if (outcome == ST_SQL_DONE) {
         outcome = renew(&db);
     }
-    bool good = outcome == ST_SQL_DONE;
-    if (!good) {
-        (void)st_sqlite_explain(&db, path, outcome, message);
-    }
+    bool good = outcome == ST_SQL_DONE || st_sqlite_explain(&db, path, outcome, folder->message);
     (void)st_db_close(&db);
-    good = good && st_sqlite_check_file(path, message);
-    return good || refuse(folder, "%.500s", message);
+    return good && st_sqlite_check_file(path, folder->message);
 }
 
 /* --- putting it in place --- */
@@ -197,7 +184,7 @@ static bool sync_name(st_folder *folder, const char *name, int flags)
     int file = openat(folder->folder, name, flags | O_RDONLY | O_CLOEXEC);
     bool good = file >= 0 && fsync(file) == 0;
     if (!good) {
-        (void)fail(folder, "sync", name);
+        (void)st_folder_fail(folder, "cannot sync", name);
     }
     if (file >= 0) {
         (void)close(file);
@@ -219,7 +206,7 @@ static bool write_note(st_folder *folder, char before[NAME_BYTES])
     int file = openat(folder->folder, "restoring", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     bool good = file >= 0 && write(file, before, (size_t)length) == length && fsync(file) == 0;
     if (!good) {
-        (void)fail(folder, "write", "restoring");
+        (void)st_folder_fail(folder, "cannot write", "restoring");
     }
     if (file >= 0) {
         (void)close(file);
@@ -242,13 +229,13 @@ static bool move_old(st_folder *folder, const char *before)
 {
     static const char *const names[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark"};
     if (mkdirat(folder->folder, before, 0700) != 0 && errno != EEXIST) {
-        return fail(folder, "make", before);
+        return st_folder_fail(folder, "cannot make", before);
     }
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char to[2 * NAME_BYTES];
         (void)snprintf(to, sizeof to, "%s/%s", before, names[i]);
         if (renameat(folder->folder, names[i], folder->folder, to) != 0 && errno != ENOENT) {
-            return fail(folder, "move", names[i]);
+            return st_folder_fail(folder, "cannot move", names[i]);
         }
     }
     return sync_name(folder, before, O_DIRECTORY) && st_folder_sync(folder);
@@ -263,29 +250,29 @@ bool st_sqlite_finish_restore(st_folder *folder)
     /* Without the copy it has its new name already. */
     if (is_there(folder, "restored.db")) {
         if (!read_note(folder, before)) {
-            return refuse(folder,
-                          "%.300s has a file `restoring` that does not say where its store goes: a "
-                          "restore was interrupted; begin it again",
-                          folder->path);
+            return st_refuse(
+                folder->message,
+                "%.300s has a file `restoring` that does not say where its store goes: a "
+                "restore was interrupted; begin it again",
+                folder->path);
         }
         if (!move_old(folder, before)) {
             return false;
         }
         if (renameat(folder->folder, "restored.db", folder->folder, "hedge.db") != 0) {
-            return fail(folder, "rename", "restored.db");
+            return st_folder_fail(folder, "cannot rename", "restored.db");
         }
         if (!st_folder_sync(folder)) {
             return false;
         }
     }
     if (unlinkat(folder->folder, "restoring", 0) != 0) {
-        return fail(folder, "remove", "restoring");
+        return st_folder_fail(folder, "cannot remove", "restoring");
     }
     return st_folder_sync(folder);
 }
 
-static bool restore(st_folder *folder, const char *path, const char *file, char before[NAME_BYTES],
-                    char message[ST_SQLITE_MESSAGE])
+static bool restore(st_folder *folder, const char *path, const char *file, char before[NAME_BYTES])
 {
     /* One that was interrupted is ended before the next is begun: its note names a copy. */
     bool good = st_folder_open(folder, path);
@@ -294,24 +281,17 @@ static bool restore(st_folder *folder, const char *path, const char *file, char 
         /* The note was never whole, so nothing was moved. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
     }
-    good = good && st_sqlite_finish_restore(folder) && has_no_log(folder, file);
-    if (good && !st_sqlite_check_file(file, message)) {
-        return false;
-    }
-    good = good && remove_copy(folder);
+    good = good && st_sqlite_finish_restore(folder) && has_no_log(folder, file) &&
+           st_sqlite_check_file(file, folder->message) && remove_copy(folder);
     if (good && !(copy_file(folder, file) && renew_copy(folder) &&
                   sync_name(folder, "restored.db", 0) && write_note(folder, before))) {
-        (void)snprintf(message, ST_SQLITE_MESSAGE, "%s", folder->message);
+        char why[ST_SQLITE_MESSAGE];
+        memcpy(why, folder->message, sizeof why);
         (void)remove_copy(folder);
+        memcpy(folder->message, why, sizeof why);
         return false;
     }
-    if (good) {
-        good = st_sqlite_finish_restore(folder);
-    }
-    if (!good) {
-        (void)snprintf(message, ST_SQLITE_MESSAGE, "%s", folder->message);
-    }
-    return good;
+    return good && st_sqlite_finish_restore(folder);
 }
 
 bool st_sqlite_restore(const char *path, const char *file, char before[ST_SQLITE_MESSAGE],
@@ -319,7 +299,8 @@ bool st_sqlite_restore(const char *path, const char *file, char before[ST_SQLITE
 {
     st_folder folder;
     char name[NAME_BYTES] = "";
-    bool good = restore(&folder, path, file, name, message);
+    bool good = restore(&folder, path, file, name);
+    memcpy(message, folder.message, ST_SQLITE_MESSAGE);
     (void)snprintf(before, ST_SQLITE_MESSAGE, "%.300s/%s", folder.path, name);
     st_folder_close(&folder);
     return good;

@@ -1,0 +1,13 @@
+/* sqlite_message.h - sentences that say why something was refused. */
+#ifndef HE_JOURNAL_SQLITE_MESSAGE_H
+#define HE_JOURNAL_SQLITE_MESSAGE_H
+
+#include <stdbool.h>
+
+enum { ST_SQLITE_MESSAGE = 768 };
+
+/* Writes the sentence, cut where it is too long; false. */
+__attribute__((format(printf, 2, 3))) bool st_refuse(char message[ST_SQLITE_MESSAGE],
+                                                     const char *format, ...);
+
+#endif
