@@ -153,6 +153,9 @@ static bool open_store(daemon_parts *parts, const srv_config *config)
     if (config->samples && made && srv_samples_add(parts->store, &err) != HE_OK) {
         return fail(err.text);
     }
+    if (made && journal.keeps) {
+        journal.begun(journal.self);
+    }
     return true;
 }
 

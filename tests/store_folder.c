@@ -10,8 +10,8 @@
 
 /* --- folders --- */
 
-static const char *const files[] = {"hedge.db",   "hedge.db-wal", "hedge.db-shm",
-                                    "hedge.mark", "ballast",      "lock"};
+static const char *const files[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark",
+                                    "ballast",  "lock",         "fresh"};
 enum { FILES = sizeof files / sizeof *files, COPIED = 4 };
 
 void folder_make(char out[FOLDER_PATH])

@@ -84,7 +84,7 @@ typedef bool st_take_key(void *context, const st_kept_key *key);
 typedef struct st_journal {
     void *self;
     /* Is what is appended kept beyond memory? Without it a room is NULL, so that nothing is coded,
-     * and the functions from `stage` to `count` are NULL. */
+     * and the functions from `stage` to `begun` are NULL. */
     bool keeps;
     /* Two random words, which are kept with the store: what is remembered of requests is hashed
      * with them. */
@@ -128,6 +128,10 @@ typedef struct st_journal {
     st_status (*keys)(void *self, const char *id, st_take_key *take, void *context);
     /* How many meshes there are, with what is queued. Never waits. */
     uint64_t (*count)(void *self);
+
+    /* The start is over: what it put into a store that was just made is durable from now on, and
+     * the next start finds an old store. Waits. */
+    void (*begun)(void *self);
 
     /* Sets the one listener, and tells it how far the journal is if that is beyond 0. NULL stops;
      * once it returned, no call is under way. */

@@ -290,6 +290,44 @@ static void listeners_go_on_where_they_were(void **state)
     listener_close(l);
 }
 
+static double meshes_there(void)
+{
+    reply r = reply_expect(200, client_get(http, "/v1/meshes"));
+    double count = cJSON_GetArraySize(reply_find(&r, "items"));
+    reply_free(&r);
+    return count;
+}
+
+/* A first start that ended between two samples is made good by the next; a sample that was deleted
+ * since stays so. */
+static void samples_come_to_a_store_until_they_were_all_there(void **state)
+{
+    (void)state;
+    char fresh[FOLDER_PATH], output[4096];
+    folder_make(fresh);
+    client_free(http);
+    assert_int_equal(daemon_stop(server), 0);
+    snprintf(store, sizeof store, "sqlite:%s", fresh);
+    const char *const full[] = {"--listen",  "127.0.0.1:0",  "--store", store,
+                                "--samples", "--max-meshes", "2",       NULL};
+    assert_int_equal(daemon_run(full, output, sizeof output), 1);
+    assert_non_null(strstr(output, "sample torus"));
+    const char *const samples[] = {"--store", store, "--samples", NULL};
+    for (int start = 0; start < 3; start++) {
+        server = daemon_start(samples);
+        http = client_new(server);
+        assert_true(meshes_there() == (start == 0 ? 3 : 2));
+        if (start == 0) {
+            send("DELETE", "/v1/meshes/torus", "", 204);
+        }
+        client_free(http);
+        assert_int_equal(daemon_stop(server), 0);
+    }
+    folder_remove(folder);
+    snprintf(folder, sizeof folder, "%s", fresh);
+    begin();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +336,8 @@ int main(void)
                                         teardown),
         cmocka_unit_test_setup_teardown(a_tag_names_one_state_for_ever, setup, teardown),
         cmocka_unit_test_setup_teardown(a_key_is_good_after_a_restart, setup, teardown),
+        cmocka_unit_test_setup_teardown(samples_come_to_a_store_until_they_were_all_there, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(listeners_go_on_where_they_were, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

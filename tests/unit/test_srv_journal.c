@@ -189,7 +189,6 @@ static void what_was_appended_is_there_after_a_restart(void **state)
     he_mesh *content = script_mesh("012,023,034,045", NULL);
     kept_mesh a = mesh_as("a", content), b = mesh_as("b", content);
     open_store(&told);
-    assert_true(opened.made);
     const uint64_t secret[2] = {told.journal.secret[0], told.journal.secret[1]};
     const st_journal *j = &told.journal;
     kept_append(j, kept_content(&a), &a, NULL, 0);
@@ -204,7 +203,6 @@ static void what_was_appended_is_there_after_a_restart(void **state)
     told_end(&told);
 
     open_store(&told);
-    assert_false(opened.made);
     j = &told.journal;
     assert_memory_equal(secret, j->secret, sizeof secret);
     assert_true(told.position == last);
@@ -657,6 +655,27 @@ static void a_flipped_bit_is_refused_or_named_or_harmless(void **state)
     folder_remove(copy);
 }
 
+/* Whoever fills a new store can be killed before it is done. */
+static void a_store_is_new_until_its_first_start_is_over(void **state)
+{
+    (void)state;
+    told_journal told;
+    he_mesh *cube = fixture_mesh("0123");
+    kept_mesh mesh = mesh_as("m", cube);
+    open_store(&told);
+    assert_true(opened.made);
+    assert_int_not_equal(kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0), 0);
+    told_end(&told);
+    open_store(&told);
+    assert_true(opened.made);
+    told.journal.begun(told.journal.self);
+    told_end(&told);
+    open_store(&told);
+    assert_false(opened.made);
+    told_end(&told);
+    he_mesh_free(cube);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -666,6 +685,7 @@ int main(void)
         STORE_TEST(a_staged_content_is_that_of_its_record),
         STORE_TEST(a_rebase_shortens_the_log_and_no_more),
         STORE_TEST(damage_is_named_and_stays_with_its_mesh),
+        STORE_TEST(a_store_is_new_until_its_first_start_is_over),
         STORE_TEST(a_second_opener_is_told_who_has_the_folder),
         STORE_TEST(other_files_are_refused_by_name),
         STORE_TEST(a_cut_log_is_refused_or_whole),

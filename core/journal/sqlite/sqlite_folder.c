@@ -125,6 +125,18 @@ bool st_folder_make(st_folder *folder, const char *name)
     return file >= 0 || st_folder_fail(folder, "cannot make", name);
 }
 
+bool st_folder_finds(const st_folder *folder, const char *name)
+{
+    return faccessat(folder->folder, name, F_OK, 0) == 0;
+}
+
+bool st_folder_drop(st_folder *folder, const char *name)
+{
+    return (unlinkat(folder->folder, name, 0) == 0 || errno == ENOENT ||
+            st_folder_fail(folder, "cannot remove", name)) &&
+           st_folder_sync(folder);
+}
+
 bool st_folder_sync(st_folder *folder)
 {
     return fsync(folder->folder) == 0 || st_folder_fail(folder, "cannot sync", "");

@@ -4,6 +4,7 @@
  *     hedge.db   the database, with -wal and -shm: only SQLite opens them
  *     hedge.mark how far the database was, to be compared with it at the start
  *     ballast    space that is given up when the disk is full, so that meshes can be deleted
+ *     fresh      there from before the database is made until the first start is over
  *
  * THE MARK. A damaged byte in the -wal makes SQLite drop all commits from there on without a word.
  * The mark tells: it is written after each commit, in two slots in turn so that one is always
@@ -44,6 +45,10 @@ bool st_folder_path(const st_folder *folder, const char *name, char out[PATH_MAX
 bool st_folder_has(const st_folder *folder, const char *name);
 /* Makes the file, empty and for its owner alone, unless it is there. */
 bool st_folder_make(st_folder *folder, const char *name);
+/* Is the file there, empty or not? */
+bool st_folder_finds(const st_folder *folder, const char *name);
+/* Removes the file, for good. False where it is there still. */
+bool st_folder_drop(st_folder *folder, const char *name);
 /* What was made, renamed and removed in it stays so. */
 bool st_folder_sync(st_folder *folder);
 

@@ -26,7 +26,8 @@ enum { ST_SQLITE_QUEUE = 64 << 20 };
 
 typedef struct st_sqlite_opened {
     st_journal journal;
-    bool made; /* the store was just made: it is empty, and was never anything else */
+    bool made; /* the start that made the store is not over: at this one, or as it was killed at an
+                  earlier one. It holds nothing but what that start put in */
     char message[ST_SQLITE_MESSAGE]; /* a doubt, "" for none; after a refusal the reason */
 } st_sqlite_opened;
 

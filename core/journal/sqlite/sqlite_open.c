@@ -90,13 +90,16 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
 static bool make_store(st_sqlite *self, const char *path, const char *release,
                        st_sqlite_opened *out)
 {
+    /* Before the database, so that no start finds that and takes the store for an old one. */
+    if (!st_folder_make(&self->folder, "fresh") || !st_folder_sync(&self->folder)) {
+        return st_refuse(out->message, "%s", self->folder.message);
+    }
     self->identity = (st_identity){.store = st_random(), .secret = {st_random(), st_random()}};
     (void)snprintf(self->identity.made_by, sizeof self->identity.made_by, "%s", release);
     st_sql outcome = st_schema_make(&self->db, &self->identity);
     if (outcome != ST_SQL_DONE) {
         return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
-    out->made = true;
     return true;
 }
 
@@ -254,6 +257,18 @@ void st_sqlite_free(st_sqlite *self)
     he_mem_free(self);
 }
 
+void st_sqlite_begun(void *context)
+{
+    st_sqlite *self = context;
+    st_queue_settle(self);
+    pthread_mutex_lock(&self->lock);
+    const bool kept = self->mode == ST_WRITES;
+    pthread_mutex_unlock(&self->lock);
+    if (kept && st_folder_finds(&self->folder, "fresh")) {
+        (void)st_folder_drop(&self->folder, "fresh");
+    }
+}
+
 void st_sqlite_close(void *context)
 {
     st_sqlite *self = context;
@@ -329,6 +344,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .list = st_sqlite_list,
                         .keys = st_sqlite_keys,
                         .count = st_sqlite_count,
+                        .begun = st_sqlite_begun,
                         .listen = st_sqlite_listen,
                         .close = st_sqlite_close};
 }
@@ -345,6 +361,7 @@ bool st_sqlite_open(const st_sqlite_options *options, st_sqlite_opened *out)
         return false;
     }
     (void)snprintf(out->message, sizeof out->message, "%s", st_folder_doubt(&self->folder));
+    out->made = st_folder_finds(&self->folder, "fresh");
     out->journal = st_sqlite_filled(self);
     return true;
 }

@@ -192,12 +192,6 @@ static bool sync_name(st_folder *folder, const char *name, int flags)
     return good;
 }
 
-static bool is_there(const st_folder *folder, const char *name)
-{
-    struct stat status;
-    return fstatat(folder->folder, name, &status, 0) == 0;
-}
-
 static bool write_note(st_folder *folder, char before[NAME_BYTES])
 {
     char time[ST_TIMESTAMP];
@@ -227,7 +221,8 @@ static bool read_note(st_folder *folder, char before[NAME_BYTES])
 
 static bool move_old(st_folder *folder, const char *before)
 {
-    static const char *const names[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark"};
+    static const char *const names[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark",
+                                        "fresh"};
     if (mkdirat(folder->folder, before, 0700) != 0 && errno != EEXIST) {
         return st_folder_fail(folder, "cannot make", before);
     }
@@ -244,11 +239,11 @@ static bool move_old(st_folder *folder, const char *before)
 bool st_sqlite_finish_restore(st_folder *folder)
 {
     char before[NAME_BYTES];
-    if (!is_there(folder, "restoring")) {
+    if (!st_folder_finds(folder, "restoring")) {
         return true;
     }
     /* Without the copy it has its new name already. */
-    if (is_there(folder, "restored.db")) {
+    if (st_folder_finds(folder, "restored.db")) {
         if (!read_note(folder, before)) {
             return st_refuse(
                 folder->message,
@@ -276,7 +271,7 @@ static bool restore(st_folder *folder, const char *path, const char *file, char 
 {
     /* One that was interrupted is ended before the next is begun: its note names a copy. */
     bool good = st_folder_open(folder, path);
-    if (good && is_there(folder, "restoring") && is_there(folder, "restored.db") &&
+    if (good && st_folder_finds(folder, "restoring") && st_folder_finds(folder, "restored.db") &&
         !read_note(folder, before)) {
         /* The note was never whole, so nothing was moved. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);

@@ -288,6 +288,7 @@ st_sql st_readers_open(st_sqlite *self, const char *path);
 bool st_readers_close(st_sqlite *self);
 
 /* --- sqlite_open.c --- */
+void st_sqlite_begun(void *self);
 void st_sqlite_close(void *self);
 /* NULL when memory is out. Freed with all that was opened for it. */
 st_sqlite *st_sqlite_new(const st_sqlite_options *options);
