@@ -329,7 +329,9 @@ static const api_route routes[] = {
      .summary = "List the materials",
      .doc =
          "What faces look like that name them in their attribute `material`, whose label \"\" is "
-         "none. The operation `material_set` changes them."},
+         "none. The operation `material_set` changes them. Colours are linear, as in glTF; those "
+         "of "
+         "an OBJ file's library are taken and written as linear too, as Blender does."},
 
     /* attributes */
     {.method = "GET",

@@ -81,15 +81,16 @@ export async function openPageIn(
     return page;
 }
 
-// Wait for a frame of a revision with a selection such as 'face:3'.
-export function waitForFrame(page, { mesh, revision, selection }) {
+// Wait for a frame of a revision with a selection such as 'face:3', and what faces looked like at a
+// revision.
+export function waitForFrame(page, { mesh, revision, selection, materials }) {
     return page.waitForFunction(
         (wanted) => {
             const { dataset } = document.getElementById('canvas');
             return Object.entries(wanted).every(([name, value]) => dataset[name] === `${value}`);
         },
         Object.fromEntries(
-            Object.entries({ mesh, revision, selection }).filter(([, v]) => v !== undefined),
+            Object.entries({ mesh, revision, selection, materials }).filter(([, v]) => v !== undefined),
         ),
     );
 }

@@ -128,6 +128,24 @@ export function getBoundaries(mesh, signal) {
     return getJson(`${meshPath(mesh)}/boundaries`, signal);
 }
 
+// {revision, attributes: [{domain, name, labels, ...}]}
+export function getAttributes(mesh, signal) {
+    return getJson(`${meshPath(mesh)}/attributes`, signal);
+}
+
+// {revision, materials: [{name, base_color, ...}]}; 410 where the revision is gone.
+export function getMaterials(mesh, revision, signal) {
+    return getJson(`${meshPath(mesh)}/materials?revision=${revision}`, signal);
+}
+
+// The values of an attribute that faces have labels in: a Uint32Array, by id. 410 likewise.
+export async function getFaceLabels(mesh, name, revision, signal) {
+    const path = `${meshPath(mesh)}/attributes/faces/${encodeURIComponent(name)}`;
+    const headers = { Accept: 'application/octet-stream', Prefer: 'wait=30' };
+    const answer = await request(`${path}?revision=${revision}`, { signal, headers });
+    return new Uint32Array(await answer.arrayBuffer());
+}
+
 // The operation table: [{name, doc, params, ...}].
 export async function getOperations() {
     return (await getJson('v1/operations')).operations;

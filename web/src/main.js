@@ -9,6 +9,7 @@ import { framing } from './framing.js';
 import { History } from './history.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
+import { Legend } from './legend.js';
 import { MeshList } from './list.js';
 import { Refining } from './refining.js';
 import { Session } from './session.js';
@@ -36,6 +37,10 @@ const inspector = new Inspector(
         onFollow: (kind, id) => session.selection.select(kind, id).catch(fail),
         heirOf: (element) => session.heirOf(element),
     },
+);
+const legend = new Legend(
+    { section: byId('materials'), list: byId('legend'), toggle: byId('show-materials') },
+    { onToggle: (isOn) => stage.colorFaces(isOn) },
 );
 const history = new History(
     { list: byId('history'), more: byId('more-history') },
@@ -149,6 +154,9 @@ function update(what, change) {
         showName(session.shown);
         list.update(session.shown.summary);
     }
+    if (what === 'mesh' || what === 'materials') {
+        showMaterials(change ?? null);
+    }
     if (what === 'mesh') {
         byId('empty').hidden = true;
         byId('details').hidden = false;
@@ -174,6 +182,7 @@ function label() {
               mesh,
               revision: content.revision,
               selection: selection.chosen.map(({ kind, id }) => `${kind}:${id}`).join(' '),
+              materials: session.materials.revision,
           };
 }
 
@@ -187,7 +196,27 @@ function showSelection() {
         stage.select(selection.marksIn(geometry), selection.arrowsIn(geometry), label());
     }
     inspector.show(selection);
+    showMaterialOfSelection();
     address.write();
+}
+
+// `change` as Materials.note() says, null for all.
+function showMaterials(change) {
+    const { materials } = session;
+    if (change === null) {
+        stage.showMaterials(materials, label());
+    } else {
+        stage.updateMaterials(materials, change, label());
+    }
+    if (change === null || change.palette) {
+        legend.show(materials);
+    }
+    showMaterialOfSelection();
+}
+
+function showMaterialOfSelection() {
+    const { last } = session.selection;
+    legend.setCurrent(last?.kind === 'face' ? session.materials.nameOf(last.id) : '');
 }
 
 function showFacts() {

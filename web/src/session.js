@@ -9,6 +9,7 @@
 import * as api from './api.js';
 import { Lineage } from './lineage.js';
 import { Live } from './live.js';
+import { Materials } from './materials.js';
 import { Content } from './revision.js';
 import { Selection } from './selection.js';
 
@@ -25,16 +26,17 @@ export class Session {
     #onError;
     #withBoundary = true;
     #opening = null;
-    // Of the open mesh: {live, latest, lineage}, where `latest` is the newest revision heard of.
+    // Of the open mesh: {live, latest, lineage, materials}, where `latest` is the newest revision
+    // heard of.
     #followed = null;
     #running = null; // the promise of what is being fetched
     #wanted = { once: false, whole: false };
     #rest = 0;
 
     // `onChange(what, change)`: 'mesh' (another), 'content' (new arrays), 'change' (what
-    // applyDelta() says of the arrays), 'facts' (summary, boundary), 'name', 'selection', 'gone'
-    // (the mesh was deleted) or 'state' (loading, busy, connection). `onError` gets what fails
-    // without having been asked for.
+    // applyDelta() says of the arrays), 'facts' (summary, boundary), 'name', 'selection',
+    // 'materials' (with what Materials.note() says, null for all), 'gone' (the mesh was deleted) or
+    // 'state' (loading, busy, connection). `onError` gets what fails without having been asked for.
     constructor(onChange, onError) {
         this.#onChange = onChange;
         this.#onError = onError;
@@ -44,6 +46,11 @@ export class Session {
     // The id of the open mesh or null.
     get mesh() {
         return this.shown?.mesh ?? null;
+    }
+
+    // What the faces of the open mesh look like; null when none is open.
+    get materials() {
+        return this.#followed?.materials ?? null;
     }
 
     // 'on', 'lost' or 'gone', see live.js; null when no mesh is open.
@@ -62,7 +69,10 @@ export class Session {
             await followed.live.open();
             opening.signal.throwIfAborted();
             const onProgress = (part) => this.#setLoading(part);
-            const shown = await Content.read(mesh, this.#withBoundary, onProgress, opening.signal);
+            const [shown] = await Promise.all([
+                Content.read(mesh, this.#withBoundary, onProgress, opening.signal),
+                followed.materials.read(opening.signal),
+            ]);
             this.#followed?.live.close();
             this.#followed = followed;
             this.shown = shown;
@@ -83,7 +93,7 @@ export class Session {
     }
 
     #follow(mesh) {
-        const followed = { latest: 0, lineage: new Lineage() };
+        const followed = { latest: 0, lineage: new Lineage(), materials: new Materials(mesh) };
         followed.live = new Live(mesh, {
             event: (name, data) => this.#receive(followed, name, data),
             state: (state) => {
@@ -91,7 +101,10 @@ export class Session {
                     this.#onChange(state === 'gone' ? 'gone' : 'state');
                 }
             },
-            back: () => this.#fetchSoon(followed, { once: true }),
+            back: () => {
+                this.#fetchSoon(followed, { once: true });
+                this.#readMaterials(followed);
+            },
         });
         return followed;
     }
@@ -99,8 +112,10 @@ export class Session {
     #receive(followed, name, data) {
         if (name === 'edit') {
             followed.lineage.note(data);
+            this.#noteMaterials(followed, data);
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
+            this.#readMaterials(followed);
             // The content that was replaced may have been fetched already, after an edit of ours.
             followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
@@ -108,6 +123,22 @@ export class Session {
         } else if (name === 'metadata' && followed === this.#followed) {
             Object.assign(this.shown.summary, data);
             this.#onChange('name');
+        }
+    }
+
+    #noteMaterials(followed, edit) {
+        const change = followed.materials.note(edit);
+        if (change !== null && followed === this.#followed) {
+            this.#onChange('materials', change);
+        }
+    }
+
+    #readMaterials(followed) {
+        if (followed === this.#followed) {
+            followed.materials
+                .read()
+                .then(() => followed === this.#followed && this.#onChange('materials', null))
+                .catch((error) => error.status !== 0 && this.#onError(error));
         }
     }
 

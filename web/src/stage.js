@@ -53,7 +53,7 @@ export class Stage {
 
     // --- what is shown ---
 
-    // New arrays; `label` is what the next frame is marked with: {mesh, revision, selection}, of a
+    // New arrays; `label` is what the next frame is marked with: {mesh, revision, selection, materials}, of a
     // level {mesh, revision, faces}.
     show(geometry, label) {
         this.#isLevel = false;
@@ -88,7 +88,7 @@ export class Stage {
 
     // What the frame on the screen shows, for whoever waits for it.
     #markFrame(label) {
-        for (const name of ['mesh', 'revision', 'selection', 'faces']) {
+        for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces']) {
             if (label?.[name] === undefined) {
                 delete this.#canvas.dataset[name];
             } else {
@@ -116,6 +116,20 @@ export class Stage {
 
     preview(lines) {
         this.#marked?.preview(lines);
+    }
+
+    // What faces look like, see materials.js.
+    showMaterials(materials, label) {
+        this.#renderer?.showMaterials(materials, label);
+    }
+
+    updateMaterials(materials, change, label) {
+        this.#renderer?.updateMaterials(materials, change, label);
+    }
+
+    // Whether faces have the colours of their materials.
+    colorFaces(isColored) {
+        this.#renderer?.colorFaces(isColored);
     }
 
     capture() {

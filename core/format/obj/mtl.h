@@ -11,9 +11,10 @@
  *   map_*, bump, disp, decal, norm, refl    noted with the name of the file, and not held
  *   Ka, Ks, Ns, Ni, Tf and others           noted as ignored
  *
- * What is not said is as in he_plain_look. Numbers are taken as they are, without a turn from sRGB.
- * A number out of range is set to the end of its range, with a note; of two materials of one name
- * the first counts, with a note where they differ.
+ * What is not said is as in he_plain_look. The format names no space of its colours: they are taken
+ * and written as linear, number for number, as Blender, assimp and obj2gltf do, while three.js
+ * takes them for sRGB. A number out of range is set to the end of its
+ * range, with a note; of two materials of one name the first counts, with a note where they differ.
  *
  * Written: all rows, with every number. That a material shows both sides has no place: it is noted.
  */

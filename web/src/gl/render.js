@@ -117,6 +117,26 @@ export class Renderer {
         this.#draw();
     }
 
+    // What faces look like, see Surface.showMaterials().
+    showMaterials(materials, label) {
+        this.#surface.showMaterials(materials);
+        this.#label = label;
+        this.#draw();
+    }
+
+    // See Surface.updateMaterials().
+    updateMaterials(materials, change, label) {
+        this.#surface.updateMaterials(materials, change);
+        this.#label = label;
+        this.#draw();
+    }
+
+    // Whether faces have the colours of their materials.
+    colorFaces(isColored) {
+        this.#surface.isColored = isColored;
+        this.#draw();
+    }
+
     // Mark elements: {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to} or
     // {kind: 'vertex', id}, and draw half-edges as arrows, see around.js. Replaces what was marked
     // before.

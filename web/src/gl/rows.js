@@ -23,15 +23,15 @@ export class Rows extends DataTexture {
         };
     }
 
-    // The array was changed at some places, or it is another one and longer. Returns the texture to
-    // use from now on, which is another one where the array is.
+    // The array was changed at some places, or anywhere (null), or it is another one. Returns the
+    // texture to use from now on, which is another one where the array is.
     update(array, places) {
         if (array !== this.image.data) {
             const longer = new Rows(array, this.format, this.type);
             this.dispose();
             return longer;
         }
-        const isMany = places.length >= MANY * (array.length / 4);
+        const isMany = places === null || places.length >= MANY * (array.length / 4);
         this.#send(isMany ? null : rangesOf(places));
         return this;
     }

@@ -25,16 +25,37 @@ uvec4 triangleAt(int index) {
 // Three vertices a triangle. bary is 1 at the corner and 0 on the side across from it. Normals are
 // left to the fragments' derivatives: all three corners here would be fetched three times.
 export const SURFACE_VERTEX = `${TEXTURES}
+uniform usampler2D labels;
+uniform sampler2D palette;
+uniform bool isColored;
 flat out uint triangle;
 flat out uint sides;
+flat out vec4 base;
+flat out vec4 glow;
 out vec3 bary;
 out vec3 eye;
+
+// What a face looks like, see materials.js.
+void find(int face) {
+    ivec2 place = texel(face / 4, textureSize(labels, 0).x);
+    base = vec4(1.0);
+    glow = vec4(0.0);
+    if (isColored && place.y < textureSize(labels, 0).y) {
+        int width = textureSize(palette, 0).x;
+        int entry = 2 * int(texelFetch(labels, place, 0)[face % 4]);
+        if (entry / width < textureSize(palette, 0).y) {
+            base = texelFetch(palette, texel(entry, width), 0);
+            glow = texelFetch(palette, texel(entry + 1, width), 0);
+        }
+    }
+}
 
 void main() {
     int index = gl_VertexID / 3;
     int corner = gl_VertexID - 3 * index;
     uvec4 words = triangleAt(index);
     vec4 seen = modelViewMatrix * vec4(vertexAt(int(words[corner])).xyz, 1.0);
+    find(int(words.w & 0x1fffffffu));
     triangle = uint(index);
     sides = words.w >> 29;
     bary = vec3(corner == 0, corner == 1, corner == 2);
@@ -43,11 +64,15 @@ void main() {
 }
 `;
 
-// Fill and polygon edges in one pass; `chosen` is true for the faces that are selected.
+// Fill and polygon edges in one pass; `chosen` is true for the faces that are selected. What can be
+// seen through lets every so many pixels pass: no triangle need be drawn before another one. The
+// back of a face with a material of one side is as it is without: it may be turned the wrong way.
 export const SURFACE_FRAGMENT = `
 precision highp float;
 precision highp int;
 flat in uint sides;
+flat in vec4 base;
+flat in vec4 glow;
 in vec3 bary;
 in vec3 eye;
 uniform bool chosen;
@@ -58,6 +83,10 @@ const vec3 FRONT = vec3(0.62, 0.68, 0.77);
 const vec3 BACK = vec3(0.55, 0.42, 0.40);
 const vec3 CHOSEN = vec3(0.98, 0.70, 0.28);
 const vec3 EDGE = vec3(0.055, 0.070, 0.095);
+const vec3 EDGE_IN_THE_DARK = vec3(0.36, 0.38, 0.42);
+const float LEAST_OPACITY = 0.25; // or there would be nothing to pick
+const mat4 THRESHOLDS = mat4( // Bayer's ordered dither
+    0.5, 12.5, 3.5, 15.5, 8.5, 4.5, 11.5, 7.5, 2.5, 14.5, 1.5, 13.5, 10.5, 6.5, 9.5, 5.5) / 16.0;
 const vec3 KEY = normalize(vec3(-0.45, 0.75, 0.60));
 
 void main() {
@@ -65,10 +94,14 @@ void main() {
     vec3 n = normalize(cross(dFdx(-eye), dFdy(-eye)));
     float light = 0.34 + 0.46 * max(dot(n, KEY), 0.0)
                 + 0.24 * max(dot(n, normalize(eye)), 0.0);
-    vec3 fill = gl_FrontFacing ? FRONT : BACK;
+    bool isPainted = glow.w > (gl_FrontFacing ? 0.0 : 1.0);
+    vec3 fill = isPainted ? base.rgb : gl_FrontFacing ? FRONT : BACK;
     fill *= light;
+    fill = isPainted ? min(fill + glow.rgb, 1.0) : fill;
+    float bright = max(max(fill.r, fill.g), fill.b);
     // Chosen stays chosen in the shade.
-    fill = chosen ? mix(fill, CHOSEN * (0.5 + 0.5 * light), 0.8) : fill;
+    float chosenness = chosen ? (isPainted ? 0.92 : 0.8) : 0.0;
+    fill = mix(fill, CHOSEN * (0.5 + 0.5 * light), chosenness);
 
     // Pixels from each side: a -> b is across from the corner of bary.z, and so on.
     vec3 dx = dFdx(bary);
@@ -79,7 +112,13 @@ void main() {
     // Triangles of a few pixels would drown in their edges.
     line *= smoothstep(1.0, 9.0, 1.0 / rate);
     float drawn = 0.88 * max(max(line.x, line.y), line.z);
-    color = vec4(mix(fill, EDGE, drawn), 1.0);
+    ivec2 place = ivec2(gl_FragCoord.xy) & 3;
+    float opacity = isPainted && !chosen ? max(base.a, LEAST_OPACITY) : 1.0;
+    if (max(opacity, drawn) < THRESHOLDS[place.x][place.y]) {
+        discard;
+    }
+    vec3 edge = mix(EDGE_IN_THE_DARK, EDGE, smoothstep(0.12, 0.25, bright));
+    color = vec4(mix(fill, edge, drawn), 1.0);
 }
 `;
 

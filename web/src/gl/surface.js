@@ -39,6 +39,8 @@ export class Surface {
     pickDots;
     #mostRows;
     #textures = { vertices: { value: null }, triangles: { value: null } };
+    #looks = { labels: { value: null }, palette: { value: null } };
+    #isColored = { value: true };
     #edgeWidth = { value: EDGE_WIDTH };
     #geometry = null;
     #allVertices = false;
@@ -59,6 +61,7 @@ export class Surface {
             isolatedOnly: { value: true },
             tint: { value: new Vector3(0.93, 0.95, 0.98) },
         };
+        this.showMaterials(null);
         this.fill = new Mesh(new BufferGeometry(), this.material(false));
         this.dots = new Points(new BufferGeometry(), dots(DOT_FRAGMENT, dotUniforms));
         this.pickFill = new Mesh(this.fill.geometry, this.#material(SURFACE_PICK, {}));
@@ -76,7 +79,12 @@ export class Surface {
             glslVersion: GLSL3,
             vertexShader: SURFACE_VERTEX,
             fragmentShader: fragment,
-            uniforms: { ...this.#textures, ...uniforms },
+            uniforms: {
+                ...this.#textures,
+                ...this.#looks,
+                isColored: this.#isColored,
+                ...uniforms,
+            },
             side: DoubleSide,
             blending: NoBlending,
             // Behind what lies on it.
@@ -117,9 +125,43 @@ export class Surface {
         this.#setRanges();
     }
 
+    // What faces look like: {labels, palette} of materials.js, or none of it (null).
+    showMaterials(materials) {
+        const { labels, palette } = this.#looks;
+        labels.value?.dispose();
+        palette.value?.dispose();
+        labels.value = new Rows(
+            materials?.labels ?? new Uint32Array(4 * ROW),
+            RGBAIntegerFormat,
+            UnsignedIntType,
+        );
+        palette.value = new Rows(
+            materials?.palette ?? new Float32Array(4 * ROW),
+            RGBAFormat,
+            FloatType,
+        );
+    }
+
+    // They were changed: {palette, places}, whether the palette is another one and which texels of
+    // the labels are not as they were, null for any.
+    updateMaterials(materials, change) {
+        const { labels, palette } = this.#looks;
+        labels.value = labels.value.update(materials.labels, change.places);
+        if (change.palette) {
+            palette.value = palette.value.update(materials.palette, null);
+        }
+    }
+
+    // Whether faces have the colours of their materials.
+    set isColored(isColored) {
+        this.#isColored.value = isColored;
+    }
+
     // What the graphics memory had is lost.
     forget() {
-        Object.values(this.#textures).forEach(({ value }) => value.forget());
+        [this.#textures, this.#looks]
+            .flatMap((textures) => Object.values(textures))
+            .forEach(({ value }) => value.forget());
     }
 
     // The arrays of a mesh or, of none, zeros.

@@ -1,0 +1,108 @@
+// legend.js - the materials of the open mesh by name and colour, and whether faces are drawn in
+// them.
+
+import { formatMeasure, make } from './dom.js';
+import { toScreen } from './materials.js';
+
+// Rows shown before a button offers the others.
+const MOST = 50;
+
+export class Legend {
+    #section;
+    #list;
+    #current = '';
+
+    // `section` holds it all, `toggle` is the box to check; `onToggle(isOn)`.
+    constructor({ section, list, toggle }, { onToggle }) {
+        this.#section = section;
+        this.#list = list;
+        toggle.addEventListener('change', () => onToggle(toggle.checked));
+    }
+
+    // Those of a mesh, see Materials.
+    show(materials) {
+        const rows = materials.list.map(rowOf);
+        this.#section.hidden = materials.isEmpty;
+        this.#list.replaceChildren(...rows.slice(0, MOST));
+        if (rows.length > MOST) {
+            this.#offerRest(rows.slice(MOST));
+        }
+        this.#mark();
+    }
+
+    #offerRest(rest) {
+        const button = make(
+            'button',
+            {
+                type: 'button',
+                className: 'quiet',
+                onclick: () => {
+                    button.parentElement.replaceWith(...rest);
+                    this.#mark();
+                },
+            },
+            `Show ${rest.length} more`,
+        );
+        this.#list.append(make('li', {}, button));
+    }
+
+    // The material of what is selected, '' for none.
+    setCurrent(name) {
+        this.#current = name;
+        this.#mark();
+    }
+
+    #mark() {
+        for (const row of this.#list.querySelectorAll('[data-material]')) {
+            if (this.#current !== '' && row.dataset.material === this.#current) {
+                row.setAttribute('aria-current', 'true');
+            } else {
+                row.removeAttribute('aria-current');
+            }
+        }
+    }
+}
+
+function rowOf({ name, look }) {
+    const swatch = make('span', { className: 'swatch', 'aria-hidden': 'true' });
+    swatch.classList.toggle('unknown', look === null);
+    if (look !== null) {
+        swatch.style.backgroundColor = colorOf(look.base_color);
+        // What gives off light shines beyond its edge.
+        if (look.emission.some((part) => part > 0)) {
+            swatch.style.boxShadow = `0 0 6px 1px ${colorOf([...look.emission, 1])}`;
+        }
+    }
+    const row = make(
+        'li',
+        {},
+        swatch,
+        make('span', { className: 'material-name', title: name }, name),
+        make('span', { className: 'material-notes' }, notesOf(look).join(', ')),
+    );
+    row.dataset.material = name;
+    return row;
+}
+
+function colorOf([red, green, blue, opacity]) {
+    const parts = [red, green, blue].map((part) => Math.round(255 * toScreen(part)));
+    return `rgb(${parts.join(' ')} / ${opacity})`;
+}
+
+// What a swatch does not show.
+function notesOf(look) {
+    if (look === null) {
+        return ['no colour known'];
+    }
+    const notes = [];
+    if (look.base_color[3] < 1) {
+        notes.push(`opacity ${formatMeasure(look.base_color[3], 3)}`);
+    }
+    if (look.metallic > 0) {
+        notes.push(`metallic ${formatMeasure(look.metallic, 3)}`);
+    }
+    if (look.two_sided) {
+        notes.push('two-sided');
+    }
+    return notes;
+}

@@ -1,0 +1,184 @@
+// materials.js - what faces look like: the materials of a mesh and which face has which, as arrays
+// for the renderer. They are read once; after that each edit event says what became of them. No
+// page in here.
+//
+//   labels    u32 a face: the place of its material's name among the labels of the attribute
+//             `material`; four to a texel
+//   palette   two texels a label: red, green, blue, opacity; the red, green and blue of the light it
+//             gives off, and SIDES. Colours are as a screen wants them (sRGB), the API's are linear
+
+import * as api from './api.js';
+import { wholeRows } from './geometry.js';
+
+// What the last number of a palette's entry says: nothing is known of such faces, or how many of
+// their sides show their colour.
+export const SIDES = { unknown: 0, one: 1, two: 2 };
+
+const NAME = 'material'; // of the attribute
+const FEW = 1e4; // changed labels, beyond which all of them are sent to the graphics memory
+const TRIES = 5; // to read what belongs to one revision while others edit
+
+export class Materials {
+    revision = 0;
+    labels = wholeRows(new Uint32Array());
+    palette = wholeRows(new Float32Array());
+
+    #mesh;
+    #rows = []; // the table
+    #names = []; // the labels; empty where faces have no such attribute
+    #fallback = 0; // the label of faces that were given none
+    #held = null; // edits that came while it is read
+    #reading = null; // which reading is the last
+
+    constructor(mesh) {
+        this.#mesh = mesh;
+    }
+
+    // Is there anything to be told of?
+    get isEmpty() {
+        return this.#rows.length === 0 && this.#names.every((name) => name === '');
+    }
+
+    // {name, look} of each material, in the order of the table; look is its row there, null where
+    // faces name what the table has not.
+    get list() {
+        const known = new Set(this.#rows.map(({ name }) => name));
+        const others = this.#names.filter((name) => name !== '' && !known.has(name));
+        return [
+            ...this.#rows.map((row) => ({ name: row.name, look: row })),
+            ...others.map((name) => ({ name, look: null })),
+        ];
+    }
+
+    // The name of a face's material, '' for none.
+    nameOf(face) {
+        return this.#names[this.labels[face] ?? this.#fallback] ?? '';
+    }
+
+    // Read all of it as it is now. Edits that note() gets meanwhile are put in afterwards. A later
+    // call overtakes an earlier one.
+    async read(signal) {
+        const reading = {};
+        this.#reading = reading;
+        this.#held ??= [];
+        const found = await readAll(this.#mesh, signal);
+        if (this.#reading !== reading) {
+            return;
+        }
+        this.revision = found.revision;
+        this.#rows = found.materials;
+        this.#setColumn(found.column);
+        if (found.values !== null) {
+            this.labels = wholeRows(found.values);
+            this.labels.fill(this.#fallback, found.values.length);
+        }
+        this.#setPalette();
+        const held = this.#held;
+        this.#held = null;
+        held.forEach((edit) => this.note(edit));
+    }
+
+    // Put in what an edit event says. Returns what the renderer needs to hear, see
+    // Surface.updateMaterials(), or null where nothing has changed.
+    note(edit) {
+        if (this.#held !== null) {
+            this.#held.push(edit);
+            return null;
+        }
+        if (edit.revision <= this.revision) {
+            return null;
+        }
+        this.revision = edit.revision;
+        const isOurs = ({ domain, name }) => domain === 'faces' && name === NAME;
+        const added = edit.attributes_added?.find(isOurs);
+        const isColumn = added !== undefined || edit.attributes_dropped?.some(isOurs) === true;
+        if (isColumn) {
+            this.#setColumn(added ?? null);
+        }
+        const values = edit.values?.attributes?.faces?.[NAME] ?? [];
+        const places = this.#put(values);
+        this.#rows = edit.materials ?? this.#rows;
+        const isPalette = isColumn || edit.materials !== undefined;
+        if (isPalette) {
+            this.#setPalette();
+        }
+        return isPalette || values.length > 0
+            ? { palette: isPalette, places: isColumn ? null : places }
+            : null;
+    }
+
+    // The attribute of another name list, or none (null). All faces have what it gives without
+    // being told.
+    #setColumn(column) {
+        const isUsable = column?.labels !== undefined && column.components === 1;
+        this.#names = isUsable ? column.labels : [];
+        this.#fallback = isUsable ? [column.default].flat()[0] : 0;
+        this.labels.fill(this.#fallback);
+    }
+
+    // [[face, label], ...]. Returns the texels that changed in rising order, null for many.
+    #put(values) {
+        const most = values.reduce((last, [face]) => Math.max(last, face), -1);
+        if (most >= this.labels.length) {
+            const longer = wholeRows(new Uint32Array(most + 1 + (most >>> 3)));
+            longer.set(this.labels);
+            longer.fill(this.#fallback, this.labels.length);
+            this.labels = longer;
+        }
+        for (const [face, label] of values) {
+            this.labels[face] = label;
+        }
+        return values.length > FEW
+            ? null
+            : [...new Set(values.map(([face]) => face >>> 2))].sort((a, b) => a - b);
+    }
+
+    #setPalette() {
+        const rows = new Map(this.#rows.map((row) => [row.name, row]));
+        const entries = new Float32Array(8 * this.#names.length);
+        this.#names.forEach((name, i) => {
+            const row = rows.get(name);
+            if (row !== undefined) {
+                entries.set(entryOf(row), 8 * i);
+            }
+        });
+        this.palette = wholeRows(entries);
+    }
+}
+
+function entryOf({ base_color: color, emission, two_sided: isTwoSided }) {
+    return [
+        ...color.slice(0, 3).map(toScreen),
+        color[3],
+        ...emission.map(toScreen),
+        isTwoSided ? SIDES.two : SIDES.one,
+    ];
+}
+
+// A linear number as sRGB has it, IEC 61966-2-1; what is brighter than a screen is white.
+export function toScreen(linear) {
+    return linear <= 0.0031308
+        ? 12.92 * linear
+        : Math.min(1.055 * linear ** (1 / 2.4) - 0.055, 1);
+}
+
+// Of one revision: {revision, materials, column, values}; column is null where no face names a
+// material.
+async function readAll(mesh, signal) {
+    for (let tries = 1; ; tries++) {
+        const { revision, attributes } = await api.getAttributes(mesh, signal);
+        const column = attributes.find((it) => it.domain === 'faces' && it.name === NAME) ?? null;
+        try {
+            const [{ materials }, values] = await Promise.all([
+                api.getMaterials(mesh, revision, signal),
+                column === null ? null : api.getFaceLabels(mesh, NAME, revision, signal),
+            ]);
+            return { revision, materials, column, values };
+        } catch (error) {
+            // That revision is gone by now.
+            if (error.status !== 410 || tries === TRIES) {
+                throw error;
+            }
+        }
+    }
+}
