@@ -78,7 +78,7 @@ static he_status vertex_normals(const he_mesh *m, const uint32_t *of, size_t cou
     if (rows == NULL) {
         return HE_NO_MEMORY;
     }
-    he_status status = he_vertex_normals(m, o->weight, rows, err);
+    he_status status = he_vertex_normals(m, o->weight, o->watch, rows, err);
     if (status == HE_OK) {
         compress(m, HE_VERTEX, rows, out);
     }
@@ -390,7 +390,7 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const uint
 /* --- answers --- */
 
 static he_status each(const he_mesh *m, const asked *q, const uint32_t *of, size_t count,
-                      double *out, he_error *err)
+                      he_watch *watch, double *out, he_error *err)
 {
     const measure *what = q->measure;
     he_status status = HE_OK;
@@ -400,7 +400,8 @@ static he_status each(const he_mesh *m, const asked *q, const uint32_t *of, size
     }
     uint32_t issued = of == NULL ? he_mesh_issued(m, q->target.kind) : 0;
     for (uint32_t id = 0; id < issued && status == HE_OK; id++) {
-        if (he_mesh_is_live(m, q->target.kind, id)) {
+        status = he_watch_at(watch, id, issued, err);
+        if (status == HE_OK && he_mesh_is_live(m, q->target.kind, id)) {
             status = what->one(m, id, &q->options, out, err);
             out += what->components;
         }
@@ -420,7 +421,7 @@ static bool find(api_asker *a, const api_in *question, const asked *q, const uin
     options chosen = q->options;
     chosen.watch = &a->x->watch;
     he_status status = whole ? q->measure->many(a->mesh, of, count, &chosen, most, out, &err)
-                             : each(a->mesh, q, of, count, out, &err);
+                             : each(a->mesh, q, of, count, &a->x->watch, out, &err);
     return status == HE_OK || api_asker_refuse(a, question, &err);
 }
 
@@ -484,13 +485,16 @@ static bool ask_many(api_asker *a, const api_in *question, const asked *q)
     api_out_key_u64(a->out, "components", q->measure->components);
     api_out_key(a->out, "values");
     api_out_array_begin(a->out);
-    for (size_t i = 0; i < count; i++) {
+    he_error err = {0};
+    he_status status = HE_OK;
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        status = he_watch_at(&a->x->watch, i, count, &err);
         write_value(a->out, q->measure, values + i * q->measure->components);
     }
     api_out_array_end(a->out);
     api_out_object_end(a->out);
     he_mem_free(values);
-    return true;
+    return status == HE_OK || api_asker_refuse(a, question, &err);
 }
 
 bool api_measure_ask(api_asker *a, const api_in *question)

@@ -73,12 +73,12 @@ typedef enum he_weight {
 bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out);
 
 /* Normals of the whole mesh into an array of one entry for each issued row. Dead rows and
- * degenerate ones are zero. Linear. `watch`, which may be NULL, lends threads and can end the work:
- * HE_CANCELLED and HE_CORRUPT leave the array half written. */
+ * degenerate ones are zero. Linear. `watch`, which may be NULL, can end the work and lends threads
+ * to that of faces: HE_CANCELLED and HE_CORRUPT leave the array half written. */
 HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out,
                                        he_error *err);
-HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_vec3 *out,
-                                         he_error *err);
+HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_watch *watch,
+                                         he_vec3 *out, he_error *err);
 
 /* Normals of corners, smooth but for creases: the mean, weighted by the corners' angles, over the
  * faces that are reached about the half-edge's origin without crossing a hole or an edge whose

@@ -305,7 +305,8 @@ static int area_unit_of_all(const he_mesh *m)
     return 2 * he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
 }
 
-he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_vec3 *out, he_error *err)
+he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_watch *watch, he_vec3 *out,
+                            he_error *err)
 {
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         out[v] = (he_vec3){0, 0, 0};
@@ -314,6 +315,9 @@ he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_vec3 *out, he
     double half = abs(unit) < 1000 ? ldexp(0.5, -unit) : 0;
     uint32_t budget = he_ring_budget(m);
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        if (he_watch_at(watch, f, m->c.faces.issued, err) != HE_OK) {
+            return HE_CANCELLED;
+        }
         uint32_t first = m->c.face_halfedge[f], h = first;
         triangle t;
         if (plain_triangle(m, first, &t) && share_triangle(&t, weight, half, out)) {

@@ -280,7 +280,7 @@ static void test_geometry_does_not_depend_on_scale(void **state)
     assert_true(normals && scaled && smooth && positions && again);
     memcpy(positions, m->c.position, vertices * sizeof *positions);
     assert_int_equal(he_face_normals(m, NULL, normals, NULL), HE_OK);
-    assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, smooth, NULL), HE_OK);
+    assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, NULL, smooth, NULL), HE_OK);
     he_measures unit;
     assert_int_equal(he_mesh_measure(m, &unit, NULL), HE_OK);
     double length = he_edge_length(m, (he_edge){5});
@@ -296,7 +296,7 @@ static void test_geometry_does_not_depend_on_scale(void **state)
             he_vec3 n = normals[f];
             assert_vector(scaled[f], n.x, n.y, n.z);
         }
-        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, again, NULL), HE_OK);
+        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, NULL, again, NULL), HE_OK);
         for (uint32_t v = 0; v < vertices; v++) {
             he_vec3 n = smooth[v];
             assert_vector(again[v], n.x, n.y, n.z);
@@ -353,7 +353,7 @@ static void test_geometry_of_extreme_coordinates_is_finite(void **state)
             assert_int_equal(shape.degenerate, he_vec3_extent(shape.normal) == 0);
         }
         for (int weight = 0; weight < 3; weight++) {
-            assert_int_equal(he_vertex_normals(m, (he_weight)weight, normals, NULL), HE_OK);
+            assert_int_equal(he_vertex_normals(m, (he_weight)weight, NULL, normals, NULL), HE_OK);
             for (uint32_t v = 0; v < vertices; v++) {
                 he_vertex_normal(m, (he_vertex){v}, (he_weight)weight, &normal);
                 assert_true(finite_and_at_most_one(normal));
@@ -420,7 +420,7 @@ static void test_geometry_whole_and_single_agree(void **state)
         assert_int_equal(measures.has_volume,
                          he_mesh_boundary_halfedges(m) == 0 && he_mesh_faces(m) > 0);
         for (int weight = 0; weight < 3; weight++) {
-            assert_int_equal(he_vertex_normals(m, (he_weight)weight, normals, NULL), HE_OK);
+            assert_int_equal(he_vertex_normals(m, (he_weight)weight, NULL, normals, NULL), HE_OK);
             for (uint32_t v = 0; v < vertices; v++) {
                 bool some = he_vertex_normal(m, (he_vertex){v}, (he_weight)weight, &normal);
                 assert_int_equal(some, he_vec3_extent(normal) > 0);
@@ -503,10 +503,10 @@ static void a_far_vertex_does_not_change_the_area(void **state)
     for (int i = 0; i < DISTANCES; i++) {
         he_mesh *m = cube();
         he_vec3 before[8], after[9];
-        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, before, NULL), HE_OK);
+        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, NULL, before, NULL), HE_OK);
         add_vertex(m, far_away[i], -far_away[i], 1);
         assert_measures(m, 24, 8);
-        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, after, NULL), HE_OK);
+        assert_int_equal(he_vertex_normals(m, HE_WEIGHT_AREA, NULL, after, NULL), HE_OK);
         assert_memory_equal(after, before, sizeof before);
         he_mesh_free(m);
     }
@@ -612,7 +612,7 @@ static void test_geometry_of_nothing_and_of_dead_rows(void **state)
     assert_true(box.min.x == -100);
     assert_int_equal(he_face_normals(m, NULL, normals, NULL), HE_OK);
     assert_true(he_vec3_extent(normals[1]) == 0);
-    assert_int_equal(he_vertex_normals(m, HE_WEIGHT_ANGLE, normals, NULL), HE_OK);
+    assert_int_equal(he_vertex_normals(m, HE_WEIGHT_ANGLE, NULL, normals, NULL), HE_OK);
     assert_near(he_vec3_length(normals[0]), 1);
     for (uint32_t v = 3; v < 7; v++) {
         assert_true(he_vec3_extent(normals[v]) == 0);
@@ -636,8 +636,8 @@ static void test_geometry_ends_on_broken_links(void **state)
         he_status got[4];
         he_error err = {0};
         got[0] = he_face_normals(m, NULL, normals, &err);
-        got[1] = he_vertex_normals(m, HE_WEIGHT_AREA, normals, &err);
-        got[2] = he_vertex_normals(m, HE_WEIGHT_ANGLE, normals, &err);
+        got[1] = he_vertex_normals(m, HE_WEIGHT_AREA, NULL, normals, &err);
+        got[2] = he_vertex_normals(m, HE_WEIGHT_ANGLE, NULL, normals, &err);
         got[3] = he_mesh_measure(m, &measures, &err);
         for (int i = 0; i < 4; i++) {
             assert_true(got[i] == HE_OK || got[i] == HE_CORRUPT);

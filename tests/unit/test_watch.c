@@ -274,6 +274,15 @@ static he_status find_cotangents(const he_mesh *m, he_watch *watch)
     return status;
 }
 
+static he_status find_vertex_normals(const he_mesh *m, he_watch *watch)
+{
+    he_vec3 *all = he_mem_array(NULL, he_mesh_issued(m, HE_VERTEX), sizeof *all);
+    assert_non_null(all);
+    he_status status = he_vertex_normals(m, HE_WEIGHT_ANGLE, watch, all, NULL);
+    he_mem_free(all);
+    return status;
+}
+
 /* Quads whose corners have texture coordinates of their own. */
 static void what_costs_the_mesh_before_an_answer_is_given_up_anywhere(void **state)
 {
@@ -283,7 +292,8 @@ static void what_costs_the_mesh_before_an_answer_is_given_up_anywhere(void **sta
                                        {"stl", write_stl},
                                        {"glb", write_glb},
                                        {"curvatures", find_curvatures},
-                                       {"cotangents", find_cotangents}};
+                                       {"cotangents", find_cotangents},
+                                       {"vertex normals", find_vertex_normals}};
     he_mesh *mesh = NULL;
     he_column *uv;
     he_mem_set_hook(&counting);

@@ -67,7 +67,7 @@ static void vertex_normals(bench_side *side, bench_result *out)
     uint32_t count = he_mesh_issued(m, HE_VERTEX);
     he_vec3 *normals = normals_new(count);
     double start = bench_seconds();
-    bench_require(he_vertex_normals(m, HE_WEIGHT_UNIFORM, normals, NULL));
+    bench_require(he_vertex_normals(m, HE_WEIGHT_UNIFORM, NULL, normals, NULL));
     out->value = bench_seconds() - start;
     out->amount = count;
     bench_near(out, size_of(normals, count));
