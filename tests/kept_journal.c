@@ -35,7 +35,7 @@ typedef struct kept_mesh {
     st_card card;
     kept_record *base; /* with a stage */
     kept_record **records;
-    size_t count, capacity, opened;
+    size_t count, capacity, opened, parts;
     struct kept_mesh *next;
 } kept_mesh;
 
@@ -372,6 +372,10 @@ static st_status read_piece(st_reader *r, st_piece *out)
         out->size = at->record.stage->part[r->part].size;
         out->coding = at->record.stage->part[r->part++].coding;
         r->in_parts = r->part < at->record.stage->parts;
+        kept_mesh *mesh = find(journal, r->id);
+        if (mesh != NULL) {
+            mesh->parts++;
+        }
     }
     r->record += at != NULL && !r->in_parts;
     pthread_mutex_unlock(&journal->lock);
@@ -551,9 +555,18 @@ kept_facts kept_journal_facts(kept_journal *journal, const char *id)
     const kept_facts facts = {.records = mesh->count,
                               .base = mesh->base->record.revision,
                               .opened = mesh->opened,
+                              .parts = mesh->parts,
                               .condemned = mesh->card.damage[0] != '\0'};
     pthread_mutex_unlock(&journal->lock);
     return facts;
+}
+
+size_t kept_journal_out(kept_journal *journal)
+{
+    pthread_mutex_lock(&journal->lock);
+    size_t out = journal->out;
+    pthread_mutex_unlock(&journal->lock);
+    return out;
 }
 
 void kept_journal_damage(kept_journal *journal, const char *id, size_t n, kept_damage how,

@@ -29,9 +29,12 @@ typedef struct kept_facts {
     size_t records; /* after the base */
     uint64_t base;  /* its revision */
     size_t opened;  /* how often it was read from */
+    size_t parts;   /* of contents that were read from it */
     bool condemned;
 } kept_facts;
 kept_facts kept_journal_facts(kept_journal *journal, const char *id);
+/* How many rooms, stages and readers are out. */
+size_t kept_journal_out(kept_journal *journal);
 
 /* Damage of the body of the n-th record after the base, n from 0: its end is cut off, or the bit of
  * a byte is turned, and the sum tells of it (as a disk would) or does not. */

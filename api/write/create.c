@@ -115,7 +115,7 @@ static void create(api_exchange *x)
 static bool replace_damaged(api_exchange *x, const made *m)
 {
     st_mesh *fresh = NULL;
-    const char *name = api_upload_name(x);
+    char name[ST_MESH_NAME + 1];
     (void)st_read_begin(x->mesh, &x->info);
     st_read_end(x->mesh);
     x->has_info = true;
@@ -123,12 +123,13 @@ static bool replace_damaged(api_exchange *x, const made *m)
         he_mesh_free(m->mesh);
         return true;
     }
-    st_status status = st_create_over(x->store, x->mesh, name == NULL ? x->info.name : name,
-                                      m->mesh, x->keyed, &fresh);
+    st_copy_text(name, api_upload_name(x) != NULL ? api_upload_name(x) : x->info.name,
+                 ST_MESH_NAME);
+    st_status status = st_create_over(x->store, x->mesh, name, m->mesh, x->keyed, &fresh);
     if (status == ST_OK) {
         st_release(x->mesh);
         x->mesh = fresh;
-        api_answer_created(x, first_name(x), &m->summary, api_upload_write_report);
+        api_answer_created(x, name, &m->summary, api_upload_write_report);
         return true;
     }
     if (status != ST_ABSENT) {

@@ -182,8 +182,6 @@ static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
     st_card card;
     st_status status = journal->open(journal->self, id, &card, &reader);
     if (status == ST_OK) {
-        /* With what the content holds of columns that are not full. */
-        st_make_room(store, card.bytes + card.bytes / 2);
         status = st_mesh_load(&options, &card, reader, 0, out, card.damage);
         journal->shut(reader);
         if (status == ST_OK) {

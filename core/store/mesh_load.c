@@ -2,6 +2,7 @@
 
 #include "mesh/check.h"
 #include "mesh/write.h"
+#include "store/table.h"
 #include "stored/stored.h"
 #include "system/memory.h"
 
@@ -12,7 +13,9 @@
 /* A load under way. */
 typedef struct load {
     const st_mesh_options *options;
+    uint64_t until;    /* the revision that is wanted, 0: the last */
     st_mesh *mesh;     /* its content and log are NULL and empty before the base */
+    uint64_t bytes;    /* that the card says its content takes */
     uint64_t record;   /* the last that was applied, 0: none */
     uint64_t metadata; /* after it */
     uint64_t reach;    /* after it */
@@ -291,6 +294,12 @@ static st_status take_base(load *l, const st_piece *piece)
         record->revision == 0) {
         return damaged(l, "the base is of another mesh");
     }
+    if (l->until != 0 && record->revision > l->until) {
+        return ST_GONE;
+    }
+    /* With what the content holds of columns that are not full; of an earlier revision also the
+     * copy that is made of it. */
+    st_make_room(l->options->store, l->until == 0 ? l->bytes + l->bytes / 2 : 2 * l->bytes);
     l->record = record->number;
     l->metadata = record->metadata;
     l->reach = record->reach;
@@ -355,14 +364,14 @@ static void end_history(load *l)
 }
 
 /* Is this piece the first one beyond the revision that is wanted? */
-static bool is_beyond(const load *l, const st_piece *piece, uint64_t until)
+static bool is_beyond(const load *l, const st_piece *piece)
 {
     return piece->kind == ST_PIECE_END ||
-           (until != 0 && l->parts == NULL && l->mesh->content != NULL &&
-            piece->kind == ST_PIECE_RECORD && piece->record.revision > until);
+           (l->until != 0 && l->parts == NULL && l->mesh->content != NULL &&
+            piece->kind == ST_PIECE_RECORD && piece->record.revision > l->until);
 }
 
-static st_status read_pieces(load *l, st_reader *reader, uint64_t until)
+static st_status read_pieces(load *l, st_reader *reader)
 {
     const st_journal *journal = l->options->journal;
     st_piece piece;
@@ -370,7 +379,7 @@ static st_status read_pieces(load *l, st_reader *reader, uint64_t until)
     bool ends = false;
     while (status == ST_OK && !ends) {
         status = journal->read(reader, &piece);
-        ends = status == ST_OK && is_beyond(l, &piece, until);
+        ends = status == ST_OK && is_beyond(l, &piece);
         if (status == ST_OK && (!ends || piece.kind == ST_PIECE_END)) {
             status = take(l, &piece);
         }
@@ -381,14 +390,20 @@ static st_status read_pieces(load *l, st_reader *reader, uint64_t until)
 st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
                        uint64_t until, st_mesh **out, char damage[ST_DAMAGE])
 {
-    load l = {.options = options, .damage = damage, .mesh = st_mesh_bare(options, card)};
+    load l = {.options = options,
+              .until = until,
+              .bytes = card->bytes,
+              .damage = damage,
+              .mesh = st_mesh_bare(options, card)};
     damage[0] = '\0';
     if (l.mesh == NULL) {
         return no_memory();
     }
-    st_status status = read_pieces(&l, reader, until);
+    st_status status = read_pieces(&l, reader);
     if (status == ST_OK && until == 0) {
         status = check_card(&l, card);
+    } else if (status == ST_OK && st_log_head(&l.mesh->log) != until) {
+        status = ST_GONE;
     }
     if (status == ST_OK) {
         status = check_content(&l);

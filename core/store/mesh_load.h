@@ -11,10 +11,11 @@
 
 #include "store/stored_mesh.h"
 
-/* Reads all pieces of a mesh. `until` is a revision: what comes after it is not applied, and the
- * history is the one of then; 0 for all. ST_DAMAGED where the pieces make no mesh or another than
- * the card's: `damage` says what is wrong, and stays "" where the reader said it first. ST_FAILED,
- * ST_NO_MEMORY, ST_BUDGET. */
+/* Makes room in memory and reads all pieces of a mesh. `until` is a revision: what comes after it
+ * is not applied, and the history is the one of then; 0 for all. ST_GONE: the base is of a later
+ * revision, or no record leads to just that one; only the first costs less than a load. ST_DAMAGED
+ * where the pieces make no mesh or another than the card's: `damage` says what is wrong, and stays
+ * "" where the reader said it first. ST_FAILED, ST_NO_MEMORY, ST_BUDGET. */
 st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
                        uint64_t until, st_mesh **out, char damage[ST_DAMAGE]);
 

@@ -8,11 +8,18 @@
  *
  * A snapshot is due when the records since the last one take more than the content, and
  * ST_BASE_BYTES at least. An undo of what lies before it spoils it: it can be no base any more, for
- * the records after it need what is before it. One that waits is dropped when its mesh leaves
- * memory. */
+ * the records after it need what is before it. So does a record that holds the whole content and
+ * ends the history, such as a PUT: that is the base itself. One that waits is dropped when its mesh
+ * leaves memory. */
 #include "store/table.h"
 
 #include <string.h>
+
+/* The mesh is loaded from such a record on: nothing before it is needed. */
+static bool is_base(const st_record *record)
+{
+    return record->barrier && (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
+}
 
 /* A record without its body, and a content on the disk beside one in memory. */
 enum { FRAME_BYTES = 200, PACKED_SHARE = 2 };
@@ -139,8 +146,12 @@ void st_rebase_note(st_mesh *mesh, const st_group *group)
     }
     for (size_t i = 0; i < group->count; i++) {
         const st_record *record = &group->records[i];
-        mesh->appended += st_rebase_bytes(record);
-        if (next != NULL && record->inverts != 0 && record->inverts <= next->facts.revision) {
+        mesh->appended = is_base(record) ? 0 : mesh->appended + st_rebase_bytes(record);
+        if (next != NULL && is_base(record)) {
+            next->before = 0;
+            next->spoiled = true;
+        } else if (next != NULL && record->inverts != 0 &&
+                   record->inverts <= next->facts.revision) {
             next->spoiled = true;
         }
     }

@@ -102,97 +102,112 @@ st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out)
     return status;
 }
 
-/* The cached copy of an earlier revision, made or moved there. Under the past lock. */
-static st_status past_copy(st_mesh *mesh, uint64_t revision)
+/* Takes the replay, which is at the revision, as the cached copy of an earlier one. Under the past
+ * lock. */
+static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision, double time)
 {
-    st_copy *copy = mesh->past;
-    if (copy != NULL && copy->revision == revision) {
-        return ST_OK;
-    }
-    mesh->past = NULL;
-    if (copy != NULL) {
-        pthread_rwlock_rdlock(&mesh->lock);
-        bool near = is_near(mesh, copy->revision, revision);
-        pthread_rwlock_unlock(&mesh->lock);
-        if (!is_cached_alone(copy) || !near) {
-            st_copy_release(copy);
-            copy = NULL;
-        }
-    }
+    st_copy *copy = he_mem_zero(1, sizeof *copy);
     if (copy == NULL) {
-        copy = he_mem_zero(1, sizeof *copy);
-        if (copy == NULL) {
-            return ST_NO_MEMORY;
-        }
-        atomic_init(&copy->uses, 1);
+        he_replay_free(replay);
+        return ST_NO_MEMORY;
     }
-    st_status status = st_replay_to(mesh, &copy->replay, &copy->revision, revision);
-    if (status != ST_OK) {
-        st_copy_release(copy);
-        return status;
-    }
+    atomic_init(&copy->uses, 1);
+    copy->replay = replay;
+    copy->revision = revision;
+    copy->time = time;
+    st_copy_release(mesh->past);
     mesh->past = copy;
     return ST_OK;
 }
 
-/* The facts of now, but for the revision and its time. */
-static st_status past_info(st_mesh *mesh, uint64_t revision, st_mesh_info *out)
+/* Does the history in memory reach to the revision, and can the cached copy be moved there? */
+static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool *movable)
 {
+    const st_copy *copy = mesh->past;
     st_point point;
     pthread_rwlock_rdlock(&mesh->lock);
-    bool there = revision >= mesh->log.oldest;
-    if (there) {
-        st_mesh_facts(mesh, out);
+    st_status status = revision > st_log_head(&mesh->log) ? ST_AHEAD
+                       : revision < mesh->log.oldest      ? ST_GONE
+                                                          : ST_OK;
+    if (status == ST_OK) {
         st_log_point(&mesh->log, revision, &point);
-        out->revision = revision;
-        out->modified = point.time;
+        *time = point.time;
+        *movable = copy != NULL && is_cached_alone(copy) && is_near(mesh, copy->revision, revision);
     }
     pthread_rwlock_unlock(&mesh->lock);
-    return there ? ST_OK : ST_GONE;
+    return status;
+}
+
+/* From the history in memory. Under the past lock. */
+static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
+{
+    he_replay *replay = NULL;
+    uint64_t at = 0;
+    double time = 0;
+    bool movable = false;
+    st_status status = find_past(mesh, revision, &time, &movable);
+    if (status != ST_OK) {
+        return status;
+    }
+    if (movable) {
+        replay = mesh->past->replay;
+        at = mesh->past->revision;
+        mesh->past->replay = NULL;
+        st_copy_release(mesh->past);
+        mesh->past = NULL;
+    }
+    status = st_replay_to(mesh, &replay, &at, revision);
+    return status == ST_OK ? cache_past(mesh, replay, revision, time) : status;
+}
+
+static st_status load_past(st_mesh *mesh, const st_card *card, st_reader *reader, uint64_t revision)
+{
+    const st_mesh_options options = st_store_mesh_options(mesh->store);
+    st_mesh *loaded = NULL;
+    he_replay *replay = NULL;
+    st_point point;
+    char damage[ST_DAMAGE];
+    st_status status = st_mesh_load(&options, card, reader, revision, &loaded, damage);
+    if (status != ST_OK) {
+        return status;
+    }
+    st_log_point(&loaded->log, revision, &point);
+    if (he_replay_new(loaded->content, &replay, NULL) == HE_OK) {
+        status = cache_past(mesh, replay, revision, point.time);
+    } else {
+        status = st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
+    }
+    st_release(loaded);
+    return status;
 }
 
 /* A revision that the history has dropped, from the disk where the records still reach back to it:
  * a mesh of its own is loaded and becomes the cached copy. Under the past lock. */
-static st_status copy_from_disk(st_mesh *mesh, uint64_t revision, st_mesh_info *info)
+static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
 {
     const st_journal *journal = mesh->journal;
-    const st_mesh_options options = st_store_mesh_options(mesh->store);
     st_reader *reader = NULL;
-    st_mesh *loaded = NULL;
     st_card card;
-    char damage[ST_DAMAGE];
     st_status status =
         journal->keeps ? journal->open(journal->self, mesh->info.id, &card, &reader) : ST_GONE;
     if (status == ST_OK) {
-        st_make_room(mesh->store, 2 * card.bytes);
         status = card.incarnation == mesh->info.incarnation
-                     ? st_mesh_load(&options, &card, reader, revision, &loaded, damage)
+                     ? load_past(mesh, &card, reader, revision)
                      : ST_GONE;
         journal->shut(reader);
     }
-    if (status == ST_OK && st_log_head(&loaded->log) != revision) {
-        status = ST_GONE;
-    }
-    st_copy *copy = status == ST_OK ? he_mem_zero(1, sizeof *copy) : NULL;
-    if (status == ST_OK &&
-        (copy == NULL || he_replay_new(loaded->content, &copy->replay, NULL) != HE_OK)) {
-        he_mem_free(copy);
-        status = st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
-    }
-    if (status == ST_OK) {
-        st_point point;
-        atomic_init(&copy->uses, 1);
-        copy->revision = revision;
-        mesh->past = copy;
-        st_log_point(&loaded->log, revision, &point);
-        (void)st_read_begin(mesh, info);
-        st_read_end(mesh);
-        info->revision = revision;
-        info->modified = point.time;
-    }
-    st_release(loaded);
     bool none = status == ST_ABSENT || status == ST_DAMAGED;
     return none ? ST_GONE : status;
+}
+
+/* Under the past lock: the cached copy is at the revision. */
+static st_status seek_past(st_mesh *mesh, uint64_t revision)
+{
+    if (mesh->past != NULL && mesh->past->revision == revision) {
+        return ST_OK;
+    }
+    st_status status = copy_from_history(mesh, revision);
+    return status == ST_GONE && revision > 0 ? copy_from_disk(mesh, revision) : status;
 }
 
 st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
@@ -202,21 +217,15 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
         return ST_NO_MEMORY;
     }
     pthread_mutex_lock(&mesh->past_lock);
-    st_status status = past_copy(mesh, revision);
+    st_status status = seek_past(mesh, revision);
     if (status == ST_OK) {
-        status = past_info(mesh, revision, &snapshot->info);
-    }
-    if (status == ST_GONE && revision > 0) {
-        st_copy_release(mesh->past);
-        mesh->past = NULL;
-        status = copy_from_disk(mesh, revision, &snapshot->info);
-    }
-    if (status == ST_OK) {
+        /* The facts of now, but for the revision and its time. */
         snapshot->copy = mesh->past;
         atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
-    } else {
-        st_copy_release(mesh->past);
-        mesh->past = NULL;
+        (void)st_read_begin(mesh, &snapshot->info);
+        st_read_end(mesh);
+        snapshot->info.revision = revision;
+        snapshot->info.modified = snapshot->copy->time;
     }
     pthread_mutex_unlock(&mesh->past_lock);
     if (status != ST_OK) {

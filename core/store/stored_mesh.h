@@ -15,6 +15,7 @@
 typedef struct st_copy {
     _Atomic uint32_t uses;
     uint64_t revision;
+    double time; /* when that was made; of a past copy */
     he_replay *replay;
 } st_copy;
 

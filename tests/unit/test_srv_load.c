@@ -407,6 +407,100 @@ static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
     kept_journal_free(journal);
 }
 
+/* A mesh that stands on a base after its last change of many, with nothing of them in memory. */
+static st_mesh *make_rebased(st_store **store, st_pool **pool)
+{
+    journal = kept_journal_new();
+    *pool = st_pool_new("bases", 3, 100);
+    *store = open_store_with(0, *pool);
+    st_mesh *mesh = make(*store, "m");
+    for (unsigned i = 0; i < 40; i++) {
+        st_write w;
+        script(writing_begin(mesh, &w), "vertex_move vertex=1 to=%u,1,2", i);
+        assert_true(writing_commit(&w, "vertex_move", NULL));
+    }
+    await_bases(*pool);
+    assert_true(kept_journal_facts(journal, "m").base > 2);
+    return mesh;
+}
+
+static void end_rebased(st_mesh *mesh, st_store *store, st_pool *pool)
+{
+    st_release(mesh);
+    st_pool_free(pool);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+static void a_revision_before_the_base_costs_no_load(void **state)
+{
+    (void)state;
+    st_store *store;
+    st_pool *pool;
+    st_mesh *mesh = make_rebased(&store, &pool);
+    st_snapshot *snapshot;
+    for (uint64_t revision = 0; revision < kept_journal_facts(journal, "m").base; revision++) {
+        assert_int_equal(st_snapshot_at(mesh, revision, &snapshot), ST_GONE);
+    }
+    assert_int_equal(kept_journal_facts(journal, "m").parts, 0);
+    end_rebased(mesh, store, pool);
+}
+
+static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **state)
+{
+    (void)state;
+    journal = kept_journal_new();
+    st_store *store = open_store(0);
+    st_mesh *mesh = make(store, "m");
+    for (unsigned i = 0; i < 9; i++) {
+        st_write w;
+        script(writing_begin(mesh, &w), "vertex_move vertex=1 to=%u,1,2", i);
+        assert_true(writing_commit(&w, "vertex_move", NULL));
+    }
+    double modified = 0;
+    for (int i = 0; i < 5; i++) {
+        st_snapshot *snapshot, *none;
+        st_mesh_info info;
+        assert_int_equal(st_snapshot_at(mesh, 4, &snapshot), ST_OK);
+        (void)st_snapshot_content(snapshot, &info);
+        assert_int_equal(info.revision, 4);
+        assert_true(i == 0 || info.modified == modified);
+        modified = info.modified;
+        /* What is not there does not cost those their copy who ask for what is. */
+        assert_int_equal(st_snapshot_at(mesh, 99, &none), ST_AHEAD);
+        assert_int_equal(st_snapshot_at(mesh, 0, &none), ST_GONE);
+        st_snapshot_release(snapshot);
+    }
+    assert_int_equal(kept_journal_facts(journal, "m").opened, 1);
+    st_release(mesh);
+    st_store_free(store);
+    kept_journal_free(journal);
+}
+
+/* The undo stack keeps the snapshot from being the base; what replaces the mesh ends that. */
+static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
+{
+    (void)state;
+    journal = kept_journal_new();
+    st_pool *pool = st_pool_new("bases", 3, 100);
+    st_store *store = open_store_with(64 << 20, pool);
+    st_mesh *mesh = make(store, "m");
+    for (unsigned i = 0; i < 40; i++) {
+        st_write w;
+        script(writing_begin(mesh, &w), "vertex_move vertex=1 to=%u,1,2", i);
+        assert_true(writing_commit(&w, "vertex_move", NULL));
+    }
+    await_bases(pool);
+    assert_int_equal(kept_journal_out(journal), 1); /* it is staged */
+    assert_int_equal(writing_replace(mesh, script_mesh("012,023", NULL), NULL, NULL), ST_OK);
+    assert_int_equal(kept_journal_out(journal), 0);
+    assert_int_equal(kept_journal_facts(journal, "m").base, 1);
+    /* Nor does the replacement itself ask for another. */
+    await_bases(pool);
+    assert_int_equal(kept_journal_out(journal), 0);
+    end_rebased(mesh, store, pool);
+}
+
 /* --- memory --- */
 
 static void without_memory_nothing_is_loaded(void **state)
@@ -628,6 +722,9 @@ int main(void)
         cmocka_unit_test(a_younger_base_leads_to_the_same_mesh),
         cmocka_unit_test(a_revision_beyond_memory_is_read_from_the_disk),
         cmocka_unit_test(a_smaller_budget_keeps_the_newest),
+        cmocka_unit_test(a_revision_before_the_base_costs_no_load),
+        cmocka_unit_test(a_revision_of_the_disk_is_loaded_once_for_all_who_read_it),
+        cmocka_unit_test(a_base_that_waits_goes_with_the_content_it_was_of),
         cmocka_unit_test(without_memory_nothing_is_loaded),
         cmocka_unit_test(without_memory_for_its_keys_nothing_is_loaded),
         cmocka_unit_test(what_is_damaged_is_named),

@@ -229,7 +229,8 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     } else if (outcome != ST_SQL_DONE) {
         return outcome;
     }
-    if (head != NULL) {
+    /* Before the base there is nothing to be loaded. */
+    if (head != NULL && stage->number > head->row.base) {
         outcome = read_record(self, stage, head, &same, &chain, &next);
     }
     if (!same) {
