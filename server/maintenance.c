@@ -73,8 +73,10 @@ static bool visit_mesh(const st_journal *journal, const st_card *card, visit *ea
     if (status == ST_OK) {
         st_mesh_info info;
         const he_mesh *content = st_read_begin(mesh, &info);
-        if (info.damaged) {
-            printf("%s: DAMAGED: %s\n", card->id, st_damage(mesh));
+        if (info.unreadable != ST_OK) {
+            printf("%s: %s: %s\n", card->id,
+                   info.unreadable == ST_DAMAGED ? "DAMAGED" : "OF A NEWER RELEASE",
+                   st_damage(mesh));
         } else {
             good = each(context, card, content);
         }

@@ -51,6 +51,7 @@ static he_status add(st_store *store, const char *name, he_error *err)
     case ST_COLD:
     case ST_LOADING:
     case ST_DAMAGED:
+    case ST_NEWER:
     case ST_BEHIND:
     case ST_FULL:
     case ST_FAILED:

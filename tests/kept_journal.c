@@ -59,6 +59,7 @@ struct st_reader {
     kept_record **records; /* the base first */
     size_t count, record, part;
     bool in_parts;
+    char why[ST_DAMAGE];
 };
 
 static void *grown(void *array, size_t count, size_t *capacity, size_t size)
@@ -357,9 +358,9 @@ static st_status read_piece(st_reader *r, st_piece *out)
     const kept_record *at = r->record < r->count ? r->records[r->record] : NULL;
     if (at != NULL && at->sum_is_wrong) {
         status = ST_DAMAGED;
-        kept_mesh *mesh = find(journal, r->id);
-        snprintf(mesh->card.damage, sizeof mesh->card.damage, "record %llu: its sum is wrong",
+        snprintf(r->why, sizeof r->why, "record %llu: its sum is wrong",
                  (unsigned long long)at->record.number);
+        out->why = r->why;
     } else if (at != NULL && !r->in_parts) {
         out->kind = r->record == 0 ? ST_PIECE_BASE : ST_PIECE_RECORD;
         out->record = at->record;
@@ -397,14 +398,13 @@ static void shut(st_reader *r)
     }
 }
 
-static void condemn(void *self, uint64_t incarnation, const char *damage)
+static void condemn(st_reader *r, const char *damage)
 {
-    kept_journal *journal = self;
+    kept_journal *journal = r->journal;
     pthread_mutex_lock(&journal->lock);
-    for (kept_mesh *mesh = journal->meshes; mesh != NULL; mesh = mesh->next) {
-        if (mesh->card.incarnation == incarnation) {
-            snprintf(mesh->card.damage, sizeof mesh->card.damage, "%s", damage);
-        }
+    kept_mesh *mesh = find(journal, r->id);
+    if (mesh != NULL && mesh->base == r->records[0]) {
+        snprintf(mesh->card.damage, sizeof mesh->card.damage, "%s", damage);
     }
     pthread_mutex_unlock(&journal->lock);
 }
@@ -585,7 +585,7 @@ void kept_journal_damage(kept_journal *journal, const char *id, size_t n, kept_d
         if (how == KEPT_CUT) {
             kept->record.body_size = at;
         } else {
-            body[at] ^= 1;
+            body[at] ^= how == KEPT_NEWER ? 3 : 1;
         }
     }
     pthread_mutex_unlock(&journal->lock);

@@ -37,8 +37,9 @@ kept_facts kept_journal_facts(kept_journal *journal, const char *id);
 size_t kept_journal_out(kept_journal *journal);
 
 /* Damage of the body of the n-th record after the base, n from 0: its end is cut off, or the bit of
- * a byte is turned, and the sum tells of it (as a disk would) or does not. */
-typedef enum kept_damage { KEPT_CUT, KEPT_TURNED, KEPT_SUM } kept_damage;
+ * a byte is turned, and the sum tells of it (as a disk would) or does not. KEPT_NEWER makes version
+ * 1 in its first byte 2, and back. */
+typedef enum kept_damage { KEPT_CUT, KEPT_TURNED, KEPT_SUM, KEPT_NEWER } kept_damage;
 void kept_journal_damage(kept_journal *journal, const char *id, size_t n, kept_damage how,
                          size_t at);
 

@@ -157,6 +157,9 @@
       "What is on the disk of it is not what was written. The mesh can be deleted, or replaced "   \
       "by "                                                                                        \
       "PUT; all others are served.")                                                               \
+    X(MESH_NEWER, "mesh_newer", 500, "A newer release has written the mesh",                       \
+      "What is on the disk of it is of a version that this release does not know; the newer one "  \
+      "reads it. Until then it can be deleted, or replaced by PUT; all others are served.")        \
     X(NOT_IMPLEMENTED, "not_implemented", 501, "The server does not implement this",               \
       "The method is longer than any there is, or the body has a transfer coding other than "      \
       "chunked. The connection is closed.")                                                        \

@@ -181,8 +181,8 @@ static bool find_route(api_exchange *x)
 static bool take_mesh(api_exchange *x, st_status status)
 {
     bool rids = (x->route->flags & (API_MAY_CREATE | API_INTERRUPTS)) != 0;
-    if (status == ST_OK && st_damage(x->mesh)[0] != '\0' && !rids) {
-        status = ST_DAMAGED;
+    if (status == ST_OK && st_unreadable(x->mesh) != ST_OK && !rids) {
+        status = st_unreadable(x->mesh);
     } else if (status == ST_OK) {
         return true;
     } else {

@@ -159,6 +159,8 @@ bool api_fail_store(api_exchange *x, st_status status)
         return api_fail(x, API_LOADING, "the mesh is being loaded from the disk");
     case ST_DAMAGED:
         return api_fail(x, API_MESH_DAMAGED, "%s", x->mesh == NULL ? "" : st_damage(x->mesh));
+    case ST_NEWER:
+        return api_fail(x, API_MESH_NEWER, "%s", x->mesh == NULL ? "" : st_damage(x->mesh));
     case ST_COLD:
         break;
     }

@@ -142,7 +142,7 @@ static bool replace_damaged(api_exchange *x, const made *m)
 /* False, with nothing done, where the mesh was removed meanwhile. */
 static bool replace(api_exchange *x, const made *m)
 {
-    if (st_damage(x->mesh)[0] != '\0') {
+    if (st_unreadable(x->mesh) != ST_OK) {
         return replace_damaged(x, m);
     }
     st_stage *stage;

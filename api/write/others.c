@@ -99,9 +99,9 @@ bool api_others_take(api_exchange *x, api_others *o)
         if (info.removed) {
             return fail_absent(x, other->id);
         }
-        if (info.damaged) {
-            return api_fail(x, API_MESH_DAMAGED, "mesh \"%s\": %s", other->id,
-                            st_damage(other->mesh));
+        if (info.unreadable != ST_OK) {
+            return api_fail(x, info.unreadable == ST_NEWER ? API_MESH_NEWER : API_MESH_DAMAGED,
+                            "mesh \"%s\": %s", other->id, st_damage(other->mesh));
         }
     }
     return true;

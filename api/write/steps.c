@@ -83,6 +83,7 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     case ST_COLD:
     case ST_LOADING:
     case ST_DAMAGED:
+    case ST_NEWER:
     case ST_BEHIND:
     case ST_FULL:
     case ST_FAILED:

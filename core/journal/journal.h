@@ -41,6 +41,7 @@ typedef enum st_status {
     ST_COLD,      /* not in memory: whether there is one the disk must say */
     ST_LOADING,   /* another thread is loading it, for too long to be waited for */
     ST_DAMAGED,   /* what is kept of the mesh is not whole */
+    ST_NEWER,     /* what is kept of the mesh a newer release has written */
     ST_BEHIND,    /* the disk is slow: as much is queued as may be */
     ST_FULL,      /* the disk is full */
     ST_FAILED     /* the disk failed: no more writes until a restart */
@@ -114,12 +115,13 @@ typedef struct st_journal {
      * durable or lost, on a thread that may. `reader` NULL: the card alone. ST_ABSENT; ST_DAMAGED
      * with the card filled in; ST_FAILED, ST_NO_MEMORY. */
     st_status (*open)(void *self, const char *id, st_card *card, st_reader **reader);
-    /* The next piece. ST_DAMAGED: sums or chain are wrong, and the mesh's card says so from now
-     * on. ST_FAILED, ST_NO_MEMORY. */
+    /* The next piece. ST_DAMAGED: sums or chain are wrong; ST_NEWER: of a version that is not
+     * known; `why` of the piece says what. ST_FAILED, ST_NO_MEMORY. */
     st_status (*read)(st_reader *reader, st_piece *out);
     void (*shut)(st_reader *reader); /* takes NULL */
-    /* The mesh was read, but it is none: its card says `damage` from now on. */
-    void (*condemn)(void *self, uint64_t incarnation, const char *damage);
+    /* What was read is no mesh: its card says `damage` from now on, unless the mesh has got another
+     * base or was removed since the reader was opened. */
+    void (*condemn)(st_reader *reader, const char *damage);
     /* Up to `limit` cards of ids after `after` ("" from the start), in the order of ids, as durable
      * records left them; waits for the disk. ST_FAILED, ST_NO_MEMORY. */
     st_status (*list)(void *self, const char *after, st_card *out, size_t limit, size_t *count);

@@ -118,6 +118,7 @@ typedef struct st_piece {
     unsigned coding;  /* of PART, as he_stored_reader_part wants it: packing is taken off */
     const unsigned char *bytes;
     size_t size;
+    const char *why; /* where there is none: a sentence */
 } st_piece;
 
 #endif

@@ -23,7 +23,7 @@ static bool card_of(st_mesh *mesh, st_card *out)
     };
     memcpy(out->id, info.id, sizeof out->id);
     memcpy(out->name, info.name, sizeof out->name);
-    if (info.damaged) {
+    if (info.unreadable == ST_DAMAGED) {
         memcpy(out->damage, st_damage(mesh), sizeof out->damage);
     }
     st_read_end(mesh);

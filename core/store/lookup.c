@@ -154,7 +154,8 @@ void st_lookup_end(st_store *store, st_lookup *lookup)
 /* --- a mesh that is on the disk --- */
 
 /* Stands for a mesh that cannot be loaded: it has the facts of the card, but no content. */
-static st_status stand_in(const st_mesh_options *options, const st_card *card, st_mesh **out)
+static st_status stand_in(const st_mesh_options *options, const st_card *card, st_status why,
+                          st_mesh **out)
 {
     st_mesh *mesh = st_mesh_bare(options, card);
     if (mesh != NULL) {
@@ -164,7 +165,7 @@ static st_status stand_in(const st_mesh_options *options, const st_card *card, s
         mesh->damage = he_mem_alloc(ST_DAMAGE);
         if (mesh->content != NULL && mesh->damage != NULL) {
             memcpy(mesh->damage, card->damage, ST_DAMAGE);
-            mesh->info.damaged = true;
+            mesh->info.unreadable = why;
             st_log_init(&mesh->log, options->undo_budget, &begin_at, mesh->content);
             *out = mesh;
             return ST_OK;
@@ -191,15 +192,9 @@ static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
                 *out = NULL;
             }
         }
-        if (status == ST_DAMAGED && card.damage[0] != '\0') {
-            journal->condemn(journal->self, card.incarnation, card.damage);
-        } else if (status == ST_DAMAGED) {
-            /* The reader found it and has told the journal, whose card says now what it is. */
-            status = journal->open(journal->self, id, &card, NULL);
-            status = status == ST_OK ? ST_FAILED : status;
-        }
     }
-    return status == ST_DAMAGED ? stand_in(&options, &card, out) : status;
+    return status == ST_DAMAGED || status == ST_NEWER ? stand_in(&options, &card, status, out)
+                                                      : status;
 }
 
 static st_status put_in(st_store *store, st_mesh *mesh)

@@ -162,8 +162,8 @@ static st_status book(st_write *w)
  * meanwhile. */
 static st_status get_ready(st_write *w)
 {
-    bool damaged = w->info.damaged && w->kind != ST_WRITE_REMOVE;
-    st_status status = damaged ? ST_DAMAGED : book(w);
+    const st_status unreadable = w->kind == ST_WRITE_REMOVE ? ST_OK : w->info.unreadable;
+    st_status status = unreadable == ST_OK ? book(w) : unreadable;
     if (w->claimed) {
         pthread_rwlock_wrlock(&w->mesh->lock);
         const st_mesh_info *info = &w->mesh->info;

@@ -52,10 +52,12 @@ static st_status status_of(load *l, he_status status, uint64_t number, const he_
         return no_memory();
     }
     if (err->place == HE_PLACE_BYTE) {
-        return damaged(l, "record %llu, byte %llu: %s", (unsigned long long)number,
-                       (unsigned long long)err->at, err->text);
+        (void)damaged(l, "record %llu, byte %llu: %s", (unsigned long long)number,
+                      (unsigned long long)err->at, err->text);
+    } else {
+        (void)damaged(l, "record %llu: %s", (unsigned long long)number, err->text);
     }
-    return damaged(l, "record %llu: %s", (unsigned long long)number, err->text);
+    return status == HE_UNSUPPORTED ? ST_NEWER : ST_DAMAGED;
 }
 
 static bool has_marks(const he_mesh *content, const uint32_t issued[HE_KIND_COUNT])
@@ -379,6 +381,9 @@ static st_status read_pieces(load *l, st_reader *reader)
     bool ends = false;
     while (status == ST_OK && !ends) {
         status = journal->read(reader, &piece);
+        if (status == ST_DAMAGED || status == ST_NEWER) {
+            (void)damaged(l, "%s", piece.why);
+        }
         ends = status == ST_OK && is_beyond(l, &piece);
         if (status == ST_OK && (!ends || piece.kind == ST_PIECE_END)) {
             status = take(l, &piece);
@@ -410,6 +415,9 @@ st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_r
     }
     he_stored_reader_free(l.parts);
     if (status != ST_OK) {
+        if (status == ST_DAMAGED) {
+            options->journal->condemn(reader, damage);
+        }
         st_release(l.mesh);
         return status;
     }

@@ -14,8 +14,9 @@
 /* Makes room in memory and reads all pieces of a mesh. `until` is a revision: what comes after it
  * is not applied, and the history is the one of then; 0 for all. ST_GONE: the base is of a later
  * revision, or no record leads to just that one; only the first costs less than a load. ST_DAMAGED
- * where the pieces make no mesh or another than the card's: `damage` says what is wrong, and stays
- * "" where the reader said it first. ST_FAILED, ST_NO_MEMORY, ST_BUDGET. */
+ * where the pieces make no mesh or another than the card's, which condemns it; ST_NEWER where one
+ * is of a version that is not known: `damage` says what is wrong. ST_FAILED, ST_NO_MEMORY,
+ * ST_BUDGET. */
 st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
                        uint64_t until, st_mesh **out, char damage[ST_DAMAGE]);
 

@@ -26,8 +26,8 @@ static st_status begin(st_write *w)
     if (w->info.removed || w->info.lost) {
         return w->info.lost ? ST_LOST : ST_ABSENT;
     }
-    if (w->info.damaged && w->claimed) {
-        return ST_DAMAGED;
+    if (w->info.unreadable != ST_OK && w->claimed) {
+        return w->info.unreadable;
     }
     if (!mesh->claimed) {
         begin_recording(w);

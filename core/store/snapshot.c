@@ -196,7 +196,7 @@ static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
                      : ST_GONE;
         journal->shut(reader);
     }
-    bool none = status == ST_ABSENT || status == ST_DAMAGED;
+    bool none = status == ST_ABSENT || status == ST_DAMAGED || status == ST_NEWER;
     return none ? ST_GONE : status;
 }
 

@@ -52,7 +52,7 @@ typedef struct st_mesh_info {
     bool removed;
     bool lost;               /* it stands on a change that will never be durable: the store has it
                                 no more */
-    bool damaged;            /* what is kept of it is not whole: st_load */
+    st_status unreadable;    /* ST_OK, or ST_DAMAGED or ST_NEWER: it has no content, st_load */
     bool busy;               /* a long edit has claimed it: write.h */
     char job[ST_JOB_ID + 1]; /* the job whose edit that is, "" when it is none */
 } st_mesh_info;
@@ -113,12 +113,15 @@ st_shown st_shown_all(st_store *store, uint64_t since);
  * whether there is such a mesh. */
 st_status st_find(st_store *store, const char *id, st_mesh **out);
 /* As st_find, but loads the mesh where it is not in memory, which is done once for all who ask for
- * it. Waits, on a thread that may and without a lock. A mesh that is damaged is found, with
- * info.damaged: it has no content, can be removed and replaced (st_create_over), and nothing else.
+ * it. Waits, on a thread that may and without a lock. A mesh that is damaged, or
+ * that a newer release has written, is found, with info.unreadable: it has no content, can be
+ * removed and replaced (st_create_over), and nothing else.
  * ST_ABSENT; ST_LOADING: another thread has been loading it for too long; ST_NO_MEMORY, ST_BUDGET,
  * ST_FAILED. */
 st_status st_load(st_store *store, const char *id, st_mesh **out);
-/* What is wrong with a mesh that is damaged; "" of one that is not. Lives as long as the mesh. */
+/* Why there is no content of a mesh, ST_DAMAGED or ST_NEWER, else ST_OK; and a sentence about that,
+ * else "". Both are for as long as the mesh is. */
+st_status st_unreadable(const st_mesh *mesh);
 const char *st_damage(const st_mesh *mesh);
 st_mesh *st_hold(st_mesh *mesh); /* adds a reference */
 void st_release(st_mesh *mesh);  /* takes NULL */

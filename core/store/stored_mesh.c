@@ -123,6 +123,11 @@ void st_release(st_mesh *mesh)
     he_mem_free(mesh);
 }
 
+st_status st_unreadable(const st_mesh *mesh)
+{
+    return mesh->info.unreadable;
+}
+
 const char *st_damage(const st_mesh *mesh)
 {
     return mesh->damage == NULL ? "" : mesh->damage;

@@ -56,8 +56,8 @@ typedef struct st_write {
  * records carry the key. Where info.busy a long edit has claimed the mesh: then it may only be
  * removed. Without the lock: ST_ABSENT, ST_LOST, ST_NO_MEMORY; `info` is filled in then too. */
 st_status st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
-/* Claims the mesh for a long edit. ST_ABSENT, ST_LOST, ST_DAMAGED, ST_BUSY, ST_NO_MEMORY; `info` is
- * filled in then too. */
+/* Claims the mesh for a long edit. ST_ABSENT, ST_LOST, ST_DAMAGED, ST_NEWER, ST_BUSY, ST_NO_MEMORY;
+ * `info` is filled in then too. */
 st_status st_write_claim(st_mesh *mesh, const st_keyed *keyed, st_write *out);
 /* The content of a claimed mesh, to be looked at until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *write);
@@ -83,7 +83,7 @@ void st_write_remove(st_write *write);
 
 /* Makes it so and ends the write: the new facts are in `info`. `ops` names the operations of an
  * edit for the history, NULL for anything else. Where it is refused the write has ended with
- * nothing done: ST_DAMAGED (of a damaged mesh only the removal can be committed), ST_BEHIND,
+ * nothing done: ST_DAMAGED, ST_NEWER (of such a mesh only the removal can be committed), ST_BEHIND,
  * ST_FULL, ST_FAILED, ST_NO_MEMORY; a claim whose mesh was removed or lost meanwhile: ST_ABSENT,
  * ST_LOST. A claim may wait for the disk, and is not to be committed on a worker. */
 st_status st_write_commit(st_write *write, const char *ops);

@@ -211,6 +211,27 @@ static void a_damaged_mesh_can_only_go(void **state)
     }
 }
 
+static void a_mesh_of_a_newer_release_waits_for_it(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_free(b);
+    kept_journal_damage(journal, "m", 1, KEPT_NEWER, 0);
+    b = restart(NULL);
+    expect_code(b, 500, "mesh_newer", "GET", "/v1/meshes/m", NULL);
+    expect_code(b, 500, "mesh_newer", "POST", "/v1/meshes/m/undo", "{}");
+    expect_code(b, 500, "mesh_newer", "POST", "/v1/meshes/n/edits",
+                "{\"op\":\"append\",\"mesh\":\"m\"}");
+    bench_reply list = bench_expect(200, bench_get(b, "/v1/meshes"));
+    assert_null(strstr(list.body, "\"damage\""));
+    bench_done(list);
+    bench_free(b);
+    kept_journal_damage(journal, "m", 1, KEPT_NEWER, 0);
+    b = restart(NULL);
+    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/content")));
+    end(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -220,6 +241,7 @@ int main(void)
         cmocka_unit_test(preconditions_hold_of_a_cold_mesh),
         cmocka_unit_test(a_list_loads_nothing),
         cmocka_unit_test(a_damaged_mesh_can_only_go),
+        cmocka_unit_test(a_mesh_of_a_newer_release_waits_for_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,6 +100,16 @@ static void loaded_clear(loaded *l)
     he_mesh_free(l->staged_content);
 }
 
+/* What is found damaged is condemned, as the store does it. */
+static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *out)
+{
+    st_status status = j->read(reader, out);
+    if (status == ST_DAMAGED) {
+        j->condemn(reader, out->why);
+    }
+    return status;
+}
+
 /* Reads the parts that follow a piece. */
 static st_status load_parts(const st_journal *j, st_reader *reader, uint64_t parts, he_mesh **out)
 {
@@ -108,7 +118,7 @@ static st_status load_parts(const st_journal *j, st_reader *reader, uint64_t par
     assert_int_equal(he_stored_reader_new(parts * HE_STORED_PART, &content, NULL), HE_OK);
     for (uint64_t i = 0; i < parts && status == ST_OK; i++) {
         st_piece piece;
-        status = j->read(reader, &piece);
+        status = read_piece(j, reader, &piece);
         if (status == ST_OK) {
             assert_int_equal(piece.kind, ST_PIECE_PART);
             assert_int_equal(
@@ -157,7 +167,7 @@ static loaded load(const st_journal *j, const char *id)
     if (l.status != ST_OK) {
         return l;
     }
-    l.status = j->read(reader, &piece);
+    l.status = read_piece(j, reader, &piece);
     if (l.status == ST_OK) {
         assert_int_equal(piece.kind, ST_PIECE_BASE);
         assert_string_equal(piece.record.id, id);
@@ -169,7 +179,7 @@ static loaded load(const st_journal *j, const char *id)
         l.status = load_parts(j, reader, piece.parts, &l.content);
     }
     while (l.status == ST_OK) {
-        l.status = j->read(reader, &piece);
+        l.status = read_piece(j, reader, &piece);
         if (l.status != ST_OK || piece.kind == ST_PIECE_END) {
             break;
         }

@@ -606,7 +606,7 @@ static void make_damaged(kept_damage how)
     }
     st_release(mesh);
     st_store_free(store);
-    kept_journal_damage(journal, "m", 4, how, 5);
+    kept_journal_damage(journal, "m", 4, how, how == KEPT_NEWER ? 0 : 5);
 }
 
 static void what_is_damaged_is_named(void **state)
@@ -624,6 +624,33 @@ static void what_is_damaged_is_named(void **state)
         }
         kept_journal_free(journal);
     }
+}
+
+static void a_mesh_of_a_newer_release_is_named_and_left_as_it_is(void **state)
+{
+    (void)state;
+    make_damaged(KEPT_NEWER);
+    for (int again = 0; again < 2; again++) {
+        st_store *store = open_store(1 << 20);
+        st_mesh *mesh = NULL;
+        st_write w;
+        assert_int_equal(st_load(store, "m", &mesh), ST_OK);
+        assert_int_equal(st_unreadable(mesh), ST_NEWER);
+        assert_non_null(strstr(st_damage(mesh), "the edit has version 2, this release reads 1"));
+        assert_int_equal(st_write_claim(mesh, NULL, &w), ST_NEWER);
+        assert_non_null(writing_begin(mesh, &w));
+        st_write_rename(&w, "no");
+        assert_int_equal(st_write_commit(&w, NULL), ST_NEWER);
+        assert_false(kept_journal_facts(journal, "m").condemned);
+        st_release(mesh);
+        st_store_free(store);
+    }
+    /* The newer release reads it. */
+    kept_journal_damage(journal, "m", 4, KEPT_NEWER, 0);
+    st_store *store = open_store(1 << 20);
+    st_release(load(store, "m"));
+    st_store_free(store);
+    kept_journal_free(journal);
 }
 
 static void a_damaged_mesh_can_be_removed(void **state)
@@ -728,6 +755,7 @@ int main(void)
         cmocka_unit_test(without_memory_nothing_is_loaded),
         cmocka_unit_test(without_memory_for_its_keys_nothing_is_loaded),
         cmocka_unit_test(what_is_damaged_is_named),
+        cmocka_unit_test(a_mesh_of_a_newer_release_is_named_and_left_as_it_is),
         cmocka_unit_test(a_damaged_mesh_can_be_removed),
         cmocka_unit_test(a_damaged_mesh_can_be_replaced),
         cmocka_unit_test(a_list_has_what_is_in_memory_and_what_is_not),

@@ -39,6 +39,7 @@ struct st_reader {
     int64_t snapshot;
     uint64_t part, parts_left;
     he_cursor inline_parts;
+    char why[ST_DAMAGE]; /* there is no next piece */
 };
 
 static st_status status_of(st_sql outcome)
@@ -158,42 +159,33 @@ st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t 
 /* --- damage --- */
 
 /* Under the lock; NULL where nothing was found. */
-static st_finding *find_finding(st_sqlite *self, uint64_t incarnation)
+static st_finding *find_finding(st_sqlite *self, uint64_t incarnation, uint64_t base)
 {
     for (size_t i = 0; i < ST_FINDINGS; i++) {
-        if (self->findings[i].incarnation == incarnation && self->findings[i].damage[0] != '\0') {
-            return &self->findings[i];
+        st_finding *finding = &self->findings[i];
+        if (finding->incarnation == incarnation && finding->base == base &&
+            finding->damage[0] != '\0') {
+            return finding;
         }
     }
     return NULL;
 }
 
-void st_findings_forget(st_sqlite *self, uint64_t incarnation)
+static void note_finding(st_sqlite *self, const st_finding *noted)
 {
     pthread_mutex_lock(&self->lock);
-    st_finding *finding = find_finding(self, incarnation);
-    if (finding != NULL) {
-        finding->damage[0] = '\0';
-    }
-    pthread_mutex_unlock(&self->lock);
-}
-
-static void note_finding(st_sqlite *self, uint64_t incarnation, const char *damage)
-{
-    pthread_mutex_lock(&self->lock);
-    if (find_finding(self, incarnation) == NULL) {
-        st_finding *finding = &self->findings[self->last_finding++ % ST_FINDINGS];
-        finding->incarnation = incarnation;
-        (void)snprintf(finding->damage, sizeof finding->damage, "%s", damage);
+    if (find_finding(self, noted->incarnation, noted->base) == NULL) {
+        self->findings[self->last_finding++ % ST_FINDINGS] = *noted;
     }
     pthread_mutex_unlock(&self->lock);
 }
 
 /* What was found since the row was written. */
-static st_status add_finding(st_sqlite *self, st_card *card)
+static st_status add_finding(st_sqlite *self, st_mesh_row *row)
 {
+    st_card *card = &row->card;
     pthread_mutex_lock(&self->lock);
-    const st_finding *finding = find_finding(self, card->incarnation);
+    const st_finding *finding = find_finding(self, card->incarnation, row->base);
     if (finding != NULL) {
         memcpy(card->damage, finding->damage, sizeof card->damage);
     }
@@ -201,17 +193,18 @@ static st_status add_finding(st_sqlite *self, st_card *card)
     return finding == NULL ? ST_OK : ST_DAMAGED;
 }
 
-void st_sqlite_condemn(void *context, uint64_t incarnation, const char *damage)
+void st_sqlite_condemn(st_reader *reader, const char *damage)
 {
-    st_sqlite *self = context;
-    note_finding(self, incarnation, damage);
+    st_sqlite *self = reader->journal;
+    st_finding finding = {.incarnation = reader->row.card.incarnation, .base = reader->row.base};
+    st_copy_text(finding.damage, damage, ST_DAMAGE - 1);
+    note_finding(self, &finding);
     st_condemned *condemned = self->only_reads ? NULL : he_mem_zero(1, sizeof *condemned);
     if (condemned == NULL) {
         return; /* it is found again at the next load */
     }
     condemned->item.kind = ST_ITEM_CONDEMN;
-    condemned->incarnation = incarnation;
-    (void)snprintf(condemned->damage, sizeof condemned->damage, "%s", damage);
+    condemned->finding = finding;
     pthread_mutex_lock(&self->lock);
     st_queue_put(self, &condemned->item);
     pthread_mutex_unlock(&self->lock);
@@ -220,12 +213,10 @@ void st_sqlite_condemn(void *context, uint64_t incarnation, const char *damage)
 __attribute__((format(printf, 2, 3))) static st_status damaged(st_reader *reader,
                                                                const char *format, ...)
 {
-    char text[ST_DAMAGE];
     va_list values;
     va_start(values, format);
-    (void)vsnprintf(text, sizeof text, format, values);
+    (void)vsnprintf(reader->why, sizeof reader->why, format, values);
     va_end(values);
-    st_sqlite_condemn(reader->journal, reader->row.card.incarnation, text);
     return ST_DAMAGED;
 }
 
@@ -283,7 +274,7 @@ st_status st_sqlite_open_mesh(void *context, const char *id, st_card *card, st_r
         pthread_mutex_unlock(&self->cards_lock);
     }
     if (status == ST_OK) {
-        status = add_finding(self, &row.card);
+        status = add_finding(self, &row);
         if (status == ST_DAMAGED && reader != NULL) {
             st_sqlite_shut(*reader);
             *reader = NULL;
@@ -323,9 +314,11 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
                             uint64_t number)
 {
     he_error err = {.status = HE_OK};
-    if (st_frame_read(bytes, size, &reader->frame, &err) != HE_OK) {
-        return damaged(reader, "record %llu, byte %llu: %s", (unsigned long long)number,
-                       (unsigned long long)err.at, err.text);
+    const he_status status = st_frame_read(bytes, size, &reader->frame, &err);
+    if (status != HE_OK) {
+        (void)damaged(reader, "record %llu, byte %llu: %s", (unsigned long long)number,
+                      (unsigned long long)err.at, err.text);
+        return status == HE_UNSUPPORTED ? ST_NEWER : ST_DAMAGED;
     }
     if (reader->frame.record.number != number) {
         return damaged(reader, "record %llu says that it is %llu", (unsigned long long)number,
@@ -548,7 +541,7 @@ static st_status read_record(st_reader *reader, st_piece *out)
     return status;
 }
 
-st_status st_sqlite_read(st_reader *reader, st_piece *out)
+static st_status read_next(st_reader *reader, st_piece *out)
 {
     bool got = false;
     st_status status = ST_OK;
@@ -570,4 +563,13 @@ st_status st_sqlite_read(st_reader *reader, st_piece *out)
     }
     reader->at = AT_RECORDS;
     return read_record(reader, out);
+}
+
+st_status st_sqlite_read(st_reader *reader, st_piece *out)
+{
+    st_status status = read_next(reader, out);
+    if (status != ST_OK) {
+        *out = (st_piece){.kind = ST_PIECE_END, .why = reader->why};
+    }
+    return status;
 }

@@ -226,7 +226,6 @@ static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, 
     if (outcome == ST_SQL_DONE && is_base && entry->number > 1) {
         head->row.base = entry->number;
         head->row.card.damage[0] = '\0'; /* it was of what is forgotten now */
-        st_findings_forget(self, entry->incarnation);
         outcome = st_purge_before(self, head->row.key, entry->number, entry->stage == NULL);
     }
     return outcome;
@@ -295,13 +294,15 @@ st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room)
 
 st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned)
 {
+    const st_finding *finding = &condemned->finding;
     st_head *head;
-    st_sql outcome = st_head_find(self, condemned->incarnation, &head);
+    st_sql outcome = st_head_find(self, finding->incarnation, &head);
     if (outcome == ST_SQL_DAMAGED) {
         return ST_SQL_DONE; /* its row says so by itself */
     }
-    if (outcome == ST_SQL_DONE && head != NULL && head->row.card.damage[0] == '\0') {
-        memcpy(head->row.card.damage, condemned->damage, sizeof condemned->damage);
+    if (outcome == ST_SQL_DONE && head != NULL && head->row.base == finding->base &&
+        head->row.card.damage[0] == '\0') {
+        memcpy(head->row.card.damage, finding->damage, sizeof finding->damage);
         st_head_touch(self, head);
     }
     return outcome;

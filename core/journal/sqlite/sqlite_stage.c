@@ -252,6 +252,7 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     if (outcome == ST_SQL_DONE && base != 0) {
         head->row.base = base;
+        head->row.card.damage[0] = '\0'; /* what lies after it is read, and looked at, again */
         st_head_touch(self, head);
         outcome = st_purge_before(self, head->row.key, base, false);
     }

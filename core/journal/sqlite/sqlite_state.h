@@ -65,10 +65,15 @@ typedef struct st_sqlite_room {
     st_queued entries[];
 } st_sqlite_room;
 
+/* What is wrong with a mesh as it is loaded from that base. */
+typedef struct st_finding {
+    uint64_t incarnation, base;
+    char damage[ST_DAMAGE];
+} st_finding;
+
 typedef struct st_condemned {
     st_item item;
-    uint64_t incarnation;
-    char damage[ST_DAMAGE];
+    st_finding finding;
 } st_condemned;
 
 /* Parts on their way to the disk, a slice at a time. */
@@ -122,14 +127,9 @@ typedef enum st_write_mode { ST_WRITES, ST_WRITES_FULL, ST_WRITES_FAILED } st_wr
 
 enum { ST_LOADS = 2 }; /* at once */
 
-/* What was found wrong with a mesh: its row says so only once that was committed, and never where
- * nothing is written. */
-typedef struct st_finding {
-    uint64_t incarnation;
-    char damage[ST_DAMAGE];
-} st_finding;
-
-enum { ST_FINDINGS = 64 }; /* the oldest are forgotten */
+/* Of what was found wrong a mesh's row says so only once that was committed, and never where
+ * nothing is written. The oldest are forgotten. */
+enum { ST_FINDINGS = 64 };
 
 typedef struct st_load_slot {
     st_db db;
@@ -273,9 +273,7 @@ st_sql st_purge_dead_stages(st_sqlite *self);
 st_status st_sqlite_open_mesh(void *self, const char *id, st_card *card, st_reader **reader);
 st_status st_sqlite_read(st_reader *reader, st_piece *out);
 void st_sqlite_shut(st_reader *reader);
-/* What was damaged of the mesh is no longer read. */
-void st_findings_forget(st_sqlite *self, uint64_t incarnation);
-void st_sqlite_condemn(void *self, uint64_t incarnation, const char *damage);
+void st_sqlite_condemn(st_reader *reader, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
 /* --- sqlite_keys.c --- */
 /* The row's texts lie in `id` and `text`. False where the sum is wrong: such a key is as good as

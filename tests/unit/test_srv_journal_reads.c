@@ -1,0 +1,213 @@
+/* What happens to a mesh in a folder's journal while it is read, and what a newer release wrote. */
+#include "tests/store_folder.h"
+#include "unit/edit_script.h"
+#include "unit/fixture.h"
+
+#include "journal/crc32c.h"
+
+#include <sqlite3.h>
+
+static char folder[FOLDER_PATH];
+static he_mesh *content;
+
+static int make_folder(void **state)
+{
+    (void)state;
+    folder_make(folder);
+    content = script_mesh("012", NULL);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    folder_remove(folder);
+    he_mesh_free(content);
+    return 0;
+}
+
+static void open_store(told_journal *told)
+{
+    st_sqlite_opened opened;
+    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = "test"}, &opened)) {
+        fail_msg("%s", opened.message);
+    }
+    told_begin(told, &opened.journal);
+}
+
+static kept_mesh mesh_as(const char *id)
+{
+    static uint64_t incarnations = 7000;
+    kept_mesh mesh = {.name = "name", .content = content, .incarnation = ++incarnations};
+    (void)snprintf(mesh.id, sizeof mesh.id, "%s", id);
+    return mesh;
+}
+
+static sqlite3 *open_database(void)
+{
+    char path[2 * FOLDER_PATH];
+    sqlite3 *db;
+    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    return db;
+}
+
+static int64_t number_of(const char *text)
+{
+    sqlite3 *db = open_database();
+    sqlite3_stmt *s;
+    assert_int_equal(sqlite3_prepare_v2(db, text, -1, &s, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
+    int64_t number = sqlite3_column_int64(s, 0);
+    sqlite3_finalize(s);
+    sqlite3_close(db);
+    return number;
+}
+
+/* --- while it is read --- */
+
+/* Opens a reader, lets `change` happen to the mesh, and condemns what was read: is the mesh of that
+ * id damaged then? `change` is 0 for an edit, 1 for a new content, 2 for a mesh made anew. */
+static bool is_condemned_after(int change, bool restarts)
+{
+    told_journal told;
+    kept_mesh mesh = mesh_as("m"), anew = mesh_as("m");
+    st_reader *reader = NULL;
+    st_card card;
+    open_store(&told);
+    const st_journal *j = &told.journal;
+    kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
+    assert_int_equal(j->open(j->self, "m", &card, &reader), ST_OK);
+    if (change == 0) {
+        kept_append(j, kept_edit(&mesh), &mesh, "xyz", 3);
+    } else if (change == 1) {
+        kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
+    } else {
+        kept_append(j, kept_remove(&mesh), &mesh, NULL, 0);
+        kept_append(j, kept_content(&anew), &anew, NULL, 0);
+    }
+    assert_int_equal(j->open(j->self, "m", &card, NULL), ST_OK);
+    j->condemn(reader, "it is none");
+    j->shut(reader);
+    if (restarts) {
+        told_end(&told);
+        open_store(&told);
+    }
+    st_status status = j->open(j->self, "m", &card, NULL);
+    assert_true(status == ST_OK || strcmp(card.damage, "it is none") == 0);
+    told_end(&told);
+    folder_remove(folder);
+    folder_make(folder);
+    return status == ST_DAMAGED;
+}
+
+static void a_mesh_made_anew_is_not_condemned_for_its_predecessor(void **state)
+{
+    (void)state;
+    for (int restarts = 0; restarts < 2; restarts++) {
+        assert_true(is_condemned_after(0, restarts != 0));
+        assert_false(is_condemned_after(1, restarts != 0));
+        assert_false(is_condemned_after(2, restarts != 0));
+    }
+}
+
+/* Puts a record back with another version and a sum that is right. */
+static void set_version(unsigned char version)
+{
+    unsigned char bytes[256];
+    sqlite3 *db = open_database();
+    sqlite3_stmt *s;
+    assert_int_equal(
+        sqlite3_prepare_v2(db, "SELECT bytes FROM record WHERE number = 4", -1, &s, NULL),
+        SQLITE_OK);
+    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
+    const size_t size = (size_t)sqlite3_column_bytes(s, 0);
+    assert_true(size <= sizeof bytes);
+    memcpy(bytes, sqlite3_column_blob(s, 0), size);
+    sqlite3_finalize(s);
+    bytes[4] = version;
+    const uint32_t sum = st_crc32c(0, bytes + 4, size - 4);
+    memcpy(bytes, &sum, sizeof sum);
+    assert_int_equal(
+        sqlite3_prepare_v2(db, "UPDATE record SET bytes = ?1 WHERE number = 4", -1, &s, NULL),
+        SQLITE_OK);
+    assert_int_equal(sqlite3_bind_blob(s, 1, bytes, (int)size, SQLITE_STATIC), SQLITE_OK);
+    assert_int_equal(sqlite3_step(s), SQLITE_DONE);
+    sqlite3_finalize(s);
+    sqlite3_close(db);
+}
+
+static char why[ST_DAMAGE];
+
+static st_status read_to_end(void)
+{
+    told_journal told;
+    st_reader *reader = NULL;
+    st_piece piece = {.kind = ST_PIECE_BASE};
+    st_card card;
+    open_store(&told);
+    const st_journal *j = &told.journal;
+    st_status status = j->open(j->self, "m", &card, &reader);
+    while (status == ST_OK && piece.kind != ST_PIECE_END) {
+        status = j->read(reader, &piece);
+    }
+    (void)snprintf(why, sizeof why, "%s", piece.why == NULL ? "" : piece.why);
+    j->shut(reader);
+    told_end(&told);
+    return status;
+}
+
+static void a_record_of_a_newer_release_is_refused_with_both_versions(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = mesh_as("m");
+    open_store(&told);
+    kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
+    for (int i = 0; i < 5; i++) {
+        kept_append(&told.journal, kept_edit(&mesh), &mesh, "xyz", 3);
+    }
+    told_end(&told);
+    set_version(2);
+    assert_int_equal(read_to_end(), ST_NEWER);
+    if (strstr(why, "record 4, byte") == NULL || strstr(why, "version 2") == NULL ||
+        strstr(why, "version 1") == NULL) {
+        fail_msg("\"%s\" does not name the record and both versions", why);
+    }
+    set_version(1);
+    assert_int_equal(read_to_end(), ST_OK);
+}
+
+/* A snapshot that was staged of a content which was replaced before it could be the base. */
+static void a_base_before_the_base_leaves_nothing(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = mesh_as("m");
+    st_stage *stage;
+    open_store(&told);
+    const st_journal *j = &told.journal;
+    kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
+    st_record facts = kept_edit(&mesh);
+    kept_append(j, facts, &mesh, "xyz", 3);
+    assert_int_equal(j->stage(j->self, content, &stage), ST_OK);
+    st_record put = kept_content(&mesh);
+    kept_append(j, put, &mesh, NULL, 0);
+    facts.kind = ST_RECORD_CONTENT;
+    j->rebase(j->self, stage, &facts, facts.revision);
+    told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "xyz", 3));
+    told_end(&told);
+    assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+        STORE_TEST(a_mesh_made_anew_is_not_condemned_for_its_predecessor),
+        STORE_TEST(a_record_of_a_newer_release_is_refused_with_both_versions),
+        STORE_TEST(a_base_before_the_base_leaves_nothing),
+#undef STORE_TEST
+    };
+    return cmocka_run_group_tests_name("journal while it is read", tests, NULL, NULL);
+}
