@@ -1,5 +1,7 @@
 #include "tests/kept_journal.h"
 
+#include "tests/journal_room.h"
+
 #include "stored/stored.h"
 
 #include <pthread.h>
@@ -88,22 +90,16 @@ static st_status reserve(void *self, const st_room_need *need, st_room **out)
     pthread_mutex_lock(&journal->lock);
     st_status refuse = journal->refuse;
     pthread_mutex_unlock(&journal->lock);
-    if (refuse != ST_OK && !(need->freeing && refuse == ST_FULL)) {
-        return refuse;
-    }
-    st_room *room = malloc(sizeof *room + need->bytes);
-    assert_non_null(room);
-    *room = (st_room){.bytes = (unsigned char *)(room + 1), .size = need->bytes};
-    *out = room;
-    count_out(journal, 1);
-    return ST_OK;
+    st_status status = journal_room_new(refuse, need, out);
+    count_out(journal, status == ST_OK);
+    return status;
 }
 
 static void leave(void *self, st_room *room)
 {
     if (room != NULL) {
         count_out(self, -1);
-        free(room);
+        journal_room_free(room);
     }
 }
 
@@ -437,19 +433,6 @@ static uint64_t count_meshes(void *self)
     return count;
 }
 
-static void listen_to(void *self, const st_journal_listener *listener)
-{
-    (void)self;
-    if (listener != NULL) {
-        listener->moved(listener->context, UINT64_MAX);
-    }
-}
-
-static void close_journal(void *self)
-{
-    (void)self;
-}
-
 /* --- for tests --- */
 
 kept_journal *kept_journal_new(void)
@@ -474,36 +457,26 @@ void kept_journal_free(kept_journal *journal)
     free(journal);
 }
 
-/* It forgets keys. */
-static st_status keys_none(void *self, const char *id, st_take_key *take, void *context)
-{
-    (void)self;
-    (void)id;
-    (void)take;
-    (void)context;
-    return ST_OK;
-}
-
 st_journal kept_journal_open(kept_journal *journal)
 {
-    return (st_journal){.self = journal,
-                        .keeps = true,
-                        .secret = {journal->secret[0], journal->secret[1]},
-                        .reserve = reserve,
-                        .leave = leave,
-                        .append = append,
-                        .stage = stage_content,
-                        .unstage = unstage,
-                        .rebase = rebase,
-                        .open = open_mesh,
-                        .read = read_piece,
-                        .shut = shut,
-                        .condemn = condemn,
-                        .list = list_cards,
-                        .keys = keys_none,
-                        .count = count_meshes,
-                        .listen = listen_to,
-                        .close = close_journal};
+    st_journal out = st_journal_memory(); /* whose `listen` says that all is durable */
+    out.self = journal;
+    out.keeps = true;
+    memcpy(out.secret, journal->secret, sizeof out.secret);
+    out.reserve = reserve;
+    out.leave = leave;
+    out.append = append;
+    out.stage = stage_content;
+    out.unstage = unstage;
+    out.rebase = rebase;
+    out.open = open_mesh;
+    out.read = read_piece;
+    out.shut = shut;
+    out.condemn = condemn;
+    out.list = list_cards;
+    out.keys = journal_keys_none;
+    out.count = count_meshes;
+    return out;
 }
 
 void kept_journal_refuse(kept_journal *journal, st_status status)

@@ -1,6 +1,7 @@
 #include "tests/slow_journal.h"
 
 #include "base/mem.h"
+#include "tests/journal_room.h"
 
 #include <stdio.h>
 
@@ -26,24 +27,16 @@ static st_status reserve(void *self, const st_room_need *need, st_room **out)
 static st_status reserve_kept(void *self, const st_room_need *need, st_room **out)
 {
     slow_journal *journal = self;
-    if (journal->refuse != ST_OK && !(need->freeing && journal->refuse == ST_FULL)) {
-        return journal->refuse;
-    }
-    st_room *room = he_mem_alloc(sizeof *room + need->bytes);
-    if (room == NULL) {
-        return ST_NO_MEMORY;
-    }
-    *room = (st_room){.bytes = (unsigned char *)(room + 1), .size = need->bytes};
-    *out = room;
-    count_out(journal, 1);
-    return ST_OK;
+    st_status status = journal_room_new(journal->refuse, need, out);
+    count_out(journal, status == ST_OK);
+    return status;
 }
 
 static void leave(void *self, st_room *room)
 {
     if (room != NULL) {
         count_out(self, -1);
-        he_mem_free(room);
+        journal_room_free(room);
     }
 }
 
@@ -101,15 +94,6 @@ static st_status list_none(void *self, const char *after, st_card *out, size_t l
     return ST_OK;
 }
 
-static st_status keys_none(void *self, const char *id, st_take_key *take, void *context)
-{
-    (void)self;
-    (void)id;
-    (void)take;
-    (void)context;
-    return ST_OK;
-}
-
 static uint64_t count_none(void *self)
 {
     (void)self;
@@ -119,7 +103,7 @@ static uint64_t count_none(void *self)
 /* Under the lock: what the newest group brought is kept to be looked at. */
 static void keep_newest(slow_journal *journal, st_room *room, const st_record *first)
 {
-    he_mem_free(journal->room);
+    journal_room_free(journal->room);
     free_stage(journal->stage);
     journal->out -= (size_t)(room != NULL) + (size_t)(first->stage != NULL);
     journal->room = room;
@@ -155,7 +139,7 @@ static void listen_to(void *self, const st_journal_listener *listener)
 static void close_journal(void *self)
 {
     slow_journal *journal = self;
-    he_mem_free(journal->room);
+    journal_room_free(journal->room);
     free_stage(journal->stage);
     pthread_cond_destroy(&journal->changed);
     pthread_mutex_destroy(&journal->lock);
@@ -186,7 +170,7 @@ st_journal slow_journal_open_keeping(slow_journal *journal)
     kept.unstage = unstage;
     kept.open = open_none;
     kept.list = list_none;
-    kept.keys = keys_none;
+    kept.keys = journal_keys_none;
     kept.count = count_none;
     return kept;
 }

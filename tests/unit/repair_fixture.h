@@ -97,6 +97,29 @@ static inline void expect_carried(const he_soup *before, const he_soup *after,
     }
 }
 
+/* Repaired while the N-th allocation fails, for every N until there are no more; there are more
+ * than `least`. */
+static inline void expect_failures_survived(const he_soup *soup, unsigned which, long least)
+{
+    he_status status = HE_NO_MEMORY;
+    long n = 0;
+    while (status != HE_OK) {
+        he_soup copy;
+        he_repaired done = {0};
+        he_error err = {0};
+        he_repair_plan plan = plan_of(which);
+        copy_soup(soup, &copy);
+        fixture_fail_at(++n);
+        status = he_repair_soup(&copy, &plan, &done, &err);
+        fixture_memory_back();
+        assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        assert_int_equal(err.status, status);
+        he_repaired_clear(&done);
+        he_soup_clear(&copy);
+    }
+    assert_true(n > least);
+}
+
 /* Repaired, built and checked; freed by the caller. */
 static inline he_mesh *mend(const he_soup *soup, const he_repair_plan *plan, he_repaired *done)
 {

@@ -215,27 +215,12 @@ static void cuts_keep_within_the_limits(void **state)
 static void every_failing_allocation_is_survived(void **state)
 {
     (void)state;
-    he_soup soup, copy;
+    he_soup soup;
     make_keyhole(&soup, 40);
     static const uint32_t quad[] = {0, 1, 2, 2}, none[] = {5, 5};
     assert_int_equal(he_soup_add_face(&soup, quad, 4, NULL), HE_OK);
     assert_int_equal(he_soup_add_face(&soup, none, 2, NULL), HE_OK);
-    he_status status = HE_NO_MEMORY;
-    long n = 0;
-    while (status != HE_OK) {
-        he_repaired done = {0};
-        he_error err = {0};
-        he_repair_plan plan = plan_of(DEGENERATE);
-        copy_soup(&soup, &copy);
-        fixture_fail_at(++n);
-        status = he_repair_soup(&copy, &plan, &done, &err);
-        fixture_memory_back();
-        assert_true(status == HE_OK || status == HE_NO_MEMORY);
-        assert_int_equal(err.status, status);
-        he_repaired_clear(&done);
-        he_soup_clear(&copy);
-    }
-    assert_true(n > 20);
+    expect_failures_survived(&soup, DEGENERATE, 20);
     he_soup_clear(&soup);
 }
 

@@ -107,24 +107,9 @@ static void an_edge_of_very_many_faces_takes_no_longer(void **state)
 static void every_failing_allocation_is_survived(void **state)
 {
     (void)state;
-    he_soup soup, copy;
+    he_soup soup;
     fixture_soup(&soup, "012,013,014,015,016,103,104,105,106,102");
-    he_status status = HE_NO_MEMORY;
-    long n = 0;
-    while (status != HE_OK) {
-        he_repaired done = {0};
-        he_error err = {0};
-        he_repair_plan plan = plan_of(SPLIT);
-        copy_soup(&soup, &copy);
-        fixture_fail_at(++n);
-        status = he_repair_soup(&copy, &plan, &done, &err);
-        fixture_memory_back();
-        assert_true(status == HE_OK || status == HE_NO_MEMORY);
-        assert_int_equal(err.status, status);
-        he_repaired_clear(&done);
-        he_soup_clear(&copy);
-    }
-    assert_true(n > 15);
+    expect_failures_survived(&soup, SPLIT, 15);
     he_soup_clear(&soup);
 }
 

@@ -290,6 +290,15 @@ static he_mesh *large_mesh(void)
     return mesh;
 }
 
+/* Opens the store and appends a mesh "a" of this content. */
+static kept_mesh open_with_mesh(told_journal *told, const he_mesh *content)
+{
+    kept_mesh mesh = mesh_as("a", content);
+    open_store(told);
+    kept_append(&told->journal, kept_content(&mesh), &mesh, NULL, 0);
+    return mesh;
+}
+
 static void wait_until_purged(told_journal *told)
 {
     const st_journal *j = &told->journal;
@@ -305,11 +314,9 @@ static void a_staged_content_is_that_of_its_record(void **state)
     (void)state;
     told_journal told;
     he_mesh *small = script_mesh("012", NULL), *large = large_mesh();
-    kept_mesh mesh = mesh_as("a", small);
+    kept_mesh mesh = open_with_mesh(&told, small);
     st_stage *stage;
-    open_store(&told);
     const st_journal *j = &told.journal;
-    kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
     kept_append(j, kept_edit(&mesh), &mesh, "x", 1);
     /* An edit with a content, which can be undone: the base stays. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
@@ -359,11 +366,9 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     (void)state;
     told_journal told;
     he_mesh *small = script_mesh("012", NULL), *large = large_mesh();
-    kept_mesh mesh = mesh_as("a", small);
+    kept_mesh mesh = open_with_mesh(&told, small);
     st_stage *stage;
-    open_store(&told);
     const st_journal *j = &told.journal;
-    kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
     for (unsigned char i = 0; i < 20; i++) {
         kept_append(j, kept_edit(&mesh), &mesh, &i, 1);
     }

@@ -57,6 +57,15 @@ static kept_mesh new_mesh(void)
     return (kept_mesh){.id = "a", .name = "a", .content = content, .incarnation = ++incarnations};
 }
 
+/* Opens the store and waits until a new mesh is durable in it. */
+static kept_mesh open_with_mesh(told_journal *told, size_t queue)
+{
+    kept_mesh mesh = new_mesh();
+    open_store(told, queue);
+    told_wait(told, kept_append(&told->journal, kept_content(&mesh), &mesh, NULL, 0));
+    return mesh;
+}
+
 /* Reads a mesh whole: how many records follow its base. */
 static st_status count_records(const st_journal *j, const char *id, unsigned *records)
 {
@@ -183,10 +192,8 @@ static void rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile(voi
 {
     (void)state;
     told_journal told;
-    kept_mesh mesh = new_mesh();
-    open_store(&told, 0);
+    kept_mesh mesh = open_with_mesh(&told, 0);
     const st_journal *j = &told.journal;
-    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
     st_room *early = reserve_after(j, ST_OK + ST_FULL, false);
     st_room *left = reserve_after(j, ST_OK + ST_FULL, false);
     disk_fill(true);
@@ -316,10 +323,8 @@ static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
 {
     (void)state;
     told_journal told;
-    kept_mesh mesh = new_mesh();
-    open_store(&told, 0);
+    kept_mesh mesh = open_with_mesh(&told, 0);
     const st_journal *j = &told.journal;
-    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
     disk_fill(true);
     kept_mesh lost = mesh;
     told_wait(&told, kept_append(j, kept_edit(&lost), &lost, "1", 1));
@@ -362,10 +367,8 @@ static void a_slow_disk_bounds_the_queue(void **state)
     (void)state;
     enum { QUEUE = 64 << 10 };
     told_journal told;
-    kept_mesh mesh = new_mesh();
-    open_store(&told, QUEUE);
+    kept_mesh mesh = open_with_mesh(&told, QUEUE);
     const st_journal *j = &told.journal;
-    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
     disk_hold(true);
     uint64_t last = 0;
     unsigned queued = 0;
@@ -403,10 +406,8 @@ static void one_connection_writes(void **state)
 {
     (void)state;
     told_journal told;
-    kept_mesh mesh = new_mesh();
-    open_store(&told, 0);
+    (void)open_with_mesh(&told, 0);
     const st_journal *j = &told.journal;
-    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
     st_card card;
     st_reader *readers[2];
     st_stage *stage;

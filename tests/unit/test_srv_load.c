@@ -240,6 +240,27 @@ static void expect_stacks(st_mesh *was, st_mesh *is)
     }
 }
 
+/* Loaded into a store of its own it is the mesh that was there. Returns the store. */
+static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
+{
+    st_store *other = open_store(budget);
+    *loaded = load(other, "m");
+    expect_same(mesh, *loaded);
+    return other;
+}
+
+/* The end of a run: loaded it is the same, and so is what undo and redo lead to. */
+static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
+{
+    st_mesh *loaded;
+    st_store *other = expect_loads(mesh, budget, &loaded);
+    kept_journal_ignore(journal);
+    expect_stacks(mesh, loaded);
+    st_release(loaded);
+    st_release(mesh);
+    st_store_free(other);
+}
+
 enum { ROUNDS = 12, CHANGES = 80 };
 
 /* Loaded again and again on its way, and once more at its end beside the one that was there. */
@@ -256,9 +277,8 @@ static void a_mesh_comes_back_as_it_was(void **state)
         for (unsigned i = 0; i < CHANGES; i++) {
             change(mesh, &random, i);
             if (md_chance(&random, 15)) {
-                st_store *other = open_store(budget);
-                st_mesh *loaded = load(other, "m");
-                expect_same(mesh, loaded);
+                st_mesh *loaded;
+                st_store *other = expect_loads(mesh, budget, &loaded);
                 /* The one that was loaded goes on. */
                 st_release(mesh);
                 st_store_free(store);
@@ -266,14 +286,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
                 store = other;
             }
         }
-        st_store *other = open_store(budget);
-        st_mesh *loaded = load(other, "m");
-        expect_same(mesh, loaded);
-        kept_journal_ignore(journal);
-        expect_stacks(mesh, loaded);
-        st_release(loaded);
-        st_release(mesh);
-        st_store_free(other);
+        expect_loads_with_stacks(mesh, budget);
         st_store_free(store);
         kept_journal_free(journal);
     }
@@ -313,9 +326,8 @@ static void a_younger_base_leads_to_the_same_mesh(void **state)
             change(mesh, &random, i);
             if (md_chance(&random, 20)) {
                 await_bases(pool);
-                st_store *other = open_store(budget);
-                st_mesh *loaded = load(other, "m");
-                expect_same(mesh, loaded);
+                st_mesh *loaded;
+                st_store *other = expect_loads(mesh, budget, &loaded);
                 st_release(loaded);
                 st_store_free(other);
                 uint64_t now = kept_journal_facts(journal, "m").base;
@@ -325,14 +337,7 @@ static void a_younger_base_leads_to_the_same_mesh(void **state)
             }
         }
         await_bases(pool);
-        st_store *other = open_store(budget);
-        st_mesh *loaded = load(other, "m");
-        expect_same(mesh, loaded);
-        kept_journal_ignore(journal);
-        expect_stacks(mesh, loaded);
-        st_release(loaded);
-        st_release(mesh);
-        st_store_free(other);
+        expect_loads_with_stacks(mesh, budget);
         st_pool_free(pool);
         st_store_free(store);
         kept_journal_free(journal);
