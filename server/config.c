@@ -39,8 +39,7 @@ static const option options[] = {
      "folder of the built page; otherwise looked for beside the executable"},
     {"store", TEXT, MEMBER(store), "sqlite:./hedge-data", "memory|sqlite:DIR", 0, 0,
      "where meshes are kept: in memory until the daemon stops, or for good in a folder, which is "
-     "made "
-     "where it is missing"},
+     "made if it is missing"},
     {"samples", FLAG, MEMBER(samples), "0", NULL, 0, 0,
      "put a few meshes into a store that is new"},
     {"log", CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
@@ -86,9 +85,9 @@ static const option options[] = {
     {"request-timeout", COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
      "for a whole body, however fast"},
     {"backup", COMMAND, MEMBER(backup), "", "FILE", 0, 0,
-     "write the store to a file, also beside a running daemon, and exit"},
+     "write the store to a file, even while a daemon uses it, and exit"},
     {"restore", COMMAND, MEMBER(restore), "", "FILE", 0, 0,
-     "put such a file in place of the store while no daemon runs, and exit"},
+     "replace the store by such a file, while no daemon uses it, and exit"},
     {"verify", ACTION, MEMBER(verify), "0", "[FILE]", 0, 0,
      "read every mesh of the store, or of such a file: exit status 0 when all are whole"},
     {"dump", COMMAND, MEMBER(dump), "", "DIR", 0, 0,

@@ -12,7 +12,7 @@ typedef struct kept_journal kept_journal;
 kept_journal *kept_journal_new(void);
 /* After the store that it was given to. Fails the test where a room, stage or reader is out. */
 void kept_journal_free(kept_journal *journal);
-/* For one store after the other: closing it keeps what it has. */
+/* May be opened again after its store was freed: closing the journal keeps what it has. */
 st_journal kept_journal_open(kept_journal *journal);
 
 /* What reserving and staging are answered from now on, but a removal by ST_FULL. */

@@ -118,7 +118,7 @@ static void write_line_schema(api_out *out, const char *line)
 /* Media types with the schema of those that are the API's own JSON, which a model is not; that of a
  * line is an extension, since OpenAPI has a word for it (itemSchema) only from 3.2 on. `example`
  * gives a body of one for `route`. */
-/* The field's name is free; a client that is made from this calls it so. */
+/* The server takes any field name; clients generated from this document use this one. */
 static void write_files_schema(api_out *out)
 {
     static const char schema[] =
@@ -359,10 +359,10 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(
             out, "Idempotency-Key",
             "1 to 255 visible characters of the client's choice. A request that took effect is "
-            "answered again for a day, with Idempotency-Replayed: true, and not done again; where "
-            "the first answer was too large to keep, or the server was started since, with 204 or "
-            "201 and no body. The key with another request is 422, while the first is under way "
-            "409. Refusals are not kept.");
+            "not done again for a day: its answer is repeated, with Idempotency-Replayed: true, or "
+            "is 204 or 201 without a body if the first was too large to keep or the server was "
+            "restarted. The key with another request is 422, and 409 while the first is under way. "
+            "Refusals are not kept.");
     }
 }
 

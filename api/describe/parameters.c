@@ -56,18 +56,22 @@ const api_parameter api_parameter_format = {
     0,
     0,
     formats,
-    "The format, in place of the media type. Of an upload that may then be missing, text/plain "
-    "or application/x-www-form-urlencoded, as programs say that do not know it."};
+    "The format of the body, instead of its Content-Type, which may then be missing, text/plain or "
+    "application/x-www-form-urlencoded."};
 const api_parameter api_parameter_format_out = {
     "format",    API_PARAM_CHOICE,
     0,           0,
-    formats_out, "The format, in place of the media type; mtl is the material library of obj."};
+    formats_out, "The format, instead of Accept; mtl is the material library of obj."};
 const api_parameter api_parameter_encoding = {
     "encoding", API_PARAM_CHOICE, 0,
     0,          encodings,        "Text or binary, where a format has both; binary if not said."};
 const api_parameter api_parameter_compress = {
-    "compress", API_PARAM_CHOICE, 0,
-    0,          compressions,     "Of glb: its buffers in EXT_meshopt_compression, without loss."};
+    "compress",
+    API_PARAM_CHOICE,
+    0,
+    0,
+    compressions,
+    "Compresses the buffers of a glb with EXT_meshopt_compression, without loss."};
 const api_parameter api_parameter_name = {
     "name", API_PARAM_TEXT, 0, ST_MESH_NAME, NULL, "Name of the mesh, where the body is a file."};
 const api_parameter api_parameter_repair = {
@@ -76,17 +80,17 @@ const api_parameter api_parameter_repair = {
     0,
     0,
     he_repair_names,
-    "What may be done to what the structure cannot hold: these repairs in this order, whatever the "
-    "order here. weld makes vertices within the tolerance one; drop_degenerate keeps of a "
-    "face that repeats a vertex what has an area: 1 2 3 3 becomes the triangle 1 2 3, one with a "
-    "keyhole is cut into triangles, and what has not three different corners is left out; "
+    "Repairs of a surface that is no mesh, made in this order, whatever the order here. weld "
+    "merges vertices within the tolerance; drop_degenerate mends faces that repeat a vertex: 1 2 3 "
+    "3 becomes the triangle 1 2 3, a face with a keyhole is cut into triangles, and a face with "
+    "fewer than three different corners is left out; "
     "drop_duplicates leaves out faces with the corners of an earlier face; "
     "orient turns faces so that neighbours agree; split gives every fan of faces a vertex of its "
     "own; fill closes small holes."};
 const api_parameter api_parameter_tolerance = {
     "tolerance", API_PARAM_NUMBER,
     0,           DBL_MAX,
-    NULL,        "How far apart the vertices may be that weld makes one; 0 if not said."};
+    NULL,        "How far apart vertices may be that weld merges; 0 if not said."};
 const api_parameter api_parameter_hole_edges = {
     "hole_edges",  API_PARAM_U64, 3,
     API_MAX_EXACT, NULL,          "The most edges of a hole that fill closes; 16 if not said."};

@@ -126,8 +126,8 @@ static const api_route routes[] = {
      .summary = "Create a mesh",
      .doc = "From a mesh document, a shape, or a file. A file that refers to others, as a .gltf to "
             "its .bin, comes with them as multipart/form-data, each under the name by which it is "
-            "referred to. What the structure cannot hold is refused with each offending element, "
-            "and with the repairs that would let it pass."},
+            "referred to. A surface that is no mesh is refused; the problem names each offending "
+            "element, and the repairs that would let it pass."},
 
     /* one mesh */
     {.method = "GET",
@@ -203,10 +203,9 @@ static const api_route routes[] = {
      .doc =
          "In the format that `format` or Accept asks for. What the format cannot carry is named "
          "in the header Export-Warnings, at most 1000 bytes, the rest as \"and 3 more\". A "
-         "position "
-         "beyond the range of floats is refused by glb and binary stl. A mesh holds texture "
-         "coordinates `uv` with v upward, as "
-         "OBJ, PLY and OFF do (glTF's runs down), and colours `color` of 0 to 1, which are bytes "
+         "position beyond the range of floats is refused by glb and binary stl. A mesh holds "
+         "texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (glTF's runs down), and "
+         "colours `color` of 0 to 1, which are bytes "
          "in PLY; reading and writing convert both. A file is sent at once however large the mesh "
          "is, unless a job is preferred: for each million faces a thread works about a second "
          "before the first byte of STL, half of that before one of GLB, and little before others; "
@@ -327,11 +326,9 @@ static const api_route routes[] = {
      .statuses = {200, 304, 410},
      .response = "material_list",
      .summary = "List the materials",
-     .doc =
-         "What faces look like that name them in their attribute `material`, whose label \"\" is "
-         "none. The operation `material_set` changes them. Colours are linear, as in glTF; those "
-         "of "
-         "an OBJ file's library are taken and written as linear too, as Blender does."},
+     .doc = "A face names its material in the attribute `material`; the label \"\" is none. The "
+            "operation `material_set` changes materials. Colours are linear, as in glTF; those "
+            "of an OBJ file's library are taken and written as linear too, as Blender does."},
 
     /* attributes */
     {.method = "GET",

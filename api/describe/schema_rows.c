@@ -22,7 +22,7 @@ const api_member api_answer_members[] = {
     {"mesh_item", "revision", "count", REQUIRED, NULL},
     {"mesh_item", "counts", "#counts", REQUIRED, NULL},
     {"mesh_item", "damage", "text", OPTIONAL,
-     "What is wrong with what the disk has of the mesh: it can be deleted or replaced."},
+     "What is damaged on the disk: the mesh can only be deleted or replaced."},
 
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
@@ -96,8 +96,7 @@ const api_member api_answer_members[] = {
      "drop_degenerate: faces that lost corners or were cut into triangles."},
     {"repair", "faces", "*id", OPTIONAL,
      "drop_degenerate: the first 100 of these, numbered as in the body. orient, fill: the first "
-     "100 "
-     "turned or made."},
+     "100 turned or made."},
     {"repair", "components", "count", OPTIONAL, "orient: in which faces were turned."},
     {"repair", "not_orientable", "count", OPTIONAL, "orient: components that are left to split."},
     {"repair", "clashes", "*id", OPTIONAL, "A face of each of these, of the first 100."},
@@ -438,7 +437,7 @@ const api_member api_request_members[] = {
     {"document", "faces", "**index", OPTIONAL, "Vertices counter-clockwise, counted from 0."},
     {"document", "attributes", "*#document_attribute", OPTIONAL, "Of any domain."},
     {"document", "materials", "*#material", OPTIONAL,
-     "What faces look like that name them in their attribute `material`."},
+     "A face names its material in the attribute `material`."},
 
     {"material", "name", "#material_name", REQUIRED, "No two have the same."},
     {"material", "base_color", "#color_alpha", OPTIONAL, "White if not said."},

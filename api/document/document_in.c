@@ -406,7 +406,7 @@ static bool find_list(api_document_in *in, char *list)
     return good;
 }
 
-/* The name of a member whose value is gathered. */
+/* Reads the name of a member; the value that follows is collected. */
 static bool begin_other(api_document_in *in, const char *key, size_t length)
 {
     in->state = INSIDE_OTHER;

@@ -154,7 +154,7 @@ void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
     write_answer(x, summary, status, extra);
 }
 
-/* What the mesh was when it was made: by now others may have changed or deleted it. */
+/* Shows the mesh as it was created: other clients may have changed or deleted it by now. */
 static void find_facts_as_made(api_exchange *x, const char *name)
 {
     st_read_begin(x->mesh, &x->info);

@@ -41,8 +41,8 @@ void api_answer_summary(api_exchange *x);
  * held for it. `extra` (may be NULL) writes more members before the object ends. */
 void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
                        void (*extra)(api_exchange *x));
-/* The same, 201 and Location, for x->mesh that was just made under this name: publishes. It is
- * shown as it was made. */
+/* Answers 201 with Location and the summary of x->mesh, which was just created under this name, as
+ * it was then; publishes. */
 void api_answer_created(api_exchange *x, const char *name, const api_summary *summary,
                         void (*extra)(api_exchange *x));
 

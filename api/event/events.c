@@ -117,7 +117,7 @@ void api_event_stale(api_text *text, const st_mesh_info *info)
     api_text_clear(&data);
 }
 
-/* What the change's delta comes to; NULL where that cannot be said. */
+/* Finds the changes that a delta made; NULL if they cannot be told. */
 static const he_changes *changes_of(const st_change *change, he_changes *found)
 {
     if (change->delta->count > API_MAX_EVENT_ROWS) {

@@ -323,8 +323,8 @@ static api_multipart_step read_headers(api_multipart *m, api_multipart_piece *ou
 
 /* --- the walk over the bytes --- */
 
-/* Up to and with the delimiter, whose bytes belong to the part as soon as one does not fit. In it
- * CR comes first and nowhere else, so that nothing is to be looked at twice. */
+/* Reads up to the delimiter. Bytes that begin like it belong to the part as soon as one differs; as
+ * CR is its first byte and occurs nowhere else in it, no byte need be looked at twice. */
 static api_multipart_step seek(api_multipart *m, const char **at, const char *end,
                                api_multipart_piece *out)
 {

@@ -147,15 +147,14 @@
       "A request that carries the Idempotency-Key of one that was answered within a day must be "  \
       "the same in method, path, query, Content-Type and body.")                                   \
     X(UNCLEAR_PARTS, "unclear_parts", 422, "It is not clear which file is the mesh",               \
-      "Of the files in a multipart/form-data body one is of a format that the server reads, by "   \
-      "its name or media type or, where no file is, by its first bytes; the others are what that " \
-      "one refers to. ?format= says which one is meant where several could be.")                   \
+      "One file of a multipart/form-data body must have a format that the server reads: by its "   \
+      "name or media type or, if no file has, by its first bytes; the others are those that it "   \
+      "refers to. ?format= says which one is meant where several could be.")                       \
     X(RATE_LIMIT, "rate_limit", 429, "Too many requests", "Try again after Retry-After seconds.")  \
     X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
       "The request may be fine; the server broke one of its own rules answering it.")              \
     X(MESH_DAMAGED, "mesh_damaged", 500, "The mesh is damaged",                                    \
-      "What is on the disk of it is not what was written. The mesh can be deleted, or replaced "   \
-      "by "                                                                                        \
+      "The disk does not have what was written to it. The mesh can be deleted, or replaced by "    \
       "PUT; all others are served.")                                                               \
     X(MESH_NEWER, "mesh_newer", 500, "A newer release has written the mesh",                       \
       "What is on the disk of it is of a version that this release does not know; the newer one "  \
@@ -177,14 +176,14 @@
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
     X(LOADING, "loading", 503, "The mesh is being loaded",                                         \
-      "It is read from the disk, for longer than others wait for it. Try again after Retry-After " \
-      "seconds.")                                                                                  \
+      "Reading it from the disk takes longer than a request waits for it. Try again after "        \
+      "Retry-After seconds.")                                                                      \
     X(STORE_BEHIND, "store_behind", 503, "The disk is behind",                                     \
-      "As many changes wait for the disk as may. Nothing was changed; try again after "            \
+      "Too many changes are waiting for the disk. Nothing was changed; try again after "           \
       "Retry-After seconds.")                                                                      \
     X(STORE_LOST, "store_lost", 503, "What the answer would show was lost",                        \
-      "It would show a change of somebody else that could not be kept. Nothing was changed; the "  \
-      "same request shows at once what is kept.")                                                  \
+      "It would show a change by another request that could not be kept. Nothing was changed; "    \
+      "the same request, sent again, shows what was kept.")                                        \
     X(STORE_FAILED, "store_failed", 503, "The disk failed",                                        \
       "A write or a sync of the disk failed. The change was not made, or is lost. Reads go on, "   \
       "but no change is taken until the server is started again.")                                 \
@@ -258,7 +257,7 @@ enum { API_DEFECT_POINTER = 40 };
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
 
 int api_problem_http(const api_problem *problem);
-/* For Retry-After; NULL where it does not help to wait. */
+/* The value of Retry-After; NULL where waiting does not help. */
 const char *api_problem_retry(const api_problem *problem);
 /* The JSON object onto `text`; `request_id` may be NULL. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);

@@ -176,7 +176,7 @@ static bool read_some(api_exchange *x, const he_mesh *mesh, choice *out)
 {
     he_error err = {0};
     if (api_param_text(x, "cursor") != NULL || api_param_text(x, "limit") != NULL) {
-        return api_fail(x, API_BAD_PARAMETER, "\"ids\" are no page: give neither cursor nor limit");
+        return api_fail(x, API_BAD_PARAMETER, "\"ids\" gives no page: leave out cursor and limit");
     }
     if (!read_ids(x, api_param_text(x, "ids"), out)) {
         return false;

@@ -262,8 +262,8 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-/* Before there is a job: a client that has the present arrays had them from the slots that are
- * kept. */
+/* Answers 304 before a job is made: a client whose tag is the present one had its arrays from the
+ * slots that are cached. */
 static bool name_kept(api_exchange *x)
 {
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);

@@ -261,8 +261,8 @@ bool api_refuse_format(api_exchange *x, const char *detail)
     return false;
 }
 
-/* What programs say of any bytes: curl says nothing with -T, and that they are a form with
- * --data-binary. */
+/* Media types that say nothing about the body: curl -T sends none, and curl --data-binary calls any
+ * file a form. */
 static bool is_generic(const char *type)
 {
     return type == NULL || api_media_is(type, "text/plain") ||

@@ -148,9 +148,9 @@ bool api_fail_store(api_exchange *x, st_status status)
     case ST_ELSEWHERE:
         return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
     case ST_LOST:
-        return api_fail(x, API_STORE_LOST, "the mesh stands on a change that was lost");
+        return api_fail(x, API_STORE_LOST, "the mesh has a change that was lost");
     case ST_BEHIND:
-        return api_fail(x, API_STORE_BEHIND, "as many changes wait for the disk as may");
+        return api_fail(x, API_STORE_BEHIND, "too many changes are waiting for the disk");
     case ST_FULL:
         return api_fail(x, API_STORE_FULL, "the disk is full");
     case ST_FAILED:

@@ -20,7 +20,8 @@
 /* After the row was found: check the header and begin the hash. */
 bool api_keyed_begin(api_exchange *x);
 void api_keyed_body(api_exchange *x, const char *bytes, size_t length);
-/* For who reads multipart/form-data: what counts of it. */
+/* The reader of multipart/form-data adds what makes requests equal or different: the files, not
+ * their delimiters. */
 void api_keyed_add(api_exchange *x, const char *bytes, size_t length);
 /* Before the handler. False when it must not run: the first answer was given again, or refused. */
 bool api_keyed_find(api_exchange *x);

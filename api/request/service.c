@@ -582,8 +582,8 @@ static void go_on(api_exchange *x)
     }
 }
 
-/* Then the request is handled as on a worker: what is short reads the mesh under its lock, without
- * a copy. What is not goes on here. */
+/* The mesh is loaded now, and the request is handled as on a worker: a short one reads the mesh
+ * under its lock without a copy, a long one goes on in this thread. */
 static void load_and_go_on(api_exchange *x)
 {
     if (!api_load_mesh(x)) {

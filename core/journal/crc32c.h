@@ -7,7 +7,7 @@
 
 /* The checksum of these bytes after those that `before` is the checksum of; 0: of none. */
 uint32_t st_crc32c(uint32_t before, const void *bytes, size_t size);
-/* The same without the processor's instruction, for processors that lack it. */
+/* st_crc32c on processors without an instruction for it. */
 uint32_t st_crc32c_by_table(uint32_t before, const void *bytes, size_t size);
 
 #endif

@@ -37,7 +37,7 @@ typedef enum st_status {
     ST_GONE,      /* the revision is no longer in the history */
     ST_ELSEWHERE, /* the stack does not lead to the revision */
     ST_BUSY,      /* a long edit has claimed the mesh */
-    ST_LOST,      /* the mesh stands on a change that was lost: find it anew */
+    ST_LOST,      /* the mesh has a change that was lost: find it anew */
     ST_COLD,      /* not in memory: whether there is one the disk must say */
     ST_LOADING,   /* another thread is loading it, for too long to be waited for */
     ST_DAMAGED,   /* what is kept of the mesh is not whole */

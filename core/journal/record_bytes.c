@@ -189,7 +189,7 @@ static he_status read_rest(he_cursor *c, st_frame *out, he_error *err)
         return he_refuse_at(c, err, "a body follows where there is none");
     }
     if (out->in_parts && !has_body(r->kind)) {
-        return he_refuse_at(c, err, "the record has no content that could lie in parts");
+        return he_refuse_at(c, err, "only a record with a content can have it in parts");
     }
     r->body = c->at;
     r->body_size = he_left(c);

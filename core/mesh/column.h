@@ -73,7 +73,7 @@ static inline unsigned char *he_column_row(const he_column *column, size_t row)
     return column->data + row * column->row_bytes;
 }
 size_t he_column_bytes(const he_column *column);
-/* The same of the rows alone, whatever there is room for. */
+/* Bytes of the rows alone, without spare capacity. */
 size_t he_column_rows_bytes(const he_column *column);
 bool he_column_same_kind(const he_column *a, const he_column *b); /* all but the rows */
 /* Do rows of one mean the same in the other: type, components, labels? */

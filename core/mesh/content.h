@@ -9,7 +9,7 @@ void he_content_clear(he_content *content); /* frees what it holds */
 HE_NODISCARD he_status he_content_copy(const he_content *content, he_watch *watch, he_content *out,
                                        he_error *err);
 size_t he_content_bytes(const he_content *content);
-/* The same of the rows that are issued alone, whatever there is room for. */
+/* Bytes of the issued rows alone, without spare capacity. */
 size_t he_content_rows_bytes(const he_content *content);
 
 /* Make room in the link and position columns (not in the attributes) for this many rows in all. */

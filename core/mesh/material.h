@@ -67,10 +67,10 @@ typedef struct he_materials {
 } he_materials;
 
 void he_materials_clear(he_materials *materials);
-/* The same rows in the same slots. Fills *out on success only. HE_NO_MEMORY. */
+/* Copies the rows with their slots. Fills *out on success only. HE_NO_MEMORY. */
 HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_materials *out,
                                          he_error *err);
-/* The same rows without free slots between them. */
+/* Copies the rows without the free slots between them. */
 HE_NODISCARD he_status he_materials_pack(const he_materials *materials, he_materials *out,
                                          he_error *err);
 size_t he_materials_count(const he_materials *materials); /* rows */

@@ -66,7 +66,8 @@ static void shorten_end(mending *g, size_t from)
     }
 }
 
-/* The same where the end meets the beginning, which moves on. */
+/* Removes pairs of edges that run back on each other where the end of the loop meets its beginning.
+ * Returns where the loop begins then. */
 static size_t shorten_both(mending *g, size_t from)
 {
     he_ids *loops = &g->loops;

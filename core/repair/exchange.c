@@ -18,7 +18,7 @@
 
 #include <assert.h>
 
-/* A settled corner of the edge in hand, under the fans it had; they may have changed since. */
+/* A settled corner of the present edge, with the fans it was in then, which may have changed. */
 typedef struct slot {
     uint32_t epoch; /* number of the edge + 1, else free */
     uint32_t corner, from, to;

@@ -15,12 +15,12 @@ typedef struct st_booking {
     st_stage *stage; /* the first record's content, instead of a body */
 } st_booking;
 
-/* All of them: ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY. A booking in *out is as it was. */
+/* Each returns ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY and then leaves *out as it was. */
 
-/* For records without a body. */
+/* Books a place for records without a body. */
 st_status st_book(const st_journal *journal, const st_room_need *need, st_booking *out);
-/* For an edit that made `after`. What replaced the content, and is large, is staged where the
- * caller may wait for the disk. */
+/* Books a place for an edit that made `after`. A large content that replaced another is staged,
+ * if the caller may wait for the disk. */
 st_status st_book_edit(const st_journal *journal, const he_delta *delta, const he_mesh *after,
                        bool may_wait, st_booking *out);
 /* For a whole content, in `records` of which it is the first. Takes `stage` on success; NULL: the

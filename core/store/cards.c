@@ -47,8 +47,9 @@ static size_t cards_in_memory(st_store *store, const char *after, st_card *out, 
     return count;
 }
 
-/* Of one mesh the card with more records is the present one, and of one that is damaged the disk's.
- * Of two meshes of one id the one on the disk was removed, which the disk does not know yet. */
+/* Two cards of one mesh: the one with more records is the present one, the disk's if the mesh is
+ * damaged. Two cards of different meshes under one id: the one on the disk has been removed, which
+ * the disk does not know yet. */
 static const st_card *newer(const st_card *memory, const st_card *disk)
 {
     bool same = memory->incarnation == disk->incarnation;

@@ -5,7 +5,7 @@
 /* A whole content that takes more is staged (journal.h) before it is published. */
 enum { ST_BODY_BYTES = 1 << 20 };
 
-/* Records of a mesh that take more, and more than its content, have another base made. */
+/* A new base is made when the records of a mesh take more than this and more than its content. */
 enum { ST_BASE_BYTES = 16 << 20 };
 
 /* How far the listeners of one mesh may be behind before they are sent to fetch anew: messages, and

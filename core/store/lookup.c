@@ -62,7 +62,7 @@ static st_status add(st_lookups *lookups, const char *id, st_lookup **out)
     return ST_OK;
 }
 
-/* Waits for the end of another's lookup. ST_OK: the table is to be asked again. */
+/* Waits until another thread's lookup has ended. ST_OK: look in the table again. */
 static st_status await(st_lookups *lookups, st_lookup *lookup, uint64_t until)
 {
     bool in_time = true;

@@ -133,7 +133,7 @@ static he_mesh *exchange_content(st_write *w)
     return before;
 }
 
-/* Of a claim without the lock: nobody else has its content. */
+/* Books the place of the record. A claim does so without the lock: no one else has its content. */
 static st_status book(st_write *w)
 {
     const st_journal *journal = w->mesh->journal;

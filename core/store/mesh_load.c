@@ -285,7 +285,7 @@ static st_status take_record(load *l, const st_piece *piece)
     case ST_RECORD_REMOVE:
         break;
     }
-    return damaged(l, "record %llu is none of a mesh that is there",
+    return damaged(l, "record %llu is of a kind that an existing mesh cannot have",
                    (unsigned long long)record->number);
 }
 

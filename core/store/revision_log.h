@@ -121,8 +121,8 @@ void st_log_drop(st_revision_log *log, uint64_t reach);
 
 /* The i-th newest entry; false past the end. */
 bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out);
-/* What the newest entry says of its revision, and whether the history ends with it, into the record
- * of a revision; the texts are borrowed while the entry is there. Of a record of another kind the
+/* Fills the record of a revision from the newest entry: its facts, and whether the history ends
+ * with it; the texts are borrowed while the entry lives. A record of another kind gets only the
  * marks and the reach. */
 void st_log_fill_record(const st_revision_log *log, st_record *record);
 /* The newest revision. */

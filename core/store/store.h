@@ -92,8 +92,8 @@ void st_store_free(st_store *store);
 const uint64_t *st_secret(const st_store *store);
 /* Meshes there are, in memory or not. */
 uint64_t st_store_count(st_store *store);
-/* Are meshes kept beyond memory, so that what asks for one that is not in memory, for all or for a
- * free id waits for the disk? */
+/* Are meshes kept on a disk? Then a request for a mesh that is not in memory, for the list, or for
+ * a free id waits for it. */
 bool st_store_waits_for_disk(const st_store *store);
 /* Frees the cached copies and bodies of kept answers that nobody reads, and what was derived from
  * meshes. Called without a lock. */
@@ -130,8 +130,8 @@ void st_release(st_mesh *mesh);  /* takes NULL */
  * ST_BUDGET, ST_NO_MEMORY, ST_LOADING, ST_BEHIND, ST_FULL, ST_FAILED. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_keyed *keyed, st_mesh **out);
-/* The same in the place of a damaged mesh of that id, which is removed: both or neither. ST_ABSENT:
- * it was removed before. */
+/* Creates a mesh in the place of a damaged one of that id, which is removed: both happen or
+ * neither. ST_ABSENT: it was removed before. */
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
                          const st_keyed *keyed, st_mesh **out);
 /* Before a large content takes the place of another (st_write_replace): brings it to the disk, so
@@ -218,8 +218,8 @@ typedef struct st_kept {
     char etag[ST_KEPT_TAG];  /* "" for none */
     char id[ST_MESH_ID + 1]; /* of the mesh it shows, which Location names with 201 */
     uint64_t incarnation, position;
-    /* Of an answer that was kept before the server was started, whose tag is not known: what the
-     * tag names. Else 0. */
+    /* The state that the answer's ETag names, where the answer came before the server started and
+     * its tag is not kept. Else 0. */
     uint64_t revision, metadata;
     const char *body; /* JSON; NULL with a length: left out */
     size_t length;

@@ -99,9 +99,8 @@ typedef struct st_event {
     size_t length;
 } st_event;
 
-/* Records that become durable together, and what listeners are told of each: a change that is
- * written as an event if anybody listens, or an event that was written before, whose bytes are
- * taken. */
+/* Records that become durable together, each with its event: a change, which is written as an event
+ * if anyone listens, or an event that was written before, whose bytes are taken. */
 typedef struct st_group {
     st_booking *booking; /* for them, which is taken and cleared */
     st_record *records;

@@ -27,10 +27,9 @@ size_t st_table_place(const st_store *store, const char *id, bool *found);
 /* Puts a mesh in, with its use. ST_TAKEN, ST_NO_MEMORY. Under the table's exclusive lock. */
 st_status st_table_insert(st_store *store, st_mesh *mesh);
 
-/* Sees to it that `bytes` more and a sixteenth of the memory budget are free, as far as that can be
- * had: frees what is only kept for later, then meshes that nobody uses and that the journal brings
- * back, the least recently used first. Frees nothing for more than the budget could ever hold.
- * Without a lock but `past`. */
+/* Tries to have `bytes` more and a sixteenth of the memory budget free: frees caches, then meshes
+ * that nobody uses and that the journal brings back, the least recently used first. Frees nothing
+ * for more than the budget could ever hold. Without a lock but `past`. */
 void st_make_room(st_store *store, uint64_t bytes);
 
 #endif

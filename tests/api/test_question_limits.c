@@ -608,7 +608,7 @@ static void a_read_that_outstays_the_worker_begins_anew(void **state)
     bench_free(b);
 }
 
-/* Of a client who waits: for others it would become a job. */
+/* The client waits: without that the question would become a job. */
 static void expect_exhaustion(api_bench *b, const char *question, unsigned times, int least)
 {
     static const char *const patient[] = {"Prefer", "wait=60", NULL};

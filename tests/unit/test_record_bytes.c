@@ -252,7 +252,7 @@ static void the_chain_covers_all_that_came_before(void **state)
     uint64_t next = st_frame_seal(first, size, chain);
     assert_true(next == st_frame_next_chain(first, size));
     assert_true(next != chain);
-    /* Of another mesh, the same record is followed by another chain. */
+    /* Chains of two meshes differ behind equal records. */
     memcpy(second, first, size);
     assert_true(st_frame_seal(second, size, st_chain_of_origin(origin + 1)) != next);
 }

@@ -287,7 +287,7 @@ static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cu
     he_repaired_clear(&done);
 }
 
-/* Of a soup without degenerate faces. */
+/* Drops degenerate faces first: they may be duplicates too. */
 static void expect_no_duplicates(const he_soup *soup)
 {
     he_soup copy;

@@ -157,7 +157,7 @@ static bool count_key(void *context, const st_kept_key *key)
     assert_string_equal(key->key.text, "a key");
     assert_string_equal(key->id, "a");
     assert_true(key->key.digest[1] == 8);
-    /* Of the state that it made nothing is told: that state may be gone. */
+    /* The key no longer names the state that its request made: that state may be gone. */
     assert_true(key->incarnation == 0 && key->revision == 0 && key->metadata == 0);
     return true;
 }

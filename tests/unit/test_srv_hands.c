@@ -231,7 +231,7 @@ static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
     }
 }
 
-/* Of faces, then of corners; the caller frees them. */
+/* Normals of all faces, then of all corners; the caller frees them. */
 static he_vec3 *normals_of(const he_mesh *mesh, he_watch *watch)
 {
     size_t faces = he_mesh_issued(mesh, HE_FACE),

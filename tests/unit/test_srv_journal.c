@@ -445,7 +445,8 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         const char *sql, *says;
     } damages[] = {
         {"DELETE FROM record WHERE mesh = 2 AND number = 4", "record 4 is missing"},
-        {"DELETE FROM record WHERE mesh = 2 AND number = 7", "records end with 6, the last is 7"},
+        {"DELETE FROM record WHERE mesh = 2 AND number = 7",
+         "the records end at 6, but the mesh has 7"},
         {"DELETE FROM record WHERE mesh = 2 AND number = 1", "record 1, from which"},
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 1 AND number = 3) "
          "WHERE mesh = 2 AND number = 3",
@@ -455,7 +456,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
          "record 1 is another mesh's"},
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 2 AND number = 3) "
          "WHERE mesh = 2 AND number = 4",
-         "record 4 says that it is 3"},
+         "record 4 has the number 3"},
         {"UPDATE record SET bytes = x'00' WHERE mesh = 2 AND number = 2", "record 2, byte"},
         {"DELETE FROM part WHERE part = 0", "part 0 of the content after record 7"},
         {"DELETE FROM part WHERE part = 2", "part 2 of the content after record 7 has"},

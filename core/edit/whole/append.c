@@ -224,8 +224,8 @@ static he_status join_labels(he_mesh *m, const he_column *own, const he_column *
     return status;
 }
 
-/* The number of a label becomes the one that it has here. What lies beyond the labels, as -1 for
- * none, stands for itself. */
+/* Replaces the number of a label by its number in this mesh. Numbers that have no label, such as -1
+ * for none, stay. */
 static void map_labels(const he_column *theirs, const target *to, unsigned char *value)
 {
     for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {

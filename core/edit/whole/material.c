@@ -33,8 +33,8 @@ static he_status column_with(const he_mesh *m, const he_column *column, he_label
     return status;
 }
 
-/* Labels of the column (none: ""), with `to` in the place of `from`, or behind them all where that
- * is NULL. */
+/* The labels of the column (NULL: none) with `from` replaced by `to`, or with `to` appended where
+ * `from` is NULL. */
 static he_status make_labels(const he_column *column, const char *from, const char *to,
                              he_labels *out, he_error *err)
 {

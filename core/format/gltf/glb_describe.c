@@ -356,7 +356,7 @@ static void put_names(text *t, const he_glb_parts *g)
     put_text(t, "]");
 }
 
-/* Where faces are told apart, what puts them together again: gltf_whole.h. */
+/* Files with several groups of faces say how to make one mesh of them again: see gltf_whole.h. */
 static void put_root_extras(text *t, const he_glb_parts *g)
 {
     size_t order;
@@ -394,7 +394,7 @@ static void put_box(text *t, const he_mesh *m)
     put_text(t, "]");
 }
 
-/* Of each group its share of the triangles. */
+/* Each group has an accessor for its range of the triangles. */
 static void put_group_accessors(text *t, const he_glb_parts *g)
 {
     size_t triangles;

@@ -60,25 +60,28 @@ HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char 
                                     he_error *err);
 void he_gltf_close(he_gltf *asset);
 
-/* For the files of this header: the buffers, */
+/* --- for the files that include this header --- */
+
+/* Opens the buffers. */
 HE_NODISCARD he_status he_gltf_open_buffers(he_gltf *asset, const he_gltf_bin *bin, he_error *err);
-/* the bytes of a view, a value of the JSON, where it is compressed, unpacked: `extension` is the
- * object that says how. HE_BAD_INDEX, HE_BAD_VALUE, HE_UNSUPPORTED, HE_LIMIT, HE_NO_MEMORY,
- * HE_CANCELLED, */
+/* Decompresses a view (a value of the JSON); the object `extension` says how. HE_BAD_INDEX,
+ * HE_BAD_VALUE, HE_UNSUPPORTED, HE_LIMIT, HE_NO_MEMORY, HE_CANCELLED. */
 HE_NODISCARD he_status he_gltf_unpack(he_gltf *asset, uint32_t view, uint32_t extension,
                                       const he_gltf_buffer **out, he_error *err);
-/* the bytes that `object` says by buffer, byteOffset and byteLength: HE_BAD_INDEX, HE_BAD_VALUE, */
+/* Finds the bytes that `object` names by buffer, byteOffset and byteLength. HE_BAD_INDEX,
+ * HE_BAD_VALUE. */
 HE_NODISCARD he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *out,
                                            he_error *err);
-/* the objects in the array that is a member of the root, */
+/* Lists the objects in an array that is a member of the root. */
 HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error *err);
-/* and a note about `place` whose subject is the string `subject`, or HE_NONE. */
+/* Adds a note about `place`; its subject is the string `subject`, or HE_NONE. */
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place);
 
 /* HE_CANCELLED. */
 HE_NODISCARD he_status he_gltf_tell(he_gltf *asset, he_error *err);
-/* For each element that is looked at: the soup's watch hears of some of them. */
+/* To be called for each element that is looked at: once in HE_WATCH_STRIDE calls the soup's watch
+ * is asked whether to go on. HE_CANCELLED. */
 HE_NODISCARD static inline he_status he_gltf_poll(he_gltf *asset, he_error *err)
 {
     return ++asset->steps - asset->told < HE_WATCH_STRIDE ? HE_OK : he_gltf_tell(asset, err);
@@ -88,10 +91,10 @@ HE_NODISCARD he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t by
 /* The item of `list` that the number at `value` names: HE_BAD_INDEX. `what` is one of them. */
 HE_NODISCARD he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value,
                                     const char *what, uint32_t *item, he_error *err);
-/* The whole number at a member that must be there, */
+/* Reads the whole number of a member that must be there. HE_BAD_VALUE. */
 HE_NODISCARD he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name,
                                     uint64_t least, uint64_t most, uint64_t *out, he_error *err);
-/* or 0, where it need not. */
+/* Reads the whole number of a member, 0 where it is missing. HE_BAD_VALUE. */
 HE_NODISCARD he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name,
                                    uint64_t most, uint64_t *out, he_error *err);
 /* The array that a member is, HE_NONE where there is no such member. HE_BAD_VALUE. */

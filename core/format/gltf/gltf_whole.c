@@ -55,7 +55,7 @@ static bool read_indices(const he_gltf *asset, uint32_t primitive, indices *out)
            is_member(json, accessor, "count", &out->count);
 }
 
-/* The same names in one order, each with the same number. */
+/* Do both objects have equal names in one order, with equal numbers? */
 static bool same_attributes(const he_json *json, uint32_t a, uint32_t b)
 {
     uint32_t i = he_json_first(json, a), k = he_json_first(json, b);
@@ -215,7 +215,7 @@ static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t 
     return status;
 }
 
-/* Faces that the file has in other places are noted where they are now. */
+/* Source places of faces follow the faces to their new order. */
 static he_status order_places(he_places *places, const uint32_t *order, size_t count, he_error *err)
 {
     he_places made;

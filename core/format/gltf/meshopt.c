@@ -10,8 +10,8 @@ const char *const he_meshopt_filters[HE_MESHOPT_FILTERS] = {"NONE", "OCTAHEDRAL"
 /* A stream begins with this and its version. */
 static const unsigned char marks[HE_MESHOPT_MODES] = {0xA0, 0xE0, 0xD0};
 
-/* The extension has version 1 of indices, and the library a switch for all threads: it is turned
- * before there are any. */
+/* The extension uses version 1 of the index coding, which the library sets for the whole process:
+ * so it is set before other threads start. */
 __attribute__((constructor)) static void choose_version(void)
 {
     meshopt_encodeVertexVersion(HE_MESHOPT_ATTRIBUTES_VERSION);

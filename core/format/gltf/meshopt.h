@@ -39,22 +39,25 @@ typedef struct he_meshopt_stream {
     size_t stride;
 } he_meshopt_stream;
 
-/* Can there be such a stream? NULL, or what it is that cannot be. */
+/* NULL if a stream may have this layout, else a sentence about what is wrong with it. */
 const char *he_meshopt_fits(const he_meshopt_stream *stream);
-/* No stream of this kind has fewer bytes, so that nothing need be made for one that claims to. */
+/* The fewest bytes that any stream of this layout has: a shorter one is refused before memory is
+ * taken for its elements. */
 uint64_t he_meshopt_least(const he_meshopt_stream *stream);
 /* The version of the codec that a stream says it is of, -1 where it is no stream of this mode. */
 int he_meshopt_version(const he_meshopt_stream *stream, const unsigned char *bytes, size_t length);
 enum { HE_MESHOPT_ATTRIBUTES_VERSION = 0, HE_MESHOPT_INDEX_VERSION = 1 }; /* the latest read */
 
-/* `to` has room for all elements. False where the bytes are no such stream. Indices may be any. */
+/* Decodes to `to`, which has room for all elements. False where the bytes are no such stream. The
+ * indices are not checked. */
 bool he_meshopt_decode(const he_meshopt_stream *stream, const unsigned char *bytes, size_t length,
                        void *to);
 
-/* Without a filter: the most bytes that coding may take, */
+/* The most bytes that he_meshopt_encode may write. No filter is applied. */
 size_t he_meshopt_bound(const he_meshopt_stream *stream);
-/* and how many it took of the `room` at `to`, which is as much. Attributes are as they are in
- * memory; triangles and indices are uint32_t whatever the stride, which is that of who decodes. */
+/* Encodes the elements to `to`, where `room` is he_meshopt_bound; returns the bytes written. The
+ * elements of attributes are as they are in memory, triangles and indices are uint32_t: their
+ * stride is only what a decoder makes of them. */
 size_t he_meshopt_encode(const he_meshopt_stream *stream, const void *elements, unsigned char *to,
                          size_t room);
 

@@ -29,7 +29,7 @@ typedef struct he_beside {
 /* The file that the `length` bytes at `name` name, marked as used, or NULL. `beside` may be NULL:
  * nothing came. */
 const he_beside_file *he_beside_find(he_beside *beside, const char *name, size_t length);
-/* The same for a URI reference (RFC 3986): a file of just this name, or of the name that it has
+/* he_beside_find for a URI reference (RFC 3986): the file of exactly this name, or else of the name
  * with its percent escapes decoded. */
 const he_beside_file *he_beside_find_uri(he_beside *beside, const char *uri, size_t length);
 /* All sizes together. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of a face: its degree, three corners, and the length of its colour. */
+/* The shortest face is a triangle: degree, three corners, and the length of its colour. */
 enum { WORD = 4, SHORTEST_FACE = 5 * WORD };
 
 static size_t vertex_numbers(const he_off_binary *b)

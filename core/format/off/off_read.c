@@ -522,7 +522,7 @@ static void begin_binary(off *o)
     he_off_binary_init(&o->binary, &o->values, o->has, o->header_bytes);
 }
 
-/* The header is given out line by line, since what is not text may follow it. */
+/* The header is read line by line, because binary data may follow it. */
 static he_status feed_header(off *o, const char **p, const char *end, he_error *err)
 {
     const char *stop = he_line_stop(*p, end);

@@ -17,7 +17,7 @@ typedef struct he_off_values {
 } he_off_values;
 
 void he_off_values_clear(he_off_values *values);
-/* Of the last vertex: three numbers, and two. HE_NO_MEMORY. */
+/* The normal (3 numbers) and texture coordinates (2) of the last vertex. Return HE_NO_MEMORY. */
 HE_NODISCARD he_status he_off_add_normal(he_off_values *values, const double *normal,
                                          he_error *err);
 HE_NODISCARD he_status he_off_add_uv(he_off_values *values, const double *uv, he_error *err);

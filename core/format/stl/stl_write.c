@@ -71,8 +71,8 @@ static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, h
     return status == HE_OK ? he_narrowed_finish(&narrowed, notes, err) : status;
 }
 
-/* Facets of vertices that were made one, or diagonals of two faces between the same vertices, may
- * be more than a mesh holds. */
+/* Builds the facets as a reader would and counts the defects: vertices in one place have become
+ * one, and two faces may have been cut along the same diagonal. */
 static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he_error *err)
 {
     he_cut_walk walk = {0};

@@ -18,8 +18,8 @@ static bool exists(const char *path)
 
 /* --- files that nobody writes to --- */
 
-/* The file as SQLite's URI: nobody changes it, so that neither lock nor -shm is made for it. Unless
- * it has a -wal, which is to be read with it. */
+/* A URI that opens the file as immutable, so that SQLite makes neither a lock nor a -shm for it;
+ * unless it has a -wal, which SQLite then reads with it. */
 static bool uri_of(const char *file, char *out, size_t size)
 {
     static const char hex[] = "0123456789ABCDEF";
@@ -136,7 +136,8 @@ static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MES
 {
     st_db to;
     st_sql outcome = st_db_open(&to, part, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL, 0);
-    /* A file that is not finished is not kept: it needs no journal, and one sync at its end. */
+    /* An unfinished copy is deleted, so it needs no rollback journal and only one sync at its end.
+     */
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(&to, "PRAGMA journal_mode = OFF");
     }

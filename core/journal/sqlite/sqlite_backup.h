@@ -23,7 +23,7 @@
 /* Writes the store of a folder, which a daemon may have open, to a file, in place of one of that
  * name. */
 bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLITE_MESSAGE]);
-/* In place of the folder's store, if it has one; `before` is the folder with that. */
+/* Replaces the store of the folder, if there is one; `before` is where the old one is kept. */
 bool st_sqlite_restore(const char *folder, const char *file, char before[ST_SQLITE_MESSAGE],
                        char message[ST_SQLITE_MESSAGE]);
 /* Is the structure of the file whole, and is it a store that this release knows? Of its meshes and

@@ -206,7 +206,7 @@ static bool has_room(const st_sqlite *self)
     return false;
 }
 
-/* Contents that were staged for what was lost are to be deleted. Under the lock. */
+/* Deletes the staged contents of lost records. Under the lock. */
 static void unstage(st_sqlite *self, st_sqlite_room *room)
 {
     for (size_t i = 0; i < room->count; i++) {
@@ -479,8 +479,8 @@ static bool make_space(st_sqlite *self)
     return good;
 }
 
-/* The ballast is made anew: space is only there when there is more of it than a page. Under the
- * lock, which is given up meanwhile. */
+/* Ends the state of a full disk if the ballast can be made again: a free page alone is not enough.
+ * Under the lock, which is released meanwhile. */
 static void seek_space(st_sqlite *self)
 {
     if (!make_space(self)) {

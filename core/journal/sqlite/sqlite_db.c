@@ -101,7 +101,8 @@ st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *tex
     }
     sqlite3_extended_result_codes(db->handle, 1);
     sqlite3_busy_timeout(db->handle, BUSY_MILLIS);
-    /* What is done when a connection is closed, nobody hears of: we do it before, and look. */
+    /* SQLite does not report errors of the checkpoint that closing a connection makes: so it is
+     * made before, and looked at. */
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);

@@ -56,9 +56,9 @@ st_sql st_db_number(st_db *db, const char *text, int64_t otherwise, int64_t *out
 st_sql st_db_find(st_db *db, unsigned which, sqlite3_stmt **out, const char *format, ...);
 st_sql st_db_step(st_db *db, sqlite3_stmt *statement);
 void st_db_reset(sqlite3_stmt *statement); /* takes NULL */
-/* The same for a statement that gives no rows. */
+/* Runs a statement that returns no rows. */
 st_sql st_db_do(st_db *db, unsigned which, const char *format, ...);
-/* Like ST_SQL_DONE or worse; resets the statement. For a result code of SQLite. */
+/* Turns a result code of SQLite into ST_SQL_DONE or a failure. */
 st_sql st_db_outcome(const st_db *db, int code);
 
 static inline uint64_t st_db_word(sqlite3_stmt *statement, int column)

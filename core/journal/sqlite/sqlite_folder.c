@@ -37,7 +37,7 @@ static bool write_owner(st_folder *folder)
     int length = snprintf(who, sizeof who, "process %ld on %s\n", (long)getpid(), host);
     return (ftruncate(folder->lock, 0) == 0 &&
             pwrite(folder->lock, who, (size_t)length, 0) == length) ||
-           /* The lock is held all the same; others are only not told by whom. */
+           /* The lock is held even if this fails; other processes then cannot name its owner. */
            errno == ENOSPC || errno == EDQUOT || st_folder_fail(folder, "cannot write", "lock");
 }
 

@@ -33,7 +33,7 @@ typedef struct st_mark {
  * system refuses. To be closed in any case. */
 bool st_folder_open(st_folder *folder, const char *path);
 void st_folder_close(st_folder *folder); /* unlocks */
-/* A sentence about a file system that does not keep what it says; "" for any other. */
+/* A warning about a file system whose locks or syncs cannot be relied on; "" for any other. */
 const char *st_folder_doubt(const st_folder *folder);
 
 /* Says what, such as "cannot make", failed with errno for that file of it, or with "" for itself;

@@ -47,7 +47,7 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
 static st_sql set_up(st_db *db)
 {
     static const char *const pragmas[] = {
-        /* These two count only until the first table is there. */
+        /* These two pragmas take effect only before the first table is made. */
         "PRAGMA page_size = 4096",       "PRAGMA auto_vacuum = INCREMENTAL",
         "PRAGMA journal_mode = WAL",     "PRAGMA synchronous = FULL",
         "PRAGMA wal_autocheckpoint = 0", "PRAGMA journal_size_limit = 67108864",

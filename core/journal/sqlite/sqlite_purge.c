@@ -11,8 +11,8 @@ st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t b
                     (uint64_t)st_purge_row_sum(&row));
 }
 
-/* The snapshots of a mesh that lie before record `before`. One at a time: the table is changed
- * between. */
+/* Deletes the snapshots of a mesh from before record `before`: one statement each, as the table
+ * changes in between. */
 static st_sql drop_snapshots(st_sqlite *self, int64_t mesh, uint64_t before)
 {
     for (;;) {
@@ -115,8 +115,8 @@ static st_sql next_row(st_sqlite *self, st_purge_row *out, bool *found)
     return outcome;
 }
 
-/* Free pages are given back to the file system where they are many, for they would be used again;
- * all of them while the disk is full. */
+/* Returns free pages to the file system if there are many; a few are left to be used again. While
+ * the disk is full all are returned. */
 enum { SPARE_PAGES = 4096, SPARE_SHARE = 4 };
 
 static st_sql shrink(st_sqlite *self, bool *done)

@@ -18,7 +18,7 @@ enum { MOST_BYTES = 900000000 };
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
-    /* One more head: that of the record with the body lies right before it. */
+    /* One head more: that of the record with the body is written right before the body. */
     return need->bytes <= MOST_BYTES &&
            !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
@@ -76,7 +76,7 @@ st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **o
     return ST_OK;
 }
 
-/* A room is out no more. Under the lock. */
+/* One room fewer is in use. Under the lock. */
 static void come_back(st_sqlite *self, const st_sqlite_room *room)
 {
     self->rooms--;

@@ -294,7 +294,7 @@ void st_sqlite_shut(st_reader *reader)
     }
 }
 
-/* What is in a frame, and what the card knows besides. */
+/* Fills a piece from its frame and, for what the frame lacks, from the card. */
 static void fill_piece(st_reader *reader, st_piece_kind kind, st_piece *out)
 {
     const st_card *card = &reader->row.card;
@@ -321,7 +321,7 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
         return status == HE_UNSUPPORTED ? ST_NEWER : ST_DAMAGED;
     }
     if (reader->frame.record.number != number) {
-        return damaged(reader, "record %llu says that it is %llu", (unsigned long long)number,
+        return damaged(reader, "record %llu has the number %llu", (unsigned long long)number,
                        (unsigned long long)reader->frame.record.number);
     }
     reader->number = number;
@@ -432,7 +432,7 @@ static uint64_t parts_in(he_cursor c)
     return parts;
 }
 
-/* The record that is a base holds its content itself. */
+/* The base is a record that holds its content in its own row. */
 static st_status read_inline_base(st_reader *reader)
 {
     const uint64_t number = reader->row.base;
@@ -486,7 +486,7 @@ static st_status end_of_records(st_reader *reader, st_piece *out)
 {
     const st_mesh_row *row = &reader->row;
     if (reader->number != row->card.record) {
-        return damaged(reader, "records end with %llu, the last is %llu",
+        return damaged(reader, "the records end at %llu, but the mesh has %llu",
                        (unsigned long long)reader->number, (unsigned long long)row->card.record);
     }
     if (reader->chain != row->chain) {

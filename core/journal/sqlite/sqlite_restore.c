@@ -35,7 +35,7 @@ static bool copy_bytes(st_folder *folder, const char *file, int from, int to)
     return got == 0 || cannot_read(folder, file);
 }
 
-/* What a restore that was killed left: its journal would be played into the next copy. */
+/* Removes what a killed restore left: SQLite would play its journal into the next copy. */
 static bool remove_copy(st_folder *folder)
 {
     static const char *const names[] = {"restored.db-journal", "restored.db-wal", "restored.db-shm",
@@ -119,7 +119,7 @@ static st_sql draw_incarnations(st_db *db)
     }
 }
 
-/* What a key answers again had the tag of a state that may be gone: none is told any more. */
+/* Kept answers lose their ETags: the states that they name may be gone. */
 static st_sql take_tags(st_db *db)
 {
     for (;;) {
@@ -242,7 +242,7 @@ bool st_sqlite_finish_restore(st_folder *folder)
     if (!st_folder_finds(folder, "restoring")) {
         return true;
     }
-    /* Without the copy it has its new name already. */
+    /* If the copy is gone, it was renamed before the restore was interrupted. */
     if (st_folder_finds(folder, "restored.db")) {
         if (!read_note(folder, before)) {
             return st_refuse(

@@ -207,7 +207,7 @@ static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, 
     const bool is_base =
         entry->barrier && (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
     st_sql outcome = ST_SQL_DONE;
-    /* A snapshot has the facts of a base; its record would not be read again. */
+    /* A snapshot has the facts of its record too, which is deleted. */
     if (!is_base || entry->stage == NULL) {
         outcome = st_db_do(&self->db, ST_SQL_RECORD_MAKE, "iib", head->row.key, entry->number,
                            entry->frame, entry->size);

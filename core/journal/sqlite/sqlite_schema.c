@@ -173,7 +173,7 @@ static const char *const texts[STATEMENTS] = {
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
-/* The connection's own statements are another table's. */
+/* The connection with this file's table of statements in place of its own. */
 static st_db borrowed(const st_db *db)
 {
     return (st_db){.handle = db->handle, .texts = texts};

@@ -23,7 +23,7 @@ typedef struct st_identity {
     char made_by[ST_RELEASE];
 } st_identity;
 
-/* How far it is: written with each commit. */
+/* The commit and position that the database is at; written with each commit. */
 typedef struct st_progress {
     uint64_t commits, position, meshes;
 } st_progress;

@@ -96,7 +96,7 @@ struct st_stage {
     bool waits; /* its slice is to be written */
     st_status status;
     st_stage *next; /* of those that wait */
-    /* Of a rebase. */
+    /* Set where the item is a rebase. */
     uint64_t incarnation, number, revision, needed;
     double time;
     unsigned char facts[ST_FRAME_HEAD];
@@ -247,8 +247,8 @@ st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned);
 st_status st_sqlite_stage(void *self, const he_mesh *content, st_stage **out);
 void st_sqlite_unstage(void *self, st_stage *stage);
 void st_sqlite_rebase(void *self, st_stage *stage, const st_record *facts, uint64_t needed);
-/* The others within a transaction. What was staged becomes a mesh's: the row, of which the key is
- * the stage's, takes the place of the one it had. */
+/* These run within a transaction. A staged content becomes that of a mesh: its row, whose key is
+ * that of the stage, replaces the row of the former content. */
 st_sql st_stage_adopt(st_sqlite *self, const st_snapshot_row *row);
 st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage);
 st_sql st_stage_drop(st_sqlite *self, const st_stage *stage);
@@ -266,7 +266,7 @@ st_sql st_purge_before(st_sqlite *self, int64_t mesh, uint64_t base, bool is_inl
 st_sql st_purge_mesh(st_sqlite *self, int64_t mesh);
 /* Deletes about so many bytes; *done when nothing is left. */
 st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done);
-/* Contents that were being staged when their process ended. */
+/* Deletes contents that were being staged when the process before this one ended. */
 st_sql st_purge_dead_stages(st_sqlite *self);
 
 /* --- sqlite_read.c --- */
@@ -296,7 +296,7 @@ st_journal st_sqlite_filled(st_sqlite *self); /* with its functions */
  * tables yet. */
 bool st_sqlite_check_version(st_db *db, const char *path, const char *release, bool *empty,
                              char message[ST_SQLITE_MESSAGE]);
-/* A sentence for what a statement on the database of that name came to; false. */
+/* Writes a sentence about a statement that failed on the database of that name; returns false. */
 bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
                        char message[ST_SQLITE_MESSAGE]);
 
