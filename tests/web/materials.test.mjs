@@ -7,6 +7,7 @@ import { GLTFExporter } from '../../web/node_modules/three/examples/jsm/exporter
 import { GLTFLoader } from '../../web/node_modules/three/examples/jsm/loaders/GLTFLoader.js';
 import { MTLLoader } from '../../web/node_modules/three/examples/jsm/loaders/MTLLoader.js';
 import { post, startDaemon } from './daemon.mjs';
+import { FileReader } from './file_reader.mjs';
 
 const LIBRARY = `newmtl red
 Kd 1 0.25 0
@@ -23,16 +24,6 @@ const SOURCE = [
     'usemtl red', 'f 1 3 4 2', 'f 5 6 8 7', 'usemtl green', 'f 1 2 6 5', 'f 3 7 8 4',
     'usemtl red', 'f 1 5 7 3', 'f 2 4 8 6',
 ].join('\n');
-
-// GLTFExporter reads what it has put together with what a browser has.
-class FileReader {
-    readAsArrayBuffer(blob) {
-        blob.arrayBuffer().then((bytes) => {
-            this.result = bytes;
-            this.onloadend();
-        });
-    }
-}
 
 async function create(url, body, type) {
     const headers = type === undefined ? {} : { 'Content-Type': type };

@@ -6,6 +6,7 @@ import { test } from 'node:test';
 import { GLTFExporter } from '../../web/node_modules/three/examples/jsm/exporters/GLTFExporter.js';
 import { GLTFLoader } from '../../web/node_modules/three/examples/jsm/loaders/GLTFLoader.js';
 import { post, startDaemon } from './daemon.mjs';
+import { FileReader } from './file_reader.mjs';
 
 // A cube whose six faces have a square of the texture each, and a normal.
 const CUBE = [
@@ -18,16 +19,6 @@ const CUBE = [
     ...['1 3 4 2', '5 6 8 7', '1 2 6 5', '3 7 8 4', '1 5 7 3', '2 4 8 6'].map(
         (face, f) => `f ${face.split(' ').map((v, k) => `${v}/${4 * f + k + 1}/${f + 1}`).join(' ')}`),
 ].join('\n');
-
-// GLTFExporter reads what it has put together with what a browser has.
-class FileReader {
-    readAsArrayBuffer(blob) {
-        blob.arrayBuffer().then((bytes) => {
-            this.result = bytes;
-            this.onloadend();
-        });
-    }
-}
 
 const say = (...numbers) => numbers.map((n) => n.toFixed(5)).join(' ');
 

@@ -12,17 +12,10 @@
 import { make } from './dom.js';
 import { numbersOf, slip, toggleWord, wordsOf } from './numbers.js';
 
-// A choice of some texts: [value, text] each.
-export class Choice {
-    node = make('select');
-
-    constructor(options, value) {
-        this.add(options);
-        this.node.value = value;
-    }
-
-    add(options) {
-        this.node.append(...options.map(([value, text]) => make('option', { value }, text)));
+// An element with a text, "" where nothing is put in.
+class Field {
+    constructor(node) {
+        this.node = node;
     }
 
     get main() {
@@ -39,6 +32,19 @@ export class Choice {
 
     read() {
         return this.node.value || undefined;
+    }
+}
+
+// A choice of some texts: [value, text] each.
+export class Choice extends Field {
+    constructor(options, value) {
+        super(make('select'));
+        this.add(options);
+        this.node.value = value;
+    }
+
+    add(options) {
+        this.node.append(...options.map(([value, text]) => make('option', { value }, text)));
     }
 }
 
@@ -74,23 +80,9 @@ export class Whether extends Choice {
     }
 }
 
-export class Text {
-    node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
-
-    get main() {
-        return this.node;
-    }
-
-    get isSaid() {
-        return this.node.value !== '';
-    }
-
-    clear() {
-        this.node.value = '';
-    }
-
-    read() {
-        return this.node.value || undefined;
+export class Text extends Field {
+    constructor() {
+        super(make('input', { type: 'text', autocomplete: 'off', spellcheck: false }));
     }
 }
 
