@@ -30,35 +30,15 @@ static he_status add(st_store *store, const char *name, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    switch (st_create(store, name, name, content, NULL, &mesh)) {
-    case ST_OK:
+    st_status stored = st_create(store, name, name, content, NULL, &mesh);
+    if (stored == ST_OK) {
         st_release(mesh);
         return HE_OK;
-    case ST_TAKEN:
-        he_mesh_free(content);
-        return HE_OK;
-    case ST_ABSENT:
-    case ST_NO_MEMORY:
-    case ST_BUDGET:
-    case ST_TOO_MANY:
-    case ST_NOTHING:
-    case ST_BUSY:
-    case ST_LISTENERS:
-    case ST_AHEAD:
-    case ST_GONE:
-    case ST_ELSEWHERE:
-    case ST_LOST:
-    case ST_COLD:
-    case ST_LOADING:
-    case ST_DAMAGED:
-    case ST_NEWER:
-    case ST_BEHIND:
-    case ST_FULL:
-    case ST_FAILED:
-        break;
     }
     he_mesh_free(content);
-    return he_fail_plain(err, HE_NO_MEMORY, "the store has no room for the sample %s", name);
+    return stored == ST_TAKEN
+               ? HE_OK
+               : he_fail_plain(err, HE_NO_MEMORY, "the store has no room for the sample %s", name);
 }
 
 he_status srv_samples_add(st_store *store, he_error *err)

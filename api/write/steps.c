@@ -51,45 +51,24 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
 {
     unsigned long long to = s->revision, present = x->info.revision;
     uint32_t left = s->which == ST_UNDO ? x->info.undo : x->info.redo;
-    switch (status) {
-    case ST_NOTHING:
+    if (status == ST_NOTHING) {
         api_fail(x, s->which == ST_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
                  left == 0 ? "no edit is left to %s at revision %llu"
                            : "fewer edits are left to %s at revision %llu than are asked for",
                  name_of(s), present);
-        return;
-    case ST_AHEAD:
+    } else if (status == ST_AHEAD) {
         api_in_fail(&s->to, API_NO_SUCH_REVISION, "the mesh is at revision %llu, before %llu",
                     present, to);
         x->problem.status = 422;
-        return;
-    case ST_GONE:
+    } else if (status == ST_GONE) {
         api_in_fail(&s->to, API_REVISION_GONE, "the history does not reach back to revision %llu",
                     to);
-        return;
-    case ST_ELSEWHERE:
+    } else if (status == ST_ELSEWHERE) {
         api_in_fail(&s->to, API_UNREACHABLE_REVISION,
                     "no number of steps to %s leads to revision %llu", name_of(s), to);
-        return;
-    case ST_OK:
-    case ST_ABSENT:
-    case ST_TAKEN:
-    case ST_NO_MEMORY:
-    case ST_BUDGET:
-    case ST_BUSY:
-    case ST_TOO_MANY:
-    case ST_LISTENERS:
-    case ST_LOST:
-    case ST_COLD:
-    case ST_LOADING:
-    case ST_DAMAGED:
-    case ST_NEWER:
-    case ST_BEHIND:
-    case ST_FULL:
-    case ST_FAILED:
-        break;
+    } else {
+        api_fail_store(x, status);
     }
-    api_fail_store(x, status);
 }
 
 /* What all steps come to; none when there are none. Written before they are committed, so that no
