@@ -215,6 +215,7 @@ wrap = $(patsubst %,-Wl$(comma)--wrap=%,$(1))
 comma := ,
 $(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_write_begin st_write_commit st_write_abort st_write_remove)
 $(BUILD)/tests/api/test_created: private LDFLAGS += $(call wrap,st_create)
+$(BUILD)/tests/api/test_disk: private LDFLAGS += $(call wrap,st_write_begin)
 $(BUILD)/tests/api/test_events: private LDFLAGS += $(call wrap,he_changes_find he_changes_sum)
 $(BUILD)/tests/api/test_snapshots: private LDFLAGS += $(call wrap,st_snapshot_take st_snapshot_held)
 $(BUILD)/tests/unit/test_srv_journal_faults: private LDFLAGS += $(call wrap,fstatvfs posix_fallocate)

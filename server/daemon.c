@@ -276,15 +276,42 @@ static uint64_t processor_micros(void)
     return (uint64_t)time.tv_sec * 1000000 + (uint64_t)time.tv_nsec / 1000;
 }
 
+/* A line when the disk is found full, when it has space again, and when it failed. What began and
+ * ended between two looks is told all the same; what ended and began again is not. */
+static void tell_health(const st_health *before, const st_health *now, const char *folder)
+{
+    const bool was_full = before->status == ST_FULL;
+    const bool found_full = !was_full && now->fulls != before->fulls;
+    if (found_full) {
+        fprintf(stderr,
+                "hedged: the disk of %s is full: changes are refused, reads and DELETE go on. Make "
+                "space there, or delete meshes\n",
+                folder);
+    }
+    if ((was_full || found_full) && now->status == ST_OK) {
+        fprintf(stderr, "hedged: the disk of %s has space again: changes are taken\n", folder);
+    }
+    if (now->status == ST_FAILED && before->status != ST_FAILED) {
+        fprintf(stderr,
+                "hedged: the disk of %s failed%s%s: reads go on, no change is taken any more. Look "
+                "at the disk and start hedged again: what was acknowledged is there\n",
+                folder, now->reason[0] == '\0' ? "" : ", ", now->reason);
+    }
+}
+
 /* The main thread serves nobody, and keeps house until it is told to stop. */
-static void wait_for_stop(const sigset_t *signals)
+static void wait_for_stop(const sigset_t *signals, const st_store *store, const char *folder)
 {
     const struct timespec second = {.tv_sec = 1};
     st_memory_rest rest = {0};
+    st_health health = {.status = ST_OK}, before;
     int number;
     do {
         number = sigtimedwait(signals, NULL, &second);
         st_memory_rests(&rest, processor_micros());
+        before = health;
+        st_store_health(store, &health);
+        tell_health(&before, &health, folder);
     } while (number != SIGTERM && number != SIGINT);
 }
 
@@ -348,7 +375,7 @@ int srv_daemon_run(const srv_config *config)
                    load_page(&parts, config) && open_service(&parts, config) &&
                    open_http(&parts, config);
     if (started) {
-        wait_for_stop(&signals);
+        wait_for_stop(&signals, parts.store, srv_config_folder(config));
         atomic_store(&parts.ready, false);
         api_job_table_stop(parts.job_table);
         if (!srv_http_stop(parts.http, STOP_MILLIS)) {

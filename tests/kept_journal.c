@@ -457,6 +457,15 @@ void kept_journal_free(kept_journal *journal)
     free(journal);
 }
 
+static void tell_health(void *self, st_health *out)
+{
+    kept_journal *journal = self;
+    pthread_mutex_lock(&journal->lock);
+    const st_status refuse = journal->refuse;
+    pthread_mutex_unlock(&journal->lock);
+    *out = (st_health){.status = refuse == ST_FULL || refuse == ST_FAILED ? refuse : ST_OK};
+}
+
 st_journal kept_journal_open(kept_journal *journal)
 {
     st_journal out = st_journal_memory(); /* whose `listen` says that all is durable */
@@ -476,6 +485,7 @@ st_journal kept_journal_open(kept_journal *journal)
     out.list = list_cards;
     out.keys = journal_keys_none;
     out.count = count_meshes;
+    out.health = tell_health;
     return out;
 }
 

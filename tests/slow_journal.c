@@ -100,6 +100,14 @@ static uint64_t count_none(void *self)
     return 0;
 }
 
+static void tell_health(void *self, st_health *out)
+{
+    const slow_journal *journal = self;
+    *out = (st_health){.status = journal->refuse == ST_FULL || journal->refuse == ST_FAILED
+                                     ? journal->refuse
+                                     : ST_OK};
+}
+
 /* Under the lock: what the newest group brought is kept to be looked at. */
 static void keep_newest(slow_journal *journal, st_room *room, const st_record *first)
 {
@@ -172,6 +180,7 @@ st_journal slow_journal_open_keeping(slow_journal *journal)
     kept.list = list_none;
     kept.keys = journal_keys_none;
     kept.count = count_none;
+    kept.health = tell_health;
     return kept;
 }
 

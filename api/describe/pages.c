@@ -24,12 +24,20 @@ void api_live_get(api_exchange *x)
 void api_ready_get(api_exchange *x)
 {
     const api_options *options = &x->service->options;
+    st_health health;
     if (options->ready != NULL && !options->ready(options->ready_context)) {
         api_fail(x, API_NOT_READY, "the server is starting or stopping");
         return;
     }
+    st_store_health(x->store, &health);
+    if (health.status == ST_FAILED) {
+        api_fail(x, API_STORE_FAILED, "the disk failed%s%s: start the server again",
+                 health.reason[0] == '\0' ? "" : ", ", health.reason);
+        return;
+    }
     api_out_object_begin(&x->out);
     api_out_key_string(&x->out, "status", "ready");
+    api_out_key_string(&x->out, "store", health.status == ST_FULL ? "full" : "writable");
     api_out_object_end(&x->out);
     api_answer_json(x, 200);
 }

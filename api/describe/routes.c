@@ -672,9 +672,12 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = json,
      .statuses = {200},
-     .response = "health",
+     .response = "readiness",
      .summary = "Does the server take requests?",
-     .doc = "503 while it starts and stops."},
+     .doc = "503 `not_ready` while it starts and stops, and 503 `store_failed` when a write or a "
+            "sync of the disk failed: then no change is taken until it is started again. A full "
+            "disk is no reason to take it out of service, for reads go on and meshes can be "
+            "deleted: `\"store\": \"full\"` with 200, until there is space again."},
     {.method = "GET",
      .path = "/version",
      .name = "version_get",

@@ -405,6 +405,8 @@ const api_member api_answer_members[] = {
     {"operations", "operations", "*#operation_row", REQUIRED, NULL},
 
     {"health", "status", "#health_name", REQUIRED, NULL},
+    {"readiness", "status", "#health_name", REQUIRED, NULL},
+    {"readiness", "store", "#store_name", REQUIRED, "While it is full only removals are taken."},
 
     {"version", "name", "text", REQUIRED, NULL},
     {"version", "version", "text", REQUIRED, NULL},

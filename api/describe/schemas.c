@@ -97,6 +97,7 @@ static const struct {
                    "{\"$ref\":\"#/components/schemas/attribute_values\"},"
                    "{\"$ref\":\"#/components/schemas/document\"}]}"},
     {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
+    {"store_name", "{\"enum\":[\"writable\",\"full\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"
                 "{\"$ref\":\"#/components/schemas/edge\"},"

@@ -115,6 +115,16 @@ bool api_fail_path(api_exchange *x, const he_error *err)
     return api_problem_set_path(&x->problem, err);
 }
 
+/* Who would write to what was lost is told what would become of the change. */
+static bool fail_lost(api_exchange *x)
+{
+    st_health health;
+    st_store_health(x->store, &health);
+    return (x->route->flags & API_WRITES) && health.status != ST_OK
+               ? api_fail_store(x, health.status)
+               : api_fail(x, API_STORE_LOST, "the mesh has a change that was lost");
+}
+
 bool api_fail_store(api_exchange *x, st_status status)
 {
     x->shows_all |= status == ST_ABSENT || status == ST_TAKEN || status == ST_TOO_MANY;
@@ -148,7 +158,7 @@ bool api_fail_store(api_exchange *x, st_status status)
     case ST_ELSEWHERE:
         return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
     case ST_LOST:
-        return api_fail(x, API_STORE_LOST, "the mesh has a change that was lost");
+        return fail_lost(x);
     case ST_BEHIND:
         return api_fail(x, API_STORE_BEHIND, "too many changes are waiting for the disk");
     case ST_FULL:

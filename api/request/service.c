@@ -152,6 +152,11 @@ static st_shown shown(const api_exchange *x)
     if (x->route == NULL || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
+    /* What the server has no room for, whatever meshes there are. A client is to hear why, not that
+     * something else was lost for the same reason. */
+    if (x->problem.code != HE_OK && api_problem_http(&x->problem) >= 500) {
+        return (st_shown){.position = 0};
+    }
     if (x->has_info && !x->shows_all) {
         return st_shown_of(&x->info);
     }

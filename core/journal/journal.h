@@ -82,6 +82,15 @@ typedef struct st_journal_listener {
 /* Takes a key, which is borrowed for the call. False without memory. */
 typedef bool st_take_key(void *context, const st_kept_key *key);
 
+enum { ST_HEALTH_TEXT = 200 };
+
+/* Are changes taken? */
+typedef struct st_health {
+    st_status status;            /* ST_OK; ST_FULL, ST_FAILED: not, and why */
+    uint64_t fulls;              /* how often the disk was found full since the start */
+    char reason[ST_HEALTH_TEXT]; /* of ST_FAILED: what the system said, "" where it said nothing */
+} st_health;
+
 typedef struct st_journal {
     void *self;
     /* Is what is appended kept beyond memory? Without it a room is NULL, so that nothing is coded,
@@ -130,6 +139,8 @@ typedef struct st_journal {
     st_status (*keys)(void *self, const char *id, st_take_key *take, void *context);
     /* How many meshes there are, with what is queued. Never waits. */
     uint64_t (*count)(void *self);
+    /* How the disk is. Never waits. */
+    void (*health)(void *self, st_health *out);
 
     /* The start is over: what it put into a store that was just made is durable from now on, and
      * the next start finds an old store. Waits. */

@@ -265,6 +265,14 @@ bool st_store_waits_for_disk(const st_store *store)
     return store->journal.keeps;
 }
 
+void st_store_health(const st_store *store, st_health *out)
+{
+    *out = (st_health){.status = ST_OK};
+    if (store->journal.keeps) {
+        store->journal.health(store->journal.self, out);
+    }
+}
+
 st_mesh_options st_store_mesh_options(st_store *store)
 {
     return (st_mesh_options){.store = store,

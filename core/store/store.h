@@ -95,6 +95,8 @@ uint64_t st_store_count(st_store *store);
 /* Are meshes kept on a disk? Then a request for a mesh that is not in memory, for the list, or for
  * a free id waits for it. */
 bool st_store_waits_for_disk(const st_store *store);
+/* Are changes taken? Does not wait. */
+void st_store_health(const st_store *store, st_health *out);
 /* Frees the cached copies and bodies of kept answers that nobody reads, and what was derived from
  * meshes. Called without a lock. */
 void st_store_shed(st_store *store);

@@ -290,6 +290,8 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     }
     assert_string_equal(text_of(&r, "code"), code);
     assert_string_equal(bench_header(&r, "Retry-After"), status == 503 ? "1" : "");
+    /* It waits for nothing, and so is never taken for a change that was lost. */
+    assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
     assert_true(journal.groups == groups);
     assert_int_equal(journal.out, 0);
     bench_reply_free(&r);

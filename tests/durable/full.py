@@ -45,6 +45,7 @@ def fill(run, client):
         name = f'fill{len(made)}'
         answer = client.send('PUT', f'/v1/meshes/{name}', FILL)
         if answer.code() in DISK_CODES:
+            run.judge('PUT says that the disk is full', answer.code() == 'store_full', answer.body)
             run.count('times full')
             return made
         if not run.judge('a mesh is made', answer.status == 201, answer.body):
@@ -65,6 +66,25 @@ def empty(run, client, log, made):
         if len(log.done) > before + 20:
             return True
     return False
+
+
+def has_space(run, client, made):
+    """Deletes what is left of those made, until there is space for good."""
+    deadline = time.monotonic() + PATIENCE
+    while client.get('/readyz').json().get('store') != 'writable':
+        if time.monotonic() > deadline:
+            return False
+        if made:
+            client.send('DELETE', '/v1/meshes/' + made.pop())
+        threading.Event().wait(0.2)
+    return True
+
+
+def says_in_turn(log, folder):
+    """Full, space again, full: a line each, which names the folder."""
+    told = [line for line in log.splitlines() if f' the disk of {folder} ' in line]
+    return told and all(('is full' if i % 2 == 0 else 'has space') in line
+                        for i, line in enumerate(told))
 
 
 def follow_all(run, client, replay, done, flying, when):
@@ -89,9 +109,13 @@ def prove(run):
         threading.Event().wait(1)
         for mesh in MESHES:
             run.judge('reads go on', client.get(f'/v1/meshes/{mesh}').status in (200, 404))
+        ready = client.get('/readyz')
+        run.judge('it says that the disk is full', ready.status == 200 and
+                  ready.json().get('store') == 'full', ready.body)
         run.judge('writes work again', empty(run, client, log, made), daemon.log())
         for writer in writers:
             writer.stop()
+        run.judge('it says that there is space', has_space(run, client, made), daemon.log())
         done, flying = log.take()
         run.count('changes', len(done))
         run.count('changes refused', log.refused.get('store_full', 0))
@@ -99,6 +123,7 @@ def prove(run):
         follow_all(run, client, replay, done, flying, 'without a restart')
         client.close()
         run.judge('it stops', daemon.stop() == 0, daemon.log())
+        run.judge('the log tells of it', says_in_turn(daemon.log(), folder), daemon.log())
         daemon = run.start()
         client = daemon.client()
         follow_all(run, client, replay, [], [], 'after a restart')

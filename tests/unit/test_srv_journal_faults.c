@@ -134,7 +134,8 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
 }
 
 /* Files that SQLite does not write find no space either. */
-static bool no_space;
+static _Atomic bool no_space;
+static _Atomic unsigned asked_for_space; /* times */
 
 int __real_fstatvfs(int file, struct statvfs *out);
 int __wrap_fstatvfs(int file, struct statvfs *out);
@@ -144,6 +145,7 @@ int __wrap_posix_fallocate(int file, off_t from, off_t size);
 int __wrap_fstatvfs(int file, struct statvfs *out)
 {
     int failed = __real_fstatvfs(file, out);
+    asked_for_space++;
     out->f_bavail = no_space ? 0 : out->f_bavail;
     return failed;
 }
@@ -185,6 +187,46 @@ static void a_store_starts_from_a_full_disk(void **state)
     no_space = false;
     j->leave(j->self, reserve_after(j, ST_FULL, false));
     assert_true(has_ballast());
+    told_end(&told);
+}
+
+static st_health health_of(const st_journal *j)
+{
+    st_health health;
+    j->health(j->self, &health);
+    return health;
+}
+
+/* The log has room that is used again and again: that a page can be written says nothing. */
+static void a_full_disk_stays_full_until_there_is_space(void **state)
+{
+    (void)state;
+    told_journal told;
+    kept_mesh mesh = new_mesh();
+    open_store(&told, 0);
+    const st_journal *j = &told.journal;
+    told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
+    assert_int_equal(health_of(j).status, ST_OK);
+    no_space = true;
+    disk_fill(true);
+    kept_mesh lost = mesh;
+    told_wait(&told, kept_append(j, kept_edit(&lost), &lost, "2", 1));
+    disk_fill(false);
+    const unsigned asked = asked_for_space;
+    while (asked_for_space < asked + 3) {
+        const st_health health = health_of(j);
+        assert_int_equal(health.status, ST_FULL);
+        assert_int_equal(health.fulls, 1);
+        assert_int_equal(kept_append(j, kept_edit(&lost), &lost, "3", 1), 0);
+        sched_yield();
+    }
+    no_space = false;
+    j->leave(j->self, reserve_after(j, ST_FULL, false));
+    assert_int_equal(health_of(j).status, ST_OK);
+    assert_int_equal(health_of(j).fulls, 1);
+    assert_true(has_ballast());
+    told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "4", 1));
+    assert_int_equal(told_losses(&told), 1);
     told_end(&told);
 }
 
@@ -331,6 +373,7 @@ static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
     assert_int_equal(told.loss.status, ST_FULL);
     disk_fail_at(1);
     disk_fill(false);
+    assert_string_equal(health_of(j).reason, "");
     const st_room_need need = {.records = 1, .bytes = 16};
     st_room *room = NULL;
     st_status status = ST_FULL;
@@ -339,6 +382,8 @@ static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
     }
     j->leave(j->self, room);
     assert_int_equal(status, ST_FAILED);
+    assert_int_equal(health_of(j).status, ST_FAILED);
+    assert_true(health_of(j).reason[0] != '\0');
     assert_true(disk_syncs() >= 1);
     disk_fail_at(0);
     told_end(&told);
@@ -517,6 +562,7 @@ int main(void)
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
         STORE_TEST(a_full_disk_loses_what_is_queued_and_recovers),
         STORE_TEST(a_store_starts_from_a_full_disk),
+        STORE_TEST(a_full_disk_stays_full_until_there_is_space),
         STORE_TEST(rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile),
         STORE_TEST(what_was_made_and_lost_was_never_there),
         STORE_TEST(after_a_failed_sync_nothing_is_acknowledged),

@@ -10,6 +10,7 @@
 #include "journal/sqlite/sqlite_state.h"
 #include "system/clock.h"
 
+#include <stdio.h>
 #include <sys/prctl.h>
 
 enum {
@@ -32,6 +33,7 @@ typedef struct group {
     bool freeing;
     st_stage *stage; /* whose slice is written beside; NULL: something is purged */
     size_t slice;    /* bytes of background work; 0: none */
+    bool purged;     /* with this transaction nothing is left to be purged */
 } group;
 
 /* --- taking from the queue; under the lock --- */
@@ -165,6 +167,7 @@ static void stop_writing(st_sqlite *self, st_write_mode mode)
     pthread_mutex_lock(&self->lock);
     if (mode > self->mode) {
         self->mode = mode;
+        self->fulls += mode == ST_WRITES_FULL;
     }
     self->generation++;
     self->old_rooms = self->rooms;
@@ -268,18 +271,14 @@ static st_sql apply(st_sqlite *self, st_item *item)
     return st_rows_condemn(self, (st_condemned *)((char *)item - offsetof(st_condemned, item)));
 }
 
-static st_sql write_slice(st_sqlite *self, const group *g)
+static st_sql write_slice(st_sqlite *self, group *g)
 {
+    g->purged = false;
     if (g->slice == 0) {
         return ST_SQL_DONE;
     }
-    if (g->stage != NULL) {
-        return st_stage_write(self, g->stage, g->slice / HE_STORED_PART);
-    }
-    bool done = false;
-    st_sql outcome = st_purge_slice(self, g->slice, &done);
-    self->purged = outcome == ST_SQL_DONE && done;
-    return outcome;
+    return g->stage != NULL ? st_stage_write(self, g->stage, g->slice / HE_STORED_PART)
+                            : st_purge_slice(self, g->slice, &g->purged);
 }
 
 static st_sql put_progress(st_sqlite *self, const st_progress *progress)
@@ -288,7 +287,17 @@ static st_sql put_progress(st_sqlite *self, const st_progress *progress)
                     progress->meshes, (uint64_t)st_progress_sum(progress));
 }
 
-static st_sql transact(st_sqlite *self, const group *g, st_progress *progress)
+/* What SQLite says of it now, it forgets with the next statement. */
+static void note_refusal(st_sqlite *self, st_sql outcome)
+{
+    if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
+        pthread_mutex_lock(&self->lock);
+        (void)snprintf(self->refusal, sizeof self->refusal, "%s", st_db_message(&self->db));
+        pthread_mutex_unlock(&self->lock);
+    }
+}
+
+static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
 {
     *progress = (st_progress){self->progress.commits + 1, g->position,
                               self->progress.meshes + g->made - g->removed};
@@ -308,11 +317,14 @@ static st_sql transact(st_sqlite *self, const group *g, st_progress *progress)
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_do(&self->db, ST_SQL_COMMIT, "");
     }
-    if (outcome != ST_SQL_DONE) {
-        st_heads_forget(self);
-        if (sqlite3_get_autocommit(self->db.handle) == 0) {
-            (void)st_db_do(&self->db, ST_SQL_ROLLBACK, "");
-        }
+    if (outcome == ST_SQL_DONE) {
+        self->purged |= g->purged;
+        return outcome;
+    }
+    note_refusal(self, outcome);
+    st_heads_forget(self);
+    if (sqlite3_get_autocommit(self->db.handle) == 0) {
+        (void)st_db_do(&self->db, ST_SQL_ROLLBACK, "");
     }
     return outcome;
 }
@@ -419,6 +431,7 @@ static bool checkpoint(st_sqlite *self, int how)
         pthread_cond_broadcast(&self->moved);
     }
     pthread_mutex_unlock(&self->lock);
+    note_refusal(self, outcome);
     /* The disk being full is no failure here: the log is whole. */
     return (outcome != ST_SQL_FAILED && outcome != ST_SQL_DAMAGED && st_mark_sync(&self->folder)) ||
            (stop_writing(self, ST_WRITES_FAILED), false);
@@ -479,15 +492,27 @@ static bool make_space(st_sqlite *self)
     return good;
 }
 
-/* Ends the state of a full disk if the ballast can be made again: a free page alone is not enough.
- * Under the lock, which is released meanwhile. */
+/* The log is cut where nobody reads: the space that it kept for itself is free like any other. */
+static bool cut_log(st_sqlite *self)
+{
+    pthread_mutex_lock(&self->lock);
+    const bool is_read = self->loads_taken > 0;
+    pthread_mutex_unlock(&self->lock);
+    return is_read || checkpoint(self, SQLITE_CHECKPOINT_TRUNCATE);
+}
+
+/* Ends the state of a full disk if the ballast can be made again and there is space beside it: with
+ * less the next few changes would fill it again. Under the lock, which is released meanwhile. */
 static void seek_space(st_sqlite *self)
 {
-    if (!make_space(self)) {
+    pthread_mutex_unlock(&self->lock);
+    bool found = st_folder_has_space(&self->folder);
+    pthread_mutex_lock(&self->lock);
+    if ((!found && self->purged && self->first == NULL) || !make_space(self)) {
         return;
     }
     pthread_mutex_unlock(&self->lock);
-    bool found = st_ballast_make(&self->folder);
+    found = cut_log(self) && st_ballast_make(&self->folder) && st_folder_has_space(&self->folder);
     pthread_mutex_lock(&self->lock);
     if (found && self->mode == ST_WRITES_FULL) {
         self->mode = ST_WRITES;

@@ -12,7 +12,7 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
-enum { BALLAST_BYTES = 8 << 20, START_BYTES = 1 << 20, WHO = 256 };
+enum { BALLAST_BYTES = 8 << 20, SPACE_BYTES = 4 << 20, START_BYTES = 1 << 20, WHO = 256 };
 
 bool st_folder_fail(st_folder *folder, const char *what, const char *name)
 {
@@ -217,6 +217,21 @@ bool st_ballast_make(st_folder *folder)
         (void)unlinkat(folder->folder, "ballast", 0);
     }
     return made;
+}
+
+/* Does the file system say so, and give them? A quota shows only there. */
+bool st_folder_has_space(st_folder *folder)
+{
+    struct statvfs space;
+    if (fstatvfs(folder->folder, &space) == 0 &&
+        (uint64_t)space.f_bavail * space.f_frsize < SPACE_BYTES) {
+        return false;
+    }
+    int file = openat(folder->folder, "space", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    (void)unlinkat(folder->folder, "space", 0);
+    const bool has = file >= 0 && posix_fallocate(file, 0, SPACE_BYTES) == 0;
+    close_file(file);
+    return has;
 }
 
 bool st_ballast_drop(st_folder *folder)

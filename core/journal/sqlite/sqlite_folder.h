@@ -60,6 +60,8 @@ bool st_mark_read(st_folder *folder, st_mark *out);
 bool st_mark_write(st_folder *folder, const st_mark *mark);
 bool st_mark_sync(st_folder *folder);
 
+/* Is there space for some MiB more? */
+bool st_folder_has_space(st_folder *folder);
 /* Makes the ballast unless it is there. False where there is no space for it. */
 bool st_ballast_make(st_folder *folder);
 /* Gives it up. False when there was none. */

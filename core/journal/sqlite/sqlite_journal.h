@@ -7,9 +7,9 @@
  *
  * WHEN THE DISK SAYS NO. A group that finds the disk full is tried again without background work;
  * then it is lost, with all that is queued, and the journal is FULL: it admits only removals, gives
- * up its ballast for them, and looks each second whether there is space again. After any other
- * failure of a write or a sync it is FAILED until a restart: what the kernel said about the pages
- * can no longer be believed. Reads go on in both. */
+ * up its ballast for them, and looks each second whether there is space again, beside the ballast.
+ * After any other failure of a write or a sync it is FAILED until a restart: what the kernel said
+ * about the pages can no longer be believed. Reads go on in both. */
 #ifndef HE_JOURNAL_SQLITE_JOURNAL_H
 #define HE_JOURNAL_SQLITE_JOURNAL_H
 

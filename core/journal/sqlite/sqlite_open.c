@@ -320,6 +320,7 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
      * is full and goes on being so: the room that it left is for removals. */
     if (!st_ballast_make(&self->folder) && full) {
         self->mode = ST_WRITES_FULL;
+        self->fulls = 1;
     }
     st_sql outcome = st_readers_open(self, path);
     return outcome == ST_SQL_DONE ? start_thread(self, out)
@@ -344,6 +345,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .list = st_sqlite_list,
                         .keys = st_sqlite_keys,
                         .count = st_sqlite_count,
+                        .health = st_sqlite_health,
                         .begun = st_sqlite_begun,
                         .listen = st_sqlite_listen,
                         .close = st_sqlite_close};

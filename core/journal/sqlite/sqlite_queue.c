@@ -201,6 +201,18 @@ uint64_t st_sqlite_count(void *context)
     return count;
 }
 
+void st_sqlite_health(void *context, st_health *out)
+{
+    static const st_status of_mode[] = {
+        [ST_WRITES] = ST_OK, [ST_WRITES_FULL] = ST_FULL, [ST_WRITES_FAILED] = ST_FAILED};
+    st_sqlite *self = context;
+    pthread_mutex_lock(&self->lock);
+    out->status = of_mode[self->mode];
+    out->fulls = self->fulls;
+    memcpy(out->reason, self->refusal, sizeof out->reason);
+    pthread_mutex_unlock(&self->lock);
+}
+
 void st_sqlite_listen(void *context, const st_journal_listener *listener)
 {
     st_sqlite *self = context;

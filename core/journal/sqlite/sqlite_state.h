@@ -151,7 +151,9 @@ struct st_sqlite {
     pthread_cond_t moved; /* for those who wait for it */
     bool closing;
     st_write_mode mode;
-    bool losing; /* something was lost, and not all of it was told */
+    uint64_t fulls;               /* how often the disk was found full */
+    char refusal[ST_HEALTH_TEXT]; /* what the disk said when it failed */
+    bool losing;                  /* something was lost, and not all of it was told */
     uint64_t generation;
     size_t rooms, old_rooms; /* that are out; of them, of an older generation */
     uint64_t charged;        /* bytes of rooms, out or queued */
@@ -190,6 +192,7 @@ st_status st_sqlite_reserve(void *self, const st_room_need *need, st_room **out)
 void st_sqlite_leave(void *self, st_room *room);
 uint64_t st_sqlite_append(void *self, st_room *room, const st_record *records, size_t count);
 uint64_t st_sqlite_count(void *self);
+void st_sqlite_health(void *self, st_health *out);
 void st_sqlite_listen(void *self, const st_journal_listener *listener);
 /* Put an item at the end of the queue. Under the lock. */
 void st_queue_put(st_sqlite *self, st_item *item);
