@@ -1,12 +1,14 @@
 # An image of hedged with its page: only the program, what it links and what a browser loads.
 #
 #   docker build -t hedge .
-#   docker run --read-only -v hedge:/data -e HEDGE_INSECURE=1 -p 127.0.0.1:8080:8080 hedge
+#   docker run --rm hedge --new-token alice write        # a token, and the line for the file
+#   docker run --read-only -v hedge:/data -v "$PWD/tokens:/tokens:ro" -e HEDGE_TOKENS=/tokens \
+#       -p 127.0.0.1:8080:8080 hedge
 #
 # Inside, only an address beyond loopback can be reached from outside the container, and hedged takes
-# such a one only when HEDGE_INSECURE=1 says that requests without a token are meant. -p decides who
-# reaches it then: with 127.0.0.1 before the port, this machine alone. tests/container.sh builds and
-# tries the image.
+# such a one only with a file of tokens, or when HEDGE_INSECURE=1 says that requests without a token
+# are meant. -p decides who reaches it: with 127.0.0.1 before the port, this machine alone.
+# tests/container.sh builds and tries the image.
 ARG DEBIAN=docker.io/library/debian:bookworm-slim
 
 # --- the daemon ---
@@ -41,7 +43,7 @@ LABEL org.opencontainers.image.title="hedge" \
       org.opencontainers.image.revision="${REVISION}"
 RUN apt-get -q update && \
     apt-get -q install -y --no-install-recommends \
-        libmicrohttpd12 libcjson1 zlib1g libzstd1 libsqlite3-0 libmeshoptimizer2d && \
+        libmicrohttpd12 libcjson1 zlib1g libzstd1 libsqlite3-0 libmeshoptimizer2d libnettle8 && \
     rm -rf /var/lib/apt/lists/* /var/cache/apt/*.bin /var/log/*
 COPY LICENSE /usr/local/share/doc/hedge/
 COPY --from=page /src/build/web /usr/local/share/hedge/web

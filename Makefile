@@ -31,7 +31,7 @@ DEBUG    := $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
 CFLAGS   := -std=c11 -pthread $(DEBUG) $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
 # Lazy: evaluated when a program is linked, after .ci/deps has run.
-DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3) -lmeshoptimizer -lm
+DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3 nettle) -lmeshoptimizer -lm
 TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
 
 # Asserts stay in the release: a daemon that stops is better than one that overwrites a mesh.
@@ -222,6 +222,10 @@ $(BUILD)/tests/unit/test_srv_journal_faults: private LDFLAGS += $(call wrap,fsta
 $(BUILD)/tests/api/test_mesh_access: private LDFLAGS += $(call wrap,he_slots_new)
 $(BUILD)/tests/api/test_space_threads: private LDFLAGS += \
     $(call wrap,st_derived_begin st_derived_end st_derived_wait)
+
+$(BUILD)/tests/api/test_gate: private LDFLAGS += \
+    $(call wrap,api_gate_enter api_gate_sees api_gate_may_create api_gate_may_change api_role_allows \
+    api_token_is_current api_token_owns api_token_ranges api_tokens_find)
 
 $(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
     $(call wrap,pthread_mutex_lock shutdown)

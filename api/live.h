@@ -13,8 +13,8 @@
  *       free
  *
  * start, read, finish and free are called by one thread at a time. wake is called from any thread,
- * at most once for each API_READ_WAIT, never from inside one of the four, and never after free has
- * returned. */
+ * at most once for each API_READ_WAIT and once more when the client's token is dropped, never from
+ * inside one of the four, and never after free has returned. */
 #ifndef HE_API_LIVE_H
 #define HE_API_LIVE_H
 

@@ -30,7 +30,10 @@ static const option options[] = {
     {"listen", TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT", 0, 0,
      "address to listen on; port 0 takes a free one"},
     {"insecure", FLAG, MEMBER(insecure), "0", NULL, 0, 0,
-     "listen beyond loopback although nobody has to authenticate"},
+     "listen beyond loopback although nobody needs a token"},
+    {"tokens", TEXT, MEMBER(tokens), "", "FILE", 0, 0,
+     "who may do what: a line for each token, as --new-token prints it. Without a file everybody "
+     "may do everything. SIGHUP and POST /v1/admin/reload read it again"},
     {"allow-host", LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
      "answer requests for this Host too; may be repeated or a comma list"},
     {"allow-origin", LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
@@ -92,6 +95,9 @@ static const option options[] = {
      "read every mesh of the store, or of such a file: exit status 0 when all are whole"},
     {"dump", COMMAND, MEMBER(dump), "", "DIR", 0, 0,
      "write every mesh of the store that is whole to a folder, as GLB, and exit"},
+    {"new-token", ACTION, MEMBER(new_token), "0", "[NAME [ROLE]]", 0, 0,
+     "print a new token, which is kept nowhere, and the line for the file of --tokens, and exit. "
+     "ROLE is read, which is what it is unless given, write, admin or metrics"},
     {"healthcheck", ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
      "ask a running daemon for /livez: exit status 0 when it answers"},
     {"print-config", ACTION, MEMBER(print_config), "0", NULL, 0, 0,
@@ -303,6 +309,11 @@ static bool read_flags(srv_config *config, int argc, char *const *argv, char *me
                 config->verified = argument;
                 continue;
             }
+            if (config->new_token && config->token_role == NULL) {
+                *(config->token_name == NULL ? &config->token_name : &config->token_role) =
+                    argument;
+                continue;
+            }
             snprintf(message, size, "\"%s\" is not an option; --help lists them", argument);
             return false;
         }
@@ -355,11 +366,13 @@ static bool check(const srv_config *config, char *message, size_t size)
         return false;
     }
     const bool serves = !config->healthcheck && !config->print_config && !config->verify &&
-                        config->backup == NULL && config->restore == NULL && config->dump == NULL;
-    if (serves && !srv_address_is_loopback(&address) && !config->insecure) {
+                        !config->new_token && config->backup == NULL && config->restore == NULL &&
+                        config->dump == NULL;
+    if (serves && !srv_address_is_loopback(&address) && config->tokens[0] == '\0' &&
+        !config->insecure) {
         snprintf(message, size,
-                 "%s can be reached from other machines and requests need no token: "
-                 "set --insecure to listen there all the same",
+                 "%s can be reached from other machines and requests need no token: name a file of "
+                 "--tokens, or set --insecure to listen there all the same",
                  config->listen);
         return false;
     }

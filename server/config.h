@@ -20,6 +20,7 @@ typedef enum st_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS, SRV_LOG_AUTO } st_log_ki
 typedef struct srv_config {
     const char *listen;
     bool insecure;
+    const char *tokens; /* a file; "": nobody needs a token */
     srv_policy policy;
     const char *web;   /* "": look beside the executable */
     const char *store; /* "memory", or "sqlite:" and a folder: srv_config_folder */
@@ -43,9 +44,10 @@ typedef struct srv_config {
     uint64_t min_rate;                                                  /* bytes a second */
 
     const char *backup, *restore, *dump; /* files, a folder; NULL: not asked for */
-    bool help, version, print_config, healthcheck, verify;
-    const char *healthcheck_url; /* NULL: /livez at `listen` */
-    const char *verified;        /* a file; NULL: the store */
+    bool help, version, print_config, healthcheck, verify, new_token;
+    const char *healthcheck_url;         /* NULL: /livez at `listen` */
+    const char *verified;                /* a file; NULL: the store */
+    const char *token_name, *token_role; /* of new_token; NULL: not given */
 
     /* The text that list members point into. */
     char *owned[2 * SRV_MAX_NAMES];

@@ -7,6 +7,7 @@
 #include "server/assets.h"
 #include "server/http/http.h"
 #include "server/samples.h"
+#include "server/tokens.h"
 #include "system/memory.h"
 #include "system/memory_limit.h"
 #include "system/parallel.h"
@@ -40,6 +41,8 @@ typedef struct daemon_parts {
     srv_http *http;
     srv_policy policy;
     char own_host[SRV_ADDRESS_TEXT];
+    api_tokens *tokens;      /* NULL: nobody needs one */
+    const char *tokens_path; /* of their file */
     _Atomic bool ready;
 } daemon_parts;
 
@@ -177,6 +180,28 @@ static void count_memory(uint64_t *used, uint64_t *budget)
     *budget = st_memory_budget();
 }
 
+/* By a signal or by a request, which may come at one time: the file that was read last stays. */
+static bool reload(void *context, char *message, size_t size)
+{
+    const daemon_parts *parts = context;
+    return parts->tokens == NULL ||
+           srv_tokens_read(parts->tokens, parts->tokens_path, message, size);
+}
+
+static bool open_tokens(daemon_parts *parts, const srv_config *config)
+{
+    char message[320];
+    if (config->tokens[0] == '\0') {
+        return true;
+    }
+    parts->tokens = api_tokens_new();
+    parts->tokens_path = config->tokens;
+    if (parts->tokens == NULL) {
+        return fail("no memory to start");
+    }
+    return reload(parts, message, sizeof message) || fail(message);
+}
+
 static bool submit_job(void *pool, const st_task *task)
 {
     return st_pool_submit(pool, task);
@@ -198,6 +223,9 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
                                          .ready = is_ready,
                                          .ready_context = parts,
                                          .memory = count_memory,
+                                         .tokens = parts->tokens,
+                                         .reload = reload,
+                                         .reload_context = parts,
                                          .jobs = parts->job_table,
                                          .pool = parts->pool,
                                          .plain_answers = config->no_compression,
@@ -299,8 +327,19 @@ static void tell_health(const st_health *before, const st_health *now, const cha
     }
 }
 
+static void tell_reload(daemon_parts *parts)
+{
+    char message[320];
+    if (!reload(parts, message, sizeof message)) {
+        fprintf(stderr, "hedged: %s; those before stay in force\n", message);
+    } else if (parts->tokens != NULL) {
+        fprintf(stderr, "hedged: %zu tokens are in force, read again from %s\n",
+                api_tokens_count(parts->tokens), parts->tokens_path);
+    }
+}
+
 /* The main thread serves nobody, and keeps house until it is told to stop. */
-static void wait_for_stop(const sigset_t *signals, const st_store *store, const char *folder)
+static void wait_for_stop(daemon_parts *parts, const sigset_t *signals, const char *folder)
 {
     const struct timespec second = {.tv_sec = 1};
     st_memory_rest rest = {0};
@@ -310,8 +349,11 @@ static void wait_for_stop(const sigset_t *signals, const st_store *store, const 
         number = sigtimedwait(signals, NULL, &second);
         st_memory_rests(&rest, processor_micros());
         before = health;
-        st_store_health(store, &health);
+        st_store_health(parts->store, &health);
         tell_health(&before, &health, folder);
+        if (number == SIGHUP) {
+            tell_reload(parts);
+        }
     } while (number != SIGTERM && number != SIGINT);
 }
 
@@ -319,8 +361,8 @@ static void wait_for_stop(const sigset_t *signals, const st_store *store, const 
  * that is gone, timers, descriptors, and what other daemons take for a command. */
 static void ignore_signals(void)
 {
-    static const int harmless[] = {SIGHUP,    SIGPIPE, SIGALRM, SIGUSR1,   SIGUSR2,
-                                   SIGVTALRM, SIGPROF, SIGPOLL, SIGSTKFLT, SIGPWR};
+    static const int harmless[] = {SIGPIPE, SIGALRM, SIGUSR1,   SIGUSR2, SIGVTALRM,
+                                   SIGPROF, SIGPOLL, SIGSTKFLT, SIGPWR};
     for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
         signal(harmless[i], SIG_IGN);
     }
@@ -335,6 +377,7 @@ static void block_signals(sigset_t *waited)
     sigemptyset(waited);
     sigaddset(waited, SIGTERM);
     sigaddset(waited, SIGINT);
+    sigaddset(waited, SIGHUP);
     pthread_sigmask(SIG_BLOCK, waited, NULL);
 }
 
@@ -371,11 +414,11 @@ int srv_daemon_run(const srv_config *config)
     block_signals(&signals);
     choose_budget(config);
 
-    bool started = open_threads(&parts, config) && open_store(&parts, config) &&
-                   load_page(&parts, config) && open_service(&parts, config) &&
-                   open_http(&parts, config);
+    bool started = open_tokens(&parts, config) && open_threads(&parts, config) &&
+                   open_store(&parts, config) && load_page(&parts, config) &&
+                   open_service(&parts, config) && open_http(&parts, config);
     if (started) {
-        wait_for_stop(&signals, parts.store, srv_config_folder(config));
+        wait_for_stop(&parts, &signals, srv_config_folder(config));
         atomic_store(&parts.ready, false);
         api_job_table_stop(parts.job_table);
         if (!srv_http_stop(parts.http, STOP_MILLIS)) {
@@ -392,5 +435,6 @@ int srv_daemon_run(const srv_config *config)
     st_store_free(parts.store);
     srv_assets_free(parts.assets);
     srv_access_log_free(parts.log);
+    api_tokens_free(parts.tokens);
     return started ? 0 : 1;
 }

@@ -8,8 +8,9 @@
 
 #include "server/config.h"
 
-/* Serve until SIGTERM or SIGINT. The process's exit status: 0 after a stop, 1 when it could not
- * start, with a line on stderr that says why. To be called from the only thread. */
+/* Serve until SIGTERM or SIGINT; SIGHUP has the tokens read again. The process's exit status: 0
+ * after a stop, 1 when it could not start, with a line on stderr that says why. To be called from
+ * the only thread. */
 int srv_daemon_run(const srv_config *config);
 
 #endif

@@ -2,6 +2,7 @@
 #include "server/daemon.h"
 #include "server/maintenance.h"
 #include "server/net/healthcheck.h"
+#include "server/tokens.h"
 #include "system/memory.h"
 
 #include <stdlib.h>
@@ -29,6 +30,9 @@ int main(int argc, char **argv)
             fprintf(stderr, "hedged: %s\n", message);
             status = 1;
         }
+    } else if (config.new_token) {
+        status = srv_tokens_new(config.token_name == NULL ? "token" : config.token_name,
+                                config.token_role == NULL ? "read" : config.token_role);
     } else if (srv_maintenance_asked(&config)) {
         status = srv_maintenance_run(&config);
     } else {

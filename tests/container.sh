@@ -131,20 +131,32 @@ wait_until_ready() {
     [ -n "$base" ]
 }
 
+# A token of the image's own making, and the file of it.
+makes_a_token() {
+    inside '' hedged --new-token alice write >"$work/token" || return 1
+    token=$(head -n 1 "$work/token")
+    [ "${#token}" -eq 49 ] && tail -n 1 "$work/token" >"$root/tokens" && chmod 644 "$root/tokens"
+}
+
+get() {
+    curl -sSf -H "Authorization: Bearer $token" "$@"
+}
+
 creates_and_edits() {
     curl -sSf "$base/" | grep -q '<title>hedge</title>' || return 1
-    curl -sSf -o "$work/answer" -w '%{http_code}\n' -H 'Content-Type: application/json' \
+    says "$(curl -sS -o /dev/null -w '%{http_code}' "$base/v1/meshes")" 401 || return 1
+    get -o "$work/answer" -w '%{http_code}\n' -H 'Content-Type: application/json' \
         -d '{"shape":"cube"}' "$base/v1/meshes?id=box" | grep -qx 201 || return 1
-    curl -sSf -H 'Content-Type: application/json' -d '{"op":"edge_split","edge":0}' \
+    get -H 'Content-Type: application/json' -d '{"op":"edge_split","edge":0}' \
         "$base/v1/meshes/box/edits" | grep -q '"revision":2,' || return 1
-    curl -sSf "$base/v1/meshes/box" | grep -q '"vertices":9,'
+    get "$base/v1/meshes/box" | grep -q '"vertices":9,'
 }
 
 # The mesh that creates_and_edits made, by a daemon that has stopped, and its undo.
 is_still_there() {
-    curl -sSf "$base/v1/meshes/box" | grep -q '"vertices":9,' || return 1
-    curl -sSf -X POST "$base/v1/meshes/box/undo" | grep -q '"revision":3,' || return 1
-    curl -sSf "$base/v1/meshes/box" | grep -q '"vertices":8,'
+    get "$base/v1/meshes/box" | grep -q '"vertices":9,' || return 1
+    get -X POST "$base/v1/meshes/box/undo" | grep -q '"revision":3,' || return 1
+    get "$base/v1/meshes/box" | grep -q '"vertices":8,'
 }
 
 is_healthy() {
@@ -176,7 +188,7 @@ stops() {
 
 # As buildah runs it.
 start_in_container() {
-    inside '--env HEDGE_INSECURE=1 --env HEDGE_LISTEN=0.0.0.0:0' hedged --log off 2>"$work/log" &
+    inside '--env HEDGE_TOKENS=/tokens --env HEDGE_LISTEN=0.0.0.0:0' hedged --log off 2>"$work/log" &
     daemon=$!
     exec 4<"$work/log"
     wait_until_ready && find_first
@@ -186,7 +198,7 @@ start_in_container() {
 # can write to but for /data.
 start_read_only() {
     install -d -o 10001 -g 10001 -m 700 "$work/data" || return 1
-    env -i HEDGE_INSECURE=1 HEDGE_LISTEN=0.0.0.0:0 HEDGE_STORE=sqlite:/data \
+    env -i HEDGE_TOKENS=/tokens HEDGE_LISTEN=0.0.0.0:0 HEDGE_STORE=sqlite:/data \
         PATH="$PATH:/usr/local/bin" unshare --mount --pid --fork sh -c '
             mount --bind "$1" "$1" && mount -o remount,bind,ro "$1" && mount -t proc proc "$1/proc" &&
                 mount --bind "$2" "$1/data" &&
@@ -219,6 +231,7 @@ check 'it has no compiler and no package manager of the page' has_no_tools
 check 'it refuses to be reached when nobody said so' refuses_to_be_open
 check 'a closed port is not healthy' is_not_healthy
 
+check 'it makes a token' makes_a_token
 check 'it starts' start_in_container
 if [ -n "$base" ]; then
     check 'it runs as nobody in particular' is_nobody

@@ -540,6 +540,16 @@ static const api_example examples[] = {
                  "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
                  "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
                  "\"edges\":[],\"faces\":[0,1]},\"parents\":{},\"merged\":{}}"},
+    {.route = "token_get",
+     .target = "/v1/token",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"name\":null,\"role\":\"admin\",\"prefixes\":[],\"expires\":null}"},
+    {.route = "reload_post",
+     .target = "/v1/admin/reload",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"tokens\":null}"},
     {.route = "materials_list",
      .target = "/v1/meshes/kite/materials",
      .status = 200,

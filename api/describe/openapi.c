@@ -268,6 +268,9 @@ static const struct {
     const char *name, *header, *doc;
     bool required;
 } headed_problems[] = {
+    {401, "unauthorized", "WWW-Authenticate", "Bearer, and what was wrong with a token.", true},
+    {403, "forbidden", "WWW-Authenticate",
+     "Bearer with the role that is missing, where it is that.", false},
     {405, "not_allowed", "Allow", "The methods of the path.", true},
     {409, "conflict", "Retry-After", "Seconds, where waiting helps.", false},
     {415, "unsupported", "Accept-Encoding", "The codings that are taken, where it was that.",
@@ -298,6 +301,10 @@ static void write_responses(api_out *out, const api_route *route)
         } else {
             write_refusal(out, *status);
         }
+    }
+    if (route->role != API_ROLE_OPEN) {
+        api_out_key(out, "401");
+        write_refusal(out, 401);
     }
     for (const int *status = api_route_common(); *status != 0; status++) {
         snprintf(code, sizeof code, "%d", *status);
@@ -382,6 +389,25 @@ static void write_doc(api_out *out, const api_route *route)
     }
 }
 
+/* A token, whose role stands where OAuth has scopes (OpenAPI 3.1 lets other schemes name them too);
+ * or nothing, since a server may ask for none. */
+static void write_security(api_out *out, const api_route *route)
+{
+    api_out_key(out, "security");
+    api_out_array_begin(out);
+    if (route->role != API_ROLE_OPEN) {
+        api_out_object_begin(out);
+        api_out_key(out, "token");
+        api_out_array_begin(out);
+        api_out_string(out, api_role_name(route->role));
+        api_out_array_end(out);
+        api_out_object_end(out);
+        api_out_object_begin(out);
+        api_out_object_end(out);
+    }
+    api_out_array_end(out);
+}
+
 static void write_operation(api_out *out, const api_route *route)
 {
     char method[16] = "";
@@ -408,6 +434,7 @@ static void write_operation(api_out *out, const api_route *route)
         write_content(out, route->consumes, route->request, NULL, api_example_request, route->name);
         api_out_object_end(out);
     }
+    write_security(out, route);
     write_responses(out, route);
     api_out_object_end(out);
 }
@@ -441,6 +468,22 @@ static void write_paths(api_out *out)
         }
         api_out_object_end(out);
     }
+    api_out_object_end(out);
+}
+
+static void write_security_schemes(api_out *out)
+{
+    api_out_key(out, "securitySchemes");
+    api_out_object_begin(out);
+    api_out_key(out, "token");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "http");
+    api_out_key_string(out, "scheme", "bearer");
+    api_out_key_string(out, "description",
+                       "A server with --tokens asks for one, with at least the role that an "
+                       "operation names: read, write (which includes read), admin (everything) or "
+                       "metrics. A dry run of an edit takes read.");
+    api_out_object_end(out);
     api_out_object_end(out);
 }
 
@@ -499,6 +542,7 @@ static void write_components(api_out *out)
     api_shape_schema_write(out);
     api_out_object_end(out);
     write_shared_headers(out);
+    write_security_schemes(out);
     api_out_key(out, "responses");
     api_out_object_begin(out);
     write_problem(out, "problem", NULL, NULL, false);
@@ -537,7 +581,7 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_key_string(out, "url", url != NULL ? url : "/");
     api_out_object_end(out);
     api_out_array_end(out);
-    api_out_key(out, "security"); /* none: nobody has to authenticate */
+    api_out_key(out, "security"); /* of the rows that say nothing: there is none */
     api_out_array_begin(out);
     api_out_array_end(out);
     write_paths(out);

@@ -1,5 +1,6 @@
 #include "api/describe/routes.h"
 
+#include "api/describe/element_rows.h"
 #include "api/describe/parameters.h"
 #include "api/document/summary.h"
 #include "api/request/handlers.h"
@@ -55,43 +56,6 @@ static const api_told_header next_page = {"Link", "The next page, where there is
 static const api_told_header disposition = {"Content-Disposition", "A name for a file."};
 static const api_told_header warnings = {"Export-Warnings", "What the format could not carry."};
 
-/* --- rows that differ in the kind of element ---
- *
- * vertices_list, vertex_get, vertex_faces: `one` and `many` are the kind's names, `what` is the
- * name of a relation of core/query/adjacency.h. */
-
-#define ELEMENTS(of, one, many, words)                                                            \
-    {                                                                                             \
-        .method = "GET", .path = "/v1/meshes/{mesh}/" many, .name = many "_list", .kind = (of),   \
-        .run = api_elements_list, .reads = API_READS_LOCKED, .cost = api_elements_cost,           \
-        .flags = API_EXPENSIVE | API_LONG, .produces = lines_too,                                 \
-        .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},     \
-        .headers = {&next_page}, .statuses = {200, 202, 304, 410}, .response = one "_page",       \
-        .line = (one), .summary = "List the " words,                                              \
-        .doc = "A page in the order of ids, or all of them as lines of JSON that end in "         \
-               "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while " \
-               "the history holds it."                                                            \
-    }
-
-#define ELEMENT(of, one, many, text)                                                             \
-    {                                                                                            \
-        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}", .name = one "_get",          \
-        .kind = (of), .run = api_element_get, .reads = API_READS_LOCKED, .produces = json,       \
-        .parameters = {&api_parameter_revision}, .statuses = {200, 304, 410}, .response = (one), \
-        .summary = "One " one " with all its links",                                             \
-        .doc = text " A deleted one is 410, one that never was is 404."                          \
-    }
-
-#define ADJACENCY(of, one, many, what, title, text)                                              \
-    {                                                                                            \
-        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}/" what, .name = one "_" what,  \
-        .kind = (of), .relation = (what), .run = api_relation_get, .reads = API_READS_LOCKED,    \
-        .produces = json, .parameters = {&api_parameter_revision, &api_parameter_turning},       \
-        .statuses = {200, 304, 410}, .response = one "_" what, .summary = (title), .doc = (text) \
-    }
-
-#define AROUND "Counter-clockwise from the stored half-edge, each once."
-
 /* --- the table --- */
 
 static const api_route routes[] = {
@@ -100,6 +64,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes",
      .name = "meshes_list",
      .run = api_meshes_list,
+     .role = API_ROLE_READ,
      .reads = API_READS_CARD,
      .produces = json,
      .parameters = {&api_parameter_limit, &api_parameter_cursor},
@@ -114,6 +79,7 @@ static const api_route routes[] = {
      .begin = api_meshes_create_begin,
      .body = api_meshes_create_body,
      .run = api_meshes_create,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_COSTLY | API_LONG | API_KEYED_NEW,
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
@@ -134,6 +100,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}",
      .name = "mesh_get",
      .run = api_summary_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_VIEW,
      .cost = api_summary_cost,
      .tag = "summary",
@@ -148,6 +115,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}",
      .name = "mesh_patch",
      .run = api_mesh_patch,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_KEYED,
      .body_kind = API_BODY_CONTROL,
      .consumes = merge_patch,
@@ -164,6 +132,7 @@ static const api_route routes[] = {
      .begin = api_mesh_put_begin,
      .body = api_mesh_put_body,
      .run = api_mesh_put,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_COSTLY | API_LONG | API_MAY_CREATE,
      .body_kind = API_BODY_UPLOAD,
      .consumes = mesh_in,
@@ -180,6 +149,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}",
      .name = "mesh_delete",
      .run = api_mesh_delete,
+     .role = API_ROLE_WRITE,
      .reads = API_READS_CARD,
      .flags = API_WRITES | API_INTERRUPTS,
      .produces = json,
@@ -190,6 +160,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/content",
      .name = "content_get",
      .run = api_content_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_SNAPSHOT,
      .cost = api_content_cost,
      .flags = API_EXPENSIVE | API_OWN_ACCEPT | API_LONG,
@@ -214,6 +185,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "geometry_get",
      .run = api_geometry_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_LOCKED,
      .cost = api_geometry_cost,
      .flags = API_EXPENSIVE | API_LONG,
@@ -237,6 +209,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/progressive",
      .name = "progressive_get",
      .run = api_progressive_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_SNAPSHOT,
      .cost = api_progressive_cost,
      .flags = API_EXPENSIVE | API_LONG,
@@ -261,6 +234,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/copy",
      .name = "mesh_copy",
      .run = api_mesh_copy,
+     .role = API_ROLE_WRITE,
      .reads = API_READS_SNAPSHOT,
      .cost = api_mesh_copy_cost,
      .flags = API_WRITES | API_LONG | API_KEYED_NEW,
@@ -320,6 +294,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/materials",
      .name = "materials_list",
      .run = api_materials_list,
+     .role = API_ROLE_READ,
      .reads = API_READS_LOCKED,
      .produces = json,
      .parameters = {&api_parameter_revision},
@@ -335,6 +310,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes",
      .name = "attributes_list",
      .run = api_attributes_list,
+     .role = API_ROLE_READ,
      .reads = API_READS_LOCKED,
      .produces = json,
      .parameters = {&api_parameter_revision},
@@ -346,6 +322,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "attribute_get",
      .run = api_attribute_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_LOCKED,
      .cost = api_attribute_cost,
      .flags = API_EXPENSIVE | API_LONG,
@@ -365,6 +342,7 @@ static const api_route routes[] = {
      .begin = api_attribute_put_begin,
      .body = api_attribute_put_body,
      .run = api_attribute_put,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_COSTLY | API_REHEARSED,
      .body_kind = API_BODY_UPLOAD,
      .consumes = octets_too,
@@ -382,6 +360,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "attribute_patch",
      .run = api_attribute_patch,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_COSTLY | API_KEYED | API_REHEARSED,
      .body_kind = API_BODY_EDITS,
      .consumes = json,
@@ -396,6 +375,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "attribute_delete",
      .run = api_attribute_delete,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_REHEARSED,
      .produces = json,
      .parameters = {&api_parameter_dry_run},
@@ -409,6 +389,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/query",
      .name = "query_post",
      .run = api_query_post,
+     .role = API_ROLE_READ,
      .reads = API_READS_VIEW,
      .cost = api_query_cost,
      .flags = API_LONG,
@@ -432,6 +413,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/traverse",
      .name = "traverse_post",
      .run = api_traverse_post,
+     .role = API_ROLE_READ,
      .reads = API_READS_VIEW,
      .cost = api_traverse_cost,
      .flags = API_LONG,
@@ -450,6 +432,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/boundaries",
      .name = "boundaries_get",
      .run = api_boundaries_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_VIEW,
      .cost = api_cost_of_mesh,
      .tag = "boundaries",
@@ -464,6 +447,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/components",
      .name = "components_get",
      .run = api_components_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_VIEW,
      .cost = api_cost_of_mesh,
      .tag = "components",
@@ -478,6 +462,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/check",
      .name = "check_get",
      .run = api_check_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_VIEW,
      .cost = api_check_cost,
      .tag = "check",
@@ -503,6 +488,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/edits",
      .name = "edits_post",
      .run = api_edits_post,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_LONG | API_KEYED | API_REHEARSED,
      .body_kind = API_BODY_EDITS,
      .consumes = json,
@@ -517,6 +503,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/edits",
      .name = "edits_list",
      .run = api_edits_list,
+     .role = API_ROLE_READ,
      .reads = API_READS_LOCKED,
      .produces = json,
      .parameters = {&api_parameter_limit, &api_parameter_cursor, &api_parameter_since},
@@ -533,6 +520,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/undo",
      .name = "undo_post",
      .run = api_undo_post,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_KEYED,
      .body_kind = API_BODY_OPTION,
      .consumes = json,
@@ -548,6 +536,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/redo",
      .name = "redo_post",
      .run = api_redo_post,
+     .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_KEYED,
      .body_kind = API_BODY_OPTION,
      .consumes = json,
@@ -564,6 +553,7 @@ static const api_route routes[] = {
      .path = "/v1/meshes/{mesh}/events",
      .name = "events_get",
      .run = api_events_get,
+     .role = API_ROLE_READ,
      .reads = API_READS_CARD,
      .produces = event_stream,
      .parameters = {&api_parameter_last_seen},
@@ -580,6 +570,7 @@ static const api_route routes[] = {
      .path = "/v1/jobs",
      .name = "jobs_list",
      .run = api_jobs_list,
+     .role = API_ROLE_READ,
      .produces = json,
      .parameters = {&api_parameter_limit, &api_parameter_cursor},
      .headers = {&next_page},
@@ -591,6 +582,7 @@ static const api_route routes[] = {
      .path = "/v1/jobs/{job}",
      .name = "job_get",
      .run = api_job_get,
+     .role = API_ROLE_READ,
      .produces = json,
      .statuses = {200},
      .response = "job",
@@ -603,6 +595,7 @@ static const api_route routes[] = {
      .path = "/v1/jobs/{job}/result",
      .name = "job_result",
      .run = api_job_result,
+     .role = API_ROLE_READ,
      .flags = API_OWN_ACCEPT | API_TAG_OF_OTHERS,
      .produces = job_results,
      .headers = {&disposition, &warnings},
@@ -616,6 +609,7 @@ static const api_route routes[] = {
      .path = "/v1/jobs/{job}/events",
      .name = "job_events",
      .run = api_job_events,
+     .role = API_ROLE_READ,
      .produces = event_stream,
      .statuses = {200},
      .summary = "How a job goes on",
@@ -625,6 +619,7 @@ static const api_route routes[] = {
      .path = "/v1/jobs/{job}",
      .name = "job_delete",
      .run = api_job_delete,
+     .role = API_ROLE_READ,
      .produces = json,
      .statuses = {202, 204},
      .response = "job",
@@ -632,11 +627,39 @@ static const api_route routes[] = {
      .doc = "One that waits or runs is told to end (202): what it had changed is undone and its "
             "memory given back. One that has ended is forgotten (204)."},
 
+    /* tokens */
+    {.method = "GET",
+     .path = "/v1/token",
+     .name = "token_get",
+     .run = api_token_get,
+     .role = API_ROLE_READ,
+     .flags = API_STORELESS,
+     .produces = json,
+     .statuses = {200},
+     .response = "token",
+     .summary = "Who one is",
+     .doc = "What the token of the request may do. Where the server asks for no tokens the name is "
+            "null and the role admin."},
+    {.method = "POST",
+     .path = "/v1/admin/reload",
+     .name = "reload_post",
+     .run = api_admin_reload,
+     .role = API_ROLE_ADMIN,
+     .flags = API_STORELESS,
+     .produces = json,
+     .statuses = {200, 409},
+     .response = "reloaded",
+     .summary = "Read the file of tokens again",
+     .doc = "As SIGHUP does. A token that is not in it any more is refused from now on, and its "
+            "event streams end with `bye`. Where the file is wrong what was in force stays, and "
+            "the refusal names the line."},
+
     /* the tables */
     {.method = "GET",
      .path = "/v1/operations",
      .name = "operations_get",
      .run = api_operations_get,
+     .role = API_ROLE_OPEN,
      .flags = API_STORELESS,
      .produces = json,
      .statuses = {200},
@@ -647,6 +670,7 @@ static const api_route routes[] = {
      .path = "/v1/openapi.json",
      .name = "openapi_get",
      .run = api_openapi_get,
+     .role = API_ROLE_OPEN,
      .flags = API_STORELESS,
      .produces = json,
      .statuses = {200},
@@ -659,6 +683,7 @@ static const api_route routes[] = {
      .path = "/livez",
      .name = "live_get",
      .run = api_live_get,
+     .role = API_ROLE_OPEN,
      .flags = API_FIXED,
      .produces = json,
      .statuses = {200},
@@ -669,6 +694,7 @@ static const api_route routes[] = {
      .path = "/readyz",
      .name = "ready_get",
      .run = api_ready_get,
+     .role = API_ROLE_OPEN,
      .flags = API_FIXED,
      .produces = json,
      .statuses = {200},
@@ -682,6 +708,7 @@ static const api_route routes[] = {
      .path = "/version",
      .name = "version_get",
      .run = api_version_get,
+     .role = API_ROLE_OPEN,
      .flags = API_FIXED,
      .produces = json,
      .statuses = {200},
@@ -692,6 +719,7 @@ static const api_route routes[] = {
      .path = "/problems/{code}",
      .name = "problem_get",
      .run = api_problem_get,
+     .role = API_ROLE_OPEN,
      .flags = API_FIXED,
      .produces = html,
      .statuses = {200},
@@ -701,6 +729,7 @@ static const api_route routes[] = {
      .path = "/",
      .name = "page_get",
      .run = api_page_get,
+     .role = API_ROLE_OPEN,
      .flags = API_FIXED,
      .produces = html,
      .statuses = {200, 304},
@@ -710,6 +739,7 @@ static const api_route routes[] = {
      .path = "/docs",
      .name = "docs_get",
      .run = api_page_get,
+     .role = API_ROLE_OPEN,
      .flags = API_FIXED,
      .produces = html,
      .statuses = {200, 304},
@@ -719,6 +749,7 @@ static const api_route routes[] = {
      .path = "/assets/{asset}",
      .name = "asset_get",
      .run = api_page_get,
+     .role = API_ROLE_OPEN,
      .flags = API_FIXED | API_OWN_ACCEPT,
      .produces = anything,
      .statuses = {200, 304},

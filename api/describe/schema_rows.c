@@ -26,11 +26,14 @@ const api_member api_answer_members[] = {
 
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
-    {"mesh_page", "listeners", "count", REQUIRED, "Clients that follow events of meshes."},
+    {"mesh_page", "listeners", "count", OPTIONAL,
+     "Clients that follow events of meshes. This and what follows is of the whole server, and not "
+     "told to tokens with prefixes."},
     {"mesh_page", "memory_bytes", "count", OPTIONAL, "What the whole server holds."},
     {"mesh_page", "memory_budget", "count", OPTIONAL, "What it may hold; 0: no limit is set."},
 
-    {"job", "id", "text", REQUIRED, "Who knows it may look and cancel."},
+    {"job", "id", "text", REQUIRED,
+     "Its token may look and cancel, and where none are asked for whoever knows it."},
     {"job", "operation", "text", REQUIRED, "The operationId of the request."},
     {"job", "state", "#job_state", REQUIRED, NULL},
     {"job", "phase", "text?", REQUIRED, "What it is doing, or was last."},
@@ -404,6 +407,15 @@ const api_member api_answer_members[] = {
 
     {"operations", "operations", "*#operation_row", REQUIRED, NULL},
 
+    {"token", "name", "text?", REQUIRED, "Null where the server asks for no tokens."},
+    {"token", "role", "#role_name", REQUIRED, NULL},
+    {"token", "prefixes", "*text", REQUIRED,
+     "Meshes whose ids begin with none of them do not exist for the token; none: all do."},
+    {"token", "expires", "time?", REQUIRED, "Null: never."},
+
+    {"reloaded", "tokens", "count?", REQUIRED,
+     "That are in force; null where the server asks for none."},
+
     {"health", "status", "#health_name", REQUIRED, NULL},
     {"readiness", "status", "#health_name", REQUIRED, NULL},
     {"readiness", "store", "#store_name", REQUIRED, "While it is full only removals are taken."},
@@ -423,6 +435,7 @@ const api_member api_answer_members[] = {
     {"problem", "detail", "text", REQUIRED, NULL},
     {"problem", "code", "text", REQUIRED, "Stable."},
     {"problem", "pointer", "text", OPTIONAL, "JSON pointer into the body."},
+    {"problem", "role", "#role_name", OPTIONAL, "What the token would have to be."},
     {"problem", "element", "#problem_element", OPTIONAL, NULL},
     {"problem", "elements", "*#problem_element", OPTIONAL, "The first 100."},
     {"problem", "total", "count", OPTIONAL, "How many there are in all."},

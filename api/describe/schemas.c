@@ -96,6 +96,7 @@ static const struct {
                    "{\"$ref\":\"#/components/schemas/face_page\"},"
                    "{\"$ref\":\"#/components/schemas/attribute_values\"},"
                    "{\"$ref\":\"#/components/schemas/document\"}]}"},
+    {"role_name", "{\"enum\":[\"read\",\"write\",\"admin\",\"metrics\"]}"},
     {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
     {"store_name", "{\"enum\":[\"writable\",\"full\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"

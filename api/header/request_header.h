@@ -12,6 +12,7 @@
 #define API_REQUEST_HEADER_MAP(X)                 \
     X(ACCEPT, "Accept", true)                     \
     X(ACCEPT_ENCODING, "Accept-Encoding", true)   \
+    X(AUTHORIZATION, "Authorization", false)      \
     X(CONTENT_ENCODING, "Content-Encoding", true) \
     X(CONTENT_TYPE, "Content-Type", false)        \
     X(IDEMPOTENCY_KEY, "Idempotency-Key", false)  \

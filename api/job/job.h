@@ -2,6 +2,7 @@
 #ifndef HE_API_JOB_JOB_H
 #define HE_API_JOB_JOB_H
 
+#include "api/token/token.h"
 #include "journal/journal.h"
 
 typedef enum api_job_state {
@@ -20,8 +21,9 @@ extern const char *const api_job_header_names[API_JOB_HEADERS];
 
 /* What is known of a job. */
 typedef struct api_job {
-    char id[API_JOB_ID + 1]; /* unguessable: who knows it may look and cancel */
-    uint64_t number;         /* in the order of submission, from 1 */
+    char id[API_JOB_ID + 1];         /* unguessable */
+    char holder[API_TOKEN_NAME + 1]; /* name of the token that began it, "" for that of nobody */
+    uint64_t number;                 /* in the order of submission, from 1 */
     api_job_state state;
     const char *operation;             /* name of the route's row */
     const char *phase;                 /* of the work, "" before it runs */

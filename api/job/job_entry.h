@@ -47,7 +47,13 @@ static inline bool api_job_entry_has_ended(const api_job_entry *job)
 {
     return job->facts.state >= API_JOB_DONE;
 }
-api_job_entry *api_job_entry_find(const api_job_table *table, const char *id); /* NULL: none */
+/* NULL: there is none for this viewer. */
+api_job_entry *api_job_entry_find(const api_job_table *table, const api_token *viewer,
+                                  const char *id);
+static inline bool api_job_entry_is_seen(const api_job_entry *job, const api_token *viewer)
+{
+    return api_token_owns(viewer, job->facts.holder, job->facts.mesh);
+}
 /* The facts as they are now. */
 const api_job *api_job_entry_facts(api_job_entry *job);
 void api_job_entry_release(api_job_entry *job);

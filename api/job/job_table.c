@@ -114,13 +114,14 @@ static void tidy(api_job_table *table, size_t room)
     }
 }
 
-api_job_entry *api_job_entry_find(const api_job_table *table, const char *id)
+api_job_entry *api_job_entry_find(const api_job_table *table, const api_token *viewer,
+                                  const char *id)
 {
     api_job_entry *j = table->first;
     while (j != NULL && strcmp(j->facts.id, id) != 0) {
         j = j->next;
     }
-    return j;
+    return j != NULL && api_job_entry_is_seen(j, viewer) ? j : NULL;
 }
 
 /* --- running --- */
@@ -306,6 +307,7 @@ static api_job_entry *job_new(api_job_table *table, const api_job_work *work, co
     st_random_id(j->facts.id, API_JOB_ID);
     j->facts.operation = operation;
     memcpy(j->facts.mesh, mesh, strnlen(mesh, ST_MESH_ID));
+    memcpy(j->facts.holder, work->holder, strnlen(work->holder, API_TOKEN_NAME));
     j->facts.created = st_clock_utc();
     atomic_init(&j->phase, "");
     atomic_init(&j->progress, 0);
@@ -352,12 +354,12 @@ st_status api_job_submit(api_job_table *table, const api_job_work *work, const c
     return accepted ? ST_OK : ST_TOO_MANY;
 }
 
-bool api_job_find(api_job_table *table, const char *id,
+bool api_job_find(api_job_table *table, const api_token *viewer, const char *id,
                   void (*show)(void *context, const api_job *job), void *context)
 {
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
-    api_job_entry *j = api_job_entry_find(table, id);
+    api_job_entry *j = api_job_entry_find(table, viewer, id);
     if (j != NULL) {
         show(context, api_job_entry_facts(j));
     }
@@ -365,11 +367,12 @@ bool api_job_find(api_job_table *table, const char *id,
     return j != NULL;
 }
 
-api_job_loan *api_job_lend(api_job_table *table, const char *id, api_job *facts)
+api_job_loan *api_job_lend(api_job_table *table, const api_token *viewer, const char *id,
+                           api_job *facts)
 {
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
-    api_job_entry *j = api_job_entry_find(table, id);
+    api_job_entry *j = api_job_entry_find(table, viewer, id);
     if (j != NULL) {
         j->uses++;
         *facts = *api_job_entry_facts(j);
@@ -386,21 +389,24 @@ void api_job_return(api_job_loan *loan)
     pthread_mutex_unlock(&table->lock);
 }
 
-bool api_job_list(api_job_table *table, uint64_t after, size_t limit,
+bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after, size_t limit,
                   void (*show)(void *context, const api_job *job), void *context)
 {
     size_t given = 0;
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
-    api_job_entry *j = table->first;
-    for (; j != NULL && given < limit; j = j->next) {
-        if (j->facts.number > after) {
-            show(context, api_job_entry_facts(j));
-            given++;
+    bool more = false;
+    for (api_job_entry *j = table->first; j != NULL && !more; j = j->next) {
+        if (j->facts.number > after && api_job_entry_is_seen(j, viewer)) {
+            more = given == limit;
+            if (!more) {
+                show(context, api_job_entry_facts(j));
+                given++;
+            }
         }
     }
     pthread_mutex_unlock(&table->lock);
-    return j != NULL;
+    return more;
 }
 
 /* Under the lock; what is left of a job that waited, and its hold of a mesh, are to be given back
@@ -422,7 +428,7 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
     return work;
 }
 
-bool api_job_remove(api_job_table *table, const char *id, bool *forgotten,
+bool api_job_remove(api_job_table *table, const api_token *viewer, const char *id, bool *forgotten,
                     void (*show)(void *context, const api_job *job), void *context)
 {
     api_job_work over = {.self = NULL};
@@ -430,7 +436,7 @@ bool api_job_remove(api_job_table *table, const char *id, bool *forgotten,
     api_job facts = {.number = 0};
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
-    api_job_entry *j = api_job_entry_find(table, id);
+    api_job_entry *j = api_job_entry_find(table, viewer, id);
     if (j != NULL) {
         *forgotten = api_job_entry_facts(j)->state >= API_JOB_DONE;
         if (*forgotten) {

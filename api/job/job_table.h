@@ -69,33 +69,40 @@ typedef struct api_job_work {
     void *self;
     void (*run)(void *self, api_job_progress *progress, void *context, api_job_outcome *out);
     void (*free)(void *self);
-    double seconds; /* about how long it takes */
-    st_mesh *about; /* whose listeners are told, held by the work; NULL: none */
-    bool claims;    /* the work has claimed that mesh: store/write.h */
+    double seconds;     /* about how long it takes */
+    st_mesh *about;     /* whose listeners are told, held by the work; NULL: none */
+    const char *holder; /* name of the token it is done for, "" for that of nobody */
+    bool claims;        /* the work has claimed that mesh: store/write.h */
 } api_job_work;
 
 /* Takes `work` and fills in what is known of the job; or ST_TOO_MANY when too many wait,
  * ST_NO_MEMORY. `operation` is a literal, `mesh` the id of the mesh the job is about or "". */
 st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
                          const char *mesh, api_job *out);
+
+/* A `viewer` is the token for which jobs are looked up: those that it does not own
+ * (api_token_owns) are not there for it. */
+
 /* Calls show with the job, under the lock. False when there is none of this id. */
-bool api_job_find(api_job_table *table, const char *id,
+bool api_job_find(api_job_table *table, const api_token *viewer, const char *id,
                   void (*show)(void *context, const api_job *job), void *context);
 /* Lends the facts of the job of this id, with its answer, until api_job_return: NULL when there is
  * none. `*facts` is what is known of the job now. */
 typedef struct api_job_entry api_job_loan;
-api_job_loan *api_job_lend(api_job_table *table, const char *id, api_job *facts);
+api_job_loan *api_job_lend(api_job_table *table, const api_token *viewer, const char *id,
+                           api_job *facts);
 void api_job_return(api_job_loan *loan);
 /* Calls show with up to `limit` jobs of numbers after `after`, in order. True when there are more.
  */
-bool api_job_list(api_job_table *table, uint64_t after, size_t limit,
+bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after, size_t limit,
                   void (*show)(void *context, const api_job *job), void *context);
 /* A job that has not ended is told to end, and show is called; one that has ended is forgotten, and
  * `*forgotten` set. False when there is none of this id. */
-bool api_job_remove(api_job_table *table, const char *id, bool *forgotten,
+bool api_job_remove(api_job_table *table, const api_token *viewer, const char *id, bool *forgotten,
                     void (*show)(void *context, const api_job *job), void *context);
 /* What becomes of a job, as events: whenever there is news, and `bye` after the last, or when the
  * server stops. ST_ABSENT, ST_LISTENERS, ST_NO_MEMORY. The caller frees the source. */
-st_status api_job_follow(api_job_table *table, const char *id, api_source *out);
+st_status api_job_follow(api_job_table *table, const api_token *viewer, const char *id,
+                         api_source *out);
 
 #endif

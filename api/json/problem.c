@@ -339,6 +339,9 @@ void api_problem_write(const api_problem *problem, const char *request_id, api_t
     if (problem->has_revision) {
         api_out_key_u64(&out, "revision", problem->revision);
     }
+    if (problem->role != NULL) {
+        api_out_key_string(&out, "role", problem->role);
+    }
     if (problem->supported != NULL) {
         api_out_key(&out, "supported");
         api_out_array_begin(&out);

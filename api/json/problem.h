@@ -77,9 +77,15 @@
       "none has parts itself, no two files have one name, and the last delimiter ends in two "     \
       "hyphens. The detail names the byte, counted from 0 in the body when it is decoded.")        \
     X(UNAUTHORIZED, "unauthorized", 401, "A token is needed",                                      \
-      "The request carries no token, or one that is not known.")                                   \
+      "The header Authorization: Bearer TOKEN is missing, or its token is not one of the "         \
+      "server's, "                                                                                 \
+      "or has expired. Whoever runs the server has them: its option --tokens names their file.")   \
     X(FORBIDDEN, "forbidden", 403, "This is not allowed",                                          \
-      "The token does not allow this request.")                                                    \
+      "The token is good, but its role does not include this. `role` is the least that does: "     \
+      "read, write, admin or metrics.")                                                            \
+    X(PREFIX, "prefix", 403, "The id is not one for this token",                                   \
+      "The token makes meshes whose ids begin with one of its prefixes, and sees no others. "      \
+      "GET /v1/token lists them; without an id the server makes one that fits.")                   \
     X(FOREIGN_ORIGIN, "foreign_origin", 403, "The request comes from another site",                \
       "Writes that a browser sends on behalf of a page of another origin are refused.")            \
     X(NO_SUCH_ROUTE, "no_such_route", 404, "There is nothing at this path",                        \
@@ -119,6 +125,9 @@
     X(IDEMPOTENCY_BUSY, "idempotency_in_progress", 409, "The same request is under way",           \
       "A request with this Idempotency-Key is being answered. Ask again after Retry-After "        \
       "seconds: its answer is given then.")                                                        \
+    X(RELOAD_FAILED, "reload_failed", 409, "A file cannot be taken",                               \
+      "A file that the server was to read again is wrong; the detail says where. What was in "     \
+      "force before stays.")                                                                       \
     X(REVISION_GONE, "revision_gone", 410, "The revision is not available any more",               \
       "A cursor or parameter names a revision the server no longer holds. Start again without "    \
       "it.")                                                                                       \
@@ -225,6 +234,7 @@ typedef struct api_problem {
     unsigned repairs;             /* the set that lets the body pass (repair.h); 0: none */
     bool report_pointers;         /* add "/faces/3/1" to each: the body is a mesh document */
     const char *const *supported; /* with 406 and 415, ends in NULL, borrowed */
+    const char *role;             /* that the token lacks, with 403, a literal; NULL: none */
 } api_problem;
 
 /* Of a code; never NULL. */

@@ -21,7 +21,7 @@ static void show_whole(void *context, const api_job *job)
 void api_job_get(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;
-    if (jobs == NULL || !api_job_find(jobs, x->job_id, show_whole, x)) {
+    if (jobs == NULL || !api_job_find(jobs, x->token, x->job_id, show_whole, x)) {
         fail_absent(x);
         return;
     }
@@ -60,7 +60,7 @@ void api_job_result(api_exchange *x)
     api_job_table *jobs = x->service->options.jobs;
     api_job job;
     char path[API_JOB_RESULT_PATH];
-    x->state = jobs == NULL ? NULL : api_job_lend(jobs, x->job_id, &job);
+    x->state = jobs == NULL ? NULL : api_job_lend(jobs, x->token, x->job_id, &job);
     if (x->state == NULL) {
         fail_absent(x);
         return;
@@ -86,7 +86,7 @@ void api_job_delete(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;
     bool forgotten = false;
-    if (jobs == NULL || !api_job_remove(jobs, x->job_id, &forgotten, show_whole, x)) {
+    if (jobs == NULL || !api_job_remove(jobs, x->token, x->job_id, &forgotten, show_whole, x)) {
         fail_absent(x);
     } else if (forgotten) {
         api_answer_empty(x, 204);
@@ -99,7 +99,8 @@ void api_job_events(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;
     api_source source;
-    st_status status = jobs == NULL ? ST_ABSENT : api_job_follow(jobs, x->job_id, &source);
+    st_status status =
+        jobs == NULL ? ST_ABSENT : api_job_follow(jobs, x->token, x->job_id, &source);
     if (status == ST_ABSENT) {
         fail_absent(x);
     } else if (status != ST_OK) {
@@ -152,7 +153,7 @@ void api_jobs_list(api_exchange *x)
     api_out_object_begin(&x->out);
     api_out_key(&x->out, "items");
     api_out_array_begin(&x->out);
-    bool more = jobs != NULL && api_job_list(jobs, after, limit, show_brief, &p);
+    bool more = jobs != NULL && api_job_list(jobs, x->token, after, limit, show_brief, &p);
     api_out_array_end(&x->out);
     api_out_key(&x->out, "next");
     if (more) {

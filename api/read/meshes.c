@@ -3,6 +3,8 @@
 #include "api/request/handlers.h"
 
 #include "api/document/summary.h"
+#include "api/request/gate.h"
+#include "api/request/new_mesh.h"
 #include "store/followers.h"
 
 #include <stdio.h>
@@ -23,10 +25,14 @@ static bool read_list_cursor(api_exchange *x, const char **after)
     return true;
 }
 
-/* Of the whole server: it is here that a client sees what to delete. */
+/* Of the whole server: it is here that a client sees what to delete. A token with prefixes learns
+ * nothing of what others have. */
 static void write_server(api_exchange *x)
 {
     uint64_t used, budget;
+    if (x->token != NULL && x->token->prefix_count > 0) {
+        return;
+    }
     api_out_key_u64(&x->out, "listeners", st_listeners(x->store));
     if (x->service->options.memory != NULL) {
         x->service->options.memory(&used, &budget);
@@ -38,60 +44,105 @@ static void write_server(api_exchange *x)
 /* At once: where memory is short, large blocks are the first to be refused. */
 enum { CARDS = 32 };
 
-/* `last` is the id after which the page begins, then that of the last item. */
-static bool write_items(api_exchange *x, size_t limit, char last[ST_MESH_ID + 1], bool *more)
+/* A page while it is written. */
+typedef struct list_page {
+    st_card *cards;            /* room for CARDS */
+    size_t limit, given;       /* items */
+    char from[ST_MESH_ID + 1]; /* what follows is looked for; no id, at the beginning of a range */
+    char last[ST_MESH_ID + 1]; /* id of the last item */
+    bool more;                 /* there is a next page */
+} list_page;
+
+/* The meshes whose ids begin with `prefix`, after p->from. */
+static bool write_range(api_exchange *x, list_page *p, const char *prefix)
 {
-    size_t given = 0, count = 0, asked;
-    st_card *cards = api_arena_array(&x->arena, CARDS, sizeof *cards);
-    if (cards == NULL) {
-        return api_fail_memory(x);
-    }
+    size_t count = 0, asked;
     do {
         /* One more than asked tells whether there is a next page. */
-        asked = limit - given + 1 < CARDS ? limit - given + 1 : CARDS;
-        st_status status = st_cards(x->store, last, cards, asked, &count);
+        size_t left = p->limit - p->given + 1;
+        asked = left < CARDS ? left : CARDS;
+        st_status status = st_cards(x->store, p->from, p->cards, asked, &count);
         if (status != ST_OK) {
             return api_fail_store(x, status);
         }
-        for (size_t i = 0; i < count; i++, given++) {
-            if (given == limit) {
-                *more = true;
+        for (size_t i = 0; i < count; i++, p->given++) {
+            const st_card *card = &p->cards[i];
+            if (strncmp(card->id, prefix, strlen(prefix)) != 0) {
+                return true;
+            }
+            if (p->given == p->limit) {
+                p->more = true;
                 return true;
             }
             api_out_object_begin(&x->out);
-            api_write_brief(&x->out, &cards[i]);
+            api_write_brief(&x->out, card);
             api_out_object_end(&x->out);
-            memcpy(last, cards[i].id, sizeof cards->id);
+            memcpy(p->from, card->id, sizeof card->id);
+            memcpy(p->last, card->id, sizeof card->id);
         }
     } while (count == asked);
+    return true;
+}
+
+/* Goes on before the first id that begins with `prefix`, unless the page is beyond it already. All
+ * characters of ids come before the one that follows the prefix's neighbour. */
+static void go_to(list_page *p, const char *prefix)
+{
+    char before[API_TOKEN_PREFIX + 2];
+    size_t length = strlen(prefix);
+    memcpy(before, prefix, length + 1);
+    before[length - 1]--;
+    before[length] = '\x7f';
+    before[length + 1] = '\0';
+    if (strcmp(p->from, before) < 0) {
+        memcpy(p->from, before, length + 2);
+    }
+}
+
+/* Only what the token sees is looked for, however much else there is. */
+static bool write_items(api_exchange *x, list_page *p)
+{
+    const char *ranges[API_TOKEN_PREFIXES];
+    size_t count = x->token == NULL ? 0 : api_token_ranges(x->token, ranges);
+    p->cards = api_arena_array(&x->arena, CARDS, sizeof *p->cards);
+    if (p->cards == NULL) {
+        return api_fail_memory(x);
+    }
+    if (count == 0) {
+        return write_range(x, p, "");
+    }
+    for (size_t i = 0; i < count && !p->more; i++) {
+        go_to(p, ranges[i]);
+        if (!write_range(x, p, ranges[i])) {
+            return false;
+        }
+    }
     return true;
 }
 
 static void list(api_exchange *x)
 {
     const char *after;
-    char last[ST_MESH_ID + 1];
-    bool more = false;
-    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE);
+    list_page p = {.limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE)};
     if (!read_list_cursor(x, &after)) {
         return;
     }
-    snprintf(last, sizeof last, "%s", after);
+    snprintf(p.from, sizeof p.from, "%s", after);
     api_out *out = &x->out;
     api_out_object_begin(out);
     api_out_key(out, "items");
     api_out_array_begin(out);
-    if (!write_items(x, limit, last, &more)) {
+    if (!write_items(x, &p)) {
         return;
     }
     api_out_array_end(out);
     api_out_key(out, "next");
-    if (more) {
+    if (p.more) {
         char cursor[ST_MESH_ID + 2] = "m";
-        memcpy(cursor + 1, last, sizeof last);
+        memcpy(cursor + 1, p.last, sizeof p.last);
         api_out_string(out, cursor);
-        api_answer_header_format(x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"", limit,
-                                 cursor);
+        api_answer_header_format(x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"",
+                                 p.limit, cursor);
     } else {
         api_out_null(out);
     }
@@ -178,6 +229,10 @@ static bool read_copy(api_exchange *x, copy_request *r)
         if (!api_path_is_mesh_id(r->id)) {
             return api_in_fail(&member, API_BAD_ID, "\"%s\" cannot name a mesh", r->id);
         }
+        if (!api_gate_may_create(x, r->id)) {
+            api_in_point(&member);
+            return false;
+        }
     }
     return !api_in_find(&x->root, "name", &member) ||
            api_in_string(&member, ST_MESH_NAME, &r->name);
@@ -230,7 +285,7 @@ void api_mesh_copy(api_exchange *x)
     }
     char name[ST_MESH_NAME + 1];
     snprintf(name, sizeof name, "%s", r->name != NULL ? r->name : x->info.name);
-    st_status stored = st_create(x->store, r->id, name, fresh, x->keyed, &made);
+    st_status stored = api_mesh_new(x, r->id, name, fresh, &made);
     if (stored != ST_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);

@@ -1,6 +1,7 @@
 #include "api/request/admit.h"
 
 #include "api/request/coded.h"
+#include "api/request/gate.h"
 #include "format/text/number.h"
 
 #include <assert.h>
@@ -174,7 +175,7 @@ static bool find_route(api_exchange *x)
         return api_fail(x, API_FOREIGN_ORIGIN,
                         "Sec-Fetch-Site says that another site asks for what is expensive to find");
     }
-    return check_variables(x, &variables) && check_query(x);
+    return api_gate_enter(x) && check_variables(x, &variables) && check_query(x);
 }
 
 /* What there is of a damaged mesh can be removed or replaced, nothing else. */
@@ -195,6 +196,10 @@ static bool find_mesh(api_exchange *x)
 {
     if (x->mesh_id == NULL) {
         return true;
+    }
+    if (!api_gate_sees(x, x->mesh_id)) {
+        return (x->route->flags & API_MAY_CREATE) ? api_gate_may_create(x, x->mesh_id)
+                                                  : api_fail_store(x, ST_ABSENT);
     }
     st_status status = st_find(x->store, x->mesh_id, &x->mesh);
     x->is_cold = status == ST_COLD;

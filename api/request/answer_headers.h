@@ -24,6 +24,7 @@
     X("Referrer-Policy", ", ")         \
     X("Retry-After", ", ")             \
     X("Vary", ", ")                    \
+    X("WWW-Authenticate", ", ")        \
     X("X-Accel-Buffering", ", ")       \
     X("X-Content-Type-Options", ", ")  \
     X("X-Request-Id", "")

@@ -27,6 +27,7 @@
 #include "api/header/request_header.h"
 #include "api/job/job_table.h"
 #include "api/live.h"
+#include "api/token/token_set.h"
 #include "base/exec.h"
 #include "system/thread_pool.h"
 
@@ -101,6 +102,11 @@ typedef struct api_options {
     /* Bytes the process holds by its own count, and how many it may hold, 0 for as many as there
      * are; NULL: not told. */
     void (*memory)(uint64_t *used, uint64_t *budget);
+    api_tokens *tokens; /* NULL: nobody needs one, and everybody may do everything */
+    /* Reads again what the server was told of by files, tokens among them. False with a sentence in
+     * `message`, and what was in force stays. NULL: there is nothing to be read. */
+    bool (*reload)(void *context, char *message, size_t size);
+    void *reload_context;
     api_job_table *jobs; /* NULL: nothing becomes a job, and no route shows any */
     bool plain_answers;  /* never coded, whatever a client accepts */
     const he_exec *exec; /* threads for parts of large work; NULL: none */

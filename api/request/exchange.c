@@ -1,5 +1,7 @@
 #include "api/request/exchange.h"
 
+#include "api/request/gate.h"
+#include "api/request/token_stream.h"
 #include "format/text/number.h"
 
 #include <assert.h>
@@ -262,6 +264,10 @@ bool api_write_claim(api_exchange *x, const api_in *expected)
 
 bool api_write_commit(api_exchange *x, const char *ops)
 {
+    if (!api_gate_may_change(x)) {
+        st_write_abort(&x->write);
+        return false;
+    }
     st_status status = st_write_commit(&x->write, ops);
     if (status != ST_OK) {
         x->has_info = x->has_info && status != ST_ABSENT;
@@ -433,13 +439,19 @@ void api_answer_stream(api_exchange *x, int status, const char *type, int64_t le
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
                      const char *idle)
 {
-    api_answer_bytes(x, status, type, NULL, 0);
     x->live = *source;
+    if (x->token != NULL &&
+        !api_token_stream_new(x->service->options.tokens, x->token, source, &x->live)) {
+        source->free(source->self);
+        api_fail_memory(x);
+        return;
+    }
+    api_answer_bytes(x, status, type, NULL, 0);
     x->answer.length = -1;
     x->answer.live = &x->live;
     x->answer.idle = idle;
-    x->stream = source->self;
-    x->free_stream = source->free;
+    x->stream = x->live.self;
+    x->free_stream = x->live.free;
 }
 
 void api_answer_etag(api_exchange *x, const char *representation)

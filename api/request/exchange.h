@@ -66,6 +66,10 @@ struct api_exchange {
     const char *code;       /* of {code} */
     const char *attribute;  /* of {name} */
     const char *job_id;     /* of {job}, any text */
+    api_token *token;       /* held; NULL: the route is open, or the server asks for none */
+    bool rehearses_only;    /* it may do a dry run of the write, and no more: gate.h */
+    bool has_bad_token;     /* the request brought a token that is not known */
+    bool at_gate;           /* it got no further, and nothing that is stored was looked at */
     api_query query;
     const char *media_in;  /* which of route->consumes the body is, NULL without a body */
     const char *media_out; /* which of route->produces is wanted */
@@ -189,7 +193,8 @@ bool api_answer_minimal(api_exchange *x);
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
                        int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
                        void (*free_stream)(void *stream));
-/* An answer that goes on: takes `source`, freed with the exchange. `idle` is a literal. */
+/* An answer that goes on, for as long as the token is good: takes `source`, freed with the
+ * exchange. `idle` is a literal. */
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
                      const char *idle);
 /* A header of the answer, in place of one of this name; `value` is copied. Before or after the

@@ -14,6 +14,10 @@ void api_problem_get(api_exchange *x);
 void api_operations_get(api_exchange *x);
 void api_openapi_get(api_exchange *x);
 
+/* token.c */
+void api_token_get(api_exchange *x);
+void api_admin_reload(api_exchange *x);
+
 /* Jobs: x->job_id. */
 void api_jobs_list(api_exchange *x);
 void api_job_get(api_exchange *x);

@@ -109,6 +109,7 @@ typedef struct api_route {
     bool (*cost)(api_exchange *x, const he_mesh *mesh,
                  api_cost *out); /* like tag, see api_reading */
     const char *tag;
+    api_role role; /* the least that a token needs: gate.h */
     unsigned flags;
     api_body_kind body_kind;
     const char *const *consumes; /* media types of the body, NULL for none */

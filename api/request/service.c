@@ -3,6 +3,7 @@
 #include "api/job/job_out.h"
 #include "api/request/admit.h"
 #include "api/request/coded.h"
+#include "api/request/gate.h"
 #include "api/request/gather.h"
 #include "api/request/keyed.h"
 #include "api/request/mesh_access.h"
@@ -100,6 +101,10 @@ static void answer_problem(api_exchange *x)
     if (x->problem.code == API_UNSUPPORTED_ENCODING) {
         put_header(x, "Accept-Encoding", api_codings_list);
     }
+    const char *challenge = api_gate_challenge(x);
+    if (challenge != NULL) {
+        put_header(x, "WWW-Authenticate", challenge);
+    }
     const char *retry = api_problem_retry(&x->problem);
     if (retry != NULL) {
         put_header(x, "Retry-After", retry);
@@ -120,10 +125,11 @@ static void answer_published(api_exchange *x)
 }
 
 /* Several representations at one URL: caches must look at Accept. */
-static bool varies(const api_route *route)
+static bool varies(const api_exchange *x)
 {
-    return route != NULL && route->produces[0] != NULL && route->produces[1] != NULL &&
-           !(route->flags & API_FIXED);
+    const api_route *route = x->route;
+    return route != NULL && !x->at_gate && route->produces[0] != NULL &&
+           route->produces[1] != NULL && !(route->flags & API_FIXED);
 }
 
 /* A client that has the answer may write at once. */
@@ -149,7 +155,7 @@ static void end_given_up(api_exchange *x)
  * not, and so do refusals. */
 static st_shown shown(const api_exchange *x)
 {
-    if (x->route == NULL || (x->route->flags & (API_FIXED | API_STORELESS))) {
+    if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
     /* What the server has no room for, whatever meshes there are. A client is to hear why, not that
@@ -188,8 +194,8 @@ static api_step finish(api_exchange *x)
     /* A tag is worth keeping: the client asks again with it. Nothing else is. */
     put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
     if (api_coded_varies(x)) {
-        put_header(x, "Vary", varies(x->route) ? "Accept, Accept-Encoding" : "Accept-Encoding");
-    } else if (varies(x->route)) {
+        put_header(x, "Vary", varies(x) ? "Accept, Accept-Encoding" : "Accept-Encoding");
+    } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
     x->answer.shown = shown(x);
@@ -393,6 +399,7 @@ api_exchange *api_detach(api_exchange *x)
                                .free = free_job,
                                .seconds = api_load_of(x).seconds,
                                .about = x->mesh,
+                               .holder = x->token == NULL ? "" : x->token->name,
                                .claims = x->write.claimed};
     const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
     st_status status = api_job_submit(jobs, &work, x->route->name, mesh == NULL ? "" : mesh, &job);
@@ -667,6 +674,7 @@ void api_free(api_exchange *x)
     if (x->mesh != NULL) {
         st_release(x->mesh);
     }
+    api_token_release(x->token);
     api_arena_clear(&x->arena);
     he_mem_free(x);
 }

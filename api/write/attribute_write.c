@@ -1,6 +1,7 @@
 /* PUT, PATCH and DELETE .../attributes/{domain}/{name}: edits like any other. */
 #include "api/request/handlers.h"
 
+#include "api/request/gate.h"
 #include "api/request/mesh_access.h"
 
 #include "api/document/attribute_path.h"
@@ -114,7 +115,9 @@ static void publish(api_exchange *x, writing *w, const char *op, int status, boo
 
 static he_mesh *write_begin(api_exchange *x, writing *w)
 {
-    return api_write_begin(x, w->has_expected ? &w->expected : NULL) ? x->write.content : NULL;
+    bool begun = (w->dry_run || api_gate_may_change(x)) &&
+                 api_write_begin(x, w->has_expected ? &w->expected : NULL);
+    return begun ? x->write.content : NULL;
 }
 
 /* A refusal about the values: 422, since it takes this mesh to see it. */

@@ -1,7 +1,9 @@
 /* POST /v1/meshes and PUT /v1/meshes/{mesh}: making and replacing the content of a mesh. */
 #include "api/request/handlers.h"
 
+#include "api/request/gate.h"
 #include "api/request/mesh_access.h"
+#include "api/request/new_mesh.h"
 
 #include "api/document/summary.h"
 #include "api/document/upload.h"
@@ -19,9 +21,13 @@ static void body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
+/* An id that will be refused spares the client its body. */
 void api_meshes_create_begin(api_exchange *x)
 {
-    begin(x);
+    const char *id = api_param_text(x, "id");
+    if (id == NULL || !api_path_is_mesh_id(id) || api_gate_may_create(x, id)) {
+        begin(x);
+    }
 }
 
 void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length)
@@ -92,7 +98,7 @@ static const char *first_name(const api_exchange *x)
 /* Takes `mesh` on success. `id` NULL lets the store choose. */
 static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
-    return st_create(x->store, id, first_name(x), mesh, x->keyed, &x->mesh);
+    return api_mesh_new(x, id, first_name(x), mesh, &x->mesh);
 }
 
 static void create(api_exchange *x)

@@ -1,6 +1,7 @@
 #include "api/write/others.h"
 
 #include "api/header/path.h"
+#include "api/request/gate.h"
 
 #include <string.h>
 
@@ -26,8 +27,8 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
                            (int)API_MAX_OTHERS);
     }
     api_other *other = &o->other[o->count];
-    st_status status =
-        api_path_is_mesh_id(id) ? st_find(o->asker->store, id, &other->mesh) : ST_ABSENT;
+    bool is_there = api_path_is_mesh_id(id) && api_gate_sees(o->asker, id);
+    st_status status = is_there ? st_find(o->asker->store, id, &other->mesh) : ST_ABSENT;
     if (status == ST_COLD) {
         other->mesh = NULL;
         o->cold++;

@@ -27,7 +27,7 @@ typedef enum state {
 } state;
 
 /* The headers that are looked at. */
-typedef enum field { OTHER, HOST, ORIGIN, LENGTH, CODING } field;
+typedef enum field { OTHER, HOST, ORIGIN, AUTHORIZATION, LENGTH, CODING } field;
 
 typedef enum phase { BEFORE, WITHIN, AFTER } phase;
 
@@ -187,6 +187,7 @@ static bool choose_field(srv_syntax *s)
     if (!s->trailers) {
         s->field = is_named(s, "host")                ? HOST
                    : is_named(s, "origin")            ? ORIGIN
+                   : is_named(s, "authorization")     ? AUTHORIZATION
                    : is_named(s, "content-length")    ? LENGTH
                    : is_named(s, "transfer-encoding") ? CODING
                                                       : OTHER;
@@ -282,6 +283,7 @@ static srv_fault add_character(srv_syntax *s, char c)
     case CODING:
         return add_coding(s, c);
     case ORIGIN:
+    case AUTHORIZATION:
     case OTHER:
         break;
     }
@@ -349,8 +351,8 @@ static char *read_other_value(srv_syntax *s, char *at, const char *end)
 /* VALUE --> VALUE_LF */
 static char *read_value(srv_syntax *s, char *at, const char *end)
 {
-    at = s->field == OTHER || s->field == ORIGIN ? read_other_value(s, at, end)
-                                                 : read_known_value(s, at, end);
+    bool known = s->field == HOST || s->field == LENGTH || s->field == CODING;
+    at = known ? read_known_value(s, at, end) : read_other_value(s, at, end);
     if (at == end || srv_syntax_is_faulty(s)) {
         return at;
     }

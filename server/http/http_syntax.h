@@ -47,7 +47,7 @@
  *       tab. No header continues on a second line.
  *   F4  At most SRV_MAX_FIELDS headers and SRV_MAX_HEAD bytes of them, trailers included, and with
  *       the target no more than libmicrohttpd's buffer holds, SRV_MAX_POOLED: 431.
- *   F5  Content-Length, Host, Transfer-Encoding and Origin appear once at most.
+ *   F5  Authorization, Content-Length, Host, Transfer-Encoding and Origin appear once at most.
  *   F6  Content-Length is digits alone, below 2^63 (413). Transfer-Encoding is chunked (gzip and
  *       others before chunked: 501), in HTTP/1.1, without Content-Length.
  *   F7  HTTP/1.1 has a Host. It consists of characters that hosts and ports have.

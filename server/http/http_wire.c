@@ -58,8 +58,8 @@ void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight)
         srv_wire_add(wire, "Access-Control-Allow-Methods", "GET, HEAD, POST, PUT, PATCH, DELETE");
         srv_wire_add(
             wire, "Access-Control-Allow-Headers",
-            "Accept, Content-Encoding, Content-Type, Idempotency-Key, If-Match, If-None-Match, "
-            "Last-Event-ID, Prefer, X-Request-Id");
+            "Accept, Authorization, Content-Encoding, Content-Type, Idempotency-Key, If-Match, "
+            "If-None-Match, Last-Event-ID, Prefer, traceparent, X-Request-Id");
         srv_wire_add(wire, "Access-Control-Max-Age", "600");
     } else {
         srv_wire_add(wire, "Access-Control-Expose-Headers", api_exposed_headers);

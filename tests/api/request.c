@@ -29,6 +29,9 @@ struct api_bench {
     api_job_table *jobs;
     piece waiting[BENCH_JOBS];
     size_t waits, most;
+    api_tokens *tokens; /* NULL: nobody needs one */
+    const char *file;   /* of tokens, to be read by a reload; NULL: nothing is read */
+    char bearer[300];   /* "": none is sent */
     api_service *service;
 };
 
@@ -58,7 +61,22 @@ void bench_limit_jobs(api_bench *b, size_t most)
     b->most = most;
 }
 
-static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget, uint64_t upload)
+static bool reload(void *context, char *message, size_t size)
+{
+    api_bench *b = context;
+    char why[API_TOKENS_MESSAGE] = "";
+    api_tokens *tokens = b->tokens == NULL ? api_tokens_new() : b->tokens;
+    bool good = b->file == NULL ||
+                (tokens != NULL && api_tokens_load(tokens, b->file, strlen(b->file), why));
+    if (b->tokens == NULL) {
+        api_tokens_free(tokens);
+    }
+    snprintf(message, size, "%s", why);
+    return good;
+}
+
+static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget, uint64_t upload,
+                                 const char *file)
 {
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
@@ -75,9 +93,21 @@ static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget
     b->jobs = api_job_table_new(&(api_job_table_options){
         .store = b->store, .submit = submit, .pool = b, .keep = API_JOB_SECONDS});
     assert_non_null(b->jobs);
+    b->file = file;
+    if (file != NULL) {
+        char message[API_TOKENS_MESSAGE];
+        b->tokens = api_tokens_new();
+        assert_non_null(b->tokens);
+        if (!reload(b, message, sizeof message)) {
+            fail_msg("%s", message);
+        }
+    }
     b->service = api_service_new(b->store, api_routes(),
                                  &(api_options){.version = "0.0.0-test",
                                                 .max_upload = upload == 0 ? 8 << 20 : upload,
+                                                .tokens = b->tokens,
+                                                .reload = reload,
+                                                .reload_context = b,
                                                 .jobs = b->jobs,
                                                 .pool = b->pool});
     assert_non_null(b->service);
@@ -91,13 +121,32 @@ api_bench *bench_new(void)
 
 api_bench *bench_new_over(const st_journal *journal)
 {
-    return bench_new_with(journal, 64 << 20, 0);
+    return bench_new_with(journal, 64 << 20, 0, NULL);
 }
 
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
 {
     const st_journal journal = st_journal_memory();
-    return bench_new_with(&journal, undo_budget, upload);
+    return bench_new_with(&journal, undo_budget, upload, NULL);
+}
+
+api_bench *bench_new_guarded(const char *file)
+{
+    const st_journal journal = st_journal_memory();
+    return bench_new_with(&journal, 64 << 20, 0, file);
+}
+
+void bench_change_tokens(api_bench *b, const char *file)
+{
+    b->file = file;
+}
+
+void bench_use_token(api_bench *b, const char *token)
+{
+    b->bearer[0] = '\0';
+    if (token != NULL) {
+        snprintf(b->bearer, sizeof b->bearer, "Bearer %s", token);
+    }
 }
 
 void bench_free(api_bench *b)
@@ -108,6 +157,7 @@ void bench_free(api_bench *b)
     st_pool_free(b->pool);
     api_service_free(b->service);
     st_store_free(b->store);
+    api_tokens_free(b->tokens);
     free(b);
 }
 
@@ -242,6 +292,10 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
         *type = "application/json";
     } else if (*type != NULL && **type == '\0') {
         *type = NULL;
+    }
+    const char **authorization = &request.headers[API_HEADER_AUTHORIZATION];
+    if (*authorization == NULL && b->bearer[0] != '\0') {
+        *authorization = b->bearer;
     }
     bench_reply r = {.exchange = api_handle(b->service, &request, body, length)};
     free(path);

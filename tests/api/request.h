@@ -15,6 +15,12 @@ api_bench *bench_new(void);
 api_bench *bench_new_over(const st_journal *journal);
 /* `upload` bytes are the most a body of a mesh may have; 0 for as many as bench_new allows. */
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
+/* A service that asks for tokens, those of `file` (api/token/token_file.h). */
+api_bench *bench_new_guarded(const char *file);
+/* What POST /v1/admin/reload reads from now on. */
+void bench_change_tokens(api_bench *b, const char *file);
+/* Requests carry this token from now on, where they have no Authorization; NULL: none. */
+void bench_use_token(api_bench *b, const char *token);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 st_store *bench_store(api_bench *b);

@@ -43,7 +43,8 @@ static void read_head(listener *l)
                 strstr(head, "\r\nContent-Type: text/event-stream\r\n") != NULL);
 }
 
-listener *listener_open(const daemon_process *d, const char *target, const char *last, int buffer)
+static listener *open_with(const daemon_process *d, const char *target, const char *header,
+                           const char *value, int buffer)
 {
     char request[512];
     listener *l = calloc(1, sizeof *l);
@@ -52,14 +53,23 @@ listener *listener_open(const daemon_process *d, const char *target, const char 
     if (buffer > 0) {
         setsockopt(l->socket, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
     }
-    int length =
-        snprintf(request, sizeof request, "GET %s HTTP/1.1\r\nHost: localhost\r\n%s%s%s\r\n",
-                 target, last == NULL ? "" : "Last-Event-ID: ", last == NULL ? "" : last,
-                 last == NULL ? "" : "\r\n");
+    int length = snprintf(
+        request, sizeof request, "GET %s HTTP/1.1\r\nHost: localhost\r\n%s%s%s\r\n", target,
+        value == NULL ? "" : header, value == NULL ? "" : value, value == NULL ? "" : "\r\n");
     assert_true(length > 0 && (size_t)length < sizeof request);
     assert_int_equal(send(l->socket, request, (size_t)length, MSG_NOSIGNAL), length);
     read_head(l);
     return l;
+}
+
+listener *listener_open(const daemon_process *d, const char *target, const char *last, int buffer)
+{
+    return open_with(d, target, "Last-Event-ID: ", last, buffer);
+}
+
+listener *listener_open_as(const daemon_process *d, const char *target, const char *token)
+{
+    return open_with(d, target, "Authorization: Bearer ", token, 0);
 }
 
 void listener_close(listener *l)

@@ -548,8 +548,10 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
         {"POST /v1/meshes/m/edges/0/edges", "\"edges\" is none of vertices, halfedges, faces"},
         {"GET /v1/meshes/m/attributes/corners/a",
          "\"corners\" is none of vertices, halfedges, edges, faces, mesh"},
-        {"GET /v1/mesh", "\"mesh\" is none of meshes, jobs, operations, openapi.json"},
-        {"GET /v1", "the path goes on with one of meshes, jobs, operations, openapi.json"},
+        {"GET /v1/mesh",
+         "\"mesh\" is none of meshes, jobs, token, admin, operations, openapi.json"},
+        {"GET /v1",
+         "the path goes on with one of meshes, jobs, token, admin, operations, openapi.json"},
         {"GET /v1/meshes/m/vertices/0/edges/1",
          "there is nothing at \"/v1/meshes/m/vertices/0/edges/1\""},
     };

@@ -107,7 +107,7 @@ static void take_facts(void *context, const api_job *job)
 static api_job look(const char *id)
 {
     api_job job = {.number = 0};
-    assert_true(api_job_find(jobs, id, take_facts, &job));
+    assert_true(api_job_find(jobs, NULL, id, take_facts, &job));
     return job;
 }
 
@@ -160,18 +160,18 @@ static bool cancel_at(int percent)
         job = look(id);
     }
     uint64_t asked = st_clock_micros();
-    assert_true(api_job_remove(jobs, id, &forgotten, take_facts, &job));
+    assert_true(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job));
     if (forgotten || wait_for(id, API_JOB_DONE).state == API_JOB_DONE) {
         return false;
     }
     print_message("note: cancelled at %d %%, ended in %.1f ms\n", percent,
                   (double)(st_clock_micros() - asked) / 1000);
     assert_int_equal(look(id).state, API_JOB_CANCELLED);
-    assert_true(api_job_remove(jobs, id, &forgotten, take_facts, &job));
+    assert_true(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job));
     assert_true(forgotten);
     /* The pool's thread gives its hold of the job back last. */
     while (st_memory_used() != before) {
-        assert_false(api_job_find(jobs, id, take_facts, &job));
+        assert_false(api_job_find(jobs, NULL, id, take_facts, &job));
     }
     return true;
 }
@@ -258,7 +258,7 @@ static void a_job_whose_record_is_lost_has_failed_for_that_reason(void **state)
     assert_int_equal(job.state, API_JOB_FAILED);
     assert_int_equal(job.status, 507);
     assert_string_equal(job.location, "");
-    assert_true(api_job_find(jobs, id, copy_body, body));
+    assert_true(api_job_find(jobs, NULL, id, copy_body, body));
     assert_non_null(strstr(body, "\"code\":\"store_full\""));
     assert_non_null(strstr(body, loss.reason));
 }
@@ -335,7 +335,7 @@ static void what_ended_is_forgotten_in_time(void **state)
     start_keeping(0);
     slow_journal_advance(&slow, UINT64_MAX);
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
-    while (api_job_find(jobs, id, take_facts, &job)) {
+    while (api_job_find(jobs, NULL, id, take_facts, &job)) {
         assert_true(job.state <= API_JOB_RUNNING);
     }
     stop(NULL);
@@ -352,8 +352,8 @@ static void only_so_many_are_kept(void **state)
         wait_for(id, API_JOB_DONE);
     }
     api_job job;
-    assert_false(api_job_find(jobs, first, take_facts, &job));
-    assert_true(api_job_find(jobs, id, take_facts, &job));
+    assert_false(api_job_find(jobs, NULL, first, take_facts, &job));
+    assert_true(api_job_find(jobs, NULL, id, take_facts, &job));
 }
 
 static void a_stop_ends_what_waits_and_what_runs(void **state)

@@ -124,7 +124,7 @@ static void test_refusals(void **state)
         {{"--listen", "host:80"}, "--listen takes"},
         {{"--listen", "127.0.0.1:65536"}, "--listen takes"},
         {{"--listen", "127.0.0.1:"}, "--listen takes"},
-        {{"--listen", "0.0.0.0:80"}, "--insecure"},
+        {{"--listen", "0.0.0.0:80"}, "--tokens, or set --insecure"},
         {{"--listen", "[::]:80"}, "--insecure"},
         {{"--log", "all"}, "auto|access|off"},
         {{"--samples=maybe"}, "0 or 1"},
@@ -134,6 +134,7 @@ static void test_refusals(void **state)
         {{"--restore="}, "--restore needs a value"},
         {{"--dump"}, "--dump needs a value"},
         {{"--verify", "a", "b"}, "not an option"},
+        {{"--new-token", "a", "read", "b"}, "not an option"},
         {{"--store", "sqlite:"}, "sqlite:DIR"},
     };
     srv_config config;
@@ -151,6 +152,16 @@ static void test_refusals(void **state)
     static const char *const insecure[] = {"HEDGE_INSECURE", "1", NULL};
     variables = insecure;
     assert_true(READ(&config, "--listen", "0.0.0.0:80"));
+    srv_config_clear(&config);
+    static const char *const tokens[] = {"HEDGE_TOKENS", "/file", NULL};
+    variables = tokens;
+    assert_true(READ(&config, "--listen", "0.0.0.0:80"));
+    assert_string_equal(config.tokens, "/file");
+    srv_config_clear(&config);
+    variables = NULL;
+    assert_true(READ(&config, "--listen", "0.0.0.0:80", "--new-token", "alice", "write"));
+    assert_string_equal(config.token_name, "alice");
+    assert_string_equal(config.token_role, "write");
     srv_config_clear(&config);
 }
 

@@ -1,0 +1,109 @@
+#include "api/request/gate.h"
+
+#include "system/clock.h"
+
+#include <string.h>
+#include <strings.h>
+
+/* RFC 9110 11.4 and RFC 6750 2.1: a scheme, blanks, and a token, which nothing follows. *text is
+ * NULL where there is no header or another scheme in it. */
+static size_t read_bearer(const char *header, const char **text)
+{
+    static const char scheme[] = "bearer";
+    const size_t length = sizeof scheme - 1;
+    *text = NULL;
+    if (header == NULL || strncasecmp(header, scheme, length) != 0 || header[length] != ' ') {
+        return 0;
+    }
+    *text = header + length + strspn(header + length, " ");
+    return strcspn(*text, " \t");
+}
+
+static bool refuse_unknown(api_exchange *x, bool has_token)
+{
+    x->has_bad_token = has_token;
+    return has_token ? api_fail(x, API_UNAUTHORIZED, "the token is not known, or not any more")
+                     : api_fail(x, API_UNAUTHORIZED, "the header Authorization: Bearer is missing");
+}
+
+static bool refuse_role(api_exchange *x, api_role needed)
+{
+    const char *role = api_role_name(needed);
+    api_fail(x, API_FORBIDDEN, "this takes a token of the role \"%s\"", role);
+    x->problem.role = role;
+    return false;
+}
+
+/* A dry run is a read, but only the body says that it is one. */
+static bool may_rehearse(const api_exchange *x)
+{
+    return (x->route->flags & API_REHEARSED) != 0 && api_role_allows(x->token->role, API_ROLE_READ);
+}
+
+static bool enter(api_exchange *x)
+{
+    api_tokens *tokens = x->service->options.tokens;
+    const char *header = x->request.headers[API_HEADER_AUTHORIZATION];
+    x->request.headers[API_HEADER_AUTHORIZATION] = NULL; /* nobody else needs the secret */
+    if (tokens == NULL || x->route->role == API_ROLE_OPEN) {
+        return true;
+    }
+    const char *text;
+    size_t length = read_bearer(header, &text);
+    if (text != NULL) {
+        x->token = api_tokens_find(tokens, text, length, st_clock_utc());
+    }
+    if (x->token == NULL) {
+        return refuse_unknown(x, text != NULL);
+    }
+    if (text[length] != '\0') {
+        return refuse_unknown(x, true);
+    }
+    if (api_role_allows(x->token->role, x->route->role)) {
+        return true;
+    }
+    x->rehearses_only = may_rehearse(x);
+    return x->rehearses_only || refuse_role(x, x->route->role);
+}
+
+bool api_gate_enter(api_exchange *x)
+{
+    x->at_gate = !enter(x);
+    return !x->at_gate;
+}
+
+bool api_gate_sees(const api_exchange *x, const char *mesh)
+{
+    return x->service->options.tokens == NULL ||
+           (x->token != NULL && api_token_sees(x->token, mesh));
+}
+
+bool api_gate_may_create(api_exchange *x, const char *mesh)
+{
+    return api_gate_sees(x, mesh) ||
+           api_fail(x, API_PREFIX, "the id does not begin with a prefix of the token");
+}
+
+bool api_gate_may_change(api_exchange *x)
+{
+    return !x->rehearses_only || refuse_role(x, API_ROLE_WRITE);
+}
+
+const char *api_gate_challenge(const api_exchange *x)
+{
+    if (x->problem.code == API_UNAUTHORIZED) {
+        return x->has_bad_token ? "Bearer realm=\"hedge\", error=\"invalid_token\""
+                                : "Bearer realm=\"hedge\"";
+    }
+    if (x->problem.code != API_FORBIDDEN || x->problem.role == NULL) {
+        return NULL;
+    }
+#define SCOPE(role) "Bearer realm=\"hedge\", error=\"insufficient_scope\", scope=\"" role "\""
+    static const char *const scopes[] = {[API_ROLE_ADMIN] = SCOPE("admin"),
+                                         [API_ROLE_WRITE] = SCOPE("write"),
+                                         [API_ROLE_READ] = SCOPE("read"),
+                                         [API_ROLE_METRICS] = SCOPE("metrics")};
+#undef SCOPE
+    api_role role;
+    return api_role_find(x->problem.role, strlen(x->problem.role), &role) ? scopes[role] : NULL;
+}

@@ -1,0 +1,574 @@
+#include "tests/api/gate.h"
+
+#include "tests/api/request.h"
+
+#include "api/describe/routes.h"
+#include "api/token/token_file.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* Texts of tokens are their names and a word, so that a leak of either is seen. */
+#define SECRET "-s3cr3t"
+
+static const struct {
+    const char *name;
+    api_role role;
+    const char *more;
+} holders[] = {
+    {"reader", API_ROLE_READ, ""},
+    {"writer", API_ROLE_WRITE, ""},
+    {"boss", API_ROLE_ADMIN, ""},
+    {"meter", API_ROLE_METRICS, ""},
+    {"late", API_ROLE_ADMIN, " expires=2001-01-01"},
+    {"left", API_ROLE_WRITE, " prefix=left-"},
+    {"right", API_ROLE_WRITE, " prefix=right-,also-right."},
+};
+enum { HOLDERS = sizeof holders / sizeof *holders, FILE_BYTES = 4096, TARGET = 300 };
+
+typedef struct world {
+    api_bench *bench;
+    char file[FILE_BYTES];
+    size_t findings;
+    bool tells;
+} world;
+
+static void found(world *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void found(world *w, const char *format, ...)
+{
+    w->findings++;
+    if (w->tells) {
+        va_list arguments;
+        va_start(arguments, format);
+        vprint_error(format, arguments);
+        va_end(arguments);
+        print_error("\n");
+    }
+}
+
+/* --- requests --- */
+
+static void secret_of(const char *name, char out[80])
+{
+    snprintf(out, 80, "%s" SECRET, name);
+}
+
+/* A file of all holders but one (NULL: of all). */
+static void write_file(char out[FILE_BYTES], const char *without)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < HOLDERS; i++) {
+        char secret[80], line[API_TOKEN_SHORT_LINE];
+        secret_of(holders[i].name, secret);
+        api_token_file_line(holders[i].name, holders[i].role, secret, line);
+        if (without == NULL || strcmp(without, holders[i].name) != 0) {
+            used +=
+                (size_t)snprintf(out + used, FILE_BYTES - used, "%s%s\n", line, holders[i].more);
+        }
+    }
+}
+
+/* No answer may hold a secret. */
+static bench_reply ask_with(world *w, const char *authorization, const char *method,
+                            const char *target, const char *const *more, const char *body)
+{
+    const char *headers[9] = {NULL};
+    size_t count = 0;
+    for (; more != NULL && more[count] != NULL; count++) {
+        headers[count] = more[count];
+    }
+    if (authorization != NULL) {
+        headers[count++] = "Authorization";
+        headers[count++] = authorization;
+    }
+    bench_reply r = bench_send(w->bench, method, target, headers, body);
+    bool tells = strstr(r.body, SECRET) != NULL;
+    for (size_t i = 0; i < r.header_count; i++) {
+        tells = tells || strstr(r.headers[i].value, SECRET) != NULL;
+    }
+    if (tells) {
+        found(w, "%s %s answers with a token", method, target);
+    }
+    return r;
+}
+
+static bench_reply ask(world *w, const char *name, const char *method, const char *target,
+                       const char *body)
+{
+    char secret[80], authorization[100];
+    secret_of(name, secret);
+    snprintf(authorization, sizeof authorization, "Bearer %s", secret);
+    return ask_with(w, authorization, method, target, NULL, body);
+}
+
+static void must(world *w, const char *name, const char *method, const char *target,
+                 const char *body, int status)
+{
+    bench_reply r = ask(w, name, method, target, body);
+    if (r.status != status) {
+        found(w, "%s: %s %s is %d and not %d: %.200s", name, method, target, r.status, status,
+              r.body);
+    }
+    bench_done(r);
+}
+
+static const char *code_of(const bench_reply *r)
+{
+    const cJSON *code = cJSON_GetObjectItem(r->json, "code");
+    return cJSON_IsString(code) ? code->valuestring : "";
+}
+
+/* --- routes --- */
+
+static const struct {
+    const char *name, *value;
+} variables[] = {{"{id}", "0"},
+                 {"{domain}", "faces"},
+                 {"{name}", "a"},
+                 {"{asset}", "x.js"},
+                 {"{code}", "closed_fan"}};
+
+static void replace(char text[TARGET], const char *what, const char *by)
+{
+    char *at = strstr(text, what);
+    if (at != NULL) {
+        char rest[TARGET];
+        snprintf(rest, sizeof rest, "%s", at + strlen(what));
+        snprintf(at, (size_t)(text + TARGET - at), "%s%s", by, rest);
+    }
+}
+
+static void target_of(const api_route *route, const char *mesh, const char *job, char out[TARGET])
+{
+    snprintf(out, TARGET, "%s", route->path);
+    replace(out, "{mesh}", mesh);
+    replace(out, "{job}", job);
+    for (size_t i = 0; i < sizeof variables / sizeof *variables; i++) {
+        replace(out, variables[i].name, variables[i].value);
+    }
+}
+
+/* A body that the route takes, and that changes something where it is a write. */
+static const char *body_of(const api_route *route)
+{
+    static const struct {
+        const char *name, *body;
+    } bodies[] = {{"query_post", "{\"queries\":[]}"},
+                  {"traverse_post", "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}"},
+                  {"edits_post", "{\"op\":\"face_poke\",\"face\":0}"},
+                  {"attribute_put", "{\"type\":\"bool\"}"},
+                  {"attribute_patch", "{\"ids\":\"all\",\"value\":true}"},
+                  {"mesh_patch", "{\"name\":\"new\"}"},
+                  {"mesh_put", "{\"shape\":\"cube\"}"},
+                  {"meshes_create", "{\"shape\":\"cube\"}"}};
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
+        if (strcmp(route->name, bodies[i].name) == 0) {
+            return bodies[i].body;
+        }
+    }
+    return route->body_kind == API_BODY_NONE ? NULL : "{}";
+}
+
+static const api_route *row_of(const char *method, const char *path)
+{
+    const char *served = strcmp(method, "HEAD") == 0 ? "GET" : method;
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const api_route *row = &api_routes().rows[i];
+        if (strcmp(row->path, path) == 0 && strcmp(row->method, served) == 0) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
+/* --- the world --- */
+
+static void begin(world *w)
+{
+    write_file(w->file, NULL);
+    w->bench = bench_new_guarded(w->file);
+    static const char *const meshes[] = {"left-m", "right-m", "also-right.m", "m"};
+    for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
+        char target[TARGET];
+        snprintf(target, sizeof target, "/v1/meshes/%s", meshes[i]);
+        must(w, "boss", "PUT", target, "{\"shape\":\"cube\"}", 201);
+        snprintf(target, sizeof target, "/v1/meshes/%s/attributes/faces/a", meshes[i]);
+        must(w, "boss", "PUT", target, "{\"type\":\"bool\"}", 201);
+    }
+}
+
+/* The two answers are the same but for what was asked: `a` stands in one where `b` does in the
+ * other. */
+static bool are_alike(const bench_reply *x, const char *a, const bench_reply *y, const char *b)
+{
+    bool alike = x->status == y->status && x->header_count == y->header_count;
+    for (size_t i = 0; alike && i < x->header_count; i++) {
+        alike = strcmp(x->headers[i].name, y->headers[i].name) == 0 &&
+                strcmp(x->headers[i].value, y->headers[i].value) == 0;
+    }
+    const char *p = x->body, *q = y->body;
+    while (alike && (*p != '\0' || *q != '\0')) {
+        if (a[0] != '\0' && strncmp(p, a, strlen(a)) == 0 && strncmp(q, b, strlen(b)) == 0) {
+            p += strlen(a);
+            q += strlen(b);
+        } else {
+            alike = *p++ == *q++;
+        }
+    }
+    return alike;
+}
+
+/* --- what must hold --- */
+
+/* Without a good token every route that is not open gives one answer, whatever there is. */
+static void try_strangers(world *w)
+{
+    static const char *const methods[] = {"GET",   "HEAD",   "POST",    "PUT",
+                                          "PATCH", "DELETE", "OPTIONS", "TRACE"};
+    static const char *const strangers[] = {NULL,          "Basic Ym9zczpib3Nz",
+                                            "Bearer boss", "Bearer late" SECRET,
+                                            "Bearer ",     "bearer  boss" SECRET " more"};
+    enum { STRANGERS = sizeof strangers / sizeof *strangers };
+    bench_reply first[STRANGERS] = {{0}};
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const char *path = api_routes().rows[i].path;
+        for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+            const api_route *row = row_of(methods[m], path);
+            for (size_t s = 0; s < 2 * STRANGERS; s++) {
+                char target[TARGET];
+                target_of(&api_routes().rows[i], s % 2 == 0 ? "left-m" : "left-0", "none", target);
+                const char *authorization = strangers[s / 2];
+                bench_reply r = ask_with(w, authorization, methods[m], target, NULL,
+                                         row == NULL ? NULL : body_of(row));
+                bool refused = r.status == 401;
+                if (row == NULL && r.status != 405 && r.status != 204) {
+                    found(w, "a stranger's %s %s is %d", methods[m], target, r.status);
+                } else if (row != NULL && refused != (row->role != API_ROLE_OPEN)) {
+                    found(w, "a stranger's %s %s is %d", methods[m], target, r.status);
+                } else if (refused && first[s / 2].body == NULL) {
+                    first[s / 2] = r;
+                    continue;
+                } else if (refused && !are_alike(&r, "", &first[s / 2], "")) {
+                    found(w, "a stranger's %s %s differs: %s", methods[m], target, r.body);
+                }
+                bench_done(r);
+            }
+        }
+    }
+    /* Nothing tells a token that has expired from one that never was. */
+    if (first[2].body != NULL && first[3].body != NULL &&
+        !are_alike(&first[2], "", &first[3], "")) {
+        found(w, "an expired token is told from a wrong one");
+    }
+    for (size_t s = 0; s < STRANGERS; s++) {
+        const char *challenge = bench_header(&first[s], "WWW-Authenticate");
+        const char *wanted =
+            s < 2 ? "Bearer realm=\"hedge\"" : "Bearer realm=\"hedge\", error=\"invalid_token\"";
+        if (strcmp(challenge, wanted) != 0) {
+            found(w, "the challenge is %s", challenge);
+        }
+        bench_done(first[s]);
+    }
+}
+
+static double revision_of(world *w, const char *mesh)
+{
+    char target[TARGET];
+    snprintf(target, sizeof target, "/v1/meshes/%s", mesh);
+    bench_reply r = ask(w, "boss", "GET", target, NULL);
+    const cJSON *revision = cJSON_GetObjectItem(r.json, "revision");
+    double number = cJSON_IsNumber(revision) ? revision->valuedouble : -1;
+    bench_done(r);
+    return number;
+}
+
+/* A role that is too small is told which would do, and changes nothing; one that is not is let
+ * in. */
+static void try_roles(world *w)
+{
+    double before = revision_of(w, "m");
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const api_route *row = &api_routes().rows[i];
+        for (size_t h = 0; h < HOLDERS; h++) {
+            if (holders[h].more[0] != '\0') {
+                continue;
+            }
+            api_role has = holders[h].role, needs = row->role;
+            bool allowed = needs == API_ROLE_OPEN || has == API_ROLE_ADMIN || has == needs ||
+                           (has == API_ROLE_WRITE && needs == API_ROLE_READ);
+            char target[TARGET];
+            target_of(row, allowed ? "none" : "m", "none", target);
+            bench_reply r = ask(w, holders[h].name, row->method, target, body_of(row));
+            const cJSON *role = cJSON_GetObjectItem(r.json, "role");
+            bool named = cJSON_IsString(role) &&
+                         strcmp(role->valuestring, api_role_name(needs)) == 0 &&
+                         strcmp(code_of(&r), "forbidden") == 0 &&
+                         strstr(bench_header(&r, "WWW-Authenticate"), api_role_name(needs)) != NULL;
+            if (allowed ? r.status == 401 || r.status == 403 : r.status != 403 || !named) {
+                found(w, "%s's %s %s is %d: %.200s", holders[h].name, row->method, target, r.status,
+                      r.body);
+            }
+            bench_done(r);
+        }
+    }
+    if (revision_of(w, "m") != before) {
+        found(w, "a token that may not has changed a mesh");
+    }
+}
+
+/* What is only tried is a read. */
+static void try_rehearsals(world *w)
+{
+    double before = revision_of(w, "m");
+    must(w, "reader", "POST", "/v1/meshes/m/edits",
+         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":true}", 200);
+    must(w, "reader", "POST", "/v1/meshes/m/edits",
+         "{\"ops\":[{\"op\":\"face_poke\",\"face\":0}],\"dry_run\":true}", 200);
+    must(w, "reader", "POST", "/v1/meshes/m/edits",
+         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":false}", 403);
+    must(w, "reader", "PUT", "/v1/meshes/m/attributes/faces/b",
+         "{\"type\":\"bool\",\"dry_run\":true}", 200);
+    must(w, "reader", "PUT", "/v1/meshes/m/attributes/faces/b", "{\"type\":\"bool\"}", 403);
+    must(w, "reader", "PATCH", "/v1/meshes/m/attributes/faces/a",
+         "{\"ids\":\"all\",\"value\":true,\"dry_run\":true}", 200);
+    must(w, "reader", "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL, 200);
+    must(w, "meter", "POST", "/v1/meshes/m/edits",
+         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":true}", 403);
+    if (revision_of(w, "m") != before) {
+        found(w, "a dry run has changed a mesh");
+    }
+}
+
+/* A mesh outside the prefixes is answered with the bytes of one that does not exist. */
+static void try_prefixes(world *w)
+{
+    double before = revision_of(w, "left-m");
+    for (size_t i = 0; i < api_routes().count; i++) {
+        const api_route *row = &api_routes().rows[i];
+        if (strstr(row->path, "{mesh}") == NULL) {
+            continue;
+        }
+        char there[TARGET], absent[TARGET], own[TARGET];
+        target_of(row, "left-m", "none", there);
+        target_of(row, "left-0", "none", absent);
+        target_of(row, "right-0", "none", own);
+        bool creates = (row->flags & API_MAY_CREATE) != 0;
+        bench_reply a = ask(w, "right", row->method, there, body_of(row));
+        bench_reply b = ask(w, "right", row->method, absent, body_of(row));
+        if (a.status != (creates ? 403 : 404) ||
+            strcmp(code_of(&a), creates ? "prefix" : "no_such_mesh") != 0 ||
+            !are_alike(&a, "left-m", &b, "left-0")) {
+            found(w, "%s %s tells: %d %.200s", row->method, there, a.status, a.body);
+        }
+        if (!creates) {
+            bench_reply c = ask(w, "right", row->method, own, body_of(row));
+            if (!are_alike(&a, "left-m", &c, "right-0")) {
+                found(w, "%s %s is not as if it were not there: %.200s", row->method, there,
+                      a.body);
+            }
+            bench_done(c);
+        }
+        bench_done(a);
+        bench_done(b);
+    }
+    if (revision_of(w, "left-m") != before) {
+        found(w, "a mesh outside the prefixes was changed");
+    }
+    must(w, "right", "GET", "/v1/meshes/right-m", NULL, 200);
+    must(w, "right", "GET", "/v1/meshes/also-right.m", NULL, 200);
+}
+
+/* Ids of meshes that the name's list has, in its order, page by page. */
+static void try_list(world *w, const char *name, const char *wanted)
+{
+    char target[TARGET] = "/v1/meshes?limit=1", ids[400] = "";
+    for (size_t pages = 0; pages < 20 && target[0] != '\0'; pages++) {
+        bench_reply r = ask(w, name, "GET", target, NULL);
+        const cJSON *item, *next = cJSON_GetObjectItem(r.json, "next");
+        cJSON_ArrayForEach(item, cJSON_GetObjectItem(r.json, "items"))
+        {
+            const cJSON *id = cJSON_GetObjectItem(item, "id");
+            size_t used = strlen(ids);
+            snprintf(ids + used, sizeof ids - used, "%s ", id->valuestring);
+        }
+        bool sees_server = cJSON_GetObjectItem(r.json, "listeners") != NULL;
+        if (sees_server != (strcmp(name, "boss") == 0)) {
+            found(w, "%s's list tells of the server: %s", name, r.body);
+        }
+        target[0] = '\0';
+        if (cJSON_IsString(next)) {
+            snprintf(target, sizeof target, "/v1/meshes?limit=1&cursor=%s", next->valuestring);
+        }
+        bench_done(r);
+    }
+    if (strcmp(ids, wanted) != 0) {
+        found(w, "%s's list is %s and not %s", name, ids, wanted);
+    }
+}
+
+static void try_bodies_and_ids(world *w)
+{
+    static const char *const appends[] = {"{\"op\":\"append\",\"mesh\":\"left-m\"}",
+                                          "{\"op\":\"append\",\"mesh\":\"left-0\"}"};
+    bench_reply a = ask(w, "right", "POST", "/v1/meshes/right-m/edits", appends[0]);
+    bench_reply b = ask(w, "right", "POST", "/v1/meshes/right-m/edits", appends[1]);
+    if (a.status != 422 || !are_alike(&a, "left-m", &b, "left-0")) {
+        found(w, "append tells: %d %.200s", a.status, a.body);
+    }
+    bench_done(a);
+    bench_done(b);
+    static const struct {
+        const char *target, *body;
+    } creates[] = {{"/v1/meshes?id=left-m", "{\"shape\":\"cube\"}"},
+                   {"/v1/meshes?id=left-0", "{\"shape\":\"cube\"}"},
+                   {"/v1/meshes/right-m/copy", "{\"id\":\"left-m\"}"},
+                   {"/v1/meshes/right-m/copy", "{\"id\":\"left-0\"}"}};
+    for (size_t i = 0; i < sizeof creates / sizeof *creates; i++) {
+        bench_reply r = ask(w, "right", "POST", creates[i].target, creates[i].body);
+        if (r.status != 403 || strcmp(code_of(&r), "prefix") != 0) {
+            found(w, "right makes %s: %d %.200s", creates[i].target, r.status, r.body);
+        }
+        bench_done(r);
+    }
+    must(w, "boss", "GET", "/v1/meshes/left-0", NULL, 404);
+    static const char *const makes[] = {"/v1/meshes", "/v1/meshes/right-m/copy"};
+    for (size_t i = 0; i < 2; i++) {
+        bench_reply r = ask(w, "right", "POST", makes[i], i == 0 ? "{\"shape\":\"cube\"}" : NULL);
+        const char *location = bench_header(&r, "Location");
+        if (r.status != 201 || strncmp(location, "/v1/meshes/right-", 17) != 0) {
+            found(w, "right's new mesh is at %s: %d", location, r.status);
+        } else {
+            must(w, "right", "DELETE", location, NULL, 204);
+        }
+        bench_done(r);
+    }
+}
+
+/* A job is there for the token that began it, and for an admin. */
+static void try_jobs(world *w)
+{
+    static const char *const async[] = {"Prefer", "respond-async", NULL};
+    static const char *const ends[] = {"", "/result", "/events"};
+    bench_reply made = ask_with(w, "Bearer left" SECRET, "POST", "/v1/meshes/left-m/query", async,
+                                "{\"queries\":[]}");
+    char job[TARGET], id[TARGET];
+    snprintf(job, sizeof job, "%s", bench_header(&made, "Location"));
+    snprintf(id, sizeof id, "%s", made.status == 202 ? job + strlen("/v1/jobs/") : "");
+    if (made.status != 202) {
+        found(w, "left's job is not begun: %d %.200s", made.status, made.body);
+    }
+    bench_done(made);
+    for (size_t i = 0; i < 4; i++) {
+        char there[TARGET + 10], absent[TARGET];
+        snprintf(there, sizeof there, "%s%s", job, i < 3 ? ends[i] : "");
+        snprintf(absent, sizeof absent, "/v1/jobs/none%s", i < 3 ? ends[i] : "");
+        const char *method = i < 3 ? "GET" : "DELETE";
+        bench_reply a = ask(w, "right", method, there, NULL);
+        bench_reply b = ask(w, "right", method, absent, NULL);
+        if (a.status != 404 || !are_alike(&a, id, &b, "none")) {
+            found(w, "right's %s %s is %d: %.200s", method, there, a.status, a.body);
+        }
+        bench_done(a);
+        bench_done(b);
+    }
+    static const char *const viewers[] = {"right", "reader", "left", "boss"};
+    for (size_t i = 0; i < 4; i++) {
+        bench_reply r = ask(w, viewers[i], "GET", "/v1/jobs", NULL);
+        if ((strstr(r.body, id) != NULL) != (i >= 2)) {
+            found(w, "%s's jobs: %.300s", viewers[i], r.body);
+        }
+        bench_done(r);
+        must(w, viewers[i], "GET", job, NULL, i < 2 ? 404 : 200);
+    }
+    must(w, "left", "DELETE", job, NULL, 202);
+    bench_run_jobs(w->bench, BENCH_JOBS);
+}
+
+static void set_flag(void *context)
+{
+    *(bool *)context = true;
+}
+
+/* What a stream has to give, up to where it waits or ends; false at its end. */
+static bool read_on(const api_source *live, char *out, size_t size)
+{
+    int64_t got;
+    size_t used = 0;
+    while ((got = live->read(live->self, out + used, size - 1 - used)) > 0) {
+        used += (size_t)got;
+    }
+    out[used] = '\0';
+    return got == API_READ_WAIT;
+}
+
+/* A reload that drops a token wakes its streams, which say goodbye and end; others go on. */
+static void try_streams(world *w)
+{
+    static const char *const names[] = {"left", "boss"};
+    api_exchange *streams[2];
+    bool woken[2] = {false, false};
+    char text[4096], file[FILE_BYTES];
+    for (size_t i = 0; i < 2; i++) {
+        char authorization[100];
+        snprintf(authorization, sizeof authorization, "Bearer %s" SECRET, names[i]);
+        const api_request request = {.method = "GET",
+                                     .path = "/v1/meshes/left-m/events",
+                                     .query = "",
+                                     .request_id = "test",
+                                     .headers = {[API_HEADER_AUTHORIZATION] = authorization}};
+        streams[i] = api_handle(bench_service(w->bench), &request, NULL, 0);
+        const api_source *live = api_answer_of(streams[i])->live;
+        if (live != NULL) {
+            live->start(live->self, set_flag, &woken[i]);
+            if (!read_on(live, text, sizeof text)) {
+                found(w, "%s's stream ends at once: %s", names[i], text);
+            }
+        } else {
+            found(w, "%s has no stream", names[i]);
+        }
+    }
+    write_file(file, "left");
+    bench_change_tokens(w->bench, file);
+    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
+    must(w, "left", "GET", "/v1/meshes/left-m", NULL, 401);
+    if (!woken[0] || woken[1]) {
+        found(w, "the streams woken are %d and %d", woken[0], woken[1]);
+    }
+    for (size_t i = 0; i < 2; i++) {
+        const api_source *live = api_answer_of(streams[i])->live;
+        if (live != NULL) {
+            bool goes_on = read_on(live, text, sizeof text);
+            bool said = strstr(text, "event: bye\ndata: {\"reason\":\"token\"}\n\n") != NULL;
+            if (goes_on != (i == 1) || said != (i == 0)) {
+                found(w, "%s's stream says %s", names[i], text);
+            }
+        }
+        api_free(streams[i]);
+    }
+    bench_change_tokens(w->bench, w->file);
+    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
+    must(w, "left", "GET", "/v1/meshes/left-m", NULL, 200);
+}
+
+size_t gate_findings(bool tell)
+{
+    world w = {.tells = tell};
+    begin(&w);
+    try_list(&w, "right", "also-right.m right-m ");
+    try_list(&w, "left", "left-m ");
+    try_list(&w, "boss", "also-right.m left-m m right-m ");
+    try_strangers(&w);
+    try_roles(&w);
+    try_rehearsals(&w);
+    try_prefixes(&w);
+    try_bodies_and_ids(&w);
+    try_jobs(&w);
+    try_streams(&w);
+    bench_free(w.bench);
+    return w.findings;
+}

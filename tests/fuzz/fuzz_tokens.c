@@ -1,0 +1,45 @@
+/* The reader of files of tokens: what it takes obeys its limits, and what it refuses it explains
+ * without a word of the file. */
+#include "fuzz/fuzz.h"
+
+#include "api/token/token_file.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void check_token(const api_token *token)
+{
+    FUZZ_REQUIRE(api_token_is_name(token->name, strlen(token->name)), "a name is none");
+    FUZZ_REQUIRE(token->role < API_ROLE_OPEN, "a token has no role");
+    FUZZ_REQUIRE(token->prefix_count <= API_TOKEN_PREFIXES, "too many prefixes");
+    FUZZ_REQUIRE(!isnan(token->expires), "an end is no number");
+    for (size_t i = 0; i < token->prefix_count; i++) {
+        FUZZ_REQUIRE(token->prefixes[i][0] != '\0', "a prefix is empty");
+        FUZZ_REQUIRE(api_token_sees(token, token->prefixes[i]), "a prefix is not seen");
+    }
+    FUZZ_REQUIRE(token->prefix_count == 0 || !api_token_sees(token, "/"), "all is seen");
+}
+
+void fuzz_one(const uint8_t *bytes, size_t size)
+{
+    api_token_list list;
+    char message[API_TOKENS_MESSAGE] = "";
+    char *copy = malloc(size == 0 ? 1 : size); /* so that reading beyond is seen */
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    if (api_token_file_read(copy, size, &list, message)) {
+        FUZZ_REQUIRE(list.count > 0 && list.count <= API_TOKENS, "%zu tokens", list.count);
+        for (size_t i = 0; i < list.count; i++) {
+            check_token(list.items[i]);
+        }
+        api_token_list_clear(&list);
+    } else {
+        FUZZ_REQUIRE(message[0] != '\0', "a refusal says nothing");
+    }
+    free(copy);
+}
