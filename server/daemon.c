@@ -422,9 +422,15 @@ int srv_daemon_run(const srv_config *config)
         atomic_store(&parts.ready, false);
         api_job_table_stop(parts.job_table);
         if (!srv_http_stop(parts.http, STOP_MILLIS)) {
-            /* A long operation is in the middle of its work, on memory that must stay. */
+            /* It is in the middle of its work, on memory that must stay. The journal is left as by
+             * a kill, which it is made for. */
+            fprintf(stderr, "hedged: work that did not end within %d s was given up%s\n",
+                    STOP_MILLIS / 1000,
+                    srv_config_folder(config) == NULL
+                        ? ""
+                        : "; every change that was answered is on the disk");
             srv_access_log_free(parts.log);
-            _exit(0);
+            _exit(1);
         }
     }
     st_pool_free(parts.pool);

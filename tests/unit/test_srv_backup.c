@@ -1,4 +1,5 @@
 /* Backups of a store and their way back (core/journal/sqlite/sqlite_backup.h). */
+#include "tests/pace.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -8,6 +9,7 @@
 
 #include <dirent.h>
 #include <sched.h>
+#include <sqlite3.h>
 #include <stdatomic.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -187,6 +189,109 @@ static void a_restore_keeps_keys_without_their_tags(void **state)
     assert_int_equal(told.journal.keys(told.journal.self, "a", count_key, &keys), ST_OK);
     assert_int_equal(keys, 2);
     told_end(&told);
+}
+
+static void run_sql(const char *text)
+{
+    char path[2 * FOLDER_PATH];
+    sqlite3 *db;
+    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+}
+
+static double restore_keys(const void *context, size_t size)
+{
+    char text[512];
+    (void)context;
+    (void)make_store(1);
+    (void)snprintf(text, sizeof text,
+                   "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < %zu) "
+                   "INSERT INTO kept(mesh, text, digest, time, id, incarnation, revision, "
+                   "metadata, position, made, sum) "
+                   "SELECT 1, 'key ' || i, zeroblob(16), i, 'a', 5, 1, 1, i, 0, 0 FROM n",
+                   size);
+    run_sql(text);
+    if (!st_sqlite_backup(folder, backup, message)) {
+        fail_msg("%s", message);
+    }
+    const double begun = pace_seconds();
+    if (!st_sqlite_restore(folder, backup, before, message)) {
+        fail_msg("%s", message);
+    }
+    const double took = pace_seconds() - begun;
+    remove_befores();
+    folder_remove(folder);
+    (void)mkdir(folder, 0700);
+    return took;
+}
+
+static void a_restore_takes_time_in_proportion_to_the_keys(void **state)
+{
+    (void)state;
+    pace_require_linear("a restore of keys", restore_keys, NULL, 50000);
+}
+
+static void expect_no_backup(const char *file, const char *says)
+{
+    message[0] = '\0';
+    assert_false(st_sqlite_backup(folder, file, message));
+    if (strstr(message, says) == NULL) {
+        fail_msg("%s: \"%s\" is not in \"%s\"", file, says, message);
+    }
+}
+
+static void a_backup_takes_the_place_of_no_file_of_a_store(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark",
+                                        "lock",     "ballast",      "restored.db",  "restoring"};
+    char path[3 * FOLDER_PATH], linked[2 * FOLDER_PATH];
+    told_journal told;
+    kept_mesh mesh = make_store(2);
+    open_store(&told);
+    told_wait(&told, kept_append(&told.journal, kept_edit(&mesh), &mesh, "y", 1));
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        (void)snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        expect_no_backup(path, names[i]);
+        (void)snprintf(path, sizeof path, "%s/../%s/%s", folder, strrchr(folder, '/') + 1,
+                       names[i]);
+        expect_no_backup(path, "of a store");
+    }
+    /* By another name. */
+    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
+    (void)snprintf(linked, sizeof linked, "%s/linked", aside);
+    assert_int_equal(symlink(path, linked), 0);
+    expect_no_backup(linked, "hedge.db of a store");
+    assert_int_equal(unlink(linked), 0);
+    /* Under a name of its own it may lie beside. */
+    (void)snprintf(path, sizeof path, "%s/of today.db", folder);
+    for (int again = 0; again < 2; again++) {
+        if (!st_sqlite_backup(folder, path, message)) {
+            fail_msg("%s", message);
+        }
+    }
+    assert_int_equal(unlink(path), 0);
+    told_end(&told);
+    uint64_t incarnation;
+    expect_records(3, &incarnation);
+}
+
+static void a_backup_goes_under_no_log(void **state)
+{
+    (void)state;
+    char log[sizeof backup + 8];
+    static const char *const ends[] = {"-wal", "-journal"};
+    (void)make_store(2);
+    for (size_t i = 0; i < 2; i++) {
+        (void)snprintf(log, sizeof log, "%s%s", strrchr(backup, '/') + 1, ends[i]);
+        folder_write(aside, log, (const unsigned char *)"a log", 5);
+        expect_no_backup(backup, ends[i]);
+        assert_int_equal(access(backup, F_OK), -1);
+        (void)snprintf(log, sizeof log, "%s%s", backup, ends[i]);
+        assert_int_equal(unlink(log), 0);
+    }
 }
 
 /* A -wal that kill -9 left behind is not replayed onto the restored file. */
@@ -424,6 +529,9 @@ int main(void)
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folders, remove_folders)
         STORE_TEST(a_restore_brings_back_the_state_under_new_incarnations),
         STORE_TEST(a_restore_keeps_keys_without_their_tags),
+        STORE_TEST(a_restore_takes_time_in_proportion_to_the_keys),
+        STORE_TEST(a_backup_takes_the_place_of_no_file_of_a_store),
+        STORE_TEST(a_backup_goes_under_no_log),
         STORE_TEST(a_log_left_behind_stays_with_its_database),
         STORE_TEST(an_interrupted_restore_is_finished_by_the_next_start),
         STORE_TEST(what_a_killed_restore_left_is_not_played_into_the_next),

@@ -11,7 +11,9 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 static char folder[FOLDER_PATH];
 static he_mesh *content;
@@ -153,6 +155,55 @@ int __wrap_fstatvfs(int file, struct statvfs *out)
 int __wrap_posix_fallocate(int file, off_t from, off_t size)
 {
     return no_space ? ENOSPC : __real_posix_fallocate(file, from, size);
+}
+
+/* The folder whose sync is watched, and perhaps fails. */
+static struct stat watched;
+static bool watched_fails;
+static unsigned watched_syncs;
+
+int __real_fsync(int file);
+int __wrap_fsync(int file);
+
+int __wrap_fsync(int file)
+{
+    struct stat status;
+    if (fstat(file, &status) != 0 || status.st_dev != watched.st_dev ||
+        status.st_ino != watched.st_ino) {
+        return __real_fsync(file);
+    }
+    watched_syncs++;
+    errno = EIO;
+    return watched_fails ? -1 : __real_fsync(file);
+}
+
+/* Else a loss of power takes the folder with all that was acknowledged in it. */
+static void the_folder_above_a_new_one_is_synced(void **state)
+{
+    (void)state;
+    static const char *const ends[] = {"", "/", "//"};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        char path[2 * FOLDER_PATH];
+        st_sqlite_opened out;
+        const st_sqlite_options options = {.folder = path, .release = "test"};
+        (void)snprintf(path, sizeof path, "%s/new%s", folder, ends[i]);
+        assert_int_equal(stat(folder, &watched), 0);
+        watched_syncs = 0;
+        watched_fails = true;
+        assert_false(st_sqlite_open(&options, &out));
+        assert_non_null(strstr(out.message, "cannot sync the folder above"));
+        assert_int_equal(access(path, F_OK), -1);
+        watched_fails = false;
+        assert_true(st_sqlite_open(&options, &out));
+        out.journal.close(out.journal.self);
+        assert_int_equal(watched_syncs, 2);
+        /* Once is enough. */
+        assert_true(st_sqlite_open(&options, &out));
+        out.journal.close(out.journal.self);
+        assert_int_equal(watched_syncs, 2);
+        folder_remove(path);
+    }
+    watched = (struct stat){.st_ino = 0};
 }
 
 static bool has_ballast(void)
@@ -563,6 +614,7 @@ int main(void)
         STORE_TEST(a_full_disk_loses_what_is_queued_and_recovers),
         STORE_TEST(a_store_starts_from_a_full_disk),
         STORE_TEST(a_full_disk_stays_full_until_there_is_space),
+        STORE_TEST(the_folder_above_a_new_one_is_synced),
         STORE_TEST(rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile),
         STORE_TEST(what_was_made_and_lost_was_never_there),
         STORE_TEST(after_a_failed_sync_nothing_is_acknowledged),

@@ -110,6 +110,62 @@ bool st_sqlite_check_file(const char *file, char message[ST_SQLITE_MESSAGE])
 
 /* --- backup --- */
 
+bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_SQLITE_MESSAGE])
+{
+    static const char *const ends[] = {"-wal", "-journal"};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        char log[PATH_MAX];
+        struct stat status;
+        int length = snprintf(log, sizeof log, "%s%s", file, ends[i]);
+        if (length < 0 || (size_t)length >= sizeof log) {
+            return st_refuse(message, "the path of the file is too long");
+        }
+        if (stat(log, &status) == 0 && status.st_size > 0) {
+            return st_refuse(message, "%.300s has a log beside it (%s): %s", file, ends[i], advice);
+        }
+    }
+    return true;
+}
+
+/* What may lie in the folder of a store. */
+static const char *const own_names[] = {
+    "hedge.db",         "hedge.db-wal",    "hedge.db-shm",
+    "hedge.db-journal", "hedge.mark",      "lock",
+    "ballast",          "restoring",       "restored.db",
+    "restored.db-wal",  "restored.db-shm", "restored.db-journal"};
+enum { OWN_NAMES = sizeof own_names / sizeof *own_names };
+
+static bool names_file_of(const char *folder, const char *own, const struct stat *status)
+{
+    char path[PATH_MAX];
+    struct stat there;
+    int length = snprintf(path, sizeof path, "%s/%s", folder, own);
+    return length > 0 && length < PATH_MAX && stat(path, &there) == 0 &&
+           there.st_dev == status->st_dev && there.st_ino == status->st_ino;
+}
+
+/* Would it take the place of a file of a store: the one that is copied, by whatever path, or any
+ * other in whose folder it lies? */
+static bool may_be_backup(const char *store, const char *file, char message[ST_SQLITE_MESSAGE])
+{
+    char folder[PATH_MAX], database[PATH_MAX];
+    struct stat status;
+    const char *slash = strrchr(file, '/'), *name = slash == NULL ? file : slash + 1;
+    st_folder_above(file, folder);
+    const bool there = stat(file, &status) == 0;
+    int length = snprintf(database, sizeof database, "%s/hedge.db", folder);
+    const bool in_store = length > 0 && length < PATH_MAX && exists(database);
+    for (size_t i = 0; i < OWN_NAMES; i++) {
+        if ((in_store && strcmp(name, own_names[i]) == 0) ||
+            (there && names_file_of(store, own_names[i], &status))) {
+            return st_refuse(message, "%.300s is %s of a store: give the backup a name of its own",
+                             file, own_names[i]);
+        }
+    }
+    return st_sqlite_has_no_log(
+        file, "it would be replayed onto the backup; remove it, or name another file", message);
+}
+
 /* Space that is left to the store: the daemon beside goes on writing. */
 enum { SPARE_BYTES = 64 << 20 };
 
@@ -118,9 +174,7 @@ static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESS
     char folder[PATH_MAX];
     struct statvfs system;
     int64_t pages = 0;
-    (void)snprintf(folder, sizeof folder, "%s", file);
-    char *slash = strrchr(folder, '/');
-    memcpy(slash == NULL ? folder : slash + 1, ".", 2);
+    st_folder_above(file, folder);
     if (st_db_number(from, "PRAGMA page_count", 0, &pages) != ST_SQL_DONE ||
         statvfs(folder, &system) != 0) {
         return true; /* writing will tell */
@@ -171,9 +225,7 @@ static bool sync_path(const char *path, int flags, char message[ST_SQLITE_MESSAG
 static bool finish(const char *part, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     char folder[PATH_MAX];
-    (void)snprintf(folder, sizeof folder, "%s", file);
-    char *slash = strrchr(folder, '/');
-    memcpy(slash == NULL ? folder : slash + 1, ".", 2);
+    st_folder_above(file, folder);
     if (rename(part, file) != 0) {
         return st_refuse(message, "cannot rename %.300s: %s", part, strerror(errno));
     }
@@ -203,6 +255,9 @@ bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLI
     }
     if (!exists(path)) {
         return st_refuse(message, "%.300s: %s", path, strerror(errno));
+    }
+    if (!may_be_backup(folder, file, message)) {
+        return false;
     }
     st_sql outcome = st_db_open(&from, path, SQLITE_OPEN_READONLY, NULL, 0);
     bool good = (outcome == ST_SQL_DONE || st_sqlite_explain(&from, path, outcome, message)) &&

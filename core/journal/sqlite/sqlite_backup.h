@@ -21,9 +21,11 @@
 /* All give false with a sentence in `message` where something is wrong. */
 
 /* Writes the store of a folder, which a daemon may have open, to a file, in place of one of that
- * name. */
+ * name. Not over a file of this or another store, nor where a -wal or -journal of that name lies
+ * beside. */
 bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLITE_MESSAGE]);
-/* Replaces the store of the folder, if there is one; `before` is where the old one is kept. */
+/* Replaces the store of the folder, if there is one; `before` is where the old one is kept. Not
+ * from a file with a -wal or -journal beside it: what lies in that would be lost. */
 bool st_sqlite_restore(const char *folder, const char *file, char before[ST_SQLITE_MESSAGE],
                        char message[ST_SQLITE_MESSAGE]);
 /* Is the structure of the file whole, and is it a store that this release knows? Of its meshes and

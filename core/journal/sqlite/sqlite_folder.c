@@ -62,25 +62,55 @@ static bool take_lock(st_folder *folder)
 
 /* --- the folder --- */
 
+static void close_file(int file)
+{
+    if (file >= 0) {
+        (void)close(file);
+    }
+}
+
+void st_folder_above(const char *path, char out[PATH_MAX])
+{
+    size_t length = strnlen(path, PATH_MAX - 1);
+    while (length > 1 && path[length - 1] == '/') {
+        length--;
+    }
+    while (length > 0 && path[length - 1] != '/') {
+        length--;
+    }
+    memcpy(out, length == 0 ? "." : path, length == 0 ? 1 : length);
+    out[length == 0 ? 1 : length] = '\0';
+}
+
+/* The folder above it has the name of a folder that is new. */
+static bool sync_above(const char *path)
+{
+    char above[PATH_MAX];
+    st_folder_above(path, above);
+    int file = open(above, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const bool good = file >= 0 && fsync(file) == 0;
+    close_file(file);
+    return good;
+}
+
 bool st_folder_open(st_folder *folder, const char *path)
 {
     *folder = (st_folder){.folder = -1, .lock = -1, .mark = -1};
     (void)snprintf(folder->path, sizeof folder->path, "%s", path);
-    if (mkdir(path, 0700) != 0 && errno != EEXIST) {
+    const bool made = mkdir(path, 0700) == 0;
+    if (!made && errno != EEXIST) {
         return st_folder_fail(folder, "cannot make", "");
+    }
+    if (made && !sync_above(path)) {
+        (void)st_folder_fail(folder, "cannot sync the folder above", "");
+        (void)rmdir(path); /* the next start is to try it again */
+        return false;
     }
     folder->folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder->folder < 0) {
         return st_folder_fail(folder, "cannot open", "");
     }
     return take_lock(folder);
-}
-
-static void close_file(int file)
-{
-    if (file >= 0) {
-        (void)close(file);
-    }
 }
 
 void st_folder_close(st_folder *folder)

@@ -40,6 +40,8 @@ const char *st_folder_doubt(const st_folder *folder);
  * false. */
 bool st_folder_fail(st_folder *folder, const char *what, const char *name);
 
+/* The folder that a file or folder of that path lies in. */
+void st_folder_above(const char *path, char out[PATH_MAX]);
 /* The path of a file in it. False where it is too long. */
 bool st_folder_path(const st_folder *folder, const char *name, char out[PATH_MAX]);
 bool st_folder_has(const st_folder *folder, const char *name);

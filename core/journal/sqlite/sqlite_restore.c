@@ -48,27 +48,6 @@ static bool remove_copy(st_folder *folder)
     return st_folder_sync(folder);
 }
 
-/* Only the file itself is copied: what lies in a log beside it would be left out. */
-static bool has_no_log(st_folder *folder, const char *file)
-{
-    static const char *const ends[] = {"-wal", "-journal"};
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-        char log[PATH_MAX];
-        struct stat status;
-        int length = snprintf(log, sizeof log, "%s%s", file, ends[i]);
-        if (length < 0 || (size_t)length >= sizeof log) {
-            return st_refuse(folder->message, "the path of the file is too long");
-        }
-        if (stat(log, &status) == 0 && status.st_size > 0) {
-            return st_refuse(folder->message,
-                             "%.300s has a log beside it (%s) that is not written back into it: "
-                             "restore a file that --backup made",
-                             file, ends[i]);
-        }
-    }
-    return true;
-}
-
 static bool copy_file(st_folder *folder, const char *file)
 {
     int from = open(file, O_RDONLY | O_CLOEXEC);
@@ -91,9 +70,10 @@ enum { MESHES, MESH_PUT, KEPT, KEPT_PUT, STATEMENTS };
 static const char *const texts[STATEMENTS] = {
     [MESHES] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE key > ?1 ORDER BY key LIMIT 1",
     [MESH_PUT] = "UPDATE mesh SET incarnation = ?2, sum = ?3 WHERE key = ?1",
-    [KEPT] = "SELECT " ST_KEPT_COLUMNS " FROM kept WHERE incarnation <> 0 LIMIT 1",
-    [KEPT_PUT] = "UPDATE kept SET incarnation = 0, revision = 0, metadata = 0, sum = ?3 "
-                 "WHERE mesh = ?1 AND text = ?2",
+    [KEPT] = "SELECT " ST_KEPT_COLUMNS ", holder FROM kept "
+             "WHERE (mesh, holder, text) > (?1, ?2, ?3) ORDER BY mesh, holder, text LIMIT 1",
+    [KEPT_PUT] = "UPDATE kept SET incarnation = 0, revision = 0, metadata = 0, sum = ?4 "
+                 "WHERE mesh = ?1 AND holder = ?2 AND text = ?3",
 };
 
 static st_sql draw_incarnations(st_db *db)
@@ -122,20 +102,21 @@ static st_sql draw_incarnations(st_db *db)
 /* Kept answers lose their ETags: the states that they name may be gone. */
 static st_sql take_tags(st_db *db)
 {
+    char id[ST_MESH_ID + 1], holder[ST_KEY_TEXT + 1] = "", text[ST_KEY_TEXT + 1] = "";
+    st_kept_row row = {.mesh = INT64_MIN};
     for (;;) {
         sqlite3_stmt *s;
-        st_kept_row row;
-        char id[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1];
-        st_sql outcome = st_db_find(db, KEPT, &s, "");
+        st_sql outcome = st_db_find(db, KEPT, &s, "itt", row.mesh, holder, text);
         if (outcome != ST_SQL_ROW) {
             return outcome;
         }
         const bool good = st_kept_row_read(s, id, text, &row);
+        st_db_text(s, ST_KEPT_COUNT, holder, sizeof holder);
         st_db_reset(s);
         row.incarnation = row.revision = row.metadata = 0;
         /* What was damaged stays so. */
         const uint32_t sum = st_kept_row_sum(&row) ^ (good ? 0 : 1);
-        outcome = st_db_do(db, KEPT_PUT, "iti", row.mesh, text, (uint64_t)sum);
+        outcome = st_db_do(db, KEPT_PUT, "itti", row.mesh, holder, text, (uint64_t)sum);
         if (outcome == ST_SQL_DONE && sqlite3_changes(db->handle) == 0) {
             outcome = ST_SQL_DAMAGED;
         }
@@ -276,7 +257,11 @@ static bool restore(st_folder *folder, const char *path, const char *file, char 
         /* The note was never whole, so nothing was moved. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
     }
-    good = good && st_sqlite_finish_restore(folder) && has_no_log(folder, file) &&
+    /* Only the file itself is copied: what lies in a log beside it would be left out. */
+    good = good && st_sqlite_finish_restore(folder) &&
+           st_sqlite_has_no_log(
+               file, "what is in it is not written back; restore a file that --backup made",
+               folder->message) &&
            st_sqlite_check_file(file, folder->message) && remove_copy(folder);
     if (good && !(copy_file(folder, file) && renew_copy(folder) &&
                   sync_name(folder, "restored.db", 0) && write_note(folder, before))) {

@@ -90,6 +90,7 @@ uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes
 #define ST_PURGE_COLUMNS    "kind, key, before, sum"
 #define ST_KEPT_COLUMNS \
     "mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum"
+enum { ST_KEPT_COUNT = 11 }; /* of these columns */
 
 /* False where the sum is wrong; the row is filled in then too. */
 bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);

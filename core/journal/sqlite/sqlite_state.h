@@ -303,6 +303,11 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
 bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
                        char message[ST_SQLITE_MESSAGE]);
 
+/* --- sqlite_backup.c --- */
+/* Has the file nothing of SQLite's beside it that would be played into it? Else says so, with
+ * advice. */
+bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_SQLITE_MESSAGE]);
+
 /* --- sqlite_restore.c --- */
 /* Ends a restore that was interrupted. The folder is locked. */
 bool st_sqlite_finish_restore(st_folder *folder);
