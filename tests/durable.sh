@@ -28,6 +28,7 @@ prove() {
 prove self 1
 prove strace 1
 prove two 1
+prove stop 1
 prove kill 10
 prove sync 2
 prove backup 1

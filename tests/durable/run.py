@@ -24,6 +24,7 @@ import kill
 import locks
 import self_test
 import slow
+import stops
 import traces
 from daemon import Daemon
 from replay import Wrong
@@ -35,6 +36,7 @@ PROOFS = {
     'sync': (faulty.prove, 10),
     'strace': (traces.prove, 3),
     'slow': (slow.prove, 1),
+    'stop': (stops.prove, 1),
     'full': (full.prove, 2),
     'backup': (backups.prove_backup, 3),
     'restore': (backups.prove_restore, 1000),
