@@ -348,6 +348,7 @@ static void wait_for_stop(daemon_parts *parts, const sigset_t *signals, const ch
     do {
         number = sigtimedwait(signals, NULL, &second);
         st_memory_rests(&rest, processor_micros());
+        st_store_rest(parts->store);
         before = health;
         st_store_health(parts->store, &health);
         tell_health(&before, &health, folder);

@@ -462,7 +462,9 @@ api_exchange *api_begin(api_service *service, const api_request *request, api_st
     if (x == NULL) {
         return NULL;
     }
+    st_store_serve(x->store);
     *step = begin(x) ? API_MORE : finish_early(x);
+    st_store_serve(NULL);
     return x;
 }
 
@@ -478,6 +480,7 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
         return API_MORE;
     }
     bool good;
+    st_store_serve(x->store);
     if (x->arrived + length > api_body_cap(x)) {
         good = api_refuse_size(x);
     } else if (x->unpack != NULL) {
@@ -486,7 +489,9 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
         good = take_body(x, bytes, length);
     }
     x->arrived += *used;
-    return good ? API_MORE : finish_early(x);
+    const api_step step = good ? API_MORE : finish_early(x);
+    st_store_serve(NULL);
+    return step;
 }
 
 /* With its memory, which may be megabytes. */
@@ -611,11 +616,8 @@ static void load_and_go_on(api_exchange *x)
     }
 }
 
-api_step api_end(api_exchange *x)
+static api_step end(api_exchange *x)
 {
-    if (x->phase != API_PHASE_BODY) {
-        return API_READY;
-    }
     if (!end_coding(x)) {
         return finish(x);
     }
@@ -627,11 +629,8 @@ api_step api_end(api_exchange *x)
     return finish_or_go_on(x);
 }
 
-api_step api_work(api_exchange *x)
+static api_step work(api_exchange *x)
 {
-    if (x->phase != API_PHASE_WORK && x->phase != API_PHASE_JOB) {
-        return API_READY;
-    }
     void (*handler)(api_exchange * x) = x->deferred;
     he_error err = {0};
     x->deferred = NULL;
@@ -642,6 +641,28 @@ api_step api_work(api_exchange *x)
         handler(x);
     }
     return finish_or_go_on(x);
+}
+
+api_step api_end(api_exchange *x)
+{
+    if (x->phase != API_PHASE_BODY) {
+        return API_READY;
+    }
+    st_store_serve(x->store);
+    const api_step step = end(x);
+    st_store_serve(NULL);
+    return step;
+}
+
+api_step api_work(api_exchange *x)
+{
+    if (x->phase != API_PHASE_WORK && x->phase != API_PHASE_JOB) {
+        return API_READY;
+    }
+    st_store_serve(x->store);
+    const api_step step = work(x);
+    st_store_serve(NULL);
+    return step;
 }
 
 const api_answer *api_answer_of(const api_exchange *x)

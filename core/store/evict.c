@@ -4,6 +4,8 @@
 #include "system/clock.h"
 #include "system/memory.h"
 
+#include <time.h>
+
 /* Ages are told apart in so many classes, from the mesh that was used last to the one that was not
  * for longest. */
 enum { AGES = 256 };
@@ -11,9 +13,30 @@ enum { AGES = 256 };
 /* Meshes are freed in batches, so that the table is not locked for longer. */
 enum { BATCH = 64 };
 
+/* How long a mesh was not used for that leaves memory although no request wants its room yet; and
+ * how long nothing is tried again after nothing was found. */
+enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
+
+/* How long is waited for the table. */
+enum { LOCK_NANOS = 100 * 1000 * 1000, SECOND_NANOS = 1000 * 1000 * 1000 };
+
 void st_mesh_use(st_mesh *mesh)
 {
     atomic_store_explicit(&mesh->used, st_clock_micros(), memory_order_relaxed);
+}
+
+/* A thread that asks for memory may hold locks that others want who have the table's, and it may
+ * have that itself. */
+static bool lock_table(st_store *store)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += LOCK_NANOS;
+    if (until.tv_nsec >= SECOND_NANOS) {
+        until.tv_nsec -= SECOND_NANOS;
+        until.tv_sec++;
+    }
+    return pthread_rwlock_timedwrlock(&store->lock, &until) == 0;
 }
 
 /* Does only the table hold it, and does the disk have all of it? Under the table's exclusive lock
@@ -72,7 +95,9 @@ static uint64_t find_limit(st_store *store, uint64_t bytes)
 static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *batch[BATCH])
 {
     size_t count = 0, to = *place, from = *place;
-    pthread_rwlock_wrlock(&store->lock);
+    if (!lock_table(store)) {
+        return 0;
+    }
     for (; from < store->count && count < BATCH; from++) {
         st_mesh *mesh = store->meshes[from];
         if (atomic_load_explicit(&mesh->used, memory_order_relaxed) < limit &&
@@ -91,24 +116,40 @@ static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *
     return count;
 }
 
-static void evict(st_store *store, uint64_t bytes)
+/* Meshes that were used before `newest` leave, as many as it takes for the bytes. How many did.
+ * *locked: the table could be looked at. */
+static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *locked)
 {
     st_mesh *batch[BATCH];
-    size_t place = 0, count;
-    pthread_rwlock_wrlock(&store->lock);
+    size_t place = 0, count, all = 0;
+    *locked = lock_table(store);
+    if (!*locked) {
+        return 0;
+    }
     uint64_t limit = find_limit(store, bytes);
     pthread_rwlock_unlock(&store->lock);
+    limit = limit < newest ? limit : newest;
     do {
         count = take_out(store, limit, &place, batch);
+        all += count;
         for (size_t i = 0; i < count; i++) {
             st_release(batch[i]);
         }
     } while (count == BATCH);
+    return all;
+}
+
+/* Bytes that are to be freed before there are `bytes` more and `share` beside. */
+static uint64_t missing(uint64_t bytes, uint64_t share)
+{
+    const uint64_t wanted = st_memory_used() + bytes + share, budget = st_memory_budget();
+    return wanted > budget ? wanted - budget : 0; /* others free memory meanwhile */
 }
 
 void st_make_room(st_store *store, uint64_t bytes)
 {
     uint64_t budget = st_memory_budget(), share = budget / 16;
+    bool locked;
     if (budget == 0 || bytes > budget - share || st_memory_has(bytes + share)) {
         return;
     }
@@ -119,10 +160,43 @@ void st_make_room(st_store *store, uint64_t bytes)
     }
     if (store->journal.keeps && !st_memory_has(bytes + share)) {
         /* Twice the share, so that it is not to be done again at once. */
-        uint64_t wanted = st_memory_used() + bytes + 2 * share;
-        if (wanted > budget) { /* others free memory between the two looks at it */
-            evict(store, wanted - budget);
-        }
+        (void)evict(store, missing(bytes, 2 * share), UINT64_MAX, &locked);
     }
     pthread_mutex_unlock(&store->room);
+}
+
+/* A giver: the thread may hold any lock but the table's, and those that st_store_shed takes. */
+static bool give_room(void *context, uint64_t bytes)
+{
+    st_store *store = context;
+    const uint64_t budget = st_memory_budget(), share = budget / 16;
+    const uint64_t now = st_clock_micros();
+    if (!store->journal.keeps || bytes > budget - share || now < atomic_load(&store->barren)) {
+        return false;
+    }
+    bool locked;
+    const bool freed = evict(store, missing(bytes, 2 * share), UINT64_MAX, &locked) > 0;
+    if (!freed && locked) {
+        atomic_store(&store->barren, now + BARREN_MICROS);
+    }
+    return freed;
+}
+
+void st_store_giver(st_store *store, st_memory_giver *out)
+{
+    *out = (st_memory_giver){give_room, store};
+}
+
+void st_store_serve(const st_store *store)
+{
+    st_memory_ask(store == NULL ? NULL : &store->giver);
+}
+
+void st_store_rest(st_store *store)
+{
+    const uint64_t share = st_memory_budget() / 16, now = st_clock_micros();
+    bool locked;
+    if (store->journal.keeps && share > 0 && now > COLD_MICROS && missing(0, 2 * share) > 0) {
+        (void)evict(store, missing(0, 2 * share), now - COLD_MICROS, &locked);
+    }
 }

@@ -1,7 +1,7 @@
 /* Beginning a write, preparing what it commits, and taking it back. */
 #include "store/mesh_commit.h"
 
-#include "system/memory.h"
+#include "store/table.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -40,9 +40,7 @@ static st_status begin(st_write *w)
 st_status st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out)
 {
     /* What is only kept for later makes room for what is done now. */
-    if (st_memory_is_full()) {
-        st_store_shed(mesh->store);
-    }
+    st_make_room(mesh->store, 0);
     *out = (st_write){.mesh = mesh, .keyed = keyed};
     pthread_rwlock_wrlock(&mesh->lock);
     st_status status = begin(out);

@@ -50,6 +50,7 @@ st_store *st_store_new(const st_store_options *options)
     store->undo_budget = options->undo_budget;
     store->max_meshes = options->max_meshes;
     store->pool = options->pool;
+    st_store_giver(store, &store->giver);
     store->base_bytes = options->base_bytes != 0 ? options->base_bytes : ST_BASE_BYTES;
     st_keys_init(&store->keys, store->journal.secret);
     st_lookups_init(&store->lookups);

@@ -97,6 +97,12 @@ uint64_t st_store_count(st_store *store);
 bool st_store_waits_for_disk(const st_store *store);
 /* Are changes taken? Does not wait. */
 void st_store_health(const st_store *store, st_health *out);
+/* From now on this thread works for a request: before it is refused memory, meshes that nobody uses
+ * and the journal brings back leave. NULL: no more. */
+void st_store_serve(const st_store *store);
+/* To be called about once a second: while less than an eighth of the memory budget is free, meshes
+ * leave that were not used for a minute, the least recently used first. */
+void st_store_rest(st_store *store);
 /* Frees the cached copies and bodies of kept answers that nobody reads, and what was derived from
  * meshes. Called without a lock. */
 void st_store_shed(st_store *store);

@@ -4,6 +4,7 @@
 
 #include "store/lookup.h"
 #include "store/stored_mesh.h"
+#include "system/memory.h"
 
 struct st_store {
     st_journal journal;
@@ -13,9 +14,11 @@ struct st_store {
     uint64_t base_bytes; /* of records, before another base is due */
     st_followers followers;
     st_lookups lookups;
-    pthread_mutex_t room;  /* one thread at a time makes room; taken before the table's */
-    pthread_rwlock_t lock; /* of the table */
-    st_mesh **meshes;      /* in memory, in the order of ids, each with a use */
+    st_memory_giver giver;
+    _Atomic uint64_t barren; /* until then giving is not tried: nothing was found to be freed */
+    pthread_mutex_t room;    /* one thread at a time makes room; taken before the table's */
+    pthread_rwlock_t lock;   /* of the table */
+    st_mesh **meshes;        /* in memory, in the order of ids, each with a use */
     size_t count, capacity;
     st_keys keys; /* of what makes a mesh */
 };
@@ -31,5 +34,8 @@ st_status st_table_insert(st_store *store, st_mesh *mesh);
  * that nobody uses and that the journal brings back, the least recently used first. Frees nothing
  * for more than the budget could ever hold. Without a lock but `past`. */
 void st_make_room(st_store *store, uint64_t bytes);
+/* One that has such meshes leave, for a thread that may hold locks: without it what others could
+ * give would be refused. */
+void st_store_giver(st_store *store, st_memory_giver *out);
 
 #endif

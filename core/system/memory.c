@@ -11,10 +11,11 @@ enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 static _Atomic uint64_t used;
 static _Atomic uint64_t budget_bytes;
 static _Thread_local bool is_unrefused;
+static _Thread_local const st_memory_giver *asked;
 
 /* Count `size` more, unless that leaves the budget. Counting first and taking back on failure
  * keeps two threads from passing the limit together. */
-static bool take(size_t size)
+static bool try_take(size_t size)
 {
     uint64_t budget = atomic_load_explicit(&budget_bytes, memory_order_relaxed);
     uint64_t after = atomic_fetch_add_explicit(&used, size, memory_order_relaxed) + size;
@@ -27,6 +28,24 @@ static bool take(size_t size)
     }
     atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
     return false;
+}
+
+/* What the giver itself asks for is refused without asking. */
+static bool take(size_t size)
+{
+    const st_memory_giver *giver = asked;
+    bool taken = try_take(size);
+    if (!taken && giver != NULL) {
+        asked = NULL;
+        taken = giver->give(giver->context, size) && try_take(size);
+        asked = giver;
+    }
+    return taken;
+}
+
+void st_memory_ask(const st_memory_giver *giver)
+{
+    asked = giver;
 }
 
 static void give_back(size_t size)

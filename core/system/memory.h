@@ -26,6 +26,17 @@ void st_memory_count(int64_t bytes);
  * beyond the budget is counted all the same. */
 void *st_memory_resize_unrefused(void *memory, size_t size);
 
+/* Somebody who may free memory that others want. */
+typedef struct st_memory_giver {
+    /* Tries to have `bytes` more. Called under whatever locks the thread holds, and waits for no
+     * lock for long. False where nothing was freed. */
+    bool (*give)(void *context, uint64_t bytes);
+    void *context;
+} st_memory_giver;
+
+/* From now on the giver is asked before this thread is refused memory. NULL: nobody is. */
+void st_memory_ask(const st_memory_giver *giver);
+
 uint64_t st_memory_used(void);
 uint64_t st_memory_budget(void);
 /* Is there still so much, counting what is kept for small blocks? */

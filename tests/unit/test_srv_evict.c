@@ -2,6 +2,7 @@
  * loaded once for all who ask for it, and nothing is lost or doubled. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
+#include "tests/unit/dense.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -301,6 +302,111 @@ static void for_what_never_fits_nothing_goes(void **state)
     he_mem_set_hook(NULL);
 }
 
+/* --- what is asked for by a request --- */
+
+enum { LARGE = 1 << 20, SIDE = 128 };
+
+/* A store whose meshes hold memory that is all but used up. */
+static void open_full(void)
+{
+    st_memory_install(BUDGET);
+    journal = kept_journal_new();
+    store = open_store(NULL);
+    for (int i = 0; i < MESHES; i++) {
+        he_mesh *content = dense_grid(SIDE, NULL, 1);
+        st_mesh *mesh = NULL;
+        assert_int_equal(st_create(store, ids[i], "", content, NULL, &mesh), ST_OK);
+        st_release(mesh);
+    }
+    st_memory_set_budget(st_memory_used() + LARGE / 4);
+}
+
+static void close_full(void)
+{
+    st_memory_set_budget(BUDGET);
+    st_store_free(store);
+    kept_journal_free(journal);
+    he_mem_set_hook(NULL);
+}
+
+static size_t in_memory(void)
+{
+    st_mesh *meshes[MESHES];
+    const size_t count = st_list(store, "", meshes, MESHES);
+    for (size_t i = 0; i < count; i++) {
+        st_release(meshes[i]);
+    }
+    return count;
+}
+
+static void a_request_gets_what_cold_meshes_hold(void **state)
+{
+    (void)state;
+    open_full();
+    assert_null(he_mem_alloc(LARGE));
+    assert_int_equal(in_memory(), MESHES);
+    st_store_serve(store);
+    void *memory = he_mem_alloc(LARGE);
+    assert_non_null(memory);
+    const size_t left = in_memory();
+    assert_true(left < MESHES);
+    /* What could never fit frees nothing. */
+    assert_null(he_mem_alloc(st_memory_budget()));
+    assert_int_equal(in_memory(), left);
+    st_store_serve(NULL);
+    he_mem_free(memory);
+    close_full();
+}
+
+/* Under any lock it is refused, sooner or later: there is nothing to wait for. */
+static void a_request_under_locks_is_not_stopped(void **state)
+{
+    (void)state;
+    st_mesh *mesh = NULL;
+    open_full();
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK);
+    st_store_serve(store);
+    pthread_rwlock_wrlock(&store->lock);
+    assert_null(he_mem_alloc(LARGE));
+    pthread_rwlock_unlock(&store->lock);
+    st_write w;
+    assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
+    const size_t before = in_memory();
+    void *first = he_mem_alloc(LARGE), *second = he_mem_alloc(LARGE);
+    assert_true(first != NULL && second != NULL && in_memory() < before);
+    /* The mesh that is written to stays. */
+    st_mesh *found = NULL;
+    assert_int_equal(st_find(store, "a", &found), ST_OK);
+    st_release(found);
+    st_write_abort(&w);
+    st_store_serve(NULL);
+    he_mem_free(first);
+    he_mem_free(second);
+    st_release(mesh);
+    close_full();
+}
+
+static void what_was_not_used_for_a_minute_leaves(void **state)
+{
+    (void)state;
+    open_full();
+    st_store_rest(store);
+    assert_int_equal(in_memory(), MESHES);
+    atomic_store(&store->meshes[1]->used, 1);
+    st_store_rest(store);
+    assert_int_equal(in_memory(), MESHES - 1);
+    st_mesh *mesh = NULL;
+    assert_int_equal(st_find(store, ids[1], &mesh), ST_COLD);
+    /* With room enough all stay. */
+    st_memory_set_budget(BUDGET);
+    for (size_t i = 0; i < store->count; i++) {
+        atomic_store(&store->meshes[i]->used, 1);
+    }
+    st_store_rest(store);
+    assert_int_equal(in_memory(), MESHES - 1);
+    close_full();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -309,6 +415,9 @@ int main(void)
         cmocka_unit_test(what_is_used_stays_in_memory),
         cmocka_unit_test(the_least_recently_used_go_first),
         cmocka_unit_test(for_what_never_fits_nothing_goes),
+        cmocka_unit_test(a_request_gets_what_cold_meshes_hold),
+        cmocka_unit_test(a_request_under_locks_is_not_stopped),
+        cmocka_unit_test(what_was_not_used_for_a_minute_leaves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
