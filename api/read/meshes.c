@@ -285,7 +285,8 @@ void api_mesh_copy(api_exchange *x)
     }
     char name[ST_MESH_NAME + 1];
     snprintf(name, sizeof name, "%s", r->name != NULL ? r->name : x->info.name);
-    st_status stored = api_mesh_new(x, r->id, name, fresh, &made);
+    const st_shown from = st_shown_of(&x->info);
+    st_status stored = api_mesh_new(x, r->id, name, fresh, &from, &made);
     if (stored != ST_OK) {
         he_mesh_free(fresh);
         api_fail_store(x, stored);

@@ -7,12 +7,12 @@
 enum { RANDOM = 10 }; /* characters after the prefix */
 
 st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mesh *content,
-                       st_mesh **out)
+                       const st_shown *from, st_mesh **out)
 {
     const char *prefix =
         x->token == NULL || x->token->prefix_count == 0 ? "" : x->token->prefixes[0];
     if (id != NULL || prefix[0] == '\0') {
-        return st_create(x->store, id, name, content, x->keyed, out);
+        return st_create_from(x->store, id, name, content, x->keyed, from, out);
     }
     char made[API_TOKEN_PREFIX + RANDOM + 1];
     size_t length = strlen(prefix);
@@ -20,7 +20,7 @@ st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mes
     memcpy(made, prefix, length);
     do {
         st_random_id(made + length, RANDOM);
-        status = st_create(x->store, made, name, content, x->keyed, out);
+        status = st_create_from(x->store, made, name, content, x->keyed, from, out);
     } while (status == ST_TAKEN);
     return status;
 }

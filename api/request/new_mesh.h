@@ -4,9 +4,9 @@
 
 #include "api/request/exchange.h"
 
-/* st_create for the request, with its key. `id` NULL lets the server choose: then it begins with
- * the first prefix of the token, if that has any. Takes `content` on success. */
+/* st_create_from for the request, with its key. `id` NULL lets the server choose: then it begins
+ * with the first prefix of the token, if that has any. Takes `content` on success. */
 st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mesh *content,
-                       st_mesh **out);
+                       const st_shown *from, st_mesh **out);
 
 #endif

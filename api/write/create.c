@@ -98,7 +98,7 @@ static const char *first_name(const api_exchange *x)
 /* Takes `mesh` on success. `id` NULL lets the store choose. */
 static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
-    return api_mesh_new(x, id, first_name(x), mesh, &x->mesh);
+    return api_mesh_new(x, id, first_name(x), mesh, NULL, &x->mesh);
 }
 
 static void create(api_exchange *x)

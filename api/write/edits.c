@@ -452,6 +452,7 @@ static void run_claimed(api_exchange *x)
         api_fail_core(x, &err);
         return;
     }
+    st_write_from(&x->write, e->others.shown, e->others.count);
     limit_work(x, e);
     bool good = edit(x, e);
     unlimit_work(x, e);
@@ -480,6 +481,7 @@ static void run(api_exchange *x)
         !api_write_begin(x, e->has_expected ? &e->expected : NULL)) {
         return;
     }
+    st_write_from(&x->write, e->others.shown, e->others.count);
     limit_work(x, e);
     he_mesh_watch(x->write.content, &x->watch);
     bool good = edit(x, e);

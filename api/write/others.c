@@ -94,6 +94,7 @@ bool api_others_take(api_exchange *x, api_others *o)
             return api_fail_store(x, status);
         }
         other->content = st_snapshot_content(other->snapshot, &info);
+        o->shown[i] = st_shown_of(&info);
         if (info.lost) {
             return api_fail_store(x, ST_LOST);
         }

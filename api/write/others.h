@@ -21,6 +21,7 @@ typedef struct api_others {
     api_exchange *asker;
     api_other other[API_MAX_OTHERS];
     size_t count;
+    st_shown shown[API_MAX_OTHERS]; /* by their snapshots */
     size_t cold; /* of them are not in memory: api_others_load, before anything else is asked */
 } api_others;
 

@@ -75,13 +75,15 @@ static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
 }
 
 static st_status make(st_store *store, const char *id, const char *name, he_mesh *content,
-                      const st_keyed *keyed, st_mesh **out)
+                      const st_keyed *keyed, const st_shown *from, st_mesh **out)
 {
     st_booking booking = {NULL};
     st_mesh *mesh;
     st_status status = prepare(store, id, name, content, 1, &booking, &mesh);
     if (status == ST_OK) {
-        status = publish(store, mesh, keyed, &booking);
+        /* What is lost from here on takes the place that was booked with it. */
+        const bool lost = from != NULL && st_waits_is_lost(store->followers.waits, from);
+        status = lost ? ST_LOST : publish(store, mesh, keyed, &booking);
         if (status == ST_OK) {
             *out = mesh;
         } else {
@@ -92,12 +94,12 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
 }
 
 static st_status create_as(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_keyed *keyed, st_mesh **out)
+                           const st_keyed *keyed, const st_shown *from, st_mesh **out)
 {
     st_lookup *lookup;
     st_status status = st_lookup_free_id(store, id, &lookup);
     if (status == ST_OK) {
-        status = make(store, id, name, content, keyed, out);
+        status = make(store, id, name, content, keyed, from, out);
         if (status == ST_OK && store->journal.keeps) {
             st_mesh_use(*out);
         }
@@ -114,22 +116,28 @@ static bool has_room(st_store *store)
     return !st_memory_is_full();
 }
 
-st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
-                    const st_keyed *keyed, st_mesh **out)
+st_status st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                         const st_keyed *keyed, const st_shown *from, st_mesh **out)
 {
     if (!has_room(store)) {
         return ST_BUDGET;
     }
     if (id != NULL) {
-        return create_as(store, id, name, content, keyed, out);
+        return create_as(store, id, name, content, keyed, from, out);
     }
     st_status status;
     do {
         char made[ID_LENGTH + 1];
         st_random_id(made, ID_LENGTH);
-        status = create_as(store, made, name, content, keyed, out);
+        status = create_as(store, made, name, content, keyed, from, out);
     } while (status == ST_TAKEN);
     return status;
+}
+
+st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
+                    const st_keyed *keyed, st_mesh **out)
+{
+    return st_create_from(store, id, name, content, keyed, NULL, out);
 }
 
 /* --- over a damaged mesh --- */

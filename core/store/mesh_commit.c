@@ -158,12 +158,26 @@ static st_status book(st_write *w)
     return st_book(journal, &need, &w->booking);
 }
 
+/* With a place in the journal, which is lost with all that is lost from now on. */
+static bool is_from_lost(const st_write *w)
+{
+    st_waits *waits = w->mesh->followers->waits;
+    bool lost = false;
+    for (size_t i = 0; i < w->from_count && !lost; i++) {
+        lost = st_waits_is_lost(waits, &w->from[i]);
+    }
+    return lost;
+}
+
 /* Refused where there is no place in the journal, or a claimed mesh was removed or lost
  * meanwhile. */
 static st_status get_ready(st_write *w)
 {
     const st_status unreadable = w->kind == ST_WRITE_REMOVE ? ST_OK : w->info.unreadable;
     st_status status = unreadable == ST_OK ? book(w) : unreadable;
+    if (status == ST_OK && is_from_lost(w)) {
+        status = ST_LOST;
+    }
     if (w->claimed) {
         pthread_rwlock_wrlock(&w->mesh->lock);
         const st_mesh_info *info = &w->mesh->info;

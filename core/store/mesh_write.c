@@ -105,6 +105,12 @@ void st_write_discard_copy(st_write *w)
     w->found = false;
 }
 
+void st_write_from(st_write *w, const st_shown *shown, size_t count)
+{
+    w->from = shown;
+    w->from_count = count;
+}
+
 he_status st_write_changes(st_write *w, he_error *err)
 {
     assert(w->kind == ST_WRITE_EDIT && !w->found);

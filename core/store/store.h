@@ -138,6 +138,10 @@ void st_release(st_mesh *mesh);  /* takes NULL */
  * ST_BUDGET, ST_NO_MEMORY, ST_LOADING, ST_BEHIND, ST_FULL, ST_FAILED. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_keyed *keyed, st_mesh **out);
+/* The same of a content that was made from what `from` shows, which is lost together: ST_LOST where
+ * that is lost already. `from` may be NULL. */
+st_status st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                         const st_keyed *keyed, const st_shown *from, st_mesh **out);
 /* Creates a mesh in the place of a damaged one of that id, which is removed: both happen or
  * neither. ST_ABSENT: it was removed before. */
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,

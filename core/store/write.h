@@ -49,7 +49,9 @@ typedef struct st_write {
     he_delta **deltas;
     struct st_event *events;
     st_record *records;
-    st_booking booking; /* in the journal */
+    st_booking booking;   /* in the journal */
+    const st_shown *from; /* what was read of other meshes */
+    size_t from_count;
 } st_write;
 
 /* Takes the exclusive lock. `keyed` is the keyed request that the write is done for, or NULL: its
@@ -66,6 +68,9 @@ HE_NODISCARD he_status st_write_copy(st_write *write, he_watch *watch, he_error 
 /* Frees the copy with what was done to it; the claim goes on. */
 void st_write_discard_copy(st_write *write);
 
+/* The change is made from what these show, which outlive the write: it is lost together with each
+ * of them, and is not committed where one is lost already. */
+void st_write_from(st_write *write, const st_shown *shown, size_t count);
 /* Finds what the recorded edit comes to. */
 HE_NODISCARD he_status st_write_changes(st_write *write, he_error *err);
 /* After st_write_changes: could the edit be undone if it were committed? False when it is larger
@@ -85,7 +90,8 @@ void st_write_remove(st_write *write);
  * edit for the history, NULL for anything else. Where it is refused the write has ended with
  * nothing done: ST_DAMAGED, ST_NEWER (of such a mesh only the removal can be committed), ST_BEHIND,
  * ST_FULL, ST_FAILED, ST_NO_MEMORY; a claim whose mesh was removed or lost meanwhile: ST_ABSENT,
- * ST_LOST. A claim may wait for the disk, and is not to be committed on a worker. */
+ * ST_LOST, which is also said where what it was made from is lost (st_write_from). A claim may wait
+ * for the disk, and is not to be committed on a worker. */
 st_status st_write_commit(st_write *write, const char *ops);
 /* Ends the write with nothing done. */
 void st_write_abort(st_write *write);

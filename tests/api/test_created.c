@@ -24,19 +24,19 @@ static int vertices_of(const bench_reply *summary)
 }
 
 /* Somebody else changes a new mesh before the request that made it is answered: the linker gives
- * calls of st_create to the wrapper (Makefile). */
+ * calls of st_create_from to the wrapper (Makefile). */
 static bool meddling;
 static uint32_t victim; /* a vertex that they delete */
 
-st_status __real_st_create(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_keyed *keyed, st_mesh **out);
-st_status __wrap_st_create(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_keyed *keyed, st_mesh **out);
+st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
+st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
 
-st_status __wrap_st_create(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_keyed *keyed, st_mesh **out)
+st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                                const st_keyed *keyed, const st_shown *from, st_mesh **out)
 {
-    st_status status = __real_st_create(store, id, name, content, keyed, out);
+    st_status status = __real_st_create_from(store, id, name, content, keyed, from, out);
     if (status == ST_OK && meddling) {
         st_write w;
         assert_non_null(writing_begin(*out, &w));

@@ -82,6 +82,66 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
     }
 }
 
+/* --- what is read of another mesh is lost before it is used --- */
+
+static st_status loss_between; /* the reading and the commit */
+
+st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
+st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
+st_status __real_st_write_commit(st_write *w, const char *ops);
+st_status __wrap_st_write_commit(st_write *w, const char *ops);
+
+static void lose_between(void)
+{
+    if (loss_between != ST_OK) {
+        lose_newest(loss_between);
+        loss_between = ST_OK;
+    }
+}
+
+st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
+                                const st_keyed *keyed, const st_shown *from, st_mesh **out)
+{
+    lose_between();
+    return __real_st_create_from(store, id, name, content, keyed, from, out);
+}
+
+st_status __wrap_st_write_commit(st_write *w, const char *ops)
+{
+    lose_between();
+    return __real_st_write_commit(w, ops);
+}
+
+/* The disk is good again by then: only that the source is lost stops it. */
+static void what_was_lost_is_not_copied_or_appended(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *target, *body;
+    } cases[] = {{"/v1/meshes/n/copy", "{\"id\":\"c\"}"},
+                 {"/v1/meshes/m/edits", "{\"op\":\"append\",\"mesh\":\"n\"}"},
+                 {"/v1/meshes/m/edits", "{\"ops\":[{\"op\":\"append\",\"mesh\":\"n\"}]}"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        api_bench *b = begin();
+        bench_done(bench_expect(
+            200, bench_post(b, "/v1/meshes/n/edits", "{\"op\":\"face_poke\",\"face\":0}")));
+        const uint64_t groups = journal.groups;
+        loss_between = ST_FULL;
+        bench_reply r = bench_expect(503, bench_post(b, cases[i].target, cases[i].body));
+        assert_string_equal(text_of(&r, "code"), "store_lost");
+        assert_string_equal(bench_header(&r, "Retry-After"), "0");
+        bench_reply_free(&r);
+        assert_true(journal.groups == groups);
+        bench_done(bench_expect(404, bench_get(b, "/v1/meshes/c")));
+        r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+        assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
+        bench_reply_free(&r);
+        bench_free(b);
+    }
+}
+
 /* --- readiness --- */
 
 static void readiness_tells_how_the_disk_is(void **state)
@@ -109,6 +169,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_write_to_what_was_lost_is_refused_as_the_disk_is),
+        cmocka_unit_test(what_was_lost_is_not_copied_or_appended),
         cmocka_unit_test(readiness_tells_how_the_disk_is),
     };
     return cmocka_run_group_tests_name("disk", tests, NULL, NULL);

@@ -117,6 +117,47 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     st_release(again);
 }
 
+/* What others made of a change is lost with it, or comes too late to be made. */
+static void nothing_is_made_of_what_was_lost(void **state)
+{
+    (void)state;
+    st_mesh *made = NULL;
+    st_write w;
+    const st_shown kept = st_shown_of(&(st_mesh_info){.position = 2});
+    const st_shown from[] = {kept, change(other)};
+    he_mesh *content = fixture_mesh("012");
+    /* While it is not lost, it may be built on. */
+    assert_int_equal(st_create_from(store, "c", NULL, fixture_mesh("012"), NULL, &from[1], &made),
+                     ST_OK);
+    assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
+    edit(&w);
+    st_write_from(&w, from, 2);
+    assert_int_equal(st_write_commit(&w, "append"), ST_OK);
+    assert_int_equal(slow_journal_newest(&journal), 5);
+    lose(3);
+    assert_true(facts(made).lost && facts(mesh).lost && facts(other).lost);
+    st_release(made);
+    st_release(mesh);
+    mesh = create("m");
+    assert_int_equal(st_create_from(store, "d", NULL, content, NULL, &from[1], &made), ST_LOST);
+    assert_int_equal(st_load(store, "d", &made), ST_ABSENT);
+    const uint64_t groups = journal.groups;
+    assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
+    edit(&w);
+    st_write_from(&w, from, 2);
+    assert_int_equal(st_write_commit(&w, "append"), ST_LOST);
+    assert_int_equal(st_write_claim(mesh, NULL, &w), ST_OK);
+    assert_int_equal(st_write_copy(&w, NULL, NULL), HE_OK);
+    edit(&w);
+    st_write_from(&w, from, 2);
+    assert_int_equal(st_write_commit(&w, "append"), ST_LOST);
+    assert_int_equal(facts(mesh).revision, 1);
+    assert_true(journal.groups == groups);
+    /* From what was kept it is made. */
+    assert_int_equal(st_create_from(store, "d", NULL, content, NULL, &from[0], &made), ST_OK);
+    st_release(made);
+}
+
 static void creations_and_removals_are_lost_too(void **state)
 {
     (void)state;
@@ -264,6 +305,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_mesh_with_a_lost_change_leaves_the_store, setup,
                                         teardown),
+        cmocka_unit_test_setup_teardown(nothing_is_made_of_what_was_lost, setup, teardown),
         cmocka_unit_test_setup_teardown(creations_and_removals_are_lost_too, setup, teardown),
         cmocka_unit_test_setup_teardown(a_loss_of_one_mesh_leaves_the_others, setup, teardown),
         cmocka_unit_test_setup_teardown(an_answer_that_comes_late_is_lost_all_the_same, setup,
