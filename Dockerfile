@@ -20,7 +20,8 @@ COPY Makefile ./
 COPY core core
 COPY api api
 COPY server server
-RUN make build/hedged && strip build/hedged
+ARG REVISION=
+RUN make build/hedged COMMIT="$REVISION" && strip build/hedged
 
 # --- its page ---
 FROM ${DEBIAN} AS page

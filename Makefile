@@ -67,7 +67,8 @@ object      = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 STORE_C    := $(sort $(shell find core/system core/journal core/store -name '*.c'))
 KERNEL_C   := $(sort $(filter-out $(STORE_C),$(shell find core -name '*.c')))
 API_C      := $(sort $(shell find api -name '*.c'))
-SERVER_C   := $(sort $(filter-out server/main.c,$(shell find server -name '*.c')))
+MAIN_C     := server/main.c server/version.c
+SERVER_C   := $(sort $(filter-out $(MAIN_C),$(shell find server -name '*.c')))
 SUITES     := unit model api e2e
 PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
 SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
@@ -84,7 +85,7 @@ HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 FAULTS_C   := tests/durable/inject/faults.c
 HEADERS    := $(sort $(shell find core api server -name '*.h') $(wildcard tests/*.h tests/*/*.h \
                 tests/bench/side/*.h tests/bench/ours/*.h))
-ALL_C      := $(KERNEL_C) $(STORE_C) $(API_C) $(SERVER_C) $(wildcard server/main.c) $(PROGRAM_C) $(SUPPORT_C) \
+ALL_C      := $(KERNEL_C) $(STORE_C) $(API_C) $(SERVER_C) $(wildcard $(MAIN_C)) $(PROGRAM_C) $(SUPPORT_C) \
               $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C) $(FAULTS_C)
 
 LIBRARIES  := $(patsubst %,$(BUILD)/lib%.a,server api store kernel)
@@ -100,7 +101,7 @@ STAMPS     := build/.stamps
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
         hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-large bench-space container fresh \
         screenshot \
-        install clean
+        install uninstall clean
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
 # `make test TESTS=tests/web/rows.test.mjs`.
@@ -206,7 +207,17 @@ $(BUILD)/%.a:
 	@echo "AR $@"
 	$(Q)ar qcs $@ $^
 
-$(HEDGED): $(call object,server/main.c) $(LIBRARIES)
+# Which commit this is, in one object of the daemon's own, so that a commit costs one link.
+COMMIT := $(shell git describe --always --exclude '*' --abbrev=12 --dirty=+ 2>/dev/null)
+$(BUILD)/commit: ALWAYS
+	@mkdir -p $(@D)
+	@echo '$(COMMIT)' | cmp -s - $@ || echo '$(COMMIT)' >$@
+ALWAYS:
+.PHONY: ALWAYS
+$(call object,server/version.c): CPPFLAGS += -DSRV_COMMIT='"$(COMMIT)"'
+$(call object,server/version.c): $(BUILD)/commit
+
+$(HEDGED): $(call object,$(MAIN_C)) $(LIBRARIES)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
@@ -460,12 +471,19 @@ $(BUILD)/hedged.8: $(HEDGED) server/hedged.8.in .ci/man
 install: $(HEDGED) $(BUILD)/hedged.8 page ## to DESTDIR and PREFIX (/usr/local)
 	install -D -m 755 $(HEDGED) $(DESTDIR)$(PREFIX)/bin/hedged
 	install -D -m 644 $(BUILD)/hedged.8 $(DESTDIR)$(PREFIX)/share/man/man8/hedged.8
+	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/hedge/LICENSE
 	install -d $(DESTDIR)$(UNITS)
 	sed 's|@PREFIX@|$(PREFIX)|' server/hedged.service.in >$(DESTDIR)$(UNITS)/hedged.service
 	chmod 644 $(DESTDIR)$(UNITS)/hedged.service
 	find $(PAGE) -type f | while read -r file; do \
 	    install -D -m 644 "$$file" "$(DESTDIR)$(PREFIX)/share/hedge/web/$${file#$(PAGE)/}" || exit 1; \
 	done
+
+# Meshes and settings stay.
+uninstall: ## what install put there, with its DESTDIR and PREFIX; stop and disable the service first
+	rm -f $(DESTDIR)$(PREFIX)/bin/hedged $(DESTDIR)$(PREFIX)/share/man/man8/hedged.8 \
+	    $(DESTDIR)$(UNITS)/hedged.service
+	rm -rf $(DESTDIR)$(PREFIX)/share/hedge $(DESTDIR)$(PREFIX)/share/doc/hedge
 
 clean: ## remove build/
 	rm -rf build

@@ -1,4 +1,5 @@
-#include "server/config.h"
+#include "server/config_file.h"
+#include "server/config_option.h"
 
 #include "base/mem.h"
 #include "server/net/address.h"
@@ -7,115 +8,103 @@
 #include <stddef.h>
 #include <string.h>
 
-/* An action and a command are not settings: they have no variable. A command takes a text. */
-typedef enum kind { TEXT, LIST, BYTES, COUNT, FLAG, CHOICE, ACTION, COMMAND } kind;
-
-typedef struct option {
-    const char *name; /* --name; NAME with '_' after HEDGE_ is its variable */
-    kind kind;
-    size_t member;
-    const char *fallback; /* as it would be written */
-    const char *argument; /* for --help */
-    uint64_t low, high;
-    const char *doc;
-} option;
-
 #define MEMBER(m) offsetof(srv_config, m)
 #define KIB       (UINT64_C(1) << 10)
 #define TIB       (UINT64_C(1) << 40)
 
-static const char *const log_kinds[] = {"off", "access", "auto", NULL}; /* by st_log_kind */
+const char *const srv_log_kinds[] = {"off", "access", "auto", NULL}; /* by st_log_kind */
 
-static const option options[] = {
-    {"listen", TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT", 0, 0,
+const srv_option srv_options[] = {
+    {"config", SRV_SOURCE, MEMBER(config), "", "FILE", 0, 0,
+     "read settings from a file, a line each, as --print-config shows them"},
+    {"listen", SRV_TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT", 0, 0,
      "address to listen on; port 0 takes a free one"},
-    {"insecure", FLAG, MEMBER(insecure), "0", NULL, 0, 0,
+    {"insecure", SRV_FLAG, MEMBER(insecure), "0", NULL, 0, 0,
      "listen beyond loopback although nobody needs a token"},
-    {"tokens", TEXT, MEMBER(tokens), "", "FILE", 0, 0,
+    {"tokens", SRV_TEXT, MEMBER(tokens), "", "FILE", 0, 0,
      "who may do what: a line for each token, as --new-token prints it. Without a file everybody "
      "may do everything. SIGHUP and POST /v1/admin/reload read it again"},
-    {"allow-host", LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
+    {"allow-host", SRV_LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
      "answer requests for this Host too; may be repeated or a comma list"},
-    {"allow-origin", LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
+    {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
      "let pages of this origin (https://name) read and write; may be repeated or a comma list"},
-    {"web", TEXT, MEMBER(web), "", "DIR", 0, 0,
+    {"web", SRV_TEXT, MEMBER(web), "", "DIR", 0, 0,
      "folder of the built page; otherwise looked for beside the executable"},
-    {"store", TEXT, MEMBER(store), "sqlite:./hedge-data", "memory|sqlite:DIR", 0, 0,
+    {"store", SRV_TEXT, MEMBER(store), "sqlite:./hedge-data", "memory|sqlite:DIR", 0, 0,
      "where meshes are kept: in memory until the daemon stops, or for good in a folder, which is "
      "made if it is missing"},
-    {"samples", FLAG, MEMBER(samples), "0", NULL, 0, 0,
+    {"samples", SRV_FLAG, MEMBER(samples), "0", NULL, 0, 0,
      "put a few meshes into a store that is new"},
-    {"log", CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
+    {"log", SRV_CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
      "access: a line of JSON on stderr for each request; auto: only if stderr is no terminal"},
-    {"max-upload", BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
+    {"max-upload", SRV_BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
      "largest mesh document or file"},
-    {"memory-budget", BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
+    {"memory-budget", SRV_BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
      "memory for everything; 0 takes three quarters of the machine's, or of the smallest limit of "
      "its control groups"},
-    {"undo-budget", BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
+    {"undo-budget", SRV_BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
      "memory for the history of one mesh; the oldest edits go first"},
-    {"no-compression", FLAG, MEMBER(no_compression), "0", NULL, 0, 0,
+    {"no-compression", SRV_FLAG, MEMBER(no_compression), "0", NULL, 0, 0,
      "send answers as they are, whatever coding a client accepts"},
-    {"max-meshes", COUNT, MEMBER(max_meshes), "10000000", "N", 1, 10000000, "meshes in the store"},
-    {"workers", COUNT, MEMBER(workers), "0", "N", 0, 64,
+    {"max-meshes", SRV_COUNT, MEMBER(max_meshes), "10000000", "N", 1, 10000000,
+     "meshes in the store"},
+    {"workers", SRV_COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0 takes one a core"},
-    {"jobs", COUNT, MEMBER(jobs), "0", "N", 0, 64,
+    {"jobs", SRV_COUNT, MEMBER(jobs), "0", "N", 0, 64,
      "long reads at once, and as many jobs, beside which imports and edits keep a thread; 0 takes "
      "one a core, but two at least. Parts of one run on all cores"},
-    {"job-queue", COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
+    {"job-queue", SRV_COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
      "jobs, long reads, and imports or edits, each, that may wait for a thread; beyond it they are "
      "answered 503"},
-    {"read-seconds", COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
+    {"read-seconds", SRV_COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
      "that a thread works on a check, a query, a walk or an export; beyond it they are answered "
      "503, "
      "while a job has the time it needs"},
-    {"max-connections", COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
+    {"max-connections", SRV_COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
      "connections at once; beyond it they are answered 503"},
-    {"max-listeners", COUNT, MEMBER(max_listeners), "5000", "N", 0, 1000000,
+    {"max-listeners", SRV_COUNT, MEMBER(max_listeners), "5000", "N", 0, 1000000,
      "event streams at once; beyond it they are answered 503"},
-    {"max-mesh-listeners", COUNT, MEMBER(max_mesh_listeners), "2000", "N", 0, 1000000,
+    {"max-mesh-listeners", SRV_COUNT, MEMBER(max_mesh_listeners), "2000", "N", 0, 1000000,
      "event streams of one mesh at once"},
-    {"heartbeat", COUNT, MEMBER(heartbeat), "15", "SECONDS", 1, 3600,
+    {"heartbeat", SRV_COUNT, MEMBER(heartbeat), "15", "SECONDS", 1, 3600,
      "of silence in an event stream, after which a comment is sent"},
-    {"idle-timeout", COUNT, MEMBER(idle_timeout), "30", "SECONDS", 1, 86400,
+    {"idle-timeout", SRV_COUNT, MEMBER(idle_timeout), "30", "SECONDS", 1, 86400,
      "until a connection without a request is closed"},
-    {"header-timeout", COUNT, MEMBER(header_timeout), "10", "SECONDS", 1, 86400,
+    {"header-timeout", SRV_COUNT, MEMBER(header_timeout), "10", "SECONDS", 1, 86400,
      "for the headers after the request line"},
-    {"body-grace", COUNT, MEMBER(body_grace), "10", "SECONDS", 1, 86400,
+    {"body-grace", SRV_COUNT, MEMBER(body_grace), "10", "SECONDS", 1, 86400,
      "before a body, or the reading of an answer, must keep to --min-rate"},
-    {"min-rate", BYTES, MEMBER(min_rate), "4K", "BYTES", 0, TIB,
+    {"min-rate", SRV_BYTES, MEMBER(min_rate), "4K", "BYTES", 0, TIB,
      "bytes a second a client must send or take on average"},
-    {"request-timeout", COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
+    {"request-timeout", SRV_COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
      "for a whole body, however fast"},
-    {"backup", COMMAND, MEMBER(backup), "", "FILE", 0, 0,
+    {"backup", SRV_COMMAND, MEMBER(backup), "", "FILE", 0, 0,
      "write the store to a file, even while a daemon uses it, and exit"},
-    {"restore", COMMAND, MEMBER(restore), "", "FILE", 0, 0,
+    {"restore", SRV_COMMAND, MEMBER(restore), "", "FILE", 0, 0,
      "replace the store by such a file, while no daemon uses it, and exit"},
-    {"verify", ACTION, MEMBER(verify), "0", "[FILE]", 0, 0,
+    {"verify", SRV_ACTION, MEMBER(verify), "0", "[FILE]", 0, 0,
      "read every mesh of the store, or of such a file: exit status 0 when all are whole"},
-    {"dump", COMMAND, MEMBER(dump), "", "DIR", 0, 0,
+    {"dump", SRV_COMMAND, MEMBER(dump), "", "DIR", 0, 0,
      "write every mesh of the store that is whole to a folder, as GLB, and exit"},
-    {"new-token", ACTION, MEMBER(new_token), "0", "[NAME [ROLE]]", 0, 0,
+    {"new-token", SRV_ACTION, MEMBER(new_token), "0", "[NAME [ROLE]]", 0, 0,
      "print a new token, which is kept nowhere, and the line for the file of --tokens, and exit. "
      "ROLE is read, which is what it is unless given, write, admin or metrics"},
-    {"healthcheck", ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
+    {"healthcheck", SRV_ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
      "ask a running daemon for /livez: exit status 0 when it answers"},
-    {"print-config", ACTION, MEMBER(print_config), "0", NULL, 0, 0,
+    {"print-config", SRV_ACTION, MEMBER(print_config), "0", NULL, 0, 0,
      "show the options in effect and exit"},
-    {"version", ACTION, MEMBER(version), "0", NULL, 0, 0, "show the version and exit"},
-    {"help", ACTION, MEMBER(help), "0", NULL, 0, 0, "show this and exit"},
+    {"version", SRV_ACTION, MEMBER(version), "0", NULL, 0, 0,
+     "show the version and the commit it was built from, and exit; -V"},
+    {"help", SRV_ACTION, MEMBER(help), "0", NULL, 0, 0, "show this and exit; -h"},
 };
 
-enum { OPTIONS = sizeof options / sizeof *options };
+enum { OPTIONS = sizeof srv_options / sizeof *srv_options };
+_Static_assert((int)OPTIONS <= (int)SRV_MOST_OPTIONS, "SRV_MOST_OPTIONS holds all");
+const size_t srv_option_count = OPTIONS;
 
-static void *member_of(srv_config *config, const option *row)
+static void *member_of(srv_config *config, const srv_option *row)
 {
     return (char *)config + row->member;
-}
-
-static const void *member_in(const srv_config *config, const option *row)
-{
-    return (const char *)config + row->member;
 }
 
 /* "12", and for bytes "64K", "1M", "2G", "1T" in powers of 1024. */
@@ -161,6 +150,10 @@ static bool read_list(srv_config *config, srv_names *names, const char *text, ch
         if (comma != NULL) {
             *comma = '\0';
         }
+        item += strspn(item, " \t");
+        for (size_t left = strlen(item); left > 0 && strchr(" \t", item[left - 1]) != NULL;) {
+            item[--left] = '\0';
+        }
         if (*item != '\0') {
             if (names->count == SRV_MAX_NAMES) {
                 snprintf(message, size, "%s takes at most %d names", source, SRV_MAX_NAMES);
@@ -184,50 +177,51 @@ static bool read_switch(const char *text, bool *out)
 }
 
 /* `source` is what the user wrote: "--listen" or "HEDGE_LISTEN". */
-static bool read_value(srv_config *config, const option *row, const char *text, const char *source,
-                       char *message, size_t size)
+static bool read_value(srv_config *config, const srv_option *row, const char *text,
+                       const char *source, char *message, size_t size)
 {
     void *member = member_of(config, row);
     uint64_t number = 0;
     bool on;
     switch (row->kind) {
-    case COMMAND:
+    case SRV_COMMAND:
         if (text[0] == '\0') {
             snprintf(message, size, "%s needs a value, %s", source, row->argument);
             return false;
         }
         memcpy(member, &text, sizeof text);
         return true;
-    case TEXT:
+    case SRV_TEXT:
+    case SRV_SOURCE:
         memcpy(member, &text, sizeof text);
         return true;
-    case LIST:
+    case SRV_LIST:
         return read_list(config, member, text, message, size, source);
-    case BYTES:
-    case COUNT:
-        if (!parse_number(text, row->kind == BYTES, &number) || number < row->low ||
+    case SRV_BYTES:
+    case SRV_COUNT:
+        if (!parse_number(text, row->kind == SRV_BYTES, &number) || number < row->low ||
             number > row->high) {
             snprintf(message, size,
                      "%s takes a number from %" PRIu64 " to %" PRIu64 "%s, not \"%s\"", source,
-                     row->low, row->high, row->kind == BYTES ? " (K, M, G and T are units)" : "",
-                     text);
+                     row->low, row->high,
+                     row->kind == SRV_BYTES ? " (K, M, G and T are units)" : "", text);
             return false;
         }
         memcpy(member, &number, sizeof number);
         return true;
-    case FLAG:
-    case ACTION:
+    case SRV_FLAG:
+    case SRV_ACTION:
         if (!read_switch(text, &on)) {
             snprintf(message, size, "%s takes 0 or 1, not \"%s\"", source, text);
             return false;
         }
         memcpy(member, &on, sizeof on);
         return true;
-    case CHOICE:
+    case SRV_CHOICE:
         break;
     }
-    for (number = 0; log_kinds[number] != NULL; number++) {
-        if (strcmp(log_kinds[number], text) == 0) {
+    for (number = 0; srv_log_kinds[number] != NULL; number++) {
+        if (strcmp(srv_log_kinds[number], text) == 0) {
             memcpy(member, &number, sizeof number);
             return true;
         }
@@ -236,7 +230,7 @@ static bool read_value(srv_config *config, const option *row, const char *text, 
     return false;
 }
 
-static void variable_of(const option *row, char out[64])
+void srv_option_variable(const srv_option *row, char out[SRV_VARIABLE_TEXT])
 {
     size_t at = (size_t)snprintf(out, 64, "HEDGE_");
     for (const char *c = row->name; *c != '\0'; c++) {
@@ -245,61 +239,78 @@ static void variable_of(const option *row, char out[64])
     out[at] = '\0';
 }
 
-static const option *find_option(const char *name, size_t length)
+const srv_option *srv_option_find(const char *name, size_t length)
 {
     for (size_t i = 0; i < OPTIONS; i++) {
-        if (strlen(options[i].name) == length && memcmp(options[i].name, name, length) == 0) {
-            return &options[i];
+        if (strlen(srv_options[i].name) == length &&
+            memcmp(srv_options[i].name, name, length) == 0) {
+            return &srv_options[i];
         }
     }
     return NULL;
 }
 
-static bool is_setting(const option *row)
+bool srv_option_is_setting(const srv_option *row)
 {
-    return row->kind != ACTION && row->kind != COMMAND;
+    return row->kind != SRV_ACTION && row->kind != SRV_COMMAND && row->kind != SRV_SOURCE;
 }
 
-static bool is_switch(const option *row)
+bool srv_option_is_switch(const srv_option *row)
 {
-    return row->kind == FLAG || row->kind == ACTION;
+    return row->kind == SRV_FLAG || row->kind == SRV_ACTION;
 }
 
-static bool read_environment(srv_config *config, char *(*environment)(const char *name),
-                             char *message, size_t size)
+/* A list given in one place is not added to that of a place of less weight: it wins over it. */
+static void begin_list(srv_config *config, const srv_option *row, bool *seen)
 {
-    for (size_t i = 0; i < OPTIONS; i++) {
-        const option *row = &options[i];
-        if (!is_setting(row)) {
-            continue;
-        }
-        char variable[64];
-        variable_of(row, variable);
-        const char *text = environment(variable);
-        if (text != NULL && *text != '\0' &&
-            !read_value(config, row, text, variable, message, size)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* A list given by flags is not added to the one of the environment: it wins over it. */
-static void begin_list(srv_config *config, const option *row, bool seen[OPTIONS])
-{
-    size_t i = (size_t)(row - options);
-    if (row->kind == LIST && !seen[i]) {
+    size_t i = (size_t)(row - srv_options);
+    if (row->kind == SRV_LIST && !seen[i]) {
         srv_names *names = member_of(config, row);
         names->count = 0;
     }
     seen[i] = true;
 }
 
+bool srv_option_set(srv_config *config, const srv_option *row, const char *text, const char *source,
+                    bool *seen, char *message, size_t size)
+{
+    begin_list(config, row, seen);
+    return read_value(config, row, text, source, message, size);
+}
+
+static bool read_environment(srv_config *config, char *(*environment)(const char *name),
+                             char *message, size_t size)
+{
+    bool seen[OPTIONS] = {false};
+    for (size_t i = 0; i < OPTIONS; i++) {
+        const srv_option *row = &srv_options[i];
+        if (!srv_option_is_setting(row) && row->kind != SRV_SOURCE) {
+            continue;
+        }
+        char variable[SRV_VARIABLE_TEXT];
+        srv_option_variable(row, variable);
+        const char *text = environment(variable);
+        if (text != NULL && *text != '\0' &&
+            !srv_option_set(config, row, text, variable, seen, message, size)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* "-h" and "-V", which other programs take, too. */
+static const char *spelled_out(const char *argument)
+{
+    return strcmp(argument, "-h") == 0   ? "--help"
+           : strcmp(argument, "-V") == 0 ? "--version"
+                                         : argument;
+}
+
 static bool read_flags(srv_config *config, int argc, char *const *argv, char *message, size_t size)
 {
     bool seen[OPTIONS] = {false};
     for (int i = 0; i < argc; i++) {
-        const char *argument = argv[i];
+        const char *argument = spelled_out(argv[i]);
         if (strncmp(argument, "--", 2) != 0) {
             if (config->healthcheck && config->healthcheck_url == NULL) {
                 config->healthcheck_url = argument;
@@ -318,7 +329,7 @@ static bool read_flags(srv_config *config, int argc, char *const *argv, char *me
             return false;
         }
         size_t length = strcspn(argument + 2, "=");
-        const option *row = find_option(argument + 2, length);
+        const srv_option *row = srv_option_find(argument + 2, length);
         if (row == NULL) {
             snprintf(message, size, "there is no option %s; --help lists them", argument);
             return false;
@@ -326,7 +337,7 @@ static bool read_flags(srv_config *config, int argc, char *const *argv, char *me
         char source[64];
         snprintf(source, sizeof source, "--%s", row->name);
         const char *value = argument[2 + length] == '=' ? argument + 3 + length : NULL;
-        if (value == NULL && is_switch(row)) {
+        if (value == NULL && srv_option_is_switch(row)) {
             value = "1";
         } else if (value == NULL && i + 1 < argc) {
             value = argv[++i];
@@ -335,8 +346,7 @@ static bool read_flags(srv_config *config, int argc, char *const *argv, char *me
             snprintf(message, size, "%s needs a value, %s", source, row->argument);
             return false;
         }
-        begin_list(config, row, seen);
-        if (!read_value(config, row, value, source, message, size)) {
+        if (!srv_option_set(config, row, value, source, seen, message, size)) {
             return false;
         }
     }
@@ -379,18 +389,33 @@ static bool check(const srv_config *config, char *message, size_t size)
     return true;
 }
 
-bool srv_config_read(srv_config *config, int argc, char *const *argv,
-                     char *(*environment)(const char *name), char *message, size_t size)
+/* `file` NULL: none. */
+static bool read_places(srv_config *config, const char *file, int argc, char *const *argv,
+                        char *(*environment)(const char *name), char *message, size_t size)
 {
     *config = (srv_config){0};
     bool ok = true;
     for (size_t i = 0; i < OPTIONS && ok; i++) {
-        ok = options[i].kind == COMMAND ||
-             read_value(config, &options[i], options[i].fallback, options[i].name, message, size);
+        ok = srv_options[i].kind == SRV_COMMAND ||
+             read_value(config, &srv_options[i], srv_options[i].fallback, srv_options[i].name,
+                        message, size);
     }
-    ok = ok && read_environment(config, environment, message, size) &&
-         read_flags(config, argc, argv, message, size) &&
-         (config->help || config->version || check(config, message, size));
+    return ok && (file == NULL || srv_config_read_file(config, file, message, size)) &&
+           read_environment(config, environment, message, size) &&
+           read_flags(config, argc, argv, message, size);
+}
+
+/* The file that flags or environment name is known when they are read, and weighs less. */
+bool srv_config_read(srv_config *config, int argc, char *const *argv,
+                     char *(*environment)(const char *name), char *message, size_t size)
+{
+    bool ok = read_places(config, NULL, argc, argv, environment, message, size);
+    if (ok && config->config[0] != '\0') {
+        const char *file = config->config;
+        srv_config_clear(config);
+        ok = read_places(config, file, argc, argv, environment, message, size);
+    }
+    ok = ok && (config->help || config->version || check(config, message, size));
     if (!ok) {
         srv_config_clear(config);
     }
@@ -402,72 +427,6 @@ void srv_config_clear(srv_config *config)
     for (unsigned i = 0; i < config->owned_count; i++) {
         he_mem_free(config->owned[i]);
     }
+    he_mem_free(config->file_text);
     *config = (srv_config){0};
-}
-
-void srv_config_help(FILE *out)
-{
-    fprintf(out, "hedged " SRV_VERSION " - a server for half-edge meshes\n\n"
-                 "usage: hedged [OPTION...]\n\n"
-                 "An option wins over its environment variable, that over the default.\n\n");
-    for (size_t i = 0; i < OPTIONS; i++) {
-        const option *row = &options[i];
-        char variable[64], flag[64];
-        variable_of(row, variable);
-        snprintf(flag, sizeof flag, "--%s%s%s", row->name, row->argument == NULL ? "" : " ",
-                 row->argument == NULL ? "" : row->argument);
-        fprintf(out, "  %-26s %s", flag, row->doc);
-        if (!is_switch(row) && row->fallback[0] != '\0') {
-            fprintf(out, " (%s)", row->fallback);
-        }
-        if (is_setting(row)) {
-            fprintf(out, "\n  %-26s %s", "", variable);
-        }
-        fputc('\n', out);
-    }
-}
-
-void srv_config_print(const srv_config *config, FILE *out)
-{
-    for (size_t i = 0; i < OPTIONS; i++) {
-        const option *row = &options[i];
-        const void *member = member_in(config, row);
-        const char *text;
-        const srv_names *names;
-        uint64_t number;
-        bool on;
-        if (!is_setting(row)) {
-            continue;
-        }
-        fprintf(out, "%s = ", row->name);
-        switch (row->kind) {
-        case TEXT:
-            memcpy(&text, member, sizeof text);
-            fputs(text, out);
-            break;
-        case LIST:
-            names = member;
-            for (size_t n = 0; n < names->count; n++) {
-                fprintf(out, "%s%s", n == 0 ? "" : ",", names->items[n]);
-            }
-            break;
-        case BYTES:
-        case COUNT:
-            memcpy(&number, member, sizeof number);
-            fprintf(out, "%" PRIu64, number);
-            break;
-        case FLAG:
-            memcpy(&on, member, sizeof on);
-            fputc(on ? '1' : '0', out);
-            break;
-        case CHOICE:
-            memcpy(&number, member, sizeof number);
-            fputs(log_kinds[number], out);
-            break;
-        case ACTION:
-        case COMMAND:
-            break;
-        }
-        fputc('\n', out);
-    }
 }

@@ -1,6 +1,7 @@
 /* config.h - what the daemon can be told: THE table of options.
  *
- * A flag wins over its environment variable, that over the default. --help, --print-config and the
+ * A flag wins over its environment variable, that over a line of the configuration file, that over
+ * the default. --help, --print-config and the
  * parsing are made from one row an option; adding an option is adding a row and a member. */
 #ifndef HE_SERVER_CONFIG_H
 #define HE_SERVER_CONFIG_H
@@ -11,13 +12,12 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#define SRV_VERSION "0.1.0"
-
 /* SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury what its
  * reader wants to see. */
 typedef enum st_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS, SRV_LOG_AUTO } st_log_kind;
 
 typedef struct srv_config {
+    const char *config; /* a file; "": none */
     const char *listen;
     bool insecure;
     const char *tokens; /* a file; "": nobody needs a token */
@@ -49,9 +49,10 @@ typedef struct srv_config {
     const char *verified;                /* a file; NULL: the store */
     const char *token_name, *token_role; /* of new_token; NULL: not given */
 
-    /* The text that list members point into. */
+    /* The text that list members point into, and that of the configuration file. */
     char *owned[2 * SRV_MAX_NAMES];
     unsigned owned_count;
+    char *file_text;
 } srv_config;
 
 /* Fill `config` from arguments (without the program's name) and `environment` (getenv, or a test's
@@ -62,6 +63,12 @@ void srv_config_clear(srv_config *config);
 
 /* The folder of the store; NULL where meshes are kept in memory alone. */
 const char *srv_config_folder(const srv_config *config);
+
+/* The variables of `environment` ("NAME=value", the last NULL) whose names begin with HEDGE_ and
+ * are no option's, in one line on `out`; nothing where there are none. A misspelt one would
+ * otherwise be ignored in silence; Kubernetes sets HEDGE_PORT for a service that is called hedge.
+ */
+void srv_config_tell_unknown(char *const *environment, FILE *out);
 
 void srv_config_help(FILE *out);
 /* Each option as `name = value`, as a configuration would set it. */

@@ -6,8 +6,11 @@
 #include "journal/sqlite/sqlite_journal.h"
 #include "server/assets.h"
 #include "server/http/http.h"
+#include "server/net/healthcheck.h"
+#include "server/net/notify.h"
 #include "server/samples.h"
 #include "server/tokens.h"
+#include "server/version.h"
 #include "system/memory.h"
 #include "system/memory_limit.h"
 #include "system/parallel.h"
@@ -43,6 +46,7 @@ typedef struct daemon_parts {
     char own_host[SRV_ADDRESS_TEXT];
     api_tokens *tokens;      /* NULL: nobody needs one */
     const char *tokens_path; /* of their file */
+    char address[SRV_ADDRESS_TEXT]; /* with the port that was taken */
     _Atomic bool ready;
 } daemon_parts;
 
@@ -254,16 +258,17 @@ static void allow_own_host(daemon_parts *parts, const srv_address *address)
 /* Programs wait for the first line. The second is for a reader at a terminal: it names localhost
  * where the daemon listens on all addresses, since 0.0.0.0 in a browser is a Host that is refused.
  */
-static void tell_ready(const daemon_parts *parts, const srv_address *address)
+static void tell_ready(const daemon_parts *parts)
 {
-    char text[SRV_ADDRESS_TEXT];
-    srv_address_format(&address->socket.any, true, text);
+    char port[SRV_ADDRESS_TEXT];
+    const char *text = parts->address;
     fprintf(stderr, "hedged " SRV_VERSION ": listening on http://%s\n", text);
     if (isatty(STDERR_FILENO) == 0) {
         return;
     }
     if (strcmp(parts->own_host, "0.0.0.0") == 0 || strcmp(parts->own_host, "::") == 0) {
-        snprintf(text, sizeof text, "localhost:%u", srv_http_port(parts->http));
+        snprintf(port, sizeof port, "localhost:%u", srv_http_port(parts->http));
+        text = port;
     }
     fprintf(stderr, "hedge is at http://%s/ - open it in a browser; Ctrl-C stops it\n", text);
 }
@@ -293,7 +298,8 @@ static bool open_http(daemon_parts *parts, const srv_config *config)
         return fail(message);
     }
     srv_address_set_port(&options.address, srv_http_port(parts->http));
-    tell_ready(parts, &options.address);
+    srv_address_format(&options.address.socket.any, true, parts->address);
+    tell_ready(parts);
     return true;
 }
 
@@ -338,14 +344,39 @@ static void tell_reload(daemon_parts *parts)
     }
 }
 
+static uint64_t now_micros(void)
+{
+    struct timespec time = {0};
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (uint64_t)time.tv_sec * 1000000 + (uint64_t)time.tv_nsec / 1000;
+}
+
+/* A service manager hears twice in the time it waits that a worker still answers. */
+static void feed_watchdog(const daemon_parts *parts, uint64_t *fed)
+{
+    const uint64_t patience = srv_notify_watchdog();
+    char message[128];
+    if (patience == 0 || now_micros() - *fed < patience / 2) {
+        return;
+    }
+    *fed = now_micros();
+    if (srv_healthcheck(NULL, parts->address, message, sizeof message)) {
+        srv_notify("WATCHDOG=1");
+    } else {
+        fprintf(stderr, "hedged: asked itself for /livez, and %s\n", message);
+    }
+}
+
 /* The main thread serves nobody, and keeps house until it is told to stop. */
 static void wait_for_stop(daemon_parts *parts, const sigset_t *signals, const char *folder)
 {
     const struct timespec second = {.tv_sec = 1};
     st_memory_rest rest = {0};
     st_health health = {.status = ST_OK}, before;
+    uint64_t fed = 0;
     int number;
     do {
+        feed_watchdog(parts, &fed);
         number = sigtimedwait(signals, NULL, &second);
         st_memory_rests(&rest, processor_micros());
         st_store_rest(parts->store);
@@ -419,7 +450,9 @@ int srv_daemon_run(const srv_config *config)
                    open_store(&parts, config) && load_page(&parts, config) &&
                    open_service(&parts, config) && open_http(&parts, config);
     if (started) {
+        srv_notify("READY=1");
         wait_for_stop(&parts, &signals, srv_config_folder(config));
+        srv_notify("STOPPING=1");
         atomic_store(&parts.ready, false);
         api_job_table_stop(parts.job_table);
         if (!srv_http_stop(parts.http, STOP_MILLIS)) {

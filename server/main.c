@@ -3,9 +3,13 @@
 #include "server/maintenance.h"
 #include "server/net/healthcheck.h"
 #include "server/tokens.h"
+#include "server/version.h"
 #include "system/memory.h"
 
 #include <stdlib.h>
+#include <unistd.h>
+
+extern char **environ; /* POSIX has it in no header */
 
 enum { MISUSE = 2 };
 
@@ -22,7 +26,8 @@ int main(int argc, char **argv)
     if (config.help) {
         srv_config_help(stdout);
     } else if (config.version) {
-        puts("hedged " SRV_VERSION);
+        printf("hedged " SRV_VERSION "%s%s%s\n", srv_commit[0] == '\0' ? "" : " (commit ",
+               srv_commit, srv_commit[0] == '\0' ? "" : ")");
     } else if (config.print_config) {
         srv_config_print(&config, stdout);
     } else if (config.healthcheck) {
@@ -36,6 +41,7 @@ int main(int argc, char **argv)
     } else if (srv_maintenance_asked(&config)) {
         status = srv_maintenance_run(&config);
     } else {
+        srv_config_tell_unknown(environ, stderr);
         status = srv_daemon_run(&config);
     }
     srv_config_clear(&config);

@@ -36,9 +36,10 @@ modes() {
 installs() {
     make install DESTDIR="$root" PREFIX=/usr || return 1
     modes bin/hedged share/man/man8/hedged.8 lib/systemd/system/hedged.service \
-        share/hedge/web/index.html >"$work/modes" || return 1
+        share/hedge/web/index.html share/doc/hedge/LICENSE >"$work/modes" || return 1
     printf '%s\n' '755 bin/hedged' '644 share/man/man8/hedged.8' \
-        '644 lib/systemd/system/hedged.service' '644 share/hedge/web/index.html' |
+        '644 lib/systemd/system/hedged.service' '644 share/hedge/web/index.html' \
+        '644 share/doc/hedge/LICENSE' |
         diff - "$work/modes"
 }
 
@@ -88,6 +89,25 @@ unit_is_hard() {
         hedged.service
 }
 
+# What others keep in these folders is theirs.
+uninstalls() {
+    touch "$root/usr/bin/other" && make uninstall DESTDIR="$root" PREFIX=/usr || return 1
+    left=$(cd "$root" && find . -type f)
+    echo "$left"
+    [ "$left" = ./usr/bin/other ]
+}
+
+# The commit is that of the sources, where git knows it.
+version_is_named() {
+    commit=$(git describe --always --exclude '*' --abbrev=12 --dirty=+ 2>/dev/null)
+    said=$("$hedged" -V) && [ "$said" = "$("$hedged" --version)" ] || return 1
+    echo "$said"
+    case $said in
+    "hedged "[0-9]*.[0-9]*.[0-9]*"${commit:+ (commit $commit)}") ;;
+    *) return 1 ;;
+    esac
+}
+
 check 'make install puts everything in its place' installs
 check 'the program runs from there with its page' runs_from_there
 check 'the manual page has every option' man_is_whole
@@ -102,6 +122,9 @@ if command -v systemd-analyze >/dev/null; then
 else
     echo 'note: no systemd-analyze: the unit was not graded'
 fi
+
+check 'the version names its commit' version_is_named
+check 'make uninstall takes all of it away, and nothing else' uninstalls
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

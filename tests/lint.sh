@@ -77,6 +77,11 @@ for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes
 rm core/op/planted_*.c
 
+expect 'the version is one everywhere' '' sh .ci/lint-version
+sed -i 's/image.version="/&9/' Dockerfile
+expect 'a version that differs is found' 'Dockerfile says' sh .ci/lint-version
+cp "$OLDPWD/Dockerfile" Dockerfile
+
 mkdir libraries
 cp "$build"/lib*.a libraries
 expect 'symbols are as they should be' '' sh .ci/lint-symbols libraries

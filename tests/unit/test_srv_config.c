@@ -4,6 +4,8 @@
 #include "server/config.h"
 #include "server/net/address.h"
 
+#include <unistd.h>
+
 static const char *const *variables; /* name, value, ..., NULL */
 
 static char *environment(const char *name)
@@ -117,7 +119,8 @@ static void test_refusals(void **state)
     } rows[] = {
         {{"--nope"}, "no option --nope"},
         {{"--"}, "no option --"},
-        {{"-h"}, "not an option"},
+        {{"-x"}, "not an option"},
+        {{"--config", "/nowhere/hedged.conf"}, "/nowhere/hedged.conf cannot be read"},
         {{"file"}, "not an option"},
         {{"--listen"}, "--listen needs a value"},
         {{"--listen", "8080"}, "--listen takes"},
@@ -177,6 +180,12 @@ static void test_actions(void **state)
     assert_true(READ(&config, "--help", "--listen", "nonsense"));
     assert_true(config.help);
     srv_config_clear(&config);
+    assert_true(READ(&config, "-h"));
+    assert_true(config.help);
+    srv_config_clear(&config);
+    assert_true(READ(&config, "-V"));
+    assert_true(config.version);
+    srv_config_clear(&config);
     /* Actions are not for the environment, which is the same for every command. */
     static const char *const set[] = {"HEDGE_HELP", "1", NULL};
     variables = set;
@@ -226,6 +235,90 @@ static void test_print_and_help(void **state)
     assert_string_equal(printed, twice);
 }
 
+/* A file of settings, read with these words and variables after it. */
+static bool read_file(srv_config *config, const char *text, size_t length, const char *word)
+{
+    char path[] = "/tmp/hedge-config-XXXXXX";
+    int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    assert_int_equal(write(fd, text, length), (ssize_t)length);
+    close(fd);
+    bool ok = READ(config, "--config", path, word);
+    unlink(path);
+    return ok;
+}
+
+static void a_file_weighs_less_than_variables_and_flags(void **state)
+{
+    (void)state;
+    static const char text[] = "# all of them\r\n"
+                               "listen = [::1]:7\r\n"
+                               "\n"
+                               "\tmax-meshes\t=\t5\n"
+                               "workers=3\n"
+                               "samples\n"
+                               "insecure = 0\n"
+                               "allow-host = a , b\n"
+                               "allow-host = c\n"
+                               "allow-origin = https://x\n"
+                               "jobs = 4";
+    static const char *const set[] = {"HEDGE_WORKERS", "4", "HEDGE_ALLOW_ORIGIN", "https://y",
+                                      NULL};
+    srv_config config;
+    variables = set;
+    assert_true(read_file(&config, text, strlen(text), "--max-meshes=6"));
+    assert_string_equal(config.listen, "[::1]:7");
+    assert_int_equal(config.max_meshes, 6);
+    assert_int_equal(config.workers, 4);
+    assert_int_equal(config.jobs, 4);
+    assert_true(config.samples);
+    assert_false(config.insecure);
+    assert_int_equal(config.policy.hosts.count, 3);
+    assert_string_equal(config.policy.hosts.items[0], "a");
+    assert_string_equal(config.policy.hosts.items[1], "b");
+    assert_int_equal(config.policy.origins.count, 1);
+    assert_string_equal(config.policy.origins.items[0], "https://y");
+    srv_config_clear(&config);
+    variables = NULL;
+}
+
+static void a_line_that_is_wrong_is_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        size_t length;
+        const char *says;
+    } rows[] = {
+#define ROW(text, says) {text, sizeof text - 1, says}
+        ROW("\n\nprot = 1\n", ":3: there is no setting \"prot\""),
+        ROW("--workers = 1", ":1: there is no setting \"--workers\""),
+        ROW("listen", ":1: listen needs a value"),
+        ROW("samples\nworkers = 65\n", ":2: workers takes a number from 0 to 64"),
+        ROW("samples = maybe", ":1: samples takes 0 or 1"),
+        ROW("log = all", ":1: log takes"),
+        ROW("config = other", ":1: a file cannot say \"config\""),
+        ROW("backup = x", ":1: a file cannot say \"backup\""),
+        ROW("help", ":1: a file cannot say \"help\""),
+        ROW("= 1", ":1: there is no setting \"\""),
+        ROW("samples\nwork\0ers = 1\n", ":2: a zero byte"),
+#undef ROW
+    };
+    srv_config config;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_false(read_file(&config, rows[i].text, rows[i].length, "--samples"));
+        if (strstr(message, rows[i].says) == NULL) {
+            fail_msg("%s: %s", rows[i].text, message);
+        }
+    }
+    static char large[64 * 1024 + 1];
+    memset(large, '\n', sizeof large);
+    assert_true(read_file(&config, large, sizeof large - 1, "--samples"));
+    srv_config_clear(&config);
+    assert_false(read_file(&config, large, sizeof large, "--samples"));
+    assert_non_null(strstr(message, "longer than the 65536 bytes"));
+}
+
 static void test_addresses(void **state)
 {
     (void)state;
@@ -263,10 +356,15 @@ static void test_addresses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_defaults),  cmocka_unit_test(test_flag_over_environment),
-        cmocka_unit_test(test_numbers),   cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_actions),   cmocka_unit_test(test_print_and_help),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_flag_over_environment),
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_actions),
+        cmocka_unit_test(test_print_and_help),
         cmocka_unit_test(test_addresses),
+        cmocka_unit_test(a_file_weighs_less_than_variables_and_flags),
+        cmocka_unit_test(a_line_that_is_wrong_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

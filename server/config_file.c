@@ -1,0 +1,106 @@
+#include "server/config_file.h"
+
+#include "base/mem.h"
+#include "server/config_option.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <string.h>
+
+enum { MOST = 64 * 1024, SOURCE_TEXT = 512 };
+
+/* The whole file with a zero after it; *length leaves that out. */
+static char *load(const char *path, size_t *length, char *message, size_t size)
+{
+    FILE *in = fopen(path, "rbe");
+    char *text = he_mem_alloc(MOST + 1);
+    if (in == NULL || text == NULL) {
+        snprintf(message, size, "%s cannot be read: %s", path, strerror(errno));
+        he_mem_free(text);
+        text = NULL;
+    } else {
+        *length = fread(text, 1, MOST + 1, in);
+        if (ferror(in) != 0) {
+            snprintf(message, size, "%s cannot be read: %s", path, strerror(errno));
+        } else if (*length > MOST) {
+            snprintf(message, size,
+                     "%s is longer than the %d bytes that a file of settings may have", path, MOST);
+        } else {
+            text[*length] = '\0';
+            fclose(in);
+            return text;
+        }
+        he_mem_free(text);
+        text = NULL;
+    }
+    if (in != NULL) {
+        fclose(in);
+    }
+    return text;
+}
+
+static char *trim(char *text)
+{
+    while (isspace((unsigned char)*text) != 0) {
+        text++;
+    }
+    size_t length = strlen(text);
+    while (length > 0 && isspace((unsigned char)text[length - 1]) != 0) {
+        length--;
+    }
+    text[length] = '\0';
+    return text;
+}
+
+static bool read_line(srv_config *config, const char *path, size_t number, char *line, bool *seen,
+                      char *message, size_t size)
+{
+    char source[SOURCE_TEXT];
+    line = trim(line);
+    if (*line == '\0' || *line == '#') {
+        return true;
+    }
+    char *equals = strchr(line, '=');
+    if (equals != NULL) {
+        *equals = '\0';
+    }
+    const char *name = trim(line), *value = equals == NULL ? NULL : trim(equals + 1);
+    const srv_option *row = srv_option_find(name, strlen(name));
+    if (row == NULL || !srv_option_is_setting(row)) {
+        snprintf(message, size, "%s:%zu: %s \"%.40s\"; hedged --print-config lists the settings",
+                 path, number, row == NULL ? "there is no setting" : "a file cannot say", name);
+        return false;
+    }
+    snprintf(source, sizeof source, "%s:%zu: %s", path, number, row->name);
+    if (value == NULL && !srv_option_is_switch(row)) {
+        snprintf(message, size, "%s needs a value, as in \"%s = %s\"", source, row->name,
+                 row->argument);
+        return false;
+    }
+    return srv_option_set(config, row, value == NULL ? "1" : value, source, seen, message, size);
+}
+
+bool srv_config_read_file(srv_config *config, const char *path, char *message, size_t size)
+{
+    bool seen[SRV_MOST_OPTIONS] = {false};
+    size_t length = 0, number = 1;
+    config->file_text = load(path, &length, message, size);
+    if (config->file_text == NULL) {
+        return false;
+    }
+    char *end = config->file_text + length;
+    for (char *line = config->file_text; line < end; number++) {
+        char *stop = memchr(line, '\n', (size_t)(end - line));
+        stop = stop == NULL ? end : stop;
+        *stop = '\0';
+        if (strlen(line) != (size_t)(stop - line)) {
+            snprintf(message, size, "%s:%zu: a zero byte: this is no text", path, number);
+            return false;
+        }
+        if (!read_line(config, path, number, line, seen, message, size)) {
+            return false;
+        }
+        line = stop + 1;
+    }
+    return true;
+}

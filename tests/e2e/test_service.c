@@ -1,0 +1,164 @@
+/* What an operator's tools take for granted: a service manager is told, a file holds the settings.
+ */
+#include "tests/e2e/client.h"
+
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+/* The manager's end of NOTIFY_SOCKET; a file, or with '@' a name that the kernel keeps. */
+static int be_manager(const char *name)
+{
+    struct sockaddr_un own = {.sun_family = AF_UNIX};
+    size_t length = strlen(name);
+    assert_true(length < sizeof own.sun_path);
+    memcpy(own.sun_path, name, length);
+    if (name[0] == '@') {
+        own.sun_path[0] = '\0';
+    }
+    int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    assert_true(fd >= 0);
+    assert_int_equal(bind(fd, (struct sockaddr *)&own,
+                          (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length)),
+                     0);
+    setenv("NOTIFY_SOCKET", name, 1);
+    return fd;
+}
+
+static void expect_message(int fd, const char *expected)
+{
+    char text[256];
+    ssize_t length = recv(fd, text, sizeof text - 1, 0);
+    assert_true(length > 0);
+    text[length] = '\0';
+    assert_string_equal(text, expected);
+}
+
+static void a_service_manager_hears_of_start_life_and_stop(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/hedge-notify-XXXXXX", file[64], name[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(file, sizeof file, "%s/socket", folder);
+    snprintf(name, sizeof name, "@hedge-notify-%d", (int)getpid());
+    const char *const names[] = {file, name};
+    setenv("WATCHDOG_USEC", "100000", 1);
+    for (size_t i = 0; i < 2; i++) {
+        int fd = be_manager(names[i]);
+        daemon_process *d = daemon_start(ARGUMENTS("--log", "access"));
+        expect_message(fd, "READY=1");
+        expect_message(fd, "WATCHDOG=1");
+        expect_message(fd, "WATCHDOG=1");
+        free(daemon_wait_log(d, "/livez", 2));
+        kill(daemon_pid(d), SIGTERM);
+        char text[256];
+        ssize_t length;
+        do { /* some more of it may be on the way */
+            length = recv(fd, text, sizeof text, 0);
+        } while (length == sizeof "WATCHDOG=1" - 1 && memcmp(text, "WATCHDOG=1", 10) == 0);
+        assert_int_equal(length, sizeof "STOPPING=1" - 1);
+        assert_memory_equal(text, "STOPPING=1", 10);
+        assert_int_equal(daemon_stop(d), 0);
+        close(fd);
+    }
+    unsetenv("WATCHDOG_USEC");
+    unsetenv("NOTIFY_SOCKET");
+    unlink(file);
+    rmdir(folder);
+}
+
+/* Another process is watched: this one is not asked, and asks nobody. */
+static void a_watchdog_of_another_process_is_not_fed(void **state)
+{
+    (void)state;
+    char name[64];
+    snprintf(name, sizeof name, "@hedge-watched-%d", (int)getpid());
+    int fd = be_manager(name);
+    setenv("WATCHDOG_USEC", "1000", 1);
+    setenv("WATCHDOG_PID", "1", 1);
+    daemon_process *d = daemon_start(NULL);
+    expect_message(fd, "READY=1");
+    assert_int_equal(daemon_stop(d), 0);
+    expect_message(fd, "STOPPING=1");
+    unsetenv("WATCHDOG_PID");
+    unsetenv("WATCHDOG_USEC");
+    unsetenv("NOTIFY_SOCKET");
+    close(fd);
+}
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    assert_int_equal(fputs(text, out) < 0, 0);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void a_file_holds_the_settings(void **state)
+{
+    (void)state;
+    char file[] = "/tmp/hedge-settings-XXXXXX", output[16384], expected[128];
+    int fd = mkstemp(file);
+    assert_true(fd >= 0);
+    close(fd);
+    write_file(file, "# one a line\n\n  listen = 127.0.0.1:0\nmax-meshes=2\nsamples = 0\n");
+    setenv("HEDGE_CONFIG", file, 1);
+    daemon_process *d = daemon_start(NULL);
+    client *c = client_new(d);
+    for (int i = 0; i < 3; i++) {
+        reply r = client_post(c, "/v1/meshes", "{\"shape\":\"cube\"}");
+        assert_int_equal(r.status, i < 2 ? 201 : 507);
+        reply_free(&r);
+    }
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+
+    write_file(file, "samples\nmax-meshs = 2\n");
+    assert_int_equal(daemon_run(ARGUMENTS("--print-config"), output, sizeof output), 2);
+    snprintf(expected, sizeof expected, "%s:2: there is no setting \"max-meshs\"", file);
+    assert_non_null(strstr(output, expected));
+    unsetenv("HEDGE_CONFIG");
+    unlink(file);
+}
+
+static void variables_that_no_option_has_are_named(void **state)
+{
+    (void)state;
+    setenv("HEDGE_PORT", "tcp://10.0.0.1:8080", 1);
+    setenv("HEDGE_MAX_MESHS", "3", 1);
+    setenv("HEDGE_MAX_MESHES", "3", 1);
+    daemon_process *d = daemon_start(NULL);
+    unsetenv("HEDGE_PORT");
+    unsetenv("HEDGE_MAX_MESHS");
+    unsetenv("HEDGE_MAX_MESHES");
+    char *said = daemon_stop_and_tell(d);
+    const char *line = strstr(said, "variables that no option has are ignored: ");
+    assert_non_null(line);
+    assert_non_null(strstr(line, "HEDGE_PORT"));
+    assert_non_null(strstr(line, "HEDGE_MAX_MESHS"));
+    assert_null(strstr(line, "HEDGE_MAX_MESHES"));
+    assert_null(strstr(line, "10.0.0.1"));
+    free(said);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_service_manager_hears_of_start_life_and_stop),
+        cmocka_unit_test(a_watchdog_of_another_process_is_not_fed),
+        cmocka_unit_test(a_file_holds_the_settings),
+        cmocka_unit_test(variables_that_no_option_has_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
