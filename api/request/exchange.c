@@ -167,6 +167,10 @@ bool api_fail_store(api_exchange *x, st_status status)
         return api_fail(x, API_STORE_FULL, "the disk is full");
     case ST_FAILED:
         return api_fail(x, API_STORE_FAILED, "the disk failed: no change is taken any more");
+    case ST_TOO_LARGE:
+        return api_fail(x, HE_LIMIT,
+                        "more than %d bytes would be kept of the change: make it in several steps",
+                        (int)ST_MOST_BODY);
     case ST_LOADING:
         return api_fail(x, API_LOADING, "the mesh is being loaded from the disk");
     case ST_DAMAGED:

@@ -44,8 +44,12 @@ typedef enum st_status {
     ST_NEWER,     /* what is kept of the mesh a newer release has written */
     ST_BEHIND,    /* the disk is slow: as much is queued as may be */
     ST_FULL,      /* the disk is full */
-    ST_FAILED     /* the disk failed: no more writes until a restart */
+    ST_FAILED,    /* the disk failed: no more writes until a restart */
+    ST_TOO_LARGE  /* the change takes more than ST_MOST_BODY */
 } st_status;
+
+/* Bytes that the bodies of a group may take: SQLite refuses a row above 10^9. */
+enum { ST_MOST_BODY = 900000000 };
 
 /* Memory and a place in the queue for one group of records. A journal's own facts follow. */
 typedef struct st_room {
@@ -101,7 +105,7 @@ typedef struct st_journal {
     uint64_t secret[2];
 
     /* Never waits. ST_BEHIND: the queue is full; what is larger than the queue is admitted when it
-     * is empty. ST_FULL, ST_FAILED, ST_NO_MEMORY. */
+     * is empty. ST_FULL, ST_FAILED, ST_NO_MEMORY; ST_TOO_LARGE, which no time helps. */
     st_status (*reserve)(void *self, const st_room_need *need, st_room **out);
     void (*leave)(void *self, st_room *room); /* nothing is appended; does not wait */
     /* Takes the room, and a group of records of one mesh, at least one, which become durable

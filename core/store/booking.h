@@ -15,7 +15,8 @@ typedef struct st_booking {
     st_stage *stage; /* the first record's content, instead of a body */
 } st_booking;
 
-/* Each returns ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY and then leaves *out as it was. */
+/* Each returns ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY or ST_TOO_LARGE and then leaves *out as
+ * it was. */
 
 /* Books a place for records without a body. */
 st_status st_book(const st_journal *journal, const st_room_need *need, st_booking *out);

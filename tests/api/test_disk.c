@@ -142,6 +142,23 @@ static void what_was_lost_is_not_copied_or_appended(void **state)
     }
 }
 
+static void a_change_that_is_too_large_to_be_kept_names_the_limit(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    journal.refuse = ST_TOO_LARGE;
+    bench_reply r =
+        bench_expect(413, bench_post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}"));
+    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
+    assert_non_null(strstr(text_of(&r, "detail"), "900000000 bytes"));
+    bench_reply_free(&r);
+    journal.refuse = ST_OK;
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 /* --- readiness --- */
 
 static void readiness_tells_how_the_disk_is(void **state)
@@ -170,6 +187,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_write_to_what_was_lost_is_refused_as_the_disk_is),
         cmocka_unit_test(what_was_lost_is_not_copied_or_appended),
+        cmocka_unit_test(a_change_that_is_too_large_to_be_kept_names_the_limit),
         cmocka_unit_test(readiness_tells_how_the_disk_is),
     };
     return cmocka_run_group_tests_name("disk", tests, NULL, NULL);

@@ -447,9 +447,9 @@ static void what_no_row_can_hold_is_refused_at_once(void **state)
     kept_mesh mesh = new_mesh();
     open_store(&told, 0);
     const st_journal *j = &told.journal;
-    const st_room_need need = {.records = 1, .bytes = 1000000000};
+    const st_room_need need = {.records = 1, .bytes = ST_MOST_BODY + 1};
     st_room *room = NULL;
-    assert_int_equal(j->reserve(j->self, &need, &room), ST_NO_MEMORY);
+    assert_int_equal(j->reserve(j->self, &need, &room), ST_TOO_LARGE);
     assert_null(room);
     told_wait(&told, kept_append(j, kept_content(&mesh), &mesh, NULL, 0));
     assert_int_equal(told_losses(&told), 0);

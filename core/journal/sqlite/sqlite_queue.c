@@ -12,15 +12,11 @@ st_sqlite_room *st_room_of(st_item *item)
 
 /* --- reserve --- */
 
-/* SQLite refuses a row above 10^9 bytes, with its other columns. */
-enum { MOST_BYTES = 900000000 };
-
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
     /* One head more: that of the record with the body is written right before the body. */
-    return need->bytes <= MOST_BYTES &&
-           !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
+    return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
            !__builtin_add_overflow(heads, entries, out) &&
            !__builtin_add_overflow(*out, sizeof(st_sqlite_room), out) &&
@@ -48,6 +44,9 @@ st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **o
     st_sqlite *self = context;
     size_t size;
     assert(need->records > 0);
+    if (need->bytes > ST_MOST_BODY) {
+        return ST_TOO_LARGE;
+    }
     st_sqlite_room *room = size_of_room(need, &size) ? he_mem_alloc(size) : NULL;
     if (room == NULL) {
         return ST_NO_MEMORY;
