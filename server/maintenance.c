@@ -51,45 +51,80 @@ static int restore(const char *folder, const char *file)
 
 /* --- each mesh in turn --- */
 
-/* What is done with a mesh that is whole. False with a line on stderr. */
-typedef bool visit(void *context, const st_card *card, const he_mesh *content);
+/* What is done with a mesh, or with what is left of one. False with a line on stderr. */
+typedef bool visit(void *context, const st_mesh_info *info, const he_mesh *content, bool whole);
 
 static void stay_open(void *self)
 {
     (void)self;
 }
 
-/* Loads the mesh as the daemon would, into a store of its own, so that one mesh at a time is in
- * memory. */
+/* Says what is wrong with it; what is left goes to `each`. */
+static void visit_damaged(const st_card *card, st_mesh *mesh, const char *damage, visit *each,
+                          void *context)
+{
+    st_mesh_info info;
+    printf("%s: DAMAGED: %s\n", card->id, damage);
+    if (mesh != NULL) {
+        const he_mesh *content = st_read_begin(mesh, &info);
+        (void)each(context, &info, content, false);
+        st_read_end(mesh);
+    }
+}
+
+/* Of a store of its own, so that one mesh at a time is in memory. */
+static bool visit_in(st_store *store, const st_card *card, visit *each, void *context)
+{
+    st_mesh *mesh = NULL;
+    st_mesh_info info;
+    char damage[ST_DAMAGE] = "";
+    const st_status status =
+        store == NULL ? ST_NO_MEMORY : st_salvage(store, card->id, &mesh, damage);
+    bool good = status == ST_ABSENT; /* it was removed since, by a daemon beside */
+    if (status == ST_DAMAGED ||
+        (status == ST_OK && (damage[0] != '\0' || card->damage[0] != '\0'))) {
+        visit_damaged(card, mesh, damage[0] != '\0' ? damage : card->damage, each, context);
+    } else if (status == ST_OK) {
+        const he_mesh *content = st_read_begin(mesh, &info);
+        good = each(context, &info, content, true);
+        st_read_end(mesh);
+    } else if (status == ST_NEWER) {
+        printf("%s: OF A NEWER RELEASE: %s\n", card->id, damage);
+    } else if (status != ST_ABSENT) {
+        printf("%s: NOT READ: %s\n", card->id,
+               status == ST_FAILED ? "the disk refused to" : "memory is out");
+    }
+    st_release(mesh);
+    return good;
+}
+
 static bool visit_mesh(const st_journal *journal, const st_card *card, visit *each, void *context)
 {
-    st_mesh *mesh;
     st_journal lent = *journal;
     lent.close = stay_open;
     st_store *store = st_store_new(
         &(st_store_options){.undo_budget = UINT64_MAX, .max_meshes = UINT64_MAX, .journal = lent});
-    st_status status = store == NULL ? ST_NO_MEMORY : st_load(store, card->id, &mesh);
-    bool good = false;
-    if (status == ST_OK) {
-        st_mesh_info info;
-        const he_mesh *content = st_read_begin(mesh, &info);
-        if (info.unreadable != ST_OK) {
-            printf("%s: %s: %s\n", card->id,
-                   info.unreadable == ST_DAMAGED ? "DAMAGED" : "OF A NEWER RELEASE",
-                   st_damage(mesh));
-        } else {
-            good = each(context, card, content);
-        }
-        st_read_end(mesh);
-        st_release(mesh);
-    } else if (status == ST_ABSENT) {
-        good = true; /* it was removed since, by a daemon beside */
-    } else {
-        printf("%s: NOT READ: %s\n", card->id,
-               status == ST_FAILED ? "the disk refused to" : "memory is out");
-    }
+    const bool good = visit_in(store, card, each, context);
     st_store_free(store);
     return good;
+}
+
+/* An id becomes the name of a file, and a damaged one, or a file that somebody made, may say
+ * anything. */
+static bool is_id(const char *id)
+{
+    return id[0] != '\0' && id[0] != '.' &&
+           strspn(id, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
+               strlen(id);
+}
+
+static bool visit_card(const st_journal *journal, const st_card *card, visit *each, void *context)
+{
+    if (!is_id(card->id)) {
+        printf("(a mesh without an id): DAMAGED: its id cannot be read\n");
+        return false;
+    }
+    return visit_mesh(journal, card, each, context);
 }
 
 enum { PAGE = 64 };
@@ -104,7 +139,7 @@ static bool visit_all(const st_journal *journal, visit *each, void *context, uin
             return false;
         }
         for (size_t i = 0; i < count; i++) {
-            counts[visit_mesh(journal, &cards[i], each, context) ? 0 : 1]++;
+            counts[visit_card(journal, &cards[i], each, context) ? 0 : 1]++;
         }
         if (count > 0) {
             memcpy(after, cards[count - 1].id, sizeof after);
@@ -113,6 +148,13 @@ static bool visit_all(const st_journal *journal, visit *each, void *context, uin
     return true;
 }
 
+static void say_fault(void *context, const char *what)
+{
+    const char *path = context;
+    printf("%s: DAMAGED: %s\n", path, what);
+}
+
+/* A file that is damaged is read all the same, as far as that goes. */
 static int look(const char *path, visit *each, void *context, const char *done)
 {
     st_sqlite_opened out;
@@ -120,21 +162,29 @@ static int look(const char *path, visit *each, void *context, const char *done)
     if (!st_sqlite_look(path, &out)) {
         return fail(out.message);
     }
-    bool all = visit_all(&out.journal, each, context, counts);
+    const unsigned faults = st_sqlite_faults(&out.journal, say_fault, (void *)(uintptr_t)path);
+    const uint64_t there = out.journal.count(out.journal.self);
+    const bool all = visit_all(&out.journal, each, context, counts);
     out.journal.close(out.journal.self);
-    printf("%" PRIu64 " meshes %s, %" PRIu64 " not\n", counts[0], done, counts[1]);
+    const uint64_t reached = counts[0] + counts[1];
+    printf("%" PRIu64 " meshes %s, %" PRIu64 " not", counts[0], done, counts[1]);
+    if (faults > 0 && there > reached) {
+        printf(", %" PRIu64 " cannot be found", there - reached);
+    }
+    printf(faults > 0 ? "; the file itself is damaged\n" : "\n");
     if (!all) {
         return fail("the list of meshes cannot be read to its end");
     }
-    return counts[1] == 0 ? 0 : 1;
+    return counts[1] == 0 && faults == 0 ? 0 : 1;
 }
 
 /* --- verify --- */
 
-static bool say_whole(void *context, const st_card *card, const he_mesh *content)
+static bool say_whole(void *context, const st_mesh_info *info, const he_mesh *content, bool whole)
 {
     (void)context;
-    printf("%s: whole, revision %" PRIu64 ", %u vertices, %u faces\n", card->id, card->revision,
+    printf("%s: %s, revision %" PRIu64 ", %u vertices, %u faces\n", info->id,
+           whole ? "whole" : "whole up to then", info->revision,
            (unsigned)he_mesh_vertices(content), (unsigned)he_mesh_faces(content));
     return true;
 }
@@ -173,17 +223,24 @@ typedef struct dump {
     FILE *list;
 } dump;
 
-/* Ids are letters, digits, '-', '_' and '.': names of files. */
-static bool dump_mesh(void *context, const st_card *card, const he_mesh *content)
+/* Ids are letters, digits, '-', '_' and '.': names of files. What is left of a damaged mesh has its
+ * revision in the name, so that nobody takes it for the mesh. */
+static bool dump_mesh(void *context, const st_mesh_info *info, const he_mesh *content, bool whole)
 {
     const dump *d = context;
-    char path[PATH_MAX];
-    int length = snprintf(path, sizeof path, "%s/%s.glb", d->folder, card->id);
+    char path[PATH_MAX], name[ST_MESH_ID + 64], revision[32];
+    (void)snprintf(revision, sizeof revision, ".revision-%" PRIu64, info->revision);
+    (void)snprintf(name, sizeof name, "%s%s.glb", info->id, whole ? "" : revision);
+    int length = snprintf(path, sizeof path, "%s/%s", d->folder, name);
     if (length >= PATH_MAX || !write_glb(path, content)) {
-        printf("%s: NOT WRITTEN\n", card->id);
+        printf("%s: NOT WRITTEN\n", info->id);
         return false;
     }
-    fprintf(d->list, "%s.glb\t%" PRIu64 "\t%s\n", card->id, card->revision, card->name);
+    if (!whole) {
+        printf("%s: saved as it was at revision %" PRIu64 ", in %s\n", info->id, info->revision,
+               name);
+    }
+    fprintf(d->list, "%s\t%" PRIu64 "\t%s\n", name, info->revision, info->name);
     return true;
 }
 

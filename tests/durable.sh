@@ -33,6 +33,7 @@ prove kill 10
 prove sync 2
 prove backup 1
 prove restore 2
+prove golden 1
 if unshare --mount true 2>/dev/null; then
     prove full 1
 fi

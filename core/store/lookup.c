@@ -197,6 +197,21 @@ static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
                                                       : status;
 }
 
+st_status st_salvage(st_store *store, const char *id, st_mesh **out, char damage[ST_DAMAGE])
+{
+    const st_journal *journal = &store->journal;
+    const st_mesh_options options = st_store_mesh_options(store);
+    st_reader *reader = NULL;
+    st_card card;
+    st_status status = journal->open(journal->self, id, &card, &reader);
+    damage[0] = '\0';
+    if (status == ST_OK) {
+        status = st_mesh_salvage(&options, &card, reader, out, damage);
+        journal->shut(reader);
+    }
+    return status;
+}
+
 static st_status put_in(st_store *store, st_mesh *mesh)
 {
     pthread_rwlock_wrlock(&store->lock);

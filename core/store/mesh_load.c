@@ -392,15 +392,51 @@ static st_status read_pieces(load *l, st_reader *reader)
     return status;
 }
 
+static load begin_load(const st_mesh_options *options, const st_card *card, uint64_t until,
+                       char damage[ST_DAMAGE])
+{
+    damage[0] = '\0';
+    return (load){.options = options,
+                  .until = until,
+                  .bytes = card->bytes,
+                  .damage = damage,
+                  .mesh = st_mesh_bare(options, card)};
+}
+
+st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, st_reader *reader,
+                          st_mesh **out, char damage[ST_DAMAGE])
+{
+    char why[ST_DAMAGE];
+    load l = begin_load(options, card, 0, why);
+    if (l.mesh == NULL) {
+        return no_memory();
+    }
+    st_status status = read_pieces(&l, reader);
+    if (status == ST_OK) {
+        status = check_card(&l, card);
+    }
+    memcpy(damage, why, ST_DAMAGE);
+    if (status == ST_DAMAGED && l.mesh->content != NULL) {
+        status = ST_OK;
+    }
+    if (status == ST_OK && check_content(&l) == ST_DAMAGED) {
+        memcpy(damage, why, ST_DAMAGE);
+        status = ST_DAMAGED;
+    }
+    he_stored_reader_free(l.parts);
+    if (status != ST_OK) {
+        st_release(l.mesh);
+        return status;
+    }
+    l.mesh->info.revision = st_log_head(&l.mesh->log);
+    *out = l.mesh;
+    return ST_OK;
+}
+
 st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
                        uint64_t until, st_mesh **out, char damage[ST_DAMAGE])
 {
-    load l = {.options = options,
-              .until = until,
-              .bytes = card->bytes,
-              .damage = damage,
-              .mesh = st_mesh_bare(options, card)};
-    damage[0] = '\0';
+    load l = begin_load(options, card, until, damage);
     if (l.mesh == NULL) {
         return no_memory();
     }

@@ -19,5 +19,10 @@
  * ST_BUDGET. */
 st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
                        uint64_t until, st_mesh **out, char damage[ST_DAMAGE]);
+/* As far as the pieces make a mesh: it is at the revision up to which they do, and `damage` says
+ * what is wrong after it, "" where nothing is. ST_DAMAGED, with `damage`, where they make none;
+ * ST_NEWER likewise; ST_FAILED, ST_NO_MEMORY, ST_BUDGET. */
+st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, st_reader *reader,
+                          st_mesh **out, char damage[ST_DAMAGE]);
 
 #endif

@@ -131,6 +131,11 @@ st_status st_load(st_store *store, const char *id, st_mesh **out);
  * else "". Both are for as long as the mesh is. */
 st_status st_unreadable(const st_mesh *mesh);
 const char *st_damage(const st_mesh *mesh);
+/* Reads a mesh as far as what is kept of it is whole, and does not put it into the store; the
+ * journal is one that only reads. `damage` says what is wrong after the revision that the mesh is
+ * at, "" where nothing is. ST_ABSENT; ST_DAMAGED, ST_NEWER, both with `damage`: nothing of it can
+ * be read; ST_FAILED, ST_NO_MEMORY, ST_BUDGET. */
+st_status st_salvage(st_store *store, const char *id, st_mesh **out, char damage[ST_DAMAGE]);
 st_mesh *st_hold(st_mesh *mesh); /* adds a reference */
 void st_release(st_mesh *mesh);  /* takes NULL */
 /* Takes `content` on success. `id` NULL lets the store choose. `keyed`, or NULL, goes into the

@@ -20,6 +20,7 @@ import traceback
 import backups
 import faulty
 import full
+import golden
 import kill
 import locks
 import self_test
@@ -41,6 +42,7 @@ PROOFS = {
     'backup': (backups.prove_backup, 3),
     'restore': (backups.prove_restore, 1000),
     'two': (locks.prove, 3),
+    'golden': (golden.prove, 1),
 }
 
 

@@ -107,13 +107,27 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
     run_sql("DELETE FROM record WHERE mesh = (SELECT key FROM mesh WHERE id = 'cube') "
             "AND number = 3");
     expect_run(ARGUMENTS("--store", store, "--verify"), 1, "cube: DAMAGED: record 3 is missing");
+    assert_non_null(strstr(output, "cube: whole up to then, revision 2"));
     assert_non_null(strstr(output, "2 meshes whole, 1 not"));
     (void)snprintf(dump, sizeof dump, "%s/dump/cube.glb", folder);
     (void)unlink(dump);
     (void)snprintf(dump, sizeof dump, "%s/dump", folder);
     expect_run(ARGUMENTS("--store", store, "--dump", dump), 1, "2 meshes written, 1 not");
+    assert_non_null(strstr(output, "cube: saved as it was at revision 2"));
     assert_glb("cube.glb", false);
+    assert_glb("cube.revision-2.glb", true);
     assert_glb("torus.glb", true);
+    /* An id is a name of a file only where it is an id. */
+    run_sql("UPDATE mesh SET id = '../torus' WHERE id = 'torus'");
+    expect_run(ARGUMENTS("--store", store, "--dump", dump), 1, "its id cannot be read");
+    assert_glb("../torus.glb", false);
+    /* An index without its entries hides no mesh. */
+    run_sql("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
+            "FROM sqlite_schema WHERE name = 'kept_by_time') "
+            "WHERE name = 'sqlite_autoindex_mesh_1'");
+    expect_run(ARGUMENTS("--store", store, "--verify"), 1, "the file itself is damaged");
+    assert_non_null(strstr(output, "cube: DAMAGED: record 3 is missing"));
+    assert_non_null(strstr(output, "1 meshes whole, 2 not"));
     folder_write(folder, "hedge.db", (const unsigned char *)"nothing", 7);
     expect_run(ARGUMENTS("--store", store, "--verify"), 1, "is damaged");
 }

@@ -33,7 +33,15 @@ bool st_sqlite_restore(const char *folder, const char *file, char before[ST_SQLI
 bool st_sqlite_check_file(const char *file, char message[ST_SQLITE_MESSAGE]);
 
 /* A journal that only reads: a folder's store, which a daemon may have open, or a file. What is
- * appended is refused, and what is found damaged is not written down. */
+ * appended is refused, what is found damaged is not written down, and what is on a card of damage
+ * keeps nobody from reading on. It has no keys. One thread may use it. */
 bool st_sqlite_look(const char *path, st_sqlite_opened *out);
+
+typedef void st_say(void *context, const char *what);
+/* Looks through the structure of such a journal's file and says what is wrong with it, a line each
+ * for the first hundred; returns how many. Where there is anything, meshes are listed from then on
+ * in the order in which they were made, those that can be reached: `after` is the last that was
+ * listed, or "". */
+unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context);
 
 #endif

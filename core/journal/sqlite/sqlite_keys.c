@@ -42,6 +42,10 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     char of[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1];
     st_kept_row row;
     bool taken = true;
+    if (self->only_reads) {
+        return ST_OK; /* nobody asks again, and keys of a damaged file keep nobody from its meshes
+                       */
+    }
     pthread_mutex_lock(&self->cards_lock);
     int code =
         sqlite3_prepare_v2(self->cards.handle, id == NULL ? of_store : of_mesh, -1, &s, NULL);

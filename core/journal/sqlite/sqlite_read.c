@@ -113,7 +113,7 @@ static void give_slot(st_sqlite *self, st_load_slot *slot)
 
 /* --- cards --- */
 
-static st_status read_card(sqlite3_stmt *s, st_mesh_row *row)
+st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row)
 {
     if (!st_mesh_row_read(s, row)) {
         (void)snprintf(row->card.damage, sizeof row->card.damage,
@@ -122,16 +122,20 @@ static st_status read_card(sqlite3_stmt *s, st_mesh_row *row)
     return row->card.damage[0] == '\0' ? ST_OK : ST_DAMAGED;
 }
 
-static st_status find_card(st_db *db, const char *id, st_mesh_row *row)
+/* Who only looks is given a mesh that is damaged like any other. */
+static st_status find_card(st_sqlite *self, st_db *db, const char *id, st_mesh_row *row)
 {
     sqlite3_stmt *s;
+    if (self->salvage.on && st_salvage_find(self, db, id, row) == ST_SQL_ROW) {
+        return ST_OK;
+    }
     st_sql outcome = st_db_find(db, CARD, &s, "t", id);
     if (outcome != ST_SQL_ROW) {
         return outcome == ST_SQL_DONE ? ST_ABSENT : status_of(outcome);
     }
-    st_status status = read_card(s, row);
+    st_status status = st_sqlite_read_card(s, row);
     st_db_reset(s);
-    return status;
+    return self->only_reads ? ST_OK : status;
 }
 
 st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t limit,
@@ -141,10 +145,12 @@ st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t 
     sqlite3_stmt *s;
     size_t found = 0;
     pthread_mutex_lock(&self->cards_lock);
-    st_sql outcome = st_db_find(&self->cards, CARDS, &s, "ti", after, (uint64_t)limit);
+    st_sql outcome = self->salvage.on
+                         ? st_salvage_list(self, after[0] == '\0', out, limit, &found)
+                         : st_db_find(&self->cards, CARDS, &s, "ti", after, (uint64_t)limit);
     while (outcome == ST_SQL_ROW) {
         st_mesh_row row;
-        (void)read_card(s, &row);
+        (void)st_sqlite_read_card(s, &row);
         out[found++] = row.card;
         outcome = st_db_step(&self->cards, s);
     }
@@ -249,7 +255,7 @@ static st_status begin_load(st_sqlite *self, const char *id, st_mesh_row *row, s
     reader->slot = take_slot(self);
     st_sql outcome = st_db_do(&reader->slot->db, BEGIN, "");
     st_status status =
-        outcome == ST_SQL_DONE ? find_card(&reader->slot->db, id, row) : status_of(outcome);
+        outcome == ST_SQL_DONE ? find_card(self, &reader->slot->db, id, row) : status_of(outcome);
     if (status != ST_OK) {
         end_load(reader);
         he_mem_free(reader);
@@ -270,10 +276,10 @@ st_status st_sqlite_open_mesh(void *context, const char *id, st_card *card, st_r
         status = begin_load(self, id, &row, reader);
     } else {
         pthread_mutex_lock(&self->cards_lock);
-        status = find_card(&self->cards, id, &row);
+        status = find_card(self, &self->cards, id, &row);
         pthread_mutex_unlock(&self->cards_lock);
     }
-    if (status == ST_OK) {
+    if (status == ST_OK && !self->only_reads) {
         status = add_finding(self, &row);
         if (status == ST_DAMAGED && reader != NULL) {
             st_sqlite_shut(*reader);
@@ -467,7 +473,8 @@ static st_status read_base(st_reader *reader, st_piece *out)
 {
     st_status status = find_snapshot(reader, reader->row.base, true);
     reader->at = AT_BASE_PARTS;
-    if (status == ST_ABSENT) {
+    /* Where the table of snapshots cannot be read there may be no need to. */
+    if (status == ST_ABSENT || (status == ST_DAMAGED && reader->journal->salvage.on)) {
         status = read_inline_base(reader);
         reader->at = AT_INLINE_PARTS;
     }

@@ -6,6 +6,7 @@
  *     sqlite_stage.c    contents in parts, and which of them a mesh is loaded from
  *     sqlite_purge.c    what is no longer needed is deleted by the slice
  *     sqlite_read.c     meshes are read again
+ *     sqlite_salvage.c  also from a file whose structure is damaged
  *     sqlite_open.c     the start and the end
  *
  * One mutex guards what threads share (`shared` below); the writing connection and all that it
@@ -131,6 +132,19 @@ enum { ST_LOADS = 2 }; /* at once */
  * nothing is written. The oldest are forgotten. */
 enum { ST_FINDINGS = 64 };
 
+/* A damaged file is walked by keys: the meshes that were listed last are found by theirs. */
+enum { ST_SALVAGE_PAGE = 64 };
+
+typedef struct st_salvager {
+    bool on;
+    int64_t last; /* key that was listed */
+    size_t count;
+    struct {
+        int64_t key;
+        char id[ST_MESH_ID + 1];
+    } page[ST_SALVAGE_PAGE];
+} st_salvager;
+
 typedef struct st_load_slot {
     st_db db;
     bool taken;
@@ -176,6 +190,7 @@ struct st_sqlite {
 
     pthread_mutex_t cards_lock;
     st_db cards; /* reads cards and lists */
+    st_salvager salvage;
 
     /* --- the commit thread's --- */
     st_db db;
@@ -278,6 +293,13 @@ st_status st_sqlite_read(st_reader *reader, st_piece *out);
 void st_sqlite_shut(st_reader *reader);
 void st_sqlite_condemn(st_reader *reader, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
+/* ST_DAMAGED where the card says so, or its row's sum is wrong. */
+st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row);
+/* --- sqlite_salvage.c, under the lock of cards --- */
+/* The next meshes that can be reached, up to `limit` or ST_SALVAGE_PAGE; none after the last. */
+st_sql st_salvage_list(st_sqlite *self, bool from_start, st_card *out, size_t limit, size_t *count);
+/* One of those that were listed last. ST_SQL_DONE where it is none of them. */
+st_sql st_salvage_find(st_sqlite *self, st_db *reader, const char *id, st_mesh_row *out);
 /* --- sqlite_keys.c --- */
 /* The row's texts lie in `id` and `text`. False where the sum is wrong: such a key is as good as
  * none. */
