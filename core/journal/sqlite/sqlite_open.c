@@ -6,7 +6,6 @@
 #include "system/random.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* SQLite has no error of its own where a sum or a value of a row is what is wrong. */
 static const char *damage_of(const st_db *db)
@@ -127,27 +126,10 @@ static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
                (unsigned long long)mark.commits);
 }
 
-/* A mesh whose entry in an index is damaged would seem not to be there. In a store of more meshes
- * than this the check takes too long for a start. */
-enum { CHECKED_MESHES = 200000 };
-
 static bool check_meshes(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
-    sqlite3_stmt *s = NULL;
-    if (self->progress.meshes > CHECKED_MESHES) {
-        return true;
-    }
-    int code = sqlite3_prepare_v2(self->db.handle, "PRAGMA integrity_check('mesh')", -1, &s, NULL);
-    code = code == SQLITE_OK ? sqlite3_step(s) : code;
-    const char *said = code == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : NULL;
-    bool good = said != NULL && strcmp(said, "ok") == 0;
-    if (!good) {
-        (void)st_sqlite_explain(&self->db, path,
-                                said != NULL ? ST_SQL_DAMAGED : st_db_outcome(&self->db, code),
-                                out->message);
-    }
-    sqlite3_finalize(s);
-    return good;
+    const st_sql outcome = st_index_check(self);
+    return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
 static st_sql last_keys(st_sqlite *self)

@@ -7,6 +7,7 @@
  *     sqlite_purge.c    what is no longer needed is deleted by the slice
  *     sqlite_read.c     meshes are read again
  *     sqlite_salvage.c  also from a file whose structure is damaged
+ *     sqlite_index.c    the table of meshes and its indexes are compared at the start
  *     sqlite_open.c     the start and the end
  *
  * One mutex guards what threads share (`shared` below); the writing connection and all that it
@@ -329,6 +330,11 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
 /* Has the file nothing of SQLite's beside it that would be played into it? Else says so, with
  * advice. */
 bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_SQLITE_MESSAGE]);
+
+/* --- sqlite_index.c --- */
+/* ST_SQL_DAMAGED where the table of meshes or one of its indexes is, or they differ. Reads each of
+ * them once. */
+st_sql st_index_check(st_sqlite *self);
 
 /* --- sqlite_restore.c --- */
 /* Ends a restore that was interrupted. The folder is locked. */

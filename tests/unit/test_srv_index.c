@@ -1,0 +1,137 @@
+/* The start of a store compares the list of its meshes with the indexes (sqlite_index.c), however
+ * many there are. */
+#include "tests/pace.h"
+#include "tests/store_folder.h"
+#include "unit/edit_script.h"
+#include "unit/fixture.h"
+
+#include "journal/sqlite/sqlite_schema.h"
+
+#include <sqlite3.h>
+
+static char folder[FOLDER_PATH];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    folder_make(folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    folder_remove(folder);
+    return 0;
+}
+
+static bool starts(const char *where, char message[ST_SQLITE_MESSAGE])
+{
+    st_sqlite_opened out;
+    const bool opened =
+        st_sqlite_open(&(st_sqlite_options){.folder = where, .release = "test"}, &out);
+    (void)snprintf(message, ST_SQLITE_MESSAGE, "%s", out.message);
+    if (opened) {
+        out.journal.close(out.journal.self);
+    }
+    return opened;
+}
+
+static void expect_start(const char *where)
+{
+    char message[ST_SQLITE_MESSAGE];
+    if (!starts(where, message)) {
+        fail_msg("%s", message);
+    }
+}
+
+static void run_sql(const char *text)
+{
+    char path[2 * FOLDER_PATH];
+    sqlite3 *db;
+    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, "PRAGMA wal_checkpoint(TRUNCATE)", NULL, NULL, NULL),
+                     SQLITE_OK);
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+}
+
+/* A store that counts so many meshes; their rows' own sums are nothing to the start. */
+static void make_store(size_t meshes)
+{
+    char text[1024];
+    const st_progress progress = {.commits = 5, .position = 5, .meshes = meshes};
+    expect_start(folder);
+    (void)snprintf(
+        text, sizeof text,
+        "BEGIN; WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < %zu) "
+        "INSERT INTO mesh(id, name, incarnation, origin, metadata, revision, record, chain, "
+        "created, modified, vertices, edges, faces, boundary, bytes, base, damage, sum) "
+        "SELECT 'needle-' || (i * 7919 %% 1000003), '', i * 7919 %% 1000003, 1, 1, 1, 1, 1, 1, 1, "
+        "1, 1, 1, 1, 1, 1, '', 1 FROM n; "
+        "UPDATE state SET commits = 5, position = 5, meshes = %zu, sum = %lu; COMMIT",
+        meshes, meshes, (unsigned long)st_progress_sum(&progress));
+    run_sql(text);
+}
+
+/* Turns a bit in each place where the id stands, one at a time: in the row, and in the index. */
+static unsigned expect_refusals(const char *id)
+{
+    size_t size;
+    unsigned places = 0;
+    unsigned char *bytes = folder_read(folder, "hedge.db", &size);
+    for (size_t at = 0; at + strlen(id) <= size; at++) {
+        char message[ST_SQLITE_MESSAGE];
+        if (memcmp(bytes + at, id, strlen(id)) != 0) {
+            continue;
+        }
+        places++;
+        bytes[at + 7] ^= 1;
+        folder_write(folder, "hedge.db", bytes, size);
+        assert_false(starts(folder, message));
+        assert_non_null(strstr(message, "is damaged"));
+        bytes[at + 7] ^= 1;
+    }
+    folder_write(folder, "hedge.db", bytes, size);
+    free(bytes);
+    return places;
+}
+
+static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
+{
+    (void)state;
+    make_store(1000);
+    expect_start(folder);
+    assert_true(expect_refusals("needle-79190") >= 2);
+    expect_start(folder);
+    /* Entries under another's key. */
+    run_sql("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
+            "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "
+            "WHERE name = 'sqlite_autoindex_mesh_2'");
+    char message[ST_SQLITE_MESSAGE];
+    assert_false(starts(folder, message));
+    assert_non_null(strstr(message, "is damaged"));
+}
+
+static void many_meshes_are_no_reason_not_to_look(void **state)
+{
+    (void)state;
+    enum { MANY = 210000 };
+    make_store(MANY);
+    const double begun = pace_seconds();
+    expect_start(folder);
+    printf("note: the start of a store of %d meshes took %.2f s\n", MANY, pace_seconds() - begun);
+    assert_true(expect_refusals("needle-79190") >= 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+        STORE_TEST(an_index_that_has_lost_a_mesh_refuses_the_start),
+        STORE_TEST(many_meshes_are_no_reason_not_to_look),
+#undef STORE_TEST
+    };
+    return cmocka_run_group_tests_name("index", tests, NULL, NULL);
+}
