@@ -18,6 +18,7 @@ MESHES = ['a', 'b', 'c']
 LARGE = 'large'
 LARGE_SHAPE = {'shape': 'grid', 'columns': 170, 'rows': 170}
 MOST_TRIES = 10
+MOST_KEYS = 3  # of a mesh, whose requests are sent again after a kill
 # What a moment counts when the kill came in time.
 AIM = {'writing': 'kills while writing', 'snapshot': 'kills in a snapshot',
        'loading': 'kills while loading', 'starting': 'kills while starting'}
@@ -148,6 +149,8 @@ class Kills:
         self.run.count(f'kills while {name}', killed)
         self.run.count('kills in a snapshot', bool(staged))
         self.run.count('changes', len(done))
+        for change in done:
+            self.run.count('of kind ' + change.kind)
         self.run.count('in flight', len(flying))
         self.pending = done, flying
         if again:
@@ -169,11 +172,23 @@ class Kills:
             if after != before and after is not None:
                 self.run.judge('an incarnation is new', after not in self.incarnations, after)
                 self.incarnations[after] = mesh
+            self.send_again(client, [c for c in done if c.mesh == mesh and c.key and c.version
+                                     and c.version[0] == after][-MOST_KEYS:])
         for mesh in MESHES:
             if self.run.chance.random() < 0.25:
                 steps = self.run.attempt(f'{mesh}: undo and redo', self.replay.walk, client, mesh)
                 self.run.count('steps walked', steps or 0)
         client.close()
+
+    def send_again(self, client, changes):
+        """A request that was answered is not done twice, also by the daemon that comes after."""
+        for change in changes:
+            answer = change.send(client)
+            self.run.count('requests sent again')
+            self.run.judge('a key is known after the kill',
+                           answer.headers['Idempotency-Replayed'] == 'true'
+                           and answer.version() == change.version,
+                           f'{change!r}: {answer.status} {answer.headers["ETag"]} {answer.body[:200]}')
 
     def follow(self, client, mesh, done, flying):
         self.replay.follow(client, mesh, done, flying)
@@ -204,4 +219,6 @@ def prove(run):
     run.count('in flight and there', kills.replay.in_flight)
     run.judge('it stops', kills.daemon.stop() == 0, kills.daemon.log())
     kills.replay.close()
-    run.expect_fired('in flight', *(AIM[moment] for moment in sorted(set(plan))))
+    run.expect_fired('in flight', 'requests sent again',
+                     *('of kind ' + kind for kind, _ in Draw.KINDS),
+                     *(AIM[moment] for moment in sorted(set(plan))))

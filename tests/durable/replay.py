@@ -47,6 +47,7 @@ def state(client, mesh):
     else:
         for kind in ('vertices', 'halfedges', 'faces'):
             views[kind] = client.get(f'{base}/{kind}', 'application/x-ndjson').body
+    views['materials'] = client.get(base + '/materials').body
     attributes = client.get(base + '/attributes')
     views['attributes'] = attributes.body
     for item in attributes.json()['attributes']:

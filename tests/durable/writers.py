@@ -4,11 +4,12 @@ A `Change` is one request. What it was answered with says where it belongs: its 
 incarnation, the metadata counter and the revision after it. One that was sent and never answered is
 in flight: it may have happened or not.
 """
+import json
 import random
 import threading
 import time
 
-from daemon import Client, Gone
+from daemon import Answer, Client, Gone
 
 SHAPES = [{'shape': 'icosphere', 'subdivisions': 1}, {'shape': 'cube'},
           {'shape': 'grid', 'columns': 6, 'rows': 5},
@@ -22,9 +23,8 @@ NOTHING = b'"created":%s,"deleted":%s,"modified":%s' % (3 * (
 
 
 def did_nothing(change, answer):
-    return (change.path == '/edits' and NOTHING in answer.body
+    return (change.path == '/edits' and NOTHING in answer.body and change.kind != 'material'
             and b'"replaced":true' not in answer.body)
-
 
 
 class Change:
@@ -110,6 +110,14 @@ class Draw:
             {'op': 'reverse'}, {'op': 'dual'}])
         return Change(mesh, 'POST', '/edits', op, entry=('edit', op['op']))
 
+    def change_compact(self, mesh):
+        return Change(mesh, 'POST', '/edits', {'op': 'compact'}, entry=('edit', 'compact'))
+
+    def change_material(self, mesh):
+        op = {'op': 'material_set', 'name': self.chance.choice(['brass', 'glass', 'wood']),
+              'base_color': [self.chance.random() for _ in range(4)]}
+        return Change(mesh, 'POST', '/edits', op, entry=('edit', op['op']))
+
     def change_undo(self, mesh):
         steps = self.chance.randrange(1, self.steps + 1)
         return Change(mesh, 'POST', '/undo', {'steps': steps}, revisions=steps,
@@ -151,9 +159,9 @@ class Draw:
         change.headers['Prefer'] = 'respond-async'
         return change
 
-    KINDS = [('edit', 40), ('list', 12), ('whole', 3), ('undo', 10), ('redo', 6), ('name', 5),
-             ('put', 2), ('delete', 0.5), ('attribute', 4), ('values', 6), ('no_attribute', 1),
-             ('job', 2)]
+    KINDS = [('edit', 40), ('list', 12), ('whole', 3), ('compact', 1), ('undo', 10), ('redo', 6),
+             ('name', 5), ('put', 2), ('delete', 0.5), ('attribute', 4), ('values', 6),
+             ('no_attribute', 1), ('material', 3), ('job', 2)]
 
     def next(self, mesh, kinds=None):
         kinds = kinds or self.KINDS
@@ -228,7 +236,10 @@ class Writer(threading.Thread):
             answer = self.client.get(change.job)
             if answer.status != 200:
                 return answer
-            if answer.json()['state'] not in ('queued', 'running'):
+            job = answer.json()
+            if job.get('problem'):  # of one that failed no result is kept
+                return Answer(job['status'], answer.headers, json.dumps(job['problem']).encode())
+            if job['state'] not in ('queued', 'running'):
                 return self.client.get(change.job + '/result')
 
     def note(self, change, answer):
