@@ -83,10 +83,11 @@ FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/
                 $(wildcard tests/fuzz/*.c)))
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 FAULTS_C   := tests/durable/inject/faults.c
-HEADERS    := $(sort $(shell find core api server -name '*.h') $(wildcard tests/*.h tests/*/*.h \
+DAMAGE_C   := $(sort $(wildcard tests/durable/damage/*.c))
+HEADERS    := $(sort $(shell find core api server -name '*.h') $(wildcard tests/*.h tests/*/*.h tests/durable/damage/*.h \
                 tests/bench/side/*.h tests/bench/ours/*.h))
 ALL_C      := $(KERNEL_C) $(STORE_C) $(API_C) $(SERVER_C) $(wildcard $(MAIN_C)) $(PROGRAM_C) $(SUPPORT_C) \
-              $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C) $(FAULTS_C)
+              $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C) $(FAULTS_C) $(DAMAGE_C)
 
 LIBRARIES  := $(patsubst %,$(BUILD)/lib%.a,server api store kernel)
 HEDGED     := $(BUILD)/hedged
@@ -94,6 +95,7 @@ PROGRAMS   := $(patsubst %.c,$(BUILD)/%,$(PROGRAM_C))
 SPACE      := $(BUILD)/tests/bench/space $(BUILD)/tests/bench/polygons
 FUZZERS    := $(patsubst %.c,$(BUILD)/%,$(FUZZ_C))
 FAULTS     := $(BUILD)/tests/durable/faults.so
+DAMAGE     := $(BUILD)/tests/durable/damage_store
 PAGE       := build/web
 PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o -type f -print)
 STAMPS     := build/.stamps
@@ -270,7 +272,7 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 
 TEST_NEEDS = $(if $(WITH_DAEMON)$(WITH_LINT),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
              $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(FUZZERS)) \
-             $(if $(WITH_DURABLE),$(FAULTS))
+             $(if $(WITH_DURABLE),$(FAULTS) $(DAMAGE))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
@@ -346,12 +348,18 @@ $(FAULTS): $(FAULTS_C) Makefile | $(INSTALLED)
 	@echo "LD $@"
 	$(Q)$(CC) $(CPPFLAGS) -std=c11 -g1 -O1 -fPIC -shared $(WARNINGS) -o $@ $<
 
+$(DAMAGE): $(call object,$(DAMAGE_C)) $(BUILD)/libsupport.a $(LIBRARIES) | $(INSTALLED)
+	@mkdir -p $(@D)
+	@echo "LD $@"
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
+
 # ROUNDS of another target's default are not ours.
 GIVEN_ROUNDS = $(if $(filter file default,$(origin ROUNDS)),,--rounds $(ROUNDS))
 PROOF ?= kill
-durable: $(HEDGED) $(FAULTS) | $(INSTALLED) ## PROOF=kill ROUNDS= SEED=: what was acknowledged is there, whatever the disk did; tests/durable/run.py lists the proofs
+durable: $(HEDGED) $(FAULTS) $(DAMAGE) | $(INSTALLED) ## PROOF=kill ROUNDS= SEED=: what was acknowledged is there, whatever the disk did; tests/durable/run.py lists the proofs; EVERY=101: not every place of cut and flip
 	@python3 -B tests/durable/run.py --hedged $(abspath $(HEDGED)) --faults $(abspath $(FAULTS)) \
-	    --proof $(PROOF) $(GIVEN_ROUNDS) $(if $(SEED),--seed $(SEED)) --work build/durable
+	    --damage $(abspath $(DAMAGE)) --proof $(PROOF) $(GIVEN_ROUNDS) $(if $(EVERY),--every $(EVERY)) \
+	    $(if $(SEED),--seed $(SEED)) --work build/durable
 
 # `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
 FUZZ_SECONDS ?= 20

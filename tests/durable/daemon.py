@@ -94,6 +94,7 @@ class Daemon:
                 self.port = int(line.rsplit(':', 1)[1])
                 break
         else:
+            self.process.stderr.close()
             raise Refused(self.process.wait(), ''.join(self.said))
         self.reader = threading.Thread(target=self.read_log, daemon=True)
         self.reader.start()
@@ -113,7 +114,9 @@ class Daemon:
 
     def wait(self):
         status = self.process.wait(PATIENCE)
+        atexit.unregister(self.process.kill)
         self.reader.join()
+        self.process.stderr.close()
         return status
 
     def kill(self):

@@ -1,7 +1,7 @@
 """run.py - proves what core/journal promises about restarts, by breaking what can break.
 
     python3 tests/durable/run.py --hedged build/hedged --faults FAULTS.so --proof NAME
-        [--rounds N] [--seed N] [--work FOLDER]
+        [--damage PROGRAM] [--rounds N] [--every N] [--seed N] [--work FOLDER]
 
 Each proof prints its rounds, its seed and what it counted; the last line is `N passed, N failed`.
 A proof in which no fault fired has proved nothing, and fails. PROOFS below is the list of all.
@@ -18,6 +18,7 @@ import time
 import traceback
 
 import backups
+import damaged
 import faulty
 import full
 import golden
@@ -43,6 +44,8 @@ PROOFS = {
     'restore': (backups.prove_restore, 1000),
     'two': (locks.prove, 3),
     'golden': (golden.prove, 1),
+    'cut': (damaged.prove_cut, 1),
+    'flip': (damaged.prove_flip, 1),
 }
 
 
@@ -50,7 +53,8 @@ class Run:
     """One proof: its options, its folder, and the tally."""
 
     def __init__(self, options, rounds):
-        self.hedged, self.library = options.hedged, options.faults
+        self.hedged, self.library, self.damage = options.hedged, options.faults, options.damage
+        self.every = options.every
         self.rounds, self.seed = rounds, options.seed
         self.chance = random.Random(options.seed)
         self.passed = self.failed = 0
@@ -100,8 +104,10 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('--hedged', required=True)
     parser.add_argument('--faults', required=True)
+    parser.add_argument('--damage', help='the program of cut and flip')
     parser.add_argument('--proof', required=True, choices=PROOFS)
     parser.add_argument('--rounds', type=int)
+    parser.add_argument('--every', type=int, default=1, help='of cut and flip: not every place')
     parser.add_argument('--seed', type=int, default=None)
     parser.add_argument('--work', help='where stores are made: a disk, not memory')
     parser.add_argument('--keep', action='store_true', help='leave the stores there')

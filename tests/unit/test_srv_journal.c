@@ -302,9 +302,13 @@ static kept_mesh open_with_mesh(told_journal *told, const he_mesh *content)
 static void wait_until_purged(told_journal *told)
 {
     const st_journal *j = &told->journal;
+    const st_room_need need = {.records = 1};
+    st_room *room;
     st_card card;
-    /* Each look lets a commit go by; purging goes on without others. */
+    /* Each look lets a commit go by; purging goes on without others, while something is written. */
     do {
+        assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
+        j->leave(j->self, room);
         assert_int_equal(j->open(j->self, "none", &card, NULL), ST_ABSENT);
     } while (number_of("SELECT count(*) FROM purge") > 0);
 }
@@ -356,6 +360,54 @@ static void a_staged_content_is_that_of_its_record(void **state)
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT count(*) FROM part"), 0);
     assert_int_equal(number_of("SELECT count(*) FROM record"), 0);
+    told_end(&told);
+    he_mesh_free(small);
+    he_mesh_free(large);
+}
+
+/* Overwrites the first page of a table, of a store that is closed. */
+static void spoil(const char *table)
+{
+    enum { PAGE = 4096 };
+    char query[96];
+    size_t size;
+    (void)snprintf(query, sizeof query, "SELECT rootpage FROM sqlite_schema WHERE name = '%s'",
+                   table);
+    const size_t at = ((size_t)number_of(query) - 1) * PAGE;
+    unsigned char *bytes = folder_read(folder, "hedge.db", &size);
+    assert_true(at + PAGE <= size);
+    memset(bytes + at, 0xff, PAGE);
+    folder_write(folder, "hedge.db", bytes, size);
+    free(bytes);
+}
+
+static void what_is_too_damaged_to_be_deleted_stops_nobody(void **state)
+{
+    (void)state;
+    told_journal told;
+    st_stage *stage;
+    st_card card;
+    he_mesh *small = script_mesh("012", NULL), *large = large_mesh();
+    kept_mesh a = mesh_as("a", large), b = mesh_as("b", small);
+    open_store(&told);
+    assert_int_equal(told.journal.stage(told.journal.self, large, &stage), ST_OK);
+    st_record record = kept_content(&a);
+    record.stage = stage;
+    kept_append(&told.journal, record, &a, NULL, 0);
+    kept_append(&told.journal, kept_content(&b), &b, NULL, 0);
+    told_end(&told);
+    spoil("part");
+    open_store(&told);
+    told_wait(&told, kept_append(&told.journal, kept_remove(&a), &a, NULL, 0));
+    wait_until_purged(&told);
+    told_wait(&told, kept_append(&told.journal, kept_edit(&b), &b, "x", 1));
+    assert_int_equal(told_losses(&told), 0);
+    told_end(&told);
+    open_store(&told);
+    assert_int_equal(told.journal.open(told.journal.self, "a", &card, NULL), ST_ABSENT);
+    loaded l = load(&told.journal, "b");
+    assert_true(l.status == ST_OK && l.edits == 1);
+    loaded_clear(&l);
     told_end(&told);
     he_mesh_free(small);
     he_mesh_free(large);
@@ -555,6 +607,15 @@ static void other_files_are_refused_by_name(void **state)
     expect_refused("/proc/1/no/folder", "cannot make");
 }
 
+/* Its pages are written to with every key: the first write would be the last. */
+static void a_damaged_table_of_keys_refuses_the_start(void **state)
+{
+    (void)state;
+    make_two();
+    spoil("kept");
+    expect_refused(folder, "`hedged --restore` puts a backup in its place");
+}
+
 /* --- a -wal that is cut or damaged --- */
 
 enum { EDITS = 4 };
@@ -699,11 +760,13 @@ int main(void)
         STORE_TEST(what_was_appended_is_there_after_a_restart),
         STORE_TEST(cards_are_listed_in_the_order_of_ids),
         STORE_TEST(a_staged_content_is_that_of_its_record),
+        STORE_TEST(what_is_too_damaged_to_be_deleted_stops_nobody),
         STORE_TEST(a_rebase_shortens_the_log_and_no_more),
         STORE_TEST(damage_is_named_and_stays_with_its_mesh),
         STORE_TEST(a_store_is_new_until_its_first_start_is_over),
         STORE_TEST(a_second_opener_is_told_who_has_the_folder),
         STORE_TEST(other_files_are_refused_by_name),
+        STORE_TEST(a_damaged_table_of_keys_refuses_the_start),
         STORE_TEST(a_cut_log_is_refused_or_whole),
         STORE_TEST(a_flipped_bit_is_refused_or_named_or_harmless),
 #undef STORE_TEST

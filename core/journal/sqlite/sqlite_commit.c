@@ -356,6 +356,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
         st_sql outcome = transact(self, g, progress);
         if (outcome == ST_SQL_FULL && g->slice > 0 && (g->first != NULL || g->stage != NULL)) {
             g->slice = 0;
+        } else if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
+            /* Damage in what is deleted is no reason to stop: once more without that. */
         } else if ((outcome == ST_SQL_NO_MEMORY || outcome == ST_SQL_BUSY) &&
                    (tries < CLOSING_TRIES || !is_closing(self))) {
             rest(self);
@@ -480,7 +482,9 @@ static bool make_space(st_sqlite *self)
         } else {
             pthread_mutex_lock(&self->lock);
             put_back(self, &g);
-            if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
+            if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
+                good = true;
+            } else if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
                 /* What a sync that failed has left on the disk is not known: no more is written. */
                 pthread_mutex_unlock(&self->lock);
                 stop_writing(self, ST_WRITES_FAILED);

@@ -132,14 +132,68 @@ static bool check_meshes(st_sqlite *self, const char *path, st_sqlite_opened *ou
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
+/* A mesh whose entry in an index is damaged would seem not to be there, and most tables are written
+ * to on behalf of all meshes: the first change would be the last. Records and parts are only a
+ * mesh's own. Where a table has more rows than this the check takes too long for a start. */
+enum { CHECKED_ROWS = 200000 };
+
+static bool check_table(st_sqlite *self, const char *table, const char *path, st_sqlite_opened *out)
+{
+    char text[96];
+    sqlite3_stmt *s = NULL;
+    int64_t rows = 0;
+    (void)snprintf(text, sizeof text, "SELECT count(*) FROM (SELECT 1 FROM %s LIMIT %d)", table,
+                   CHECKED_ROWS + 1);
+    st_sql outcome = st_db_number(&self->db, text, 0, &rows);
+    if (outcome != ST_SQL_DONE) {
+        return st_sqlite_explain(&self->db, path, outcome, out->message);
+    }
+    if (rows > CHECKED_ROWS) {
+        return true;
+    }
+    (void)snprintf(text, sizeof text, "PRAGMA integrity_check('%s')", table);
+    int code = sqlite3_prepare_v2(self->db.handle, text, -1, &s, NULL);
+    code = code == SQLITE_OK ? sqlite3_step(s) : code;
+    const char *said = code == SQLITE_ROW ? (const char *)sqlite3_column_text(s, 0) : NULL;
+    bool good = said != NULL && strcmp(said, "ok") == 0;
+    if (!good) {
+        (void)st_sqlite_explain(&self->db, path,
+                                said != NULL ? ST_SQL_DAMAGED : st_db_outcome(&self->db, code),
+                                out->message);
+    }
+    sqlite3_finalize(s);
+    return good;
+}
+
+static bool check_tables(st_sqlite *self, const char *path, st_sqlite_opened *out)
+{
+    static const char *const names[] = {"meta",     "state", "sqlite_sequence",
+                                        "snapshot", "kept",  "purge"};
+    bool good = true;
+    for (size_t i = 0; i < sizeof names / sizeof *names && good; i++) {
+        good = check_table(self, names[i], path, out);
+    }
+    return good;
+}
+
+/* The key that was given last to a row; a lower one than a row has would be given twice. */
+static st_sql last_key(st_db *db, const char *table, int64_t *out)
+{
+    char text[96];
+    int64_t most = 0;
+    (void)snprintf(text, sizeof text, "SELECT seq FROM sqlite_sequence WHERE name = '%s'", table);
+    st_sql outcome = st_db_number(db, text, 0, out);
+    if (outcome == ST_SQL_DONE) {
+        (void)snprintf(text, sizeof text, "SELECT max(key) FROM %s", table);
+        outcome = st_db_number(db, text, 0, &most);
+    }
+    return outcome == ST_SQL_DONE && *out < most ? ST_SQL_DAMAGED : outcome;
+}
+
 static st_sql last_keys(st_sqlite *self)
 {
-    st_sql outcome = st_db_number(&self->db, "SELECT seq FROM sqlite_sequence WHERE name = 'mesh'",
-                                  0, &self->last_mesh);
-    return outcome == ST_SQL_DONE
-               ? st_db_number(&self->db, "SELECT seq FROM sqlite_sequence WHERE name = 'snapshot'",
-                              0, &self->last_snapshot)
-               : outcome;
+    st_sql outcome = last_key(&self->db, "mesh", &self->last_mesh);
+    return outcome == ST_SQL_DONE ? last_key(&self->db, "snapshot", &self->last_snapshot) : outcome;
 }
 
 static bool open_database(st_sqlite *self, const char *release, const char *path,
@@ -184,7 +238,8 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
         outcome = last_keys(self);
     }
     return (outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message)) &&
-           compare_mark(self, out) && check_meshes(self, path, out);
+           compare_mark(self, out) && check_meshes(self, path, out) &&
+           check_tables(self, path, out);
 }
 
 /* What the last process left behind: its log is written back, what it staged is forgotten. */

@@ -1,6 +1,7 @@
 /* What is no longer needed: noted in the table `purge` by the group that makes it so, deleted by
  * the slice when there is time. A row whose sum is wrong is passed over: better to keep what could
- * go than to delete what could not. */
+ * go than to delete what could not. What lies in pages that are damaged stays for ever: the mesh is
+ * gone, and its key is never used again. */
 #include "journal/sqlite/sqlite_state.h"
 
 st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before)
@@ -132,21 +133,50 @@ static st_sql shrink(st_sqlite *self, bool *done)
                                             : outcome;
 }
 
-st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done)
+/* The row that is purged next; it goes itself when nothing is left of what it names, or when that
+ * cannot be deleted. */
+static st_sql purge_row(st_sqlite *self, const st_purge_row *row, size_t bytes)
+{
+    bool gone = row->kind == self->stuck.kind && row->key == self->stuck.key;
+    st_sql outcome = ST_SQL_DONE;
+    if (!gone) {
+        self->purging = *row;
+        outcome = row->kind == ST_PURGE_PARTS ? purge_parts(self, row, bytes, &gone)
+                                              : purge_records(self, row, bytes, &gone);
+    }
+    return outcome == ST_SQL_DONE && gone
+               ? st_db_do(&self->db, ST_SQL_PURGE_DELETE, "ii", (int64_t)row->kind, row->key)
+               : outcome;
+}
+
+static st_sql purge_slice(st_sqlite *self, size_t bytes, bool *done)
 {
     st_purge_row row;
-    bool found, gone = false;
-    *done = false;
+    bool found;
     st_sql outcome = next_row(self, &row, &found);
     if (outcome != ST_SQL_DONE) {
         return outcome;
     }
-    if (!found) {
-        return shrink(self, done);
+    return found ? purge_row(self, &row, bytes) : shrink(self, done);
+}
+
+st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done)
+{
+    *done = self->purge_ended;
+    self->purging.kind = 0;
+    st_sql outcome = *done ? ST_SQL_DONE : purge_slice(self, bytes, done);
+    self->purge_damaged = outcome == ST_SQL_DAMAGED;
+    return outcome;
+}
+
+bool st_purge_gives_up(st_sqlite *self)
+{
+    const bool damaged = self->purge_damaged;
+    self->purge_damaged = false;
+    if (damaged && self->purging.kind != 0) {
+        self->stuck = self->purging;
+    } else if (damaged) {
+        self->purge_ended = true;
     }
-    outcome = row.kind == ST_PURGE_PARTS ? purge_parts(self, &row, bytes, &gone)
-                                         : purge_records(self, &row, bytes, &gone);
-    return outcome == ST_SQL_DONE && gone
-               ? st_db_do(&self->db, ST_SQL_PURGE_DELETE, "ii", (int64_t)row.kind, row.key)
-               : outcome;
+    return damaged;
 }

@@ -201,6 +201,9 @@ struct st_sqlite {
     uint64_t log_pages;               /* of the -wal, after the last commit */
     uint64_t log_tried;               /* pages at the last checkpoint that did not write all back */
     bool purged;                      /* nothing is left to be purged */
+    st_purge_row purging, stuck;      /* kind 0: none; stuck: what it names is damaged */
+    bool purge_damaged;               /* so was what the last slice met */
+    bool purge_ended;                 /* what keeps account of it is damaged */
 };
 
 /* --- sqlite_queue.c --- */
@@ -285,6 +288,8 @@ st_sql st_purge_before(st_sqlite *self, int64_t mesh, uint64_t base, bool is_inl
 st_sql st_purge_mesh(st_sqlite *self, int64_t mesh);
 /* Deletes about so many bytes; *done when nothing is left. */
 st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done);
+/* After a transaction that met damage: was it in the slice? Then the next one passes it over. */
+bool st_purge_gives_up(st_sqlite *self);
 /* Deletes contents that were being staged when the process before this one ended. */
 st_sql st_purge_dead_stages(st_sqlite *self);
 
