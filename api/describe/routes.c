@@ -302,8 +302,9 @@ static const api_route routes[] = {
      .response = "material_list",
      .summary = "List the materials",
      .doc = "A face names its material in the attribute `material`; the label \"\" is none. The "
-            "operation `material_set` changes materials. Colours are linear, as in glTF; those "
-            "of an OBJ file's library are taken and written as linear too, as Blender does."},
+            "operations `material_set` and `material_delete` change materials. Colours are linear, "
+            "as in glTF; those of an OBJ file's library are taken and written as linear too, as "
+            "Blender does."},
 
     /* attributes */
     {.method = "GET",

@@ -1,6 +1,7 @@
 /* What deltas did to elements, net: he_changes of delta.h. */
 #include "mesh/delta.h"
 
+#include "mesh/column.h"
 #include "mesh/walk.h"
 
 #include <string.h>
@@ -107,9 +108,6 @@ static he_status note_row(he_changes *out, he_kind kind, uint32_t row, uint32_t 
 static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_column *column,
                                 uint32_t row, he_error *err)
 {
-    if (column == NULL) {
-        return HE_OK; /* it came or went as a whole */
-    }
     if (column->domain == HE_HALFEDGE) {
         out->others |= mesh->c.face[row] == HE_NONE;
         return note_face(out, mesh->c.face[row], err);
@@ -121,10 +119,11 @@ static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_c
     return he_ids_add(&out->modified[column->domain], row, err);
 }
 
-/* One word went from `before` to `after`, net. Rows that died or were born show among the
- * modified too; those are dropped at the end. */
-static he_status note_word(const he_mesh *mesh, he_changes *out, uint32_t column, uint32_t row,
-                           uint32_t before, uint32_t after, he_error *err)
+/* One word, of this attribute where it is one's, went from `before` to `after`, net. Rows that died
+ * or were born show among the modified too; those are dropped at the end. */
+static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
+                           uint32_t column, uint32_t row, uint32_t before, uint32_t after,
+                           he_error *err)
 {
     he_status status = HE_OK;
     switch ((he_col)column) {
@@ -161,7 +160,7 @@ static he_status note_word(const he_mesh *mesh, he_changes *out, uint32_t column
     case HE_COL_ATTRIBUTE:
         break;
     }
-    return note_attribute(mesh, out, mesh->c.columns[column - HE_COL_ATTRIBUTE], row, err);
+    return note_attribute(mesh, out, attribute, row, err);
 }
 
 static bool is_word(const he_record *r)
@@ -169,18 +168,68 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
+/* What became of a slot for columns of attributes. */
+typedef struct attribute_slot {
+    const he_column *before; /* the column that was there first; NULL where none was */
+    bool has_changed;        /* a column came or went */
+    bool is_unknown;         /* what was there first is there again */
+} attribute_slot;
+
+static const char *label_of(const he_column *column, const unsigned char *row, uint32_t i)
+{
+    uint32_t index;
+    memcpy(&index, row + i * sizeof index, sizeof index);
+    return he_labels_get(column->labels, index);
+}
+
+/* Do rows name the same? One column may be NULL, all of whose rows are the default of the other. */
+static bool same_labels(const he_column *a, const he_column *b, size_t row)
+{
+    const he_column *x = a != NULL ? a : b, *y = b != NULL ? b : a;
+    const unsigned char *one = a != NULL ? he_column_value(a, row) : b->fallback;
+    const unsigned char *other = b != NULL ? he_column_value(b, row) : a->fallback;
+    bool same = true;
+    for (uint32_t i = 0; i < x->components && same; i++) {
+        same = strcmp(label_of(x, one, i), label_of(y, other, i)) == 0;
+    }
+    return same;
+}
+
 /* The words of all parts, in the order of their keys and, for one key, in that in which they took
  * effect. */
 typedef struct words {
     word_record *records;
     size_t count;
-    he_ids slots; /* whose column came or went: what was written there shows as a whole */
+    attribute_slot *slots; /* of the columns of attributes */
+    size_t slot_count;
 } words;
+
+/* A record that says that a column came or went. The delta has the column that is not there now.
+ * A slot beyond those of the mesh is one of a content that was replaced. */
+static void note_slot(words *w, const he_change_part *part, const he_record *r)
+{
+    if (r->row >= w->slot_count) {
+        return;
+    }
+    attribute_slot *slot = &w->slots[r->row];
+    bool drops = (r->column == HE_COL_COLUMN_DROPPED) != part->undone;
+    if (!slot->has_changed && drops) {
+        slot->before = part->delta->objects[r->before];
+        slot->is_unknown = slot->before == NULL;
+    }
+    slot->has_changed = true;
+}
+
+/* Does the column that is there now hold what is written to the slot from here on? */
+static bool is_written_later(const words *w, uint32_t slot)
+{
+    return slot < w->slot_count && w->slots[slot].has_changed;
+}
 
 static void words_clear(words *w)
 {
     he_mem_free(w->records);
-    he_ids_clear(&w->slots);
+    he_mem_free(w->slots);
 }
 
 static he_status gather_part(const he_change_part *part, words *w, he_changes *found,
@@ -196,6 +245,9 @@ static he_status gather_part(const he_change_part *part, words *w, he_changes *f
         }
         const he_record *r =
             &part->delta->records[part->undone ? part->to - 1 - (i - part->from) : i];
+        if (r->column >= HE_COL_ATTRIBUTE && is_written_later(w, r->column - HE_COL_ATTRIBUTE)) {
+            continue;
+        }
         if (is_word(r)) {
             w->records[w->count++] = (word_record){key_of(r), part->undone ? r->after : r->before,
                                                    part->undone ? r->before : r->after};
@@ -204,7 +256,7 @@ static he_status gather_part(const he_change_part *part, words *w, he_changes *f
             found->renumbered |= r->row != 0;
         } else if (r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_COLUMN_DROPPED) {
             found->others = true;
-            status = he_ids_add(&w->slots, r->row, err);
+            note_slot(w, part, r);
         } else if (r->column == HE_COL_MATERIAL) {
             found->others = true;
         }
@@ -219,23 +271,82 @@ static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t
     for (size_t i = 0; i < part_count; i++) {
         total += parts[i].to - parts[i].from;
     }
+    w->slot_count = mesh->c.column_count;
+    w->slots = he_mem_zero(w->slot_count + 1, sizeof *w->slots);
     w->records = he_mem_array(NULL, total, sizeof *w->records);
-    if (w->records == NULL) {
+    if (w->records == NULL || w->slots == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %zu changes", total);
     }
     he_status status = HE_OK;
     for (size_t i = 0; i < part_count && status == HE_OK; i++) {
         status = gather_part(&parts[i], w, found, mesh->watch, err);
     }
-    if (status == HE_OK) {
-        status = he_ids_sort(&w->slots, err);
-    }
     return status == HE_OK ? sort_records(&w->records, w->count, mesh->watch, err) : status;
 }
 
-static bool is_of_other_column(const words *w, uint32_t column)
+/* The attribute whose values the words of this column are. NULL for words of the structure, and of
+ * a column without labels that went: it shows as a whole. */
+static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32_t column)
 {
-    return column >= HE_COL_ATTRIBUTE && contains(&w->slots, column - HE_COL_ATTRIBUTE);
+    if (column < HE_COL_ATTRIBUTE) {
+        return NULL;
+    }
+    const attribute_slot *slot = &w->slots[column - HE_COL_ATTRIBUTE];
+    if (!slot->has_changed) {
+        return mesh->c.columns[column - HE_COL_ATTRIBUTE];
+    }
+    return slot->before != NULL && slot->before->labels != NULL ? slot->before : NULL;
+}
+
+/* What came or went, or took the place of another of its name: the rows whose labels say something
+ * else than before. */
+static he_status note_labels(const he_mesh *mesh, he_changes *out, const he_column *before,
+                             const he_column *after, he_error *err)
+{
+    const he_column *any = after != NULL ? after : before;
+    size_t rows = before != NULL ? before->rows : 0;
+    rows = after != NULL && after->rows > rows ? after->rows : rows;
+    he_status status = HE_OK;
+    for (size_t row = 0; row < rows && status == HE_OK; row++) {
+        if (row % HE_WATCH_STRIDE == 0) {
+            status = he_watch_step(mesh->watch, 1, 2, err);
+        }
+        if (status == HE_OK && !same_labels(before, after, row)) {
+            status = note_attribute(mesh, out, any, (uint32_t)row, err);
+        }
+    }
+    return status;
+}
+
+static bool was_there(const words *w, const he_column *column)
+{
+    bool found = false;
+    for (size_t i = 0; i < w->slot_count && !found; i++) {
+        const he_column *before = w->slots[i].before;
+        found = w->slots[i].is_unknown || (before != NULL && before->domain == column->domain &&
+                                           strcmp(before->name, column->name) == 0);
+    }
+    return found;
+}
+
+static he_status note_slots(const he_mesh *mesh, const words *w, he_changes *out, he_error *err)
+{
+    he_status status = HE_OK;
+    for (size_t i = 0; i < w->slot_count && status == HE_OK; i++) {
+        const attribute_slot *slot = &w->slots[i];
+        const he_column *before = slot->before, *after = mesh->c.columns[i];
+        if (before != NULL && before->labels != NULL) {
+            const he_column *is = he_mesh_find_column(mesh, before->domain, before->name);
+            if (is == NULL || (is->labels != NULL && is->components == before->components)) {
+                status = note_labels(mesh, out, before, is, err);
+            }
+        }
+        if (status == HE_OK && slot->has_changed && after != NULL && after->labels != NULL &&
+            !was_there(w, after)) {
+            status = note_labels(mesh, out, NULL, after, err);
+        }
+    }
+    return status;
 }
 
 static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, he_error *err)
@@ -249,8 +360,11 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
             last++;
         }
         uint32_t column = (uint32_t)(records[i].key >> 40), row = (uint32_t)records[i].key;
-        if (records[i].before != records[last].after && !is_of_other_column(w, column)) {
-            status = note_word(mesh, out, column, row, records[i].before, records[last].after, err);
+        const he_column *attribute = attribute_of(mesh, w, column);
+        if (records[i].before != records[last].after &&
+            (column < HE_COL_ATTRIBUTE || attribute != NULL)) {
+            status = note_word(mesh, out, attribute, column, row, records[i].before,
+                               records[last].after, err);
         }
         if (status == HE_OK && noted % HE_WATCH_STRIDE == 0) {
             status = he_watch_step(mesh->watch, count + i, 2 * (uint64_t)count, err);
@@ -325,6 +439,9 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
         goto out;
     }
     status = note_all(mesh, &w, &found, err);
+    if (status == HE_OK) {
+        status = note_slots(mesh, &w, &found, err);
+    }
     for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
         he_kind kind = published[i];
         status = he_watch_step(mesh->watch, 1, 1, err);

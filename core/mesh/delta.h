@@ -135,7 +135,10 @@ typedef struct he_changes {
     bool replaced;   /* the content as a whole: the sets are empty */
     bool renumbered; /* and ids mean other elements than before */
     bool others; /* what no set shows: a column or material came or went, or a value of the mesh,
-                    or a link or value of a half-edge that runs along a hole, differs */
+                    or a link or value of a half-edge that runs along a hole, differs. Where a
+                    column with labels came or went, or took the place of another of its name,
+                    elements are modified whose label says something else than before; where there
+                    was or is none, than the default */
 } he_changes;
 
 /* Records `from`..`to` of `delta`, with `mesh` in the state after `to`, or, when `undone`, before

@@ -2,13 +2,14 @@
 
 #include "edit/whole/material.h"
 
-enum { NAME, RENAME, BASE_COLOR, METALLIC, ROUGHNESS, EMISSION, TWO_SIDED, FACES };
+enum { NAME, RENAME, REPLACE, BASE_COLOR, METALLIC, ROUGHNESS, EMISSION, TWO_SIDED, FACES };
 
 static he_status run_material_set(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     (void)out;
     const he_material_change change = {
         .rename = args[RENAME].given ? args[RENAME].text : NULL,
+        .replace = args[REPLACE].flag,
         .base_color = args[BASE_COLOR].given ? args[BASE_COLOR].color : NULL,
         .opaque_too = args[BASE_COLOR].count == 4,
         .metallic = args[METALLIC].given ? &args[METALLIC].number : NULL,
@@ -21,6 +22,14 @@ static he_status run_material_set(he_mesh *m, const he_arg *args, he_results *ou
     return he_material_set(m, args[NAME].text, &change, err);
 }
 
+enum { DELETED, TO };
+
+static he_status run_material_delete(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    (void)out;
+    return he_material_delete(m, args[DELETED].text, args[TO].given ? args[TO].text : NULL, err);
+}
+
 const he_op he_material_rows[] = {
     {
         .name = "material_set",
@@ -29,11 +38,17 @@ const he_op he_material_rows[] = {
         .params = {[NAME] = {.name = "name",
                              .type = HE_PARAM_TEXT,
                              .flags = HE_REQUIRED,
-                             .doc = "The material; one of this name is made where there is none."},
+                             .doc =
+                                 "The material; one of this name is made where there is none. "
+                                 "With \"\" the faces have none, and nothing else may be given."},
                    [RENAME] = {.name = "rename",
                                .type = HE_PARAM_TEXT,
                                .flags = HE_COSTS_MESH,
                                .doc = "A new name for it, on faces too."},
+                   [REPLACE] = {.name = "replace",
+                                .type = HE_PARAM_FLAG,
+                                .doc = "Begin with what a new one looks like, instead of what this "
+                                       "one was."},
                    [BASE_COLOR] = {.name = "base_color",
                                    .type = HE_PARAM_COLOR,
                                    .flags = HE_OPACITY,
@@ -69,6 +84,21 @@ const he_op he_material_rows[] = {
                      HE_REPEATED_ELEMENT, HE_ATTRIBUTE_CLASH},
         .change = {0, 0, 0},
         .run = run_material_set,
+    },
+    {
+        .name = "material_delete",
+        .doc = "Delete a material. Faces that had it have none, or another one.",
+        .size = HE_OP_LOCAL,
+        .params = {[DELETED] = {.name = "name",
+                                .type = HE_PARAM_TEXT,
+                                .flags = HE_REQUIRED | HE_COSTS_MESH,
+                                .doc = "The material."},
+                   [TO] = {.name = "to",
+                           .type = HE_PARAM_TEXT,
+                           .doc = "The material that faces have instead; none when not given."}},
+        .refusals = {HE_BAD_VALUE, HE_ATTRIBUTE_CLASH},
+        .change = {0, 0, 0},
+        .run = run_material_delete,
     },
     {.name = NULL},
 };

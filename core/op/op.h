@@ -96,7 +96,7 @@ typedef struct he_result_row {
     const char *const *choices; /* ends in NULL */
 } he_result_row;
 
-enum { HE_OP_PARAMS = 8, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
+enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
 
 /* Values of the results, at the index of their row. he_op_run clears and fills them; the caller
  * clears them at last. */

@@ -1,5 +1,10 @@
 #include "model/rows.h"
 
+#include "mesh/column.h"
+#include "mesh/material.h"
+
+#include <string.h>
+
 static const char *const names[] = {"red", "green", "blue", "steel", "glass"};
 enum { NAMES = sizeof names / sizeof *names };
 
@@ -36,7 +41,35 @@ static uint64_t play_material_set(const md_call *c, or_mesh *o, const he_mesh *m
     return refused | (color->given && color->color[0] > 1 ? OR_BIT(HE_BAD_VALUE) : 0);
 }
 
+static bool draw_material_delete(md_draft *d)
+{
+    he_arg *name = &d->c->args[md_index(d->c, "name")], *to = &d->c->args[md_index(d->c, "to")];
+    name->given = true;
+    name->text = names[md_below(d->r, NAMES)];
+    to->given = md_chance(d->r, 50);
+    to->text = names[md_below(d->r, NAMES)];
+    return true;
+}
+
+static bool is_there(const he_mesh *m, const char *name)
+{
+    const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
+    uint32_t index;
+    return he_materials_find(he_mesh_materials(m), name, strlen(name)) != SIZE_MAX ||
+           (column != NULL && he_labels_find(column->labels, name, strlen(name), &index));
+}
+
+static uint64_t play_material_delete(const md_call *c, or_mesh *o, const he_mesh *m)
+{
+    (void)o;
+    const he_arg *name = md_get(c, "name"), *to = md_get(c, "to");
+    bool good = is_there(m, name->text) &&
+                (!to->given || (is_there(m, to->text) && strcmp(name->text, to->text) != 0));
+    return good ? 0 : OR_BIT(HE_BAD_VALUE);
+}
+
 const md_row md_material_rows[] = {
     {"material_set", 0, draw_material_set, play_material_set, NULL, true},
+    {"material_delete", 0, draw_material_delete, play_material_delete, NULL, true},
     {.name = NULL},
 };

@@ -15,20 +15,45 @@ static bool same_point(he_vec3 a, he_vec3 b)
     return memcmp(bits[0], bits[1], sizeof bits[0]) == 0;
 }
 
-/* Values of columns that came or went are in no set: one with other labels is another column. */
+static bool same_bytes(const he_column *a, const he_column *b, uint32_t row)
+{
+    return memcmp(he_column_value(a, row), he_column_value(b, row), a->row_bytes) == 0;
+}
+
+/* What the first component names: of NULL the default of the other. */
+static const char *name_in(const he_column *column, const he_column *other, uint32_t row)
+{
+    const he_column *from = column != NULL ? column : other;
+    uint32_t index;
+    memcpy(&index, column != NULL ? he_column_value(column, row) : other->fallback, sizeof index);
+    return he_labels_get(from->labels, index);
+}
+
+/* Values of columns that came or went are in no set, but for those with labels. */
+static bool same_in(const he_column *a, const he_column *b, uint32_t row)
+{
+    bool labels = (a == NULL || a->labels != NULL) && (b == NULL || b->labels != NULL);
+    if (labels) {
+        return strcmp(name_in(a, b, row), name_in(b, a, row)) == 0;
+    }
+    return a == NULL || b == NULL || a->type != b->type || a->row_bytes != b->row_bytes ||
+           a->labels != NULL || b->labels != NULL || same_bytes(a, b, row);
+}
+
 static bool same_values(const he_mesh *was, const he_mesh *is, he_kind domain, uint32_t row)
 {
-    for (size_t i = 0; i < he_mesh_columns(was); i++) {
+    bool same = true;
+    for (size_t i = 0; i < he_mesh_columns(was) && same; i++) {
         const he_column *a = he_mesh_column(was, i);
-        const he_column *b =
-            a != NULL && a->domain == domain ? he_mesh_find_column(is, domain, a->name) : NULL;
-        if (b != NULL && b->type == a->type && b->row_bytes == a->row_bytes &&
-            he_labels_equal(a->labels, b->labels) &&
-            memcmp(he_column_value(a, row), he_column_value(b, row), a->row_bytes) != 0) {
-            return false;
-        }
+        same = a == NULL || a->domain != domain ||
+               same_in(a, he_mesh_find_column(is, domain, a->name), row);
     }
-    return true;
+    for (size_t i = 0; i < he_mesh_columns(is) && same; i++) {
+        const he_column *b = he_mesh_column(is, i);
+        same = b == NULL || b->domain != domain ||
+               he_mesh_find_column(was, domain, b->name) != NULL || same_in(NULL, b, row);
+    }
+    return same;
 }
 
 static bool same_vertex(const he_mesh *was, const he_mesh *is, he_vertex v)

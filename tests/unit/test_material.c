@@ -52,6 +52,153 @@ static void a_material_is_made_changed_and_given(void **state)
     he_mesh_free(m);
 }
 
+static size_t label_count(const he_mesh *m)
+{
+    return he_labels_count(he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE)->labels);
+}
+
+static void a_material_is_replaced_wholly(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    script_prepare(m,
+                   "material_set name=red base_color=1,0,0,0.5 emission=2,0,0 two_sided=1 face=0;"
+                   "material_set name=red replace=1 base_color=0,0,1 metallic=1");
+    const he_look *look = look_of(m, "red");
+    assert_true(look->base_color[2] == 1 && look->base_color[3] == 1);
+    assert_true(look->metallic == 1 && look->emission[0] == 0 && !look->two_sided);
+    assert_string_equal(name_of(m, 0), "red");
+    he_mesh_free(m);
+}
+
+static void what_had_a_deleted_material_has_none_or_another(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    script_prepare(m, "material_set name=a face=0;material_set name=b faces=1,2;"
+                      "material_set name=c face=3;material_delete name=a");
+    assert_string_equal(name_of(m, 0), "");
+    assert_string_equal(name_of(m, 2), "b");
+    assert_string_equal(name_of(m, 3), "c");
+    assert_int_equal(label_count(m), 3); /* with "" */
+    assert_int_equal(he_materials_count(he_mesh_materials(m)), 2);
+    script_prepare(m, "material_delete name=c to=b");
+    assert_string_equal(name_of(m, 3), "b");
+    assert_int_equal(label_count(m), 2);
+    /* one that no face has yet takes the place, and new faces are as the one they come from */
+    script_prepare(m, "material_set name=d;material_delete name=b to=d;face_poke face=3");
+    assert_string_equal(name_of(m, 1), "d");
+    assert_string_equal(name_of(m, he_mesh_issued(m, HE_FACE) - 1), "d");
+    assert_int_equal(he_materials_count(he_mesh_materials(m)), 1);
+    script_prepare(m, "material_set name= faces=1,2");
+    assert_string_equal(name_of(m, 1), "");
+    assert_string_equal(name_of(m, 3), "d");
+    assert_valid(m);
+    he_mesh_free(m);
+}
+
+/* The default of the attribute may be any label: it goes along when that is deleted. */
+static void a_default_material_is_deleted_like_any(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    he_column *column = NULL;
+    uint32_t index = 0;
+    he_labels *labels = he_labels_new();
+    assert_int_equal(he_labels_add(labels, "oak", 3, &index, NULL), HE_OK);
+    assert_int_equal(he_labels_add(labels, "elm", 3, &index, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(HE_MATERIAL_ATTRIBUTE, HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    memcpy(column->fallback, &index, sizeof index);
+    column->labels = labels;
+    assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_FACE), NULL), HE_OK);
+    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
+    assert_string_equal(name_of(m, 5), "elm");
+    script_prepare(m, "material_delete name=elm");
+    assert_string_equal(name_of(m, 5), ""); /* in the place of elm: there was no "" */
+    script_prepare(m, "material_delete name=oak;vertex_add position=9,9,9");
+    assert_int_equal(label_count(m), 1);
+    assert_string_equal(name_of(m, 5), "");
+    assert_valid(m);
+    he_mesh_free(m);
+}
+
+static void expect_faces(const he_mesh *m, const he_delta *delta, size_t from, bool undone,
+                         const char *faces)
+{
+    he_changes changes;
+    char text[200] = "";
+    assert_int_equal(he_changes_find(m, delta, from, delta->count, undone, &changes, NULL), HE_OK);
+    for (size_t i = 0; i < changes.modified[HE_FACE].count; i++) {
+        size_t length = strlen(text);
+        (void)snprintf(text + length, sizeof text - length, "%s%u", i > 0 ? "," : "",
+                       changes.modified[HE_FACE].ids[i]);
+    }
+    assert_string_equal(text, faces);
+    assert_int_equal(changes.modified[HE_VERTEX].count + changes.modified[HE_EDGE].count, 0);
+    assert_int_equal(changes.created[HE_FACE].count + changes.deleted[HE_FACE].count, 0);
+    assert_false(he_changes_none(&changes));
+    he_changes_clear(&changes);
+}
+
+/* Whether the name is new to the attribute, and the attribute to the mesh, or not. */
+static void faces_whose_material_changes_are_modified(void **state)
+{
+    (void)state;
+    static const char *const steps[][2] = {
+        {"material_set name=red faces=1,3", "1,3"},
+        {"material_set name=blue faces=3,4", "3,4"},
+        {"material_set name=red face=4", "4"},
+        {"material_set name=green;material_set name=red metallic=1", ""},
+        {"material_set name=red rename=rot", "1,4"},
+        {"material_set name=rot rename=a;material_set name=a rename=b faces=0", "0,1,4"},
+        {"material_set name= face=0", "0"},
+        {"material_delete name=green", ""},
+        {"material_delete name=b to=blue", "1,4"},
+        {"material_delete name=blue", "1,3,4"},
+    };
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        he_delta *delta = he_delta_new();
+        he_mesh_record(m, delta);
+        script_prepare(m, steps[i][0]);
+        he_mesh_record(m, NULL);
+        expect_faces(m, delta, 0, false, steps[i][1]);
+        he_delta_undo(delta, m);
+        expect_faces(m, delta, 0, true, steps[i][1]);
+        he_delta_redo(delta, m);
+        expect_faces(m, delta, 0, false, steps[i][1]);
+        he_delta_free(delta);
+    }
+    he_mesh_free(m);
+}
+
+/* Its words are of slots that the content which takes its place has not. */
+static void a_material_set_before_a_compact_is_a_replacement(void **state)
+{
+    (void)state;
+    he_mesh *m = script_mesh(QCUBE, NULL);
+    he_delta *delta = he_delta_new();
+    he_changes changes;
+    script_add_columns(m);
+    script_prepare(m, "material_set name=red face=0");
+    for (size_t i = 0; i + 1 < he_mesh_columns(m); i++) {
+        if (he_mesh_column(m, i) != NULL) {
+            assert_int_equal(he_mesh_drop_column(m, i, NULL), HE_OK);
+        }
+    }
+    he_mesh_record(m, delta);
+    script_prepare(m, "material_set name=red face=1;material_set name=blue face=2;"
+                      "material_set name=blue face=3;compact");
+    he_mesh_record(m, NULL);
+    assert_int_equal(he_mesh_columns(m), 1);
+    assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
+    assert_true(changes.replaced);
+    he_changes_clear(&changes);
+    he_delta_free(delta);
+    he_mesh_free(m);
+}
+
 /* An edit that says what is already so is none. */
 static void what_changes_nothing_is_no_edit(void **state)
 {
@@ -60,7 +207,8 @@ static void what_changes_nothing_is_no_edit(void **state)
     script_prepare(m, "material_set name=red base_color=1,0,0 face=0");
     he_delta *delta = he_delta_new();
     he_mesh_record(m, delta);
-    script_prepare(m, "material_set name=red base_color=1,0,0 face=0;material_set name=red");
+    script_prepare(m, "material_set name=red base_color=1,0,0 face=0;material_set name=red;"
+                      "material_set name= face=3");
     assert_int_equal(delta->count, 0);
     script_prepare(m, "material_set name=red roughness=0.5");
     assert_int_equal(delta->count, 1); /* of a row, whatever the table holds */
@@ -200,6 +348,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_material_is_made_changed_and_given),
+        cmocka_unit_test(a_material_is_replaced_wholly),
+        cmocka_unit_test(what_had_a_deleted_material_has_none_or_another),
+        cmocka_unit_test(a_default_material_is_deleted_like_any),
+        cmocka_unit_test(faces_whose_material_changes_are_modified),
+        cmocka_unit_test(a_material_set_before_a_compact_is_a_replacement),
         cmocka_unit_test(what_changes_nothing_is_no_edit),
         cmocka_unit_test(edits_of_the_whole_keep_the_table_and_faces_theirs),
         cmocka_unit_test(compact_closes_gaps),

@@ -1,5 +1,6 @@
 #include "edit/whole/material.h"
 
+#include "edit/piece/list.h"
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
@@ -34,9 +35,10 @@ static he_status column_with(const he_mesh *m, const he_column *column, he_label
 }
 
 /* The labels of the column (NULL: none) with `from` replaced by `to`, or with `to` appended where
- * `from` is NULL. */
+ * `from` is NULL. A `from` and a `to` that are both there become one label. new_index[i] is what
+ * index i becomes; NULL if nobody asks. */
 static he_status make_labels(const he_column *column, const char *from, const char *to,
-                             he_labels *out, he_error *err)
+                             he_labels *out, uint32_t *new_index, he_error *err)
 {
     he_status status = HE_OK;
     uint32_t index = 0;
@@ -45,6 +47,9 @@ static he_status make_labels(const he_column *column, const char *from, const ch
         const char *text = he_labels_get(column->labels, i);
         text = from != NULL && strcmp(text, from) == 0 ? to : text;
         status = he_labels_add(out, text, strlen(text), &index, err);
+        if (new_index != NULL) {
+            new_index[i] = index;
+        }
     }
     if (count == 0 && status == HE_OK) {
         status = he_labels_add(out, "", 0, &index, err);
@@ -53,16 +58,31 @@ static he_status make_labels(const he_column *column, const char *from, const ch
                                            : status;
 }
 
+static void change_indices(he_column *column, const uint32_t *new_index)
+{
+    uint32_t index = 0;
+    for (size_t row = 0; row < column->rows; row++) {
+        memcpy(&index, he_column_row(column, row), sizeof index);
+        memcpy(he_column_row(column, row), &new_index[index], sizeof index);
+    }
+    memcpy(&index, column->fallback, sizeof index);
+    memcpy(column->fallback, &new_index[index], sizeof index);
+}
+
+/* A column with labels as make_labels() says in the place of this one. */
 static he_status put_labels(he_mesh *m, const he_column *column, const char *from, const char *to,
-                            he_error *err)
+                            uint32_t *new_index, he_error *err)
 {
     he_column *made = NULL;
     he_labels *labels = he_labels_new();
     he_status status = labels == NULL
                            ? he_fail_plain(err, HE_NO_MEMORY, "no memory for names of materials")
-                           : make_labels(column, from, to, labels, err);
+                           : make_labels(column, from, to, labels, new_index, err);
     if (status == HE_OK) {
         status = column_with(m, column, labels, &made, err);
+    }
+    if (status == HE_OK && new_index != NULL) {
+        change_indices(made, new_index);
     }
     if (status == HE_OK) {
         status = he_attribute_put(m, made, err);
@@ -85,7 +105,7 @@ static he_status give(he_mesh *m, const char *name, const he_material_change *ch
     uint32_t index = 0;
     he_status status = find_column(m, &column, err);
     if (status == HE_OK && !has_label(column, name, &index)) {
-        status = put_labels(m, column, NULL, name, err);
+        status = put_labels(m, column, NULL, name, NULL, err);
         if (status == HE_OK) {
             status = find_column(m, &column, err);
         }
@@ -120,7 +140,7 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     if (!named && !has_row) {
         return he_fail_plain(err, HE_BAD_VALUE, "there is no material %.80s to be renamed", name);
     }
-    return named ? put_labels(m, column, name, to, err) : HE_OK;
+    return named ? put_labels(m, column, name, to, NULL, err) : HE_OK;
 }
 
 static void change_look(const he_material_change *change, he_look *look)
@@ -141,7 +161,7 @@ static he_status set_row(he_mesh *m, size_t slot, const char *name,
                          const he_material_change *change, he_error *err)
 {
     const he_material *row = slot == SIZE_MAX ? NULL : m->c.materials.rows[slot];
-    he_look look = row == NULL ? he_plain_look : row->look;
+    he_look look = row == NULL || change->replace ? he_plain_look : row->look;
     he_material *made = NULL;
     change_look(change, &look);
     he_status status = he_material_new(name, strlen(name), &look, &made, err);
@@ -159,9 +179,28 @@ static he_status set_row(he_mesh *m, size_t slot, const char *name,
     return status;
 }
 
+static bool only_gives(const he_material_change *change)
+{
+    return change->faces != NULL && change->rename == NULL && !change->replace &&
+           change->base_color == NULL && change->metallic == NULL && change->roughness == NULL &&
+           change->emission == NULL && change->two_sided == NULL;
+}
+
+/* Faces have none: without an attribute that is so already. */
+static he_status give_none(he_mesh *m, const he_material_change *change, he_error *err)
+{
+    const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
+    return column != NULL ? give(m, "", change, err)
+                          : he_list_require(m, HE_FACE, change->faces, change->face_count,
+                                            HE_REPEATED_ELEMENT, err);
+}
+
 static he_status set_in_bracket(he_mesh *m, const char *name, const he_material_change *change,
                                 he_error *err)
 {
+    if (*name == '\0' && only_gives(change)) {
+        return give_none(m, change, err);
+    }
     size_t slot = he_materials_find(&m->c.materials, name, strlen(name));
     const char *to =
         change->rename != NULL && strcmp(change->rename, name) != 0 ? change->rename : NULL;
@@ -183,4 +222,55 @@ he_status he_material_set(he_mesh *m, const char *name, const he_material_change
     he_status status = he_edit_begin(m, &bracket, err);
     return status == HE_OK ? he_edit_end(m, &bracket, set_in_bracket(m, name, change, err))
                            : status;
+}
+
+static bool has_material(const he_mesh *m, const he_column *column, const char *name)
+{
+    uint32_t index = 0;
+    return *name != '\0' && (he_materials_find(&m->c.materials, name, strlen(name)) != SIZE_MAX ||
+                             has_label(column, name, &index));
+}
+
+static he_status merge_labels(he_mesh *m, const he_column *column, const char *from, const char *to,
+                              he_error *err)
+{
+    uint32_t *new_index = he_mem_array(NULL, he_labels_count(column->labels), sizeof *new_index);
+    he_status status = new_index == NULL
+                           ? he_fail_plain(err, HE_NO_MEMORY, "no memory for names of materials")
+                           : put_labels(m, column, from, to, new_index, err);
+    he_mem_free(new_index);
+    return status;
+}
+
+static he_status delete_in_bracket(he_mesh *m, const char *name, const char *to, he_error *err)
+{
+    const he_column *column = NULL;
+    uint32_t index = 0;
+    he_status status = find_column(m, &column, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    if (!has_material(m, column, name)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\"", name);
+    }
+    if (to != NULL && !has_material(m, column, to)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\" to take its place",
+                             to);
+    }
+    if (to != NULL && strcmp(name, to) == 0) {
+        return he_fail_plain(err, HE_BAD_VALUE, "the material \"%.80s\" cannot take its own place",
+                             to);
+    }
+    if (has_label(column, name, &index)) {
+        status = merge_labels(m, column, name, to != NULL ? to : "", err);
+    }
+    size_t slot = he_materials_find(&m->c.materials, name, strlen(name));
+    return status == HE_OK && slot != SIZE_MAX ? he_mesh_put_material(m, slot, NULL, err) : status;
+}
+
+he_status he_material_delete(he_mesh *m, const char *name, const char *to, he_error *err)
+{
+    he_bracket bracket;
+    he_status status = he_edit_begin(m, &bracket, err);
+    return status == HE_OK ? he_edit_end(m, &bracket, delete_in_bracket(m, name, to, err)) : status;
 }
