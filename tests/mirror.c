@@ -20,6 +20,7 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 static void drop_column(mirror *m, size_t i)
 {
     free(m->columns[i].values);
+    free(m->columns[i].labels);
     m->columns[i] = m->columns[--m->column_count];
 }
 
@@ -180,11 +181,22 @@ static double component(he_type type, const unsigned char *at)
     return 0;
 }
 
+static void add_label(mirror_column *c, const char *label)
+{
+    size_t length = c->labels == NULL ? 0 : strlen(c->labels), room = length + strlen(label) + 2;
+    c->labels = realloc(c->labels, room);
+    assert_non_null(c->labels);
+    (void)snprintf(c->labels + length, room - length, "%s\n", label);
+}
+
 static void take_column(mirror *m, const he_column *from)
 {
     mirror_column *c = add_column(m, from->domain, from->name, from->components);
     c->single = from->type == HE_FLOAT;
     size_t bytes = he_type_bytes(from->type);
+    for (size_t i = 0; from->labels != NULL && i < he_labels_count(from->labels); i++) {
+        add_label(c, he_labels_get(from->labels, i));
+    }
     for (size_t k = 0; k < c->components; k++) {
         c->fallback[k] = component(from->type, from->fallback + k * bytes);
     }
@@ -314,6 +326,25 @@ static he_kind kind_of(const char *plural)
     return HE_KIND_COUNT;
 }
 
+void mirror_add_attribute(mirror *m, const cJSON *attribute)
+{
+    mirror_column *c = add_column(m, kind_of(member(attribute, "domain")->valuestring),
+                                  member(attribute, "name")->valuestring,
+                                  (size_t)member(attribute, "components")->valuedouble);
+    const cJSON *fallback = member(attribute, "default"), *label;
+    c->single = strcmp(member(attribute, "type")->valuestring, "float") == 0;
+    if (c->components == 1) {
+        c->fallback[0] = number_of(fallback);
+    } else {
+        read_numbers(fallback, c->fallback, c->components);
+    }
+    round_numbers(c, c->fallback);
+    cJSON_ArrayForEach(label, cJSON_GetObjectItem(attribute, "labels"))
+    {
+        add_label(c, label->valuestring);
+    }
+}
+
 static void apply_columns(mirror *m, const cJSON *data)
 {
     const cJSON *item;
@@ -326,27 +357,13 @@ static void apply_columns(mirror *m, const cJSON *data)
     }
     cJSON_ArrayForEach(item, cJSON_GetObjectItem(data, "attributes_added"))
     {
-        mirror_column *c = add_column(m, kind_of(member(item, "domain")->valuestring),
-                                      member(item, "name")->valuestring,
-                                      (size_t)member(item, "components")->valuedouble);
-        const cJSON *fallback = member(item, "default");
-        c->single = strcmp(member(item, "type")->valuestring, "float") == 0;
-        if (c->components == 1) {
-            c->fallback[0] = number_of(fallback);
-        } else {
-            read_numbers(fallback, c->fallback, c->components);
-        }
-        round_numbers(c, c->fallback);
+        mirror_add_attribute(m, item);
     }
 }
 
-/* The whole table comes where a row of it changed. */
-static void apply_materials(mirror *m, const cJSON *list)
+void mirror_set_materials(mirror *m, const cJSON *list)
 {
     const cJSON *item;
-    if (list == NULL) {
-        return;
-    }
     free(m->materials);
     m->materials = NULL;
     cJSON_ArrayForEach(item, list)
@@ -421,6 +438,24 @@ static void apply_vertices(mirror *m, const cJSON *list)
     }
 }
 
+void mirror_add_values(mirror *m, he_kind domain, const char *name, const cJSON *page)
+{
+    mirror_column *c = find_column(m, domain, name);
+    const cJSON *id = member(page, "ids")->child, *value = member(page, "values")->child;
+    assert_non_null(c);
+    for (; id != NULL; id = id->next, value = value->next) {
+        double *to = value_of(c, id_of(id));
+        assert_non_null(value);
+        if (c->components == 1) {
+            to[0] = number_of(value);
+        } else {
+            read_numbers(value, to, c->components);
+        }
+        round_numbers(c, to);
+    }
+    assert_null(value);
+}
+
 static void apply_attributes(mirror *m, const cJSON *attributes)
 {
     const cJSON *domain, *list, *row;
@@ -473,7 +508,10 @@ mirror_step mirror_apply(mirror *m, const cJSON *data)
     require_set(m, member(data, "created"), false);
     require_set(m, member(data, "modified"), true);
     apply_columns(m, data);
-    apply_materials(m, cJSON_GetObjectItem(data, "materials"));
+    const cJSON *materials = cJSON_GetObjectItem(data, "materials");
+    if (materials != NULL) { /* the whole table comes where a row of it changed */
+        mirror_set_materials(m, materials);
+    }
     apply_deleted(m, member(data, "deleted"));
     apply_vertices(m, member(values, "vertices"));
     apply_links(m, HE_HALFEDGE, member(values, "halfedges"));
@@ -513,12 +551,17 @@ static bool same_row(const mirror_row *a, const mirror_row *b)
            same_bits(a->position, b->position, 3);
 }
 
+static bool same_text(const char *a, const char *b)
+{
+    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
+}
+
 static bool same_column(const mirror *m, const mirror_column *a, const mirror_column *b,
                         char text[MIRROR_TEXT])
 {
     size_t rows = a->rows > b->rows ? a->rows : b->rows;
-    bool same =
-        a->components == b->components && same_bits(a->fallback, b->fallback, a->components);
+    bool same = a->components == b->components && same_text(a->labels, b->labels) &&
+                same_bits(a->fallback, b->fallback, a->components);
     size_t row = 0;
     for (; same && row < rows; row++) {
         same = !is_live(m, a->domain, row) ||
@@ -547,12 +590,11 @@ bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT])
             }
         }
     }
-    if (a->materials != NULL && b->materials != NULL && strcmp(a->materials, b->materials) != 0) {
-        (void)snprintf(text, MIRROR_TEXT, "materials: %.80s, %.80s", a->materials, b->materials);
+    if (!same_text(a->materials, b->materials)) {
+        (void)snprintf(text, MIRROR_TEXT, "materials: %.80s, %.80s",
+                       a->materials == NULL ? "none" : a->materials,
+                       b->materials == NULL ? "none" : b->materials);
         return false;
-    }
-    if (a->column_count == 0 || b->column_count == 0) {
-        return true;
     }
     bool same = a->column_count == b->column_count;
     (void)snprintf(text, MIRROR_TEXT, "%zu columns, %zu columns", a->column_count, b->column_count);

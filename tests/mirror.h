@@ -28,6 +28,7 @@ typedef struct mirror_column {
     size_t components, rows;
     bool single; /* numbers are floats */
     double fallback[MIRROR_COMPONENTS];
+    char *labels;    /* a line each; NULL where it has none */
     double *values;  /* of rows; beyond them the default */
     size_t capacity; /* rows that there is room for */
 } mirror_column;
@@ -37,7 +38,7 @@ typedef struct mirror {
     mirror_table tables[HE_KIND_COUNT]; /* of vertices, half-edges and faces */
     mirror_column *columns;
     size_t column_count;
-    char *materials; /* the table as text; NULL: nothing was said of it */
+    char *materials; /* the table as text, a line a row; NULL where it is empty */
 } mirror;
 
 void mirror_clear(mirror *m);
@@ -45,6 +46,11 @@ void mirror_clear(mirror *m);
 void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision);
 /* A line of the collection of a kind. */
 void mirror_add_line(mirror *m, he_kind kind, const cJSON *element);
+/* One of GET .../attributes; its values come by pages of GET .../attributes/{domain}/{name}. */
+void mirror_add_attribute(mirror *m, const cJSON *attribute);
+void mirror_add_values(mirror *m, he_kind domain, const char *name, const cJSON *page);
+/* The list of GET .../materials. */
+void mirror_set_materials(mirror *m, const cJSON *list);
 
 typedef enum mirror_step {
     MIRROR_APPLIED,
@@ -55,8 +61,7 @@ typedef enum mirror_step {
 /* The data of an `edit`. Fails the test where the sets contradict the copy. */
 mirror_step mirror_apply(mirror *m, const cJSON *data);
 
-/* Link for link, value for value? `text` names what differs. Columns are not compared when one side
- * has none at all: a dump does not show them. */
+/* Link for link, value for value? `text` names what differs. */
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
 /* The first live element from `from` on, then from the start; HE_NONE when there is none. Edges

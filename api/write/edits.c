@@ -206,27 +206,36 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
     return !e->exceeded;
 }
 
-static size_t count_columns(const he_mesh *mesh, const he_mesh *unless)
+typedef struct attribute_count {
+    size_t columns, labels; /* labels of the one that has most */
+} attribute_count;
+
+static attribute_count count_attributes(const he_mesh *mesh)
 {
-    size_t count = 0;
+    attribute_count count = {0, 0};
     for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
         const he_column *column = he_mesh_column(mesh, i);
-        count += column != NULL && (unless == NULL || he_mesh_find_column(unless, column->domain,
-                                                                          column->name) == NULL);
+        if (column != NULL) {
+            size_t labels = column->labels != NULL ? he_labels_count(column->labels) : 0;
+            count.columns++;
+            count.labels = labels > count.labels ? labels : count.labels;
+        }
     }
     return count;
 }
 
-/* What another mesh brings along counts like what requests add. */
-static bool within_attributes(const he_mesh *mesh, const api_in *in, const api_call *call)
+/* What an operation adds counts like what a request brings: another mesh does, a first material,
+ * corners that a weld keeps apart. */
+static bool within_attributes(attribute_count before, const he_mesh *mesh, const api_in *in)
 {
-    for (size_t i = 0; i < he_op_params(call->op); i++) {
-        const he_mesh *other = call->args[i].mesh;
-        size_t more = other != NULL ? count_columns(other, mesh) : 0;
-        if (more > 0 && count_columns(mesh, NULL) + more > API_MAX_ATTRIBUTES) {
-            return api_in_fail(in, HE_LIMIT, "the mesh would have %zu attributes, over %d",
-                               count_columns(mesh, NULL) + more, (int)API_MAX_ATTRIBUTES);
-        }
+    attribute_count after = count_attributes(mesh);
+    if (after.columns > before.columns && after.columns > API_MAX_ATTRIBUTES) {
+        return api_in_fail(in, HE_LIMIT, "the mesh would have %zu attributes, over %d",
+                           after.columns, (int)API_MAX_ATTRIBUTES);
+    }
+    if (after.labels > before.labels && after.labels > API_MAX_LABELS) {
+        return api_in_fail(in, HE_LIMIT, "an attribute would have %zu labels, over %d",
+                           after.labels, (int)API_MAX_LABELS);
     }
     return true;
 }
@@ -239,9 +248,10 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     he_results results = {0};
     he_error err = {0};
     if (!decode(e, in, mesh, &call) || !within_limits(e, delta, in) ||
-        !within_attributes(mesh, in, &call) || !charge(e, mesh, delta, &call)) {
+        !charge(e, mesh, delta, &call)) {
         return false;
     }
+    attribute_count before = count_attributes(mesh);
     if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
         api_fail_core(x, &err);
         if (e->is_list) {
@@ -249,10 +259,13 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
         }
         return false;
     }
-    api_write_results(&e->out, call.op, &results);
-    api_names_bind(&e->names, &call, &results);
+    bool good = within_attributes(before, mesh, in);
+    if (good) {
+        api_write_results(&e->out, call.op, &results);
+        api_names_bind(&e->names, &call, &results);
+    }
     he_results_clear(&results);
-    return true;
+    return good;
 }
 
 /* A list looks at its watch after so many operations or so much work, which takes a system call. */

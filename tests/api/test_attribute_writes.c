@@ -2,6 +2,7 @@
  * what is large, and how many there may be. */
 #include "tests/api/strip.h"
 
+#include "api/json/text.h"
 #include "api/limits.h"
 
 #include <setjmp.h>
@@ -160,6 +161,45 @@ static void there_is_a_largest_number_of_attributes(void **state)
     bench_free(b);
 }
 
+/* What an edit adds counts too, and an edit that would add too much changes nothing. */
+static void an_edit_adds_no_more_attributes_or_labels(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    strip_send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
+    char target[80];
+    for (int i = 0; i < API_MAX_ATTRIBUTES; i++) {
+        snprintf(target, sizeof target, "/v1/meshes/m/attributes/faces/a%d", i);
+        strip_send(b, 201, "PUT", target, "{\"type\":\"bool\"}");
+    }
+    strip_send(b, 413, "POST", "/v1/meshes/m/edits",
+               "{\"op\":\"material_set\",\"name\":\"red\",\"faces\":[0]}");
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/materials", NULL, NULL));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(r.json, "materials")), 0);
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1 + API_MAX_ATTRIBUTES);
+    bench_reply_free(&r);
+    strip_send(b, 200, "POST", "/v1/meshes/m/edits", "{\"op\":\"material_set\",\"name\":\"red\"}");
+
+    strip_send(b, 201, "POST", "/v1/meshes?id=n", "{\"shape\":\"cube\"}");
+    api_text labels = {.maximum = 2 << 20};
+    api_text_add_string(&labels, "{\"type\":\"uint32\",\"labels\":[\"\"");
+    for (int i = 1; i < API_MAX_LABELS; i++) {
+        api_text_add_format(&labels, ",\"%d\"", i);
+    }
+    api_text_add(&labels, "]}", 3); /* with its NUL */
+    assert_false(labels.failed);
+    strip_send(b, 201, "PUT", "/v1/meshes/n/attributes/faces/material", labels.bytes);
+    strip_send(b, 413, "POST", "/v1/meshes/n/edits",
+               "{\"op\":\"material_set\",\"name\":\"red\",\"faces\":[0]}");
+    strip_send(b, 200, "POST", "/v1/meshes/n/edits",
+               "{\"op\":\"material_set\",\"name\":\"7\",\"faces\":[0]}");
+    strip_send(b, 200, "POST", "/v1/meshes/n/edits",
+               "{\"ops\":[{\"op\":\"material_delete\",\"name\":\"8\"},"
+               "{\"op\":\"material_set\",\"name\":\"red\",\"faces\":[0]}]}");
+    api_text_clear(&labels);
+    bench_free(b);
+}
+
 static void a_page_leads_to_the_next(void **state)
 {
     (void)state;
@@ -192,6 +232,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_undone_says_so),
         cmocka_unit_test(the_history_counts_what_was_written),
         cmocka_unit_test(there_is_a_largest_number_of_attributes),
+        cmocka_unit_test(an_edit_adds_no_more_attributes_or_labels),
         cmocka_unit_test(a_page_leads_to_the_next),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
