@@ -206,6 +206,23 @@ def check_materials(tally, daemon, folder):
     daemon.delete(mesh)
 
 
+EDITS = [{'op': 'weld', 'tolerance': 0}, {'op': 'face_poke', 'face': 3, 'position': [1.25, 0.75, 1]},
+         {'op': 'edge_split', 'edge': 20, 't': 0.25},
+         {'op': 'vertex_move', 'vertex': 2 * (SIDE + 1) + 2, 'by': [0, 0, 0.5]}]
+
+
+def check_edited(tally, daemon, folder, mesh, name):
+    """What assimp reads of an edited mesh is what our OBJ of it says."""
+    status, _ = daemon.send('POST', '/v1/meshes/%s/edits' % mesh,
+                            json.dumps({'ops': EDITS}).encode(), 'application/json')
+    tally.check('edits of ' + name, 200, status)
+    text = export(daemon, mesh, 'obj').decode()
+    kept = corners_of(text, ['uv']) & corners_of(grid(True, False), ['uv'])
+    # all but the four at the vertex that moved
+    tally.check('corners that edits left', (SIDE // 2 * 3) ** 2 - 4, len(kept))
+    check_ours(tally, daemon, folder, mesh, name + '-edited', text, ['uv'])
+
+
 def run(daemon, folder, tally):
     check_materials(tally, daemon, folder)
     for name, normals, colors in (('seams', True, False), ('colors', False, True), ('all', True, True)):
@@ -215,4 +232,5 @@ def run(daemon, folder, tally):
         tally.check('creating ' + name, 201, status)
         check_ours(tally, daemon, folder, answer['id'], name, text, kept)
         check_theirs(tally, daemon, folder, name, text, kept)
+        check_edited(tally, daemon, folder, answer['id'], name)
         daemon.delete(answer['id'])

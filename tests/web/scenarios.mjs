@@ -96,6 +96,9 @@ export const SCENARIOS = [
     ['material_set', GRID, {
         name: 'steel', base_color: '0.5 0.5 0.6', metallic: '1', two_sided: 'yes', face: [MIDDLE],
     }],
+    ['material_delete', GRID, { name: 'steel' }, [
+        { op: 'material_set', name: 'steel', faces: [0] },
+    ]],
     ['delaunay', LONG, { edge: [edge(0, 2)] }],
     ['compact', GRID, {}, HOLE],
     ['vertex_weld', GRID, { vertex: [vertex(5), vertex(6)], position: 'lowest' }],
