@@ -91,8 +91,9 @@ static const api_route routes[] = {
      .response = "created",
      .summary = "Create a mesh",
      .doc = "From a mesh document, a shape, or a file. A file that refers to others, as a .gltf to "
-            "its .bin, comes with them as multipart/form-data, each under the name by which it is "
-            "referred to. A surface that is no mesh is refused; the problem names each offending "
+            "its .bin and an OBJ file to its .mtl, comes with them as multipart/form-data, each "
+            "under the name by which it is referred to. A surface that is no mesh is refused; the "
+            "problem names each offending "
             "element, and the repairs that would let it pass."},
 
     /* one mesh */

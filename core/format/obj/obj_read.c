@@ -461,8 +461,9 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
     const he_beside_file *file = he_beside_find(o->into->beside, name, length);
     if (file == NULL) {
         he_notes_add(&o->into->notes, "library_missing",
-                     "named, and did not come with the file: the material library", name, length,
-                     HE_PLACE_LINE, line);
+                     "not sent with the file (send both as multipart/form-data): "
+                     "the material library",
+                     name, length, HE_PLACE_LINE, line);
         return HE_OK;
     }
     he_error failure = {0};
