@@ -514,9 +514,10 @@ static const api_route routes[] = {
      .response = "history",
      .summary = "History of a mesh",
      .doc =
-         "What each revision did, newest first. `oldest` can still be read and undone to; entries "
-         "before were dropped to keep within the undo budget, `dropped` of them. The steps to undo "
-         "that were taken first go with them; what was undone can be done again until the next "
+         "What each revision did, newest first. `oldest` can still be read; `dropped` entries were "
+         "dropped to keep within the undo budget, of revisions that may still be on the disk. The "
+         "steps to undo that were taken first go with them; what was undone can be done again "
+         "until the next "
          "edit, however full the history is."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/undo",
@@ -592,7 +593,9 @@ static const api_route routes[] = {
      .doc =
          "With what the request would have been answered with, once it has ended: its result or "
          "problem. What is no JSON, or a whole mesh, is fetched by `result_link`. A job that has "
-         "ended is kept for an hour, if there is room."},
+         "ended is kept for an hour, if there is room, also when the server is started again: then "
+         "without an answer of more than 64 KiB, and one that had not ended has failed, with the "
+         "problem `interrupted`: nothing of it was done."},
     {.method = "GET",
      .path = "/v1/jobs/{job}/result",
      .name = "job_result",

@@ -93,6 +93,19 @@ static void render(api_backfill *c, const st_cursor_step *step)
     }
 }
 
+/* What memory has dropped since the last step is looked for anew: the disk may have it. */
+static bool next_step(api_backfill *c, st_cursor_step *step)
+{
+    st_status status = st_cursor_next(c->cursor, step);
+    if (status == ST_GONE) {
+        st_cursor_end(c->cursor);
+        c->cursor = NULL;
+        status = st_cursor_begin(c->mesh, c->info.revision, &c->cursor);
+        status = status == ST_OK ? st_cursor_next(c->cursor, step) : status;
+    }
+    return status == ST_OK;
+}
+
 static bool make_batch(api_backfill *c)
 {
     if (c->cursor == NULL && st_cursor_begin(c->mesh, c->info.revision, &c->cursor) != ST_OK) {
@@ -100,7 +113,7 @@ static bool make_batch(api_backfill *c)
     }
     while (c->info.revision < c->to && c->text.length < BATCH) {
         st_cursor_step step;
-        if (st_cursor_next(c->cursor, &step) != ST_OK) {
+        if (!next_step(c, &step)) {
             return false;
         }
         render(c, &step);

@@ -14,11 +14,18 @@ typedef struct api_job_entry {
     api_job_table *table;
     api_job facts;     /* but for phase and progress until it has ended */
     char *body;        /* facts.body, owned */
-    char *headers;     /* what facts.headers point into, owned */
+    char *texts;       /* what facts.headers point into, and of a job of before the start the
+                          others too; owned */
     api_job_work work; /* self NULL when it has ended */
     st_mesh *about;    /* the mesh whose listeners are told, held; NULL: none, or the job ended */
     st_wait wait;      /* from the end of the work until that is durable */
     bool changed;      /* the work changed something */
+    bool is_kept;      /* the store has a note of it */
+    bool interrupted;  /* it had not ended when the server stopped before */
+    api_job_state end; /* what the work came to, before that shows, */
+    double ended;      /* and when it ended */
+    uint64_t noted;    /* position of the note of its end, 0: none */
+    st_wait accepted;  /* until the note that it was accepted is durable */
     uint32_t uses;     /* by the list, by the pool, by listeners */
     bool listed;
     struct api_job_entry *next, *previous; /* in the order of numbers */
@@ -57,6 +64,19 @@ static inline bool api_job_entry_is_seen(const api_job_entry *job, const api_tok
 /* The facts as they are now. */
 const api_job *api_job_entry_facts(api_job_entry *job);
 void api_job_entry_release(api_job_entry *job);
+
+/* job_keep.c */
+/* The mesh it is about: the one it made, if it made one. */
+const char *api_job_entry_mesh(const api_job *facts);
+/* Notes the job beyond a restart, by its facts, `end` and `ended`. Where nothing is kept *position
+ * is 0. ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY. */
+st_status api_job_keep(api_job_entry *job, uint64_t *position);
+st_status api_job_forget(const api_job_entry *job); /* likewise */
+/* The jobs of before the start; those that had not ended then were interrupted. False without
+ * memory, or where the store cannot be read. */
+bool api_job_restore(api_job_table *table);
+/* Puts the job at the end of the list. */
+void api_job_entry_append(api_job_table *table, api_job_entry *job);
 
 /* job_events.c */
 void api_job_entry_wake(api_job_entry *job);

@@ -15,16 +15,6 @@
 const char *const api_job_header_names[API_JOB_HEADERS] = {"Content-Type", "Content-Disposition",
                                                            "ETag", "Export-Warnings"};
 
-api_job_table *api_job_table_new(const api_job_table_options *options)
-{
-    api_job_table *table = he_mem_zero(1, sizeof *table);
-    if (table != NULL) {
-        table->options = *options;
-        pthread_mutex_init(&table->lock, NULL);
-    }
-    return table;
-}
-
 /* Tells those who listen to the mesh that the job is about: not to one that has its id since. */
 static void tell_listeners(st_mesh *mesh, const api_job *job)
 {
@@ -51,12 +41,12 @@ void api_job_entry_release(api_job_entry *j)
     if (--j->uses == 0) {
         free_work(&j->work);
         he_mem_free(j->body);
-        he_mem_free(j->headers);
+        he_mem_free(j->texts);
         he_mem_free(j);
     }
 }
 
-static void append(api_job_table *table, api_job_entry *j)
+void api_job_entry_append(api_job_table *table, api_job_entry *j)
 {
     j->previous = table->last;
     if (table->last != NULL) {
@@ -69,7 +59,7 @@ static void append(api_job_table *table, api_job_entry *j)
     j->listed = true;
 }
 
-static void forget(api_job_table *table, api_job_entry *j)
+static void take_out(api_job_table *table, api_job_entry *j)
 {
     if (j->previous != NULL) {
         j->previous->next = j->next;
@@ -85,6 +75,12 @@ static void forget(api_job_table *table, api_job_entry *j)
     table->bytes -= j->body == NULL ? 0 : j->facts.length;
     j->listed = false;
     api_job_entry_release(j);
+}
+
+static void forget(api_job_table *table, api_job_entry *j)
+{
+    (void)api_job_forget(j); /* what the journal refuses goes by age */
+    take_out(table, j);
 }
 
 /* The one that ended first; NULL when none has. */
@@ -112,6 +108,22 @@ static void tidy(api_job_table *table, size_t room)
         forget(table, j);
         j = ended_first(table);
     }
+}
+
+api_job_table *api_job_table_new(const api_job_table_options *options)
+{
+    api_job_table *table = he_mem_zero(1, sizeof *table);
+    if (table == NULL) {
+        return NULL;
+    }
+    table->options = *options;
+    pthread_mutex_init(&table->lock, NULL);
+    if (!api_job_restore(table)) {
+        api_job_table_free(table);
+        return NULL;
+    }
+    tidy(table, 0);
+    return table;
 }
 
 api_job_entry *api_job_entry_find(const api_job_table *table, const api_token *viewer,
@@ -151,7 +163,7 @@ static bool keep_headers(api_job_entry *j, const api_job_outcome *outcome)
         length += outcome->headers[i] == NULL ? 0 : strlen(outcome->headers[i]) + 1;
     }
     char *at = length == 0 ? NULL : he_mem_alloc(length);
-    j->headers = at;
+    j->texts = at;
     for (size_t i = 0; i < API_JOB_HEADERS && at != NULL; i++) {
         if (outcome->headers[i] != NULL) {
             size_t bytes = strlen(outcome->headers[i]) + 1;
@@ -188,16 +200,14 @@ static void end(api_job_entry *j)
     pthread_mutex_lock(&table->lock);
     st_mesh *about = j->about;
     j->about = NULL;
-    const char *slash = strrchr(j->facts.location, '/');
-    if (slash != NULL && strlen(slash + 1) <= ST_MESH_ID) {
-        memcpy(j->facts.mesh, slash + 1, strlen(slash + 1) + 1);
+    const char *mesh = api_job_entry_mesh(&j->facts);
+    if (mesh != j->facts.mesh) {
+        memcpy(j->facts.mesh, mesh, strlen(mesh) + 1);
     }
-    j->facts.state = j->facts.status < 400   ? API_JOB_DONE
-                     : atomic_load(&j->stop) ? API_JOB_CANCELLED
-                                             : API_JOB_FAILED;
+    j->facts.state = j->end;
     j->facts.progress = j->facts.state == API_JOB_DONE ? 1 : atomic_load(&j->progress);
     j->facts.phase = atomic_load(&j->phase);
-    j->facts.finished = st_clock_utc();
+    j->facts.finished = j->ended;
     table->bytes += j->facts.length;
     api_job_entry_wake(j);
     api_job facts = j->facts;
@@ -232,24 +242,80 @@ static void answer_lost(api_job_entry *j)
     }
 }
 
+static api_job_entry *waiter(st_wait *wait)
+{
+    return (api_job_entry *)((char *)wait - offsetof(api_job_entry, wait));
+}
+
+static void resume_noted(st_wait *wait)
+{
+    end(waiter(wait));
+}
+
+static bool is_stopped(api_job_table *table)
+{
+    pthread_mutex_lock(&table->lock);
+    bool stopped = table->stopped;
+    pthread_mutex_unlock(&table->lock);
+    return stopped;
+}
+
+static void decide_end(api_job_entry *j)
+{
+    j->end = j->facts.status < 400   ? API_JOB_DONE
+             : atomic_load(&j->stop) ? API_JOB_CANCELLED
+                                     : API_JOB_FAILED;
+    j->noted = 0;
+}
+
+/* Beyond a restart. Of a job that the stop of the server has cancelled nothing more is noted: it
+ * will be found as interrupted. */
+static void note_end(api_job_entry *j)
+{
+    uint64_t position;
+    decide_end(j);
+    if (j->is_kept && !(j->end == API_JOB_CANCELLED && is_stopped(j->table)) &&
+        api_job_keep(j, &position) == ST_OK) {
+        j->noted = position;
+    }
+}
+
+/* What the work did is durable, or will never be, or the server stops. Then the note of the end is
+ * waited for, so that no job that was told to be done is another after a crash. */
 static void resume(st_wait *wait)
 {
-    api_job_entry *j = (api_job_entry *)((char *)wait - offsetof(api_job_entry, wait));
-    if (wait->end != ST_WAIT_DURABLE) {
+    api_job_entry *j = waiter(wait);
+    switch (wait->end) {
+    case ST_WAIT_DURABLE:
+        break;
+    case ST_WAIT_LOST:
         answer_lost(j);
+        note_end(j);
+        break;
+    case ST_WAIT_STOPPED: /* what is noted may yet become durable */
+        answer_lost(j);
+        decide_end(j);
+        break;
     }
-    end(j);
+    const uint64_t position = j->noted;
+    j->wait =
+        (st_wait){.shown = {.position = position, .since = position - 1}, .resume = resume_noted};
+    if (position == 0 || !st_waits_add(st_store_waits(j->table->options.store), &j->wait)) {
+        end(j);
+    }
 }
 
 /* D1: the end is not shown before it is durable. */
 static void end_when_durable(api_job_entry *j, const api_job_outcome *outcome)
 {
     st_waits *waits = st_store_waits(j->table->options.store);
-    j->wait = (st_wait){.shown = outcome->awaits, .resume = resume};
     j->changed = outcome->changed;
+    j->ended = st_clock_utc();
     if (!st_waits_is_durable(waits, &outcome->awaits)) {
         atomic_store(&j->phase, "storing");
     }
+    note_end(j);
+    j->wait = (st_wait){.shown = outcome->awaits, .resume = resume};
     if (!st_waits_add(waits, &j->wait)) {
         resume(&j->wait);
     }
@@ -276,7 +342,7 @@ static void run(void *context)
     }
     tell_listeners(j->about, &facts); /* which only the end lets go */
     api_job_outcome outcome = {.location = ""};
-    j->work.run(j->work.self, tell, j, &outcome);
+    j->work.run(j->work.self, j->facts.id, tell, j, &outcome);
     pthread_mutex_lock(&table->lock);
     keep_outcome(j, &outcome);
     pthread_mutex_unlock(&table->lock);
@@ -317,6 +383,59 @@ static api_job_entry *job_new(api_job_table *table, const api_job_work *work, co
     return j;
 }
 
+static void stop_if_lost(api_job_entry *j)
+{
+    if (j->accepted.end == ST_WAIT_LOST) {
+        atomic_store(&j->stop, true); /* its 202 will not be sent */
+    }
+}
+
+static void resume_accepted(st_wait *wait)
+{
+    api_job_entry *j = (api_job_entry *)((char *)wait - offsetof(api_job_entry, accepted));
+    api_job_table *table = j->table;
+    stop_if_lost(j);
+    pthread_mutex_lock(&table->lock);
+    api_job_entry_release(j);
+    pthread_mutex_unlock(&table->lock);
+}
+
+/* Under the lock. */
+static void watch_note(api_job_entry *j, uint64_t position)
+{
+    st_waits *waits = st_store_waits(j->table->options.store);
+    j->accepted = (st_wait){.shown = {.position = position, .since = position - 1},
+                            .resume = resume_accepted};
+    j->uses++;
+    if (position == 0 || !st_waits_add(waits, &j->accepted)) {
+        stop_if_lost(j);
+        j->uses--;
+    }
+}
+
+/* Under the lock: the job cannot run before that is given back. A disk that takes no more notes is
+ * no reason to refuse what only reads: such a job is not kept beyond a restart, and what writes is
+ * refused when it comes to that. */
+static st_status accept(api_job_table *table, api_job_entry *j, const st_task *task)
+{
+    uint64_t position = 0;
+    if (table->stopped || table->count >= API_JOBS_KEPT) {
+        return ST_TOO_MANY;
+    }
+    j->facts.number = ++table->submitted;
+    st_status status = api_job_keep(j, &position);
+    if (status != ST_OK && status != ST_FULL && status != ST_FAILED) {
+        return status;
+    }
+    api_job_entry_append(table, j);
+    if (!table->options.submit(table->options.pool, task)) {
+        forget(table, j);
+        return ST_TOO_MANY;
+    }
+    watch_note(j, status == ST_OK ? position : 0);
+    return ST_OK;
+}
+
 st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
                          const char *mesh, api_job *out)
 {
@@ -332,26 +451,17 @@ st_status api_job_submit(api_job_table *table, const api_job_work *work, const c
                           .share = ST_SHARE_JOB,
                           .cost = work->seconds,
                           .flow = st_pool_flow("", mesh)};
+    j->about = work->about == NULL ? NULL : st_hold(work->about);
     pthread_mutex_lock(&table->lock);
     tidy(table, 1);
-    bool accepted = !table->stopped && table->count < API_JOBS_KEPT;
-    if (accepted) {
-        j->facts.number = ++table->submitted;
-        *out = *api_job_entry_facts(j);
-        j->about = work->about == NULL ? NULL : st_hold(work->about);
-        append(table, j);
-        /* It cannot run before the lock is given back. */
-        accepted = table->options.submit(table->options.pool, &task);
-        if (!accepted) {
-            forget(table, j);
-        }
-    }
+    const st_status status = accept(table, j, &task);
+    *out = *api_job_entry_facts(j);
     pthread_mutex_unlock(&table->lock);
-    if (!accepted) {
+    if (status != ST_OK) {
         st_release(j->about);
         he_mem_free(j);
     }
-    return accepted ? ST_OK : ST_TOO_MANY;
+    return status;
 }
 
 bool api_job_find(api_job_table *table, const api_token *viewer, const char *id,
@@ -422,14 +532,20 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
         j->work.self = NULL;
         j->about = NULL;
         j->facts.state = API_JOB_CANCELLED;
-        j->facts.finished = st_clock_utc();
+        j->facts.finished = j->ended = st_clock_utc();
+        j->end = API_JOB_CANCELLED;
+        if (j->is_kept && !j->table->stopped) {
+            uint64_t position;
+            (void)api_job_keep(j, &position); /* else it is found as interrupted */
+        }
         api_job_entry_wake(j);
     }
     return work;
 }
 
-bool api_job_remove(api_job_table *table, const api_token *viewer, const char *id, bool *forgotten,
-                    void (*show)(void *context, const api_job *job), void *context)
+st_status api_job_remove(api_job_table *table, const api_token *viewer, const char *id,
+                         bool *forgotten, void (*show)(void *context, const api_job *job),
+                         void *context)
 {
     api_job_work over = {.self = NULL};
     st_mesh *about = NULL;
@@ -437,15 +553,17 @@ bool api_job_remove(api_job_table *table, const api_token *viewer, const char *i
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
     api_job_entry *j = api_job_entry_find(table, viewer, id);
-    if (j != NULL) {
-        *forgotten = api_job_entry_facts(j)->state >= API_JOB_DONE;
-        if (*forgotten) {
-            forget(table, j);
-        } else {
-            over = cancel(j, &about);
-            facts = *api_job_entry_facts(j);
-            show(context, &facts);
+    st_status status = j == NULL ? ST_ABSENT : ST_OK;
+    *forgotten = j != NULL && api_job_entry_has_ended(j);
+    if (*forgotten) {
+        status = api_job_forget(j);
+        if (status == ST_OK) {
+            take_out(table, j);
         }
+    } else if (j != NULL) {
+        over = cancel(j, &about);
+        facts = *api_job_entry_facts(j);
+        show(context, &facts);
     }
     pthread_mutex_unlock(&table->lock);
     if (over.self != NULL) {
@@ -453,7 +571,7 @@ bool api_job_remove(api_job_table *table, const api_token *viewer, const char *i
         tell_listeners(about, &facts);
         st_release(about);
     }
-    return j != NULL;
+    return status;
 }
 
 /* What is left of some job that waited; NULL when none does. */
@@ -482,7 +600,7 @@ void api_job_table_free(api_job_table *table)
 {
     if (table != NULL) {
         while (table->first != NULL) {
-            forget(table, table->first);
+            take_out(table, table->first);
         }
         pthread_mutex_destroy(&table->lock);
         he_mem_free(table);

@@ -9,9 +9,10 @@
  *
  * A job runs on the pool it shares with requests that are merely long. What it would have answered
  * is kept for a while, within API_JOBS_KEPT jobs and API_JOBS_BYTES of answers: the ones that ended
- * first go first. Everything else of it is freed before it shows its end, and the end shows only
- * when it is durable. An answer may be a file of many megabytes: it is handed over and lent to
- * readers, not copied.
+ * first go first. The store keeps a note of it, so that a restart forgets no job: one that had not
+ * ended has failed then, as interrupted. Everything else of it is freed before it shows its end,
+ * and the end shows only when it is durable. An answer may be a file of many megabytes: it is
+ * handed over and lent to readers, not copied.
  *
  * One lock, held for as long as it takes to copy an answer. Progress goes past it. It is taken by
  * threads that hold a mesh's lock, when progress has come far enough for listeners: so no mesh's
@@ -28,10 +29,10 @@
 typedef struct api_job_table api_job_table;
 
 enum {
-    API_JOBS_KEPT = 1000,      /* jobs, those that wait and run included */
-    API_JOBS_BYTES = 64 << 20, /* of answers */
-    API_JOB_SECONDS = 3600,    /* how long one that has ended is kept */
-    API_JOB_LISTENERS = 1000   /* clients that listen to jobs */
+    API_JOBS_KEPT = 1000,             /* jobs, those that wait and run included */
+    API_JOBS_BYTES = 64 << 20,        /* of answers */
+    API_JOB_SECONDS = ST_JOB_SECONDS, /* how long one that has ended is kept */
+    API_JOB_LISTENERS = 1000          /* clients that listen to jobs */
 };
 
 typedef struct api_job_table_options {
@@ -42,9 +43,9 @@ typedef struct api_job_table_options {
     double keep; /* seconds */
 } api_job_table_options;
 
-/* NULL when memory is out. */
+/* With the jobs that the store has kept. NULL when memory is out, or they cannot be read. */
 api_job_table *api_job_table_new(const api_job_table_options *options);
-/* Nothing may run or wait in the pool any more. */
+/* Nothing may run, or wait in the pool or for the journal, any more. */
 void api_job_table_free(api_job_table *table);
 /* Cancels everything, and takes nothing more. */
 void api_job_table_stop(api_job_table *table);
@@ -64,10 +65,12 @@ typedef struct api_job_outcome {
 /* Called with the phase and how much of it is done, 0 to 1; false: the work is to end. */
 typedef bool api_job_progress(void *context, const char *phase, double done);
 
-/* Work as the table sees it: `run` is called once at most, by one thread, `free` always. */
+/* Work as the table sees it: `run` is called once at most, by one thread, `free` always. The id is
+ * the job's, and lives until `free`. */
 typedef struct api_job_work {
     void *self;
-    void (*run)(void *self, api_job_progress *progress, void *context, api_job_outcome *out);
+    void (*run)(void *self, const char *id, api_job_progress *progress, void *context,
+                api_job_outcome *out);
     void (*free)(void *self);
     double seconds;     /* about how long it takes */
     st_mesh *about;     /* whose listeners are told, held by the work; NULL: none */
@@ -76,7 +79,8 @@ typedef struct api_job_work {
 } api_job_work;
 
 /* Takes `work` and fills in what is known of the job; or ST_TOO_MANY when too many wait,
- * ST_NO_MEMORY. `operation` is a literal, `mesh` the id of the mesh the job is about or "". */
+ * ST_BEHIND, ST_NO_MEMORY. `operation` is a literal, `mesh` the id of the mesh the job is about or
+ * "". */
 st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
                          const char *mesh, api_job *out);
 
@@ -97,9 +101,11 @@ void api_job_return(api_job_loan *loan);
 bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after, size_t limit,
                   void (*show)(void *context, const api_job *job), void *context);
 /* A job that has not ended is told to end, and show is called; one that has ended is forgotten, and
- * `*forgotten` set. False when there is none of this id. */
-bool api_job_remove(api_job_table *table, const api_token *viewer, const char *id, bool *forgotten,
-                    void (*show)(void *context, const api_job *job), void *context);
+ * `*forgotten` set. ST_ABSENT; where the store cannot forget it ST_BEHIND, ST_FULL, ST_FAILED,
+ * ST_NO_MEMORY. */
+st_status api_job_remove(api_job_table *table, const api_token *viewer, const char *id,
+                         bool *forgotten, void (*show)(void *context, const api_job *job),
+                         void *context);
 /* What becomes of a job, as events: whenever there is news, and `bye` after the last, or when the
  * server stops. ST_ABSENT, ST_LISTENERS, ST_NO_MEMORY. The caller frees the source. */
 st_status api_job_follow(api_job_table *table, const api_token *viewer, const char *id,

@@ -196,6 +196,9 @@
     X(STORE_FAILED, "store_failed", 503, "The disk failed",                                        \
       "A write or a sync of the disk failed. The change was not made, or is lost. Reads go on, "   \
       "but no change is taken until the server is started again.")                                 \
+    X(INTERRUPTED, "interrupted", 503, "The server stopped before the job had ended",              \
+      "Of a job alone: it was accepted, and waited or ran when the server stopped or was killed. " \
+      "Nothing of it was done, and nothing was changed; send the request again.")                  \
     X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \
       "HTTP/1.1 and HTTP/1.0 are. The connection is closed.")                                      \
     X(STORE_FULL, "store_full", 507, "The disk is full",                                           \

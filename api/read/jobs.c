@@ -86,8 +86,13 @@ void api_job_delete(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;
     bool forgotten = false;
-    if (jobs == NULL || !api_job_remove(jobs, x->token, x->job_id, &forgotten, show_whole, x)) {
+    const st_status status =
+        jobs == NULL ? ST_ABSENT
+                     : api_job_remove(jobs, x->token, x->job_id, &forgotten, show_whole, x);
+    if (status == ST_ABSENT) {
         fail_absent(x);
+    } else if (status != ST_OK) {
+        api_fail_store(x, status);
     } else if (forgotten) {
         api_answer_empty(x, 204);
     } else {

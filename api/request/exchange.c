@@ -247,7 +247,7 @@ bool api_write_begin(api_exchange *x, const api_in *expected)
 {
     uint64_t revision = 0;
     if (!read_expected(expected, &revision) ||
-        !write_began(x, st_write_begin(x->mesh, x->keyed, &x->write))) {
+        !write_began(x, st_write_begin(x->mesh, &(st_cause){x->keyed, x->own_job}, &x->write))) {
         return false;
     }
     if (api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
@@ -261,7 +261,7 @@ bool api_write_claim(api_exchange *x, const api_in *expected)
 {
     uint64_t revision = 0;
     return read_expected(expected, &revision) &&
-           write_began(x, st_write_claim(x->mesh, x->keyed, &x->write)) &&
+           write_began(x, st_write_claim(x->mesh, &(st_cause){x->keyed, x->own_job}, &x->write)) &&
            /* They hold until the claim ends: no other write can change the mesh. */
            api_preconditions_hold(x, expected == NULL ? NULL : &revision);
 }

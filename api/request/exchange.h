@@ -78,6 +78,8 @@ struct api_exchange {
     const char *key;       /* Idempotency-Key, NULL without one or where the row takes none */
     he_siphash hash;       /* of a keyed request */
     st_keyed *keyed;       /* the request with its key; NULL: none, or it was settled */
+    uint64_t noted;        /* position of the note that the answer waits for; 0: none */
+    const char *own_job;   /* the job that this is the work of; NULL: none */
     api_coding coding_in;  /* of the body */
     api_codings codings;   /* the answer may have */
 

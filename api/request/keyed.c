@@ -120,6 +120,15 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
     return "";
 }
 
+/* No record tells of the request: it is noted by itself, and the answer waits for that. */
+static void note_unchanged(api_exchange *x, st_kept *kept)
+{
+    st_keyed_note(x->store, x->keyed, &x->info, &x->noted);
+    if (x->noted != 0) {
+        kept->position = x->noted;
+    }
+}
+
 void api_keyed_settle(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
@@ -138,6 +147,9 @@ void api_keyed_settle(api_exchange *x)
             memcpy(kept.etag, etag, strlen(etag) + 1);
         }
         memcpy(kept.id, x->info.id, sizeof kept.id);
+        if (!kept.changed && x->has_info) {
+            note_unchanged(x, &kept);
+        }
         st_keyed_keep(x->keyed, &kept);
     }
     st_keyed_end(x->keyed);

@@ -12,7 +12,8 @@ st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mes
     const char *prefix =
         x->token == NULL || x->token->prefix_count == 0 ? "" : x->token->prefixes[0];
     if (id != NULL || prefix[0] == '\0') {
-        return st_create_from(x->store, id, name, content, x->keyed, from, out);
+        return st_create_from(x->store, id, name, content, &(st_cause){x->keyed, x->own_job}, from,
+                              out);
     }
     char made[API_TOKEN_PREFIX + RANDOM + 1];
     size_t length = strlen(prefix);
@@ -20,7 +21,8 @@ st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mes
     memcpy(made, prefix, length);
     do {
         st_random_id(made + length, RANDOM);
-        status = st_create_from(x->store, made, name, content, x->keyed, from, out);
+        status = st_create_from(x->store, made, name, content, &(st_cause){x->keyed, x->own_job},
+                                from, out);
     } while (status == ST_TAKEN);
     return status;
 }

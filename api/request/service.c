@@ -164,7 +164,9 @@ static st_shown shown(const api_exchange *x)
         return (st_shown){.position = 0};
     }
     if (x->has_info && !x->shows_all) {
-        return st_shown_of(&x->info);
+        st_shown one = st_shown_of(&x->info);
+        one.position = x->noted > one.position ? x->noted : one.position;
+        return one;
     }
     /* What a write read of other meshes came before it: what is lost later is not in its answer. */
     if (x->published != 0 && x->has_info && x->info.position != 0) {
@@ -198,9 +200,9 @@ static api_step finish(api_exchange *x)
     } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
+    api_keyed_settle(x); /* which may add to what the answer waits for */
     x->answer.shown = shown(x);
     x->answer.changed = x->published != 0;
-    api_keyed_settle(x);
     if (x->phase != API_PHASE_JOB) {
         api_coded_answer(x); /* what is kept of the answer, here or of a job, is plain */
     }
@@ -352,9 +354,11 @@ static char *take_bytes(api_exchange *x)
 }
 
 /* The exchange as the table of jobs works on it. */
-static void run_job(void *self, api_job_progress *progress, void *context, api_job_outcome *out)
+static void run_job(void *self, const char *id, api_job_progress *progress, void *context,
+                    api_job_outcome *out)
 {
     api_exchange *x = self;
+    x->own_job = id;
     api_watch(x, progress, context);
     api_work(x);
     const api_answer *answer = api_answer_of(x);

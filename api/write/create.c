@@ -131,7 +131,8 @@ static bool replace_damaged(api_exchange *x, const made *m)
     }
     st_copy_text(name, api_upload_name(x) != NULL ? api_upload_name(x) : x->info.name,
                  ST_MESH_NAME);
-    st_status status = st_create_over(x->store, x->mesh, name, m->mesh, x->keyed, &fresh);
+    st_status status =
+        st_create_over(x->store, x->mesh, name, m->mesh, &(st_cause){x->keyed, x->own_job}, &fresh);
     if (status == ST_OK) {
         st_release(x->mesh);
         x->mesh = fresh;

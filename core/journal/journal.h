@@ -95,10 +95,20 @@ typedef struct st_health {
     char reason[ST_HEALTH_TEXT]; /* of ST_FAILED: what the system said, "" where it said nothing */
 } st_health;
 
+/* Takes a job, which is borrowed for the call. False without memory. */
+typedef bool st_take_job(void *context, const st_job *job);
+
+/* One of three, borrowed for the call. */
+typedef struct st_note {
+    const st_job *job;       /* how it is */
+    const char *forgotten;   /* a job that is kept no longer */
+    const st_kept_key *kept; /* of a request that changed nothing */
+} st_note;
+
 typedef struct st_journal {
     void *self;
     /* Is what is appended kept beyond memory? Without it a room is NULL, so that nothing is coded,
-     * and the functions from `stage` to `begun` are NULL. */
+     * and the functions from `note` to `begun` are NULL. */
     bool keeps;
     /* Two random words, which are kept with the store: what is remembered of requests is hashed
      * with them. */
@@ -112,6 +122,11 @@ typedef struct st_journal {
      * together or not at all. They get positions without a gap; returns the last one's. Neither
      * fails nor waits. */
     uint64_t (*append)(void *self, st_room *room, const st_record *records, size_t count);
+
+    /* Keeps a note, which has a position like a record: it is durable or lost with that. Never
+     * waits. Of a forgotten job it is taken like a removal. ST_BEHIND, ST_FULL, ST_FAILED,
+     * ST_NO_MEMORY. */
+    st_status (*note)(void *self, const st_note *note, uint64_t *position);
 
     /* Brings a large content to the disk before it is published. Waits: only on a thread that may,
      * without a lock, the content private or a snapshot's. ST_FULL, ST_FAILED, ST_BEHIND,
@@ -141,6 +156,9 @@ typedef struct st_journal {
     /* Gives the keys of the last day that durable records of a mesh carry (`id` NULL: those that
      * made a mesh), the oldest first; waits for the disk. ST_FAILED, ST_NO_MEMORY. */
     st_status (*keys)(void *self, const char *id, st_take_key *take, void *context);
+    /* Gives the jobs that durable notes left, in the order of their numbers; waits for the disk.
+     * ST_FAILED, ST_NO_MEMORY. */
+    st_status (*jobs)(void *self, st_take_job *take, void *context);
     /* How many meshes there are, with what is queued. Never waits. */
     uint64_t (*count)(void *self);
     /* How the disk is. Never waits. */

@@ -2,7 +2,8 @@
  *
  * A RECORD is one change of one mesh: a revision, a rename or the removal. A CARD is what is known
  * of a mesh without its content. A PIECE is one step of loading a mesh: first its base, a whole
- * content in parts, then the records after it in their order.
+ * content in parts, then the records after it in their order. A NOTE is kept beside the records: a
+ * job, or the key of a request that changed nothing.
  *
  * Bodies and contents are bytes as core/stored writes them; the journal looks into neither. */
 #ifndef HE_JOURNAL_RECORD_H
@@ -48,12 +49,43 @@ typedef struct st_record_key {
     bool of_store;      /* the key is the store's: the change made the mesh */
 } st_record_key;
 
+/* How long a key is kept, and how many of a mesh or of the store: the oldest go first. */
+enum { ST_KEPT_SECONDS = 24 * 3600, ST_KEPT_KEYS = 16384 };
+
 /* A key that is kept, and the state that the answer to its request had. */
 typedef struct st_kept_key {
     st_record_key key;
     const char *id; /* of the mesh */
     uint64_t incarnation, revision, metadata;
 } st_kept_key;
+
+/* How a job is kept. The numbers are written down and keep their meaning for ever. */
+typedef enum st_job_state {
+    ST_JOB_ACCEPTED =
+        1, /* it waits or runs; after a restart: it never ended, and changed nothing */
+    ST_JOB_DONE = 2,
+    ST_JOB_FAILED = 3,
+    ST_JOB_CANCELLED = 4
+} st_job_state;
+
+enum { ST_JOB_TYPE, ST_JOB_DISPOSITION, ST_JOB_TAG, ST_JOB_WARNINGS, ST_JOB_HEADERS };
+enum { ST_JOB_SECONDS = 3600 }; /* that one which has ended is kept */
+
+/* A job: a request that outlives its connection. Texts are never NULL, "" where there is none. */
+typedef struct st_job {
+    char id[ST_JOB_ID + 1];
+    uint64_t number; /* in the order of submission, from 1 */
+    st_job_state state;
+    const char *operation, *phase, *mesh, *location;
+    const char *holder;                  /* name of the token that it belongs to */
+    double progress;                     /* 0 to 1 */
+    double created, started, finished;   /* seconds since 1970 UTC; 0: not yet */
+    int status;                          /* HTTP, of its answer; 0: there is none */
+    bool shown;                          /* the body is told with the job */
+    const char *headers[ST_JOB_HEADERS]; /* of the answer */
+    const void *body;                    /* NULL: none is kept */
+    size_t length;
+} st_job;
 
 /* Live elements and boundary half-edges. */
 typedef struct st_counts {
@@ -83,6 +115,7 @@ typedef struct st_record {
     st_counts counts;               /* after its group */
     uint64_t bytes;                 /* that the content takes in memory then */
     const st_record_key *key;       /* NULL without one */
+    const char *job;                /* whose work it is, NULL for none: the job is done with it */
     const unsigned char *body;      /* within the room's bytes; NULL where nothing is kept */
     size_t body_size;
     st_stage *stage; /* instead of a body, taken with the record; else NULL */

@@ -29,7 +29,7 @@ static bool is_full(const st_store *store)
 }
 
 /* A thread that finds the mesh, or the id taken, finds its first record appended. */
-static st_status publish(st_store *store, st_mesh *mesh, const st_keyed *keyed, st_booking *booking)
+static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
     pthread_rwlock_wrlock(&store->lock);
     bool found;
@@ -39,7 +39,7 @@ static st_status publish(st_store *store, st_mesh *mesh, const st_keyed *keyed, 
                                         : st_table_insert(store, mesh);
     if (status == ST_OK) {
         st_hold(mesh);
-        st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, keyed);
+        st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, cause);
         const st_change change = {.action = ST_REPLACE, .content = mesh->content};
         st_mesh_publish(
             mesh,
@@ -75,7 +75,7 @@ static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
 }
 
 static st_status make(st_store *store, const char *id, const char *name, he_mesh *content,
-                      const st_keyed *keyed, const st_shown *from, st_mesh **out)
+                      const st_cause *cause, const st_shown *from, st_mesh **out)
 {
     st_booking booking = {NULL};
     st_mesh *mesh;
@@ -83,7 +83,7 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
     if (status == ST_OK) {
         /* What is lost from here on takes the place that was booked with it. */
         const bool lost = from != NULL && st_waits_is_lost(store->followers.waits, from);
-        status = lost ? ST_LOST : publish(store, mesh, keyed, &booking);
+        status = lost ? ST_LOST : publish(store, mesh, cause, &booking);
         if (status == ST_OK) {
             *out = mesh;
         } else {
@@ -94,12 +94,12 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
 }
 
 static st_status create_as(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_keyed *keyed, const st_shown *from, st_mesh **out)
+                           const st_cause *cause, const st_shown *from, st_mesh **out)
 {
     st_lookup *lookup;
     st_status status = st_lookup_free_id(store, id, &lookup);
     if (status == ST_OK) {
-        status = make(store, id, name, content, keyed, from, out);
+        status = make(store, id, name, content, cause, from, out);
         if (status == ST_OK && store->journal.keeps) {
             st_mesh_use(*out);
         }
@@ -117,33 +117,33 @@ static bool has_room(st_store *store)
 }
 
 st_status st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                         const st_keyed *keyed, const st_shown *from, st_mesh **out)
+                         const st_cause *cause, const st_shown *from, st_mesh **out)
 {
     if (!has_room(store)) {
         return ST_BUDGET;
     }
     if (id != NULL) {
-        return create_as(store, id, name, content, keyed, from, out);
+        return create_as(store, id, name, content, cause, from, out);
     }
     st_status status;
     do {
         char made[ID_LENGTH + 1];
         st_random_id(made, ID_LENGTH);
-        status = create_as(store, made, name, content, keyed, from, out);
+        status = create_as(store, made, name, content, cause, from, out);
     } while (status == ST_TAKEN);
     return status;
 }
 
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
-                    const st_keyed *keyed, st_mesh **out)
+                    const st_cause *cause, st_mesh **out)
 {
-    return st_create_from(store, id, name, content, keyed, NULL, out);
+    return st_create_from(store, id, name, content, cause, NULL, out);
 }
 
 /* --- over a damaged mesh --- */
 
 /* Under the exclusive lock of the old one: one group of records, the removal first. */
-static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st_keyed *keyed,
+static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st_cause *cause,
                          st_booking *booking)
 {
     const st_journal *journal = &store->journal;
@@ -155,7 +155,7 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     store->meshes[place] = st_hold(fresh);
     old->info.removed = true;
     st_record records[2] = {st_mesh_record(old, ST_RECORD_REMOVE, NULL),
-                            st_mesh_record(fresh, ST_RECORD_CONTENT, keyed)};
+                            st_mesh_record(fresh, ST_RECORD_CONTENT, cause)};
     st_booking_fill(booking, &records[1]);
     uint64_t position = journal->append(journal->self, booking->room, records, 2);
     *booking = (st_booking){NULL};
@@ -167,7 +167,7 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
 }
 
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
-                         const st_keyed *keyed, st_mesh **out)
+                         const st_cause *cause, st_mesh **out)
 {
     st_booking booking = {NULL};
     st_mesh *fresh;
@@ -179,7 +179,7 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
     pthread_rwlock_wrlock(&damaged->lock);
     bool there = !damaged->info.removed;
     if (there) {
-        publish_over(store, damaged, fresh, keyed, &booking);
+        publish_over(store, damaged, fresh, cause, &booking);
     }
     pthread_rwlock_unlock(&damaged->lock);
     if (!there) {

@@ -52,7 +52,7 @@ static bool is_cold(st_store *store, st_mesh *mesh)
 
 static uint64_t bytes_of(const st_mesh *mesh)
 {
-    return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes;
+    return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes + mesh->keys.bytes;
 }
 
 /* The age from which on meshes go, so that about `bytes` come free. */

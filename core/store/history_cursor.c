@@ -1,5 +1,6 @@
 #include "store/history_cursor.h"
 
+#include "store/mesh_load.h"
 #include "store/stored_mesh.h"
 #include "system/memory.h"
 
@@ -69,19 +70,32 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
     return status;
 }
 
+/* What memory has dropped the records on the disk may still tell: a mesh of its own is loaded with
+ * all of its history. */
+static st_status begin_on_disk(st_cursor *cursor, st_mesh *mesh, uint64_t revision)
+{
+    st_status status = st_mesh_load_apart(mesh, 0, &cursor->mesh);
+    return status == ST_OK ? st_replay_to(cursor->mesh, &cursor->replay, &cursor->at, revision)
+                           : status;
+}
+
 st_status st_cursor_begin(st_mesh *mesh, uint64_t revision, st_cursor **out)
 {
     st_cursor *cursor = he_mem_zero(1, sizeof *cursor);
     if (cursor == NULL) {
         return ST_NO_MEMORY;
     }
+    cursor->mesh = st_hold(mesh);
     st_status status = st_replay_to(mesh, &cursor->replay, &cursor->at, revision);
+    if (status == ST_GONE && revision > 0) {
+        cursor->mesh = NULL;
+        status = begin_on_disk(cursor, mesh, revision);
+        st_release(mesh);
+    }
     if (status != ST_OK) {
-        he_mem_free(cursor);
+        st_cursor_end(cursor);
         return status;
     }
-    cursor->mesh = mesh;
-    st_hold(mesh);
     *out = cursor;
     return ST_OK;
 }

@@ -1,8 +1,8 @@
 /* history_cursor.h - following a mesh through its history, one revision after the other.
  *
- * A cursor owns a copy of the mesh at a revision that the history still reaches, and brings it
- * forward on demand: after each step the copy is the mesh as that revision left it, links,
- * attributes and high-water marks included, whatever the mesh has become since.
+ * A cursor owns a copy of the mesh at a revision that the history still reaches, in memory or on
+ * the disk, and brings it forward on demand: after each step the copy is the mesh as that revision
+ * left it, links, attributes and high-water marks included, whatever the mesh has become since.
  *
  *     st_cursor *cursor;
  *     st_cursor_begin(mesh, 41, &cursor);
@@ -29,8 +29,9 @@ typedef struct st_cursor_step {
     const he_mesh *content;
 } st_cursor_step;
 
-/* Keeps a use of the mesh. ST_AHEAD when there is no such revision yet, ST_GONE when
- * the history does not reach back to it, ST_NO_MEMORY, ST_BUDGET. */
+/* Keeps a use of the mesh; may load it once more from the disk. ST_AHEAD when there is no such
+ * revision yet, ST_GONE when the history does not reach back to it, ST_NO_MEMORY, ST_BUDGET,
+ * ST_FAILED. */
 st_status st_cursor_begin(st_mesh *mesh, uint64_t revision, st_cursor **out);
 /* Where it is, before the first step too. */
 const he_mesh *st_cursor_content(const st_cursor *cursor);

@@ -21,10 +21,8 @@
 #include <pthread.h>
 
 enum {
-    ST_KEPT_KEYS = 16384,     /* answers of one table; the oldest go first */
     ST_KEPT_BYTES = 16 << 20, /* of one table, entries and bodies */
-    ST_KEPT_BODY = 4 << 20,   /* of one answer */
-    ST_KEPT_SECONDS = 24 * 3600
+    ST_KEPT_BODY = 4 << 20    /* of one answer */
 };
 
 typedef struct st_keys {

@@ -46,7 +46,7 @@ static void commit_edit(st_write *w, const char *ops)
     } else {
         st_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content, &tally);
     }
-    st_record record = st_mesh_record(mesh, ST_RECORD_EDIT, w->keyed);
+    st_record record = st_mesh_record(mesh, ST_RECORD_EDIT, &w->cause);
     st_change change = {.action = ST_REPLACE, .content = mesh->content};
     if (!barrier) {
         change.action = ST_EDIT;
@@ -66,7 +66,7 @@ static void commit_steps(st_write *w)
     for (uint32_t i = 0; i < w->steps; i++) {
         double now = revise(mesh);
         st_log_add_step(&mesh->log, mesh->info.revision, w->which, now, mesh->content);
-        w->records[i] = st_mesh_record(mesh, kind, w->keyed);
+        w->records[i] = st_mesh_record(mesh, kind, &w->cause);
     }
     st_log_settle(&mesh->log);
     for (uint32_t i = 0; i < w->steps; i++) {
@@ -98,17 +98,17 @@ static void commit_facts(st_write *w)
         st_log_add_barrier(&mesh->log, mesh->info.revision, ST_REPLACE, "replace", now,
                            mesh->content, NULL);
         changes[count] = (st_change){.action = ST_REPLACE, .content = mesh->content};
-        records[count++] = st_mesh_record(mesh, ST_RECORD_CONTENT, w->keyed);
+        records[count++] = st_mesh_record(mesh, ST_RECORD_CONTENT, &w->cause);
     }
     if (w->name != NULL) {
         rename_mesh(mesh, w->name);
         changes[count] = (st_change){.action = ST_EDIT, .content = mesh->content};
-        records[count++] = st_mesh_record(mesh, ST_RECORD_RENAME, w->keyed);
+        records[count++] = st_mesh_record(mesh, ST_RECORD_RENAME, &w->cause);
     }
     if (w->kind == ST_WRITE_REMOVE) {
         mesh->info.removed = true;
         changes[count] = (st_change){.action = ST_REPLACE, .removed = true};
-        records[count++] = st_mesh_record(mesh, ST_RECORD_REMOVE, w->keyed);
+        records[count++] = st_mesh_record(mesh, ST_RECORD_REMOVE, &w->cause);
     }
     st_mesh_publish(
         mesh, &(st_group){

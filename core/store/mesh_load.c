@@ -146,6 +146,9 @@ static st_status take_content(load *l, const st_record *record, bool is_base, he
     if (is_base) {
         return begin_history(l, record, takes);
     }
+    if (record->barrier) {
+        l->mesh->base = record->revision; /* what is before may go */
+    }
     return record->kind == ST_RECORD_CONTENT ? replace(l, record, takes)
                                              : edit_whole(l, record, takes);
 }
@@ -305,6 +308,7 @@ static st_status take_base(load *l, const st_piece *piece)
     l->record = record->number;
     l->metadata = record->metadata;
     l->reach = record->reach;
+    l->mesh->base = record->revision;
     return begin_parts(l, piece);
 }
 
@@ -457,7 +461,30 @@ st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_r
         st_release(l.mesh);
         return status;
     }
-    end_history(&l);
+    if (until == 0) {
+        end_history(&l);
+    }
     *out = l.mesh;
     return ST_OK;
+}
+
+st_status st_mesh_load_apart(st_mesh *mesh, uint64_t until, st_mesh **out)
+{
+    const st_journal *journal = mesh->journal;
+    const st_mesh_options options = st_store_mesh_options(mesh->store);
+    st_reader *reader = NULL;
+    st_card card;
+    char damage[ST_DAMAGE];
+    *out = NULL;
+    st_status status =
+        journal->keeps ? journal->open(journal->self, mesh->info.id, &card, &reader) : ST_GONE;
+    if (status == ST_OK) {
+        until = until == 0 ? card.revision : until;
+        status = card.incarnation == mesh->info.incarnation
+                     ? st_mesh_load(&options, &card, reader, until, out, damage)
+                     : ST_GONE;
+        journal->shut(reader);
+    }
+    bool none = status == ST_ABSENT || status == ST_DAMAGED || status == ST_NEWER;
+    return none ? ST_GONE : status;
 }

@@ -24,5 +24,10 @@ st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_r
  * ST_NEWER likewise; ST_FAILED, ST_NO_MEMORY, ST_BUDGET. */
 st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, st_reader *reader,
                           st_mesh **out, char damage[ST_DAMAGE]);
+/* A second copy of a mesh, up to a revision (0: the newest), with all of the history that the disk
+ * has of it and no budget; in no table, and freed by st_release. Waits, without a lock. ST_GONE
+ * where the records do not reach back to the revision; *out is NULL then and after ST_FAILED,
+ * ST_NO_MEMORY, ST_BUDGET. */
+st_status st_mesh_load_apart(st_mesh *mesh, uint64_t until, st_mesh **out);
 
 #endif

@@ -37,11 +37,16 @@ static st_status begin(st_write *w)
     return w->claimed ? ST_BUSY : ST_OK;
 }
 
-st_status st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out)
+static st_cause cause_of(const st_cause *cause)
+{
+    return cause == NULL ? (st_cause){NULL, NULL} : *cause;
+}
+
+st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
     /* What is only kept for later makes room for what is done now. */
     st_make_room(mesh->store, 0);
-    *out = (st_write){.mesh = mesh, .keyed = keyed};
+    *out = (st_write){.mesh = mesh, .cause = cause_of(cause)};
     pthread_rwlock_wrlock(&mesh->lock);
     st_status status = begin(out);
     if (status != ST_OK) {
@@ -51,9 +56,9 @@ st_status st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out)
     return status;
 }
 
-st_status st_write_claim(st_mesh *mesh, const st_keyed *keyed, st_write *out)
+st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
-    *out = (st_write){.mesh = mesh, .keyed = keyed, .claimed = true};
+    *out = (st_write){.mesh = mesh, .cause = cause_of(cause), .claimed = true};
     pthread_rwlock_wrlock(&mesh->lock);
     st_status status = begin(out);
     if (status == ST_OK) {

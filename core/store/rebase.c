@@ -60,6 +60,7 @@ static void settle(st_mesh *mesh)
         st_rebase_drop(mesh);
     } else if (st_log_stands_on(&mesh->log, revision)) {
         st_log_drop(&mesh->log, revision);
+        mesh->base = revision > mesh->base ? revision : mesh->base;
         next->facts.reach = revision;
         mesh->journal->rebase(mesh->journal->self, next->stage, &next->facts, revision);
         next->stage = NULL;

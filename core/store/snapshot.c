@@ -160,14 +160,14 @@ static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
     return status == ST_OK ? cache_past(mesh, replay, revision, time) : status;
 }
 
-static st_status load_past(st_mesh *mesh, const st_card *card, st_reader *reader, uint64_t revision)
+/* A revision that the history has dropped, from the disk where the records still reach back to it:
+ * a mesh of its own is loaded and becomes the cached copy. Under the past lock. */
+static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
 {
-    const st_mesh_options options = st_store_mesh_options(mesh->store);
-    st_mesh *loaded = NULL;
+    st_mesh *loaded;
     he_replay *replay = NULL;
     st_point point;
-    char damage[ST_DAMAGE];
-    st_status status = st_mesh_load(&options, card, reader, revision, &loaded, damage);
+    st_status status = st_mesh_load_apart(mesh, revision, &loaded);
     if (status != ST_OK) {
         return status;
     }
@@ -179,25 +179,6 @@ static st_status load_past(st_mesh *mesh, const st_card *card, st_reader *reader
     }
     st_release(loaded);
     return status;
-}
-
-/* A revision that the history has dropped, from the disk where the records still reach back to it:
- * a mesh of its own is loaded and becomes the cached copy. Under the past lock. */
-static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
-{
-    const st_journal *journal = mesh->journal;
-    st_reader *reader = NULL;
-    st_card card;
-    st_status status =
-        journal->keeps ? journal->open(journal->self, mesh->info.id, &card, &reader) : ST_GONE;
-    if (status == ST_OK) {
-        status = card.incarnation == mesh->info.incarnation
-                     ? load_past(mesh, &card, reader, revision)
-                     : ST_GONE;
-        journal->shut(reader);
-    }
-    bool none = status == ST_ABSENT || status == ST_DAMAGED || status == ST_NEWER;
-    return none ? ST_GONE : status;
 }
 
 /* Under the past lock: the cached copy is at the revision. */

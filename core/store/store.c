@@ -225,6 +225,52 @@ st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key
     return status;
 }
 
+/* --- notes --- */
+
+/* A journal of a test may keep none. */
+static st_status note(st_store *store, const st_note *what, uint64_t *position)
+{
+    const st_journal *journal = &store->journal;
+    *position = 0;
+    if (journal->note == NULL) {
+        return ST_OK;
+    }
+    st_status status = journal->note(journal->self, what, position);
+    if (status == ST_OK) {
+        st_waits_appended(store->followers.waits, *position);
+    }
+    return status;
+}
+
+void st_keyed_note(st_store *store, const st_keyed *keyed, const st_mesh_info *info,
+                   uint64_t *position)
+{
+    const st_kept_key kept = {.key = keyed->key,
+                              .id = info->id,
+                              .incarnation = info->incarnation,
+                              .revision = info->revision,
+                              .metadata = info->metadata};
+    if (note(store, &(st_note){.kept = &kept}, position) != ST_OK) {
+        *position = 0;
+    }
+}
+
+st_status st_job_keep(st_store *store, const st_job *job, uint64_t *position)
+{
+    return note(store, &(st_note){.job = job}, position);
+}
+
+st_status st_job_forget(st_store *store, const char *id, uint64_t *position)
+{
+    return note(store, &(st_note){.forgotten = id}, position);
+}
+
+st_status st_jobs_kept(st_store *store, st_take_job *take, void *context)
+{
+    const st_journal *journal = &store->journal;
+    return journal->jobs == NULL ? ST_OK : journal->jobs(journal->self, take, context);
+}
+
 size_t st_listeners(st_store *store)
 {
     return atomic_load(&store->followers.count);

@@ -38,6 +38,12 @@ typedef struct st_mesh st_mesh;         /* a stored mesh */
 typedef struct st_snapshot st_snapshot; /* an immutable copy at one revision */
 typedef struct st_keyed st_keyed;       /* a request with an Idempotency-Key, begun and not ended */
 
+/* What a change is made for: its records carry both. A NULL pointer to one stands for neither. */
+typedef struct st_cause {
+    const st_keyed *keyed; /* a request with a key; NULL: none */
+    const char *job;       /* the job whose work it is; NULL: none */
+} st_cause;
+
 /* Plain facts about a stored mesh, copied out under its lock. */
 typedef struct st_mesh_info {
     char id[ST_MESH_ID + 1];
@@ -138,19 +144,19 @@ const char *st_damage(const st_mesh *mesh);
 st_status st_salvage(st_store *store, const char *id, st_mesh **out, char damage[ST_DAMAGE]);
 st_mesh *st_hold(st_mesh *mesh); /* adds a reference */
 void st_release(st_mesh *mesh);  /* takes NULL */
-/* Takes `content` on success. `id` NULL lets the store choose. `keyed`, or NULL, goes into the
+/* Takes `content` on success. `id` NULL lets the store choose. `cause`, or NULL, goes into the
  * record of the new mesh. Not on a worker where st_store_waits_for_disk. ST_TAKEN, ST_TOO_MANY,
  * ST_BUDGET, ST_NO_MEMORY, ST_LOADING, ST_BEHIND, ST_FULL, ST_FAILED. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
-                    const st_keyed *keyed, st_mesh **out);
+                    const st_cause *cause, st_mesh **out);
 /* The same of a content that was made from what `from` shows, which is lost together: ST_LOST where
  * that is lost already. `from` may be NULL. */
 st_status st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                         const st_keyed *keyed, const st_shown *from, st_mesh **out);
+                         const st_cause *cause, const st_shown *from, st_mesh **out);
 /* Creates a mesh in the place of a damaged one of that id, which is removed: both happen or
  * neither. ST_ABSENT: it was removed before. */
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
-                         const st_keyed *keyed, st_mesh **out);
+                         const st_cause *cause, st_mesh **out);
 /* Before a large content takes the place of another (st_write_replace): brings it to the disk, so
  * that the write need not do that under its lock. Waits, on a thread that may, without a lock. *out
  * is NULL where there is nothing to be done. ST_NO_MEMORY, ST_BEHIND, ST_FULL, ST_FAILED. */
@@ -252,6 +258,21 @@ const st_kept *st_keyed_answer(const st_keyed *keyed);
 void st_keyed_keep(st_keyed *keyed, const st_kept *answer);
 void st_keyed_end(st_keyed *keyed);
 
+/* Remembers a request that changed nothing beyond a restart, as its records do one that changed
+ * something: before it is kept, with the mesh's facts that its answer shows. *position is what that
+ * answer is to wait for, 0 for nothing. Where the journal refuses, memory alone has it. */
+void st_keyed_note(st_store *store, const st_keyed *keyed, const st_mesh_info *info,
+                   uint64_t *position);
+
+/* --- jobs --- (api/job/job_table.h runs them) */
+
+/* Keep how a job is; forget it. *position is that of the note, 0 where
+ * nothing is kept. ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY. */
+st_status st_job_keep(st_store *store, const st_job *job, uint64_t *position);
+st_status st_job_forget(st_store *store, const char *id, uint64_t *position);
+/* Gives the jobs that are kept, at the start. ST_NO_MEMORY, ST_FAILED. */
+st_status st_jobs_kept(st_store *store, st_take_job *take, void *context);
+
 /* --- the history, under the read lock --- */
 
 enum { ST_ENTRY_OPS = 256 };
@@ -268,7 +289,7 @@ typedef struct st_entry {
 } st_entry;
 
 typedef struct st_history {
-    uint64_t oldest;        /* revision that can be read */
+    uint64_t oldest;        /* revision that can be read, from memory or the disk */
     uint64_t dropped;       /* entries, to stay within the budget */
     uint64_t bytes, budget; /* that entries and deltas take, and may take */
 } st_history;

@@ -59,6 +59,7 @@ st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card)
     copy_name(mesh->info.id, sizeof mesh->info.id, card->id);
     copy_name(mesh->info.name, sizeof mesh->info.name, card->name);
     st_queue_init(&mesh->queue, (st_place){.key = card->revision});
+    mesh->base = card->revision;
     return mesh;
 }
 
@@ -168,12 +169,23 @@ st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind)
     return record;
 }
 
-st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *keyed)
+st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cause)
 {
     mesh->info.record++;
     st_record record = st_mesh_facts_record(mesh, kind);
-    record.key = keyed == NULL ? NULL : &keyed->key;
+    if (cause != NULL) {
+        record.key = cause->keyed == NULL ? NULL : &cause->keyed->key;
+        record.job = cause->job;
+    }
     return record;
+}
+
+/* A barrier that has a content is a base by itself. */
+static void note_base(st_mesh *mesh, const st_record *record)
+{
+    if (record->barrier && (record->kind == ST_RECORD_CONTENT || record->stage != NULL)) {
+        mesh->base = record->revision;
+    }
 }
 
 void st_mesh_publish(st_mesh *mesh, const st_group *group)
@@ -183,6 +195,9 @@ void st_mesh_publish(st_mesh *mesh, const st_group *group)
     mesh->info.position =
         journal->append(journal->self, group->booking->room, group->records, group->count);
     *group->booking = (st_booking){NULL};
+    for (size_t i = 0; i < group->count; i++) {
+        note_base(mesh, &group->records[i]);
+    }
     st_waits_appended(mesh->followers->waits, mesh->info.position);
     st_mesh_tell(mesh, group);
     st_rebase_note(mesh, group);
@@ -234,8 +249,11 @@ bool st_history_entry(st_mesh *mesh, size_t i, st_entry *out)
 void st_history_reach(st_mesh *mesh, st_history *out)
 {
     const st_revision_log *log = &mesh->log;
-    *out = (st_history){
-        .oldest = log->oldest, .dropped = log->dropped, .bytes = log->bytes, .budget = log->budget};
+    const bool on_disk = mesh->journal->keeps && mesh->base < log->oldest;
+    *out = (st_history){.oldest = on_disk ? mesh->base : log->oldest,
+                        .dropped = log->dropped,
+                        .bytes = log->bytes,
+                        .budget = log->budget};
 }
 
 bool st_cache_get(st_mesh *mesh, void *value, size_t size)

@@ -29,12 +29,13 @@ struct st_mesh {
     const st_journal *journal;
     struct st_followers *followers;
 
-    pthread_rwlock_t lock; /* of all down to `claimed` */
+    pthread_rwlock_t lock; /* of all down to `next_base` */
     st_mesh_info info;     /* but for undo and redo, which the log has */
     he_mesh *content;
     st_revision_log log;
     bool claimed; /* the log's reserve is lent to a long edit */
 
+    uint64_t base;           /* revision of the base on the disk: it can be read from there on */
     uint64_t appended;       /* bytes of records since the last snapshot: rebase.c */
     st_next_base *next_base; /* likewise; NULL: there is none */
 
@@ -111,7 +112,7 @@ typedef struct st_group {
 
 /* Under the exclusive lock: the next record of the mesh, of what it is now. A revision is in the
  * log already. */
-st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_keyed *keyed);
+st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cause);
 /* Under either lock: what the newest record of the mesh says, as a record of this kind. */
 st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind);
 /* Under the exclusive lock: hands a group of records to the journal and tells the listeners. */

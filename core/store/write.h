@@ -41,7 +41,7 @@ typedef struct st_write {
     /* --- the store's own --- */
     st_write_kind kind;
     bool claimed, found; /* found: `changes` was filled in */
-    const st_keyed *keyed;
+    st_cause cause;
     he_savepoint mark; /* where the delta began */
     const char *name;  /* of a rename */
     st_action which;   /* of a step, with what it takes to commit it */
@@ -54,13 +54,13 @@ typedef struct st_write {
     size_t from_count;
 } st_write;
 
-/* Takes the exclusive lock. `keyed` is the keyed request that the write is done for, or NULL: its
- * records carry the key. Where info.busy a long edit has claimed the mesh: then it may only be
- * removed. Without the lock: ST_ABSENT, ST_LOST, ST_NO_MEMORY; `info` is filled in then too. */
-st_status st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
+/* Takes the exclusive lock. `cause` is what the write is done for, or NULL: its records carry it.
+ * Where info.busy a long edit has claimed the mesh: then it may only be removed. Without the lock:
+ * ST_ABSENT, ST_LOST, ST_NO_MEMORY; `info` is filled in then too. */
+st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
 /* Claims the mesh for a long edit. ST_ABSENT, ST_LOST, ST_DAMAGED, ST_NEWER, ST_BUSY, ST_NO_MEMORY;
  * `info` is filled in then too. */
-st_status st_write_claim(st_mesh *mesh, const st_keyed *keyed, st_write *out);
+st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out);
 /* The content of a claimed mesh, to be looked at until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *write);
 /* Makes the copy that a claim works on, in place of one that was made before. */

@@ -29,14 +29,14 @@ static bool meddling;
 static uint32_t victim; /* a vertex that they delete */
 
 st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
+                                const st_cause *cause, const st_shown *from, st_mesh **out);
 st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
+                                const st_cause *cause, const st_shown *from, st_mesh **out);
 
 st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_keyed *keyed, const st_shown *from, st_mesh **out)
+                                const st_cause *cause, const st_shown *from, st_mesh **out)
 {
-    st_status status = __real_st_create_from(store, id, name, content, keyed, from, out);
+    st_status status = __real_st_create_from(store, id, name, content, cause, from, out);
     if (status == ST_OK && meddling) {
         st_write w;
         assert_non_null(writing_begin(*out, &w));

@@ -43,16 +43,16 @@ static void lose_newest(st_status why)
  * gives calls of this function to the wrapper (Makefile). */
 static st_status loss_before;
 
-st_status __real_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
-st_status __wrap_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
+st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
+st_status __wrap_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
 
-st_status __wrap_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out)
+st_status __wrap_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
     if (loss_before != ST_OK) {
         lose_newest(loss_before);
         loss_before = ST_OK;
     }
-    return __real_st_write_begin(mesh, keyed, out);
+    return __real_st_write_begin(mesh, cause, out);
 }
 
 static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
@@ -87,9 +87,9 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
 static st_status loss_between; /* the reading and the commit */
 
 st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
+                                const st_cause *cause, const st_shown *from, st_mesh **out);
 st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_keyed *keyed, const st_shown *from, st_mesh **out);
+                                const st_cause *cause, const st_shown *from, st_mesh **out);
 st_status __real_st_write_commit(st_write *w, const char *ops);
 st_status __wrap_st_write_commit(st_write *w, const char *ops);
 
@@ -102,10 +102,10 @@ static void lose_between(void)
 }
 
 st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_keyed *keyed, const st_shown *from, st_mesh **out)
+                                const st_cause *cause, const st_shown *from, st_mesh **out)
 {
     lose_between();
-    return __real_st_create_from(store, id, name, content, keyed, from, out);
+    return __real_st_create_from(store, id, name, content, cause, from, out);
 }
 
 st_status __wrap_st_write_commit(st_write *w, const char *ops)

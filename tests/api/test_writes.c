@@ -340,8 +340,8 @@ static void a_full_disk_takes_removals(void **state)
 /* The linker gives calls of these functions to the wrappers (Makefile). */
 static bool writing, removed_under_lock;
 
-st_status __real_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
-st_status __wrap_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out);
+st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
+st_status __wrap_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
 st_status __real_st_write_commit(st_write *w, const char *ops);
 st_status __wrap_st_write_commit(st_write *w, const char *ops);
 void __real_st_write_abort(st_write *w);
@@ -349,10 +349,10 @@ void __wrap_st_write_abort(st_write *w);
 void __real_st_write_remove(st_write *w);
 void __wrap_st_write_remove(st_write *w);
 
-st_status __wrap_st_write_begin(st_mesh *mesh, const st_keyed *keyed, st_write *out)
+st_status __wrap_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
     writing = true;
-    return __real_st_write_begin(mesh, keyed, out);
+    return __real_st_write_begin(mesh, cause, out);
 }
 
 st_status __wrap_st_write_commit(st_write *w, const char *ops)

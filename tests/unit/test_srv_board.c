@@ -34,18 +34,24 @@ static bool submit(void *context, const st_task *task)
     return st_pool_submit(context, task);
 }
 
-static int start_keeping(double keep)
+static int start_over(const st_journal *journal, double keep)
 {
     pool = st_pool_new("test", 2, 4);
     store = st_store_new(&(st_store_options){
         .undo_budget = 64 << 20,
         .max_meshes = 100,
-        .journal = slow_journal_open(&slow),
+        .journal = *journal,
     });
     jobs = api_job_table_new(
         &(api_job_table_options){.store = store, .submit = submit, .pool = pool, .keep = keep});
     service = api_service_new(store, api_routes(), &(api_options){.version = "test", .jobs = jobs});
     return 0;
+}
+
+static int start_keeping(double keep)
+{
+    const st_journal journal = slow_journal_open(&slow);
+    return start_over(&journal, keep);
 }
 
 static int start(void **state)
@@ -160,14 +166,14 @@ static bool cancel_at(int percent)
         job = look(id);
     }
     uint64_t asked = st_clock_micros();
-    assert_true(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job));
+    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
     if (forgotten || wait_for(id, API_JOB_DONE).state == API_JOB_DONE) {
         return false;
     }
     print_message("note: cancelled at %d %%, ended in %.1f ms\n", percent,
                   (double)(st_clock_micros() - asked) / 1000);
     assert_int_equal(look(id).state, API_JOB_CANCELLED);
-    assert_true(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job));
+    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
     assert_true(forgotten);
     /* The pool's thread gives its hold of the job back last. */
     while (st_memory_used() != before) {
@@ -373,9 +379,68 @@ static void a_stop_ends_what_waits_and_what_runs(void **state)
 
 #define BOARD_TEST(f) cmocka_unit_test_setup_teardown(f, start, stop)
 
+/* --- notes --- */
+
+static st_status refuses; /* what a note is answered */
+static unsigned notes;
+
+static st_status take_note(void *self, const st_note *what, uint64_t *position)
+{
+    (void)self;
+    (void)what;
+    *position = 1;
+    notes += refuses == ST_OK;
+    return refuses;
+}
+
+static int start_noting(void **state)
+{
+    (void)state;
+    st_journal journal = slow_journal_open(&slow);
+    journal.note = take_note;
+    start_over(&journal, API_JOB_SECONDS);
+    slow_journal_advance(&slow, UINT64_MAX);
+    return 0;
+}
+
+/* A disk that is behind refuses the job; one that takes nothing any more leaves it to memory. */
+static void a_job_that_cannot_be_noted(void **state)
+{
+    (void)state;
+    static const struct {
+        st_status refuses;
+        int status;
+    } rows[] = {
+        {ST_OK, 202}, {ST_BEHIND, 503}, {ST_FULL, 202}, {ST_FAILED, 202}, {ST_NO_MEMORY, 507}};
+    api_job job;
+    bool forgotten;
+    char id[API_JOB_ID + 1];
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        refuses = rows[i].refuses;
+        notes = 0;
+        assert_int_equal(post("/v1/meshes", CUBE, id), rows[i].status);
+        if (rows[i].status == 202) {
+            assert_int_equal(wait_for(id, API_JOB_DONE).status, 201);
+        }
+        assert_int_equal(notes, refuses == ST_OK ? 2 : 0);
+    }
+    /* What was noted is not forgotten before that is noted too. */
+    refuses = ST_OK;
+    assert_int_equal(post("/v1/meshes", CUBE, id), 202);
+    (void)wait_for(id, API_JOB_DONE);
+    refuses = ST_BEHIND;
+    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_BEHIND);
+    (void)look(id);
+    refuses = ST_OK;
+    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
+    assert_true(forgotten);
+    assert_false(api_job_find(jobs, NULL, id, take_facts, &job));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_job_that_cannot_be_noted, start_noting, stop),
         BOARD_TEST(progress_is_seen_and_never_falls),
         BOARD_TEST(cancelling_gives_the_memory_back),
         BOARD_TEST(beyond_the_queue_jobs_are_refused),

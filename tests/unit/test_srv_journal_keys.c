@@ -3,18 +3,25 @@
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
+#include <sqlite3.h>
+
 enum { DAY = 24 * 3600, MOST = 16 };
 
 static char folder[FOLDER_PATH];
 static he_mesh *content;
 static told_journal told;
 
-static void open_store(void)
+static void open_with(uint64_t keys)
 {
     st_sqlite_opened out;
-    const st_sqlite_options options = {.folder = folder, .release = "test"};
+    const st_sqlite_options options = {.folder = folder, .release = "test", .keys = keys};
     assert_true(st_sqlite_open(&options, &out));
     told_begin(&told, &out.journal);
+}
+
+static void open_store(void)
+{
+    open_with(0);
 }
 
 static int setup(void **state)
@@ -133,11 +140,119 @@ static void without_memory_to_take_them_the_reading_ends(void **state)
     assert_int_equal(keys_of("a").count, 2);
 }
 
+static int64_t rows(void)
+{
+    char path[2 * FOLDER_PATH];
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT count(*) FROM kept", -1, &statement, NULL),
+                     SQLITE_OK);
+    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+    int64_t count = sqlite3_column_int64(statement, 0);
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+    return count;
+}
+
+/* A request that changed nothing, and so has no record. */
+static uint64_t note(const kept_mesh *mesh, const char *text, double time)
+{
+    const st_kept_key kept = {.key = {.text = text, .digest = {7, (uint64_t)time}, .time = time},
+                              .id = mesh->id,
+                              .incarnation = mesh->incarnation,
+                              .revision = mesh->revision,
+                              .metadata = mesh->metadata};
+    uint64_t position = 0;
+    st_status status;
+    do {
+        status = told.journal.note(told.journal.self, &(st_note){.kept = &kept}, &position);
+    } while (status == ST_BEHIND);
+    assert_int_equal(status, ST_OK);
+    return position;
+}
+
+static void a_key_of_a_request_that_changed_nothing_is_kept(void **state)
+{
+    (void)state;
+    kept_mesh a = {.id = "a", .name = "", .content = content, .incarnation = 11};
+    append(&a, kept_content(&a), "makes", 100, true);
+    told_wait(&told, note(&a, "nothing", 101));
+    append(&a, kept_edit(&a), "edit", 102, false);
+    kept_mesh gone = {.id = "gone", .name = "", .content = content, .incarnation = 12};
+    told_wait(&told, note(&gone, "of none", 103));
+    for (int again = 0; again < 2; again++) {
+        taken t = keys_of("a");
+        assert_int_equal(t.count, 2);
+        assert_string_equal(t.texts[0], "nothing");
+        assert_true(t.keys[0].revision == 1 && !t.keys[0].key.of_store);
+        assert_string_equal(t.texts[1], "edit");
+        assert_int_equal(rows(), 3);
+        told_end(&told);
+        open_store();
+    }
+}
+
+static bool count_key(void *context, const st_kept_key *key)
+{
+    uint64_t *at = context;
+    assert_true(key->key.digest[1] > at[1]); /* in the order of time */
+    at[1] = key->key.digest[1];
+    at[0]++;
+    return true;
+}
+
+static void of_one_mesh_the_newest_are_kept(void **state)
+{
+    (void)state;
+    enum { KEYS = ST_KEPT_KEYS + 3000, SLACK = 1000 };
+    kept_mesh a = {.id = "a", .name = "", .content = content, .incarnation = 11};
+    append(&a, kept_content(&a), "makes", 100, true);
+    uint64_t last = 0, counts[2] = {0, 0};
+    for (int i = 0; i < KEYS; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "key-%d", i);
+        last = note(&a, text, 1000 + i);
+    }
+    told_wait(&told, last);
+    assert_true(rows() <= ST_KEPT_KEYS + SLACK);
+    assert_int_equal(told.journal.keys(told.journal.self, "a", count_key, counts), ST_OK);
+    assert_int_equal(counts[0], ST_KEPT_KEYS);
+    assert_int_equal(counts[1], 1000 + KEYS - 1);
+    assert_int_equal(keys_of(NULL).count, 1);
+}
+
+static void of_all_meshes_the_newest_are_kept(void **state)
+{
+    (void)state;
+    enum { MESHES = 20, MOST_KEYS = 10 };
+    told_end(&told);
+    open_with(MOST_KEYS);
+    for (int i = 0; i < MESHES; i++) {
+        kept_mesh a = {.name = "", .content = content, .incarnation = 11 + (uint64_t)i};
+        snprintf(a.id, sizeof a.id, "m%d", i);
+        append(&a, kept_content(&a), a.id, 100 + i, true);
+        if (i == MESHES / 2) { /* a restart counts them */
+            told_end(&told);
+            open_with(MOST_KEYS);
+        }
+    }
+    taken t = keys_of(NULL);
+    assert_in_range(t.count, MOST_KEYS - 1, MOST_KEYS);
+    assert_string_equal(t.texts[t.count - 1], "m19");
+    assert_int_equal(rows(), (int64_t)t.count);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(keys_come_back_with_what_they_were_for, setup, teardown),
         cmocka_unit_test_setup_teardown(keys_older_than_a_day_go, setup, teardown),
+        cmocka_unit_test_setup_teardown(a_key_of_a_request_that_changed_nothing_is_kept, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(of_one_mesh_the_newest_are_kept, setup, teardown),
+        cmocka_unit_test_setup_teardown(of_all_meshes_the_newest_are_kept, setup, teardown),
         cmocka_unit_test_setup_teardown(without_memory_to_take_them_the_reading_ends, setup,
                                         teardown),
     };

@@ -281,7 +281,9 @@ static void the_key_of_a_lost_creation_is_forgotten(void **state)
     st_mesh *made = NULL;
     for (int lost = 0; lost < 2; lost++) {
         assert_int_equal(st_keyed_begin(store, NULL, &key, &keyed), ST_KEYED_NEW);
-        assert_int_equal(st_create(store, "k", NULL, fixture_mesh("012"), keyed, &made), ST_OK);
+        assert_int_equal(
+            st_create(store, "k", NULL, fixture_mesh("012"), &(st_cause){.keyed = keyed}, &made),
+            ST_OK);
         const st_mesh_info info = facts(made);
         st_kept kept = {.status = 201,
                         .changed = true,

@@ -28,7 +28,9 @@ static int setup(void **state)
     st_key key = {"a-key", {5, 6}};
     st_keyed *keyed;
     assert_int_equal(st_keyed_begin(store, NULL, &key, &keyed), ST_KEYED_NEW);
-    assert_int_equal(st_create(store, "m", "first", fixture_mesh("012,023"), keyed, &mesh), ST_OK);
+    assert_int_equal(
+        st_create(store, "m", "first", fixture_mesh("012,023"), &(st_cause){.keyed = keyed}, &mesh),
+        ST_OK);
     assert_string_equal(journal.record.key->text, "a-key");
     assert_int_equal(journal.record.key->digest[1], 6);
     assert_true(journal.record.key->of_store && journal.record.key->time > 0);

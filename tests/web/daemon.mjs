@@ -21,14 +21,15 @@ export async function startDaemon(t, ...flags) {
         stdio: ['ignore', 'ignore', 'pipe'],
     });
     const ended = new Promise((resolve) => {
-        child.on('exit', resolve);
+        child.on('exit', resolve); // with its status
         child.on('error', resolve);
     });
     let proxy;
-    const stop = async () => {
-        child.kill('SIGTERM');
-        await ended;
+    const stop = async (signal = 'SIGTERM') => {
+        child.kill(signal);
+        const status = await ended;
         proxy?.close();
+        return status;
     };
     const closers = [];
     t.after(async () => {

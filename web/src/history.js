@@ -13,6 +13,7 @@ export class History {
     #shown = null; // the history whose entries are in the list
     #isEnabled = true;
     #hasFocus = false; // a button was pressed, which disables it
+    #beginning = null; // what the first step that can be undone was taken on
     #isTopShown = false; // the state that the mesh is in has its row
 
     // `readPage(cursor)` reads on; `onUndo(revision)` is called when one is chosen.
@@ -54,10 +55,13 @@ export class History {
         }
     }
 
-    #append({ entries, next, undo, oldest }) {
+    #append({ entries, next, undo }) {
         const rows = entries.map((entry) => this.#row(entry));
+        const first = entries.findLast((entry) => entry.undoable);
+        this.#beginning = first === undefined ? this.#beginning : first.revision - 1;
         if (next === null && undo > 0) {
-            rows.push(this.#goBack(oldest, [make('span', { className: 'ops' }, 'the beginning')]));
+            const words = [make('span', { className: 'ops' }, 'the beginning')];
+            rows.push(this.#goBack(this.#beginning, words));
         }
         this.#list.append(...rows);
         this.#more.dataset.cursor = next ?? '';

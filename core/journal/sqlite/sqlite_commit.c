@@ -29,7 +29,7 @@ enum {
 /* What one transaction takes. */
 typedef struct group {
     st_item *first, *last;
-    uint64_t records, position, made, removed;
+    uint64_t records /* and notes */, position, made, removed;
     bool freeing;
     st_stage *stage; /* whose slice is written beside; NULL: something is purged */
     size_t slice;    /* bytes of background work; 0: none */
@@ -44,7 +44,7 @@ static void count_room(group *g, const st_sqlite_room *room)
         g->made += room->entries[i].number == 1;
         g->removed += room->entries[i].kind == ST_RECORD_REMOVE;
     }
-    g->records += room->count;
+    g->records += room->count > 0 ? room->count : 1;
     g->position = room->last;
     g->freeing |= room->freeing;
 }
@@ -301,6 +301,7 @@ static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
 {
     *progress = (st_progress){self->progress.commits + 1, g->position,
                               self->progress.meshes + g->made - g->removed};
+    const uint64_t keys = self->keys;
     st_sql outcome = st_db_do(&self->db, ST_SQL_BEGIN, "");
     for (st_item *item = g->first; item != NULL && outcome == ST_SQL_DONE; item = item->next) {
         outcome = apply(self, item);
@@ -323,6 +324,7 @@ static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
     }
     note_refusal(self, outcome);
     st_heads_forget(self);
+    self->keys = keys;
     if (sqlite3_get_autocommit(self->db.handle) == 0) {
         (void)st_db_do(&self->db, ST_SQL_ROLLBACK, "");
     }

@@ -20,9 +20,10 @@ typedef struct st_sqlite_options {
     const char *folder;   /* made where it is missing */
     const char *release;  /* the name of this one, for messages */
     uint64_t queue_bytes; /* that may be queued or reserved; 0: ST_SQLITE_QUEUE */
+    uint64_t keys;        /* that are kept of all meshes together; 0: ST_SQLITE_KEYS */
 } st_sqlite_options;
 
-enum { ST_SQLITE_QUEUE = 64 << 20 };
+enum { ST_SQLITE_QUEUE = 64 << 20, ST_SQLITE_KEYS = 1 << 20 };
 
 typedef struct st_sqlite_opened {
     st_journal journal;

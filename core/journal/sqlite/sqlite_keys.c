@@ -3,15 +3,15 @@
 
 #include <string.h>
 
-/* The keys of the last day before the newest one. */
+/* The newest keys, of the last day before the newest one. */
 static const char of_store[] =
-    "SELECT " ST_KEPT_COLUMNS
+    "SELECT * FROM (SELECT " ST_KEPT_COLUMNS
     " FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
-    "ORDER BY time";
+    "ORDER BY time DESC LIMIT ?2) ORDER BY time";
 static const char of_mesh[] =
-    "SELECT k.mesh, k.text, k.digest, k.time, k.id, k.incarnation, k.revision, k.metadata, "
-    "k.position, k.made, k.sum FROM kept k JOIN mesh m ON k.mesh = m.key "
-    "WHERE m.id = ?2 AND k.time > m.modified - ?1 ORDER BY k.time";
+    "SELECT * FROM (SELECT k.mesh, k.text, k.digest, k.time, k.id, k.incarnation, k.revision, "
+    "k.metadata, k.position, k.made, k.sum FROM kept k JOIN mesh m ON k.mesh = m.key "
+    "WHERE m.id = ?3 AND k.time > m.modified - ?1 ORDER BY k.time DESC LIMIT ?2) ORDER BY time";
 
 bool st_kept_row_read(sqlite3_stmt *s, char id[ST_MESH_ID + 1], char text[ST_KEY_TEXT + 1],
                       st_kept_row *row)
@@ -50,8 +50,9 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     int code =
         sqlite3_prepare_v2(self->cards.handle, id == NULL ? of_store : of_mesh, -1, &s, NULL);
     if (code == SQLITE_OK) {
-        sqlite3_bind_int(s, 1, ST_KEY_SECONDS);
-        code = id == NULL ? SQLITE_OK : sqlite3_bind_text(s, 2, id, -1, SQLITE_STATIC);
+        sqlite3_bind_int(s, 1, ST_KEPT_SECONDS);
+        sqlite3_bind_int(s, 2, ST_KEPT_KEYS);
+        code = id == NULL ? SQLITE_OK : sqlite3_bind_text(s, 3, id, -1, SQLITE_STATIC);
     }
     while (code == SQLITE_OK && taken && (code = sqlite3_step(s)) == SQLITE_ROW) {
         code = SQLITE_OK;

@@ -167,8 +167,8 @@ static bool check_table(st_sqlite *self, const char *table, const char *path, st
 
 static bool check_tables(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
-    static const char *const names[] = {"meta",     "state", "sqlite_sequence",
-                                        "snapshot", "kept",  "purge"};
+    static const char *const names[] = {"meta", "state", "sqlite_sequence", "snapshot", "kept",
+                                        "job",  "purge"};
     bool good = true;
     for (size_t i = 0; i < sizeof names / sizeof *names && good; i++) {
         good = check_table(self, names[i], path, out);
@@ -190,10 +190,19 @@ static st_sql last_key(st_db *db, const char *table, int64_t *out)
     return outcome == ST_SQL_DONE && *out < most ? ST_SQL_DAMAGED : outcome;
 }
 
-static st_sql last_keys(st_sqlite *self)
+/* What the commit thread counts on from. */
+static st_sql read_counts(st_sqlite *self)
 {
+    int64_t keys = 0;
     st_sql outcome = last_key(&self->db, "mesh", &self->last_mesh);
-    return outcome == ST_SQL_DONE ? last_key(&self->db, "snapshot", &self->last_snapshot) : outcome;
+    if (outcome == ST_SQL_DONE) {
+        outcome = last_key(&self->db, "snapshot", &self->last_snapshot);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_number(&self->db, "SELECT count(*) FROM kept", 0, &keys);
+    }
+    self->keys = (uint64_t)keys;
+    return outcome;
 }
 
 static bool open_database(st_sqlite *self, const char *release, const char *path,
@@ -229,13 +238,16 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
     }
     outcome = st_schema_check(&self->db);
     if (outcome == ST_SQL_DONE) {
+        outcome = st_schema_raise(&self->db);
+    }
+    if (outcome == ST_SQL_DONE) {
         outcome = st_identity_read(&self->db, &self->identity);
     }
     if (outcome == ST_SQL_DONE) {
         outcome = st_progress_read(&self->db, &self->progress);
     }
     if (outcome == ST_SQL_DONE) {
-        outcome = last_keys(self);
+        outcome = read_counts(self);
     }
     return (outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message)) &&
            compare_mark(self, out) && check_meshes(self, path, out) &&
@@ -327,6 +339,7 @@ st_sqlite *st_sqlite_new(const st_sqlite_options *options)
     }
     self->folder = (st_folder){.folder = -1, .lock = -1, .mark = -1};
     self->queue_bytes = options->queue_bytes == 0 ? ST_SQLITE_QUEUE : options->queue_bytes;
+    self->most_keys = options->keys == 0 ? ST_SQLITE_KEYS : options->keys;
     self->process = st_random();
     self->end = &self->first;
     pthread_mutex_init(&self->lock, NULL);
@@ -372,6 +385,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .reserve = st_sqlite_reserve,
                         .leave = st_sqlite_leave,
                         .append = st_sqlite_append,
+                        .note = st_sqlite_note,
                         .stage = st_sqlite_stage,
                         .unstage = st_sqlite_unstage,
                         .rebase = st_sqlite_rebase,
@@ -381,6 +395,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .condemn = st_sqlite_condemn,
                         .list = st_sqlite_list,
                         .keys = st_sqlite_keys,
+                        .jobs = st_sqlite_jobs,
                         .count = st_sqlite_count,
                         .health = st_sqlite_health,
                         .begun = st_sqlite_begun,

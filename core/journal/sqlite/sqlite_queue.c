@@ -43,7 +43,6 @@ st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **o
 {
     st_sqlite *self = context;
     size_t size;
-    assert(need->records > 0);
     if (need->bytes > ST_MOST_BODY) {
         return ST_TOO_LARGE;
     }
@@ -125,26 +124,52 @@ static void fill_entry(st_sqlite_room *room, const st_record *record)
     memcpy(entry->frame, head, size);
 }
 
-static void fill_key(st_sqlite_room *room, const st_record *record)
+void st_room_key(st_sqlite_room *room, const st_kept_key *kept)
 {
-    const st_record_key *key = record->key;
+    const st_record_key *key = &kept->key;
     st_copy_text(room->key_text, key->text, ST_KEY_TEXT);
+    st_copy_text(room->card.id, kept->id, ST_MESH_ID);
     room->has_key = true;
     room->key = (st_kept_row){.mesh = key->of_store ? 0 : -1,
                               .text = room->key_text,
                               .id = room->card.id,
                               .digest = {key->digest[0], key->digest[1]},
                               .time = key->time,
-                              .incarnation = record->incarnation,
-                              .revision = record->revision,
-                              .metadata = record->metadata,
+                              .incarnation = kept->incarnation,
+                              .revision = kept->revision,
+                              .metadata = kept->metadata,
                               .made = key->of_store};
+}
+
+/* The answer is made after the record: until it is noted the status tells what it comes to. */
+static void fill_job(st_sqlite_room *room, const st_record *record, bool made)
+{
+    enum { CREATED = 201, NO_CONTENT = 204 };
+    st_copy_text(room->job.id, record->job, ST_JOB_ID);
+    room->job_word = ST_JOB_WORK;
+    room->job.mesh = room->card.id;
+    room->job.status = made ? CREATED : NO_CONTENT;
+    room->job.finished = record->time;
+}
+
+uint64_t st_room_push(st_sqlite *self, st_sqlite_room *room, uint64_t positions)
+{
+    pthread_mutex_lock(&self->lock);
+    come_back(self, room);
+    uint64_t position = self->newest += positions;
+    room->last = position;
+    room->key.position = position;
+    self->meshes += room->meshes;
+    st_queue_put(self, &room->item);
+    pthread_mutex_unlock(&self->lock);
+    return position;
 }
 
 uint64_t st_sqlite_append(void *context, st_room *taken, const st_record *records, size_t count)
 {
     st_sqlite *self = context;
     st_sqlite_room *room = (st_sqlite_room *)taken;
+    const st_record *last = &records[count - 1];
     uint64_t made = 0, removed = 0;
     assert(room != NULL && count > 0 && count <= room->most);
     for (size_t i = 0; i < count; i++) {
@@ -152,19 +177,19 @@ uint64_t st_sqlite_append(void *context, st_room *taken, const st_record *record
         removed += records[i].kind == ST_RECORD_REMOVE;
         made += records[i].number == 1;
     }
-    st_card_of_record(&records[count - 1], &room->card);
-    if (records[count - 1].key != NULL) {
-        fill_key(room, &records[count - 1]);
+    st_card_of_record(last, &room->card);
+    if (last->key != NULL) {
+        st_room_key(room, &(st_kept_key){.key = *last->key,
+                                         .id = last->id,
+                                         .incarnation = last->incarnation,
+                                         .revision = last->revision,
+                                         .metadata = last->metadata});
     }
-    pthread_mutex_lock(&self->lock);
-    come_back(self, room);
-    uint64_t position = self->newest += count;
-    room->last = position;
-    room->key.position = position;
-    self->meshes += made - removed;
-    st_queue_put(self, &room->item);
-    pthread_mutex_unlock(&self->lock);
-    return position;
+    if (last->job != NULL) {
+        fill_job(room, last, made > 0);
+    }
+    room->meshes = made - removed;
+    return st_room_push(self, room, count);
 }
 
 /* --- the queue --- */

@@ -66,7 +66,7 @@ static bool copy_file(st_folder *folder, const char *file)
 
 /* --- new incarnations --- */
 
-enum { MESHES, MESH_PUT, KEPT, KEPT_PUT, STATEMENTS };
+enum { MESHES, MESH_PUT, KEPT, KEPT_PUT, JOB, JOB_PUT, STATEMENTS };
 static const char *const texts[STATEMENTS] = {
     [MESHES] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE key > ?1 ORDER BY key LIMIT 1",
     [MESH_PUT] = "UPDATE mesh SET incarnation = ?2, sum = ?3 WHERE key = ?1",
@@ -74,6 +74,8 @@ static const char *const texts[STATEMENTS] = {
              "WHERE (mesh, holder, text) > (?1, ?2, ?3) ORDER BY mesh, holder, text LIMIT 1",
     [KEPT_PUT] = "UPDATE kept SET incarnation = 0, revision = 0, metadata = 0, sum = ?4 "
                  "WHERE mesh = ?1 AND holder = ?2 AND text = ?3",
+    [JOB] = "SELECT " ST_JOB_COLUMNS " FROM job WHERE tag <> '' LIMIT 1",
+    [JOB_PUT] = "UPDATE job SET tag = '', sum = ?2 WHERE id = ?1",
 };
 
 static st_sql draw_incarnations(st_db *db)
@@ -100,7 +102,7 @@ static st_sql draw_incarnations(st_db *db)
 }
 
 /* Kept answers lose their ETags: the states that they name may be gone. */
-static st_sql take_tags(st_db *db)
+static st_sql take_tags_of_keys(st_db *db)
 {
     char id[ST_MESH_ID + 1], holder[ST_KEY_TEXT + 1] = "", text[ST_KEY_TEXT + 1] = "";
     st_kept_row row = {.mesh = INT64_MIN};
@@ -126,10 +128,38 @@ static st_sql take_tags(st_db *db)
     }
 }
 
+/* Likewise of jobs. */
+static st_sql take_tags_of_jobs(st_db *db)
+{
+    for (;;) {
+        sqlite3_stmt *s;
+        st_job job;
+        st_sql outcome = st_db_find(db, JOB, &s, "");
+        if (outcome != ST_SQL_ROW) {
+            return outcome;
+        }
+        const bool good = st_job_read(s, &job);
+        job.headers[ST_JOB_TAG] = "";
+        /* What was damaged stays so. */
+        const uint32_t sum = st_job_sum(&job) ^ (good ? 0 : 1);
+        st_db_reset(s);
+        outcome = st_db_do(db, JOB_PUT, "ti", job.id, (uint64_t)sum);
+        if (outcome == ST_SQL_DONE && sqlite3_changes(db->handle) == 0) {
+            outcome = ST_SQL_DAMAGED;
+        }
+        if (outcome != ST_SQL_DONE) {
+            return outcome;
+        }
+    }
+}
+
 static st_sql renew(st_db *db)
 {
     /* Out of the log's mode, so that nothing of the copy lies beside it. */
     st_sql outcome = st_db_run(db, "PRAGMA journal_mode = DELETE");
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_schema_raise(db);
+    }
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(db, "BEGIN IMMEDIATE");
     }
@@ -137,7 +167,10 @@ static st_sql renew(st_db *db)
         outcome = draw_incarnations(db);
     }
     if (outcome == ST_SQL_DONE) {
-        outcome = take_tags(db);
+        outcome = take_tags_of_keys(db);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = take_tags_of_jobs(db);
     }
     return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
 }

@@ -41,6 +41,19 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
     [ST_SQL_KEPT_DELETE] = "DELETE FROM kept WHERE mesh = ?1",
     [ST_SQL_KEPT_TRIM] = "DELETE FROM kept WHERE (mesh, holder, text) IN (SELECT mesh, holder, "
                          "text FROM kept WHERE time < ?1 ORDER BY time LIMIT 2)",
+    [ST_SQL_KEPT_OLDEST] = "DELETE FROM kept WHERE (mesh, holder, text) IN (SELECT mesh, holder, "
+                           "text FROM kept ORDER BY time LIMIT 2)",
+    [ST_SQL_KEPT_CUT] = "DELETE FROM kept WHERE mesh = ?1 AND (holder, text) IN (SELECT holder, "
+                        "text FROM kept WHERE mesh = ?1 ORDER BY time DESC LIMIT ?3 OFFSET ?2)",
+    [ST_SQL_JOB] = "SELECT " ST_JOB_COLUMNS " FROM job WHERE id = ?1",
+    [ST_SQL_JOB_MAKE] = "INSERT OR REPLACE INTO job(" ST_JOB_COLUMNS ") VALUES "
+                        "(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, "
+                        "?17, ?18, ?19, ?20)",
+    [ST_SQL_JOB_DONE] = "UPDATE job SET state = ?2, mesh = ?3, progress = ?4, finished = ?5, "
+                        "status = ?6, sum = ?7 WHERE id = ?1",
+    [ST_SQL_JOB_DELETE] = "DELETE FROM job WHERE id = ?1",
+    [ST_SQL_JOBS_TRIM] = "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE finished > 0 AND "
+                         "finished < ?1 ORDER BY finished LIMIT 2)",
     [ST_SQL_STATE_PUT] = "UPDATE state SET commits = ?1, position = ?2, meshes = ?3, sum = ?4",
 };
 
@@ -180,6 +193,7 @@ static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
     }
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_do(&self->db, ST_SQL_KEPT_DELETE, "i", row.key);
+        self->keys -= (uint64_t)sqlite3_changes(self->db.handle);
     }
     return outcome == ST_SQL_DONE ? st_purge_mesh(self, row.key) : outcome;
 }
@@ -253,6 +267,26 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
     return outcome;
 }
 
+/* Two old ones go for each that comes. Those of one mesh are counted only now and then: at about
+ * one key of CUT_EVERY, by chance. */
+enum { CUT_EVERY = 64, CUT_MOST = 16 * CUT_EVERY };
+
+static st_sql trim_keys(st_sqlite *self, const st_kept_row *row, uint32_t sum)
+{
+    st_sql outcome = st_db_do(&self->db, ST_SQL_KEPT_TRIM, "d", row->time - ST_KEPT_SECONDS);
+    self->keys -= (uint64_t)sqlite3_changes(self->db.handle);
+    if (outcome == ST_SQL_DONE && self->keys > self->most_keys) {
+        outcome = st_db_do(&self->db, ST_SQL_KEPT_OLDEST, "");
+        self->keys -= (uint64_t)sqlite3_changes(self->db.handle);
+    }
+    if (outcome == ST_SQL_DONE && sum % CUT_EVERY == 0) {
+        outcome = st_db_do(&self->db, ST_SQL_KEPT_CUT, "iii", row->mesh, (int64_t)ST_KEPT_KEYS,
+                           (int64_t)CUT_MOST);
+        self->keys -= (uint64_t)sqlite3_changes(self->db.handle);
+    }
+    return outcome;
+}
+
 static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_head *head)
 {
     st_kept_row row = room->key;
@@ -260,17 +294,30 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
         return ST_SQL_DONE; /* keys of a mesh go with it */
     }
     row.mesh = row.mesh == 0 ? 0 : head->row.key;
+    const uint32_t sum = st_kept_row_sum(&row);
     st_sql outcome =
         st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiii", row.mesh, row.text, row.digest,
                  sizeof row.digest, row.time, row.id, row.incarnation, row.revision, row.metadata,
-                 row.position, (uint64_t)row.made, (uint64_t)st_kept_row_sum(&row));
-    /* Two old ones go for each that comes. */
-    return outcome == ST_SQL_DONE
-               ? st_db_do(&self->db, ST_SQL_KEPT_TRIM, "d", row.time - ST_KEY_SECONDS)
-               : outcome;
+                 row.position, (uint64_t)row.made, (uint64_t)sum);
+    self->keys++; /* one that takes the place of another counts twice until the next start */
+    return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }
 
-st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room)
+/* The key of a request that changed nothing; its mesh may be gone by now. */
+static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
+{
+    st_head *head = NULL;
+    st_sql outcome = ST_SQL_DONE;
+    if (room->has_key && room->key.mesh != 0) {
+        outcome = st_head_find(self, room->key.incarnation, &head);
+    }
+    if (outcome == ST_SQL_DAMAGED) {
+        return ST_SQL_DONE; /* what is damaged stays with its mesh */
+    }
+    return outcome == ST_SQL_DONE && room->has_key ? keep_key(self, room, head) : outcome;
+}
+
+static st_sql add_records(st_sqlite *self, st_sqlite_room *room)
 {
     st_sql outcome = ST_SQL_DONE;
     st_head *head = NULL;
@@ -290,6 +337,12 @@ st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room)
         st_head_touch(self, head);
     }
     return outcome == ST_SQL_DONE && room->has_key ? keep_key(self, room, head) : outcome;
+}
+
+st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room)
+{
+    st_sql outcome = room->count > 0 ? add_records(self, room) : add_note(self, room);
+    return outcome == ST_SQL_DONE ? st_notes_add_job(self, room) : outcome;
 }
 
 st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned)

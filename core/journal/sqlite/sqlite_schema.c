@@ -34,7 +34,19 @@ static const char *const tables[] = {
     "CREATE INDEX kept_by_time ON kept(time)",
     "CREATE TABLE purge(kind INTEGER, key INTEGER, before INTEGER NOT NULL, sum INTEGER NOT NULL, "
     "PRIMARY KEY(kind, key)) WITHOUT ROWID",
+    "CREATE TABLE job(id TEXT PRIMARY KEY, holder TEXT NOT NULL, number INTEGER NOT NULL, state "
+    "INTEGER NOT NULL, operation TEXT NOT NULL, "
+    "phase TEXT NOT NULL, mesh TEXT NOT NULL, location TEXT NOT NULL, progress REAL NOT NULL, "
+    "created REAL NOT NULL, started REAL NOT NULL, finished REAL NOT NULL, "
+    "status INTEGER NOT NULL, shown INTEGER NOT NULL, type TEXT NOT NULL, "
+    "disposition TEXT NOT NULL, tag TEXT NOT NULL, warnings TEXT NOT NULL, body BLOB, "
+    "sum INTEGER NOT NULL) WITHOUT ROWID",
+    "CREATE INDEX job_by_end ON job(finished)",
 };
+enum { TABLES = sizeof tables / sizeof *tables };
+
+/* How many of the tables each version has. */
+static const size_t tables_of[ST_SCHEMA_VERSION + 1] = {[1] = TABLES - 2, [2] = TABLES};
 
 /* --- sums --- */
 
@@ -102,6 +114,21 @@ uint32_t st_kept_row_sum(const st_kept_row *row)
     return add_word(add_word(sum, row->position), row->made ? 1 : 0);
 }
 
+uint32_t st_job_sum(const st_job *job)
+{
+    uint32_t sum = add_word(add_text(begin("job"), job->id), job->number);
+    sum = add_text(add_text(add_word(sum, job->state), job->operation), job->phase);
+    sum = add_text(add_text(add_text(sum, job->mesh), job->location), job->holder);
+    sum = add_time(add_time(sum, job->progress), job->created);
+    sum = add_time(add_time(sum, job->started), job->finished);
+    sum = add_word(add_word(sum, (uint64_t)job->status), job->shown ? 1 : 0);
+    for (size_t i = 0; i < ST_JOB_HEADERS; i++) {
+        sum = add_text(sum, job->headers[i]);
+    }
+    sum = add_word(sum, job->body == NULL ? 0 : 1 + (uint64_t)job->length);
+    return job->body == NULL ? sum : st_crc32c(sum, job->body, job->length);
+}
+
 uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes, size_t size)
 {
     return st_crc32c(add_word(add_word(begin("part"), (uint64_t)snapshot), part), bytes, size);
@@ -162,7 +189,44 @@ bool st_purge_row_read(sqlite3_stmt *s, st_purge_row *out)
     return sum_is(s, 3, st_purge_row_sum(out));
 }
 
+/* Never NULL. */
+static const char *text_of(sqlite3_stmt *s, int column)
+{
+    const unsigned char *text = sqlite3_column_text(s, column);
+    return text == NULL ? "" : (const char *)text;
+}
+
+bool st_job_read(sqlite3_stmt *s, st_job *out)
+{
+    *out = (st_job){.number = st_db_word(s, 1),
+                    .state = (st_job_state)sqlite3_column_int64(s, 2),
+                    .operation = text_of(s, 3),
+                    .phase = text_of(s, 4),
+                    .mesh = text_of(s, 5),
+                    .location = text_of(s, 6),
+                    .holder = text_of(s, 7),
+                    .progress = sqlite3_column_double(s, 8),
+                    .created = sqlite3_column_double(s, 9),
+                    .started = sqlite3_column_double(s, 10),
+                    .finished = sqlite3_column_double(s, 11),
+                    .status = (int)sqlite3_column_int64(s, 12),
+                    .shown = st_db_word(s, 13) != 0};
+    enum { HEADERS_AT = 14, BODY_AT = HEADERS_AT + ST_JOB_HEADERS, SUM_AT };
+    st_db_text(s, 0, out->id, sizeof out->id);
+    for (int i = 0; i < ST_JOB_HEADERS; i++) {
+        out->headers[i] = text_of(s, HEADERS_AT + i);
+    }
+    if (sqlite3_column_type(s, BODY_AT) != SQLITE_NULL) {
+        const void *bytes = st_db_bytes(s, BODY_AT, &out->length);
+        out->body = bytes == NULL ? "" : bytes;
+    }
+    return out->state >= ST_JOB_ACCEPTED && out->state <= ST_JOB_CANCELLED &&
+           sum_is(s, SUM_AT, st_job_sum(out));
+}
+
 /* --- the whole database --- */
+
+#define SET_VERSION "PRAGMA user_version = 2"
 
 enum { META_PUT, META_GET, STATE_PUT, STATE_GET, TABLE_GET, STATEMENTS };
 static const char *const texts[STATEMENTS] = {
@@ -220,7 +284,7 @@ static st_sql make_rows(st_db *db, const st_identity *identity)
 st_sql st_schema_make(st_db *db, const st_identity *identity)
 {
     st_sql outcome = st_db_run(db, "BEGIN IMMEDIATE");
-    for (size_t i = 0; i < sizeof tables / sizeof *tables && outcome == ST_SQL_DONE; i++) {
+    for (size_t i = 0; i < TABLES && outcome == ST_SQL_DONE; i++) {
         outcome = st_db_run(db, tables[i]);
     }
     if (outcome == ST_SQL_DONE) {
@@ -232,16 +296,42 @@ st_sql st_schema_make(st_db *db, const st_identity *identity)
         outcome = st_db_run(db, "PRAGMA application_id = 0x68656467");
     }
     if (outcome == ST_SQL_DONE) {
-        outcome = st_db_run(db, "PRAGMA user_version = 1");
+        outcome = st_db_run(db, SET_VERSION);
+    }
+    return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
+}
+
+/* ST_SQL_DAMAGED for a version that never was. */
+static st_sql read_version(st_db *db, int64_t *out)
+{
+    st_sql outcome = st_db_number(db, "PRAGMA user_version", 0, out);
+    return outcome == ST_SQL_DONE && (*out < 1 || *out > ST_SCHEMA_VERSION) ? ST_SQL_DAMAGED
+                                                                            : outcome;
+}
+
+st_sql st_schema_raise(st_db *db)
+{
+    int64_t version;
+    st_sql outcome = read_version(db, &version);
+    if (outcome != ST_SQL_DONE || version == ST_SCHEMA_VERSION) {
+        return outcome;
+    }
+    outcome = st_db_run(db, "BEGIN IMMEDIATE");
+    for (size_t i = tables_of[version]; i < TABLES && outcome == ST_SQL_DONE; i++) {
+        outcome = st_db_run(db, tables[i]);
+    }
+    if (outcome == ST_SQL_DONE) {
+        outcome = st_db_run(db, SET_VERSION);
     }
     return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
 }
 
 st_sql st_schema_check(st_db *db)
 {
+    int64_t version = 0;
     st_db mine = borrowed(db);
-    st_sql outcome = ST_SQL_DONE;
-    for (size_t i = 0; i < sizeof tables / sizeof *tables && outcome == ST_SQL_DONE; i++) {
+    st_sql outcome = read_version(db, &version);
+    for (size_t i = 0; outcome == ST_SQL_DONE && i < tables_of[version]; i++) {
         sqlite3_stmt *s;
         outcome = st_db_find(&mine, TABLE_GET, &s, "t", tables[i]);
         if (outcome == ST_SQL_ROW) {

@@ -1,4 +1,4 @@
-/* sqlite_schema.h - the tables of hedge.db, version 1, and the sums of their rows.
+/* sqlite_schema.h - the tables of hedge.db, version 2, and the sums of their rows.
  *
  * Every row but those of record and part, whose bytes carry sums of their own, has a column `sum`:
  * CRC-32C over its table's name and its values, keys included. A flipped bit in a number would
@@ -10,11 +10,10 @@
 #include "journal/sqlite/sqlite_db.h"
 
 enum {
-    ST_SCHEMA_VERSION = 1,
+    ST_SCHEMA_VERSION = 2,              /* 1 had no jobs */
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
-    ST_KEY_TEXT = 255,                  /* of an Idempotency-Key, at most */
-    ST_KEY_SECONDS = 24 * 3600          /* that it is kept, at least */
+    ST_KEY_TEXT = 255                   /* of an Idempotency-Key, at most */
 };
 
 /* What the store is: never changed once it was made. */
@@ -76,6 +75,7 @@ uint32_t st_mesh_row_sum(const st_mesh_row *row);
 uint32_t st_snapshot_row_sum(const st_snapshot_row *row);
 uint32_t st_purge_row_sum(const st_purge_row *row);
 uint32_t st_kept_row_sum(const st_kept_row *row);
+uint32_t st_job_sum(const st_job *job);
 
 /* A part as its row's bytes: sum (4), coding (1), bytes. The sum covers snapshot and part too. */
 enum { ST_PART_HEAD = 5 };
@@ -91,18 +91,25 @@ uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes
 #define ST_KEPT_COLUMNS \
     "mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum"
 enum { ST_KEPT_COUNT = 11 }; /* of these columns */
+#define ST_JOB_COLUMNS                                                                          \
+    "id, number, state, operation, phase, mesh, location, holder, progress, created, started, " \
+    "finished, status, shown, type, disposition, tag, warnings, body, sum"
 
 /* False where the sum is wrong; the row is filled in then too. */
 bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);
 /* `facts` is borrowed from the statement. */
 bool st_snapshot_row_read(sqlite3_stmt *statement, st_snapshot_row *out);
 bool st_purge_row_read(sqlite3_stmt *statement, st_purge_row *out);
+/* Texts and body are borrowed from the statement. */
+bool st_job_read(sqlite3_stmt *statement, st_job *out);
 
 /* --- the whole database --- */
 
 /* Makes the tables in one transaction. */
 st_sql st_schema_make(st_db *db, const st_identity *identity);
-/* Are the tables those of version 1, to the letter? ST_SQL_DAMAGED. */
+/* Brings an older version's tables to this one in one transaction. */
+st_sql st_schema_raise(st_db *db);
+/* Are the tables those of the version, to the letter? ST_SQL_DAMAGED. */
 st_sql st_schema_check(st_db *db);
 /* ST_SQL_DAMAGED also where rows are missing or their sums are wrong. */
 st_sql st_identity_read(st_db *db, st_identity *out);

@@ -3,6 +3,7 @@
  *     sqlite_queue.c    reserve, append: rooms on their way to the commit thread
  *     sqlite_commit.c   the commit thread: groups, checkpoints, what happens when the disk says no
  *     sqlite_rows.c     what a record changes in the tables
+ *     sqlite_notes.c    jobs, and keys of requests that changed nothing
  *     sqlite_stage.c    contents in parts, and which of them a mesh is loaded from
  *     sqlite_purge.c    what is no longer needed is deleted by the slice
  *     sqlite_read.c     meshes are read again
@@ -50,7 +51,15 @@ typedef struct st_queued {
     st_stage *stage;
 } st_queued;
 
-/* Allocated in one piece with entries, heads of frames and bytes. */
+/* What a room says of a job. */
+typedef enum st_job_word {
+    ST_JOB_UNNAMED,
+    ST_JOB_WORK,  /* that its records are the work of the job */
+    ST_JOB_IS,    /* how it is */
+    ST_JOB_LEAVES /* that it is kept no longer */
+} st_job_word;
+
+/* Allocated in one piece with entries, heads of frames and bytes. One without records is a note. */
 typedef struct st_sqlite_room {
     st_room room; /* what others see of it */
     st_item item;
@@ -58,11 +67,15 @@ typedef struct st_sqlite_room {
     size_t charge;       /* bytes of the queue that it takes */
     bool freeing;
     size_t most, count; /* records */
-    uint64_t last;      /* position of the last of them */
+    uint64_t last;      /* position of the last of them, or of the note */
+    uint64_t meshes;    /* that they make, less those that they remove */
     st_card card;       /* of the mesh after them */
     bool has_key;
     st_kept_row key; /* its texts are those here */
     char key_text[ST_KEY_TEXT + 1];
+    st_job_word job_word;
+    st_job
+        job; /* its texts and body lie in the room's bytes; of WORK what the records tell of it */
     unsigned char *heads; /* ST_FRAME_HEAD bytes for each record */
     st_queued entries[];
 } st_sqlite_room;
@@ -156,6 +169,7 @@ struct st_sqlite {
     st_identity identity;
     uint64_t process;     /* drawn at the start: who stages */
     uint64_t queue_bytes; /* at most */
+    uint64_t most_keys;   /* rows of kept */
     pthread_t thread;
     bool has_thread;
     bool only_reads; /* nothing is written, by nobody */
@@ -200,6 +214,7 @@ struct st_sqlite {
     int64_t last_mesh, last_snapshot; /* keys that were given */
     uint64_t log_pages;               /* of the -wal, after the last commit */
     uint64_t log_tried;               /* pages at the last checkpoint that did not write all back */
+    uint64_t keys;                    /* rows of kept, at most */
     bool purged;                      /* nothing is left to be purged */
     st_purge_row purging, stuck;      /* kind 0: none; stuck: what it names is damaged */
     bool purge_damaged;               /* so was what the last slice met */
@@ -213,6 +228,10 @@ uint64_t st_sqlite_append(void *self, st_room *room, const st_record *records, s
 uint64_t st_sqlite_count(void *self);
 void st_sqlite_health(void *self, st_health *out);
 void st_sqlite_listen(void *self, const st_journal_listener *listener);
+/* Fills in what the room says of a key. */
+void st_room_key(st_sqlite_room *room, const st_kept_key *key);
+/* Queues the room, and gives it so many positions; returns the last. */
+uint64_t st_room_push(st_sqlite *self, st_sqlite_room *room, uint64_t positions);
 /* Put an item at the end of the queue. Under the lock. */
 void st_queue_put(st_sqlite *self, st_item *item);
 st_sqlite_room *st_room_of(st_item *item);
@@ -252,6 +271,13 @@ enum st_writer_statement {
     ST_SQL_KEPT_MAKE,
     ST_SQL_KEPT_DELETE,
     ST_SQL_KEPT_TRIM,
+    ST_SQL_KEPT_OLDEST,
+    ST_SQL_KEPT_CUT,
+    ST_SQL_JOB,
+    ST_SQL_JOB_MAKE,
+    ST_SQL_JOB_DONE,
+    ST_SQL_JOB_DELETE,
+    ST_SQL_JOBS_TRIM,
     ST_SQL_STATE_PUT,
     ST_WRITER_STATEMENTS
 };
@@ -264,6 +290,12 @@ void st_heads_forget(st_sqlite *self);
 st_sql st_heads_flush(st_sqlite *self);
 st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room);
 st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned);
+
+/* --- sqlite_notes.c --- */
+st_status st_sqlite_note(void *self, const st_note *note, uint64_t *position);
+st_status st_sqlite_jobs(void *self, st_take_job *take, void *context);
+/* What the room says of a job. Within a transaction. */
+st_sql st_notes_add_job(st_sqlite *self, const st_sqlite_room *room);
 
 /* --- sqlite_stage.c --- */
 st_status st_sqlite_stage(void *self, const he_mesh *content, st_stage **out);
