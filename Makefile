@@ -147,7 +147,7 @@ NEEDS.fuzz         := build test fuzz
 NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
 NEEDS.bench        := build node bench
 NEEDS.bench-http   := build bench-http
-NEEDS.bench-store  := build durable
+NEEDS.bench-store  := build durable bench-http
 NEEDS.bench-events := build
 NEEDS.bench-slow   := build bench-http bench-slow
 NEEDS.bench-large  := build bench-http
@@ -429,6 +429,7 @@ $(BUILD)/tests/bench/store: $(BUILD)/obj/tests/bench/store.o $(LIBRARIES)
 bench-store: $(HEDGED) $(BUILD)/tests/bench/store | $(INSTALLED) ## what durable edits cost, beside the same bytes written and synced, and beside memory
 	@mkdir -p build/durable
 	@$(BUILD)/tests/bench/store build/durable
+	@python3 -B tests/bench/store_daemon.py --hedged $(abspath $(HEDGED)) --work build/durable
 
 bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listeners: memory, and time to reach them all
 	@sh tests/bench/events.sh $(HEDGED) $(BUILD)/tests/bench/http/listeners

@@ -32,6 +32,7 @@ prove two 1
 prove stop 1
 prove kill 10
 prove sync 2
+prove many 1500
 prove backup 1
 prove restore 2
 prove golden 1

@@ -81,6 +81,8 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
     st_mesh *mesh;
     st_status status = prepare(store, id, name, content, 1, &booking, &mesh);
     if (status == ST_OK) {
+        /* Before it is in the table: one that was never used would be the oldest by far. */
+        st_mesh_use(mesh);
         /* What is lost from here on takes the place that was booked with it. */
         const bool lost = from != NULL && st_waits_is_lost(store->followers.waits, from);
         status = lost ? ST_LOST : publish(store, mesh, cause, &booking);
@@ -100,18 +102,17 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
     st_status status = st_lookup_free_id(store, id, &lookup);
     if (status == ST_OK) {
         status = make(store, id, name, content, cause, from, out);
-        if (status == ST_OK && store->journal.keeps) {
-            st_mesh_use(*out);
-        }
         st_lookup_end(store, lookup);
     }
     return status;
 }
 
+/* With more than is asked for: where room is made only when others do not free a few bytes at that
+ * moment, it seems full again once they take them back. */
 static bool has_room(st_store *store)
 {
     if (st_memory_is_full()) {
-        st_make_room(store, 0);
+        st_make_room(store, st_memory_budget() / 64);
     }
     return !st_memory_is_full();
 }

@@ -24,6 +24,7 @@ import full
 import golden
 import kill
 import locks
+import many
 import self_test
 import slow
 import stops
@@ -46,6 +47,7 @@ PROOFS = {
     'golden': (golden.prove, 1),
     'cut': (damaged.prove_cut, 1),
     'flip': (damaged.prove_flip, 1),
+    'many': (many.prove, 100000),
 }
 
 

@@ -6,6 +6,7 @@
 #include "system/random.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* SQLite has no error of its own where a sum or a value of a row is what is wrong. */
 static const char *damage_of(const st_db *db)
