@@ -11,7 +11,7 @@ trap 'rm -rf "$copy"' EXIT
 passed=0
 failed=0
 
-cp -R .ci core api server "$copy"
+cp -R .ci core api server README.md STYLE.md Makefile "$copy"
 cd "$copy" || exit 1
 
 sources() {
@@ -72,6 +72,12 @@ cp "$OLDPWD/core/repair/fill.c" core/repair/fill.c
 printf '\ntypedef struct api_planted {\n    void (*begin)(void *self);\n    void (*end)(void *self);\n} api_planted;\n' >>api/limits.h
 expect 'a struct of functions that is not listed is found' 'api_planted is a struct' structs
 cp "$OLDPWD/api/limits.h" api/limits.h
+
+words() { sh .ci/lint-words api/read/elements.c; }
+expect 'a handler that takes its mesh as it is given passes' '' words
+printf '\nconst void *planted(st_mesh *mesh)\n{\n    return st_read_begin(mesh, 0);\n}\n' >>api/read/elements.c
+expect 'a handler that obtains its mesh itself is found' 'a handler is given its mesh' words
+cp "$OLDPWD/api/read/elements.c" api/read/elements.c
 
 for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes

@@ -134,22 +134,10 @@ static void write_answer(api_exchange *x, const api_summary *summary, int status
     api_answer_json(x, status);
 }
 
-/* Keep what was computed, unless the mesh has moved on meanwhile. */
-static void keep(api_exchange *x, const api_summary *summary)
-{
-    st_mesh_info now;
-    if (st_read_begin(x->mesh, &now) != NULL) {
-        if (now.revision == x->info.revision && now.incarnation == x->info.incarnation) {
-            st_cache_put(x->mesh, summary, sizeof *summary);
-        }
-        st_read_end(x->mesh);
-    }
-}
-
 void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
                        void (*extra)(api_exchange *x))
 {
-    keep(x, summary);
+    st_cache_put_of(x->mesh, &x->info, summary, sizeof *summary);
     api_answer_etag(x, "summary");
     write_answer(x, summary, status, extra);
 }
@@ -157,8 +145,7 @@ void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
 /* Shows the mesh as it was created: other clients may have changed or deleted it by now. */
 static void find_facts_as_made(api_exchange *x, const char *name)
 {
-    st_read_begin(x->mesh, &x->info);
-    st_read_end(x->mesh);
+    (void)st_read_card(x->mesh, &x->info);
     snprintf(x->info.name, sizeof x->info.name, "%s", name);
     x->info.revision = x->info.metadata = 1;
     x->info.modified = x->info.created;
@@ -200,7 +187,7 @@ void api_summary_get(api_exchange *x)
         if (x->snapshot == NULL) {
             st_cache_put(x->mesh, summary, sizeof *summary);
         } else {
-            keep(x, summary);
+            st_cache_put_of(x->mesh, &x->info, summary, sizeof *summary);
         }
     }
     api_answer_etag(x, "summary");

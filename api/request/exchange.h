@@ -2,10 +2,10 @@
  *
  * By the time a row's `run` is called, service.c has found the route, decoded path and query,
  * checked Content-Type, Accept and the size of the body, parsed a control document, and
- * obtained the mesh as the row's `reads` says (or answered 404). A handler reads those, and either
- * answers or fills x->problem and returns: service.c then answers the problem. Answering nothing is
- * a bug and becomes 500. A problem that is filled wins over an answer, whose headers are then
- * dropped.
+ * obtained the mesh as the row's `reads` says (or answered 404; mesh_access.h). A handler reads
+ * those, and either answers or fills x->problem and returns: service.c then answers the problem.
+ * Answering nothing is a bug and becomes 500. A problem that is filled wins over an answer, whose
+ * headers are then dropped.
  *
  *     void api_vertex_get(api_exchange *x)
  *     {

@@ -74,10 +74,14 @@ void api_check_get(api_exchange *x);
 bool api_check_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
 /* Edits and history. */
+bool api_edits_decode(api_exchange *x);
+bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_edits_post(api_exchange *x);
 void api_edits_list(api_exchange *x);
-void api_undo_post(api_exchange *x);
-void api_redo_post(api_exchange *x);
+bool api_undo_decode(api_exchange *x);
+bool api_redo_decode(api_exchange *x);
+bool api_steps_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
+void api_steps_post(api_exchange *x);
 void api_events_get(api_exchange *x);
 
 #endif

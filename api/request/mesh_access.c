@@ -2,21 +2,34 @@
 
 #include "api/request/at_revision.h"
 
-const he_mesh *api_read_begin(api_exchange *x)
+/* x->info was filled. False and 503 when the mesh was lost, 404 when it was removed; but where the
+ * route may create it, a removed one is forgotten, as if it had never been. */
+static bool is_there(api_exchange *x)
 {
-    const he_mesh *mesh = st_read_begin(x->mesh, &x->info);
-    if (x->info.removed || x->info.lost) {
-        st_read_end(x->mesh);
-        api_fail_store(x, x->info.lost ? ST_LOST : ST_ABSENT);
-        return NULL;
+    if (x->info.lost) {
+        return api_fail_store(x, ST_LOST);
+    }
+    if (x->info.removed && (x->route->flags & API_MAY_CREATE)) {
+        st_release(x->mesh);
+        x->mesh = NULL;
+        return true;
+    }
+    if (x->info.removed) {
+        return api_fail_store(x, ST_ABSENT);
     }
     x->has_info = true;
-    return mesh;
+    return true;
 }
 
-void api_read_end(api_exchange *x)
+/* The content under the shared lock, if the mesh is there. */
+static bool lock(api_exchange *x)
 {
-    st_read_end(x->mesh);
+    x->content = st_read_begin(x->mesh, &x->info);
+    if (x->info.removed || x->info.lost) {
+        st_read_end(x->mesh);
+        x->content = NULL;
+    }
+    return is_there(x);
 }
 
 /* What is at hand is a snapshot, or under the shared lock. */
@@ -87,8 +100,7 @@ static bool obtain(api_exchange *x)
     uint64_t revision;
     x->keeps = false; /* what an attempt before this one had to keep */
     give_back(x);
-    x->content = api_read_begin(x);
-    if (x->content == NULL) {
+    if (!lock(x)) {
         return false;
     }
     if (api_at_revision_wanted(x, &revision)) {
@@ -102,11 +114,57 @@ static bool obtain(api_exchange *x)
     return !copies || take_snapshot(x);
 }
 
+/* Before a write: is it to begin here? A route that may create its mesh has none to look at. */
+static bool look(api_exchange *x)
+{
+    api_cost cost = {0};
+    if (x->mesh != NULL && !lock(x)) {
+        return false;
+    }
+    bool good = x->content == NULL || x->reading.cost(x, x->content, &cost);
+    give_back(x);
+    if (good && api_is_costly(x, cost.elements, API_COSTLY_ELEMENTS)) {
+        x->deferred = api_read;
+        return false;
+    }
+    return good;
+}
+
+static bool get_ready(api_exchange *x)
+{
+    switch (x->reading.reads) {
+    case API_READS_NONE:
+    case API_READS_CARD:
+        return true;
+    case API_READS_BEFORE:
+        return look(x);
+    case API_READS_LOCKED:
+    case API_READS_VIEW:
+    case API_READS_SNAPSHOT:
+        break;
+    }
+    return obtain(x);
+}
+
 void api_read(api_exchange *x)
 {
-    bool given = x->reading.reads == API_READS_NONE || x->reading.reads == API_READS_CARD;
-    if (given || obtain(x)) {
+    if (get_ready(x)) {
         x->reading.run(x);
+    }
+    give_back(x);
+}
+
+void api_read_at_head(api_exchange *x)
+{
+    bool good = true;
+    if (x->mesh != NULL && x->route->begin_reads == API_READS_CARD) {
+        (void)st_read_card(x->mesh, &x->info);
+        good = is_there(x);
+    } else if (x->mesh != NULL && x->route->begin_reads == API_READS_LOCKED) {
+        good = lock(x);
+    }
+    if (good) {
+        x->route->begin(x);
     }
     give_back(x);
 }

@@ -6,7 +6,10 @@
  * x->content with x->info of the same revision, and gives nothing back. It is entered once, but for
  * what api_begin_elsewhere says.
  *
- * Handlers that change a mesh have API_READS_NONE and obtain it by api_write_begin. */
+ * A handler that changes a mesh begins a write of it (api_write_begin, api_write_claim). What its
+ * row has to know of the content before, such as how large it is, `cost` finds here
+ * (API_READS_BEFORE). So do the row's `begin`, before the body comes, with what `begin_reads` says.
+ */
 #ifndef HE_API_REQUEST_MESH_ACCESS_H
 #define HE_API_REQUEST_MESH_ACCESS_H
 
@@ -16,6 +19,8 @@
  * 507); what the client has already is answered 304; what costs too much for a worker, or is to be
  * a job, leaves this function in x->deferred. */
 void api_read(api_exchange *x);
+/* Runs the row's `begin` with what it reads. */
+void api_read_at_head(api_exchange *x);
 /* Reads the mesh by `reading` instead of by the row of the route. A handler that has changed the
  * mesh calls it to answer with what another route reads. */
 void api_read_as(api_exchange *x, const api_reading *reading);
@@ -32,11 +37,5 @@ void api_begin_elsewhere(api_exchange *x);
 /* --- for `cost` of a row --- */
 /* The whole mesh is looked at. */
 bool api_cost_of_mesh(api_exchange *x, const he_mesh *mesh, api_cost *out);
-
-/* --- for handlers that write --- */
-/* The mesh under the shared lock, with x->info filled: to look at before the write begins. NULL and
- * 404 when it was removed, 503 when it was lost. */
-const he_mesh *api_read_begin(api_exchange *x);
-void api_read_end(api_exchange *x);
 
 #endif

@@ -42,8 +42,10 @@ typedef struct api_parameter {
 
 /* What a handler reads of the mesh that its path names: see mesh_access.h. */
 typedef enum api_reads {
-    API_READS_NONE,   /* nothing, or what it obtains itself to write it */
+    API_READS_NONE,   /* nothing */
     API_READS_CARD,   /* what is known of a mesh beside its content */
+    API_READS_BEFORE, /* of a write: `cost` looks at the content, as LOCKED; it is given back before
+                         the handler, which begins a write of it (exchange.h) */
     API_READS_LOCKED, /* the content, which nobody changes meanwhile: for what is short */
     API_READS_VIEW, /* as LOCKED on a worker, as SNAPSHOT elsewhere, where writers need not wait */
     API_READS_SNAPSHOT /* an immutable copy of the content */
@@ -60,8 +62,7 @@ typedef struct api_reading {
     api_reads reads;
     /* What will be read of the mesh at hand, found before it is: NULL where that is little. False
      * with the problem filled where it can be told already that the request is refused. It may
-     * change x->reading for this request. Called
-     * again where the work goes on. */
+     * change x->reading for this request. Called again where the work goes on. */
     bool (*cost)(api_exchange *x, const he_mesh *mesh, api_cost *out);
     /* The representation that is answered with (etag.h), where If-None-Match may be answered before
      * the handler runs; NULL: the handler looks what it is asked for first. What may be a job has
@@ -71,16 +72,16 @@ typedef struct api_reading {
 } api_reading;
 
 enum {
-    API_WRITES = 1,     /* changes something; If-Match is read */
-    API_COSTLY = 2,     /* a write that costs the mesh or the upload: large ones leave the worker */
-    API_MAY_CREATE = 4, /* the mesh need not exist */
-    API_OWN_ACCEPT = 8, /* the handler reads Accept itself (?format= comes first) */
-    API_FIXED = 16,     /* not under /v1: the same whatever the version */
-    API_KEYED = 32,     /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
-    API_KEYED_NEW = 64, /* the same of what makes a mesh: kept with the store */
-    API_LONG = 128,     /* may become a job: Prefer is read, and 202 may be the answer */
-    API_INTERRUPTS = 256,     /* is not kept out by a long edit of the mesh */
-    API_REHEARSED = 512,      /* takes `dry_run`: an answer may be about nothing that is */
+    API_WRITES = 1,       /* changes something; If-Match is read */
+    API_COSTLY = 2,       /* a write that costs the upload: large ones leave the worker */
+    API_MAY_CREATE = 4,   /* the mesh need not exist */
+    API_OWN_ACCEPT = 8,   /* the handler reads Accept itself (?format= comes first) */
+    API_FIXED = 16,       /* not under /v1: the same whatever the version */
+    API_KEYED = 32,       /* Idempotency-Key is read, and the answer kept with the mesh: keyed.h */
+    API_KEYED_NEW = 64,   /* the same of what makes a mesh: kept with the store */
+    API_LONG = 128,       /* may become a job: Prefer is read, and 202 may be the answer */
+    API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
+    API_REHEARSED = 512,  /* takes `dry_run`: an answer may be about nothing that is */
     API_TAG_OF_OTHERS = 4096, /* the answer of another request, which need not have had a tag */
     API_STORELESS = 2048,     /* answers show nothing that is stored, and wait for no journal; so do
                                  those of API_FIXED */
@@ -103,7 +104,12 @@ typedef struct api_route {
     const char *relation; /* what lies beside them; NULL: themselves */
     /* Before the body, of uploads only: choose a reader by x->media_in. NULL: nothing to do. */
     void (*begin)(api_exchange *x);
+    api_reads begin_reads; /* of it: NONE; CARD, which is x->info; or LOCKED. Where the mesh is
+                              absent or not in memory, it reads nothing */
     void (*body)(api_exchange *x, const char *bytes, size_t length);
+    /* Reads the document into x->state, before the mesh is obtained: NULL where `cost` or `run`
+     * does. False with the problem filled; or with x->deferred, which calls api_read in the end. */
+    bool (*decode)(api_exchange *x);
     void (*run)(api_exchange *x); /* in api_end, or in api_work */
     api_reads reads;
     bool (*cost)(api_exchange *x, const he_mesh *mesh,

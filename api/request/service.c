@@ -283,8 +283,7 @@ api_load api_load_of(const api_exchange *x)
     uint64_t amount = x->received;
     if (x->mesh != NULL) {
         st_mesh_info info;
-        amount += api_elements_of(st_read_begin(x->mesh, &info));
-        st_read_end(x->mesh);
+        amount += st_read_card(x->mesh, &info);
     }
     double seconds = (double)amount / API_EDIT_PER_SECOND;
     return (api_load){.reads = !(x->route->flags & API_WRITES),
@@ -455,7 +454,7 @@ static bool begin(api_exchange *x)
         }
     }
     if (x->route->begin != NULL) {
-        x->route->begin(x);
+        api_read_at_head(x);
     }
     return x->problem.code == HE_OK && !x->answered;
 }
@@ -532,25 +531,6 @@ static bool parse_body(api_exchange *x)
     return x->has_root;
 }
 
-/* Is this too much for a thread that others wait for? */
-static bool is_costly(api_exchange *x)
-{
-    if (!(x->route->flags & API_COSTLY)) {
-        return false;
-    }
-    if (api_is_costly(x, x->received, API_COSTLY_UPLOAD)) {
-        return true;
-    }
-    if (x->mesh == NULL) {
-        return false;
-    }
-    st_mesh_info info;
-    const he_mesh *mesh = st_read_begin(x->mesh, &info);
-    bool large = api_is_large(x, mesh);
-    st_read_end(x->mesh);
-    return large;
-}
-
 /* A read that took too long for the worker, and has changed nothing. */
 static void begin_anew(api_exchange *x)
 {
@@ -574,12 +554,19 @@ static api_step finish_or_go_on(api_exchange *x)
     return x->is_job ? API_JOB : API_WORK;
 }
 
+static void decode_and_read(api_exchange *x)
+{
+    if (x->route->decode == NULL || x->route->decode(x)) {
+        api_read(x);
+    }
+}
+
 static void run(api_exchange *x)
 {
-    if (is_costly(x)) {
-        x->deferred = api_read;
+    if ((x->route->flags & API_COSTLY) && api_is_costly(x, x->received, API_COSTLY_UPLOAD)) {
+        x->deferred = decode_and_read;
     } else {
-        api_read(x);
+        decode_and_read(x);
     }
 }
 

@@ -2,7 +2,6 @@
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
-#include "api/request/mesh_access.h"
 
 #include "api/document/attribute_path.h"
 #include "api/event/changes.h"
@@ -178,20 +177,14 @@ static bool refuse_body(api_exchange *x, const writing *w)
 
 /* The most octets a good body can have bound what is kept. They are known before it comes where the
  * mesh is in memory. */
-static bool set_maximum(api_exchange *x, writing *w)
+static void set_maximum(api_exchange *x, writing *w)
 {
     uint64_t most = body_cap(w);
-    if (w->octets && !x->is_cold) {
-        const he_mesh *mesh = api_read_begin(x);
-        if (mesh == NULL) {
-            return false;
-        }
-        uint64_t rows = he_mesh_issued(mesh, x->kind);
-        api_read_end(x);
+    if (w->octets && x->content != NULL) {
+        uint64_t rows = he_mesh_issued(x->content, x->kind);
         most = rows * w->column->row_bytes < most ? rows * w->column->row_bytes : most;
     }
     w->body.maximum = (size_t)most + 1;
-    return true;
 }
 
 static bool describe_by_query(api_exchange *x, writing *w)

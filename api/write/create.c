@@ -2,18 +2,12 @@
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
-#include "api/request/mesh_access.h"
 #include "api/request/new_mesh.h"
 
 #include "api/document/summary.h"
 #include "api/document/upload.h"
 
 /* Both routes read alike; what differs is where the mesh goes. */
-static void begin(api_exchange *x)
-{
-    api_upload_begin(x);
-}
-
 static void body(api_exchange *x, const char *bytes, size_t length)
 {
     if (x->problem.code == HE_OK) {
@@ -26,7 +20,7 @@ void api_meshes_create_begin(api_exchange *x)
 {
     const char *id = api_param_text(x, "id");
     if (id == NULL || !api_path_is_mesh_id(id) || api_gate_may_create(x, id)) {
-        begin(x);
+        api_upload_begin(x);
     }
 }
 
@@ -50,15 +44,14 @@ static bool forget_removed(api_exchange *x)
 /* Preconditions that fail already spare the client its body. */
 void api_mesh_put_begin(api_exchange *x)
 {
-    bool good = x->is_cold;
-    if (x->mesh != NULL && api_read_begin(x) != NULL) {
+    bool good = x->is_cold; /* which is known when the body is whole */
+    if (x->mesh != NULL) {
         good = (!x->info.busy || api_fail_store(x, ST_BUSY)) && api_preconditions_hold(x, NULL);
-        api_read_end(x);
-    } else if (!x->is_cold && (x->mesh == NULL || forget_removed(x))) {
+    } else if (!x->is_cold) {
         good = api_precondition_absent(x);
     }
     if (good) {
-        begin(x);
+        api_upload_begin(x);
     }
 }
 
@@ -122,8 +115,7 @@ static bool replace_damaged(api_exchange *x, const made *m)
 {
     st_mesh *fresh = NULL;
     char name[ST_MESH_NAME + 1];
-    (void)st_read_begin(x->mesh, &x->info);
-    st_read_end(x->mesh);
+    (void)st_read_card(x->mesh, &x->info);
     x->has_info = true;
     if (!x->info.removed && !api_preconditions_hold(x, NULL)) {
         he_mesh_free(m->mesh);

@@ -21,9 +21,12 @@ typedef struct edits {
     api_in expected;
     bool has_expected;
     bool dry_run;
-    size_t whole;    /* operations that cost the mesh */
-    uint64_t passes; /* over the mesh that they take as long as */
-    double growth;   /* by how many times they make it larger, all in all */
+    size_t whole;             /* operations that cost the mesh */
+    uint64_t passes;          /* over the mesh that they take as long as */
+    double growth;            /* by how many times they make it larger, all in all */
+    uint64_t elements_beside; /* of the other meshes that are named */
+    bool costly, claims;      /* where it is to run: api_edits_cost */
+    double seconds;
     api_edit_cost cost;
     uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
     uint64_t steps;     /* about hubs, by the operations so far */
@@ -504,45 +507,46 @@ static void run(api_exchange *x)
 }
 
 /* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a
- * thread that may block; what costs a really large mesh must not keep it locked. */
-static void choose(api_exchange *x, edits *e)
-{
-    uint64_t elements = api_others_elements(&e->others);
-    const he_mesh *mesh = api_read_begin(x);
-    if (mesh == NULL) {
-        return;
-    }
-    elements += api_elements_of(mesh);
-    elements = e->growth * (double)elements < MANY ? (uint64_t)(e->growth * (double)elements)
-                                                   : (uint64_t)MANY;
-    bool costly = e->count > API_COSTLY_EDITS || e->passes * elements > API_WORKER_EDITS ||
-                  (elements > API_COSTLY_ELEMENTS &&
-                   (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
-    api_read_end(x);
-    double seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;
-    if (e->whole > 0 && (elements > API_CLAIM_ELEMENTS || seconds > API_PATIENCE)) {
-        if (claim(x, e)) {
-            api_run_long(x, run_claimed, true, seconds);
-        }
-    } else {
-        api_run_long(x, run, costly, 0);
-    }
-}
-
-static void load_and_choose(api_exchange *x)
+ * thread that may block; what costs a really large mesh must not keep it locked. Which thread that
+ * is, the handler says: a claim is to be made before the client is answered. */
+bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     edits *e = x->state;
-    if (api_others_load(x, &e->others)) {
-        choose(x, e);
-    }
+    (void)out;
+    double grown = e->growth * (double)(e->elements_beside + api_elements_of(mesh));
+    uint64_t elements = grown < MANY ? (uint64_t)grown : (uint64_t)MANY;
+    e->costly = e->count > API_COSTLY_EDITS || e->passes * elements > API_WORKER_EDITS ||
+                (elements > API_COSTLY_ELEMENTS &&
+                 (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
+    e->seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;
+    e->claims = e->whole > 0 && (elements > API_CLAIM_ELEMENTS || e->seconds > API_PATIENCE);
+    return true;
 }
 
 void api_edits_post(api_exchange *x)
 {
+    edits *e = x->state;
+    if (!e->claims) {
+        api_run_long(x, run, e->costly, 0);
+    } else if (claim(x, e)) {
+        api_run_long(x, run_claimed, true, e->seconds);
+    }
+}
+
+static void load_others(api_exchange *x)
+{
+    edits *e = x->state;
+    if (api_others_load(x, &e->others)) {
+        e->elements_beside = api_others_elements(&e->others);
+        api_read(x);
+    }
+}
+
+bool api_edits_decode(api_exchange *x)
+{
     edits *e = he_mem_zero(1, sizeof *e);
     if (e == NULL) {
-        api_fail_memory(x);
-        return;
+        return api_fail_memory(x);
     }
     x->state = e;
     x->free_state = free_edits;
@@ -551,11 +555,12 @@ void api_edits_post(api_exchange *x)
     api_others_init(&e->others, x);
     api_out_init(&e->out, &e->results);
     if (!read_request(x, e)) {
-        return;
+        return false;
     }
     if (e->others.cold > 0) {
-        api_defer(x, load_and_choose);
-    } else {
-        choose(x, e);
+        x->deferred = load_others;
+        return false;
     }
+    e->elements_beside = api_others_elements(&e->others);
+    return true;
 }

@@ -77,8 +77,7 @@ uint64_t api_others_elements(const api_others *o)
     uint64_t elements = 0;
     for (size_t i = 0; i < o->count; i++) {
         st_mesh_info info;
-        elements += api_elements_of(st_read_begin(o->other[i].mesh, &info));
-        st_read_end(o->other[i].mesh);
+        elements += st_read_card(o->other[i].mesh, &info);
     }
     return elements;
 }

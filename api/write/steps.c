@@ -1,8 +1,6 @@
 /* Undo and redo: POST .../undo and .../redo. */
 #include "api/request/handlers.h"
 
-#include "api/request/mesh_access.h"
-
 #include "api/event/changes.h"
 
 /* A request between decoding and answer. */
@@ -102,7 +100,7 @@ static bool take(api_exchange *x, steps *s, uint32_t count)
     return write_answer(x, s);
 }
 
-static void run(api_exchange *x)
+void api_steps_post(api_exchange *x)
 {
     steps *s = x->state;
     if (!api_write_begin(x, s->has_expected ? &s->expected : NULL)) {
@@ -132,43 +130,36 @@ static void run(api_exchange *x)
 }
 
 /* Deltas of many rows belong on a thread that may block. */
-static bool is_long(api_exchange *x, const steps *s)
+bool api_steps_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
+    const steps *s = x->state;
     uint32_t count = s->count;
     uint64_t bytes = 0;
-    if (api_read_begin(x) == NULL) {
-        return false;
+    (void)mesh;
+    if (st_steps_to(x->mesh, s->which, s->revision, &count, &bytes) == ST_OK &&
+        bytes > API_COSTLY_STEPS) {
+        out->elements = UINT64_MAX;
     }
-    st_status status = st_steps_to(x->mesh, s->which, s->revision, &count, &bytes);
-    api_read_end(x);
-    return status == ST_OK && api_is_costly(x, bytes, API_COSTLY_STEPS);
+    return true;
 }
 
-static void begin(api_exchange *x, st_action which)
+static bool decode(api_exchange *x, st_action which)
 {
     steps *s = api_arena_array(&x->arena, 1, sizeof *s);
     if (s == NULL) {
-        api_fail_memory(x);
-        return;
+        return api_fail_memory(x);
     }
     *s = (steps){.which = which};
     x->state = s;
-    if (!read_request(x, s)) {
-        return;
-    }
-    if (is_long(x, s)) {
-        api_defer(x, run);
-    } else if (x->problem.code == HE_OK) {
-        run(x);
-    }
+    return read_request(x, s);
 }
 
-void api_undo_post(api_exchange *x)
+bool api_undo_decode(api_exchange *x)
 {
-    begin(x, ST_UNDO);
+    return decode(x, ST_UNDO);
 }
 
-void api_redo_post(api_exchange *x)
+bool api_redo_decode(api_exchange *x)
 {
-    begin(x, ST_REDO);
+    return decode(x, ST_REDO);
 }

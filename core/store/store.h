@@ -174,6 +174,9 @@ st_status st_cards(st_store *store, const char *after, st_card *out, size_t limi
 /* Takes the shared lock; the content is never NULL. `info` may be NULL. */
 const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info);
 void st_read_end(st_mesh *mesh);
+/* The facts of the mesh without its content; takes the shared lock for a moment. Returns how many
+ * vertices, half-edges and faces were issued. */
+uint64_t st_read_card(st_mesh *mesh, st_mesh_info *info);
 /* An immutable copy of the present revision, shared with everybody who asks for the same one. May
  * copy the mesh: not on a worker thread for large ones. ST_NO_MEMORY, ST_BUDGET. */
 st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out);
@@ -189,6 +192,8 @@ void st_snapshot_release(st_snapshot *snapshot); /* takes NULL */
  * copies it out and is false when there is none; put replaces it. Under the read lock. */
 bool st_cache_get(st_mesh *mesh, void *value, size_t size);
 void st_cache_put(st_mesh *mesh, const void *value, size_t size);
+/* As st_cache_put, without a lock: keeps nothing where the mesh is no longer what `of` says. */
+void st_cache_put_of(st_mesh *mesh, const st_mesh_info *of, const void *value, size_t size);
 
 /* What handlers derive from a mesh and keep with it, one of each kind. */
 typedef enum st_derived_kind {

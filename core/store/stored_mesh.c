@@ -241,6 +241,15 @@ void st_read_end(st_mesh *mesh)
     pthread_rwlock_unlock(&mesh->lock);
 }
 
+uint64_t st_read_card(st_mesh *mesh, st_mesh_info *info)
+{
+    const he_mesh *content = st_read_begin(mesh, info);
+    uint64_t issued = (uint64_t)he_mesh_issued(content, HE_VERTEX) +
+                      he_mesh_issued(content, HE_HALFEDGE) + he_mesh_issued(content, HE_FACE);
+    st_read_end(mesh);
+    return issued;
+}
+
 bool st_history_entry(st_mesh *mesh, size_t i, st_entry *out)
 {
     return st_log_entry(&mesh->log, i, out);
@@ -282,6 +291,16 @@ void st_cache_put(st_mesh *mesh, const void *value, size_t size)
         mesh->cache_revision = mesh->info.revision;
     }
     pthread_mutex_unlock(&mesh->cache_lock);
+}
+
+void st_cache_put_of(st_mesh *mesh, const st_mesh_info *of, const void *value, size_t size)
+{
+    st_mesh_info now;
+    (void)st_read_begin(mesh, &now);
+    if (now.revision == of->revision && now.incarnation == of->incarnation) {
+        st_cache_put(mesh, value, size);
+    }
+    st_read_end(mesh);
 }
 
 st_derived *st_derived_begin(st_mesh *mesh, st_derived_kind kind)

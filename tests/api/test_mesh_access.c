@@ -218,12 +218,16 @@ static void rows_that_read_content_say_so(void **state)
         for (const api_parameter *const *p = row->parameters; *p != NULL; p++) {
             earlier |= strcmp((*p)->name, "revision") == 0;
         }
-        if (strcmp(row->method, "DELETE") != 0 && of_mesh && !(row->flags & API_WRITES)) {
+        bool writes = (row->flags & API_WRITES) != 0, before = row->reads == API_READS_BEFORE;
+        if (strcmp(row->method, "DELETE") != 0 && of_mesh && !writes) {
             assert_true(reads);
         }
+        assert_true(!before || (writes && row->cost != NULL));
+        assert_true(row->begin != NULL || row->begin_reads == API_READS_NONE);
+        assert_true(row->begin_reads <= API_READS_LOCKED && row->begin_reads != API_READS_BEFORE);
         assert_true(!earlier || content);
         assert_true(content || (row->cost == NULL && row->tag == NULL));
-        assert_false(content && (row->flags & API_COSTLY));
+        assert_false(content && !before && (row->flags & API_COSTLY));
         assert_true(!content || of_mesh);
     }
 }
