@@ -293,14 +293,14 @@ ROWS = [
         'application/json', b'{"shape":"icosphere","subdivisions":6}'),
         [PROGRESSIVE, CROSS_OFTEN, RAYS, CLOSEST, edit('decimate', faces=10),
          edit('delaunay')], (201, 202)),
-    # A file is sent at once however large the mesh is: the manual says what that takes. The job of a ray
-    # makes the tree that nearest points need: where it ended before it was cancelled, they are quick.
+    # A file is sent at once however large the mesh is: the manual says what that takes. A ray and nearest
+    # points are quick where a job before them has made the tree before it was cancelled.
     Row('a torus of a million faces', lambda: ('application/json', json.dumps(
         {'shape': 'torus', 'major_segments': 1000, 'minor_segments': 1000}).encode()),
         [get('packed GLB', '/content?format=glb&compress=meshopt', most=2000),
          CHECK, get('check with merge', '/check?merge=0.01', 200, 202),
          get('crossings', '/check?self_intersections=true', 202),
-         jobs(RAY), maybe_jobs(CLOSEST), jobs(CROSS), jobs(CROSS_OFTEN),
+         *map(maybe_jobs, (RAY, CLOSEST)), jobs(CROSS), jobs(CROSS_OFTEN),
          get('STL', '/content?format=stl', most=2000), GLB, GEOMETRY, JSON, ASCII,
          *map(maybe_jobs, MEASURES), *map(maybe_jobs, WALKS), maybe_jobs(HUB[3]), *TABLES,
          COPY], (201, 202)),
