@@ -11,7 +11,7 @@ import { fileURLToPath } from 'node:url';
 import { recorded } from './traffic.mjs';
 
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
-const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
+export const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
 const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
 
 // {url, stop(), closers}; `t` is the context of the test, `flags` are more of hedged's. When it ends the closers are called, then

@@ -1,7 +1,9 @@
 // api.js - the only module that talks to the server. Paths are relative, so that the page works
 // behind any prefix.
 
+import { EventReader } from './events.js';
 import { HEADER_BYTES, headerOf } from './geometry.js';
+import { renewToken, token } from './token.js';
 
 const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
@@ -58,11 +60,19 @@ function problemOf(status, text) {
 }
 
 async function request(path, options = {}) {
+    const bearer = token();
+    const headers = { ...options.headers };
+    if (bearer !== null) {
+        headers.Authorization = `Bearer ${bearer}`;
+    }
     let answer;
     try {
-        answer = await fetch(path, { cache: 'no-cache', ...options });
+        answer = await fetch(path, { cache: 'no-cache', ...options, headers });
     } catch (error) {
         throw error.name === 'AbortError' ? error : unreachable();
+    }
+    if (answer.status === 401 && (await renewToken(bearer))) {
+        return request(path, options);
     }
     if (!answer.ok) {
         throw problemOf(answer.status, await answer.text());
@@ -90,6 +100,11 @@ async function postJson(path, body, work = null) {
 
 function meshPath(mesh) {
     return `v1/meshes/${encodeURIComponent(mesh)}`;
+}
+
+// Who one is: {name, role, prefixes, expires}; `name` is null where the server asks for no tokens.
+export function getToken() {
+    return getJson('v1/token');
 }
 
 // The server's own OpenAPI document.
@@ -236,20 +251,31 @@ async function readOn(reader) {
 // gets an event's name, its data and its id; onError, once, that the stream has ended. Returns an
 // object that is closed by close().
 export function listen(mesh, since, { onOpen, onEvent, onError }) {
-    const after = since === null ? '' : `?since=${encodeURIComponent(since)}`;
-    const source = new EventSource(`${meshPath(mesh)}/events${after}`);
-    source.onopen = onOpen;
-    // A browser would come back by itself, but not where an answer refused it.
-    source.onerror = () => {
-        source.close();
-        onError();
-    };
-    for (const name of ['edit', 'metadata', 'resync', 'bye']) {
-        source.addEventListener(name, ({ data, lastEventId }) => {
-            onEvent(name, JSON.parse(data), lastEventId);
-        });
+    const closing = new AbortController();
+    follow(`${meshPath(mesh)}/events`, since, { onOpen, onEvent }, closing.signal)
+        .catch(() => {})
+        .then(() => closing.signal.aborted || onError());
+    return { close: () => closing.abort() };
+}
+
+const HEARD = ['edit', 'metadata', 'resync', 'bye'];
+
+async function follow(path, since, { onOpen, onEvent }, signal) {
+    const headers = { Accept: 'text/event-stream' };
+    if (since !== null) {
+        headers['Last-Event-ID'] = since;
     }
-    return source;
+    const answer = await request(path, { headers, signal, cache: 'no-store' });
+    const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+    const events = new EventReader();
+    onOpen();
+    for (let part = await reader.read(); !part.done; part = await reader.read()) {
+        for (const { name, data, id } of events.take(part.value)) {
+            if (!signal.aborted && HEARD.includes(name)) {
+                onEvent(name, JSON.parse(data), id);
+            }
+        }
+    }
 }
 
 // --- edits ---
@@ -324,7 +350,14 @@ async function finish(first, work) {
 // Returns the new mesh's summary.
 // fetch cannot tell how much was sent, hence XMLHttpRequest.
 export async function upload(batch, onProgress, work, repairs = []) {
-    const { status, answer } = await send(batch, onProgress, work, repairs);
+    const bearer = token();
+    const { status, answer } = await send(batch, onProgress, work, repairs, bearer);
+    if (status === 401) {
+        if (await renewToken(bearer)) {
+            return upload(batch, onProgress, work, repairs);
+        }
+        throw new Problem({ ...answer, status });
+    }
     onProgress(1);
     return status === 202 ? finish(answer, work) : answer;
 }
@@ -336,7 +369,8 @@ function formOf(files) {
     return form;
 }
 
-function send({ file, beside }, onProgress, work, repairs) {
+// 401 is an answer too.
+function send({ file, beside }, onProgress, work, repairs, bearer) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;
     const type = MEDIA_TYPES[file.name.slice(dot + 1).toLowerCase()];
@@ -349,12 +383,15 @@ function send({ file, beside }, onProgress, work, repairs) {
             sender.setRequestHeader('Content-Type', type ?? other);
         }
         sender.setRequestHeader('Prefer', 'respond-async');
+        if (bearer !== null) {
+            sender.setRequestHeader('Authorization', `Bearer ${bearer}`);
+        }
         sender.upload.onprogress = (event) => {
             onProgress(event.lengthComputable ? event.loaded / event.total : 0);
         };
         sender.onload = () => {
             const { status, responseText: text } = sender;
-            if (status >= 200 && status < 300) {
+            if ((status >= 200 && status < 300) || status === 401) {
                 resolve({ status, answer: JSON.parse(text) });
             } else {
                 reject(problemOf(status, text));

@@ -23,9 +23,9 @@ export function showName({ mesh, summary }) {
     );
 }
 
-// May the open mesh be edited?
-export function isReady({ mesh, busy, connection }) {
-    return mesh !== null && !busy && connection !== 'gone';
+// May the open mesh be edited now?
+export function isReady({ mesh, busy, connection }, mayEdit) {
+    return mayEdit && mesh !== null && !busy && connection !== 'gone';
 }
 
 // `ready` where it may be edited now, `isDrawn` where there is a view at all.

@@ -13,6 +13,7 @@ import { Legend } from './legend.js';
 import { MeshList } from './list.js';
 import { Refining } from './refining.js';
 import { Session } from './session.js';
+import { SignIn } from './sign_in.js';
 import { Stage } from './stage.js';
 import { Statistics } from './statistics.js';
 import { Toasts } from './toast.js';
@@ -24,6 +25,7 @@ const toasts = new Toasts(byId('toasts'));
 const fail = (error) => toasts.show(error);
 
 const session = new Session(update, fail);
+const signIn = new SignIn(() => showWhatMayBeDone());
 const statistics = new Statistics({ sizes: byId('sizes'), facts: byId('facts') });
 const inspector = new Inspector(
     {
@@ -73,6 +75,7 @@ new Uploads(
         area: byId('drop'),
     },
     {
+        isOpen: () => signIn.mayEdit,
         send: api.upload,
         onDone: async (summary, file) => {
             await refreshList();
@@ -227,7 +230,7 @@ function showFacts() {
 }
 
 function showWhatMayBeDone() {
-    const ready = isReady(session) && !refining.isOn;
+    const ready = isReady(session, signIn.mayEdit) && !refining.isOn;
     showState(session, ready, stage.isThere);
     editing.setEnabled(ready);
     history.setEnabled(ready);
@@ -320,7 +323,7 @@ byId('show-boundary').addEventListener('change', (event) => {
 });
 byId('fit').addEventListener('click', () => stage.fit());
 byId('progressive').addEventListener('click', toggleLevels);
-byId('refresh').addEventListener('click', () => refreshList().catch(fail));
+byId('refresh').addEventListener('click', () => signIn.start().then(refreshList).catch(fail));
 for (const button of document.querySelectorAll('.upload')) {
     button.addEventListener('click', () => byId('file').click());
 }
@@ -339,6 +342,7 @@ start().catch(fail);
 
 // What the address says, or else the first of the list.
 async function start() {
+    await signIn.start();
     const [first] = await refreshList();
     await address.follow().catch(fail);
     if (session.mesh === null && first !== undefined) {

@@ -6,6 +6,7 @@ import { batchesOf } from './batches.js';
 export class Uploads {
     #work;
     #area;
+    #isOpen;
     #send;
     #onDone;
     #onError;
@@ -15,8 +16,10 @@ export class Uploads {
     // `send(batch, onProgress, work)` uploads one, see batches.js; `onDone(summary, file)` gets what became of
     // it; `work` shows it, see work.js. `onError(error, again)`: where repairs let the file pass,
     // `again` has their names as its label and sends it once more with them.
-    constructor({ input, work, area }, { send, onDone, onError }) {
+    // Nothing is dropped while `isOpen()` is false.
+    constructor({ input, work, area }, { isOpen, send, onDone, onError }) {
         this.#work = work;
+        this.#isOpen = isOpen;
         this.#area = area;
         this.#send = send;
         this.#onDone = onDone;
@@ -31,7 +34,7 @@ export class Uploads {
 
     // Entering a child leaves its parent: count, or the hint would flicker.
     #listenToDrops() {
-        const hasFiles = (event) => event.dataTransfer?.types.includes('Files');
+        const hasFiles = (event) => this.#isOpen() && event.dataTransfer?.types.includes('Files');
         document.addEventListener('dragenter', (event) => {
             if (hasFiles(event)) {
                 this.#setDepth(this.#depth + 1);

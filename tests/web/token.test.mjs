@@ -1,0 +1,116 @@
+// A server with tokens: the page asks for one, keeps it for its tab, and shows what it may do.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { test } from 'node:test';
+
+import { checkAccessible, waitForFrame } from './browser.mjs';
+import { program, startDaemon } from './daemon.mjs';
+import { expectToast } from './page.mjs';
+import { openPage } from './visit.mjs';
+
+// A token and the line for the file.
+function makeToken(name, role) {
+    const [token, line] = execFileSync(program, ['--new-token', name, role], {
+        encoding: 'utf8',
+    }).split('\n');
+    return { token, line };
+}
+
+// A daemon with a mesh, and the tokens of alice, who may edit, and bob, who may look.
+async function startGuarded(t) {
+    const folder = mkdtempSync(path.join(os.tmpdir(), 'tokens-'));
+    t.after(() => rmSync(folder, { recursive: true }));
+    const [alice, bob] = [makeToken('alice', 'write'), makeToken('bob', 'read')];
+    const file = path.join(folder, 'tokens');
+    writeFileSync(file, `${alice.line}\n${bob.line}\n`);
+    const daemon = await startDaemon(t, '--tokens', file);
+    const ask = async (who, place, method = 'GET', body = undefined) => {
+        const answer = await fetch(`${daemon.url}${place}`, {
+            method,
+            headers: { Authorization: `Bearer ${who.token}`, 'Content-Type': 'application/json' },
+            body: body && JSON.stringify(body),
+        });
+        return { status: answer.status, body: await answer.json() };
+    };
+    const { status } = await ask(alice, '/v1/meshes/box', 'PUT', { name: 'box', shape: 'cube' });
+    assert.equal(status, 201);
+    return { daemon, alice, bob, ask };
+}
+
+const UNAUTHORIZED = [/status of 401/];
+
+async function use(page, token) {
+    await page.locator('#sign-in[open]').waitFor();
+    await page.locator('#token').fill(token);
+    await page.locator('#sign-in button[value="use"]').click();
+}
+
+test('the page asks for a token until one is good, and edits with it', async (t) => {
+    const { daemon, alice, ask } = await startGuarded(t);
+    const page = await openPage(t, daemon, { allowed: UNAUTHORIZED });
+    await page.locator('#sign-in[open]').waitFor();
+    await checkAccessible(page, 'asked for a token', '#sign-in');
+    assert.equal(await page.locator('#token-wrong').isVisible(), false);
+    await use(page, 'hedge_wrong');
+    await page.locator('#token-wrong:not([hidden])').waitFor();
+    await use(page, alice.token);
+    await waitForFrame(page, { mesh: 'box', revision: 1 });
+    assert.equal(await page.locator('#who').textContent(), 'alice (write)');
+    assert.equal(await page.locator('#split').isVisible(), true);
+
+    // What others do comes by the stream.
+    const { status } = await ask(alice, '/v1/meshes/box/edits', 'POST', { op: 'face_poke', face: 0 });
+    assert.equal(status, 200);
+    await waitForFrame(page, { revision: 2 });
+    await page.locator('#undo:enabled').click();
+    await waitForFrame(page, { revision: 3 });
+
+    // Nothing of the token is in the address, nor beyond the tab.
+    assert.equal(page.url().includes(alice.token), false);
+    assert.equal(await page.evaluate(() => localStorage.length + document.cookie.length), 0);
+    await page.reload();
+    await waitForFrame(page, { mesh: 'box', revision: 3 });
+    const other = await page.context().newPage();
+    await other.goto(daemon.url);
+    await other.locator('#sign-in[open]').waitFor();
+    await other.close();
+});
+
+test('who may look sees no buttons that edit', async (t) => {
+    const { daemon, alice, bob, ask } = await startGuarded(t);
+    const page = await openPage(t, daemon, { allowed: UNAUTHORIZED });
+    await use(page, bob.token);
+    await waitForFrame(page, { mesh: 'box', revision: 1 });
+    assert.equal(await page.locator('#who').textContent(), 'bob (read)');
+    for (const button of ['#split', '#undo', '#redo', '#remove', '#operation', '.upload.wide']) {
+        assert.equal(await page.locator(button).isVisible(), false, button);
+    }
+    assert.equal(await page.locator('#fit').isVisible(), true);
+    const { status } = await ask(alice, '/v1/meshes/box/edits', 'POST', { op: 'face_poke', face: 0 });
+    assert.equal(status, 200);
+    await waitForFrame(page, { revision: 2 });
+    assert.equal(await page.locator('#history button:visible').count(), 0);
+    await checkAccessible(page, 'looking only');
+
+    // Another token may be used.
+    await page.locator('#who').click();
+    await use(page, alice.token);
+    await waitForFrame(page, { mesh: 'box', revision: 2 });
+    assert.equal(await page.locator('#split').isVisible(), true);
+});
+
+test('without a token the page says so, and asks again when told to', async (t) => {
+    const { daemon, alice } = await startGuarded(t);
+    const page = await openPage(t, daemon, { allowed: UNAUTHORIZED });
+    await page.locator('#sign-in[open]').waitFor();
+    await page.locator('#sign-in button.quiet').click();
+    await expectToast(page, 'A token is needed');
+    await page.locator('#refresh').click();
+    await use(page, alice.token);
+    await page.locator('#meshes button').first().click();
+    await waitForFrame(page, { mesh: 'box', revision: 1 });
+});

@@ -1,0 +1,36 @@
+// events.js - text/event-stream as it comes: text in, events out. EventSource sends no Authorization,
+// so that the stream is fetched like everything else.
+
+export class EventReader {
+    id = ''; // of the last event that had one
+
+    #rest = ''; // of a line that has not ended
+    #name = '';
+    #data = [];
+
+    // What a piece of the stream ends: [{name, data, id}, ...].
+    take(text) {
+        const lines = (this.#rest + text).split('\n');
+        this.#rest = lines.pop();
+        return lines.map((line) => this.#take(line.replace(/\r$/, ''))).filter(Boolean);
+    }
+
+    #take(line) {
+        if (line === '') {
+            const event = { name: this.#name || 'message', data: this.#data.join('\n'), id: this.id };
+            const isEvent = this.#data.length > 0;
+            this.#name = '';
+            this.#data = [];
+            return isEvent ? event : null;
+        }
+        const [, field, value] = /^([^:]*):? ?(.*)$/.exec(line);
+        if (field === 'event') {
+            this.#name = value;
+        } else if (field === 'data') {
+            this.#data.push(value);
+        } else if (field === 'id') {
+            this.id = value;
+        }
+        return null;
+    }
+}

@@ -1,0 +1,51 @@
+// sign_in.js - asks for a token, and shows whose it is and what it may do.
+
+import * as api from './api.js';
+import { byId } from './dom.js';
+import { askBy, forgetToken } from './token.js';
+
+const ROLES = { read: 'may look', write: 'may edit', admin: 'may do everything' };
+
+export class SignIn {
+    mayEdit = true; // until the server says otherwise
+
+    // `onChange` is called when it is known who one is.
+    constructor(onChange) {
+        askBy((wasWrong) => this.#ask(wasWrong));
+        byId('who').addEventListener('click', () => {
+            forgetToken();
+            window.location.reload();
+        });
+        this.onChange = onChange;
+    }
+
+    // Asks the server, which asks for a token where it wants one.
+    async start() {
+        const { name, role, prefixes } = await api.getToken();
+        this.mayEdit = role !== 'read';
+        const who = byId('who');
+        who.hidden = name === null;
+        who.textContent = `${name} (${role})`;
+        const meshes = prefixes.length > 0 ? `; meshes ${prefixes.join(', ')}\u2026` : '';
+        who.title = `${ROLES[role] ?? role}${meshes}. Press to use another token`;
+        document.body.classList.toggle('looks-only', !this.mayEdit);
+        this.onChange();
+    }
+
+    #ask(wasWrong) {
+        const dialog = byId('sign-in');
+        const field = byId('token');
+        byId('token-wrong').hidden = !wasWrong;
+        field.value = '';
+        dialog.returnValue = '';
+        dialog.showModal();
+        return new Promise((resolve) => {
+            const onClose = () => {
+                const given = field.value.trim();
+                field.value = '';
+                resolve(dialog.returnValue === 'use' && given !== '' ? given : null);
+            };
+            dialog.addEventListener('close', onClose, { once: true });
+        });
+    }
+}

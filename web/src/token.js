@@ -1,0 +1,36 @@
+// token.js - the token that requests carry, where the server asks for one. It is kept for the tab
+// alone, and goes with it.
+
+const PLACE = 'hedge-token';
+
+let ask = () => Promise.resolve(null);
+let asked = null;
+
+export function token() {
+    return sessionStorage.getItem(PLACE);
+}
+
+export function forgetToken() {
+    sessionStorage.removeItem(PLACE);
+}
+
+// `show(wasWrong)` asks the visitor: a promise of a token, or of null.
+export function askBy(show) {
+    ask = show;
+}
+
+// A request with `refused`, a token or null, was answered 401. Is there another one to try? However
+// many requests are refused at a time, the visitor is asked once.
+export async function renewToken(refused) {
+    if (token() === refused) {
+        asked ??= ask(refused !== null).finally(() => {
+            asked = null;
+        });
+        const given = await asked;
+        if (given === null) {
+            return false;
+        }
+        sessionStorage.setItem(PLACE, given);
+    }
+    return true;
+}
